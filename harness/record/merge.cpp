@@ -1,9 +1,11 @@
 #include "harness/record/merge.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -20,6 +22,12 @@ namespace {
 
 using reports::Verdict;
 
+std::set<std::uint64_t> indices_of(const std::vector<ShardFile>& shards) {
+  std::set<std::uint64_t> indices;
+  for (const ShardFile& shard : shards) indices.insert(shard.record.shard->index);
+  return indices;
+}
+
 /// A shard's test with the data for Holm's method.
 struct Part {
   reports::Test test;
@@ -33,6 +41,20 @@ std::vector<Part> parts_of(const std::vector<ShardFile>& shards, std::size_t sui
     for (std::size_t i = 0; i < tests.size(); ++i) {
       parts.push_back({tests[i], shard.record.shard->suites[suite].results[i]});
     }
+  }
+  const std::set<std::uint64_t> there = indices_of(shards);
+  const reports::Record& any = shards.front().record;
+  for (const reports::ShardElsewhere& test : any.shard->suites[suite].elsewhere) {
+    if (there.contains(test.shard)) continue;
+    parts.push_back({{.name = test.name,
+                      .id = test.id,
+                      .claim = test.claim,
+                      .file = any.suites[suite].file,
+                      .line = test.line,
+                      .verdict = Verdict::skipped,
+                      .message = fmt::format("shard {} of {} is missing", test.shard,
+                                             any.shard->count)},
+                     {.position = test.position}});
   }
   std::sort(parts.begin(), parts.end(),
             [](const Part& a, const Part& b) { return a.family.position < b.family.position; });
@@ -133,7 +155,8 @@ reports::Suite merge_suite(const std::vector<ShardFile>& shards, std::size_t ind
     return shard.record.suites[index].timed;
   });
   std::vector<Part> parts = parts_of(shards, index);
-  const bool complete = parts.size() == shards.front().record.shard->suites[index].tests;
+  const bool complete = parts.size() == shards.front().record.shard->suites[index].tests &&
+                        missing_shards(shards).empty();
   if (complete) adjust_p_values(parts);
   whole = whole && complete;
   std::vector<Pictured> pictures;
@@ -155,6 +178,20 @@ reports::Suite merge_suite(const std::vector<ShardFile>& shards, std::size_t ind
 
 }  // namespace
 
+std::string missing_shards(const std::vector<ShardFile>& shards) {
+  const std::set<std::uint64_t> there = indices_of(shards);
+  const std::uint64_t count = shards.front().record.shard->count;
+  std::vector<std::uint64_t> missing;
+  for (std::uint64_t index = 1; index <= count; ++index) {
+    if (!there.contains(index)) missing.push_back(index);
+  }
+  if (missing.empty()) return "";
+  return fmt::format(
+      "of {} shards these are missing, and their tests are skipped: {}; run them with --shard {}/{}{} "
+      "and merge all records",
+      count, fmt::join(missing, ", "), missing.front(), count, missing.size() > 1 ? ", …" : "");
+}
+
 reports::Record merge(std::vector<ShardFile> shards) {
   check_shards(shards);
   std::sort(shards.begin(), shards.end(), [](const ShardFile& a, const ShardFile& b) {
@@ -175,6 +212,7 @@ reports::Record merge(std::vector<ShardFile> shards) {
     record.suites.push_back(merge_suite(shards, i, whole));
   }
   record.note = whole ? "" : partial_note;
+  if (const std::string missing = missing_shards(shards); !missing.empty()) record.note = missing;
   return record;
 }
 
@@ -182,9 +220,12 @@ int merge_shards(const MergeArguments& arguments, const Output& output) {
   require_writable(output, arguments.records);
   std::vector<ShardFile> shards;
   for (const std::string& file : arguments.records) shards.push_back({file, read_record(file)});
-  reports::Record record = merge(std::move(shards));
+  reports::Record record = merge(shards);
   report_run(record, output);
-  return exit_code(record, output.inconclusive);
+  const std::string missing = missing_shards(shards);
+  if (missing.empty()) return exit_code(record, output.inconclusive);
+  fmt::print(stderr, "assay: {}\n", missing);
+  return 1;
 }
 
 }  // namespace assay::harness

@@ -106,15 +106,6 @@ void check_shards(const std::vector<ShardFile>& shards) {
     refuse(shard, fmt::format("is shard {} of {}, and so is `{}`; give each shard once", index,
                               shard.record.shard->count, first->second));
   }
-  const std::uint64_t count = shards.front().record.shard->count;
-  std::string missing;
-  for (std::uint64_t index = 1; index <= count && missing.size() < 60; ++index) {
-    if (!seen.contains(index)) missing += fmt::format("{}{}", missing.empty() ? "" : ", ", index);
-  }
-  if (missing.empty()) return;
-  throw InputError({}, fmt::format("of {} shards these are missing: {}; run them with --shard "
-                                   "I/{}, and give their records too",
-                                   count, missing, count));
 }
 
 }  // namespace assay::harness

@@ -6,7 +6,7 @@
 
 namespace assay::harness {
 
-/// InputError unless the records are all shards of one run, each once.
+/// InputError unless the records are shards of one run, each at most once.
 void check_shards(const std::vector<ShardFile>& shards);
 
 }  // namespace assay::harness

@@ -80,14 +80,25 @@ void add_shard(const std::vector<std::unique_ptr<SuiteRun>>& runs, const RunOpti
   reports::Shard shard{
       .index = index, .count = count, .options = options_text(options), .suites = {}};
   for (const auto& run : runs) {
-    reports::ShardSuite suite{
-        .digest = digest_of(*run), .tests = run->suite.tests.size(), .pictures = {}, .results = {}};
+    reports::ShardSuite suite{.digest = digest_of(*run),
+                              .tests = run->suite.tests.size(),
+                              .pictures = {},
+                              .results = {},
+                              .elsewhere = {}};
     for (const Picture& picture : run->pictures) {
       suite.pictures.push_back(picture_of(picture, *run));
     }
     for (const TestWork& work : run->tests) suite.results.push_back(test_of(work.outcome, *run));
     for (const Untested& each : run->untested) {
       suite.results.push_back({.position = position_of(*each.test, run->suite)});
+    }
+    for (const Elsewhere& each : run->elsewhere) {
+      suite.elsewhere.push_back({.shard = each.shard,
+                                 .position = position_of(*each.test, run->suite),
+                                 .id = each.test->id,
+                                 .name = each.test->name,
+                                 .claim = each.test->claim.text,
+                                 .line = each.test->where.line});
     }
     // The record has its tests in this order.
     std::ranges::sort(suite.results, {}, &reports::ShardTest::position);

@@ -12,6 +12,7 @@
 #include "harness/plan/plan.h"
 #include "harness/run/image_memory.h"
 #include "harness/run/picture_stream.h"
+#include "harness/run/shards.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/methods.h"
 #include "stats/images/image.h"
@@ -22,11 +23,6 @@ namespace {
 // The suite picture's secondaries of an estimator that no selected mean or variance claim draws.
 constexpr std::uint64_t picture_secondaries = 1000;
 constexpr std::uint64_t picture_primaries = 64;
-
-bool selected(const TestEntry& test, std::size_t index, const RunOptions& options) {
-  if (options.shard && index % options.shard->second != options.shard->first - 1) return false;
-  return selects(options.selection, test);
-}
 
 /// Splits the suite's primaries over all its tests by weight, selected or not: what a test may draw
 /// is a function of the suite alone. Claims in seconds are timed on whole replicates.
@@ -172,34 +168,43 @@ void plan_picture(SuiteRun& run, const std::vector<Question>& questions,
   }
 }
 
-/// True if the test runs; depends on its place in the suite's file.
-bool selected(const TestEntry& test, const SuiteRun& run, const RunOptions& options) {
-  return selected(test, static_cast<std::size_t>(&test - run.suite.tests.data()), options);
-}
-
-void plan_suite(SuiteRun& run, const RunOptions& options, Pools& pools, Progress& progress) {
+/// Draws the pilots of the selected tests and plans them. Returns the primaries of estimators that
+/// choose them.
+Primaries plan_tests(SuiteRun& run, const RunOptions& options, Progress& progress) {
   std::erase_if(run.untested,
-                [&](const Untested& each) { return !selected(*each.test, run, options); });
+                [&](const Untested& each) { return !selects(options.selection, *each.test); });
   const std::vector<Question>& questions = run.questions;
   std::vector<bool> chosen;
-  for (const Question& each : questions) chosen.push_back(selected(*each.test, run, options));
-  if (std::none_of(chosen.begin(), chosen.end(), [](bool c) { return c; })) return;
+  for (const Question& each : questions) chosen.push_back(selects(options.selection, *each.test));
+  if (std::none_of(chosen.begin(), chosen.end(), [](bool c) { return c; })) return {};
   const std::vector<FamilyPlace> place = places(run.suite, questions);
-  const auto used = used_by(questions, chosen, run, options);
-  run.pilots = piloted(run, questions, chosen, used, options, progress);
-  const Pilots& pilots = run.pilots;
+  run.pilots = piloted(run, questions, chosen, used_by(questions, chosen, run, options), options,
+                       progress);
   stop_if_interrupted();
-  const Primaries primaries = choose_primaries(questions, place, pilots);
+  const Primaries primaries = choose_primaries(questions, place, run.pilots);
   for (std::size_t i = 0; i < questions.size(); ++i) {
     if (!chosen[i]) continue;
-    Plan plan = plan_test(questions[i], place[i], pilots, primaries);
-    TestWork work{
-        .suite_budget = run.suite.budget ? &*run.suite.budget : nullptr,
-        .outcome = {.question = questions[i], .place = place[i], .plan = std::move(plan)}};
-    work.pools = pools.for_question(work.outcome.question, work.outcome.plan, run.seed, pilots);
-    run.tests.push_back(std::move(work));
+    Plan plan = plan_test(questions[i], place[i], run.pilots, primaries);
+    run.tests.push_back(
+        {.suite_budget = run.suite.budget ? &*run.suite.budget : nullptr,
+         .outcome = {.question = questions[i], .place = place[i], .plan = std::move(plan)}});
   }
-  plan_picture(run, questions, used, primaries, pilots, pools);
+  return primaries;
+}
+
+/// Plans what is drawn for the tests and the suite's picture.
+void plan_pools(SuiteRun& run, const Primaries& primaries, const RunOptions& options,
+                Pools& pools) {
+  if (run.tests.empty() && run.pilots.empty()) return;
+  std::set<const TestEntry*> own;
+  for (TestWork& work : run.tests) {
+    work.pools = pools.for_question(work.outcome.question, work.outcome.plan, run.seed, run.pilots);
+    own.insert(work.outcome.question.test);
+  }
+  std::vector<bool> chosen;
+  for (const Question& each : run.questions) chosen.push_back(own.contains(each.test));
+  const auto used = used_by(run.questions, chosen, run, options);
+  plan_picture(run, run.questions, used, primaries, run.pilots, pools);
 }
 
 /// Why the suite's tests cannot run on this machine; "" if they can.
@@ -280,7 +285,12 @@ PlannedRun plan_run(const std::vector<Suite>& suites, const RunOptions& options,
                     Progress& progress) {
   PlannedRun planned;
   for (const Suite& suite : suites) planned.suites.push_back(prepare_suite(suite, options));
-  for (auto& run : planned.suites) plan_suite(*run, options, planned.pools, progress);
+  std::vector<Primaries> primaries;
+  for (auto& run : planned.suites) primaries.push_back(plan_tests(*run, options, progress));
+  if (options.shard) keep_shard(planned.suites, *options.shard);
+  for (std::size_t i = 0; i < planned.suites.size(); ++i) {
+    plan_pools(*planned.suites[i], primaries[i], options, planned.pools);
+  }
   return planned;
 }
 

@@ -25,6 +25,12 @@ struct Untested {
   std::string message;
 };
 
+/// A selected test that another shard of the run takes.
+struct Elsewhere {
+  const TestEntry* test;
+  std::uint64_t shard;  ///< from 1
+};
+
 /// A suite in a run: its text, what was prepared from it, and its results.
 struct SuiteRun {
   Suite suite;
@@ -32,8 +38,9 @@ struct SuiteRun {
   std::map<std::string, PreparedEstimator> estimators;
   std::vector<Question> questions = {};  ///< Questions of its tests, without untested ones.
   Pilots pilots = {};                    ///< Pilots of the selected tests' estimators.
-  std::vector<TestWork> tests = {};      ///< The selected tests.
-  std::vector<Untested> untested = {};   ///< Selected tests without a question.
+  std::vector<TestWork> tests = {};      ///< The selected tests, in a shard its own.
+  std::vector<Untested> untested = {};   ///< Those of them without a question.
+  std::vector<Elsewhere> elsewhere = {};
   std::vector<Picture> pictures = {};
   bool adjusted = false;  ///< True if the whole family ran, so that its p-values are adjusted.
 };

@@ -351,12 +351,23 @@ void fields(Archive& a, T& test) {
   a("compared", test.compared);
 }
 
+template <class Archive, maybe_const<ShardElsewhere> T>
+void fields(Archive& a, T& test) {
+  a("shard", test.shard);
+  a("position", test.position);
+  a("id", test.id);
+  a("name", test.name);
+  a("claim", test.claim);
+  a("line", test.line);
+}
+
 template <class Archive, maybe_const<ShardSuite> T>
 void fields(Archive& a, T& suite) {
   a("digest", suite.digest);
   a("tests", suite.tests);
   a("pictures", suite.pictures);
   a("results", suite.results);
+  a("elsewhere", suite.elsewhere);
 }
 
 template <class Archive, maybe_const<Shard> T>

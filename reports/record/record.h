@@ -298,11 +298,23 @@ struct ShardTest {
   bool operator==(const ShardTest&) const = default;
 };
 
+/// A selected test of another shard.
+struct ShardElsewhere {
+  std::uint64_t shard = 1;     ///< from 1
+  std::uint64_t position = 0;  ///< Place in the suite's file.
+  std::string id;
+  std::string name;
+  std::string claim;
+  int line = 0;
+  bool operator==(const ShardElsewhere&) const = default;
+};
+
 struct ShardSuite {
   std::string digest;       ///< of the suite's file and the data files it names
   std::uint64_t tests = 0;  ///< in the suite's file
   std::vector<ShardPicture> pictures;
   std::vector<ShardTest> results;
+  std::vector<ShardElsewhere> elsewhere;
   bool operator==(const ShardSuite&) const = default;
 };
 

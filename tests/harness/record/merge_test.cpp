@@ -134,6 +134,39 @@ TEST(Merge, KeepsTheLongestTimesAndTheirSum) {
   EXPECT_EQ(merged.seconds, 5);
 }
 
+// Whichever shards are there, the tests of the others are named, and all stand in their order.
+TEST(Merge, TheTestsOfAMissingShardAreSkipped) {
+  const Workplace place;
+  const std::string file = place.write("good.yaml", suite);
+  const reports::Record whole = run_files({file});
+  const std::vector<ShardFile> shards = shards_of({file}, 3);
+  for (const std::vector<std::size_t>& there : {std::vector<std::size_t>{0}, {1, 2}}) {
+    std::vector<ShardFile> some;
+    for (const std::size_t index : there) some.push_back(shards[index]);
+    const reports::Record merged = saved(merge(some));
+    std::size_t skipped = 0;
+    std::size_t rest = 0;
+    for (const ShardFile& shard : shards) rest += shard.record.suites[0].tests.size();
+    for (const ShardFile& shard : some) rest -= shard.record.suites[0].tests.size();
+    ASSERT_EQ(merged.suites[0].tests.size(), whole.suites[0].tests.size());
+    for (std::size_t i = 0; i < whole.suites[0].tests.size(); ++i) {
+      const reports::Test& test = merged.suites[0].tests[i];
+      EXPECT_EQ(test.id, whole.suites[0].tests[i].id);
+      EXPECT_EQ(test.line, whole.suites[0].tests[i].line);
+      if (test.verdict != Verdict::skipped) {
+        EXPECT_EQ(test.verdict, whole.suites[0].tests[i].verdict);
+        continue;
+      }
+      ++skipped;
+      EXPECT_FALSE(test.ok);
+      EXPECT_THAT(test.message, HasSubstr(" of 3 is missing"));
+    }
+    EXPECT_GT(skipped, 0U);
+    EXPECT_EQ(skipped, rest);
+    EXPECT_THAT(merged.note, HasSubstr(there.size() == 1 ? "skipped: 2, 3;" : "skipped: 1;"));
+  }
+}
+
 class Refusing : public testing::Test {
  protected:
   Refusing() : file_(place_.write("good.yaml", suite)), shards_(shards_of({file_}, 2)) {}
@@ -151,10 +184,6 @@ class Refusing : public testing::Test {
   std::string file_;
   std::vector<ShardFile> shards_;
 };
-
-TEST_F(Refusing, AMissingShardIsNamed) {
-  EXPECT_THAT(refused({shards_[1]}), HasSubstr("of 2 shards these are missing: 1;"));
-}
 
 TEST_F(Refusing, ADoubledShardIsNamedWithBothFiles) {
   const ShardFile copy{"copy.json", shards_[0].record};

@@ -1,0 +1,99 @@
+#include "harness/run/shards.h"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+#include "harness/plan/forecast.h"
+
+namespace assay::harness {
+namespace {
+
+/// The cost of a prefix of each stream, by the stream's key and primaries.
+using Prefixes = std::map<std::pair<std::uint64_t, std::uint64_t>, double>;
+
+/// Rays and samples of an observation.
+double observation_cost(const Subject& subject, std::uint64_t primaries, const Pilots& pilots) {
+  const Pilot* const pilot = pilot_of(subject, pilots);
+  const auto wanted = static_cast<double>(primaries);
+  if (pilot == nullptr || pilot->sums == nullptr || pilot->sums->count == 0) return wanted;
+  const auto counted = static_cast<double>(pilot->sums->cost.rays() + pilot->sums->cost.samples);
+  const auto drawn = static_cast<double>(pilot->sums->count * pilot->primaries);
+  return std::max(1.0, counted / drawn * wanted);
+}
+
+Prefixes prefixes_of(const TestOutcome& test, const SuiteRun& run) {
+  Prefixes cost;
+  if (!test.plan.invalid.empty()) return cost;
+  const std::uint64_t expected = expected_secondaries(test, run.pilots);
+  for (std::size_t i = 0; i < test.question.subjects.size(); ++i) {
+    const Subject& side = test.question.subjects[i];
+    const StreamKey key = key_of(*side.estimator, run.seed, side.copy, side.purpose);
+    double& prefix = cost[{key.bits, test.plan.primaries[i]}];
+    prefix = std::max(prefix, static_cast<double>(side.secondaries(expected)) *
+                                  observation_cost(side, test.plan.primaries[i], run.pilots));
+  }
+  return cost;
+}
+
+double total_of(const Prefixes& cost) {
+  return std::accumulate(cost.begin(), cost.end(), 0.0,
+                         [](double sum, const auto& each) { return sum + each.second; });
+}
+
+/// The cost of both, with prefixes of one stream drawn once.
+Prefixes joined_prefixes(Prefixes cost, const Prefixes& more) {
+  for (const auto& [stream, prefix] : more) cost[stream] = std::max(cost[stream], prefix);
+  return cost;
+}
+
+/// The shard of each test, from 0.
+std::vector<std::size_t> dealt(const std::vector<Prefixes>& costs, unsigned count) {
+  std::vector<std::size_t> dearest(costs.size());
+  std::iota(dearest.begin(), dearest.end(), std::size_t{0});
+  std::ranges::stable_sort(dearest, std::ranges::greater{},
+                           [&](std::size_t test) { return total_of(costs[test]); });
+  std::vector<Prefixes> loads(count);
+  std::vector<std::size_t> shards(costs.size());
+  for (const std::size_t test : dearest) {
+    const auto least = std::ranges::min_element(
+        loads, {}, [&](const Prefixes& load) { return total_of(joined_prefixes(load, costs[test])); });
+    *least = joined_prefixes(std::move(*least), costs[test]);
+    shards[test] = static_cast<std::size_t>(least - loads.begin());
+  }
+  return shards;
+}
+
+}  // namespace
+
+void keep_shard(const std::vector<std::unique_ptr<SuiteRun>>& runs,
+                std::pair<unsigned, unsigned> shard) {
+  std::vector<Prefixes> costs;
+  for (const auto& run : runs) {
+    for (const TestWork& work : run->tests) costs.push_back(prefixes_of(work.outcome, *run));
+    // One that cannot be tested costs nothing.
+    costs.resize(costs.size() + run->untested.size());
+  }
+  const std::vector<std::size_t> shards = dealt(costs, shard.second);
+  auto next = shards.begin();
+  for (const auto& run : runs) {
+    const auto is_elsewhere = [&](const TestEntry* test) {
+      const std::size_t owner = *next++ + 1;
+      if (owner == shard.first) return false;
+      run->elsewhere.push_back({test, owner});
+      return true;
+    };
+    std::vector<TestWork> tests;
+    for (TestWork& work : run->tests) {
+      if (!is_elsewhere(work.outcome.question.test)) tests.push_back(std::move(work));
+    }
+    run->tests = std::move(tests);
+    std::vector<Untested> untested;
+    for (Untested& each : run->untested) {
+      if (!is_elsewhere(each.test)) untested.push_back(std::move(each));
+    }
+    run->untested = std::move(untested);
+  }
+}
+
+}  // namespace assay::harness
