@@ -412,7 +412,8 @@ Examples:
 void define_merge(Options& options, MergeCommand& command) {
   options.about(
       R"(Joins the records of all shards of a run, in any order, to the record of the whole, with Holm's
-adjusted p-values, and reports it. Nothing is sampled.
+adjusted p-values, and reports it. Nothing is sampled. The tests of a missing shard are skipped, and
+the exit code is 1.
 
 Examples:
   assay run suites/luminaire.yaml --shard 1/2 --report json=1.json

@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <tuple>
 
 #include "harness/plan/forecast.h"
 
 namespace assay::harness {
 namespace {
+
+// A shard may draw so many times its fair part, to save what another shard would draw again.
+constexpr double slack = 1.1;
 
 /// The cost of a prefix of each stream, by the stream's key and primaries.
 using Prefixes = std::map<std::pair<std::uint64_t, std::uint64_t>, double>;
@@ -53,13 +57,22 @@ std::vector<std::size_t> dealt(const std::vector<Prefixes>& costs, unsigned coun
   std::iota(dearest.begin(), dearest.end(), std::size_t{0});
   std::ranges::stable_sort(dearest, std::ranges::greater{},
                            [&](std::size_t test) { return total_of(costs[test]); });
+  Prefixes all;
+  double bound = 0;
+  for (const Prefixes& cost : costs) {
+    all = joined_prefixes(std::move(all), cost);
+    bound = std::max(bound, total_of(cost));
+  }
+  bound = slack * std::max(bound, total_of(all) / count);
   std::vector<Prefixes> loads(count);
   std::vector<std::size_t> shards(costs.size());
   for (const std::size_t test : dearest) {
-    const auto least = std::ranges::min_element(
-        loads, {}, [&](const Prefixes& load) { return total_of(joined_prefixes(load, costs[test])); });
-    *least = joined_prefixes(std::move(*least), costs[test]);
-    shards[test] = static_cast<std::size_t>(least - loads.begin());
+    const auto best = std::ranges::min_element(loads, {}, [&](const Prefixes& load) {
+      const double with = total_of(joined_prefixes(load, costs[test]));
+      return std::tuple(std::max(with, bound), with - total_of(load), with);
+    });
+    *best = joined_prefixes(std::move(*best), costs[test]);
+    shards[test] = static_cast<std::size_t>(best - loads.begin());
   }
   return shards;
 }

@@ -114,8 +114,9 @@ TEST(Merge, AVerdictIsTheTestsOwnAloneFilteredShardedMergedAndWhole) {
   EXPECT_EQ(test.verdict, Verdict::pass);
   EXPECT_LT(*test.channels[0].p_adjusted, .01);
   const reports::Record filtered = run_files({file}, {.selection = {.filters = {"*close"}}});
+  // Both are about one stream, so one shard takes them.
   for (const reports::Test& other :
-       {shards[1].record.suites[0].tests[0], filtered.suites[0].tests[0]}) {
+       {shards[0].record.suites[0].tests[1], filtered.suites[0].tests[0]}) {
     EXPECT_EQ(other.verdict, test.verdict);
     EXPECT_EQ(other.message, test.message);
     EXPECT_EQ(other.channels[0].effect, test.channels[0].effect);
@@ -165,6 +166,34 @@ TEST(Merge, TheTestsOfAMissingShardAreSkipped) {
     EXPECT_EQ(skipped, rest);
     EXPECT_THAT(merged.note, HasSubstr(there.size() == 1 ? "skipped: 2, 3;" : "skipped: 1;"));
   }
+}
+
+// The dear test of the first estimator weighs as much as all others; the two of one stream stay
+// together.
+TEST(Shards, AreBalancedByPlannedCostAndShareStreams) {
+  const std::string text = R"(suite: costs
+estimators:
+  dear: {plugin: analytic/normal, mean: 1}
+  a: {plugin: analytic/normal, mean: 2}
+  b: {plugin: analytic/normal, mean: 3}
+  c: {plugin: analytic/normal, mean: 4}
+tests:
+  - {name: a1, claim: mean(a) == 2, secondaries: 3000}
+  - {name: dear, claim: mean(dear) == 1, secondaries: 9000}
+  - {name: b, claim: mean(b) == 3, secondaries: 4000}
+  - {name: a2, claim: mean(a) <= 2, secondaries: 2000}
+  - {name: c, claim: mean(c) == 4, secondaries: 1000}
+)";
+  const Workplace place;
+  std::vector<std::vector<std::string>> names;
+  for (const ShardFile& shard : shards_of({place.write("costs.yaml", text)}, 2)) {
+    names.emplace_back();
+    for (const reports::Test& test : shard.record.suites[0].tests) {
+      names.back().push_back(test.name);
+    }
+  }
+  EXPECT_THAT(names, testing::ElementsAre(testing::ElementsAre("dear"),
+                                          testing::ElementsAre("a1", "b", "a2", "c")));
 }
 
 class Refusing : public testing::Test {
