@@ -90,7 +90,7 @@ class Command final : public Estimator {
   std::vector<float> texels_;  // scratch
 };
 
-class CommandSetup final : public Setup, public recorded::InFiles {
+class CommandSetup final : public Setup, public recorded::InFiles, public foreign::Rendered {
  public:
   CommandSetup(std::shared_ptr<foreign::Renderings> renderings, Contents contents)
       : renderings_(std::move(renderings)),
@@ -112,6 +112,11 @@ class CommandSetup final : public Setup, public recorded::InFiles {
   std::string place_of(const recorded::WhichObservation& which) const override {
     return renderings_->path_of(which.key, which.index, which.primaries);
   }
+  std::vector<foreign::MissingFile> missing(StreamKey key, std::uint64_t count,
+                                            std::uint64_t primaries) const override {
+    return renderings_->missing(key, count, primaries);
+  }
+  std::vector<foreign::Retry> retries() const override { return renderings_->retries(); }
 
  private:
   std::shared_ptr<foreign::Renderings> renderings_;

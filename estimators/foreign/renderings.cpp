@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "estimators/core/program_path.h"
+#include "estimators/core/quoting.h"
 #include "estimators/core/waiting.h"
 #include "estimators/foreign/child.h"
 #include "estimators/foreign/render_seed.h"
@@ -222,19 +223,27 @@ std::vector<Renderings::Task> Renderings::tasks_of(const Wanted& wanted) {
   return tasks;
 }
 
-/// Why it failed, "" where it ended well. Its CPU seconds are added.
-std::string Renderings::run_program(const Task& task, const std::string& out, double& cpu_seconds) {
+/// The command, filled in.
+std::vector<std::string> Renderings::words_of(const Task& task, const std::string& out) const {
   std::string seeds;
   for (const std::uint32_t seed : task.seeds) {
     seeds += (seeds.empty() ? "" : ",") + std::to_string(seed);
   }
-  Launch launch{.command = {}, .folder = rendering_.folder, .memory = rendering_.memory};
+  std::vector<std::string> words;
   for (std::string word : rendering_.command) {
     word = replaced(std::move(word), "{seeds}", seeds);
     word = replaced(std::move(word), "{seed}", std::to_string(task.seeds.front()));
     word = replaced(std::move(word), "{samples}", std::to_string(task.samples));
-    launch.command.push_back(replaced(std::move(word), "{out}", out));
+    words.push_back(replaced(std::move(word), "{out}", out));
   }
+  return words;
+}
+
+/// Why it failed, "" where it ended well. Its CPU seconds are added.
+std::string Renderings::run_program(const Task& task, const std::string& out, double& cpu_seconds) {
+  const Launch launch{.command = words_of(task, out),
+                      .folder = rendering_.folder,
+                      .memory = rendering_.memory};
   const double seconds = rendering_.timeout * static_cast<double>(task.seeds.size());
   std::string failure;
   Child child(launch);
@@ -290,6 +299,10 @@ double Renderings::run(Task task) {
     const std::string of_all = " of " + std::to_string(rendering_.retries);
     for (std::uint64_t retry = 1; !failure.empty() && retry <= rendering_.retries; ++retry) {
       notice(failure + "; it is started again, retry " + std::to_string(retry) + of_all);
+      {
+        const std::scoped_lock lock(mutex_);
+        for (const std::uint32_t seed : task.seeds) retries_.push_back({seed, retry, failure});
+      }
       failure = attempt(task, part.path(), seconds);
     }
     if (!failure.empty() && rendering_.retries > 0) {
@@ -321,6 +334,39 @@ double Renderings::make(const Wanted& wanted) {
   work();
   for (std::thread& thread : threads) thread.join();
   return seconds;
+}
+
+std::vector<MissingFile> Renderings::missing(StreamKey key, std::uint64_t count,
+                                             std::uint64_t samples) {
+  std::vector<MissingFile> files;
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const std::uint32_t seed = render_seed(key, i);
+    const std::string file = path_of(samples, seed);
+    if (fs::exists(file)) continue;
+    // No process has this number: the next run does not take it for a leftover.
+    const std::string part =
+        folder_of(samples) + "/" + part_prefix + "of-" + std::to_string(seed);
+    const bool several = rendering_.takes_several();
+    const std::string out = several ? part : part + "." + rendering_.ending;
+    std::string line = "cd " + shell_quoted(fs::absolute(rendering_.folder).string()) + " &&";
+    if (several) line += " mkdir -p " + shell_quoted(out) + " &&";
+    for (const std::string& word : words_of({{seed}, samples}, out)) {
+      line += " " + shell_quoted(word);
+    }
+    const std::string made =
+        several ? out + "/" + fs::path(file).filename().string() : out;
+    line += " && mv " + shell_quoted(made) + " " + shell_quoted(file);
+    if (several) line += " && rmdir " + shell_quoted(out);
+    files.push_back({line, seed, file});
+  }
+  return files;
+}
+
+std::vector<Retry> Renderings::retries() {
+  const std::scoped_lock lock(mutex_);
+  std::vector<Retry> all = retries_;
+  std::ranges::sort(all, {}, [](const Retry& each) { return std::pair(each.seed, each.retry); });
+  return all;
 }
 
 std::string Renderings::failure_of(std::uint64_t samples, std::uint32_t seed) {

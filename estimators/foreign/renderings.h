@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "estimators/stream.h"
+#include "estimators/rendered.h"
 
 namespace assay::foreign {
 
@@ -76,6 +76,11 @@ class Renderings {
   /// the programs, without those of programs that they start and do not wait for. Throws
   /// RenderingError where the cache cannot be made.
   double make(const Wanted& wanted);
+  /// The files of a stream's first observations that are not there, each with a shell's line that
+  /// makes it under another name and renames it.
+  std::vector<MissingFile> missing(StreamKey key, std::uint64_t count, std::uint64_t samples);
+  /// The programs that were started again, by seed.
+  std::vector<Retry> retries();
   bool takes_samples() const { return has_place(rendering_.command, "{samples}"); }
   /// The file of one observation, made or not.
   std::string path_of(StreamKey key, std::uint64_t observation, std::uint64_t samples);
@@ -93,6 +98,7 @@ class Renderings {
   std::string path_of(std::uint64_t samples, std::uint32_t seed);
   std::vector<Task> tasks_of(const Wanted& wanted);
   double run(Task task);
+  std::vector<std::string> words_of(const Task& task, const std::string& out) const;
   std::string attempt(Task& task, const std::string& part, double& cpu_seconds);
   std::string run_program(const Task& task, const std::string& out, double& cpu_seconds);
   std::string failure_of(std::uint64_t samples, std::uint32_t seed);
@@ -103,6 +109,7 @@ class Renderings {
   std::mutex mutex_;
   std::map<std::uint64_t, std::string> folders_;  ///< by samples
   std::map<std::pair<std::uint64_t, std::uint32_t>, std::string> failures_;
+  std::vector<Retry> retries_;
 };
 
 }  // namespace assay::foreign

@@ -177,8 +177,13 @@ effect it finds. Runs the pilots only.
 Examples:
   assay plan suites/luminaire.yaml
   assay plan suites/*.yaml --filter '*/variance*' --coarsen 4
+  assay plan suites/cycles.yaml --list-renders      what another machine may render
 )");
   add_suites(options, command);
+  options.flag("--list-renders",
+               "print the renders that are missing instead, one a line: command, seed and file with "
+               "tabs between; the pilots' first, then the tests'; default the plan",
+               command.list_renders);
   add_sampling(options, command.options, command.output, of_suites);
 }
 

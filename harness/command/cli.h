@@ -22,7 +22,9 @@ struct SuitesCommand {
   Output output;
 };
 struct RunCommand : SuitesCommand {};
-struct PlanCommand : SuitesCommand {};
+struct PlanCommand : SuitesCommand {
+  bool list_renders = false;
+};
 
 struct CheckCommand {
   CheckArguments arguments;

@@ -50,6 +50,15 @@ int plan_suites(const std::vector<Suite>& suites, const RunOptions& options, boo
   return plan_exit_code(planned, costs);
 }
 
+int list_renders(const std::vector<Suite>& suites, const RunOptions& options, bool quiet) {
+  if (selects_nothing(suites, options.selection)) return nothing_ran;
+  const std::unique_ptr<Progress> progress = make_progress(quiet);
+  for (const foreign::MissingFile& each : missing_files(suites, options, *progress)) {
+    fmt::print("{}\t{}\t{}\n", each.command, each.seed, each.file);
+  }
+  return 0;
+}
+
 int list_plugins() {
   for (const Entry& entry : catalogue()) fmt::print("{}\n", entry.information.name);
   return 0;

@@ -13,6 +13,9 @@ namespace assay::harness {
 
 /// Runs the suites and writes the reports. Returns 4 without a report if no test is selected.
 int run_suites(const std::vector<Suite>& suites, const RunOptions& options, const Output& output);
+/// Prints a line for each file that programs would render for a run: command, seed and file, with
+/// tabs between.
+int list_renders(const std::vector<Suite>& suites, const RunOptions& options, bool quiet);
 /// Prints what a run would do; only pilots are drawn. Returns 4 if no test is selected, 1 if a test
 /// cannot come out as expected.
 int plan_suites(const std::vector<Suite>& suites, const RunOptions& options, bool quiet);

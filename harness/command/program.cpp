@@ -49,8 +49,8 @@ int act(const RunCommand& command) {
 }
 
 int act(const PlanCommand& command) {
-  return plan_suites(load(command.suites, command.assignments), command.options,
-                     command.output.quiet);
+  const auto act = command.list_renders ? list_renders : plan_suites;
+  return act(load(command.suites, command.assignments), command.options, command.output.quiet);
 }
 
 int act(const CheckCommand& command) {

@@ -201,30 +201,35 @@ PilotChannel pilot_channel(const Question& question, std::size_t subject, std::s
   return pilot_channel(side, *pilot_of(side, pilots), channel);
 }
 
-Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators, const PilotRun& run,
-                  Progress& progress) {
-  std::vector<std::string> names;
-  std::vector<std::shared_ptr<Pool>> pools;
+std::vector<std::pair<std::string, std::shared_ptr<Pool>>> pilot_pools(
+    const std::vector<const PreparedEstimator*>& estimators, const PilotRun& run) {
+  std::vector<std::pair<std::string, std::shared_ptr<Pool>>> pools;
   for (const PreparedEstimator* estimator : estimators) {
-    names.push_back(estimator->name);
-    pools.push_back(pilot_pool(*estimator, run.seed));
+    pools.emplace_back(estimator->name, pilot_pool(*estimator, run.seed));
     if (run.with_cost.contains(estimator->name)) {
-      for (ChannelPlan& channel : pools.back()->plans()) channel.powers = Powers::with_costs;
+      for (ChannelPlan& channel : pools.back().second->plans()) channel.powers = Powers::with_costs;
     }
   }
   for (const PreparedEstimator* estimator : estimators) {
     if (averaged_primaries_of(*estimator) == 1) continue;
-    names.push_back(pilot_name_of(estimator->name, averages_purpose));
-    pools.push_back(averaged_pool(*estimator, run.seed));
+    pools.emplace_back(pilot_name_of(estimator->name, averages_purpose),
+                       averaged_pool(*estimator, run.seed));
   }
   for (const Subject* subject : run.draws) {
-    names.push_back(pilot_name(*subject));
-    pools.push_back(draws_pool(*subject, run.seed));
+    pools.emplace_back(pilot_name(*subject), draws_pool(*subject, run.seed));
   }
+  return pools;
+}
+
+Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators, const PilotRun& run,
+                  Progress& progress) {
+  const auto named = pilot_pools(estimators, run);
+  std::vector<std::shared_ptr<Pool>> pools;
+  for (const auto& [name, pool] : named) pools.push_back(pool);
   draw_all(pools, {.threads = run.threads, .phase = "pilot"}, progress);
   Pilots pilots;
   if (interrupted()) return pilots;
-  for (std::size_t i = 0; i < pools.size(); ++i) pilots.add(names[i], read(*pools[i]));
+  for (const auto& [name, pool] : named) pilots.add(name, read(*pool));
   return pilots;
 }
 

@@ -104,6 +104,10 @@ PilotChannel pilot_channel(const Subject& subject, const Pilot& pilot, std::size
 PilotChannel pilot_channel(const Question& question, std::size_t subject, std::size_t channel,
                            const Pilots& pilots);
 
+/// The pools of the pilots by their names. Nothing is drawn.
+std::vector<std::pair<std::string, std::shared_ptr<Pool>>> pilot_pools(
+    const std::vector<const PreparedEstimator*>& estimators, const PilotRun& run);
+
 Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators, const PilotRun& run,
                   Progress& progress);
 

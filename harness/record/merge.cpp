@@ -151,6 +151,11 @@ reports::Suite merge_suite(const std::vector<ShardFile>& shards, std::size_t ind
   reports::Suite suite = shards.front().record.suites[index];
   suite.estimators.clear();
   suite.tests.clear();
+  suite.retries.clear();
+  for (const ShardFile& shard : shards) {
+    const std::vector<reports::Retry>& more = shard.record.suites[index].retries;
+    suite.retries.insert(suite.retries.end(), more.begin(), more.end());
+  }
   suite.timed = std::any_of(shards.begin(), shards.end(), [&](const ShardFile& shard) {
     return shard.record.suites[index].timed;
   });
@@ -213,6 +218,7 @@ reports::Record merge(std::vector<ShardFile> shards) {
   }
   record.note = whole ? "" : partial_note;
   if (const std::string missing = missing_shards(shards); !missing.empty()) record.note = missing;
+  note_retries(record);
   return record;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "estimators/rendered.h"
 #include "harness/base/numbers.h"
 #include "harness/base/quantiles.h"
 #include "harness/record/cell_record.h"
@@ -287,6 +288,22 @@ reports::Test record_of_test(const TestWork& work, const std::string& file, bool
   return test;
 }
 
+void note_retries(reports::Record& record) {
+  std::size_t count = 0;
+  std::string names;
+  for (const reports::Suite& suite : record.suites) {
+    count += suite.retries.size();
+    for (const reports::Retry& each : suite.retries) {
+      names += fmt::format("{}seed {} of `{}`", names.empty() ? "" : ", ", each.seed,
+                           each.estimator);
+    }
+  }
+  if (count == 0) return;
+  record.note += fmt::format("{}{} {} and {} started again: {}", record.note.empty() ? "" : "; ",
+                             count, count == 1 ? "program failed" : "programs failed",
+                             count == 1 ? "was" : "were", names);
+}
+
 reports::Record record_of(const std::vector<std::unique_ptr<SuiteRun>>& runs,
                           const RunOptions& options) {
   reports::Record record{.tool = this_tool(), .environment = this_environment(options.threads)};
@@ -317,12 +334,20 @@ reports::Record record_of(const std::vector<std::unique_ptr<SuiteRun>>& runs,
     add_untested_before(nullptr);
     suite.statements = statements_of(run->suite, suite.tests);
     suite.timed = std::any_of(run->tests.begin(), run->tests.end(), is_timed);
+    for (const auto& [name, estimator] : run->estimators) {
+      const auto* const rendered = dynamic_cast<const foreign::Rendered*>(estimator.setup.get());
+      if (rendered == nullptr) continue;
+      for (foreign::Retry& each : rendered->retries()) {
+        suite.retries.push_back({name, each.seed, each.retry, std::move(each.reason)});
+      }
+    }
     whole = whole && run->adjusted;
     add_pictures(*run, suite);
     record.suites.push_back(std::move(suite));
   }
   if (!whole) record.note = partial_note;
   if (options.shard) add_shard(runs, options, record);
+  note_retries(record);
   return record;
 }
 

@@ -10,6 +10,9 @@
 
 namespace assay::harness {
 
+/// Adds a note on the programs that were started again.
+void note_retries(reports::Record& record);
+
 /// The note of a record without some tests of its suites.
 inline constexpr const char* partial_note =
     "not every test of the suites ran: their p-values are not adjusted by Holm's method, which "

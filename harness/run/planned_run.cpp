@@ -168,14 +168,21 @@ void plan_picture(SuiteRun& run, const std::vector<Question>& questions,
   }
 }
 
+std::vector<bool> chosen_of(const SuiteRun& run, const RunOptions& options) {
+  std::vector<bool> chosen;
+  for (const Question& each : run.questions) {
+    chosen.push_back(selects(options.selection, *each.test));
+  }
+  return chosen;
+}
+
 /// Draws the pilots of the selected tests and plans them. Returns the primaries of estimators that
 /// choose them.
 Primaries plan_tests(SuiteRun& run, const RunOptions& options, Progress& progress) {
   std::erase_if(run.untested,
                 [&](const Untested& each) { return !selects(options.selection, *each.test); });
   const std::vector<Question>& questions = run.questions;
-  std::vector<bool> chosen;
-  for (const Question& each : questions) chosen.push_back(selects(options.selection, *each.test));
+  const std::vector<bool> chosen = chosen_of(run, options);
   if (std::none_of(chosen.begin(), chosen.end(), [](bool c) { return c; })) return {};
   const std::vector<FamilyPlace> place = places(run.suite, questions);
   run.pilots = piloted(run, questions, chosen, used_by(questions, chosen, run, options), options,
@@ -280,6 +287,52 @@ std::unique_ptr<SuiteRun> prepare_suite(const Suite& suite, const RunOptions& op
 }
 
 }  // namespace
+
+namespace {
+
+using Missing = std::map<std::string, foreign::MissingFile>;  // by file
+
+/// Adds the missing files of the first `count` observations.
+void add_missing(const Pool& pool, std::uint64_t count, Missing& missing) {
+  const auto* const rendered = dynamic_cast<const foreign::Rendered*>(pool.setup().get());
+  if (rendered == nullptr) return;
+  for (foreign::MissingFile& each : rendered->missing(pool.key(), count, pool.primaries())) {
+    missing.emplace(each.file, std::move(each));
+  }
+}
+
+Missing missing_in_pilots(const SuiteRun& run, const RunOptions& options) {
+  const std::vector<bool> chosen = chosen_of(run, options);
+  const auto used = with_sweeps(used_by(run.questions, chosen, run, options), run.questions, chosen);
+  Missing missing;
+  for (const auto& [name, pool] :
+       pilot_pools(used, pilot_run_of(run.questions, chosen, run.seed, options.threads))) {
+    add_missing(*pool, pool->requested(), missing);
+  }
+  return missing;
+}
+
+}  // namespace
+
+std::vector<foreign::MissingFile> missing_files(const std::vector<Suite>& suites,
+                                                const RunOptions& options, Progress& progress) {
+  Missing all;
+  for (const Suite& suite : suites) {
+    const std::unique_ptr<SuiteRun> run = prepare_suite(suite, options);
+    Missing missing = missing_in_pilots(*run, options);
+    if (missing.empty()) {
+      Pools pools;
+      plan_pools(*run, plan_tests(*run, options, progress), options, pools);
+      for (const auto& pool : pools.all()) {
+        add_missing(*pool, std::max(pool->most_marked(), pool->requested()), missing);
+      }
+    }
+    all.merge(missing);
+  }
+  std::vector<foreign::MissingFile> files;
+  for (auto& [name, file] : all) files.push_back(std::move(file));
+  return files;
+}
 
 PlannedRun plan_run(const std::vector<Suite>& suites, const RunOptions& options,
                     Progress& progress) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "estimators/rendered.h"
 #include "harness/run/pools.h"
 #include "harness/run/suite_run.h"
 #include "harness/suite/run_options.h"
@@ -20,5 +21,11 @@ struct PlannedRun {
 /// InputError for any mistake, before the first pilot.
 PlannedRun plan_run(const std::vector<Suite>& suites, const RunOptions& options,
                     Progress& progress);
+
+/// The files that programs would render for a run and that are not there. Those of the pilots come
+/// first. Once they are there, the files that the tests take at most follow. A program starts only
+/// to tell the size of its pictures.
+std::vector<foreign::MissingFile> missing_files(const std::vector<Suite>& suites,
+                                                const RunOptions& options, Progress& progress);
 
 }  // namespace assay::harness

@@ -15,8 +15,8 @@ namespace assay::harness {
 ///
 /// A test costs the expected observations of its streams, each by its rays and samples in the pilot.
 /// Tests of one stream share their observations: the longest prefix counts. The dearest test is
-/// dealt first (Graham 1969): to the shard where it adds least, among those that stay near a fair
-/// part; if none does, to the one that has least to draw with it.
+/// dealt first (Graham 1969). It goes where it adds least, among the shards that stay near a fair
+/// part. If none does, it goes to the shard that has least to draw with it.
 void keep_shard(const std::vector<std::unique_ptr<SuiteRun>>& runs,
                 std::pair<unsigned, unsigned> shard);
 

@@ -253,6 +253,14 @@ void fields(Archive& a, T& statement) {
 }
 
 /// The answers follow from the verdicts: they are written for readers, never read.
+template <class Archive, maybe_const<Retry> T>
+void fields(Archive& a, T& retry) {
+  a("estimator", retry.estimator);
+  a("seed", retry.seed);
+  a("retry", retry.retry);
+  a("reason", retry.reason);
+}
+
 template <class Archive, maybe_const<Suite> T>
 void fields(Archive& a, T& suite) {
   a("name", suite.name);
@@ -262,6 +270,7 @@ void fields(Archive& a, T& suite) {
   a("alpha", suite.alpha);
   a("beta", suite.beta);
   a("timed", suite.timed);
+  a("retries", suite.retries);
   a("estimators", suite.estimators);
   a("comparisons", suite.comparisons);
   a("tests", suite.tests);

@@ -100,6 +100,7 @@ Record without_times(Record record) {
   record.seconds = 0;
   record.environment.threads = 0;
   for (Suite& suite : record.suites) {
+    suite.retries.clear();
     for (EstimatorSummary& estimator : suite.estimators) estimator.cost.seconds = 0;
     for (Test& test : suite.tests) {
       for (Sample& sample : test.samples) sample.cost.seconds = 0;

@@ -242,6 +242,15 @@ struct Statement {
   bool operator==(const Statement&) const = default;
 };
 
+/// A program of an estimator that failed and was started again.
+struct Retry {
+  std::string estimator;
+  std::uint64_t seed = 0;   ///< of the observation
+  std::uint64_t retry = 1;  ///< from 1
+  std::string reason;
+  bool operator==(const Retry&) const = default;
+};
+
 struct Suite {
   std::string name;
   std::string file;
@@ -250,6 +259,7 @@ struct Suite {
   double alpha = 0;
   double beta = 0;
   bool timed = false;  ///< a budget in seconds ended sampling: another run may end elsewhere
+  std::vector<Retry> retries;
   std::vector<EstimatorSummary> estimators;
   std::vector<Comparison> comparisons;
   std::vector<Test> tests;
