@@ -115,6 +115,10 @@ Suite triangle() {
   s.name = "triangle luminaire";
   s.file = "suites/triangle.yaml";
   s.about = "Irradiance from a triangle, four ways to sample it (Subr & Arvo 2007).";
+  s.retries = {{.estimator = "a<b>&\"c\"",
+                .seed = 2147483647,
+                .retry = 2,
+                .reason = "`render \"<x>\"` ended with exit status 3"}};
   s.seed = 18446744073709551615u;
   s.alpha = 0.01;
   s.beta = 0.01;
@@ -259,6 +263,12 @@ Shard shard_of(const Record& record) {
                                            .untested = 1,
                                            .log_p = {-3.5, -0.25},
                                            .compared = {suite.name, "b"}});
+    shard.suites.back().elsewhere.push_back({.shard = 4,
+                                             .position = 11,
+                                             .id = "farben/<光線>",
+                                             .name = "<光線>",
+                                             .claim = "mean(a) == 1",
+                                             .line = 17});
   }
   return shard;
 }
