@@ -85,7 +85,7 @@ std::string counts_text(const Question& question) {
   return words + ": each picture needs a partner of the same seed on the other side";
 }
 
-/// What partners have in common: the file's name, or else its last number.
+/// The number in a file's name that partners have in common, without leading zeros.
 std::string last_number(const std::string& file) {
   const std::size_t end = file.find_last_of("0123456789");
   if (end == std::string::npos) return "";
@@ -175,6 +175,11 @@ class ImageTheta : public Theta {
     return too_few_replicates(question, plan);
   }
 
+  std::string lack_of_numbers(const DrawnTest& test, std::size_t channel,
+                              std::span<const ChannelData> data) const override {
+    const std::string reason = Theta::lack_of_numbers(test, channel, data);
+    return reason.empty() ? dependence_of_images(test, data) : reason;
+  }
   ChannelEvidence evidence(const DrawnTest& test, std::size_t,
                            std::span<const ChannelData> data) const override {
     ImageEvidence found = evidence_of_images(test.outcome.question, image_test(test), data);

@@ -102,9 +102,9 @@ PilotImage planned_image(const Question& question, const Pilots& pilots, const P
   return all;
 }
 
-/// The squared distance that `n` images exclude with probability 1 - beta if there is none. With
-/// noise of rank d the squared distance is s (chi^2 - d), its jackknife error 2 s chi, s = root /
-/// sqrt(d) / n.
+/// The squared distance that `n` images exclude with probability 1 - beta if there is none. Let
+/// noise have rank d, and s = root / sqrt(d) / n. The squared distance is then s (chi^2 - d), and
+/// its jackknife error 2 s chi.
 double excluded_square(const PilotImage& image, double beta, double n) {
   if (!(image.root > 0)) return 0;
   const double degrees = std::pow(image.trace / image.root, 2);

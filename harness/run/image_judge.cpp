@@ -5,7 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimators/ready_made.h"
+#include "harness/base/parallel.h"
 #include "harness/plan/critical.h"
+#include "harness/sampling/picture_look.h"
+#include "harness/sampling/pool.h"
+#include "stats/images/image_dependence.h"
 #include "stats/images/image_windows.h"
 #include "stats/tails/tails.h"
 
@@ -51,7 +56,58 @@ double other_mean(const DrawnTest& test, const std::vector<std::size_t>& element
   return question.of_two() ? question.factor * mean + question.offset : mean;
 }
 
+/// "`b.exr`", or "image 3 of `b`".
+std::string name_of(const DrawnTest& test, const stats::WhichImage& which) {
+  const Subject& side = test.outcome.question.subjects[which.side];
+  const Pool& pool = test.samples[which.side].pool();
+  const std::string place = recorded::observation_place(
+      *side.setup, {.index = which.index, .key = pool.key(), .primaries = pool.primaries()});
+  if (!place.empty()) return "`" + place + "`";
+  return fmt::format("image {} of `{}`", which.index, side.estimator->name);
+}
+
+std::string text_of(const DrawnTest& test, const stats::RepeatedTile& repeated) {
+  const ImageShape& shape = *test.outcome.question.subjects[0].image;
+  const stats::Rectangle& tile = repeated.tile;
+  return fmt::format(
+      "images depend on each other: {} and {} are the same at x {}-{}, y {}-{}, bit for bit{}; "
+      "give "
+      "each image a seed of its own, and see that all its bits count",
+      name_of(test, repeated.one), name_of(test, repeated.other), shape.left + tile.x,
+      shape.left + tile.x + tile.width - 1, shape.top + tile.y,
+      shape.top + tile.y + tile.height - 1,
+      repeated.tiles > 1 ? fmt::format(", and {} more tiles repeat", repeated.tiles - 1) : "");
+}
+
+std::string text_of(const DrawnTest& test, const stats::AlikeImages& alike) {
+  const std::string common = fmt::format(
+      "share random numbers, as {} and {} (their ranks correlate by {:.2g} on average)",
+      name_of(test, {alike.side, 0}),
+      name_of(test, alike.across ? stats::WhichImage{1, 0} : stats::WhichImage{alike.side, 1}),
+      alike.correlation);
+  if (alike.across) {
+    return "images of equal number on both sides " + common +
+           "; give one side other seeds, or test their differences: `--paired`, in a suite `paired: true`";
+  }
+  return fmt::format("consecutive images of `{}` {}; give each image a seed of its own",
+                     test.outcome.question.subjects[alike.side].estimator->name, common);
+}
+
 }  // namespace
+
+std::string dependence_of_images(const DrawnTest& test, std::span<const ChannelData> data) {
+  const std::shared_ptr<const PictureLook>& look = test.outcome.plan.look;
+  const stats::ImageDependence found =
+      look ? look->dependence : with_pair(test.outcome.question, data, [](const auto& pair) {
+        return pair.with([](const auto& first, const auto& second) {
+          return stats::image_dependence(stats::pair_of(first, second), on_all_threads);
+        });
+      });
+  // One seed on both sides repeats the tiles that no difference reaches.
+  const bool of_one_seed = found.alike && found.alike->across;
+  if (found.repeated && !of_one_seed) return text_of(test, *found.repeated);
+  return found.alike ? text_of(test, *found.alike) : "";
+}
 
 ImageTest image_test(const DrawnTest& test) {
   const TestOutcome& outcome = test.outcome;

@@ -12,6 +12,9 @@ namespace assay::harness {
 /// Settings of the family's test at the current look.
 ImageTest image_test(const DrawnTest& test);
 
+/// Which images of the test depend on each other, and how; "" if none do.
+std::string dependence_of_images(const DrawnTest& test, std::span<const ChannelData> data);
+
 /// The observations of this look: the subject's elements of each.
 ImageViews images_of(const DrawnTest& test, std::size_t subject);
 

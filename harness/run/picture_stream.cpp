@@ -237,6 +237,7 @@ class Looking {
                                  on_all_threads);
     }
     distance_.take(pair, rows, on_all_threads);
+    dependence_.take(pair, rows, on_all_threads);
     pyramid_->take(pair, rows);
   }
 
@@ -259,6 +260,7 @@ class Looking {
 
   void finish() {
     look_->distance = distance_.distance();
+    look_->dependence = dependence_.found();
     if (question_.test->paired) {
       look_->distance = stats::relative_to(look_->distance, norm_.distance());
     }
@@ -279,6 +281,7 @@ class Looking {
   std::vector<std::vector<double>> of_pictures_;  // sums, at last averages
   std::vector<std::vector<double>> of_channels_;  // sums of each picture's channels
   stats::RowDistance<float> distance_;
+  stats::RowDependence<float> dependence_;
   std::optional<Pyramid> pyramid_;
   // Of a paired claim:
   std::vector<float> differences_;

@@ -7,6 +7,7 @@
 
 #include "harness/language/claim.h"
 #include "stats/basics/moments.h"
+#include "stats/images/image_dependence.h"
 #include "stats/images/image_equivalence.h"
 #include "stats/images/image_family.h"
 
@@ -19,7 +20,8 @@ struct PictureLook {
   std::uint64_t pictures = 0;          ///< of each side
   stats::ImageDistance distance = {};  ///< In the images' own units.
   stats::ImageFamily family = {};      ///< With cells of every size.
-  std::vector<double> z = {};          ///< For every element.
+  stats::ImageDependence dependence = {};
+  std::vector<double> z = {};  ///< For every element.
   /// One for each side; of a paired claim those of the differences, and the second's without error.
   std::vector<ChannelMeans> means = {};
 };

@@ -30,7 +30,7 @@ struct Cells {
   std::size_t width = 0;
   std::size_t height = 0;
   std::size_t side = 1;
-  std::size_t x = 0;  // Of the first cell, in elements.
+  std::size_t x = 0;  // The first cell's, in elements.
   std::size_t y = 0;
   std::vector<std::vector<float>> images = {};
 
@@ -59,7 +59,7 @@ Cells doubled(const Cells& cells) {
 struct Group {
   std::size_t cells = 0;
   std::vector<float> largest = {};
-  ImageLawFinding most = {};  // Of the first labelling.
+  ImageLawFinding most = {};  // By the first labelling.
 };
 // By score, then by the logarithm of the side.
 using Groups = std::array<std::vector<Group>, scores>;
@@ -83,8 +83,9 @@ ASSAY_VECTOR_COPIES float largest_of(const float* sums, const float* scale, std:
   return largest;
 }
 
-// One over the standard deviation of a cell's sum over the chosen images, by permutation:
-// m n / (N (N - 1)) sum of squares. 0 of a cell that does not vary. Scores add up to 0 over images.
+// One over the standard deviation of a cell's sum over m chosen images of N, by permutation. Scores
+// add up to 0 over images, so its square is m (N - m) / (N (N - 1)) times the sum of squares. A cell
+// that does not vary has 0.
 std::vector<float> scales_of(const Cells& cells, double chosen) {
   const auto all = static_cast<double>(cells.images.size());
   std::vector<double> squares(cells.count());

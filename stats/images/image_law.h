@@ -11,7 +11,7 @@
 
 namespace assay::stats {
 
-// What is added up over a cell, each in units of its standard deviation over all images.
+// The score that is added up over a cell, in units of its standard deviation over all images.
 enum class ImageScore {
   value,   // The element's value.
   rank,    // Its midrank among all images: fireflies weigh no more than others.
@@ -31,7 +31,7 @@ struct ImageLawTest {
   double log_p = 0;
   std::size_t permutations = 0;  // Drawn, without that of the data.
   ImageLawFinding most = {};
-  std::vector<double> z = {};  // Of every element's value.
+  std::vector<double> z = {};  // Each element's own, by its value.
 };
 
 // Draws a subset of `size` of the images 0 to count - 1, all subsets alike; different for each
@@ -50,10 +50,12 @@ struct ImageLawOptions {
 //
 // Cells are squares of 1, 2, 4, ... elements to the whole image, side by side, of one channel. The
 // statistic of a cell and a score is the sum of the first side's scores over its standard deviation
-// under permutation. The statistic of the test is the smallest p-value of Sidak over the cells of
-// one size, by the normal law, over all sizes and scores. It is compared with those of random
-// labels. After ten that are as small, no more are drawn (Besag & Clifford 1991, Biometrika 78,
-// 301): p is the number as small over those drawn, or (1 + number) / (1 + drawn) at the end.
+// under permutation. Its normal p-value is adjusted for the cells of one size (Sidak). The smallest
+// over all sizes and scores is the test's statistic.
+//
+// Random labels give statistics to compare it with. Drawing ends after ten that are as small (Besag
+// & Clifford 1991, Biometrika 78, 301). Then p is ten over the number drawn. Else it is (1 + as
+// small) / (1 + drawn).
 //
 // It finds differences of means, of typical values and of spreads. Other differences of laws it may
 // miss. Throws std::domain_error for unequal extents and fewer than least_replicates images.

@@ -58,6 +58,12 @@ constexpr const char* paired = "{claim: mean(b) == mean(a), paired: true}";
 TEST(ImagePairs, ShowADifferenceThatNoiseHides) {
   const Workplace place;
   write_pairs(place, {.share = 1e-4});
+  const reports::Test apart = of_files(place, "{claim: mean(b) == mean(a)}");
+  EXPECT_EQ(apart.verdict, Verdict::invalid) << apart.message;
+  EXPECT_THAT(apart.message,
+              HasSubstr("images of equal number on both sides share random numbers"));
+  EXPECT_THAT(apart.message, HasSubstr("b00.exr"));
+  EXPECT_EQ(of_files(place, "{claim: mean(b) == mean(a), secondaries: 32}").message, apart.message);
   const reports::Test test = of_files(place, paired);
   EXPECT_EQ(test.verdict, Verdict::fail);
   EXPECT_LT(*test.channels[0].log10_p, -9);

@@ -1,0 +1,265 @@
+#include "stats/images/image_dependence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+
+#include "stats/basics/moments.h"
+
+namespace assay::stats {
+namespace {
+
+constexpr std::size_t tile_side = 8;
+constexpr std::size_t telling_values = 8;
+constexpr std::size_t most_sampled = 16384;
+constexpr std::size_t fewest_sampled = 64;
+// Pairs whose indices differ by at most so much show how alike others are.
+constexpr std::size_t most_apart = 8;
+constexpr double errors_beyond = 8;
+constexpr double least_correlation = .05;
+
+template <class Real>
+std::vector<const ImageStack<Real>*> sides_of(const ImagePair<Real>& pair) {
+  std::vector<const ImageStack<Real>*> sides{&pair.a};
+  if (pair.b != nullptr) sides.push_back(pair.b);
+  return sides;
+}
+
+// The pixels of a tile that the image has.
+Rectangle tile_at(const ImageExtent& extent, std::size_t x, std::size_t y, std::size_t rows_end) {
+  return {static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
+          static_cast<std::uint32_t>(std::min(tile_side, extent.width - x)),
+          static_cast<std::uint32_t>(std::min(tile_side, rows_end - y))};
+}
+
+template <class Real>
+const Real* row_of(const ImageStack<Real>& stack, std::size_t image, const Rectangle& tile,
+                   std::size_t row) {
+  return stack.at(image, ((tile.y + row) * stack.extent.width + tile.x) * stack.extent.channels);
+}
+
+// A hash of the tile's bits (SplitMix64's finaliser over the words).
+template <class Real>
+std::uint64_t digest(const ImageStack<Real>& stack, std::size_t image, const Rectangle& tile) {
+  std::uint64_t state = 0;
+  for (std::size_t row = 0; row < tile.height; ++row) {
+    const Real* const values = row_of(stack, image, tile, row);
+    for (std::size_t i = 0; i < tile.width * stack.extent.channels; ++i) {
+      std::uint64_t bits = 0;
+      std::memcpy(&bits, values + i, sizeof(Real));
+      state = (state ^ bits) * 0x9e3779b97f4a7c15;
+      state ^= state >> 29;
+    }
+  }
+  return state;
+}
+
+template <class Real>
+bool equal_in(const Rectangle& tile, const ImageStack<Real>& a, std::size_t i,
+              const ImageStack<Real>& b, std::size_t j) {
+  for (std::size_t row = 0; row < tile.height; ++row) {
+    if (std::memcmp(row_of(a, i, tile, row), row_of(b, j, tile, row),
+                    tile.width * a.extent.channels * sizeof(Real)) != 0) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// True if half of the tile's pixels tell images apart, by one of their channels.
+template <class Real>
+bool tells_apart(const std::vector<const ImageStack<Real>*>& sides, const Rectangle& tile) {
+  const std::size_t channels = sides[0]->extent.channels;
+  std::size_t telling = 0;
+  std::vector<Real> values;
+  for (std::size_t row = 0; row < tile.height; ++row) {
+    for (std::size_t x = 0; x < tile.width; ++x) {
+      bool tells = false;
+      for (std::size_t c = 0; c < channels && !tells; ++c) {
+        values.clear();
+        for (const ImageStack<Real>* stack : sides) {
+          for (std::size_t r = 0; r < stack->images.size(); ++r) {
+            values.push_back(row_of(*stack, r, tile, row)[x * channels + c]);
+          }
+        }
+        std::ranges::sort(values);
+        std::size_t different = 0;
+        std::size_t most = 0;
+        for (auto at = values.begin(); at != values.end(); ++different) {
+          const auto end = std::upper_bound(at, values.end(), *at);
+          most = std::max(most, static_cast<std::size_t>(end - at));
+          at = end;
+        }
+        tells = different >= telling_values && 2 * most <= values.size();
+      }
+      telling += tells ? 1 : 0;
+    }
+  }
+  return 2 * telling >= tile_side * tile_side;
+}
+
+struct Seen {
+  std::uint64_t digest;
+  WhichImage image;
+};
+
+template <class Real>
+std::optional<RepeatedTile> repeated_in(const std::vector<const ImageStack<Real>*>& sides,
+                                        const Rectangle& tile) {
+  std::vector<Seen> seen;
+  for (std::size_t s = 0; s < sides.size(); ++s) {
+    for (std::size_t r = 0; r < sides[s]->images.size(); ++r) {
+      seen.push_back({digest(*sides[s], r, tile), {s, r}});
+    }
+  }
+  std::ranges::stable_sort(seen, {}, &Seen::digest);
+  for (std::size_t i = 1; i < seen.size(); ++i) {
+    const WhichImage& one = seen[i - 1].image;
+    const WhichImage& other = seen[i].image;
+    if (seen[i - 1].digest != seen[i].digest ||
+        !equal_in(tile, *sides[one.side], one.index, *sides[other.side], other.index)) {
+      continue;
+    }
+    if (!tells_apart(sides, tile)) return {};
+    return RepeatedTile{.tile = tile, .one = one, .other = other, .tiles = 1};
+  }
+  return {};
+}
+
+// Midranks less their mean, over their root mean square; zeros if all values are equal.
+std::vector<float> scores_of(const std::vector<float>& values) {
+  std::vector<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::ranges::sort(order, {}, [&](std::size_t i) { return values[i]; });
+  std::vector<float> scores(values.size());
+  const double middle = static_cast<double>(values.size() - 1) / 2;
+  double squares = 0;
+  for (std::size_t i = 0; i < order.size();) {
+    std::size_t end = i + 1;
+    while (end < order.size() && values[order[end]] == values[order[i]]) ++end;
+    const double rank = static_cast<double>(i + end - 1) / 2 - middle;
+    for (std::size_t j = i; j < end; ++j) scores[order[j]] = static_cast<float>(rank);
+    squares += rank * rank * static_cast<double>(end - i);
+    i = end;
+  }
+  if (!(squares > 0)) return {};
+  const auto scale =
+      static_cast<float>(1 / std::sqrt(squares / static_cast<double>(values.size())));
+  for (float& score : scores) score *= scale;
+  return scores;
+}
+
+// [image][element]: the elements that vary on every side.
+using Scores = std::vector<std::vector<float>>;
+
+std::vector<Scores> scored(const std::vector<std::vector<std::vector<float>>>& sampled) {
+  std::vector<Scores> sides;
+  for (const auto& side : sampled) sides.emplace_back(side.empty() ? 0 : side[0].size());
+  for (std::size_t e = 0; !sampled.empty() && e < sampled[0].size(); ++e) {
+    std::vector<std::vector<float>> each;
+    for (const auto& side : sampled) each.push_back(scores_of(side[e]));
+    if (std::ranges::any_of(each, [](const auto& scores) { return scores.empty(); })) continue;
+    for (std::size_t s = 0; s < each.size(); ++s) {
+      for (std::size_t r = 0; r < each[s].size(); ++r) sides[s][r].push_back(each[s][r]);
+    }
+  }
+  return sides;
+}
+
+double correlation(const std::vector<float>& a, const std::vector<float>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    sum += static_cast<double>(a[i]) * static_cast<double>(b[i]);
+  }
+  return sum / static_cast<double>(a.size());
+}
+
+// The mean of some pairs' correlations, if it departs from the others' by too many errors.
+std::optional<double> departure(const Moments& some, const Moments& others) {
+  if (some.count < 2 || others.count < 2) return {};
+  const double difference = some.mean - others.mean;
+  const double error =
+      others.standard_deviation() *
+      std::sqrt(1 / static_cast<double>(some.count) + 1 / static_cast<double>(others.count));
+  if (std::abs(difference) < std::max(least_correlation, errors_beyond * error)) return {};
+  return some.mean;
+}
+
+std::optional<AlikeImages> alike_in(const std::vector<Scores>& sides) {
+  if (sides.empty() || sides[0].empty() || sides[0][0].size() < fewest_sampled) return {};
+  if (sides.size() == 2) {
+    Moments equal;
+    Moments others;
+    for (std::size_t i = 0; i < sides[0].size(); ++i) {
+      const std::size_t first = i - std::min(i, most_apart);
+      for (std::size_t j = first; j < std::min(i + most_apart, sides[1].size()); ++j) {
+        (i == j ? equal : others).add(correlation(sides[0][i], sides[1][j]));
+      }
+    }
+    if (const auto found = departure(equal, others)) return AlikeImages{true, 0, *found};
+  }
+  for (std::size_t s = 0; s < sides.size(); ++s) {
+    Moments next;
+    Moments others;
+    for (std::size_t i = 0; i < sides[s].size(); ++i) {
+      for (std::size_t j = i + 1; j < std::min(i + most_apart, sides[s].size()); ++j) {
+        (j == i + 1 ? next : others).add(correlation(sides[s][i], sides[s][j]));
+      }
+    }
+    if (const auto found = departure(next, others)) return AlikeImages{false, s, *found};
+  }
+  return {};
+}
+
+}  // namespace
+
+template <class Real>
+void RowDependence<Real>::take(const ImagePair<Real>& pair, RowRange rows,
+                               const ForEach& for_each) {
+  const std::vector<const ImageStack<Real>*> sides = sides_of(pair);
+  const ImageExtent& extent = pair.a.extent;
+  const std::size_t across = (extent.width + tile_side - 1) / tile_side;
+  const std::size_t down = (rows.last - rows.first + tile_side - 1) / tile_side;
+  std::vector<std::optional<RepeatedTile>> found(across * down);
+  for_each(found.size(), [&](std::size_t i) {
+    const Rectangle tile =
+        tile_at(extent, i % across * tile_side, rows.first + i / across * tile_side, rows.last);
+    found[i] = repeated_in(sides, tile);
+  });
+  for (const std::optional<RepeatedTile>& tile : found) {
+    if (tile && repeated_) ++repeated_->tiles;
+    if (tile && !repeated_) repeated_ = tile;
+  }
+  sampled_.resize(sides.size());
+  // Odd, so that it meets columns and channels of every kind.
+  const std::size_t step = (extent.elements() + most_sampled - 1) / most_sampled | 1;
+  const ElementRange range = rows.elements(extent);
+  for (std::size_t e = (range.first + step - 1) / step * step; e < range.last; e += step) {
+    for (std::size_t s = 0; s < sides.size(); ++s) {
+      std::vector<float>& values = sampled_[s].emplace_back();
+      for (std::size_t r = 0; r < sides[s]->images.size(); ++r) {
+        values.push_back(static_cast<float>(*sides[s]->at(r, e)));
+      }
+    }
+  }
+}
+
+template <class Real>
+ImageDependence RowDependence<Real>::found() const {
+  return {.repeated = repeated_, .alike = alike_in(scored(sampled_))};
+}
+
+template <class Real>
+ImageDependence image_dependence(const ImagePair<Real>& pair, const ForEach& for_each) {
+  RowDependence<Real> rows;
+  rows.take(pair, {0, pair.a.extent.height}, for_each);
+  return rows.found();
+}
+
+template class RowDependence<float>;
+template class RowDependence<double>;
+template ImageDependence image_dependence(const ImagePair<float>&, const ForEach&);
+template ImageDependence image_dependence(const ImagePair<double>&, const ForEach&);
+
+}  // namespace assay::stats

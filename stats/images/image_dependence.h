@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "stats/basics/for_each.h"
+#include "stats/images/image.h"
+#include "stats/images/image_windows.h"
+
+namespace assay::stats {
+
+// An image of one of two stacks: 0 the first, 1 the second.
+struct WhichImage {
+  std::size_t side = 0;
+  std::size_t index = 0;
+};
+
+// Two images that agree in a tile bit for bit, although its elements vary.
+struct RepeatedTile {
+  Rectangle tile = {};
+  WhichImage one = {};
+  WhichImage other = {};
+  std::size_t tiles = 0;  // That are repeated anywhere.
+};
+
+// Images that are more alike than others: each with the next of its side, or with that of the same
+// index on the other side.
+struct AlikeImages {
+  bool across = false;
+  std::size_t side = 0;    // If not across.
+  double correlation = 0;  // Mean over the pairs, of ranks among the side's images.
+};
+
+struct ImageDependence {
+  std::optional<RepeatedTile> repeated = {};
+  std::optional<AlikeImages> alike = {};
+};
+
+// Do images depend on each other? Null hypothesis: all images are independent, those of a side of
+// one law.
+//
+// Tiles of 8 x 8 pixels are compared bit for bit over all images. A pixel tells apart if it has
+// eight values or more. None of them may be in more than half of the images. Half of a repeated
+// tile's pixels tell apart. Independent pixels then agree with probability below 2^-60.
+//
+// At most 16384 elements are ranked among the side's images. The mean correlation of neighbours,
+// and of equal indices across, is held against that of other pairs with indices near each other. It
+// is a dependence from 8 standard errors and .05 on.
+template <class Real>
+class RowDependence {
+ public:
+  // Takes rows that follow on those before, in multiples of 8 but for the last.
+  void take(const ImagePair<Real>& pair, RowRange rows, const ForEach& for_each = one_by_one);
+  // To be called after the last rows.
+  ImageDependence found() const;
+
+ private:
+  std::optional<RepeatedTile> repeated_;
+  std::vector<std::vector<std::vector<float>>> sampled_;  // [side][element][image]
+};
+
+template <class Real>
+ImageDependence image_dependence(const ImagePair<Real>& pair, const ForEach& for_each = one_by_one);
+
+}  // namespace assay::stats
