@@ -35,8 +35,7 @@ constexpr int repetitions = 9;
 constexpr StreamKey key{0x123456789abcdef};
 
 // An observation of CHANNELS numbers, none of them worth the name.
-constexpr const char* library_source = R"(#include "harness/theta/ask.h"
-#include "plugin_abi.h"
+constexpr const char* library_source = R"(#include "plugin_abi.h"
 static int secondary(AssayCall *call) {
   const double value = assay_uniform(call->random);
   for (size_t i = 0; i < call->out_count; ++i) call->out[i] = value + (double)i;

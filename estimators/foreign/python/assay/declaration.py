@@ -9,7 +9,6 @@ from dataclasses import dataclass, field
 
 from assay.stream import Stream
 
-Point = typing.Union[float, Sequence[float]]
 Draw = Sequence[typing.Any]  # (point, density), or (point, density, weight)
 
 
