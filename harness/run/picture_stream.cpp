@@ -25,8 +25,8 @@ using Stack = stats::ImageStack<float>;
 using Pyramid = stats::RowPyramid<float>;
 
 constexpr std::size_t row_unit = Pyramid::row_unit;
-// Row counts are multiples of it: most files compress 16 rows together.
-constexpr std::size_t read_unit = 16;
+// Row counts are multiples of it: files compress 16 or 32 rows together.
+constexpr std::size_t read_unit = 32;
 // Limit of texels read at a time, unless one unit of rows has more.
 constexpr std::size_t most_texels = std::size_t{1} << 22;
 
