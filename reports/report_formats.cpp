@@ -11,35 +11,25 @@
 #include "reports/viewer/html.h"
 
 namespace assay::reports {
-namespace {
-
-/// One test alone, as of `check`, is shown in full.
-bool is_single(const Record& record) {
-  return record.suites.size() == 1 && record.suites[0].tests.size() == 1;
-}
-
-}  // namespace
 
 const std::vector<ReportFormat>& report_formats() {
   static const std::vector<ReportFormat> table{
       {"console", "log", "a summary for a terminal",
-       [](const Record& record, bool colour) {
-         return console(record, {.colour = colour, .verbose = is_single(record)});
-       },
+       [](const Record& record, const ConsoleOptions& options) { return console(record, options); },
        [](const Calibration& calibration) { return console(calibration); }},
       {"json", "json", "the whole record, for `assay report`, `replay`, `merge` and other programs",
-       [](const Record& record, bool) { return json(record); },
+       [](const Record& record, const ConsoleOptions&) { return json(record); },
        [](const Calibration& calibration) { return json(calibration); }},
       {"junit", "xml", "for continuous integration",
-       [](const Record& record, bool) { return junit(record); }},
+       [](const Record& record, const ConsoleOptions&) { return junit(record); }},
       {"markdown", "md", "a summary for a page of a repository",
-       [](const Record& record, bool) { return markdown(record); },
+       [](const Record& record, const ConsoleOptions&) { return markdown(record); },
        [](const Calibration& calibration) { return markdown(calibration); }},
       {"html", "html", "one page with all numbers and pictures",
-       [](const Record& record, bool) { return html(record); },
+       [](const Record& record, const ConsoleOptions&) { return html(record); },
        [](const Calibration& calibration) { return html(calibration); }},
       {"metrics", "txt", "OpenMetrics, for dashboards",
-       [](const Record& record, bool) { return metrics(record); }}};
+       [](const Record& record, const ConsoleOptions&) { return metrics(record); }}};
   return table;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "reports/formats/console.h"
 #include "reports/record/calibration.h"
 #include "reports/record/record.h"
 
@@ -15,7 +16,7 @@ struct ReportFormat {
   std::string kind;    ///< as in `--report KIND=PATH`
   std::string ending;  ///< of a file that is meant to be one
   std::string summary;
-  std::string (*of_record)(const Record&, bool colour);
+  std::string (*of_record)(const Record&, const ConsoleOptions&);
   std::string (*of_calibration)(const Calibration&) = nullptr;  ///< null where there is none
 };
 

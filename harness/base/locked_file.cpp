@@ -16,7 +16,7 @@
 #include <utility>
 
 #include "harness/base/interrupt.h"
-#include "harness/base/progress_terminal.h"
+#include "harness/base/terminal.h"
 #include "reports/record/file.h"
 
 namespace assay::harness {

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "harness/base/interrupt.h"
-#include "harness/base/progress_terminal.h"
+#include "harness/base/terminal.h"
 #include "harness/calibration/calibration_runs.h"
 #include "harness/record/environment.h"
 #include "harness/record/record_of.h"
@@ -142,7 +142,7 @@ reports::Calibration calibration(const CalibrateArguments& arguments, Progress& 
   for (const std::string& method : arguments.methods) require_calibrated(method);
   refuse_twice("METHOD", arguments.methods);
   std::vector<Measured> all;
-  progress.begin("calibration", laws.size() * arguments.runs);
+  progress.begin({"calibration", laws.size() * arguments.runs, "runs"});
   for (std::size_t i = 0; i < laws.size(); ++i) {
     const CalibrationBench bench(
         {.law = laws[i], .methods = arguments.methods, .samples = arguments.samples});
@@ -167,7 +167,7 @@ int calibrate(const CalibrateArguments& arguments, const Output& output) {
   require_writable(output, {});
   const std::unique_ptr<Progress> progress = make_progress(output.quiet);
   const reports::Calibration measured = calibration(arguments, *progress);
-  write_reports(output, [&](const ReportRequest& request, bool) {
+  write_reports(output, [&](const ReportRequest& request, const reports::ConsoleOptions&) {
     return reports::report_format(request.kind).of_calibration(measured);
   });
   return reports::defects(measured) == 0 ? 0 : 1;

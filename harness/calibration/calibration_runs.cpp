@@ -123,7 +123,7 @@ void run_once(const CalibrationBench& bench, const std::vector<Item>& items, std
   }
   leave_out_pictures(pools);
   Silence silence;
-  sample_in_looks(open, pools.all(), 1, silence);
+  sample_in_looks(open, pools.all(), {.threads = 1}, silence);
   if (interrupted()) return;
   for (std::size_t i = 0; i < items.size(); ++i) {
     if (works[i]) tally(counts_of(counts, items[i]), works[i]->outcome, items[i].proof);

@@ -72,6 +72,10 @@ void add_output(Options& options, Output& output) {
       OneOf<Colour>{
           {{"auto", Colour::automatic}, {"always", Colour::always}, {"never", Colour::never}}},
       "auto, always or never; default auto: on a terminal, as NO_COLOR and FORCE_COLOR say");
+  options.count("-v", "a line a test on the console; -vv all numbers; default a line a suite",
+                output.detail);
+  options.add({"--durations", "N", Replay::nowhere}, output.slowest, at_least(1),
+              "name the N slowest tests at the end; default none");
 }
 
 void add_inconclusive(Options& options, Output& output) {
@@ -129,8 +133,9 @@ void add_selection(Options& options, Selection& selection) {
 }
 
 void add_suites(Options& options, SuitesCommand& command) {
-  options.add({.name = "SUITE", .needed = "a suite file", .words = {"*.yaml"}}, command.suites,
-              read_suite, "suite files");
+  options.add(
+      {.name = "SUITE", .replay = Replay::nowhere, .needed = "a suite file", .words = {"*.yaml"}},
+      command.suites, read_suite, "suite files");
   add_selection(options, command.options.selection);
   options.add({"--coarsen", "F", Replay::last}, command.options.coarsen, read_positive,
               "multiply every `detect` by F, above 0; default 1");
@@ -163,6 +168,9 @@ Examples:
   options.add({"--shard", "I/N", Replay::nowhere}, command.options.shard, read_shard,
               "only the I-th of N parts of the tests, each on its fixed share of alpha, for `assay "
               "merge`; default all, or what GTEST_TOTAL_SHARDS or TEST_TOTAL_SHARDS says");
+  options.flag("--fail-fast",
+               "draw no more once a claim is broken, the others are not run; default all are",
+               command.options.fail_fast);
   options.add({"--ledger", "FILE", Replay::nowhere, "", {"*"}}, command.options.ledger,
               "add the run's evidence to a file of nights with fresh seeds and alarm at what they "
               "say together; default none");
@@ -180,10 +188,11 @@ Examples:
   assay plan suites/cycles.yaml --list-renders      what another machine may render
 )");
   add_suites(options, command);
-  options.flag("--list-renders",
-               "print the renders that are missing instead, one a line: command, seed and file with "
-               "tabs between; the pilots' first, then the tests'; default the plan",
-               command.list_renders);
+  options.flag(
+      "--list-renders",
+      "print the renders that are missing instead, one a line: command, seed and file with "
+      "tabs between; the pilots' first, then the tests'; default the plan",
+      command.list_renders);
   add_sampling(options, command.options, command.output, of_suites);
 }
 

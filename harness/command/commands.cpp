@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "estimators/catalogue.h"
-#include "harness/base/progress_terminal.h"
 #include "harness/base/record_file.h"
+#include "harness/base/terminal.h"
 #include "harness/command/plan_table.h"
 #include "harness/command/run.h"
 #include "harness/command/tables.h"
@@ -34,8 +34,12 @@ int run_suites(const std::vector<Suite>& suites, const RunOptions& options, cons
   if (selects_nothing(suites, options.selection)) return nothing_ran;
   const std::unique_ptr<Progress> progress = make_progress(output.quiet);
   std::string ledger_fault;
-  reports::Record record = run(suites, options, *progress, &ledger_fault);
-  report_run(record, output);
+  RunReports console(output);
+  reports::Record record = run(
+      suites, options, *progress,
+      [&](const reports::Suite& suite, const reports::Test& test) { console.tell(suite, test); },
+      &ledger_fault);
+  console.write_and_annotate(record);
   if (!ledger_fault.empty()) throw std::runtime_error(ledger_fault);
   const int code = exit_code(record, output.inconclusive);
   return code == nothing_ran && options.shard_of_runner ? 0 : code;
@@ -82,7 +86,7 @@ int list_tests(const std::vector<Suite>& suites, const Selection& selection) {
 int report_saved_run(const std::string& file, const Output& output) {
   require_writable(output, {file});
   reports::Record record = read_record(file);
-  write_reports(record, output);
+  RunReports(output).write(record);
   return 0;
 }
 

@@ -160,6 +160,14 @@ void Options::add_choice(const std::string& name, const std::string& about,
   rows_.push_back({option, {name}, about, false, [take](const std::string&) { take(); }});
 }
 
+void Options::count(const std::string& name, const std::string& about, int& times) {
+  CLI::Option* const option = app_.add_flag(name);
+  const auto read = [&times, option](const std::string&) {
+    times = static_cast<int>(option->count());
+  };
+  rows_.push_back({option, {name, "", Replay::nowhere}, about, false, read});
+}
+
 void Options::read_values() const {
   const std::string command = app_.get_name();
   for (const Row& row : rows_) {
@@ -176,7 +184,8 @@ void Options::read_values() const {
   for (const Replay place : {Replay::first, Replay::middle, Replay::last}) {
     for (const Row& row : rows_) {
       const bool argument = row.option->get_positional();
-      if ((argument ? Replay::first : row.name.replay) != place) continue;
+      const bool first = argument && row.name.replay != Replay::nowhere;
+      if ((first ? Replay::first : row.name.replay) != place) continue;
       const bool flag = row.option->get_expected_max() == 0;
       if (flag && row.option->count() > 0) *replay_line_ += " " + row.name.name;
       if (!flag) *replay_line_ += option_words(argument ? "" : row.name.name, row.given());

@@ -22,14 +22,14 @@ using Texts = std::vector<std::string>;
 [[noreturn]] void usage_error(const std::string& why);
 
 /// The place of an option in the line that repeats a test. What changes no number is `nowhere`. So
-/// are seed and selection, since the record adds each test's own.
+/// are suites, seed and selection, since the record adds each test's own.
 enum class Replay { first, middle, last, nowhere };
 
 /// How an option or an argument is called.
 struct OptionName {
   std::string name;                ///< "--seed"; an argument's is without dashes.
   std::string value = "";          ///< What stands for the value in `--help`.
-  Replay replay = Replay::middle;  ///< An argument stands first.
+  Replay replay = Replay::middle;  ///< An argument stands first, or nowhere.
   std::string needed = "";         ///< What a message says is needed; "" if it may be left out.
   Texts words = {};                ///< Completion offers them; one with a `*` stands for files.
 };
@@ -67,6 +67,8 @@ class Options {
   void choice(const std::string& name, Target& target, Target answer, const std::string& about) {
     add_choice(name, about, [&target, answer] { target = answer; });
   }
+  /// A flag that counts.
+  void count(const std::string& name, const std::string& about, int& times);
 
   /// The line that repeats a test goes there.
   void repeat_by(std::string& line) { replay_line_ = &line; }

@@ -11,7 +11,7 @@
 #include "estimators/core/waiting.h"
 #include "estimators/library_host.h"
 #include "harness/base/interrupt.h"
-#include "harness/base/progress_terminal.h"
+#include "harness/base/terminal.h"
 #include "harness/command/cli.h"
 #include "harness/command/failure.h"
 #include "harness/command/shard_environment.h"
@@ -44,6 +44,7 @@ std::vector<Suite> load(const std::vector<std::string>& files,
 int act(const RunCommand& command) {
   const std::vector<Suite> suites = load(command.suites, command.assignments);
   RunOptions options = command.options;
+  options.assigns = !command.assignments.empty();
   take_shard_from(system_environment, options);
   return run_suites(suites, options, command.output);
 }

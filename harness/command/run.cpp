@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "harness/base/interrupt.h"
@@ -18,7 +19,10 @@ namespace {
 
 /// A family without some of its tests has no adjusted p-values.
 void adjust_if_whole(SuiteRun& run, const RunOptions& options) {
-  run.adjusted = run.tests.size() + run.untested.size() == run.suite.tests.size() && !options.shard;
+  const bool all = run.tests.size() + run.untested.size() == run.suite.tests.size();
+  const bool early =
+      std::ranges::any_of(run.tests, [](const TestWork& work) { return !work.outcome.decided; });
+  run.adjusted = all && !early && !options.shard;
   if (run.adjusted) adjust_p_values(run.tests);
 }
 
@@ -45,8 +49,62 @@ void note_ledger(reports::Record& record, const std::vector<std::unique_ptr<Suit
   }
 }
 
+/// Tells of broken claims, and whether to draw on.
+class Listener {
+ public:
+  Listener(const PlannedRun& planned, const RunOptions& options, const Broken& broken)
+      : planned_(planned), options_(options), broken_(broken) {}
+
+  bool hear(const TestWork& work) {
+    for (const auto& run : planned_.suites) {
+      const bool its =
+          std::ranges::any_of(run->tests, [&](const TestWork& x) { return &x == &work; });
+      if (!its || !is_broken(work)) continue;
+      tell(*run, record_of_test(work, run->suite.file, run->adjusted), *work.outcome.question.test);
+    }
+    return may_go_on();
+  }
+  bool hear_untested() {
+    for (const auto& run : planned_.suites) {
+      for (const Untested& each : run->untested) {
+        const reports::Test test = record_of_untested(each, *run);
+        if (reports::outcome(test) == reports::Outcome::failed) tell(*run, test, *each.test);
+      }
+    }
+    return may_go_on();
+  }
+  bool may_go_on() const { return !options_.fail_fast || first_.empty(); }
+  const std::string& first() const { return first_; }  ///< Id of the first broken claim, or "".
+
+ private:
+  void tell(const SuiteRun& run, reports::Test test, const TestEntry& entry) {
+    if (first_.empty()) first_ = test.id;
+    test.replay = replay_line(entry, run, planned_.suites, options_);
+    if (broken_) broken_(head_of(run), test);
+  }
+
+  const PlannedRun& planned_;
+  const RunOptions& options_;
+  const Broken& broken_;
+  std::string first_ = "";
+};
+
+/// Leaves out the tests that were not decided.
+void leave_out(SuiteRun& run, const std::string& why) {
+  for (const TestWork& work : run.tests) {
+    if (work.outcome.decided) continue;
+    run.untested.push_back({work.outcome.question.test, reports::Verdict::skipped, why});
+  }
+  std::ranges::sort(run.untested, {}, &Untested::test);
+  std::erase_if(run.tests, [](const TestWork& work) { return !work.outcome.decided; });
+  std::erase_if(run.pictures, [&](const Picture& each) {
+    const std::uint64_t shown = shown_by(each, run);
+    return shown == 0 || each.pool->drawn() < shown;
+  });
+}
+
 reports::Record run_in_arena(const std::vector<Suite>& suites, const RunOptions& options,
-                             Progress& progress, std::string* ledger_fault) {
+                             Progress& progress, const Broken& broken, std::string* ledger_fault) {
   const auto start = std::chrono::steady_clock::now();
   const std::string started = utc_now();
   if (!options.ledger.empty()) require_ledger(options.ledger, suites);
@@ -54,14 +112,28 @@ reports::Record run_in_arena(const std::vector<Suite>& suites, const RunOptions&
     throw InputError({},
                      "--ledger takes whole runs: leave --shard and the environment's shards out");
   }
+  if (options.fail_fast && (!options.ledger.empty() || options.shard)) {
+    throw InputError({}, "--fail-fast ends a run early: leave --ledger and --shard out");
+  }
   const PlannedRun planned = plan_run(suites, options, progress);
   std::vector<TestWork*> tests;
   for (auto& run : planned.suites) {
     for (TestWork& work : run->tests) tests.push_back(&work);
   }
-  sample_in_looks(tests, planned.pools.all(), options.threads, progress);
+  Listener listener(planned, options, broken);
+  if (listener.hear_untested()) {
+    sample_in_looks(tests, planned.pools.all(),
+                    {.threads = options.threads,
+                     .cheapest_first = options.fail_fast,
+                     .decided = [&](const TestWork& work) { return listener.hear(work); }},
+                    progress);
+  }
   stop_if_interrupted();
-  for (auto& run : planned.suites) adjust_if_whole(*run, options);
+  for (auto& run : planned.suites) {
+    adjust_if_whole(*run, options);
+    if (!listener.may_go_on())
+      leave_out(*run, fmt::format("the run ended early: `{}` is broken", listener.first()));
+  }
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   reports::Record record = record_of(planned.suites, options);
   record.started = started;
@@ -81,9 +153,10 @@ reports::Record run_in_arena(const std::vector<Suite>& suites, const RunOptions&
 }  // namespace
 
 reports::Record run(const std::vector<Suite>& suites, const RunOptions& options, Progress& progress,
-                    std::string* ledger_fault) {
-  return with_threads(options.threads,
-                      [&] { return run_in_arena(suites, options, progress, ledger_fault); });
+                    const Broken& broken, std::string* ledger_fault) {
+  return with_threads(options.threads, [&] {
+    return run_in_arena(suites, options, progress, broken, ledger_fault);
+  });
 }
 
 }  // namespace assay::harness

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -10,9 +11,12 @@
 
 namespace assay::harness {
 
+/// Hears of a broken claim when it is decided. The suite has no tests yet.
+using Broken = std::function<void(const reports::Suite& suite, const reports::Test& test)>;
+
 /// Runs the selected tests of the suites. InputError for any mistake found before sampling. A
 /// ledger that cannot be written is a std::runtime_error, or goes to `ledger_fault`.
 reports::Record run(const std::vector<Suite>& suites, const RunOptions& options, Progress& progress,
-                    std::string* ledger_fault = nullptr);
+                    const Broken& broken = {}, std::string* ledger_fault = nullptr);
 
 }  // namespace assay::harness

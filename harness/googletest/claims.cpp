@@ -110,7 +110,7 @@ reports::Test tested(const std::string& claim, const Asked& asked, const ClaimBu
                                 harness::choose_primaries({question}, place, pilots))}};
   harness::Pools pools;
   work.pools = pools.for_question(question, work.outcome.plan, seed, pilots);
-  harness::sample_in_looks({&work}, pools.all(), 0, silence);
+  harness::sample_in_looks({&work}, pools.all(), {}, silence);
   return harness::record_of_test(work, "", false);
 }
 

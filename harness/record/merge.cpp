@@ -46,15 +46,15 @@ std::vector<Part> parts_of(const std::vector<ShardFile>& shards, std::size_t sui
   const reports::Record& any = shards.front().record;
   for (const reports::ShardElsewhere& test : any.shard->suites[suite].elsewhere) {
     if (there.contains(test.shard)) continue;
-    parts.push_back({{.name = test.name,
-                      .id = test.id,
-                      .claim = test.claim,
-                      .file = any.suites[suite].file,
-                      .line = test.line,
-                      .verdict = Verdict::skipped,
-                      .message = fmt::format("shard {} of {} is missing", test.shard,
-                                             any.shard->count)},
-                     {.position = test.position}});
+    parts.push_back(
+        {{.name = test.name,
+          .id = test.id,
+          .claim = test.claim,
+          .file = any.suites[suite].file,
+          .line = test.line,
+          .verdict = Verdict::skipped,
+          .message = fmt::format("shard {} of {} is missing", test.shard, any.shard->count)},
+         {.position = test.position}});
   }
   std::sort(parts.begin(), parts.end(),
             [](const Part& a, const Part& b) { return a.family.position < b.family.position; });
@@ -192,7 +192,8 @@ std::string missing_shards(const std::vector<ShardFile>& shards) {
   }
   if (missing.empty()) return "";
   return fmt::format(
-      "of {} shards these are missing, and their tests are skipped: {}; run them with --shard {}/{}{} "
+      "of {} shards these are missing, and their tests are skipped: {}; run them with --shard "
+      "{}/{}{} "
       "and merge all records",
       count, fmt::join(missing, ", "), missing.front(), count, missing.size() > 1 ? ", …" : "");
 }
@@ -227,7 +228,7 @@ int merge_shards(const MergeArguments& arguments, const Output& output) {
   std::vector<ShardFile> shards;
   for (const std::string& file : arguments.records) shards.push_back({file, read_record(file)});
   reports::Record record = merge(shards);
-  report_run(record, output);
+  RunReports(output).write_and_annotate(record);
   const std::string missing = missing_shards(shards);
   if (missing.empty()) return exit_code(record, output.inconclusive);
   fmt::print(stderr, "assay: {}\n", missing);

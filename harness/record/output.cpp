@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 
 #include "estimators/core/quoting.h"
 #include "estimators/parameters.h"
+#include "harness/base/terminal.h"
 #include "harness/record/github.h"
 #include "harness/record/image_record.h"
 #include "harness/sampling/sample.h"
@@ -32,6 +34,29 @@ bool use_colour(Colour colour, std::FILE* stream) {
   const char* terminal = std::getenv("TERM");
   const bool dumb = terminal == nullptr || std::string(terminal) == "dumb";
   return !dumb && isatty(fileno(stream)) != 0;
+}
+
+/// The stream that the console goes to; null if a file has it.
+std::FILE* console_stream(const Output& output) {
+  std::FILE* stream = stdout;
+  for (const ReportRequest& request : output.reports) {
+    if (request.kind == "console") return request.path == "-" ? stdout : nullptr;
+    if (request.path == "-") stream = stderr;
+  }
+  return stream;
+}
+
+/// The options of a console that is written to a stream, or to a file if there is none.
+reports::ConsoleOptions console_options(const Output& output, std::FILE* stream) {
+  const auto page = std::ranges::find(output.reports, "html", &ReportRequest::kind);
+  reports::ConsoleOptions options{
+      .detail = output.detail,
+      .slowest = output.slowest,
+      .report = page == output.reports.end() || page->path == "-" ? "" : page->path};
+  if (stream == nullptr) return options;
+  options.colour = use_colour(output.colour, stream);
+  options.width = terminal_width(stream);
+  return options;
 }
 
 }  // namespace
@@ -60,9 +85,9 @@ void write_reports(const Output& output, const ReportWriter& written) {
   for (const ReportRequest& request : output.reports) {
     console_placed = console_placed || request.kind == "console";
     const bool standard = request.path == "-";
-    const bool colour = standard && use_colour(output.colour, stdout);
     try {
-      const std::string text = written(request, colour);
+      const std::string text =
+          written(request, console_options(output, standard ? stdout : nullptr));
       if (standard) {
         to_stdout += text;
       } else {
@@ -73,25 +98,35 @@ void write_reports(const Output& output, const ReportWriter& written) {
     }
   }
   if (!console_placed) {
-    std::FILE* stream = to_stdout.empty() ? stdout : stderr;
+    std::FILE* stream = console_stream(output);
     fmt::print(stream, "{}",
-               written({.kind = "console", .path = "-"}, use_colour(output.colour, stream)));
+               written({.kind = "console", .path = "-"}, console_options(output, stream)));
   }
   fmt::print("{}", to_stdout);
   if (!failures.empty()) throw std::runtime_error(failures);
 }
 
-void write_reports(reports::Record& record, const Output& output) {
-  write_reports(output, [&](const ReportRequest& request, bool colour) {
+RunReports::RunReports(const Output& output)
+    : output_(output),
+      stream_(console_stream(output)),
+      console_(console_options(output, stream_)) {}
+
+void RunReports::tell(const reports::Suite& suite, const reports::Test& broken) {
+  if (stream_ != nullptr) write_beside_progress(console_.broken(suite, broken), stream_);
+}
+
+void RunReports::write(reports::Record& record) const {
+  write_reports(output_, [&](const ReportRequest& request, const reports::ConsoleOptions& options) {
+    if (request.kind == "console" && request.path == "-") return console_.rest(record);
     if (request.kind == "json" && request.path != "-") write_maps(record, request.path);
-    return reports::report_format(request.kind).of_record(record, colour);
+    return reports::report_format(request.kind).of_record(record, options);
   });
 }
 
-void report_run(reports::Record& record, const Output& output) {
-  write_reports(record, output);
+void RunReports::write_and_annotate(reports::Record& record) const {
+  write(record);
   // GitHub's runner reads both streams; other programs read reports from standard output.
-  if (output.github) fmt::print(stderr, "{}", tell_github(record, system_environment));
+  if (output_.github) fmt::print(stderr, "{}", tell_github(record, system_environment));
 }
 
 int exit_code(const reports::Record& record, InconclusivePolicy policy) {

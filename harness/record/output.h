@@ -2,10 +2,13 @@
 
 // Writes a command's reports and chooses its exit code.
 
+#include <cstdint>
+#include <cstdio>
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "reports/formats/console.h"
 #include "reports/record/record.h"
 
 namespace assay::harness {
@@ -25,11 +28,14 @@ struct Output {
   Colour colour = Colour::automatic;
   InconclusivePolicy inconclusive = InconclusivePolicy::report;
   bool quiet = false;  ///< No progress.
+  int detail = 0;      ///< Of the console: reports::ConsoleOptions.
+  std::uint64_t slowest = 0;
   bool github = true;  ///< Tells GitHub Actions what is not ok (github.h).
 };
 
-/// Makes the text of a report, in colour or not.
-using ReportWriter = std::function<std::string(const ReportRequest& request, bool colour)>;
+/// Makes the text of a report. The options are those of a console at its place.
+using ReportWriter = std::function<std::string(const ReportRequest& request,
+                                               const reports::ConsoleOptions& options)>;
 
 /// InputError before sampling if a report's file cannot be written, or is one of `kept`
 /// (files_read.h).
@@ -37,11 +43,25 @@ void require_writable(const Output& output, const std::vector<std::string>& kept
 /// Writes all requested reports and the console's, files first. std::runtime_error at the end if
 /// some could not be written.
 void write_reports(const Output& output, const ReportWriter& written);
-/// The same for a record. Maps are written beside the JSON report, and the record gets their names.
-void write_reports(reports::Record& record, const Output& output);
 
-/// Writes the reports of a run, and tells GitHub Actions (github.h).
-void report_run(reports::Record& record, const Output& output);
+/// All that a command reports of a record.
+class RunReports {
+ public:
+  explicit RunReports(const Output& output);
+
+  /// Tells of a broken claim at once, beside the progress.
+  void tell(const reports::Suite& suite, const reports::Test& broken);
+
+  /// Writes the reports. Maps are written beside the JSON report, and the record gets their names.
+  void write(reports::Record& record) const;
+  /// Also tells GitHub Actions (github.h).
+  void write_and_annotate(reports::Record& record) const;
+
+ private:
+  const Output& output_;
+  std::FILE* stream_;  ///< Where the console is read; null if a file has it.
+  reports::Console console_;
+};
 
 /// Returns 0 if every test is ok, and 1 if one is not or the ledger has an alarm. Returns 3 if
 /// nothing failed but something is inconclusive, 4 if nothing ran, 77 if all were skipped.

@@ -242,14 +242,6 @@ reports::Test head_of(const TestEntry& entry, const std::string& file) {
           .expected = expected_verdict(entry.expect)};
 }
 
-reports::Test record_of_untested(const Untested& untested, const std::string& file) {
-  reports::Test test = head_of(*untested.test, file);
-  test.verdict = untested.verdict;
-  test.ok = test.verdict == test.expected;
-  test.message = untested.message;
-  return test;
-}
-
 }  // namespace
 
 reports::Test record_of_test(const TestWork& work, const std::string& file, bool adjusted) {
@@ -294,8 +286,8 @@ void note_retries(reports::Record& record) {
   for (const reports::Suite& suite : record.suites) {
     count += suite.retries.size();
     for (const reports::Retry& each : suite.retries) {
-      names += fmt::format("{}seed {} of `{}`", names.empty() ? "" : ", ", each.seed,
-                           each.estimator);
+      names +=
+          fmt::format("{}seed {} of `{}`", names.empty() ? "" : ", ", each.seed, each.estimator);
     }
   }
   if (count == 0) return;
@@ -304,32 +296,65 @@ void note_retries(reports::Record& record) {
                              count == 1 ? "was" : "were", names);
 }
 
-reports::Record record_of(const std::vector<std::unique_ptr<SuiteRun>>& runs,
-                          const RunOptions& options) {
+std::string replay_line(const TestEntry& entry, const SuiteRun& run, const SuiteRuns& runs,
+                        const RunOptions& options) {
+  const std::string command = "assay run";
+  std::string line = options.command;
+  if (line.starts_with(command)) {
+    std::vector<std::string> files;
+    for (const auto& each : runs) {
+      if (options.assigns || each.get() == &run) files.push_back(each->suite.file);
+    }
+    line.insert(command.size(), option_words("", files));
+  }
+  if (line.empty()) return "";
+  line += option_words("--seed", {fmt::format("{}", run.seed)});
+  return run.suite.file.empty() ? line : line + option_words("--filter", {entry.id});
+}
+
+reports::Test record_of_untested(const Untested& untested, const SuiteRun& run) {
+  reports::Test test = head_of(*untested.test, run.suite.file);
+  test.verdict = untested.verdict;
+  test.ok = test.verdict == test.expected;
+  test.message = untested.message;
+  return test;
+}
+
+bool is_broken(const TestWork& work) {
+  const TestOutcome& outcome = work.outcome;
+  return outcome.decided && outcome.verdict != reports::Verdict::inconclusive &&
+         outcome.verdict != expected_verdict(outcome.question.test->expect);
+}
+
+reports::Suite head_of(const SuiteRun& run) {
+  return {.name = run.suite.name,
+          .file = run.suite.file,
+          .about = run.suite.about,
+          .seed = run.seed,
+          .alpha = run.suite.alpha,
+          .beta = run.suite.beta};
+}
+
+reports::Record record_of(const SuiteRuns& runs, const RunOptions& options) {
   reports::Record record{.tool = this_tool(), .environment = this_environment(options.threads)};
   record.seed = runs.empty() ? options.seed.value_or(1) : runs.front()->seed;
   bool whole = true;
   for (const auto& run : runs) {
-    reports::Suite suite{.name = run->suite.name,
-                         .file = run->suite.file,
-                         .about = run->suite.about,
-                         .seed = run->seed,
-                         .alpha = run->suite.alpha,
-                         .beta = run->suite.beta};
+    reports::Suite suite = head_of(*run);
+    const auto add = [&](reports::Test test, const TestEntry& entry) {
+      test.replay = replay_line(entry, *run, runs, options);
+      suite.tests.push_back(std::move(test));
+    };
     // Both lists are in the order of the suite's file.
     auto untested = run->untested.begin();
     const auto add_untested_before = [&](const TestEntry* next) {
       for (; untested != run->untested.end() && (!next || untested->test < next); ++untested) {
-        suite.tests.push_back(record_of_untested(*untested, run->suite.file));
+        add(record_of_untested(*untested, *run), *untested->test);
       }
     };
     for (const TestWork& work : run->tests) {
       add_untested_before(work.outcome.question.test);
-      suite.tests.push_back(record_of_test(work, run->suite.file, run->adjusted));
-      if (options.command.empty()) continue;
-      reports::Test& test = suite.tests.back();
-      test.replay = options.command + option_words("--seed", {fmt::format("{}", run->seed)});
-      if (!run->suite.file.empty()) test.replay += option_words("--filter", {test.id});
+      add(record_of_test(work, run->suite.file, run->adjusted), *work.outcome.question.test);
     }
     add_untested_before(nullptr);
     suite.statements = statements_of(run->suite, suite.tests);

@@ -18,9 +18,22 @@ inline constexpr const char* partial_note =
     "not every test of the suites ran: their p-values are not adjusted by Holm's method, which "
     "takes all";
 
-reports::Record record_of(const std::vector<std::unique_ptr<SuiteRun>>& runs,
-                          const RunOptions& options);
-
 reports::Test record_of_test(const TestWork& work, const std::string& file, bool adjusted);
+
+using SuiteRuns = std::vector<std::unique_ptr<SuiteRun>>;
+
+/// The command that repeats a test: that of its suite alone if it can be. "" if the run has none.
+std::string replay_line(const TestEntry& entry, const SuiteRun& run, const SuiteRuns& runs,
+                        const RunOptions& options);
+
+reports::Test record_of_untested(const Untested& untested, const SuiteRun& run);
+
+/// True if the test is decided and not as its suite expects.
+bool is_broken(const TestWork& work);
+
+reports::Record record_of(const SuiteRuns& runs, const RunOptions& options);
+
+/// What is known of a suite before its tests.
+reports::Suite head_of(const SuiteRun& run);
 
 }  // namespace assay::harness

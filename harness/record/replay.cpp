@@ -11,8 +11,8 @@
 
 #include "estimators/catalogue.h"
 #include "harness/base/interrupt.h"
-#include "harness/base/progress_terminal.h"
 #include "harness/base/record_file.h"
+#include "harness/base/terminal.h"
 #include "harness/draws/draw_text.h"
 #include "harness/draws/sampler_setup.h"
 #include "harness/pilot/pilot_run.h"
@@ -139,10 +139,9 @@ stats::LookSchedule recorded_looks(const Question& question, const Recorded& rec
 Plan recorded_plan(const Question& question, const Recorded& recorded) {
   const reports::Test& test = recorded.test;
   const Method method = find_method(question, test.method);
-  Plan plan{
-      .method = method,
-      .looks = recorded_looks(question, recorded, method.is.over_looks),
-      .gates_invalidate = !test.forced};
+  Plan plan{.method = method,
+            .looks = recorded_looks(question, recorded, method.is.over_looks),
+            .gates_invalidate = !test.forced};
   // The record has all subjects of a channel together.
   for (std::size_t i = 0; i < question.subjects.size(); ++i) {
     const bool drawn = i < test.samples.size() &&
@@ -375,7 +374,7 @@ int replay(const Recorded& recorded, const ReplayArguments& arguments) {
     return print_observation(rebuilt->work, recorded.test, *arguments.observation) ? 0 : 1;
   }
   const std::unique_ptr<Progress> progress = make_progress(false);
-  sample_in_looks({&rebuilt->work}, rebuilt->pools.all(), 0, *progress);
+  sample_in_looks({&rebuilt->work}, rebuilt->pools.all(), {}, *progress);
   stop_if_interrupted();
   const reports::Test now = record_of_test(rebuilt->work, recorded.suite.file, false);
   fmt::print("{}\n{}\n", recorded.test.id, recorded.test.claim);

@@ -10,34 +10,25 @@
 namespace assay::harness {
 namespace {
 
-/// One progress for all rounds, out of the work that remains if no test ends early.
-class Rounds final : public Progress {
+/// Counts decided tests. Draws only move the clock on.
+class Claims final : public Progress {
  public:
-  Rounds(Progress& progress, std::uint64_t total) : progress_(progress) {
-    progress_.begin("sampling", total);
+  Claims(Progress& progress, std::uint64_t tests) : progress_(progress) {
+    progress_.begin({.total = tests, .unit = tests == 1 ? "claim" : "claims"});
   }
-  ~Rounds() override { progress_.end(); }
-  Rounds(const Rounds&) = delete;
-  Rounds& operator=(const Rounds&) = delete;
+  ~Claims() override { progress_.end(); }
+  Claims(const Claims&) = delete;
+  Claims& operator=(const Claims&) = delete;
 
-  void begin(const std::string&, std::uint64_t total) override {
-    before_ += round_;
-    round_ = total;
-  }
-  void advance(std::uint64_t done) override { progress_.advance(before_ + done); }
+  void count() { progress_.advance(++decided_); }
+  void begin(const Phase&) override {}
+  void advance(std::uint64_t) override { progress_.advance(decided_); }
   void end() override {}
 
  private:
   Progress& progress_;
-  std::uint64_t before_ = 0;
-  std::uint64_t round_ = 0;
+  std::uint64_t decided_ = 0;
 };
-
-std::uint64_t most_work(const std::vector<std::shared_ptr<Pool>>& pools) {
-  std::uint64_t total = 0;
-  for (const auto& pool : pools) total += pool->most_marked() * pool->primaries();
-  return total;
-}
 
 /// CPU seconds of suites with a budget in seconds; each pool counts once.
 using Clocks = std::map<const Budget*, double>;
@@ -99,24 +90,44 @@ bool take_next(TestWork& work, const Clocks& clocks) {
   return !outcome.decided;
 }
 
+/// Primaries that a test's next look adds.
+std::uint64_t cost_of_look(const TestWork& work) {
+  std::uint64_t cost = 0;
+  for (std::size_t i = 0; i < work.pools.size(); ++i) {
+    const std::uint64_t wanted = work.outcome.secondaries(i), there = work.pools[i]->drawn();
+    if (wanted > there) cost += (wanted - there) * work.pools[i]->primaries();
+  }
+  return cost;
+}
+
 }  // namespace
 
 void sample_in_looks(const std::vector<TestWork*>& tests,
-                     const std::vector<std::shared_ptr<Pool>>& pools, unsigned threads,
+                     const std::vector<std::shared_ptr<Pool>>& pools, const Rounds& rounds,
                      Progress& progress) {
-  Rounds rounds(progress, most_work(pools));
+  Claims claims(progress, tests.size());
   std::vector<TestWork*> open = tests;
-  do {
-    for (TestWork* work : open) {
+  bool go_on = true;
+  while (go_on && !open.empty()) {
+    std::vector<TestWork*> next = open;
+    if (rounds.cheapest_first)
+      next = {*std::ranges::min_element(open, {},
+                                        [](const TestWork* work) { return cost_of_look(*work); })};
+    for (TestWork* work : next) {
       for (std::size_t i = 0; i < work->pools.size(); ++i) {
         work->pools[i]->request(work->outcome.secondaries(i));
       }
     }
-    draw_all(pools, {.threads = threads}, rounds);
+    draw_all(pools, {.threads = rounds.threads}, claims);
     if (interrupted()) return;
     const Clocks clocks = read_clocks(tests);
-    std::erase_if(open, [&](TestWork* work) { return !take_next(*work, clocks); });
-  } while (!open.empty());
+    for (TestWork* work : next) {
+      if (take_next(*work, clocks)) continue;
+      std::erase(open, work);
+      claims.count();
+      if (rounds.decided && !rounds.decided(*work)) go_on = false;
+    }
+  }
 }
 
 }  // namespace assay::harness

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -8,11 +9,20 @@
 
 namespace assay::harness {
 
+/// Hears of each test when it is decided. If it answers no, nothing more is drawn.
+using Decided = std::function<bool(const TestWork&)>;
+
+struct Rounds {
+  unsigned threads = 0;         ///< 0: all cores
+  bool cheapest_first = false;  ///< A round takes one look, that with the fewest primaries.
+  Decided decided = {};
+};
+
 /// Draws in rounds: in each, every undecided test takes its next look. It ends when every test is
 /// decided or has taken its last look. A test's data depend on its own plan alone. Stops early when
-/// the user interrupts; tests are then left undecided.
+/// the user interrupts or `decided` says no; tests are then left undecided.
 void sample_in_looks(const std::vector<TestWork*>& tests,
-                     const std::vector<std::shared_ptr<Pool>>& pools, unsigned threads,
+                     const std::vector<std::shared_ptr<Pool>>& pools, const Rounds& rounds,
                      Progress& progress);
 
 }  // namespace assay::harness

@@ -334,7 +334,7 @@ double streamed_bytes(const Subject& side) {
 }
 
 StreamedPictures stream_pictures(const Question& question, Progress& progress) {
-  progress.begin("pictures", 2 * pictures_of(question.subjects[0]));
+  progress.begin({.name = "pictures", .total = 2 * pictures_of(question.subjects[0])});
   StreamedPictures found = Looking(question).take_all(progress);
   progress.end();
   return found;

@@ -108,7 +108,7 @@ void draw_all(const std::vector<std::shared_ptr<Pool>>& pools, const Drawing& dr
   const unsigned count = threads_of(drawing.threads);
   std::uint64_t total = 0;
   for (const auto& pool : pools) total += work(*pool, pool->requested() - pool->drawn());
-  progress.begin(drawing.phase, total);
+  progress.begin({.name = drawing.phase, .total = total});
 
   TaskList tasks(pools);
   Workers workers(pools);

@@ -17,8 +17,10 @@ struct RunOptions {
   Selection selection = {};                                 ///< Empty: all tests.
   std::optional<std::pair<unsigned, unsigned>> shard = {};  ///< I of N, I from 1.
   bool shard_of_runner = false;  ///< Set by a test runner: a shard may be empty.
+  bool fail_fast = false;        ///< Draws no more once a claim is broken, the cheapest look first.
   std::string ledger = "";       ///< File to add the evidence to; "": none.
-  std::string command = "";      ///< Repeats the run; for replay lines.
+  std::string command = "";      ///< Repeats the run, but for its suites; for replay lines.
+  bool assigns = false;          ///< Parameters are set, perhaps those of one suite alone.
 };
 
 }  // namespace assay::harness

@@ -3,24 +3,36 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
 
 #include "reports/formats/console_rows.h"
 #include "reports/words/columns.h"
 #include "reports/words/describe.h"
+#include "reports/words/display.h"
 #include "reports/words/kill_matrix.h"
 #include "reports/words/kill_text.h"
 #include "reports/words/ledger.h"
 #include "reports/words/number.h"
 #include "reports/words/statement_text.h"
+#include "reports/words/steps.h"
 #include "reports/words/summary.h"
 #include "reports/words/text.h"
 
 namespace assay::reports {
 namespace {
 
-constexpr int least_width = 60;
+constexpr int least_width = 40;
 constexpr int label_width = 17;
 constexpr std::size_t most_channels = 24;
+constexpr int block_lines = 5;  // of a claim that is not as it should be
+constexpr int block_indent = 4;
+
+/// One test alone, as of `check`.
+bool is_single(const Record& record) {
+  return record.suites.size() == 1 && record.suites[0].tests.size() == 1;
+}
 
 // A terminal renders a no-break space in its own way: copied text should hold plain ones.
 std::string plain_spaces(const std::string& text) {
@@ -50,16 +62,84 @@ const char* colour_of(Outcome outcome) {
 
 class Screen {
  public:
-  explicit Screen(ConsoleOptions options) : options_(options) {
+  explicit Screen(ConsoleOptions options) : options_(std::move(options)) {
     options_.width = std::max(options_.width, least_width);
   }
 
-  void run(const Record& record) {
-    for (const Suite& suite : record.suites) write(suite);
+  void all(const Record& record) {
+    for (const Suite& suite : record.suites) write(suite, is_single(record));
     if (!record.note.empty()) paragraph(record.note);
     statements(record);
     if (!record.ledger.file.empty()) write(record.ledger);
-    summary(record);
+    blank();
+    if (const std::string verdicts = verdict_counts(record); !verdicts.empty())
+      paragraph("Verdicts: " + verdicts + ".");
+    paragraph(error_rates(record));
+  }
+
+  void brief(const Record& record, const std::set<std::string>& told) {
+    if (is_single(record)) {
+      alone(record.suites[0]);
+    } else {
+      suites(record);
+    }
+    blank();
+    for (const Suite& suite : record.suites) {
+      for (const Test& test : suite.tests) {
+        const Standing how = standing(test);
+        const bool shown = how == Standing::broken || how == Standing::undecided;
+        if (shown && !told.contains(test.id)) block(suite.name, test);
+      }
+    }
+    left_out(record);
+    std::uint64_t retries = 0;
+    for (const Suite& suite : record.suites) retries += suite.retries.size();
+    if (retries > 0)
+      paragraph(fmt::format("Programs that failed and were started again: {}.", retries));
+    if (!record.ledger.file.empty()) alarms_of(record);
+  }
+
+  /// A claim that is not as it should be: where, what, and what to do. If that takes too many
+  /// lines, the last one says where to read all of it. The claim of `check` has no place.
+  void block(const std::string& suite, const Test& test) {
+    const Outcome how = outcome(test);
+    const int used = head(fmt::format("{} {}: {}", mark(how), suite, test.name), place(test), how);
+    std::vector<Step> next = steps(test);
+    next.resize(std::min<std::size_t>(next.size(), 1));
+    std::vector<std::string> text = wrapped(trouble(test), options_.width - block_indent);
+    std::erase(text, "");
+    const auto below = [&] {
+      return next.empty() ? 0 : static_cast<int>(step_lines(next[0]).size());
+    };
+    int most = std::max(1, block_lines - used - below());
+    if (place(test).empty()) {
+      most = static_cast<int>(text.size());
+    } else if (most < static_cast<int>(text.size()) && test.verdict != Verdict::fail) {
+      next = {explanation(test)};
+      most = std::max(1, block_lines - used - below());
+    }
+    indented(text, most);
+    for (const Step& step : next) paste(step);
+    blank();
+  }
+
+  void end(const Record& record) {
+    slowest(record);
+    blank();
+    const Tally counts = tally(record);
+    const std::string alarm = alarm_count(record);
+    const bool failed = counts.failed > 0 || !alarm.empty();
+    const Outcome how = failed                    ? Outcome::failed
+                        : counts.inconclusive > 0 ? Outcome::inconclusive
+                        : counts.passed > 0       ? Outcome::passed
+                                                  : Outcome::skipped;
+    std::string text = mark(how) + " " + tally_sentence(counts);
+    if (!alarm.empty()) text += "; " + alarm;
+    if (record.seconds > 0) text += " in " + time(record.seconds);
+    text += ".";
+    if (const std::string rate = false_alarms(record); !rate.empty()) text += " " + rate;
+    for (const std::string& part : wrapped(text, options_.width)) line(part, colour_of(how));
+    if (!options_.report.empty()) out_ += "  " + plain(options_.report) + "\n";
   }
   std::string take() { return std::move(out_); }
 
@@ -67,8 +147,8 @@ class Screen {
   void line(const std::string& text) { out_ += shorten(text, options_.width) + "\n"; }
 
   void line(const std::string& text, const char* style) {
-    out_ += options_.colour ? style + shorten(text, options_.width) + "\x1b[0m\n"
-                            : shorten(text, options_.width) + "\n";
+    out_ += options_.colour && *style != '\0' ? style + shorten(text, options_.width) + "\x1b[0m\n"
+                                              : shorten(text, options_.width) + "\n";
   }
 
   // Lines that are empty in the text say nothing on a terminal.
@@ -116,7 +196,215 @@ class Screen {
     beside(label, lines);
   }
 
-  void write(const Suite& suite) {
+  /// Seconds as a reader of a summary wants them: "0.4 s", "25 s".
+  static std::string time(double seconds) {
+    constexpr double few = 10, minute = 60;
+    if (seconds < few) return fmt::format("{:.1f} s", seconds);
+    return seconds < minute ? fmt::format("{:.0f} s", seconds) : plain(duration(seconds));
+  }
+
+  /// The name of a block, with its place beside it or below. Returns the number of lines.
+  int head(const std::string& name, const std::string& where, Outcome how) {
+    constexpr int least = 28;  // of a name that gives way to its place
+    const int room = options_.width - columns(where) - 2;
+    const bool beside = !where.empty() && room >= std::min(least, columns(plain(name)));
+    const std::string left = beside ? shorten(plain(name), room) : plain(name);
+    line(beside ? pad_right(left, room + 2) + plain(where) : left, colour_of(how));
+    if (!beside && !where.empty()) line(std::string(block_indent, ' ') + plain(where));
+    return beside || where.empty() ? 1 : 2;
+  }
+
+  /// So many lines at most; what is cut ends in an ellipsis.
+  void indented(std::vector<std::string> text, int most) {
+    std::erase(text, "");
+    if (text.size() > static_cast<std::size_t>(most)) {
+      text.resize(static_cast<std::size_t>(most));
+      text.back() = shorten(text.back() + "…", options_.width - block_indent);
+    }
+    for (const std::string& part : text) line(std::string(block_indent, ' ') + part);
+  }
+  void indented(const std::string& text, int most) {
+    indented(wrapped(text, options_.width - block_indent), most);
+  }
+
+  /// A step to paste. It is never cut, but for a test's id: a part of it selects the test too.
+  std::vector<std::string> step_lines(const Step& step) const {
+    const std::string label = step.label + ": ";
+    const int room = options_.width - block_indent - columns(label);
+    std::string text = plain(step.paste);
+    for (const auto& [lead, end] : {std::pair(" --filter '", "*'"), std::pair(" explain '", "'")}) {
+      const std::size_t at = text.rfind(lead);
+      if (at == std::string::npos || columns(text.substr(at + 1)) <= room - 2) continue;
+      std::string id = shorten(text.substr(at + 1), room - 3);
+      id.erase(id.size() - std::string_view("…").size());
+      id.erase(id.find_last_not_of("'\\") + 1);  // no half of a quoted quote
+      text = text.substr(0, at + 1) + id + end;
+    }
+    std::vector<std::string> parts = wrap_command(text, room);
+    for (std::string& part : parts)
+      part = (&part == parts.data() ? label : std::string(label.size(), ' ')) + part;
+    return parts;
+  }
+
+  void paste(const Step& step) {
+    for (const std::string& part : step_lines(step))
+      out_ += std::string(block_indent, ' ') + part + "\n";
+  }
+
+  /// "72 hold, 2 planted bugs caught", "14 as they should be, 1 broken", in short "14 ok, 1
+  /// broken".
+  static std::string standing_text(const Suite& suite, bool in_short) {
+    std::map<Standing, std::uint64_t> count;
+    for (const Test& test : suite.tests) ++count[standing(test)];
+    const std::uint64_t held = count[Standing::holds], caught = count[Standing::caught];
+    std::string text;
+    const auto add = [&](std::uint64_t some, const char* words) {
+      if (some > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", some, words);
+    };
+    if (held + caught == suite.tests.size()) {
+      add(held, held == 1 ? "holds" : "hold");
+      add(caught, caught == 1 ? "planted bug caught" : "planted bugs caught");
+      return text;
+    }
+    add(held + caught, in_short             ? "ok"
+                       : held + caught == 1 ? "as it should be"
+                                            : "as they should be");
+    add(count[Standing::broken], "broken");
+    add(count[Standing::undecided], "undecided");
+    add(count[Standing::not_run], "not run");
+    return text;
+  }
+
+  static Outcome worst(const Suite& suite) {
+    const Tally counts = tally(suite);
+    return counts.failed > 0         ? Outcome::failed
+           : counts.inconclusive > 0 ? Outcome::inconclusive
+           : counts.passed > 0       ? Outcome::passed
+                                     : Outcome::skipped;
+  }
+
+  /// A line a suite; beside it the CPU time of its draws.
+  void suites(const Record& record) {
+    constexpr int gap = 4;  // two columns before the mark, two with it
+    constexpr int least_name = 12;
+    const auto spent = [](const Suite& suite) {
+      return time(total_cost(costs_of_draws(suite)).seconds) + " CPU";
+    };
+    int longest = 0, text_width = 0, short_width = 0, time_width = 0;
+    for (const Suite& suite : record.suites) {
+      longest = std::max(longest, columns(plain(suite.name)));
+      text_width = std::max(text_width, columns(standing_text(suite, false)));
+      short_width = std::max(short_width, columns(standing_text(suite, true)));
+      time_width = std::max(time_width, columns(spent(suite)) + 2);
+    }
+    constexpr int usual_name = 20;
+    const bool in_short = std::min(longest, usual_name) + gap + text_width > options_.width;
+    if (in_short) text_width = short_width;
+    if (longest + gap + text_width + time_width > options_.width) time_width = 0;
+    const int room = std::max(least_name, options_.width - gap - text_width);
+    const int name_width = std::min(room, longest);
+    for (const Suite& suite : record.suites) {
+      if (suite.tests.empty()) continue;
+      const Outcome how = worst(suite);
+      const bool marked = how == Outcome::failed || how == Outcome::inconclusive;
+      std::string text = pad_right(shorten(plain(suite.name), name_width), name_width) + "  " +
+                         (marked ? mark(how) : " ") + " " + standing_text(suite, in_short);
+      if (time_width > 0) {
+        const int before = name_width + gap + text_width + time_width - columns(spent(suite));
+        text = pad_right(text, before) + spent(suite);
+      }
+      line(text, marked ? colour_of(how) : "");
+      if (options_.detail > 0) rows(suite);
+    }
+  }
+
+  /// A line a test.
+  void rows(const Suite& suite) {
+    const std::string confidence = common_confidence(suite);
+    std::vector<TestRow> all;
+    int name = 0, number = 0, cost = 0;
+    for (const Test& test : suite.tests) {
+      all.push_back(row_of(test, confidence));
+      name = std::max(name, columns(all.back().name));
+      number = std::max(number, columns(all.back().number));
+      cost = std::max(cost, columns(all.back().cost));
+    }
+    constexpr int margin = 4, gap = 2;
+    if (margin + name + gap + number + gap + cost > options_.width) cost = 0;
+    const int end =
+        std::min(options_.width, margin + name + gap + number + (cost > 0 ? gap + cost : 0));
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      std::string right = all[i].number;
+      if (cost > 0)
+        right += std::string(static_cast<std::size_t>(gap + cost - columns(all[i].cost)), ' ') +
+                 all[i].cost;
+      const int room = end - margin - gap - columns(right);
+      const Outcome how = outcome(suite.tests[i]);
+      const std::string left = shorten(all[i].name, room);
+      line(fmt::format("  {} {}", mark(how),
+                       right.empty() ? left : pad_right(left, room + gap) + plain_spaces(right)),
+           colour_of(how));
+    }
+    if (!confidence.empty()) line(fmt::format("  Brackets: {} intervals.", plain(confidence)));
+    blank();
+  }
+
+  /// One test alone: a pass says what it excludes, and how to repeat it.
+  void alone(const Suite& suite) {
+    const Test& test = suite.tests[0];
+    if (outcome(test) != Outcome::passed) return;
+    rows(suite);
+    out_.erase(out_.size() - 1);  // no empty line between
+    indented(test.message, block_lines);
+    for (const Step& step : steps(test)) paste(step);
+  }
+
+  /// Tests that were left out, those of one reason together.
+  void left_out(const Record& record) {
+    std::map<std::string, std::uint64_t> why;
+    for (const Suite& suite : record.suites) {
+      for (const Test& test : suite.tests) {
+        if (standing(test) == Standing::not_run) ++why[trouble(test)];
+      }
+    }
+    for (const auto& [reason, count] : why) {
+      head(fmt::format("{} {} not run", mark(Outcome::skipped), counted(count, "claim", "claims")),
+           "", Outcome::skipped);
+      indented(reason, block_lines - 1);
+      blank();
+    }
+  }
+
+  void alarms_of(const Record& record) {
+    const Ledger& ledger = record.ledger;
+    for (const LedgerSeries& series : ledger.series) {
+      if (!series.alarm) continue;
+      head(fmt::format("{} ledger alarm: {}", mark(Outcome::failed), series_name(ledger, series)),
+           ledger.file, Outcome::failed);
+      indented(alarm_sentence(series), block_lines - 2);
+      blank();
+    }
+    paragraph(one_line(ledger_title(ledger)) + ".");
+    for (const std::string& note : ledger_notes(ledger)) paragraph(one_line(note) + ".");
+    if (!record.note.empty()) paragraph(record.note + ".");
+  }
+
+  void slowest(const Record& record) {
+    std::vector<std::pair<double, const Test*>> all;
+    for (const Suite& suite : record.suites) {
+      for (const Test& test : suite.tests) all.emplace_back(total_cost(test).seconds, &test);
+    }
+    std::stable_sort(all.begin(), all.end(),
+                     [](const auto& a, const auto& b) { return a.first > b.first; });
+    all.resize(std::min<std::size_t>(all.size(), options_.slowest));
+    if (all.empty()) return;
+    blank();
+    line("Slowest, by CPU time of their draws:");
+    for (const auto& [seconds, test] : all)
+      line(fmt::format("{:>12}  {}", time(seconds), plain(test->id)));
+  }
+
+  void write(const Suite& suite, bool alone) {
     const std::string file = suite.file.empty() ? "" : " (" + suite.file + ")";
     for (const std::string& part : wrapped(one_line(suite.name + file), options_.width))
       line(part, "\x1b[1m");
@@ -127,21 +415,21 @@ class Screen {
       paragraph(
           fmt::format("Brackets are {} intervals unless another confidence is given.", confidence));
     blank();
-    if (options_.verbose) estimators(suite);
+    if (alone) estimators(suite);
     std::vector<TestRow> rows;
     for (const Test& test : suite.tests) rows.push_back(row_of(test, confidence));
     const RowLayout layout = layout_of(rows, options_.width);
-    for (std::size_t i = 0; i < rows.size(); ++i) write(suite.tests[i], row_lines(rows[i], layout));
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      write(suite.tests[i], row_lines(rows[i], layout), alone);
     blank();
     if (layout.cost == 0 && !rows.empty()) cost_of(suite);
     kills(suite);
   }
 
-  void write(const Test& test, const std::vector<std::string>& lines) {
+  void write(const Test& test, const std::vector<std::string>& lines, bool alone) {
     const Outcome result = outcome(test);
     for (const std::string& part : lines) line(plain_spaces(part), colour_of(result));
-    if (result == Outcome::failed || result == Outcome::inconclusive || options_.verbose)
-      explain(test);
+    if (result == Outcome::failed || result == Outcome::inconclusive || alone) explain(test);
   }
 
   // The answers stand in a column, with the statement and its tests beside them.
@@ -249,50 +537,32 @@ class Screen {
     for (const std::string& note : ledger_notes(ledger)) paragraph(one_line(note) + ".");
   }
 
-  void list(const Record& record, Outcome kind, const std::string& heading) {
-    bool first = true;
-    for (const Suite& suite : record.suites) {
-      for (const Test& test : suite.tests) {
-        if (outcome(test) != kind) continue;
-        if (first) line(heading, colour_of(kind));
-        first = false;
-        const std::string name = one_line(test.id.empty() ? test.name : test.id);
-        for (const std::string& part :
-             wrapped(verdict_text(test) + ": " + name, options_.width - 2))
-          line("  " + part);
-      }
-    }
-  }
-
-  void summary(const Record& record) {
-    const Tally counts = tally(record);
-    blank();
-    list(record, Outcome::failed, "Not ok:");
-    list(record, Outcome::inconclusive, "Undecided:");
-    const std::string took =
-        record.seconds > 0 ? " in " + plain(duration(record.seconds)) : std::string();
-    const std::string verdicts = verdict_counts(record);
-    if (const std::string alarm = alarm_count(record); !alarm.empty()) {
-      line("Not ok: " + alarm, colour_of(Outcome::failed));
-    }
-    paragraph(tally_sentence(counts) + took + "." +
-              (verdicts.empty() ? "" : " Verdicts: " + verdicts + "."));
-    paragraph(error_rates(record));
-    paragraph(last_line_note(record));
-    out_ += fmt::format("{} passed, {} failed, {} skipped\n", counts.passed, counts.failed,
-                        counts.skipped + counts.inconclusive);
-  }
-
   ConsoleOptions options_;
   std::string out_;
 };
 
 }  // namespace
 
-std::string console(const Record& record, ConsoleOptions options) {
-  Screen screen(options);
-  screen.run(record);
+std::string Console::broken(const Suite& suite, const Test& test) {
+  told_.insert(test.id);
+  Screen screen(options_);
+  screen.block(suite.name, test);
   return screen.take();
+}
+
+std::string Console::rest(const Record& record) const {
+  Screen screen(options_);
+  if (options_.detail > 1) {
+    screen.all(record);
+  } else {
+    screen.brief(record, told_);
+  }
+  screen.end(record);
+  return screen.take();
+}
+
+std::string console(const Record& record, const ConsoleOptions& options) {
+  return Console(options).rest(record);
 }
 
 }  // namespace assay::reports

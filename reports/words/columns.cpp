@@ -91,7 +91,13 @@ std::string take_line(std::string_view& rest, int width) {
 std::vector<std::string> words_outside_quotes(std::string_view command) {
   std::vector<std::string> words(1);
   char quote = 0;
+  bool escaped = false;  // by a backslash outside quotes
   for (const char c : command) {
+    if (escaped || (quote == 0 && c == '\\')) {
+      escaped = !escaped;
+      words.back() += c;
+      continue;
+    }
     if (quote == 0 && (c == '\'' || c == '"')) {
       quote = c;
     } else if (c == quote) {

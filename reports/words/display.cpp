@@ -136,9 +136,7 @@ std::string one_in(const Number& log10_p) {
   const double count = std::pow(10, -*log10_p);
   if (count < 2) return "more than 1 in 2";
   const double step = std::pow(10, std::floor(std::log10(count)) - 1);
-  std::string digits = fmt::format("{:.0f}", std::round(count / step) * step);
-  for (std::size_t at = digits.size(); at > 3; at -= 3) digits.insert(at - 3, ",");
-  return "1 in " + digits;
+  return "1 in " + in_commas(std::round(count / step) * step);
 }
 
 std::optional<KillDisplay> kills(const Suite& suite) {

@@ -107,14 +107,10 @@ std::string counted(std::uint64_t count, const char* singular, const char* plura
   return fmt::format("{}{}{}", count_text(count), no_break_space, count == 1 ? singular : plural);
 }
 
-std::string grouped(std::uint64_t count) {
-  const std::string digits = fmt::format("{}", count);
-  std::string result;
-  for (std::size_t i = 0; i < digits.size(); ++i) {
-    if (i > 0 && (digits.size() - i) % 3 == 0) result += no_break_space;
-    result += digits[i];
-  }
-  return result;
+std::string in_commas(double whole) {
+  std::string digits = fmt::format("{:.0f}", whole);
+  for (std::size_t at = digits.size(); at > 3; at -= 3) digits.insert(at - 3, ",");
+  return digits;
 }
 
 std::string duration(double seconds) {

@@ -46,8 +46,8 @@ std::string count_text(std::uint64_t count);
 /// A count with its noun: "1 primary", "12.5 k primaries".
 std::string counted(std::uint64_t count, const char* singular, const char* plural);
 
-/// A count with all digits, in threes: 1048576 gives "1 048 576" (no-break spaces).
-std::string grouped(std::uint64_t count);
+/// A whole number with all digits, in threes: 1048576 gives "1,048,576".
+std::string in_commas(double whole);
 
 /// A duration: "0 s", "4.1 ms", "12.3 s", "2 min 5 s", "3 h 20 min".
 std::string duration(double seconds);

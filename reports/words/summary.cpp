@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <tuple>
 
@@ -21,6 +22,21 @@ void for_each_test(const Record& record, Visitor visit) {
 std::string of_claims(int some, int total) {
   return fmt::format("{} of {}", some,
                      counted(static_cast<std::uint64_t>(total), "claim", "claims"));
+}
+
+/// The rank of a test in lists that begin with what needs a look: not ok, undecided, not run, ok.
+int urgency(const Test& test) {
+  switch (outcome(test)) {
+    case Outcome::failed:
+      return 0;
+    case Outcome::inconclusive:
+      return 1;
+    case Outcome::skipped:
+      return 2;
+    case Outcome::passed:
+      break;
+  }
+  return 3;
 }
 
 }  // namespace
@@ -66,17 +82,6 @@ std::string tally_sentence(const Tally& tally) {
   return fmt::format("All {} claims are as they should be", total);
 }
 
-std::string last_line_note(const Record& record) {
-  bool needed = false;
-  for_each_test(record, [&](const Test& test) {
-    const bool as_named = test.verdict == Verdict::skipped ||
-                          (test.ok ? test.verdict == Verdict::pass : test.verdict == Verdict::fail);
-    needed = needed || !as_named;
-  });
-  return needed ? "Counted below: ok as passed, not ok as failed, undecided and not run as skipped."
-                : "";
-}
-
 std::string verdict_counts(const Record& record) {
   // By urgency, the plain pass before what was expected to fail, then by their words.
   std::map<std::tuple<int, bool, std::string>, int> counts;
@@ -109,18 +114,17 @@ std::string error_rates(const Record& record) {
   return text;
 }
 
-int urgency(const Test& test) {
-  switch (outcome(test)) {
-    case Outcome::failed:
-      return 0;
-    case Outcome::inconclusive:
-      return 1;
-    case Outcome::skipped:
-      return 2;
-    case Outcome::passed:
-      break;
-  }
-  return 3;
+std::string false_alarms(const Record& record) {
+  double alpha = 0;
+  for (const Suite& suite : record.suites) alpha += suite.tests.empty() ? 0 : suite.alpha;
+  if (!(alpha > 0)) return {};
+  // The fewest runs, a power of ten, of which a whole number is meant; two digits are enough.
+  double runs = 100;
+  const auto whole = [&] { return std::abs(alpha * runs - std::round(alpha * runs)) < 1e-6; };
+  while (alpha * runs < 1 || (!whole() && alpha * runs < 10)) runs *= 10;
+  const double some = whole() ? std::round(alpha * runs) : std::ceil(alpha * runs);
+  return fmt::format("False alarms: at most {:.0f} run{} in {}.", some, some == 1 ? "" : "s",
+                     in_commas(runs));
 }
 
 }  // namespace assay::reports

@@ -18,10 +18,6 @@ std::string verdict_text(const Test&);
 /// How many tests had which outcome, as a sentence for a title.
 std::string tally_sentence(const Tally&);
 
-/// The meaning of passed, failed and skipped in the console's last line. Empty if they are the
-/// verdicts of the same names.
-std::string last_line_note(const Record&);
-
 /// How many tests had which verdict, the urgent ones first: "1 pass, but fail expected; 57 pass; 20
 /// fail (as expected)".
 std::string verdict_counts(const Record&);
@@ -29,7 +25,7 @@ std::string verdict_counts(const Record&);
 /// The error rates of a run's verdicts.
 std::string error_rates(const Record&);
 
-/// The rank of a test in lists that begin with what needs a look: not ok, undecided, not run, ok.
-int urgency(const Test&);
+/// "False alarms: at most 4 runs in 100."; empty without a test.
+std::string false_alarms(const Record&);
 
 }  // namespace assay::reports

@@ -48,7 +48,7 @@ class Clock {
 /// The time before, in and after the phase of pilots.
 class Phases final : public harness::Progress {
  public:
-  void begin(const std::string&, std::uint64_t) override { before += clock_.lap(); }
+  void begin(const harness::Phase&) override { before += clock_.lap(); }
   void advance(std::uint64_t) override {}
   void end() override { inside += clock_.lap(); }
   double after() { return clock_.lap(); }

@@ -22,21 +22,21 @@ runs_at_once() {
   [ $((SECONDS - start)) -lt 60 ] || fail "the example took $((SECONDS - start)) s"
 }
 
-test_init_suite_runs_at_once() { runs_at_once '2 passed, 0 failed' suite; }
+test_init_suite_runs_at_once() { runs_at_once 'All 2 claims are as they should be' suite; }
 test_init_plugin_runs_at_once() {
-  runs_at_once '2 passed, 0 failed' plugin
+  runs_at_once 'All 2 claims are as they should be' plugin
   ctest --test-dir 'a folder/build' >out 2>err || fail 'ctest fails'
   contains out '100% tests passed, 0 tests failed out of 2'
 }
-test_init_process_python_runs_at_once() { runs_at_once '2 passed, 0 failed' process python; }
-test_init_process_cpp_runs_at_once() { runs_at_once '2 passed, 0 failed' process c++; }
+test_init_process_python_runs_at_once() { runs_at_once 'All 2 claims are as they should be' process python; }
+test_init_process_cpp_runs_at_once() { runs_at_once 'All 2 claims are as they should be' process c++; }
 test_init_gtest_runs_at_once() { runs_at_once '2 tests' gtest; }
 test_init_github_runs_at_once() {
-  runs_at_once '2 passed, 0 failed' github
+  runs_at_once 'All 2 claims are as they should be' github
   is_a_job 'a folder/.github/workflows/assay.yml'
 }
 test_init_gitlab_runs_at_once() {
-  runs_at_once '2 passed, 0 failed' gitlab
+  runs_at_once 'All 2 claims are as they should be' gitlab
   is_a_job 'a folder/.gitlab-ci.yml'
 }
 

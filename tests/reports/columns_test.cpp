@@ -50,6 +50,8 @@ TEST(Columns, CommandsCanBePastedFromSeveralLines) {
   EXPECT_EQ(wrap_command("assay check 'a b c' --seed 1", 16),
             (std::vector<std::string>{"assay check \\", "'a b c' --seed \\", "1"}));
   EXPECT_EQ(wrap_command("assay run", 80), (std::vector<std::string>{"assay run"}));
+  EXPECT_EQ(wrap_command("a --filter 'it'\\''s so'", 12),
+            (std::vector<std::string>{"a --filter \\", "'it'\\''s so'"}));
 }
 
 RC_GTEST_PROP(Columns, WrappedLinesFit, ()) {

@@ -52,7 +52,12 @@ TEST(Approved, JunitIsAsApproved) { compare("junit.xml", junit(example_record())
 
 TEST(Approved, MarkdownIsAsApproved) { compare("report.md", markdown(example_record())); }
 
-TEST(Approved, ConsoleIsAsApproved) { compare("console.txt", console(example_record())); }
+TEST(Approved, ConsoleIsAsApproved) {
+  compare("console.txt", console(example_record()));
+  compare("console-60.txt", console(example_record(), {.width = 60, .slowest = 2}));
+  compare("console-v.txt", console(example_record(), {.detail = 1}));
+  compare("console-vv.txt", console(example_record(), {.width = 100, .detail = 2}));
+}
 
 TEST(Approved, MetricsAreAsApproved) { compare("metrics.txt", metrics(example_record())); }
 

@@ -46,8 +46,7 @@ TEST(Base64, FloatsAreLittleEndian) {
 
 TEST(ImagePreview, EveryFormatNamesTheCell) {
   const Record record = example_record();
-  for (const std::string& text :
-       {junit(record), console(record, {.colour = false, .verbose = true})}) {
+  for (const std::string& text : {junit(record), console(record, {.detail = 2})}) {
     EXPECT_NE(text.find("columns 2-3, rows"), std::string::npos) << text;
   }
   EXPECT_NE(markdown(record).find("columns 2-3, rows 1-2 of green"), std::string::npos);

@@ -63,8 +63,9 @@ TEST(LedgerText, OneNoteStandsForAllSeriesThatShareIt) {
 
 TEST(LedgerReports, EveryFormatShowsAnAlarm) {
   const Record record = example_record();
-  EXPECT_THAT(console(record), HasSubstr("ALARM triangle/mean(area) == analytic [irradiance]"));
-  EXPECT_THAT(console(record), HasSubstr("Not ok: 1 ledger alarm"));
+  EXPECT_THAT(console(record, {.detail = 2}),
+              HasSubstr("ALARM triangle/mean(area) == analytic [irradiance]"));
+  EXPECT_THAT(console(record), HasSubstr("broken; 1 ledger alarm"));
   EXPECT_THAT(markdown(record), HasSubstr("; 1 ledger alarm\n"));
   EXPECT_THAT(markdown(record), HasSubstr("**alarm**"));
   EXPECT_THAT(junit(record), HasSubstr("type=\"alarm\""));
@@ -72,7 +73,8 @@ TEST(LedgerReports, EveryFormatShowsAnAlarm) {
 
 TEST(LedgerReports, NoFormatShowsAnAlarmWhereThereIsNone) {
   const Record record = without_alarm();
-  for (const std::string& text : {console(record), markdown(record), junit(record)}) {
+  for (const std::string& text :
+       {console(record, {.detail = 2}), markdown(record), junit(record)}) {
     EXPECT_THAT(text, HasSubstr("Ledger nightly.ledger"));
     EXPECT_THAT(text, Not(HasSubstr("1 ledger alarm")));
     EXPECT_THAT(text, Not(HasSubstr("type=\"alarm\"")));
@@ -82,7 +84,8 @@ TEST(LedgerReports, NoFormatShowsAnAlarmWhereThereIsNone) {
 TEST(LedgerReports, NothingIsSaidWhereNoLedgerIsKept) {
   Record record = example_record();
   record.ledger = {};
-  for (const std::string& text : {console(record), markdown(record), junit(record)}) {
+  for (const std::string& text :
+       {console(record, {.detail = 2}), markdown(record), junit(record)}) {
     EXPECT_THAT(text, Not(HasSubstr("Ledger")));
   }
 }

@@ -55,8 +55,8 @@ TEST(Numbers, CountsAreShortOrGrouped) {
   EXPECT_EQ(count_text(1048576), "1.05\u00A0M");
   EXPECT_EQ(count_text(999999), "1.00\u00A0M");
   EXPECT_EQ(count_text(18446744073709551615u), "18.4\u00A0E");
-  EXPECT_EQ(grouped(1048576), "1\u00A0048\u00A0576");
-  EXPECT_EQ(grouped(12), "12");
+  EXPECT_EQ(in_commas(1048576), "1,048,576");
+  EXPECT_EQ(in_commas(12), "12");
 }
 
 TEST(Numbers, DurationsChooseTheirUnit) {

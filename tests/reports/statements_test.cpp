@@ -137,7 +137,7 @@ TEST(Statements, StandFirstInMarkdown) {
   const Record record = example_record();
   const std::string text = markdown(record);
   EXPECT_LT(text.find("## Statements"), text.find("### ✗ fail"));
-  for (const std::string& report : {text, console(record)}) {
+  for (const std::string& report : {text, console(record, {.detail = 2})}) {
     EXPECT_NE(report.find("contradicted"), std::string::npos);
     EXPECT_NE(report.find("the cosine is not forgotten"), std::string::npos);
   }
@@ -146,7 +146,7 @@ TEST(Statements, StandFirstInMarkdown) {
 TEST(Statements, AreNotMentionedWhereThereAreNone) {
   Record record = example_record();
   for (Suite& suite : record.suites) suite.statements.clear();
-  for (const std::string& report : {markdown(record), console(record)}) {
+  for (const std::string& report : {markdown(record), console(record, {.detail = 2})}) {
     EXPECT_EQ(report.find("Statements"), std::string::npos);
     EXPECT_EQ(report.find("contradicted"), std::string::npos);
   }

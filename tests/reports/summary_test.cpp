@@ -31,6 +31,22 @@ TEST(Verdicts, AnExpectedVerdictThatIsNotOkSaysSo) {
   EXPECT_EQ(verdict_text(test), "fail, yet not ok");
 }
 
+TEST(Verdicts, FalseAlarmsAreWholeRuns) {
+  Record record = example_record();
+  record.suites.resize(1);
+  const auto rate = [&](double alpha) {
+    record.suites[0].alpha = alpha;
+    return false_alarms(record);
+  };
+  EXPECT_EQ(rate(0.04), "False alarms: at most 4 runs in 100.");
+  EXPECT_EQ(rate(0.01), "False alarms: at most 1 run in 100.");
+  EXPECT_EQ(rate(0.015), "False alarms: at most 15 runs in 1,000.");
+  EXPECT_EQ(rate(0.01 / 3), "False alarms: at most 34 runs in 10,000.");
+  EXPECT_EQ(rate(1e-9), "False alarms: at most 1 run in 1,000,000,000.");
+  EXPECT_EQ(rate(0.5), "False alarms: at most 50 runs in 100.");
+  EXPECT_EQ(false_alarms(Record{}), "");
+}
+
 TEST(Verdicts, ARunIsSummedUpInWords) {
   EXPECT_EQ(verdict_counts(example_record()),
             "1\u00A0pass, but fail expected; 1\u00A0error; 2\u00A0fail; 1\u00A0invalid; "

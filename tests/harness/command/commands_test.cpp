@@ -59,11 +59,16 @@ TEST(Commands, RunNothingWhenAFilterMatchesNone) {
   EXPECT_FALSE(std::filesystem::exists(place.file("run.json")));
 }
 
-TEST(Commands, ConsoleEndsWithTheTally) {
+constexpr const char* verdict = " s. False alarms: at most 1 run in\n100.\n";
+
+TEST(Commands, ConsoleIsALineASuiteAndTheVerdict) {
   const Workplace place;
   const Said run = ran(place, {});
   EXPECT_EQ(run.code, 0);
-  EXPECT_TRUE(run.out.ends_with("2 passed, 0 failed, 0 skipped\n")) << run.out;
+  EXPECT_TRUE(run.out.starts_with("commands    2 hold  ")) << run.out;
+  EXPECT_NE(run.out.find(" s CPU\n\n✓ All 2 claims are as they should be in "), std::string::npos)
+      << run.out;
+  EXPECT_TRUE(run.out.ends_with(verdict)) << run.out;
   EXPECT_EQ(run.err, "");
 }
 
@@ -71,7 +76,7 @@ TEST(Commands, ReportOnStandardOutputSendsTheConsoleToStandardError) {
   const Workplace place;
   const Said run = ran(place, {{"json", "-"}});
   EXPECT_TRUE(run.out.starts_with("{")) << run.out;
-  EXPECT_TRUE(run.err.ends_with("2 passed, 0 failed, 0 skipped\n")) << run.err;
+  EXPECT_TRUE(run.err.ends_with(verdict)) << run.err;
 }
 
 TEST(Commands, SavedRunGivesTheReportsOfTheRun) {
@@ -104,10 +109,16 @@ TEST(Commands, RecordSurvivesItsFile) {
 
 TEST(Commands, EveryTestHasALineThatReplaysIt) {
   const Workplace place;
-  const reports::Record record =
-      run_files({place.write("suite.yaml", suite)}, {.seed = 9, .command = "assay run suite.yaml"});
-  EXPECT_EQ(record.suites[0].tests[1].replay,
-            "assay run suite.yaml --seed 9 --filter 'suite/mean(normal) <= 3'");
+  const std::string file = place.write("suite.yaml", suite);
+  const std::string other = place.write("other.yaml", suite);
+  const auto replayed = [&](bool assigns) {
+    const RunOptions options{.seed = 9, .command = "assay run --coarsen 2", .assigns = assigns};
+    return run_files({file, other}, options).suites[0].tests[1].replay;
+  };
+  const std::string rest = " --coarsen 2 --seed 9 --filter 'suite/mean(normal) <= 3'";
+  EXPECT_EQ(replayed(false), "assay run " + file + rest);
+  // The parameter that is set may be another suite's.
+  EXPECT_EQ(replayed(true), "assay run " + file + " " + other + rest);
 }
 
 }  // namespace

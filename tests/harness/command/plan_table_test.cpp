@@ -249,7 +249,7 @@ tests:
       works.push_back(&work);
     }
     Silence silence;
-    sample_in_looks(works, planned.pools.all(), 1, silence);
+    sample_in_looks(works, planned.pools.all(), {.threads = 1}, silence);
     for (std::size_t i = 0; i < works.size(); ++i) {
       drawn[i] += static_cast<double>(works[i]->outcome.secondaries()) /
                   static_cast<double>(works[i]->outcome.plan.most_secondaries()) / seeds;

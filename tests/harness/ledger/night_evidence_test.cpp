@@ -47,7 +47,7 @@ tests:
   ran.planned = plan_run(ran.suites, {.seed = seed}, silence);
   std::vector<TestWork*> works;
   for (TestWork& work : ran.planned.suites[0]->tests) works.push_back(&work);
-  sample_in_looks(works, ran.planned.pools.all(), 1, silence);
+  sample_in_looks(works, ran.planned.pools.all(), {.threads = 1}, silence);
   return ran;
 }
 

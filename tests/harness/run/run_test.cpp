@@ -253,7 +253,7 @@ TEST(Run, AlphaAndCoarsenReplaceTheSuites) {
 TEST(Run, RefusesBeforeAnythingIsSampled) {
   struct Counter final : Progress {
     int phases = 0;
-    void begin(const std::string&, std::uint64_t) override { ++phases; }
+    void begin(const Phase&) override { ++phases; }
     void advance(std::uint64_t) override {}
     void end() override {}
   } counter;

@@ -1,0 +1,123 @@
+#include "harness/base/terminal.h"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <mutex>
+
+#include "reports/words/columns.h"
+
+namespace assay::harness {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr const char* wipe = "\r\033[K";
+constexpr auto bar_period = 100ms;
+
+// Guards every line that is written to the terminal.
+std::mutex terminal;
+std::ostream* bar_on = nullptr;
+
+std::string bar(double fraction, int width) {
+  const auto filled = static_cast<std::size_t>(fraction * width);
+  return "[" + std::string(filled, '#') +
+         std::string(static_cast<std::size_t>(width) - filled, '.') + "]";
+}
+
+double fraction(const Phase& phase, std::uint64_t done) {
+  return phase.total == 0
+             ? 0
+             : std::min(1.0, static_cast<double>(done) / static_cast<double>(phase.total));
+}
+
+bool environment_has(const char* name) {
+  const char* value = std::getenv(name);
+  return value && *value;
+}
+
+void wipe_bar() {
+  if (bar_on != nullptr) *bar_on << wipe << std::flush;
+}
+
+}  // namespace
+
+int terminal_width(std::FILE* stream) {
+  winsize size{};
+  if (ioctl(fileno(stream), TIOCGWINSZ, &size) == 0 && size.ws_col > 0) return size.ws_col;
+  constexpr int usual = 80;
+  const char* const columns = std::getenv("COLUMNS");
+  const int given = columns == nullptr ? 0 : std::atoi(columns);
+  return given > 0 ? given : usual;
+}
+
+std::string progress_text(const Phase& phase, std::uint64_t done) {
+  const std::string name = phase.name.empty() ? "" : phase.name + "  ";
+  if (!phase.unit.empty()) return fmt::format("{}{} of {} {}", name, done, phase.total, phase.unit);
+  // Rounded down, so that 100 % means all.
+  return fmt::format("{}{} %", name, static_cast<int>(100 * fraction(phase, done)));
+}
+
+ProgressBar::ProgressBar(std::ostream& out, Clock now, std::function<int()> width)
+    : out_(out), now_(std::move(now)), width_(std::move(width)), first_(now_()) {}
+
+void ProgressBar::begin(const Phase& phase) {
+  phase_ = phase;
+  done_ = 0;
+  draw();
+}
+
+void ProgressBar::advance(std::uint64_t done) {
+  done_ = done;
+  if (now_() - drawn_ >= bar_period) draw();
+}
+
+void ProgressBar::draw() {
+  constexpr int widest = 30;
+  const std::scoped_lock lock(terminal);
+  bar_on = &out_;
+  drawn_ = now_();
+  // The last column stays free: some terminals begin a line after it.
+  const int width = width_() - 1;
+  const double seconds = std::chrono::duration<double>(drawn_ - first_).count();
+  out_ << wipe
+       << reports::shorten(fmt::format("{} {}  {:.0f} s",
+                                       bar(fraction(phase_, done_), std::min(widest, width / 3)),
+                                       progress_text(phase_, done_), seconds),
+                           width)
+       << std::flush;
+}
+
+void ProgressBar::end() {
+  const std::scoped_lock lock(terminal);
+  wipe_bar();
+  bar_on = nullptr;
+}
+
+void say_beside_progress(const std::string& sentence, std::ostream& out) {
+  const std::scoped_lock lock(terminal);
+  wipe_bar();
+  out << "assay: " << sentence << std::endl;
+}
+
+void write_beside_progress(const std::string& text, std::FILE* stream) {
+  const std::scoped_lock lock(terminal);
+  wipe_bar();
+  fmt::print(stream, "{}", text);
+  std::fflush(stream);
+}
+
+std::unique_ptr<Progress> make_progress(bool quiet) {
+  const char* term = std::getenv("TERM");
+  const bool dumb = term && std::string_view(term) == "dumb";
+  if (quiet || dumb || environment_has("CI") || !isatty(STDERR_FILENO)) {
+    return std::make_unique<Silence>();
+  }
+  return std::make_unique<ProgressBar>(std::cerr);
+}
+
+}  // namespace assay::harness

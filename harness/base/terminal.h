@@ -1,0 +1,56 @@
+#pragma once
+
+// The terminal: its width, one line that follows the progress, and text beside that line.
+
+#include <chrono>
+#include <cstdio>
+#include <functional>
+#include <iostream>
+#include <memory>
+#include <ostream>
+
+#include "harness/base/progress.h"
+
+namespace assay::harness {
+
+/// Columns of the terminal that the stream writes to. Else what COLUMNS says, else 80.
+int terminal_width(std::FILE* stream);
+
+using Clock = std::function<std::chrono::steady_clock::time_point()>;
+
+/// A line on standard error that redraws itself, ten times a second at most. It never scrolls.
+class ProgressBar final : public Progress {
+ public:
+  explicit ProgressBar(
+      std::ostream& out, Clock now = std::chrono::steady_clock::now,
+      std::function<int()> width = [] { return terminal_width(stderr); });
+  void begin(const Phase& phase) override;
+  void advance(std::uint64_t done) override;
+  void end() override;  ///< wipes the line
+
+ private:
+  void draw();
+
+  std::ostream& out_;
+  Clock now_;
+  std::function<int()> width_;
+  Phase phase_ = {};
+  std::uint64_t done_ = 0;
+  std::chrono::steady_clock::time_point first_;  ///< Of all phases.
+  std::chrono::steady_clock::time_point drawn_;
+};
+
+/// Writes a line "assay: …" to standard error. A progress line is wiped first and drawn again
+/// later. Thread-safe.
+void say_beside_progress(const std::string& sentence, std::ostream& out = std::cerr);
+
+/// The same for text that has its lines.
+void write_beside_progress(const std::string& text, std::FILE* stream);
+
+/// A bar when standard error is a terminal and CI is not set, else silence.
+std::unique_ptr<Progress> make_progress(bool quiet);
+
+/// "31 of 149 claims"; "pilot  43 %" of a phase without a unit.
+std::string progress_text(const Phase& phase, std::uint64_t done);
+
+}  // namespace assay::harness

@@ -1,0 +1,121 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "harness/command/run.h"
+#include "harness/record/output.h"
+#include "tests/harness/running.h"
+
+namespace assay::harness {
+namespace {
+
+using reports::Verdict;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+// `wrong` is refuted at its first look, `dear` takes many.
+constexpr const char* suite = R"(suite: hasty
+estimators:
+  normal: {plugin: analytic/normal, mean: 2}
+  never: {plugin: analytic/normal, mean: 7}
+tests:
+  - {name: easy, claim: mean(normal) == 2, secondaries: 100}
+  - {name: dear, claim: mean(normal) == 2, detect: 0.1%}
+  - {name: wrong, claim: mean(normal) == 3, detect: 0.1%}
+  - {name: bug missed, claim: mean(normal) == 2, secondaries: 100, expect: fail}
+  - {name: dear too, claim: mean(never) == 7, detect: 0.1%}
+)";
+
+struct Heard {
+  reports::Record record;
+  std::vector<std::string> broken;
+};
+
+Heard heard(const Workplace& place, const std::string& text, const RunOptions& options) {
+  Heard all;
+  Silence silence;
+  all.record = run({load_suite(place.write("suite.yaml", text))}, options, silence,
+                   [&](const reports::Suite& in, const reports::Test& test) {
+                     all.broken.push_back(in.name + ": " + test.name + ": " + test.replay);
+                   });
+  return all;
+}
+
+TEST(BrokenClaims, AreToldWithTheirCommandWhenTheyAreDecided) {
+  const Workplace place;
+  const Heard all = heard(place, suite, {.command = "assay run"});
+  const std::string again = "assay run " + place.file("suite.yaml") + " --seed 1 --filter ";
+  EXPECT_THAT(all.broken, ElementsAre("hasty: wrong: " + again + "suite/wrong",
+                                      "hasty: bug missed: " + again + "'suite/bug missed'"));
+  EXPECT_EQ(reports::tally(all.record).failed, 2);
+}
+
+TEST(BrokenClaims, EndARunEarlyIfAsked) {
+  const Workplace place;
+  const Heard all = heard(place, suite, {.fail_fast = true});
+  EXPECT_EQ(all.broken.size(), 1U);  // the cheaper of the two
+  for (const char* name : {"dear", "wrong", "dear too"}) {
+    const reports::Test& test = test_named(all.record, name);
+    EXPECT_EQ(test.verdict, Verdict::skipped);
+    EXPECT_EQ(test.message, "the run ended early: `suite/bug missed` is broken");
+    EXPECT_TRUE(test.samples.empty());
+  }
+  EXPECT_EQ(exit_code(all.record, InconclusivePolicy::report), 1);
+  EXPECT_THAT(all.record.note, HasSubstr("not every test"));
+}
+
+// But for what the whole family says of a test.
+TEST(BrokenClaims, HaveTheNumbersOfAWholeRun) {
+  const Workplace place;
+  const reports::Record whole = heard(place, suite, {.threads = 1}).record;
+  const reports::Record early = heard(place, suite, {.threads = 1, .fail_fast = true}).record;
+  const auto bare = [](reports::Test test) {
+    for (reports::Channel& channel : test.channels) {
+      channel.p_adjusted.reset();
+      channel.log10_p_adjusted.reset();
+    }
+    for (reports::Sample& sample : test.samples) sample.cost.seconds = 0;
+    return test;
+  };
+  for (const char* name : {"easy", "bug missed"}) {
+    EXPECT_EQ(bare(test_named(early, name)), bare(test_named(whole, name))) << name;
+  }
+  EXPECT_EQ(numbers_of(heard(place, suite, {.threads = 2, .fail_fast = true}).record),
+            numbers_of(early));
+}
+
+TEST(BrokenClaims, EndNoRunWithoutOne) {
+  const Workplace place;
+  const std::string sound =
+      std::string(suite).substr(0, std::string(suite).find("  - {name: wrong"));
+  EXPECT_EQ(numbers_of(heard(place, sound, {.threads = 1, .fail_fast = true}).record),
+            numbers_of(heard(place, sound, {.threads = 1}).record));
+}
+
+TEST(BrokenClaims, EndARunBeforeItDrawsIfAnEstimatorCannotBePrepared) {
+  const Workplace place;
+  const std::string broken = std::string(suite) + "  - {name: gone, claim: mean(gone) == 1}\n";
+  std::string text = broken;
+  text.insert(text.find("tests:"), "  gone: {plugin: process, command: [sh, -c, exit 3]}\n");
+  const Heard all = heard(place, text, {.fail_fast = true});
+  EXPECT_EQ(all.broken.size(), 1U);
+  EXPECT_EQ(reports::tally(all.record).skipped, 5);
+  EXPECT_TRUE(all.record.suites[0].estimators.empty());
+}
+
+TEST(BrokenClaims, EndNoShardAndNoNight) {
+  const Workplace place;
+  const std::string why = "--fail-fast ends a run early: leave --ledger and --shard out";
+  for (const RunOptions& options :
+       {RunOptions{.shard = {{1, 2}}, .fail_fast = true},
+        RunOptions{.fail_fast = true, .ledger = place.file("n.ledger")}}) {
+    try {
+      heard(place, suite, options);
+      ADD_FAILURE() << "it ran";
+    } catch (const InputError& error) {
+      EXPECT_EQ(error.what(), why);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace assay::harness
