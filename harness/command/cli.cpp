@@ -116,6 +116,7 @@ void add_running(Options& options, RunOptions& run, Output& output, const Runnin
   add_sampling(options, run, output, about);
   add_inconclusive(options, output);
   add_output(options, output);
+  output.kept = true;
   options.repeat_by(run.command);
 }
 
@@ -423,6 +424,19 @@ Examples:
       "one observation alone, from 0; default the whole test");
 }
 
+void define_explain(Options& options, ExplainArguments& given) {
+  options.about(
+      R"(Explains a test in a few sentences, and says what to do next. Without a saved run it is that of the
+last run.
+
+Examples:
+  assay explain 'luminaire/mean(triangle_area) == analytic'
+  assay explain run.json triangle_area
+)");
+  options.add({.name = "TEST", .value = "[RUN.json] TEST", .needed = "a test"}, given.words,
+              "a saved run, if not the last one, and a test's id or a part of it");
+}
+
 void define_merge(Options& options, MergeCommand& command) {
   options.about(
       R"(Joins the records of all shards of a run, in any order, to the record of the whole, with Holm's
@@ -527,6 +541,7 @@ const std::vector<CommandRow>& command_rows() {
       command("describe", "print the manual of a plugin, a method, a quantity or a law",
               define_describe),
       command("replay", "draw the numbers of a recorded test again", define_replay),
+      command("explain", "explain a test of the last run, or of a saved one", define_explain),
       command("merge", "join the records of shards to that of one run", define_merge),
       command("report", "make reports from a saved run", define_report),
       command("completion", "print a script that completes commands in a shell", define_completion),

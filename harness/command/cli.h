@@ -68,9 +68,10 @@ struct TextCommand {
   std::string text;
 };
 
-using Command = std::variant<RunCommand, PlanCommand, CheckCommand, ImagesCommand, SampleArguments,
-                             ListCommand, DescribeCommand, ReplayArguments, ReportCommand,
-                             MergeCommand, CalibrateCommand, InitArguments, TextCommand>;
+using Command =
+    std::variant<RunCommand, PlanCommand, CheckCommand, ImagesCommand, SampleArguments, ListCommand,
+                 DescribeCommand, ReplayArguments, ReportCommand, MergeCommand, CalibrateCommand,
+                 InitArguments, ExplainArguments, TextCommand>;
 
 /// Parses the arguments after the program's name. InputError, if possible with a suggestion, for
 /// anything that is not as `--help` says.

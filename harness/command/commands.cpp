@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "estimators/catalogue.h"
 #include "harness/base/record_file.h"
@@ -10,8 +11,11 @@
 #include "harness/command/plan_table.h"
 #include "harness/command/run.h"
 #include "harness/command/tables.h"
+#include "harness/record/last_run.h"
+#include "harness/record/recorded_test.h"
 #include "harness/run/unit_cost.h"
 #include "harness/suite/files_read.h"
+#include "reports/formats/explain.h"
 
 namespace assay::harness {
 namespace {
@@ -40,6 +44,7 @@ int run_suites(const std::vector<Suite>& suites, const RunOptions& options, cons
       [&](const reports::Suite& suite, const reports::Test& test) { console.tell(suite, test); },
       &ledger_fault);
   console.write_and_annotate(record);
+  if (output.kept) keep_last_run(record, output.detail > 0);
   if (!ledger_fault.empty()) throw std::runtime_error(ledger_fault);
   const int code = exit_code(record, output.inconclusive);
   return code == nothing_ran && options.shard_of_runner ? 0 : code;
@@ -80,6 +85,22 @@ int list_tests(const std::vector<Suite>& suites, const Selection& selection) {
       if (selects(selection, test)) fmt::print("{}\n", test.id);
     }
   }
+  return 0;
+}
+
+int explain(const ExplainArguments& arguments) {
+  const std::vector<std::string>& words = arguments.words;
+  if (words.size() > 2) throw InputError({}, "`assay explain` takes a saved run and one test");
+  const std::string file = words.size() > 1 ? words.front() : last_run_file();
+  if (words.size() < 2 && !std::filesystem::exists(file)) {
+    throw InputError({},
+                     "there is no last run; `assay run SUITE` makes one, or give a saved run "
+                     "before the test");
+  }
+  const reports::Record record = read_record(file);
+  const Recorded found = find_test_by_part(record, {file, words.back()});
+  fmt::print("{}",
+             reports::explain(found.suite, found.test, std::min(terminal_width(stdout), 100)));
   return 0;
 }
 

@@ -21,6 +21,12 @@ int list_renders(const std::vector<Suite>& suites, const RunOptions& options, bo
 int plan_suites(const std::vector<Suite>& suites, const RunOptions& options, bool quiet);
 int report_saved_run(const std::string& file, const Output& output);
 
+struct ExplainArguments {
+  std::vector<std::string> words = {};  ///< A saved run, or none for the last one, and a test.
+};
+/// Explains a test of a saved run. InputError if no test, or more than one, has the part in its id.
+int explain(const ExplainArguments&);
+
 struct SampleArguments {
   std::string source;  ///< as in a claim: estimator or plugin, with part
   std::vector<std::string> estimators = {};

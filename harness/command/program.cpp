@@ -78,6 +78,7 @@ int act(const ListCommand& command) {
 int act(const SampleArguments& arguments) { return sample(arguments); }
 int act(const DescribeCommand& command) { return describe(command.name); }
 int act(const ReplayArguments& arguments) { return replay(arguments); }
+int act(const ExplainArguments& arguments) { return explain(arguments); }
 int act(const ReportCommand& command) { return report_saved_run(command.file, command.output); }
 int act(const MergeCommand& command) { return merge_shards(command.arguments, command.output); }
 int act(const CalibrateCommand& command) { return calibrate(command.arguments, command.output); }

@@ -30,6 +30,7 @@ struct Output {
   bool quiet = false;  ///< No progress.
   int detail = 0;      ///< Of the console: reports::ConsoleOptions.
   std::uint64_t slowest = 0;
+  bool kept = false;   ///< The run is kept for `assay explain` (last_run.h).
   bool github = true;  ///< Tells GitHub Actions what is not ok (github.h).
 };
 

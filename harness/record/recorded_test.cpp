@@ -59,4 +59,19 @@ Recorded find_test(const reports::Record& record, const ReplayArguments& argumen
                                                    : "did you mean `" + near + "`?"));
 }
 
+Recorded find_test_by_part(const reports::Record& record, const ReplayArguments& arguments) {
+  std::vector<Recorded> parts;
+  for (const reports::Suite& suite : record.suites) {
+    for (const reports::Test& test : suite.tests) {
+      if (test.id == arguments.test) return {suite, test, suite.seed};
+      if (test.id.find(arguments.test) == std::string::npos) continue;
+      parts.push_back({suite, test, suite.seed});
+    }
+  }
+  if (parts.empty()) return find_test(record, arguments);
+  if (parts.size() == 1) return parts.front();
+  throw InputError({}, fmt::format("{} tests have `{}` in their id; give more of one: {}",
+                                   parts.size(), arguments.test, some_ids(parts)));
+}
+
 }  // namespace assay::harness

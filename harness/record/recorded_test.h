@@ -23,4 +23,7 @@ struct Recorded {
 /// The test with this id or name. InputError if there is none or several, with suggestions.
 Recorded find_test(const reports::Record& record, const ReplayArguments& arguments);
 
+/// The same, where a part of an id will do that no other test has.
+Recorded find_test_by_part(const reports::Record& record, const ReplayArguments& arguments);
+
 }  // namespace assay::harness

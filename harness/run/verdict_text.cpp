@@ -8,6 +8,8 @@
 
 #include "harness/plan/gate_text.h"
 #include "harness/plan/plan.h"
+#include "harness/plan/rows.h"
+#include "harness/theta/ask.h"
 #include "harness/theta/theta.h"
 #include "reports/words/effect.h"
 #include "reports/words/number.h"
@@ -235,6 +237,19 @@ std::string times_as_many(const TestOutcome& outcome, double factor) {
   return fmt::format("{} ({} primaries)", text, reports::human(factor * primaries, 2));
 }
 
+/// "; write `secondaries: 12000`"; "" of rows, which are all there are.
+std::string line_to_write(const TestOutcome& outcome, double factor) {
+  const TestEntry& test = *outcome.question.test;
+  if (has_rows(outcome.question)) return "";
+  const bool budget = test.budget && test.budget->primaries;
+  const std::uint64_t secondaries = outcome.secondaries();
+  const double now = static_cast<double>(
+      budget ? primaries_of_look(outcome.question, outcome.plan, secondaries) : secondaries);
+  const double step = std::pow(10, std::max(0.0, std::floor(std::log10(factor * now)) - 1));
+  const std::string number = fmt::format("{:.0f}", std::ceil(factor * now / step) * step);
+  return "; write " + written_key(test, budget ? "budget" : "secondaries", number);
+}
+
 /// Half the interval in standard errors if each end errs with `tail`. With few observations t is
 /// far wider than the normal law of a larger sample.
 double interval_errors(const ChannelOutcome& channel, double tail) {
@@ -273,8 +288,9 @@ std::string what_would_decide(const TestOutcome& outcome, const ChannelOutcome& 
     return "no number of samples would decide: the reference's own error forbids it";
   }
   const double factor = std::max(1.1, std::max(0.0, sampled) / wanted);
-  return fmt::format("about {} would decide{}", times_as_many(outcome, factor),
-                     channel.regions.proof() ? " if the estimate stands" : "");
+  return fmt::format("about {} would decide{}{}", times_as_many(outcome, factor),
+                     channel.regions.proof() ? " if the estimate stands" : "",
+                     line_to_write(outcome, factor));
 }
 
 std::string undecided(const TestOutcome& outcome, const ChannelOutcome& channel) {

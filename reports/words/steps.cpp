@@ -4,6 +4,7 @@
 
 #include "reports/words/describe.h"
 #include "reports/words/display.h"
+#include "reports/words/evidence.h"
 #include "reports/words/summary.h"
 
 namespace assay::reports {
@@ -16,11 +17,33 @@ std::string trouble(const Test& test) {
   return test.verdict == Verdict::skipped ? test.message : headline(test);
 }
 
+namespace {
+
+/// What a message asks to write; "" if it asks for nothing.
+std::string asked_for(const std::string& message) {
+  constexpr std::string_view lead = "write `";
+  const std::size_t at = message.rfind(lead);
+  if (at == std::string::npos) return "";
+  const std::size_t begin = at + lead.size();
+  return message.substr(begin, message.find('`', begin) - begin);
+}
+
+}  // namespace
+
 std::vector<Step> steps(const Test& test) {
   std::vector<Step> all;
-  if (!test.replay.empty() && test.verdict != Verdict::skipped) {
-    all.push_back({"again", test.replay});
+  if (const std::string text = asked_for(test.message); !text.empty()) {
+    all.push_back({text.starts_with("--") ? "give the command" : "write into the test", text});
   }
+  const bool missed = test.expected == Verdict::fail && test.verdict == Verdict::pass;
+  const Effect effect = deciding_channel(test).effect;
+  if (missed && test.detect && effect.relative)
+    all.push_back({"write into the test", fmt::format("detect: {:.2g}%", 50 * *test.detect)});
+  if (test.replay.empty()) return all;
+  if (test.verdict != Verdict::skipped) all.push_back({"again", test.replay});
+  if (test.verdict == Verdict::skipped) all.push_back({"then", test.replay});
+  if (test.image && test.verdict == Verdict::fail)
+    all.push_back({"see it", test.replay + " --report html=difference.html"});
   return all;
 }
 

@@ -17,7 +17,8 @@ struct Step {
   std::string label;  ///< "again", "add to the test"
   std::string paste;
 };
-/// The most useful first. Empty if the words of trouble() are all there is to say.
+/// The most useful first. A message that ends in "write `TEXT`" gives the text to paste. Empty if
+/// the words of trouble() are all there is to say.
 std::vector<Step> steps(const Test&);
 
 /// The command that tells more of a test.

@@ -344,6 +344,27 @@ test_broken_claims_are_told_before_a_run_ends_early() {
   contains err 'leave --ledger and --shard out'
 }
 
+test_explain_tells_of_the_last_run() {
+  export XDG_CACHE_HOME=$work/cache
+  expect 2 explain open
+  contains err 'there is no last run'
+  write_suite mixed.yaml "$good" "$wrong" "$open"
+  expect 1 run mixed.yaml --report json=run.json
+  expect 0 explain open
+  contains out 'Too few samples were drawn'
+  contains out 'secondaries: '
+  expect 0 explain run.json mixed/wrong
+  contains out 'The claim is wrong.'
+  expect 2 explain mixed/
+  contains err '3 tests have `mixed/` in their id'
+  expect 2 explain mixed/wrnog
+  contains err 'mixed/wrong'
+  # A folder that cannot be made changes nothing.
+  : >file
+  XDG_CACHE_HOME=$work/file expect 1 run mixed.yaml
+  empty err
+}
+
 test_colours_are_as_asked() {
   local escape=$'\033'
   write_suite good.yaml "$good"

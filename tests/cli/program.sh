@@ -5,6 +5,7 @@ source_folder=$2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
+export XDG_CACHE_HOME=$work/.cache
 unset NO_COLOR FORCE_COLOR CLICOLOR_FORCE GITHUB_ACTIONS
 unset GTEST_TOTAL_SHARDS GTEST_SHARD_INDEX TEST_TOTAL_SHARDS TEST_SHARD_INDEX
 

@@ -1,0 +1,126 @@
+#include "reports/formats/explain.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "reports/words/columns.h"
+#include "reports/words/describe.h"
+#include "reports/words/display.h"
+#include "reports/words/effect.h"
+#include "reports/words/evidence.h"
+#include "reports/words/number.h"
+#include "reports/words/steps.h"
+#include "reports/words/summary.h"
+#include "reports/words/text.h"
+
+namespace assay::reports {
+namespace {
+
+/// A text as a sentence of its own. A word of a claim, as `mean(a)`, keeps its letters.
+std::string sentence(std::string text) {
+  const std::size_t word = text.find_first_not_of("abcdefghijklmnopqrstuvwxyz");
+  if (word != std::string::npos && word > 0 && text[word] == ' ')
+    text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text.empty() || text.ends_with('.') ? text : text + ".";
+}
+
+/// What the verdict means.
+std::string meaning(const Test& test) {
+  if (test.expected == Verdict::fail && test.verdict == Verdict::pass) return "";
+  if (standing(test) == Standing::caught) return "This is as the suite expects.";
+  switch (test.verdict) {
+    case Verdict::pass:
+      return is_proof(test) ? "The claim is shown." : "Nothing speaks against the claim.";
+    case Verdict::fail:
+      return "The claim is wrong.";
+    case Verdict::inconclusive:
+      return "Too few samples were drawn to say whether the claim holds.";
+    case Verdict::invalid:
+      return "Nothing was decided, because the data break what the test relies on.";
+    case Verdict::error:
+      return "There are no numbers to judge, because drawing them failed.";
+    case Verdict::skipped:
+      break;
+  }
+  return "The claim was not tested.";
+}
+
+std::string what_was_found(const Test& test, const TestDisplay& words) {
+  if (test.verdict == Verdict::inconclusive || !is_evidence(test) ||
+      test.verdict == Verdict::skipped || test.expected != Verdict::pass) {
+    return sentence(trouble(test));
+  }
+  return words.sentence;
+}
+
+/// How sure the finding is.
+std::string how_sure(const Test& test, const TestDisplay& words) {
+  std::string text;
+  const bool at_place =
+      test.image && test.verdict == Verdict::fail && test.image->winner.effect.has_value();
+  const double confidence =
+      at_place ? test.image->winner.effect->confidence : deciding_channel(test).effect.confidence;
+  if (!words.interval.empty() && confidence > 0)
+    text = fmt::format("The range holds the true value with a confidence of {}. ",
+                       confidence_text(confidence));
+  if (test.verdict == Verdict::fail && !words.chance.empty())
+    text += fmt::format("The chance of such data, if nothing is wrong, is {}. ", words.chance);
+  if (test.verdict == Verdict::pass && test.detectable && !test.detect)
+    text += fmt::format("An error of {} would have been noticed. ",
+                        margin_text(*test.detectable, deciding_channel(test).effect));
+  return text;
+}
+
+/// The measured values of broken assumptions.
+std::string proof_of_break(const TestDisplay& words) {
+  for (const auto& [label, text] : words.facts) {
+    if (label == "assumptions") return sentence("Measured: " + text);
+  }
+  return "";
+}
+
+std::string what_was_drawn(const TestDisplay& words) {
+  for (const auto& [label, text] : words.facts) {
+    if (label == "observations") return sentence("These observations were drawn: " + text);
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string explain(const Suite& suite, const Test& test, int width) {
+  const TestDisplay words = display(test);
+  std::string out;
+  const auto say = [&](const std::string& text) {
+    for (const std::string& part : wrap(clean(text), width))
+      if (!part.empty()) out += part + "\n";
+  };
+  const std::string where = words.place.empty() ? "" : " (" + words.place + ")";
+  say(fmt::format("{} {}{}", mark(outcome(test)), one_line(test.id), where));
+  out += "\n";
+  std::string text = fmt::format("The claim is `{}`. ", one_line(test.claim));
+  for (const std::string& part : {meaning(test), what_was_found(test, words)}) {
+    if (!part.empty()) text += part + " ";
+  }
+  text += how_sure(test, words);
+  if (test.verdict == Verdict::invalid) text += proof_of_break(words) + " ";
+  text += what_was_drawn(words);
+  say(text);
+  if (is_evidence(test) && test.verdict != Verdict::skipped && suite.alpha > 0) {
+    Record alone;
+    alone.suites = {{.alpha = suite.alpha, .tests = {Test{}}}};
+    say(false_alarms(alone) + " They are counted over all claims of the suite.");
+  }
+  const std::vector<Step> next = steps(test);
+  if (next.empty()) return out;
+  out += "\nWhat to do next\n";
+  for (const Step& step : next) {
+    out += "  " + step.label + ":\n";
+    for (const std::string& part : wrap_command(one_line(step.paste), width - 4))
+      out += "    " + part + "\n";
+  }
+  return out;
+}
+
+}  // namespace assay::reports
