@@ -270,7 +270,7 @@ class Bench:
     def __init__(self, assay, source, work):
         self.assay = assay
         self.work = work
-        self.environment = dict(os.environ, NO_COLOR="1")
+        self.environment = dict(os.environ, NO_COLOR="1", XDG_CACHE_HOME=str(work))
         for name in ("FORCE_COLOR", "CLICOLOR_FORCE", "GITHUB_ACTIONS", "GTEST_TOTAL_SHARDS",
                      "GTEST_SHARD_INDEX", "TEST_TOTAL_SHARDS", "TEST_SHARD_INDEX"):
             self.environment.pop(name, None)
