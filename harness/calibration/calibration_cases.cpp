@@ -7,7 +7,6 @@
 #include <cmath>
 #include <set>
 
-#include "harness/language/law_cdf.h"
 #include "harness/language/laws.h"
 #include "harness/plan/image_plan.h"
 

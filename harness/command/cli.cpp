@@ -10,7 +10,7 @@
 #include "harness/command/option_values.h"
 #include "harness/command/options.h"
 #include "harness/command/tables.h"
-#include "harness/language/method_names.h"
+#include "harness/language/quantities.h"
 #include "harness/suite/suite_keys.h"
 #include "reports/report_formats.h"
 

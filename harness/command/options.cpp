@@ -8,7 +8,7 @@
 
 #include "estimators/core/quoting.h"
 #include "harness/base/version.h"
-#include "harness/language/method_names.h"
+#include "harness/language/quantities.h"
 #include "harness/suite/suite_keys.h"
 
 namespace assay::harness {

@@ -9,7 +9,7 @@
 #include "harness/families/evidence_cells.h"
 #include "harness/families/families.h"
 #include "harness/families/law_evidence.h"
-#include "harness/language/method_names.h"
+#include "harness/language/quantities.h"
 #include "harness/plan/critical.h"
 #include "harness/plan/frozen.h"
 #include "harness/plan/pilot_shape.h"

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "harness/draws/sampler_setup.h"
-#include "harness/language/law_cdf.h"
+#include "harness/language/laws.h"
 #include "stats/basics/sorted.h"
 #include "stats/laws/two_part_ks.h"
 #include "stats/means/binomial.h"

@@ -160,20 +160,11 @@ std::uint64_t for_equivalence(const ErrorShare& share, const PlannedChannel& cha
 // Barnard's maximum over the nuisance probability costs at most this (stats/means/two_valued.h).
 constexpr double two_sample_cost = 1.4;
 
-/// Sides of the reference where an effect is to be found.
-std::vector<int> sides_of(Relation relation) {
-  switch (relation) {
-    case Relation::at_most:
-    case Relation::greater:
-      return {1};
-    case Relation::at_least:
-    case Relation::less:
-      return {-1};
-    case Relation::equal:
-    case Relation::within:
-      break;
-  }
-  return {1, -1};
+/// Sides of the reference where an effect is to be found: of an alarm those that speak against the
+/// claim, of a proof the one that it names.
+std::vector<int> sides_of(const Regions& regions) {
+  if (regions.two_sided()) return {1, -1};
+  return {regions.bounds_above() != regions.proof() ? 1 : -1};
 }
 
 bool is_quoted(const Question& question, const Plan& plan, const PlannedChannel& channel) {
@@ -219,7 +210,7 @@ std::optional<std::uint64_t> exact_secondaries(const Question& question, const P
     return static_cast<std::uint64_t>(std::ceil(two_sample_cost * static_cast<double>(*welch)));
   }
   std::uint64_t most = 0;
-  for (const int side : sides_of(channel.regions.relation)) {
+  for (const int side : sides_of(channel.regions)) {
     const stats::ExactMeanPlan claimed = plan_of(channel, rates);
     const auto count = channel.regions.proof()
                            ? plan.method.is.plans->sample_size(claimed, side * detect)
@@ -476,7 +467,7 @@ class MeanTheta : public Theta {
                      const PlannedChannel& channel) const override {
     if (!is_quoted(question, plan, channel)) return false;
     const stats::ErrorRates rates = planned_rates(size.share, channel.regions);
-    return std::ranges::none_of(sides_of(channel.regions.relation), [&](int side) {
+    return std::ranges::none_of(sides_of(channel.regions), [&](int side) {
       return stats::exact_detectable(*plan.method.is.plans, plan_of(channel, rates),
                                      size.secondaries, side)
           .has_value();
@@ -640,7 +631,7 @@ class MeanTheta : public Theta {
                                                 const stats::ErrorRates& rates) {
     if (!is_quoted(question, plan, channel)) return std::nullopt;
     double most = 0;
-    for (const int side : sides_of(channel.regions.relation)) {
+    for (const int side : sides_of(channel.regions)) {
       const auto found = stats::exact_detectable(*plan.method.is.plans, plan_of(channel, rates),
                                                  size.secondaries, side);
       // The range ends before any such effect on this side.
@@ -656,7 +647,7 @@ class MeanTheta : public Theta {
     if (!is_quoted(question, plan, channel) || effect == 0) return std::nullopt;
     const stats::ExactMeanPlan exact = plan_of(channel, rates);
     double least = 1;
-    for (const int side : sides_of(channel.regions.relation)) {
+    for (const int side : sides_of(channel.regions)) {
       const double theta = side * effect * channel.unit;
       least = std::min(least, plan.method.is.plans->power(exact, size.secondaries, theta));
     }

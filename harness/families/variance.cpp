@@ -132,7 +132,8 @@ class VarianceTheta final : public LogTheta {
   std::uint64_t choose(const Question& question, const FamilyPlace& place, const Pilots& pilots,
                        std::uint64_t most, Plan& plan) const override {
     const auto channels = known_channels(question, pilots, plan);
-    const double x = critical_value(smallest_level(question, place), two_sided(question));
+    const double x = critical_value(smallest_level(question, place),
+                                    is_two_sided(question.test->claim.relation));
     std::vector<stats::Gate> gates;
     const bool normal = are_near_normal(question, channels, x, gates);
     if (!question.test->method && !normal) plan.method = find_method(question, "influence-t");

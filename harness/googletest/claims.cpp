@@ -12,7 +12,6 @@
 #include "harness/record/record_of.h"
 #include "harness/run/looks.h"
 #include "harness/run/pools.h"
-#include "harness/suite/claim_entry.h"
 #include "harness/suite/suite_keys.h"
 #include "harness/theta/ask.h"
 #include "reports/words/describe.h"

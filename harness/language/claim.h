@@ -43,6 +43,16 @@ struct Quantity {
 enum class Relation { equal, at_most, at_least, less, greater, within };
 const char* to_string(Relation);  ///< "==", "<=", …, "within"
 
+/// True for `<`, `>` and `within`: the claim must be shown, not only left standing.
+inline bool is_proof(Relation relation) { return relation >= Relation::less; }
+inline bool is_two_sided(Relation relation) {
+  return relation == Relation::equal || relation == Relation::within;
+}
+/// True for `<=` and `<`.
+inline bool is_upper(Relation relation) {
+  return relation == Relation::at_most || relation == Relation::less;
+}
+
 /// An effect size: relative to the reference ("0.5%" is 0.005, relative) or absolute.
 struct Margin {
   double value = 0;

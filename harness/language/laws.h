@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct LawParameter {
 struct LawInformation {
   std::string name;
   std::vector<LawParameter> parameters;
+  std::function<double(double)> (*cdf)(const std::vector<double>& arguments);
 };
 
 /// All laws that a claim can name except `density`, the sampler's own.
@@ -27,6 +29,9 @@ const LawInformation* find_law(std::string_view name);
 
 /// InputError at the law's place for a wrong number of arguments or an argument out of range.
 void check_law(const Law&);
+
+/// The distribution function P(X <= x), by Boost.Math. The law must have passed check_law().
+std::function<double(double)> law_cdf(const Law& law);
 
 /// "normal(mean, sd)".
 std::string signature(const LawInformation&);

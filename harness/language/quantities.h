@@ -1,6 +1,7 @@
 #pragma once
 
-// The table of quantities that a claim can be about. Its rows are in families/quantities.cpp.
+// The table of quantities that a claim can be about, and the names of methods. Their rows are in
+// families/.
 
 #include <map>
 #include <string>
@@ -42,5 +43,11 @@ struct QuantityRow {
 const std::vector<QuantityRow>& quantities();
 /// Null if there is none.
 const QuantityRow* find_quantity(std::string_view word);
+
+/// The names of the method table (theta/methods.h), each once, in its order.
+const std::vector<std::string>& method_names();
+
+/// Whether the method of this name compares all channels of two estimators together.
+bool joins_channels(const std::string& method);
 
 }  // namespace assay::harness

@@ -65,7 +65,7 @@ Added add_night(LedgerBook& book, const LedgerRun& ledger, const Entry& entry,
 }
 
 void read_moved(reports::LedgerSeries& result, const LedgerSeries& series,
-                const std::vector<LedgerNight>& nights, const ClaimedRange& claimed) {
+                const std::vector<LedgerNight>& nights, const ThetaRange& claimed) {
   const Moved change = moved(series, nights, claimed);
   result.moved = nights[change.night].date;
   result.moved_commit = nights[change.night].commit;
@@ -89,7 +89,7 @@ void read_nights(reports::LedgerSeries& result, const LedgerBook& book, std::siz
   const LedgerSeries& series = book.series()[index];
   const std::vector<LedgerNight> nights = book.nights_of(index);
   if (nights.empty()) return;
-  const ClaimedRange claimed = claimed_range(entry.work.outcome.plan.regions[entry.channel]);
+  const ThetaRange claimed = entry.work.outcome.plan.regions[entry.channel].claimed();
   const std::vector<double> path = log_e_path(series, nights, claimed);
   // The weight stays as it was at the beginning: else a change of the suite would raise and lower
   // alarms of past nights.

@@ -19,30 +19,13 @@ std::vector<Value> values_of(const std::vector<LedgerNight>& nights) {
 }
 
 /// The null hypothesis at the nearest value that the claim allows.
-stats::NullTheta nearest(const ClaimedRange& claimed, const stats::PooledNights& pooled,
+stats::NullTheta nearest(const ThetaRange& claimed, const stats::PooledNights& pooled,
                          const LedgerSeries& series) {
   return {.value = std::clamp(pooled.difference(), claimed.low, claimed.high),
           .reference_error = *series.reference_error};
 }
 
 }  // namespace
-
-ClaimedRange claimed_range(const Regions& regions) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  switch (regions.relation) {
-    case Relation::at_most:
-    case Relation::less:
-      return {-infinity, regions.allow};
-    case Relation::at_least:
-    case Relation::greater:
-      return {-regions.allow, infinity};
-    case Relation::within:
-      return {-regions.within, regions.within};
-    case Relation::equal:
-      break;
-  }
-  return {-regions.allow, regions.allow};
-}
 
 std::vector<stats::NightEstimate> estimates_of(const std::vector<LedgerNight>& nights) {
   return values_of<stats::NightEstimate>(nights);
@@ -55,7 +38,7 @@ std::vector<double> log_p_values_of(const std::vector<LedgerNight>& nights) {
 }
 
 std::vector<double> log_e_path(const LedgerSeries& series, const std::vector<LedgerNight>& nights,
-                               const ClaimedRange& claimed) {
+                               const ThetaRange& claimed) {
   std::vector<double> path;
   if (series.has_estimates()) {
     stats::PooledNights pooled;
@@ -74,7 +57,7 @@ std::vector<double> log_e_path(const LedgerSeries& series, const std::vector<Led
 }
 
 Moved moved(const LedgerSeries& series, const std::vector<LedgerNight>& nights,
-            const ClaimedRange& claimed) {
+            const ThetaRange& claimed) {
   const auto change = [&] {
     if (!series.has_estimates()) return stats::change_point(log_p_values_of(nights));
     const std::vector<stats::NightEstimate> estimates = estimates_of(nights);

@@ -10,18 +10,11 @@
 
 namespace assay::harness {
 
-/// Values of theta at which the claim holds.
-struct ClaimedRange {
-  double low;
-  double high;
-};
-ClaimedRange claimed_range(const Regions& regions);
-
 /// ln E after each night, for the null hypothesis "theta is in the range". It is the least over the
 /// range, which lies at the value nearest to the estimate of all nights so far. It is at most E at
 /// the true theta, a martingale, so P(any >= 1 / alpha) <= alpha. P-values know no range.
 std::vector<double> log_e_path(const LedgerSeries& series, const std::vector<LedgerNight>& nights,
-                               const ClaimedRange& claimed);
+                               const ThetaRange& claimed);
 
 /// The most likely first night of a change, and the range of likely nights. The range holds 90 % of
 /// the posterior (stats::change_point).
@@ -31,7 +24,7 @@ struct Moved {
   std::size_t to = 0;
 };
 Moved moved(const LedgerSeries& series, const std::vector<LedgerNight>& nights,
-            const ClaimedRange& claimed);
+            const ThetaRange& claimed);
 
 /// The nights' estimates, or the logarithms of their p-values: the series says which they have.
 std::vector<stats::NightEstimate> estimates_of(const std::vector<LedgerNight>& nights);

@@ -23,10 +23,6 @@ double smallest_level(const Question& question, const FamilyPlace& place) {
   return smallest_share(question, place.share.alpha);
 }
 
-bool two_sided(const Question& question) {
-  return Regions{.relation = question.test->claim.relation}.two_sided();
-}
-
 stats::ShapeLimits shape_limits(double critical) {
   const double log_tail = stats::normal_tails(critical).upper;
   const double nearer =

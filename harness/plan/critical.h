@@ -31,9 +31,6 @@ double smallest_share(const Question& question, double share);
 /// The level up to which a method of this test must keep its own.
 double smallest_level(const Question& question, const FamilyPlace& place);
 
-/// True if the claim's test rejects in both tails.
-bool two_sided(const Question& question);
-
 /// Limits of the pilot's gates at this critical value x. At the excess kurtosis (.2 at most)
 /// chi-square and F have 1.25 times their nominal level. There x is divided by sqrt(1 + excess /
 /// 2).

@@ -12,12 +12,6 @@
 namespace assay::harness {
 namespace {
 
-/// Edge of the forbidden region on the side that speaks against the claim.
-std::optional<double> edge_of_forbidden(const Regions& regions) {
-  if (regions.relation == Relation::within) return regions.within;
-  return regions.proof() ? std::optional(0.0) : regions.detect;
-}
-
 /// The scores at which a look stops. Scores against the claim are positive.
 stats::StoppingLook stopping_look(const Regions& regions, double error, const ErrorShare& levels) {
   const auto z = [](double level) {
@@ -27,8 +21,8 @@ stats::StoppingLook stopping_look(const Regions& regions, double error, const Er
   const bool two = regions.two_sided();
   stats::StoppingLook look{
       .time = 1 / (error * error),
-      .above = edge_of_claimed(regions) / error + z(two ? levels.alpha / 2 : levels.alpha)};
-  const std::optional<double> forbidden = edge_of_forbidden(regions);
+      .above = regions.claimed_edge() / error + z(two ? levels.alpha / 2 : levels.alpha)};
+  const std::optional<double> forbidden = regions.forbidden_edge();
   const double passes = forbidden ? *forbidden / error - z(levels.beta) : look.above;
   if (two) look.below = -look.above;
   if (two && passes <= 0) return look;
@@ -99,7 +93,7 @@ void foresee(const TestOutcome& test, const Pilots& pilots, Forecast& found) {
       if_true.push_back(
           outlook_at(*looks, one_sided_proof ? -*regions.detect : 0, test.plan.looks.sizes));
     }
-    if (const std::optional<double> edge = edge_of_forbidden(regions)) {
+    if (const std::optional<double> edge = regions.forbidden_edge()) {
       const Outlook off = outlook_at(*looks, *edge, test.plan.looks.sizes);
       if (!if_off || off.pass > if_off->pass) if_off = off;
     }

@@ -137,8 +137,9 @@ stats::LookSchedule plan_looks(const Question& question, const FamilyPlace& plac
   const std::uint64_t needed = std::max(*alone, least);
   if (needed <= first) return one_look(std::min(first, most), place.share);
   const Growth growth = growth_of(law);
-  const stats::ErrorRates errors{
-      .alpha = place.share.alpha, .beta = place.share.beta, .two_sided = two_sided(question)};
+  const stats::ErrorRates errors{.alpha = place.share.alpha,
+                                 .beta = place.share.beta,
+                                 .two_sided = is_two_sided(question.test->claim.relation)};
   const std::size_t whole =
       stats::geometric_sizes({.first = first, .last = needed}, growth.factor).size();
   for (std::size_t count = std::min(growth.most, whole); count > 1; --count) {

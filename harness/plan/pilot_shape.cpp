@@ -100,20 +100,10 @@ struct NeededEnds {
 };
 
 NeededEnds needed_ends(const TestEntry& test) {
-  switch (test.claim.relation) {
-    case Relation::at_most:
-      return {.low = true, .high = test.detect.has_value()};
-    case Relation::at_least:
-      return {.low = test.detect.has_value(), .high = true};
-    case Relation::less:
-      return {.low = false, .high = true};
-    case Relation::greater:
-      return {.low = true, .high = false};
-    case Relation::equal:
-    case Relation::within:
-      break;
-  }
-  return {.low = true, .high = true};
+  const Regions regions{.relation = test.claim.relation};
+  const bool both = regions.two_sided() || (!regions.proof() && test.detect);
+  const bool high = regions.bounds_above() == regions.proof();
+  return {.low = both || !high, .high = both || high};
 }
 
 }  // namespace

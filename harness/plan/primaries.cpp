@@ -26,7 +26,8 @@ std::uint64_t wanted_primaries(const Question& question, const FamilyPlace& plac
                                std::size_t subject, const Pilots& pilots) {
   std::uint64_t wanted = least_primaries;
   if (!question.is().of_spread) return wanted;
-  const double x = critical_value(smallest_level(question, place), two_sided(question));
+  const double x =
+      critical_value(smallest_level(question, place), is_two_sided(question.test->claim.relation));
   for (std::size_t channel = 0; channel < question.subjects[subject].channels.size(); ++channel) {
     const stats::Moments& pilot = pilot_channel(question, subject, channel, pilots).moments;
     if (is_constant(question, subject, channel, pilot)) continue;

@@ -80,8 +80,8 @@ std::vector<ConstantVerdict> evaluate_channels(TestOutcome& outcome, const Drawn
   const Question& question = outcome.question;
   std::vector<ConstantVerdict> constants;
   const double part = outcome.place.share.alpha / static_cast<double>(outcome.plan.looks.count());
-  const double critical =
-      critical_value(std::max(outcome.share().alpha, part), two_sided(question));
+  const double critical = critical_value(std::max(outcome.share().alpha, part),
+                                         is_two_sided(question.test->claim.relation));
   const auto add = [&](std::size_t channel, ConstantVerdict constant) {
     if (question.channel_count() > 1) {
       constant.message = question.channel_name(channel) + ": " + constant.message;

@@ -104,7 +104,7 @@ bool holds_no_effect(const ChannelOutcome& channel) {
 /// The interval that decides a pass is narrower than the one at the test's share of alpha. It may
 /// leave out the claimed value.
 std::string evidence_against(const TestOutcome& outcome, const ChannelOutcome& channel) {
-  const double edge = edge_of_claimed(channel.regions);
+  const double edge = channel.regions.claimed_edge();
   const bool above = channel.regions.relation != Relation::at_least && channel.effect.low &&
                      *channel.effect.low > edge;
   const bool below = channel.regions.relation != Relation::at_most && channel.effect.high &&
@@ -179,7 +179,7 @@ std::string failed(const TestOutcome& outcome, const ChannelOutcome& channel) {
   const auto& most_against = channel.evidence.most_against;
   return fmt::format("{}{}, {}{}", finding(channel), in_channel(outcome, channel),
                      p_text(channel.decision.log_p_claimed),
-                     most_against ? most_against(edge_of_claimed(channel.regions)) : "");
+                     most_against ? most_against(channel.regions.claimed_edge()) : "");
 }
 
 /// Levels of the last look.

@@ -124,6 +124,9 @@ struct CheckArguments {
 };
 Suite suite_of_claim(const CheckArguments&);
 
+/// Its only test, without looking up its estimators.
+TestEntry test_of_claim(const CheckArguments&);
+
 /// `--set estimator.key=value`: replaces or adds a parameter in every suite that has the estimator.
 /// InputError if none has.
 void set_parameter(std::vector<Suite>& suites, const std::string& assignment);

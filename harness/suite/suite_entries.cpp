@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "estimators/catalogue.h"
-#include "harness/language/method_names.h"
+#include "harness/language/quantities.h"
 #include "harness/suite/suite_keys.h"
 
 namespace assay::harness {
@@ -31,6 +31,19 @@ std::string without_line_ends(std::string text) {
   std::ranges::replace(text, '\n', ' ');
   text.erase(text.find_last_not_of(' ') + 1);
   return text;
+}
+
+/// Columns of errors count in the file if the claim stands there unbroken, else in the claim.
+Claim read_claim(const Document& document, const Value& value) {
+  const std::string text = without_line_ends(value.string("`claim`"));
+  try {
+    return parse_claim(text, value.where());
+  } catch (const InputError& e) {
+    if (stands_in_one_piece(document, value, text)) throw;
+    const int column = e.where().column - value.where().column + 1;
+    throw InputError(value.where(),
+                     fmt::format("{} (character {} of `{}`)", e.message(), column, text));
+  }
 }
 
 Margin read_margin(const Value& value, std::string_view what) {
@@ -60,80 +73,6 @@ std::vector<std::string> read_tags(const Value& value) {
   return tags;
 }
 
-void read_sampling(const Document& document, const Keys& keys, TestEntry& test) {
-  if (const Value* v = keys.find("test")) {
-    test.method = method_names()[choice(*v, "`test`", method_names())];
-  }
-  if (const Value* v = keys.find("secondaries")) {
-    test.secondaries = count_from(*v, "`secondaries`", 2);
-  }
-  if (const Value* v = keys.find("budget")) test.budget = read_budget(document, *v);
-  if (const Value* v = keys.find("over")) test.over = read_sweep(*v);
-  if (const Value* v = keys.find("reference")) read_reference(*v, test);
-  if (const Value* v = keys.find("cost")) test.cost = read_cost(*v);
-  if (const Value* v = keys.find("paired")) {
-    test.paired = choice(*v, "`paired`", {"false", "true"}) == 1;
-  }
-}
-
-/// The quantities that have a trait, as "`bias` and `efficiency`".
-std::string quantities_with(bool QuantityRow::*trait) {
-  std::vector<std::string> words;
-  for (const QuantityRow& row : quantities()) {
-    if (row.*trait) words.push_back("`" + row.word + "`");
-  }
-  return fmt::format("{}", fmt::join(words, " and "));
-}
-
-bool is_proof(Relation relation) {
-  return relation == Relation::less || relation == Relation::greater ||
-         relation == Relation::within;
-}
-
-using Refuse = std::function<void(const char* key, const std::string& why)>;
-
-void check_margins(const TestEntry& test, const Refuse& refuse) {
-  if (test.detect && test.detect->value == 0) {
-    refuse("detect", "`detect` must be above 0: it is the effect that must not pass, as `1%`");
-  }
-  if (test.detect && test.claim.relation == Relation::within) {
-    refuse("detect",
-           "`within` says how far off the claim must not be: `detect` has no meaning beside it; "
-           "leave it out");
-  }
-  if (test.allow && is_proof(test.claim.relation)) {
-    refuse("allow",
-           fmt::format("`allow` has no meaning with `{}`: what is claimed must be shown in "
-                       "full",
-                       to_string(test.claim.relation)));
-  }
-  const bool comparable =
-      test.detect && test.allow && test.detect->relative == test.allow->relative;
-  if (test.detect && test.allow && test.allow->value > 0 && !comparable) {
-    refuse("allow", fmt::format("`detect` ({}) and `allow` ({}) must both be in per cent or both "
-                                "absolute",
-                                to_string(*test.detect), to_string(*test.allow)));
-  }
-  if (comparable && test.allow->value >= test.detect->value) {
-    refuse("allow", fmt::format("`detect` ({}) must be above `allow` ({})", to_string(*test.detect),
-                                to_string(*test.allow)));
-  }
-}
-
-/// Error rates and seeds belong to the run.
-void refuse_levels(const Document& document, const Value& test) {
-  for (const char* key : {"alpha", "beta", "seed"}) {
-    const Value* found = test.find(key);
-    if (!found) continue;
-    throw InputError(document.key(*found),
-                     fmt::format("`{}` is the suite's, so that no test can choose its own; put it "
-                                 "at the top of the file",
-                                 key));
-  }
-}
-
-}  // namespace
-
 Budget read_short_budget(const Value& value) {
   const std::string_view text = value.text();
   try {
@@ -147,22 +86,6 @@ Budget read_short_budget(const Value& value) {
             "or a map of both, but it is `{}`",
             text));
   }
-}
-
-Budget read_budget(const Document& document, const Value& value) {
-  if (value.kind() == Value::Kind::scalar) return read_short_budget(value);
-  const Keys keys(document, value, "a budget", {"primaries", "seconds"});
-  Budget budget;
-  if (const Value* v = keys.find("primaries")) {
-    budget.primaries = count_from(*v, "the primaries of `budget`", 1);
-  }
-  if (const Value* v = keys.find("seconds")) {
-    budget.seconds = positive_number(*v, "the seconds of `budget`");
-  }
-  if (!budget.primaries && !budget.seconds) {
-    throw InputError(value.where(), "a budget needs `primaries` or `seconds`");
-  }
-  return budget;
 }
 
 Sweep read_sweep(const Value& value) {
@@ -206,8 +129,98 @@ void read_reference(const Value& value, TestEntry& test) {
   test.reference_number = reference;
 }
 
-CostKind read_cost(const Value& value) {
-  return static_cast<CostKind>(choice(value, "`cost`", {"rays", "samples", "seconds"}));
+/// The quantities that have a trait, as "`bias` and `efficiency`".
+std::string quantities_with(bool QuantityRow::*trait) {
+  std::vector<std::string> words;
+  for (const QuantityRow& row : quantities()) {
+    if (row.*trait) words.push_back("`" + row.word + "`");
+  }
+  return fmt::format("{}", fmt::join(words, " and "));
+}
+
+using Refuse = std::function<void(const char* key, const std::string& why)>;
+
+void check_margins(const TestEntry& test, const Refuse& refuse) {
+  if (test.detect && test.detect->value == 0) {
+    refuse("detect", "`detect` must be above 0: it is the effect that must not pass, as `1%`");
+  }
+  if (test.detect && test.claim.relation == Relation::within) {
+    refuse("detect",
+           "`within` says how far off the claim must not be: `detect` has no meaning beside it; "
+           "leave it out");
+  }
+  if (test.allow && is_proof(test.claim.relation)) {
+    refuse("allow",
+           fmt::format("`allow` has no meaning with `{}`: what is claimed must be shown in "
+                       "full",
+                       to_string(test.claim.relation)));
+  }
+  const bool comparable =
+      test.detect && test.allow && test.detect->relative == test.allow->relative;
+  if (test.detect && test.allow && test.allow->value > 0 && !comparable) {
+    refuse("allow", fmt::format("`detect` ({}) and `allow` ({}) must both be in per cent or both "
+                                "absolute",
+                                to_string(*test.detect), to_string(*test.allow)));
+  }
+  if (comparable && test.allow->value >= test.detect->value) {
+    refuse("allow", fmt::format("`detect` ({}) must be above `allow` ({})", to_string(*test.detect),
+                                to_string(*test.allow)));
+  }
+}
+
+/// Checks a test beyond the types of its keys: `allow` is below `detect`, and the claim uses every
+/// key. InputError at the offending key.
+void check_test(const TestEntry& test) {
+  const auto refuse = [&](const char* key, const std::string& why) {
+    throw InputError(test.place_of(key), why);
+  };
+  check_margins(test, refuse);
+  const Claim& claim = test.claim;
+  if (claim.left.slope && !test.over) {
+    refuse("claim", "a slope needs `over`: `over: {primaries: [8, 16, 32]}`");
+  }
+  if (!claim.left.slope && test.over) refuse("over", "`over` has no meaning but for `slope(…)`");
+  const auto refuse_but_for = [&](const char* key, bool QuantityRow::*trait) {
+    if (claim.left.row->*trait) return;
+    refuse(key, fmt::format("`{}` has no meaning but for {}", key, quantities_with(trait)));
+  };
+  if (test.reference || test.reference_number) {
+    refuse_but_for("reference", &QuantityRow::takes_reference);
+  }
+  if (test.cost != CostKind::rays) refuse_but_for("cost", &QuantityRow::counts_cost);
+  if (test.paired && !std::holds_alternative<ScaledQuantity>(claim.right)) {
+    refuse("paired", "`paired` takes two estimators, as in `mean(new) == mean(old)`");
+  }
+}
+
+/// Error rates and seeds belong to the run.
+void refuse_levels(const Document& document, const Value& test) {
+  for (const char* key : {"alpha", "beta", "seed"}) {
+    const Value* found = test.find(key);
+    if (!found) continue;
+    throw InputError(document.key(*found),
+                     fmt::format("`{}` is the suite's, so that no test can choose its own; put it "
+                                 "at the top of the file",
+                                 key));
+  }
+}
+
+}  // namespace
+
+Budget read_budget(const Document& document, const Value& value) {
+  if (value.kind() == Value::Kind::scalar) return read_short_budget(value);
+  const Keys keys(document, value, "a budget", {"primaries", "seconds"});
+  Budget budget;
+  if (const Value* v = keys.find("primaries")) {
+    budget.primaries = count_from(*v, "the primaries of `budget`", 1);
+  }
+  if (const Value* v = keys.find("seconds")) {
+    budget.seconds = positive_number(*v, "the seconds of `budget`");
+  }
+  if (!budget.primaries && !budget.seconds) {
+    throw InputError(value.where(), "a budget needs `primaries` or `seconds`");
+  }
+  return budget;
 }
 
 const Value& scene_or(const Value& value, const Value& scenes) {
@@ -263,18 +276,6 @@ EstimatorEntry read_estimator(const Document& document, const std::string& name,
   return estimator;
 }
 
-Claim read_claim(const Document& document, const Value& value) {
-  const std::string text = without_line_ends(value.string("`claim`"));
-  try {
-    return parse_claim(text, value.where());
-  } catch (const InputError& e) {
-    if (stands_in_one_piece(document, value, text)) throw;
-    const int column = e.where().column - value.where().column + 1;
-    throw InputError(value.where(),
-                     fmt::format("{} (character {} of `{}`)", e.message(), column, text));
-  }
-}
-
 TestEntry read_test(const Document& document, const Value& value) {
   if (value.kind() != Value::Kind::map) {
     throw InputError(value.where(),
@@ -287,43 +288,38 @@ TestEntry read_test(const Document& document, const Value& value) {
   TestEntry test{
       .claim = read_claim(document, keys.require("claim", "claim: mean(area) == analytic")),
       .where = value.where()};
-  for (const auto& [key, given] : value.members()) test.keys[key] = keys.where(given);
   const Value* name = keys.find("name");
   test.name = name ? one_line(*name, "`name`") : test.claim.text;
-  if (const Value* v = keys.find("detect")) test.detect = read_margin(*v, "`detect`");
-  if (const Value* v = keys.find("allow")) test.allow = read_margin(*v, "`allow`");
-  if (const Value* v = keys.find("weight")) test.weight = positive_number(*v, "`weight`");
-  if (const Value* v = keys.find("expect")) {
-    test.expect =
-        static_cast<Expectation>(choice(*v, "`expect`", {"pass", "fail", "invalid", "error"}));
-  }
-  if (const Value* v = keys.find("tags")) test.tags = read_tags(*v);
-  read_sampling(document, keys, test);
-  check_test(test);
+  read_test_keys(document, value, test);
   return test;
 }
 
-void check_test(const TestEntry& test) {
-  const auto refuse = [&](const char* key, const std::string& why) {
-    throw InputError(test.place_of(key), why);
-  };
-  check_margins(test, refuse);
-  const Claim& claim = test.claim;
-  if (claim.left.slope && !test.over) {
-    refuse("claim", "a slope needs `over`: `over: {primaries: [8, 16, 32]}`");
+void read_test_keys(const Document& document, const Value& map, TestEntry& test) {
+  for (const auto& [key, given] : map.members()) test.keys[key] = document.key(given);
+  if (const Value* v = map.find("detect")) test.detect = read_margin(*v, "`detect`");
+  if (const Value* v = map.find("allow")) test.allow = read_margin(*v, "`allow`");
+  if (const Value* v = map.find("weight")) test.weight = positive_number(*v, "`weight`");
+  if (const Value* v = map.find("expect")) {
+    test.expect =
+        static_cast<Expectation>(choice(*v, "`expect`", {"pass", "fail", "invalid", "error"}));
   }
-  if (!claim.left.slope && test.over) refuse("over", "`over` has no meaning but for `slope(…)`");
-  const auto refuse_but_for = [&](const char* key, bool QuantityRow::*trait) {
-    if (claim.left.row->*trait) return;
-    refuse(key, fmt::format("`{}` has no meaning but for {}", key, quantities_with(trait)));
-  };
-  if (test.reference || test.reference_number) {
-    refuse_but_for("reference", &QuantityRow::takes_reference);
+  if (const Value* v = map.find("tags")) test.tags = read_tags(*v);
+  if (const Value* v = map.find("test")) {
+    test.method = method_names()[choice(*v, "`test`", method_names())];
   }
-  if (test.cost != CostKind::rays) refuse_but_for("cost", &QuantityRow::counts_cost);
-  if (test.paired && !std::holds_alternative<ScaledQuantity>(claim.right)) {
-    refuse("paired", "`paired` takes two estimators, as in `mean(new) == mean(old)`");
+  if (const Value* v = map.find("secondaries")) {
+    test.secondaries = count_from(*v, "`secondaries`", 2);
   }
+  if (const Value* v = map.find("budget")) test.budget = read_budget(document, *v);
+  if (const Value* v = map.find("over")) test.over = read_sweep(*v);
+  if (const Value* v = map.find("reference")) read_reference(*v, test);
+  if (const Value* v = map.find("cost")) {
+    test.cost = static_cast<CostKind>(choice(*v, "`cost`", {"rays", "samples", "seconds"}));
+  }
+  if (const Value* v = map.find("paired")) {
+    test.paired = choice(*v, "`paired`", {"false", "true"}) == 1;
+  }
+  check_test(test);
 }
 
 }  // namespace assay::harness

@@ -6,8 +6,7 @@
 
 #include "estimators/catalogue.h"
 #include "estimators/core/quoting.h"
-#include "harness/language/method_names.h"
-#include "harness/suite/claim_entry.h"
+#include "harness/language/quantities.h"
 #include "harness/suite/suite.h"
 #include "harness/suite/suite_entries.h"
 #include "harness/suite/suite_keys.h"
@@ -144,54 +143,24 @@ void refuse_unused(const std::vector<EstimatorEntry>& given,
   }
 }
 
-/// The options of a test that are named as its keys in a suite.
-class TestOptions {
- public:
-  explicit TestOptions(TestEntry& test) : test_(test) {}
-
-  void margin(const char* key, const std::optional<std::string>& text,
-              std::optional<Margin>& margin) {
+/// The options of a test, as its keys in a suite.
+Value keys_of(const CheckArguments& arguments) {
+  std::vector<Value::Member> keys;
+  const auto add = [&](const char* key, const std::optional<std::string>& text) {
     if (!text) return;
-    margin = parse_margin(*text, {}, std::string("--") + key);
-    margin->where = place(key, *text);
-  }
-
-  std::optional<Value> value(const char* key, const std::optional<std::string>& text) {
-    if (!text) return {};
-    return Value::scalar(*text, place(key, *text));
-  }
-
-  const Location& place(const char* key, const std::string& text) {
-    return test_.keys[key] = {fmt::format("--{} {}", key, text), 0, 0};
-  }
-
- private:
-  TestEntry& test_;
-};
-
-void read_options(const CheckArguments& arguments, TestEntry& test) {
-  TestOptions options(test);
-  options.margin("detect", arguments.detect, test.detect);
-  options.margin("allow", arguments.allow, test.allow);
-  if (arguments.method) {
-    options.place("test", *arguments.method);
-    test.method =
-        method_names()[choice(Value::scalar(*arguments.method), "--test", method_names())];
-  }
-  if (arguments.secondaries) {
-    options.place("secondaries", fmt::format("{}", *arguments.secondaries));
-    test.secondaries = arguments.secondaries;
-  }
-  if (arguments.over) {
-    test.over = read_sweep(read_flow(*arguments.over, options.place("over", *arguments.over)));
-  }
-  if (const auto given = options.value("reference", arguments.reference)) {
-    read_reference(*given, test);
-  }
-  if (const auto given = options.value("cost", arguments.cost)) test.cost = read_cost(*given);
-  if (const auto given = options.value("budget", arguments.budget)) {
-    test.budget = read_short_budget(*given);
-  }
+    const Location where{fmt::format("--{} {}", key, *text), 0, 0};
+    keys.emplace_back(key, Value::scalar(*text, where));
+  };
+  add("detect", arguments.detect);
+  add("allow", arguments.allow);
+  add("test", arguments.method);
+  if (arguments.secondaries) add("secondaries", std::to_string(*arguments.secondaries));
+  add("over", arguments.over);
+  if (arguments.over) keys.back().second = read_flow(*arguments.over, keys.back().second.where());
+  add("reference", arguments.reference);
+  add("cost", arguments.cost);
+  add("budget", arguments.budget);
+  return Value::map(std::move(keys));
 }
 
 }  // namespace
@@ -257,8 +226,7 @@ TestEntry test_of_claim(const CheckArguments& arguments) {
   TestEntry test{.claim = parse_claim(arguments.claim, where), .where = where};
   test.name = test.claim.text;
   test.id = "check/" + test.name;
-  read_options(arguments, test);
-  check_test(test);
+  read_test_keys({}, keys_of(arguments), test);
   return test;
 }
 

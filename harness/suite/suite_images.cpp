@@ -17,7 +17,7 @@ namespace assay::harness {
 namespace {
 
 /// The place of an option, as messages show it.
-Location place(const char* option, const std::string& text) {
+Location place(const std::string& option, const std::string& text) {
   return {fmt::format("{} {}", option, text), 0, 0};
 }
 
@@ -216,11 +216,8 @@ EstimatorEntry reference_entry(const std::string& name, std::vector<Value::Membe
   return entry(name, where, std::move(members));
 }
 
-std::optional<Margin> margin(const std::optional<std::string>& text, const char* option) {
-  if (!text) return {};
-  Margin margin = parse_margin(*text, {}, option);
-  margin.where = place(option, *text);
-  return margin;
+Margin within(const ImagesArguments& arguments) {
+  return parse_margin(*arguments.within, place("--within", *arguments.within), "--within");
 }
 
 std::string claim_of(const ImagesArguments& arguments, const std::string& suffix) {
@@ -228,7 +225,7 @@ std::string claim_of(const ImagesArguments& arguments, const std::string& suffix
     return fmt::format("distribution(candidate{0}) == distribution(reference{0})", suffix);
   }
   if (!arguments.within) return fmt::format("mean(candidate{0}) == mean(reference{0})", suffix);
-  margin(arguments.within, "--within");
+  within(arguments);
   for (const auto& [text, option] :
        {std::pair(&arguments.detect, "--detect"), std::pair(&arguments.allow, "--allow")}) {
     if (!*text) continue;
@@ -243,15 +240,18 @@ std::string claim_of(const ImagesArguments& arguments, const std::string& suffix
 TestEntry test_of(const ImagesArguments& arguments, const std::string& suffix) {
   const Location where{"claim", 1, 1};
   TestEntry test{.claim = parse_claim(claim_of(arguments, suffix), where), .where = where};
+  if (arguments.within) test.claim.margin = within(arguments);
   test.name = test.claim.text;
   test.id = "images/" + test.name;
-  test.detect = margin(arguments.detect, "--detect");
-  test.allow = margin(arguments.allow, "--allow");
-  if (test.detect) test.keys["detect"] = test.detect->where;
-  if (test.allow) test.keys["allow"] = test.allow->where;
-  if (arguments.within) test.claim.margin.where = place("--within", *arguments.within);
-  test.paired = arguments.question == ImageQuestion::paired;
-  check_test(test);
+  std::vector<Value::Member> keys;
+  for (const auto& [key, text] :
+       {std::pair("detect", &arguments.detect), std::pair("allow", &arguments.allow)}) {
+    if (*text) keys.push_back(member(key, **text, place(std::string("--") + key, **text)));
+  }
+  if (arguments.question == ImageQuestion::paired) {
+    keys.push_back(member("paired", "true", place("--paired", "true")));
+  }
+  read_test_keys({}, Value::map(std::move(keys)), test);
   return test;
 }
 

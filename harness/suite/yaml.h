@@ -18,6 +18,8 @@ namespace assay::harness {
 /// (`|`, `>`) at its first line. Columns count bytes.
 class Document {
  public:
+  /// No text: keys have the places of their values.
+  Document() = default;
   Document(std::string file, std::string_view text);
 
   const Value& root() const { return root_; }

@@ -38,32 +38,15 @@ Difference difference_of(const Question& question, std::size_t channel,
 }
 
 /// All values that theta may have.
-struct Span {
-  double low;
-  double high;
-};
-
-Span theta_of(const Difference& difference) {
+ThetaRange theta_of(const Difference& difference) {
   return {.low = (difference.value - difference.rounding) / difference.scale,
           .high = (difference.value + difference.rounding) / difference.scale};
 }
 
-bool meets_claimed(const Span& theta, const Regions& regions) {
-  switch (regions.relation) {
-    case Relation::equal:
-      return theta.low <= regions.allow && theta.high >= -regions.allow;
-    case Relation::at_most:
-      return theta.low <= regions.allow;
-    case Relation::at_least:
-      return theta.high >= -regions.allow;
-    case Relation::less:
-      return theta.low < 0;
-    case Relation::greater:
-      return theta.high > 0;
-    case Relation::within:
-      break;
-  }
-  return theta.low < regions.within && theta.high > -regions.within;
+bool meets_claimed(const ThetaRange& theta, const Regions& regions) {
+  const ThetaRange claimed = regions.claimed();
+  return regions.proof() ? theta.low < claimed.high && theta.high > claimed.low
+                         : theta.low <= claimed.high && theta.high >= claimed.low;
 }
 
 /// Hint at the commonest cause of constant observations.

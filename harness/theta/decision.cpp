@@ -9,101 +9,52 @@
 namespace assay::harness {
 namespace {
 
-double log_p_at_most(const Evidence& evidence, double value) {
-  return evidence.at(value).log_p_upper;
-}
+constexpr double infinity = std::numeric_limits<double>::infinity();
 
-double log_p_at_least(const Evidence& evidence, double value) {
-  return evidence.at(value).log_p_lower;
-}
-
-/// p of "-margin <= theta <= margin".
-double log_p_between(const Evidence& evidence, double margin) {
-  if (evidence.distance) return log_p_at_most(evidence, margin);
-  const double smaller =
-      std::min(log_p_at_most(evidence, margin), log_p_at_least(evidence, -margin));
-  return std::min(0.0, std::log(2.0) + smaller);
-}
-
-/// p of "abs(theta) >= margin": two one-sided tests, each at the full level.
-double log_p_outside(const Evidence& evidence, double margin) {
-  if (evidence.distance) return log_p_at_least(evidence, margin);
-  return stats::equivalence(evidence.at(-margin), evidence.at(margin)).log_p;
-}
-
-/// p of "theta < 0" and "theta > 0": that of the closed region, unless theta is exactly 0.
-double log_p_beside(const Evidence& evidence, double log_p_closed) {
-  constexpr double impossible = std::numeric_limits<double>::lowest();
-  const bool at_the_end =
-      evidence.exact && log_p_at_most(evidence, 0) == 0 && log_p_at_least(evidence, 0) == 0;
-  return at_the_end ? impossible : log_p_closed;
+/// p of "theta < 0" or "theta > 0" is that of the closed region, unless theta is exactly 0.
+bool is_exactly_0(const Evidence& evidence) {
+  return evidence.exact && evidence.at(0).log_p_upper == 0 && evidence.at(0).log_p_lower == 0;
 }
 
 }  // namespace
 
-bool Regions::proof() const {
-  return relation == Relation::less || relation == Relation::greater ||
-         relation == Relation::within;
+double Regions::claimed_edge() const {
+  if (relation == Relation::within) return within;
+  return proof() ? 0 : allow;
 }
 
-bool Regions::two_sided() const {
-  return relation == Relation::equal || relation == Relation::within;
+std::optional<double> Regions::forbidden_edge() const {
+  if (relation == Relation::within) return within;
+  return proof() ? std::optional(0.0) : detect;
+}
+
+ThetaRange Regions::between(double edge) const {
+  return {bounds_below() ? -edge : -infinity, bounds_above() ? edge : infinity};
 }
 
 double log_p_claimed(const Evidence& evidence, const Regions& regions) {
-  switch (regions.relation) {
-    case Relation::equal:
-      return log_p_between(evidence, regions.allow);
-    case Relation::at_most:
-      return log_p_at_most(evidence, regions.allow);
-    case Relation::at_least:
-      return log_p_at_least(evidence, -regions.allow);
-    case Relation::less:
-      return log_p_beside(evidence, log_p_at_most(evidence, 0));
-    case Relation::greater:
-      return log_p_beside(evidence, log_p_at_least(evidence, 0));
-    case Relation::within:
-      return log_p_between(evidence, regions.within);
-  }
-  return 0;
+  const ThetaRange claimed = regions.claimed();
+  if (evidence.distance) return evidence.at(claimed.high).log_p_upper;
+  const double above = regions.bounds_above() ? evidence.at(claimed.high).log_p_upper : 0;
+  const double below = regions.bounds_below() ? evidence.at(claimed.low).log_p_lower : 0;
+  if (regions.two_sided()) return std::min(0.0, std::log(2.0) + std::min(above, below));
+  constexpr double impossible = std::numeric_limits<double>::lowest();
+  return regions.proof() && is_exactly_0(evidence) ? impossible : std::min(above, below);
 }
 
 double log_p_forbidden(const Evidence& evidence, const Regions& regions) {
-  switch (regions.relation) {
-    case Relation::equal:
-      return regions.detect ? log_p_outside(evidence, *regions.detect) : 0;
-    case Relation::at_most:
-      return regions.detect ? log_p_at_least(evidence, *regions.detect) : 0;
-    case Relation::at_least:
-      return regions.detect ? log_p_at_most(evidence, -*regions.detect) : 0;
-    case Relation::less:
-      return log_p_at_least(evidence, 0);
-    case Relation::greater:
-      return log_p_at_most(evidence, 0);
-    case Relation::within:
-      return log_p_outside(evidence, regions.within);
-  }
-  return 0;
-}
-
-double edge_of_claimed(const Regions& regions) {
-  if (regions.relation == Relation::within) return regions.within;
-  return regions.proof() ? 0 : regions.allow;
+  const std::optional<double> edge = regions.forbidden_edge();
+  if (!edge) return 0;
+  const ThetaRange allowed = regions.between(*edge);
+  if (evidence.distance || !regions.bounds_below()) return evidence.at(allowed.high).log_p_lower;
+  if (!regions.bounds_above()) return evidence.at(allowed.low).log_p_upper;
+  // Two one-sided tests, each at the full level.
+  return stats::equivalence(evidence.at(allowed.low), evidence.at(allowed.high)).log_p;
 }
 
 std::string tail(const Regions& regions) {
-  switch (regions.relation) {
-    case Relation::at_most:
-    case Relation::less:
-      return "upper";
-    case Relation::at_least:
-    case Relation::greater:
-      return "lower";
-    case Relation::equal:
-    case Relation::within:
-      break;
-  }
-  return "two-sided";
+  if (regions.two_sided()) return "two-sided";
+  return regions.bounds_above() ? "upper" : "lower";
 }
 
 reports::Verdict decide(const std::vector<ChannelDecision>& channels, const Regions& regions,

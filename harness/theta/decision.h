@@ -16,6 +16,12 @@
 
 namespace assay::harness {
 
+/// Values of theta; an end may be infinite.
+struct ThetaRange {
+  double low;
+  double high;
+};
+
 /// Margins on theta's scale. In `<` and `>`, `detect` is only the advantage to plan for.
 struct Regions {
   Relation relation = Relation::equal;
@@ -23,13 +29,27 @@ struct Regions {
   std::optional<double> detect = {};
   double within = 0;
 
-  bool proof() const;
-  bool two_sided() const;
+  bool proof() const { return is_proof(relation); }
+  bool two_sided() const { return is_two_sided(relation); }
+  /// True if a large theta speaks against the claim, and so for a small one.
+  bool bounds_above() const { return two_sided() || is_upper(relation); }
+  bool bounds_below() const { return two_sided() || !is_upper(relation); }
   /// True if a pass must exclude a forbidden region.
   bool has_forbidden() const { return proof() || detect.has_value(); }
   bool has_margin() const {
     return allow != 0 || detect.has_value() || relation == Relation::within;
   }
+  /// The distance of C's ends from 0: 0, `allow` or the margin of `within`.
+  double claimed_edge() const;
+  /// The distance of F's ends from 0; nullopt if there is no F.
+  std::optional<double> forbidden_edge() const;
+  /// C with its ends. For a distance only the upper end counts.
+  ThetaRange claimed() const { return between(claimed_edge()); }
+
+ private:
+  friend double log_p_forbidden(const Evidence& evidence, const Regions& regions);
+  /// The values that lie less far out than `edge`, on the sides that the claim bounds.
+  ThetaRange between(double edge) const;
 };
 
 /// Natural logarithm of the p-value of "theta in C".
@@ -37,9 +57,6 @@ double log_p_claimed(const Evidence& evidence, const Regions& regions);
 
 /// Natural logarithm of the p-value of "theta in F"; 0 where there is no F.
 double log_p_forbidden(const Evidence& evidence, const Regions& regions);
-
-/// The upper end of C: 0, `allow` or the margin of `within`. For a distance it is the only end.
-double edge_of_claimed(const Regions& regions);
 
 /// The tail of the statistic that speaks against C.
 std::string tail(const Regions& regions);

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "harness/language/method_names.h"
+#include "harness/language/quantities.h"
 #include "harness/sampling/recorded_run.h"
 #include "harness/theta/theta.h"
 

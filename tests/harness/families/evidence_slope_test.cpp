@@ -57,7 +57,8 @@ std::string state_of(const std::string& test, ErrorShare share, std::span<const 
   outcome.plan.regions = {
       {.relation = within ? Relation::within : Relation::equal, .within = within ? 0.3 : 0}};
   const std::vector<Gate> gates = outcome.question.theta->gates(
-      outcome, 0, data, critical_value(outcome.share().alpha, two_sided(outcome.question)));
+      outcome, 0, data,
+      critical_value(outcome.share().alpha, is_two_sided(outcome.question.test->claim.relation)));
   return gates.empty() ? "none" : gates.back().name + " " + gates.back().state;
 }
 

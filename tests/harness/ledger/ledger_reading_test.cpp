@@ -26,7 +26,7 @@ std::vector<LedgerNight> enough(double difference) {
 
 const LedgerSeries series{.reference_error = 0.1};
 
-double last_e(const std::vector<LedgerNight>& nights, const ClaimedRange& claimed) {
+double last_e(const std::vector<LedgerNight>& nights, const ThetaRange& claimed) {
   return log_e_path(series, nights, claimed).back();
 }
 
@@ -60,17 +60,6 @@ TEST(LedgerReading, AnInequalityHasOneSide) {
   EXPECT_EQ(last_e(enough(-2), {-infinity, 0}), at_none);
   EXPECT_EQ(last_e(enough(2), {-infinity, 0}), last_e(enough(2), {0, 0}));
   EXPECT_EQ(last_e(enough(2), {0, infinity}), at_none);
-}
-
-TEST(LedgerReading, ClaimedRangesFollowTheRelation) {
-  const auto range = [](Relation relation) {
-    const ClaimedRange r = claimed_range({.relation = relation, .allow = 0.1, .within = 0.3});
-    return std::pair(r.low, r.high);
-  };
-  EXPECT_EQ(range(Relation::equal), std::pair(-0.1, 0.1));
-  EXPECT_EQ(range(Relation::at_most), std::pair(-infinity, 0.1));
-  EXPECT_EQ(range(Relation::at_least), std::pair(-0.1, infinity));
-  EXPECT_EQ(range(Relation::within), std::pair(-0.3, 0.3));
 }
 
 TEST(LedgerReading, PValuesKnowNoRange) {

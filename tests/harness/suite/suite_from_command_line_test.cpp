@@ -139,7 +139,7 @@ TEST(SuiteOfClaim, SaysWhatIsWrong) {
                            .estimators = {"b=luminaire/area", "b=luminaire/cosine"}}),
             "a second estimator named `b`");
   EXPECT_EQ(refused_check({.claim = "mean(luminaire/area) == 1", .method = "welsh"}),
-            "--test cannot be `welsh`; did you mean `welch`?");
+            "`test` cannot be `welsh`; did you mean `welch`?");
   EXPECT_EQ(refused_check({.claim = "mean(luminaire/area) == 1", .detect = "1%", .allow = "2%"}),
             "`detect` (1%) must be above `allow` (2%)");
   EXPECT_EQ(refused_check({.claim = "slope(bias(luminaire/area)) == -1"}),

@@ -84,6 +84,18 @@ TEST(Decision, OfADistanceHasOneDirection) {
   EXPECT_NEAR(std::exp(log_p_forbidden(evidence, regions)), below(at(2.5)), 1e-14);
 }
 
+TEST(Decision, ClaimedRangesFollowTheRelation) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const auto range = [](Relation relation) {
+    const ThetaRange r = Regions{.relation = relation, .allow = 0.1, .within = 0.3}.claimed();
+    return std::pair(r.low, r.high);
+  };
+  EXPECT_EQ(range(Relation::equal), std::pair(-0.1, 0.1));
+  EXPECT_EQ(range(Relation::at_most), std::pair(-infinity, 0.1));
+  EXPECT_EQ(range(Relation::at_least), std::pair(-0.1, infinity));
+  EXPECT_EQ(range(Relation::within), std::pair(-0.3, 0.3));
+}
+
 TEST(Decision, WithoutDetectAnAlarmHasNothingToExclude) {
   for (const Relation relation : {Relation::equal, Relation::at_most, Relation::at_least}) {
     EXPECT_FALSE(Regions{.relation = relation}.has_forbidden());
