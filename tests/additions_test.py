@@ -54,7 +54,7 @@ const Theta& theta_of_second_moments();
 
 #include "harness/families/families.h"
 #include "harness/question/question_sources.h"
-#include "harness/plan/critical.h"
+#include "harness/plan/sizes.h"
 #include "stats/means/student_t.h"
 
 namespace assay::harness {

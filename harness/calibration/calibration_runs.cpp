@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "harness/base/interrupt.h"
-#include "harness/pilot/pilot_run.h"
+#include "harness/pilot/pilot.h"
 #include "harness/plan/plan.h"
 #include "harness/run/looks.h"
 #include "harness/run/pools.h"

@@ -10,7 +10,7 @@
 #include "harness/command/commands.h"
 #include "harness/command/init.h"
 #include "harness/record/merge.h"
-#include "harness/record/recorded_test.h"
+#include "harness/record/replay.h"
 #include "harness/suite/suite_images.h"
 
 namespace assay::harness {

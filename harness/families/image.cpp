@@ -9,7 +9,7 @@
 #include "harness/plan/image_plan.h"
 #include "harness/question/question_sources.h"
 #include "harness/run/image_judge.h"
-#include "harness/theta/scale.h"
+#include "harness/theta/ask.h"
 
 namespace assay::harness {
 namespace {

@@ -6,15 +6,12 @@
 #include <limits>
 
 #include "harness/draws/sampler_setup.h"
-#include "harness/families/evidence_cells.h"
 #include "harness/families/families.h"
 #include "harness/families/law_evidence.h"
 #include "harness/language/quantities.h"
-#include "harness/plan/critical.h"
-#include "harness/plan/frozen.h"
+#include "harness/plan/independence.h"
 #include "harness/plan/pilot_shape.h"
-#include "harness/plan/rows.h"
-#include "harness/plan/secondaries.h"
+#include "harness/plan/sizes.h"
 #include "harness/question/question_sources.h"
 #include "harness/run/evaluate.h"
 #include "harness/theta/methods.h"
@@ -287,7 +284,7 @@ const std::vector<MethodRow>& LawTheta::rows() {
        [](const Question& q) { return q.of_two(); },
        Keeps::points,
        cells_of_two,
-       {.joins_channels = true, .from_pilot = FromPilot::cells}},
+       {.joins_channels = true, .cells_of_pilots = true}},
       {"chi-square-fit", "chi-square: draws against their declared density, in cells",
        [](const Question& q) { return !q.of_two() && q.law.name.empty() && of_whole_draws(q); },
        Keeps::cells, cells_of_density}};

@@ -5,13 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 #include <utility>
 
-#include "harness/plan/critical.h"
-#include "harness/plan/planned_rates.h"
-#include "harness/plan/sample_size.h"
-#include "harness/plan/secondaries.h"
-#include "harness/theta/inversion.h"
+#include "harness/plan/sizes.h"
+#include "harness/theta/evidence.h"
 #include "stats/gates/assumption_gates.h"
 #include "stats/means/skewness_corrected_t.h"
 #include "stats/planning/power.h"
@@ -25,17 +23,30 @@ using stats::TestResult;
 
 // ---- Evidence
 
-double sign_of(const LogRatio& ratio) { return ratio.inverse ? -1 : 1; }
+/// Theta is ln(first / second / null), or ln(first / null), or minus that.
+struct LogRatio {
+  std::vector<RatioSide> sides;
+  double log_null = 0;
+  double sign = 1;  ///< -1 if the sides are inverses of the quantities.
 
-double truth_of(const LogRatio& ratio, std::size_t side, std::span<const double> truths) {
-  return truths[ratio.shares_truth ? 0 : side];
-}
+  bool uncertain() const {
+    return std::ranges::any_of(
+        sides, [](const RatioSide& side) { return side.truth.known.standard_error > 0; });
+  }
+  /// True if one truth, with one error, serves both sides.
+  bool shares_truth() const {
+    const auto known = [&](std::size_t i) {
+      return std::pair(sides[i].truth.known.value, sides[i].truth.known.standard_error);
+    };
+    return sides.size() == 2 && known(0) == known(1);
+  }
+};
 
 TestResult test(const LogRatio& ratio, std::span<const Influence> sides, double theta) {
-  const double log_ratio = sign_of(ratio) * (theta + ratio.log_null);
+  const double log_ratio = ratio.sign * (theta + ratio.log_null);
   TestResult result = sides.size() == 1 ? stats::influence_t(sides[0], log_ratio)
                                         : stats::influence_t(sides[0], sides[1], log_ratio);
-  if (!ratio.inverse) return result;
+  if (ratio.sign > 0) return result;
   result.statistic = -result.statistic;
   std::swap(result.log_p_lower, result.log_p_upper);
   return result;
@@ -44,11 +55,12 @@ TestResult test(const LogRatio& ratio, std::span<const Influence> sides, double 
 TestResult over_truths(const LogRatio& ratio, TestResult as_known, double theta) {
   std::vector<stats::UncertainReference> references;
   for (const RatioSide& side : ratio.sides) references.push_back(side.truth);
-  if (ratio.shares_truth) references.resize(1);
+  const bool shared = ratio.shares_truth();
+  if (shared) references.resize(1);
   const auto at = [&](std::span<const double> truths) {
     std::vector<Influence> sides;
     for (std::size_t i = 0; i < ratio.sides.size(); ++i) {
-      sides.push_back(ratio.sides[i].influence(truth_of(ratio, i, truths)));
+      sides.push_back(ratio.sides[i].influence(truths[shared ? 0 : i]));
     }
     return test(ratio, sides, theta);
   };
@@ -106,20 +118,24 @@ RatioSide without_truth(const stats::Influence& influence) {
   return {.influence = [influence](double) { return influence; }};
 }
 
-Evidence evidence_of(const LogRatio& ratio) {
+Evidence by_influence(const Method&, const Question& question, std::size_t channel,
+                      std::span<const ChannelData> data) {
+  const auto& family = dynamic_cast<const LogTheta&>(*question.theta);
+  LogRatio ratio{.sides = {},
+                 .log_null = family.log_null(question, channel, data),
+                 .sign = family.is_inverse() ? -1.0 : 1.0};
   std::vector<Influence> known;
   double variance = 0;
-  bool uncertain = false;
-  for (const RatioSide& side : ratio.sides) {
-    known.push_back(side.influence(side.truth.known.value));
+  for (std::size_t i = 0; i < question.compared(); ++i) {
+    ratio.sides.push_back(family.side(question, i, channel, data));
+    known.push_back(ratio.sides[i].influence(ratio.sides[i].truth.known.value));
     variance += std::pow(known.back().relative.standard_error(), 2);
-    uncertain = uncertain || side.truth.known.standard_error > 0;
   }
   const double second = known.size() == 1 ? 0 : known[1].log_value;
-  const double estimate = sign_of(ratio) * (known[0].log_value - second) - ratio.log_null;
+  const double estimate = ratio.sign * (known[0].log_value - second) - ratio.log_null;
   const auto at = [=](double theta) {
     const TestResult as_known = test(ratio, known, theta);
-    return uncertain ? over_truths(ratio, as_known, theta) : as_known;
+    return ratio.uncertain() ? over_truths(ratio, as_known, theta) : as_known;
   };
   const double error = std::sqrt(variance);
   const auto interval = [=](double confidence) {
@@ -129,20 +145,25 @@ Evidence evidence_of(const LogRatio& ratio) {
   return {.estimate = estimate,
           .at = at,
           .interval = interval,
-          .quantity = ratio.quantity,
+          .quantity = quantity_of(question),
           .ratio = true,
           .exact = error == 0};
 }
 
+std::string quantity_of(const Question& question) {
+  const RatioWords& words = dynamic_cast<const LogTheta&>(*question.theta).words_;
+  return question.of_two() ? fmt::format("ratio of {}", words.many)
+                           : fmt::format("{} over the reference", words.one);
+}
+
 double averaged_spread(double of_one, double averaged) { return 2 + (of_one - 2) / averaged; }
 
-MethodRow influence_row(bool (*answers)(const Question&), Keeps keeps,
-                        decltype(MethodRow::evidence) evidence) {
+MethodRow influence_row(bool (*answers)(const Question&), Keeps keeps) {
   return {"influence-t",
           "Student's t of influence values with Hall's correction: variances, costs, efficiencies",
           answers,
           keeps,
-          evidence,
+          by_influence,
           {.over_looks = stats::LookLaw::independent_increments}};
 }
 
@@ -151,7 +172,7 @@ void LogTheta::check_margin(const Question& question, const Margin& margin) cons
   if (margin.relative || !question.of_two()) return;
   throw InputError(
       margin.where,
-      fmt::format("a margin on a ratio of {} is relative; give it in per cent", plural_));
+      fmt::format("a margin on a ratio of {} is relative; give it in per cent", words_.many));
 }
 
 std::optional<ThetaError> LogTheta::error(const Question& question, std::size_t channel,
@@ -274,6 +295,25 @@ std::optional<double> LogTheta::spread(const Question& question, std::size_t sub
   return static_cast<double>(data[subject].moments.count) * error * error;
 }
 
+double LogTheta::log_null(const Question& question, std::size_t channel,
+                          std::span<const ChannelData>) const {
+  return std::log(question.of_two() ? question.factor : question.references[channel].value);
+}
+
+std::optional<Influence> LogTheta::influence(const Question& question, std::size_t subject,
+                                             std::size_t channel,
+                                             std::span<const ChannelData> data) const {
+  if (!tells(data[subject])) return std::nullopt;
+  const RatioSide side = this->side(question, subject, channel, data);
+  return side.influence(side.truth.known.value);
+}
+
+std::optional<double> LogTheta::predicted_spread(const Question&, const PilotMoments& pilot,
+                                                 double averaged) const {
+  if (!(pilot.values.m2 > 0)) return std::nullopt;
+  return averaged_spread(pilot.values.kurtosis() - 1, averaged);
+}
+
 std::optional<double> LogTheta::pilot_spread(const Question& question, std::size_t subject,
                                              std::optional<std::size_t> channel,
                                              const Pilots& pilots, const Plan& plan) const {
@@ -305,6 +345,32 @@ std::optional<PlannedChannel> LogTheta::from_pilots(const Question& question,
   }
   if (!varies(planned)) return std::nullopt;
   return planned;
+}
+
+using stats::JointMoments;
+using stats::Moments;
+
+const JointMoments& by_its_cost(const Question& question, std::span<const JointMoments> joint) {
+  return joint[question.test->cost == CostKind::samples ? samples_cost : rays_cost];
+}
+
+const JointMoments& counted_cost(const Question& question, const ChannelData& data) {
+  const JointMoments& sample = by_its_cost(question, data.joint);
+  if (sample.of_cost.mean > 0) return sample;
+  throw std::domain_error(
+      "no cost was counted: an estimator that traces no rays counts its `samples`; say "
+      "`cost: samples`");
+}
+
+JointMoments powers_of_values(const ChannelData& data) {
+  return data.joint.empty() ? stats::joint_of_four(data.moments) : data.joint.front();
+}
+
+Constant truth_of(const Question& question, std::size_t subject, std::size_t channel,
+                  std::span<const ChannelData> data) {
+  if (!question.has_reference_subject) return question.truths[subject][channel];
+  const Moments& reference = data.back().moments;
+  return {reference.mean, reference.standard_error()};
 }
 
 }  // namespace assay::harness

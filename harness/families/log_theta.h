@@ -4,9 +4,11 @@
 // efficiencies. Each quantity is known by its influence values (stats/variances/influence.h).
 
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "harness/families/families.h"
+#include "harness/plan/outcome.h"
 #include "stats/means/uncertain_reference.h"
 #include "stats/variances/influence.h"
 
@@ -22,15 +24,11 @@ struct RatioSide {
 /// A side that no truth enters.
 RatioSide without_truth(const stats::Influence& influence);
 
-/// Theta is ln(first / second / null), or ln(first / null), or minus that.
-struct LogRatio {
-  std::vector<RatioSide> sides;
-  bool shares_truth = false;  ///< One truth, with one error, serves both sides.
-  double log_null = 0;
-  bool inverse = false;  ///< The quantities are inverses of efficiencies.
-  const char* quantity = "";
+/// The words for a quantity: "cost" and "costs".
+struct RatioWords {
+  const char* one;
+  const char* many;
 };
-Evidence evidence_of(const LogRatio& ratio);
 
 /// A pilot of single primaries.
 struct PilotMoments {
@@ -42,9 +40,11 @@ struct PilotMoments {
 /// normal law. A mean's excess kurtosis falls like 1 / its size.
 double averaged_spread(double of_one, double averaged);
 
-/// The row of the one method of influence values, for a family that keeps and reads them so.
-MethodRow influence_row(bool (*answers)(const Question&), Keeps keeps,
-                        decltype(MethodRow::evidence) evidence);
+/// The row of the one method of influence values, for a family that keeps them so.
+MethodRow influence_row(bool (*answers)(const Question&), Keeps keeps);
+
+/// The name of theta before its logarithm: "ratio of costs", "cost over the reference".
+std::string quantity_of(const Question& question);
 
 class LogTheta : public Theta {
  public:
@@ -67,17 +67,22 @@ class LogTheta : public Theta {
                           double critical) const override;
 
  protected:
-  explicit LogTheta(ThetaTraits traits, const char* plural)
-      : Theta(with_logarithm(traits)), plural_(plural) {}
+  LogTheta(ThetaTraits traits, RatioWords words) : Theta(with_logarithm(traits)), words_(words) {}
 
-  /// A subject's influence values, with the truth as known; nullopt if the data do not tell.
-  virtual std::optional<stats::Influence> influence(const Question&, std::size_t subject,
-                                                    std::size_t channel,
-                                                    std::span<const ChannelData>) const = 0;
+  /// A subject's side of the ratio. Throws std::domain_error if it has none.
+  virtual RatioSide side(const Question&, std::size_t subject, std::size_t channel,
+                         std::span<const ChannelData>) const = 0;
+  /// True if the data tell a subject's influence values.
+  virtual bool tells(const ChannelData&) const = 0;
+  /// ln of the ratio, or of the one quantity, where theta is 0.
+  virtual double log_null(const Question&, std::size_t channel, std::span<const ChannelData>) const;
+  /// True if sides are inverses of the quantities.
+  virtual bool is_inverse() const { return false; }
+
   /// The variance of an observation's influence values over the quantity's square, for observations
-  /// of `averaged` of the pilot's primaries.
+  /// of `averaged` of the pilot's primaries; by default that of a variance.
   virtual std::optional<double> predicted_spread(const Question&, const PilotMoments&,
-                                                 double averaged) const = 0;
+                                                 double averaged) const;
   /// The same from the test's own data.
   virtual std::optional<double> spread(const Question&, std::size_t subject, std::size_t channel,
                                        std::span<const ChannelData>) const;
@@ -88,10 +93,17 @@ class LogTheta : public Theta {
   }
 
  private:
+  friend std::string quantity_of(const Question& question);
+  friend Evidence by_influence(const Method&, const Question&, std::size_t channel,
+                               std::span<const ChannelData>);
   static ThetaTraits with_logarithm(ThetaTraits traits) {
     traits.logarithm = true;
     return traits;
   }
+  /// A subject's influence values, with the truth as known; nullopt if the data do not tell.
+  std::optional<stats::Influence> influence(const Question&, std::size_t subject,
+                                            std::size_t channel,
+                                            std::span<const ChannelData>) const;
   /// The plan of one channel, or of the worst; nullopt if a pilot has no spread there.
   std::optional<PlannedChannel> from_pilots(const Question&, std::optional<std::size_t> channel,
                                             const Regions&, const Pilots&, const Plan&) const;
@@ -99,7 +111,23 @@ class LogTheta : public Theta {
                                      std::optional<std::size_t> channel, const Pilots&,
                                      const Plan&) const;
 
-  const char* plural_;
+  const RatioWords words_;
 };
+
+// Counted costs, and the truth of a biased estimator's mean.
+
+/// The values with the cost that the test counts, rays or samples.
+const stats::JointMoments& by_its_cost(const Question& question,
+                                       std::span<const stats::JointMoments> joint);
+
+/// Values with their cost, in rays or samples. Throws std::domain_error if nothing was counted.
+const stats::JointMoments& counted_cost(const Question& question, const ChannelData& data);
+
+/// The powers of a channel's values, as far as they are kept: a cost means nothing.
+stats::JointMoments powers_of_values(const ChannelData& data);
+
+/// The truth of a subject's mean: its number, or the mean of the drawn reference.
+Constant truth_of(const Question& question, std::size_t subject, std::size_t channel,
+                  std::span<const ChannelData> data);
 
 }  // namespace assay::harness

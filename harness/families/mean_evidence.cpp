@@ -1,5 +1,7 @@
 #include "harness/families/mean_evidence.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,9 +10,11 @@
 #include <memory>
 #include <vector>
 
-#include "harness/question/declared_range.h"
-#include "harness/theta/inversion.h"
+#include "harness/question/question_sources.h"
+#include "harness/theta/constant.h"
+#include "harness/theta/evidence.h"
 #include "harness/theta/theta.h"
+#include "stats/basics/mean_rounding.h"
 #include "stats/means/betting_mean.h"
 #include "stats/means/skewness_corrected_t.h"
 #include "stats/means/student_t.h"
@@ -260,6 +264,22 @@ Evidence of_means(const MeanTest& mean, const Question& question, std::size_t ch
   return ratio_of_means(mean.closed_interval, question, x, y, test, mean.of_one(y));
 }
 
+// Part of the standard error that rounding may reach: a 1 % tail then moves by a third at most.
+constexpr double tolerated = 0.1;
+
+/// Errors of one side, on the scale of the first mean.
+struct RoundedPart {
+  double rounding = 0;
+  double standard_error = 0;
+};
+
+RoundedPart part_of(const Question& question, std::size_t subject, const ChannelData& data) {
+  if (data.moments.count < 2) return {};
+  const double factor = subject == 0 ? 1 : std::abs(question.factor);
+  return {.rounding = factor * stats::rounding_of_mean(data.moments),
+          .standard_error = factor * data.moments.standard_error()};
+}
+
 }  // namespace
 
 Evidence mean_by_t(const Method&, const Question& question, std::size_t channel,
@@ -280,6 +300,27 @@ Evidence mean_of_two_values(const Method&, const Question& question, std::size_t
 Evidence mean_by_bets(const Method&, const Question& question, std::size_t channel,
                       std::span<const ChannelData> data) {
   return of_means(bets, question, channel, data);
+}
+
+std::string lost_to_rounding(const Question& question, std::size_t channel,
+                             std::span<const ChannelData> data) {
+  std::size_t worst = 0;
+  double most = 0;
+  double rounding = 0;
+  double error = question.of_two() ? 0 : question.references[channel].standard_error;
+  for (std::size_t subject = 0; subject < data.size(); ++subject) {
+    const RoundedPart part = part_of(question, subject, data[subject]);
+    if (part.rounding > most) worst = subject;
+    most = std::max(most, part.rounding);
+    rounding = std::hypot(rounding, part.rounding);
+    error = std::hypot(error, part.standard_error);
+  }
+  if (!(rounding > tolerated * error)) return "";
+  return fmt::format(
+      "the mean of `{}` is {:.6g}: numbers of that size are rounded so coarsely that their mean is "
+      "off by about {:.2g} where the standard error is {:.2g}; take a constant near the mean off "
+      "the observations",
+      question.subjects[worst].estimator->name, data[worst].moments.mean, rounding, error);
 }
 
 }  // namespace assay::harness

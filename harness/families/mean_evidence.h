@@ -3,6 +3,7 @@
 // Evidence about means: the same contrasts, tested by the chosen method.
 
 #include <span>
+#include <string>
 
 #include "harness/theta/method.h"
 
@@ -24,5 +25,10 @@ Evidence mean_of_two_values(const Method&, const Question&, std::size_t channel,
 /// Exact, for values in declared ranges. Keeps the values.
 Evidence mean_by_bets(const Method&, const Question&, std::size_t channel,
                       std::span<const ChannelData>);
+
+/// Why means cannot be compared: rounding adds more than a tenth of the comparison's standard
+/// error. Empty if it adds less.
+std::string lost_to_rounding(const Question& question, std::size_t channel,
+                             std::span<const ChannelData> data);
 
 }  // namespace assay::harness

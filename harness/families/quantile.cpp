@@ -5,12 +5,9 @@
 #include <vector>
 
 #include "harness/families/families.h"
-#include "harness/plan/critical.h"
-#include "harness/plan/planned_rates.h"
-#include "harness/plan/sample_size.h"
-#include "harness/plan/secondaries.h"
+#include "harness/plan/sizes.h"
 #include "harness/question/question_sources.h"
-#include "harness/theta/scale.h"
+#include "harness/theta/ask.h"
 #include "harness/theta/theta.h"
 #include "stats/basics/sorted.h"
 #include "stats/laws/quantile_test.h"

@@ -3,11 +3,10 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "harness/families/costs.h"
 #include "harness/families/log_theta.h"
-#include "harness/families/lost_to_rounding.h"
 #include "harness/question/question_sources.h"
 #include "harness/run/evaluate.h"
+#include "harness/theta/constant.h"
 #include "stats/means/student_t.h"
 #include "stats/means/welch_t.h"
 
@@ -28,24 +27,10 @@ double spread_of_truth(const Moments& x, const Constant& truth) {
   return n * of_truth * of_truth;
 }
 
-double log_null(const Question& question, std::size_t channel) {
-  return std::log(question.of_two() ? question.factor : question.references[channel].value);
-}
-
 stats::Influence cost_of(const Question& question, std::size_t subject, const ChannelData& data) {
   stats::Influence cost = stats::influence_of_mean(counted_cost(question, data).cost());
   cost.log_value -= std::log(question.subjects[subject].averaged(data.primaries));
   return cost;
-}
-
-Evidence cost_evidence(const Method&, const Question& question, std::size_t channel,
-                       std::span<const ChannelData> data) {
-  LogRatio ratio{.sides = {}, .log_null = log_null(question, channel)};
-  for (std::size_t i = 0; i < question.compared(); ++i) {
-    ratio.sides.push_back(without_truth(cost_of(question, i, data[i])));
-  }
-  ratio.quantity = question.of_two() ? "ratio of costs" : "cost over the reference";
-  return evidence_of(ratio);
 }
 
 stats::Influence total_variance_of(const Question& question, std::size_t subject,
@@ -57,17 +42,6 @@ stats::Influence total_variance_of(const Question& question, std::size_t subject
   stats::Influence total = stats::influence_of_mean(data.group_variances);
   total.log_value += std::log(question.subjects[subject].averaged(data.primaries));
   return total;
-}
-
-Evidence total_variance_evidence(const Method&, const Question& question, std::size_t channel,
-                                 std::span<const ChannelData> data) {
-  LogRatio ratio{.sides = {}, .log_null = log_null(question, channel)};
-  for (std::size_t i = 0; i < question.compared(); ++i) {
-    ratio.sides.push_back(without_truth(total_variance_of(question, i, data[i])));
-  }
-  ratio.quantity =
-      question.of_two() ? "ratio of total variances" : "total variance over the reference";
-  return evidence_of(ratio);
 }
 
 /// The truth about which a subject's mean squared error stands for the variance; nullopt if none
@@ -86,22 +60,6 @@ RatioSide inverse_efficiency(const Question& question, std::size_t subject, std:
   if (!truth) return without_truth(stats::influence_of_variance_and_cost(sample));
   return {.influence = [sample](double t) { return stats::influence_of_error_and_cost(sample, t); },
           .truth = {.known = {truth->value, truth->standard_error}, .turn = sample.x().mean}};
-}
-
-Evidence efficiency_evidence(const Method&, const Question& question, std::size_t channel,
-                             std::span<const ChannelData> data) {
-  LogRatio ratio{.sides = {}, .log_null = log_null(question, channel), .inverse = true};
-  for (std::size_t i = 0; i < question.compared(); ++i) {
-    ratio.sides.push_back(inverse_efficiency(question, i, channel, data));
-  }
-  if (question.of_two()) {
-    const auto first = truth_beside(question, 0, channel, data);
-    const auto second = truth_beside(question, 1, channel, data);
-    ratio.shares_truth = first && second && first->value == second->value &&
-                         first->standard_error == second->standard_error;
-  }
-  ratio.quantity = question.of_two() ? "ratio of efficiencies" : "efficiency over the reference";
-  return evidence_of(ratio);
 }
 
 /// ln(seconds per primary) of each replicate; for efficiency -ln(seconds * variance of a primary).
@@ -128,7 +86,6 @@ Moments logarithms(const Question& question, std::size_t subject, const ChannelD
 Evidence evidence_of_replicates(const Method&, const Question& question, std::size_t channel,
                                 std::span<const ChannelData> data) {
   const Moments x = logarithms(question, 0, data[0]);
-  const bool cost = !question.is().of_spread;
   if (!question.of_two()) {
     const double null = std::log(question.references[channel].value);
     return {.estimate = x.mean - null,
@@ -137,7 +94,7 @@ Evidence evidence_of_replicates(const Method&, const Question& question, std::si
                 [=](double confidence) {
                   return stats::student_t_interval(x, {.value = null}, confidence);
                 },
-            .quantity = cost ? "cost over the reference" : "efficiency over the reference",
+            .quantity = quantity_of(question),
             .ratio = true};
   }
   Moments y = logarithms(question, 1, data[1]);
@@ -145,7 +102,7 @@ Evidence evidence_of_replicates(const Method&, const Question& question, std::si
   return {.estimate = x.mean - y.mean,
           .at = [=](double t) { return stats::welch_t(x, y, {.scale = 1, .offset = t}); },
           .interval = [=](double confidence) { return stats::welch_t_interval(x, y, confidence); },
-          .quantity = cost ? "ratio of costs" : "ratio of efficiencies",
+          .quantity = quantity_of(question),
           .ratio = true};
 }
 
@@ -166,21 +123,14 @@ class RatioTheta : public LogTheta {
         static_cast<double>(mine.moments.count) / static_cast<double>(mine.replicates.size());
     return per_count * logarithms(question, subject, mine).variance();
   }
-
-  /// The spread of a variance stands for that of a cost in seconds too.
-  std::optional<double> predicted_spread(const Question&, const PilotMoments& pilot,
-                                         double averaged) const override {
-    if (!(pilot.values.m2 > 0)) return std::nullopt;
-    return averaged_spread(pilot.values.kurtosis() - 1, averaged);
-  }
 };
 
 class CostTheta final : public RatioTheta {
  public:
-  CostTheta() : RatioTheta({.joins_channels = true}, "costs") {}
+  CostTheta() : RatioTheta({.joins_channels = true}, {"cost", "costs"}) {}
 
   const std::vector<MethodRow>& methods() const override {
-    static const std::vector<MethodRow> table{influence_row(in_counts, Keeps::costs, cost_evidence),
+    static const std::vector<MethodRow> table{influence_row(in_counts, Keeps::costs),
                                               {"replicates", "t of replicates: costs in seconds",
                                                in_seconds, Keeps::blocks, evidence_of_replicates}};
     return table;
@@ -189,12 +139,11 @@ class CostTheta final : public RatioTheta {
   std::string channel_name(const Question&, std::size_t) const override { return "cost"; }
 
  protected:
-  std::optional<stats::Influence> influence(const Question& question, std::size_t subject,
-                                            std::size_t,
-                                            std::span<const ChannelData> data) const override {
-    if (data[subject].joint.empty()) return std::nullopt;
-    return cost_of(question, subject, data[subject]);
+  RatioSide side(const Question& question, std::size_t subject, std::size_t,
+                 std::span<const ChannelData> data) const override {
+    return without_truth(cost_of(question, subject, data[subject]));
   }
+  bool tells(const ChannelData& data) const override { return !data.joint.empty(); }
   std::optional<double> predicted_spread(const Question& question, const PilotMoments& pilot,
                                          double averaged) const override {
     if (in_seconds(question)) return RatioTheta::predicted_spread(question, pilot, averaged);
@@ -207,11 +156,11 @@ class CostTheta final : public RatioTheta {
 
 class EfficiencyTheta final : public RatioTheta {
  public:
-  EfficiencyTheta() : RatioTheta({.of_spread = true}, "efficiencies") {}
+  EfficiencyTheta() : RatioTheta({.of_spread = true}, {"efficiency", "efficiencies"}) {}
 
   const std::vector<MethodRow>& methods() const override {
     static const std::vector<MethodRow> table{
-        influence_row(in_counts, Keeps::costs, efficiency_evidence),
+        influence_row(in_counts, Keeps::costs),
         {"replicates", "t of replicates: efficiencies in seconds", in_seconds, Keeps::blocks,
          evidence_of_replicates}};
     return table;
@@ -223,13 +172,12 @@ class EfficiencyTheta final : public RatioTheta {
   }
 
  protected:
-  std::optional<stats::Influence> influence(const Question& question, std::size_t subject,
-                                            std::size_t channel,
-                                            std::span<const ChannelData> data) const override {
-    if (data[subject].joint.empty()) return std::nullopt;
-    const RatioSide side = inverse_efficiency(question, subject, channel, data);
-    return side.influence(side.truth.known.value);
+  RatioSide side(const Question& question, std::size_t subject, std::size_t channel,
+                 std::span<const ChannelData> data) const override {
+    return inverse_efficiency(question, subject, channel, data);
   }
+  bool tells(const ChannelData& data) const override { return !data.joint.empty(); }
+  bool is_inverse() const override { return true; }
   double spread_of_truth(const Question& question, std::size_t subject, std::size_t channel,
                          std::span<const ChannelData> data) const override {
     const auto truth = truth_beside(question, subject, channel, data);
@@ -249,11 +197,12 @@ class EfficiencyTheta final : public RatioTheta {
 
 class TotalVarianceTheta final : public RatioTheta {
  public:
-  TotalVarianceTheta() : RatioTheta({.joins_channels = true, .of_spread = true}, "variances") {}
+  TotalVarianceTheta()
+      : RatioTheta({.joins_channels = true, .of_spread = true},
+                   {"total variance", "total variances"}) {}
 
   const std::vector<MethodRow>& methods() const override {
-    static const std::vector<MethodRow> table{
-        influence_row(any_question, Keeps::group_variances, total_variance_evidence)};
+    static const std::vector<MethodRow> table{influence_row(any_question, Keeps::group_variances)};
     return table;
   }
   const Theta* of_images() const override { return this; }
@@ -261,28 +210,13 @@ class TotalVarianceTheta final : public RatioTheta {
     return question.subjects[0].channels.size() > 1 ? "all channels"
                                                     : Theta::channel_name(question, channel);
   }
-  std::string lack_of_numbers(const DrawnTest& test, std::size_t channel,
-                              std::span<const ChannelData> data) const override {
-    const Question& question = test.outcome.question;
-    std::string reason = Theta::lack_of_numbers(test, channel, data);
-    for (std::size_t i = 0; i < question.compared() && reason.empty(); ++i) {
-      std::vector<Moments> channels;
-      for (const std::size_t each : question.subjects[i].channels) {
-        channels.push_back(test.samples[i].summary().moments(each));
-      }
-      reason = variances_lost_to_rounding(question.subjects[i], test.outcome.plan.primaries[i],
-                                          channels);
-    }
-    return reason;
-  }
 
  protected:
-  std::optional<stats::Influence> influence(const Question& question, std::size_t subject,
-                                            std::size_t,
-                                            std::span<const ChannelData> data) const override {
-    if (data[subject].group_variances.count < 2) return std::nullopt;
-    return total_variance_of(question, subject, data[subject]);
+  RatioSide side(const Question& question, std::size_t subject, std::size_t,
+                 std::span<const ChannelData> data) const override {
+    return without_truth(total_variance_of(question, subject, data[subject]));
   }
+  bool tells(const ChannelData& data) const override { return data.group_variances.count >= 2; }
 };
 
 const CostTheta cost_theta;

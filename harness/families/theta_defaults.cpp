@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "harness/plan/critical.h"
+#include "harness/plan/sizes.h"
 #include "harness/question/question_sources.h"
 #include "harness/run/evaluate.h"
 #include "harness/sampling/beyond_doubles.h"

@@ -4,17 +4,14 @@
 #include <cmath>
 #include <limits>
 
-#include "harness/families/costs.h"
 #include "harness/families/log_theta.h"
-#include "harness/families/lost_to_rounding.h"
-#include "harness/plan/critical.h"
+#include "harness/plan/independence.h"
 #include "harness/plan/pilot_shape.h"
-#include "harness/plan/rows.h"
-#include "harness/plan/secondaries.h"
+#include "harness/plan/sizes.h"
 #include "harness/question/question_sources.h"
 #include "harness/run/evaluate.h"
 #include "harness/theta/constant.h"
-#include "harness/theta/inversion.h"
+#include "harness/theta/evidence.h"
 #include "harness/theta/methods.h"
 #include "stats/gates/assumption_gates.h"
 #include "stats/variances/chi_square_variance.h"
@@ -30,10 +27,6 @@ double null_of(const Question& question, std::size_t channel, std::span<const Ch
   const double x = question.subjects[0].averaged(data[0].primaries);
   if (!question.of_two()) return question.references[channel].value / x;
   return question.factor * question.subjects[1].averaged(data[1].primaries) / x;
-}
-
-const char* quantity_of(const Question& question) {
-  return question.of_two() ? "ratio of variances" : "variance over the reference";
 }
 
 /// By chi-square or F, for normal values.
@@ -57,17 +50,6 @@ Evidence of_normal_values(const Method&, const Question& question, std::size_t c
           .interval = interval,
           .quantity = quantity_of(question),
           .ratio = true};
-}
-
-Evidence of_any_values(const Method&, const Question& question, std::size_t channel,
-                       std::span<const ChannelData> data) {
-  LogRatio ratio{.sides = {},
-                 .log_null = std::log(null_of(question, channel, data)),
-                 .quantity = quantity_of(question)};
-  for (std::size_t i = 0; i < question.compared(); ++i) {
-    ratio.sides.push_back(without_truth(stats::influence_of_variance(powers_of_values(data[i]))));
-  }
-  return evidence_of(ratio);
 }
 
 /// True if the pilot leaves no doubt that F and chi-square keep their level. Adds a gate for each
@@ -109,7 +91,7 @@ std::string rows_beside_primaries(const Question& question) {
 /// theta = ln(Var x / v0), or ln(Var x / (c Var y)), each of one primary if the estimator averages.
 class VarianceTheta final : public LogTheta {
  public:
-  VarianceTheta() : LogTheta({.of_moments = true, .of_spread = true}, "variances") {}
+  VarianceTheta() : LogTheta({.of_moments = true, .of_spread = true}, {"variance", "variances"}) {}
 
   const std::vector<MethodRow>& methods() const override {
     static const std::vector<MethodRow> table{
@@ -125,7 +107,7 @@ class VarianceTheta final : public LogTheta {
          Keeps::moments,
          of_normal_values,
          {.of_normal_values = true, .over_looks = stats::LookLaw::independent_increments}},
-        influence_row(any_question, Keeps::powers, of_any_values)};
+        influence_row(any_question, Keeps::powers)};
     return table;
   }
 
@@ -180,16 +162,15 @@ class VarianceTheta final : public LogTheta {
   }
 
  private:
-  std::optional<stats::Influence> influence(const Question&, std::size_t subject, std::size_t,
-                                            std::span<const ChannelData> data) const override {
-    // Fewer do not tell a kurtosis.
-    if (data[subject].moments.count < 4) return std::nullopt;
-    return stats::influence_of_variance(powers_of_values(data[subject]));
+  RatioSide side(const Question&, std::size_t subject, std::size_t,
+                 std::span<const ChannelData> data) const override {
+    return without_truth(stats::influence_of_variance(powers_of_values(data[subject])));
   }
-  std::optional<double> predicted_spread(const Question&, const PilotMoments& pilot,
-                                         double averaged) const override {
-    if (!(pilot.values.m2 > 0)) return std::nullopt;
-    return averaged_spread(pilot.values.kurtosis() - 1, averaged);
+  // Fewer do not tell a kurtosis.
+  bool tells(const ChannelData& data) const override { return data.moments.count >= 4; }
+  double log_null(const Question& question, std::size_t channel,
+                  std::span<const ChannelData> data) const override {
+    return std::log(null_of(question, channel, data));
   }
 };
 

@@ -2,16 +2,18 @@
 
 #include <cstdlib>
 #include <map>
+#include <memory>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "harness/command/option_values.h"
-#include "harness/googletest/sources.h"
-#include "harness/pilot/pilot_run.h"
+#include "harness/pilot/pilot.h"
 #include "harness/plan/plan.h"
 #include "harness/record/record_of.h"
 #include "harness/run/looks.h"
 #include "harness/run/pools.h"
+#include "harness/sampling/prepare.h"
 #include "harness/suite/suite_keys.h"
 #include "harness/theta/ask.h"
 #include "reports/words/describe.h"
@@ -60,6 +62,70 @@ std::uint64_t ordinal() {
 std::uint64_t seed_of(const ClaimBudget& budget) {
   const char* given = std::getenv("ASSAY_SEED");
   return given == nullptr || *given == '\0' ? budget.seed : harness::read_seed(given, "ASSAY_SEED");
+}
+
+class Callable final : public Estimator {
+ public:
+  explicit Callable(const Source& source) : source_(source) {}
+
+  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
+                 Cost& cost) override {
+    cost.samples += primaries;
+    source_.draw(random, out);
+    if (!source_.averages || primaries == 1) return;
+    double sum = out[0];
+    for (std::uint64_t i = 1; i < primaries; ++i) {
+      source_.draw(random, out);
+      sum += out[0];
+    }
+    out[0] = sum / static_cast<double>(primaries);
+  }
+
+ private:
+  const Source& source_;
+};
+
+class CallableSetup final : public Setup {
+ public:
+  explicit CallableSetup(Source source) : source_(std::move(source)) {
+    entry_.information = {.name = "googletest",
+                          .summary = "a callable",
+                          .description = "A callable of a test.",
+                          .averages = source_.averages};
+  }
+
+  std::vector<Channel> channels() const override {
+    if (source_.channels == 1) return {{.name = "value"}};
+    std::vector<Channel> channels;
+    for (std::size_t i = 1; i <= source_.channels; ++i) {
+      channels.push_back({.name = "value" + std::to_string(i)});
+    }
+    return channels;
+  }
+  std::unique_ptr<Estimator> make() const override { return std::make_unique<Callable>(source_); }
+
+  const Entry& entry() const { return entry_; }
+
+ private:
+  Source source_;
+  Entry entry_;
+};
+
+/// `stream` separates its random numbers from those of the binary's other sources.
+harness::PreparedEstimator prepared(const Source& source, const std::string& stream) {
+  const auto setup = std::make_shared<const CallableSetup>(source);
+  return {.name = source.name,
+          .listed = source.name,
+          .entry = &setup->entry(),
+          .setup = setup,
+          .parameters = "",
+          .folder = "",
+          .key_plugin = "googletest",
+          .key_parameters = stream,
+          .primaries = source.averages ? std::optional<std::uint64_t>() : 1,
+          .original = nullptr,
+          .where = {},
+          .given = {}};
 }
 
 /// One claim with its sources and margins.

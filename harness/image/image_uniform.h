@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "harness/sampling/picture_look.h"
+#include "harness/sampling/element_sums.h"
 #include "stats/images/image.h"
 
 namespace assay::harness {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "harness/base/text_hash.h"
-#include "harness/plan/rows.h"
+#include "harness/plan/independence.h"
 #include "harness/theta/theta.h"
 
 namespace assay::harness {

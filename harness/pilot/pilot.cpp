@@ -7,6 +7,8 @@
 #include "harness/base/interrupt.h"
 #include "harness/sampling/recorded_run.h"
 #include "harness/sampling/scheduler.h"
+#include "harness/theta/method.h"
+#include "harness/theta/methods.h"
 #include "stats/images/image.h"
 
 namespace assay::harness {
@@ -119,6 +121,16 @@ std::variant<Pilot, Fault> read(const Pool& pool) {
   return pilot;
 }
 
+/// Estimators whose costs some claim is about.
+std::set<std::string> costly(const std::vector<Question>& questions) {
+  std::set<std::string> names;
+  for (const Question& question : questions) {
+    if (methods_for(question).front().keeps != Keeps::costs) continue;
+    for (const Subject& subject : question.subjects) names.insert(subject.estimator->name);
+  }
+  return names;
+}
+
 }  // namespace
 
 std::optional<std::uint64_t> usual_images(const Setup& setup, std::uint64_t primaries) {
@@ -145,31 +157,8 @@ const Pilot* averaged_pilot_of(const Subject& subject, const Pilots& pilots) {
   return pilots.find(pilot_name_of(subject.estimator->name, averages_purpose));
 }
 
-const Pilot* Pilots::find(const std::string& name) const {
-  const auto found = drawn_.find(name);
-  return found != drawn_.end() ? &found->second : nullptr;
-}
-
-const Fault* Pilots::fault(const std::string& name) const {
-  const auto found = faults_.find(name);
-  return found != faults_.end() ? &found->second : nullptr;
-}
-
 const Fault* Pilots::fault(const std::string& estimator, const std::string& purpose) const {
-  return fault(pilot_name_of(estimator, purpose));
-}
-
-void Pilots::add(const std::string& name, std::variant<Pilot, Fault> pilot) {
-  if (auto* const drawn = std::get_if<Pilot>(&pilot)) {
-    drawn_.emplace(name, std::move(*drawn));
-  } else {
-    faults_.emplace(name, std::get<Fault>(std::move(pilot)));
-  }
-}
-
-void Pilots::merge(Pilots others) {
-  drawn_.merge(others.drawn_);
-  faults_.merge(others.faults_);
+  return get<Fault>(pilot_name_of(estimator, purpose));
 }
 
 std::string where_pilots_stopped(const Question& question, const Pilots& pilots) {
@@ -231,6 +220,30 @@ Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators, const
   if (interrupted()) return pilots;
   for (const auto& [name, pool] : named) pilots.add(name, read(*pool));
   return pilots;
+}
+
+std::vector<const Subject*> piloted_draws(const Question& question) {
+  std::vector<const Subject*> draws;
+  if (!question.is().pilots_draws) return draws;
+  for (const Subject& side : question.subjects) {
+    if (!side.purpose.empty()) draws.push_back(&side);
+  }
+  return draws;
+}
+
+PilotRun pilot_run_of(const std::vector<Question>& questions, const std::vector<bool>& chosen,
+                      std::uint64_t seed, unsigned threads) {
+  PilotRun run{.seed = seed, .threads = threads, .with_cost = costly(questions)};
+  for (std::size_t i = 0; i < questions.size(); ++i) {
+    if (!chosen[i]) continue;
+    for (const Subject* subject : piloted_draws(questions[i])) run.draws.push_back(subject);
+  }
+  return run;
+}
+
+PilotRun pilot_run_of(const std::vector<Question>& questions, std::uint64_t seed,
+                      unsigned threads) {
+  return pilot_run_of(questions, std::vector<bool>(questions.size(), true), seed, threads);
 }
 
 }  // namespace assay::harness

@@ -13,7 +13,7 @@
 
 #include "harness/base/progress.h"
 #include "harness/question/question.h"
-#include "harness/sampling/picture_look.h"
+#include "harness/sampling/element_sums.h"
 #include "harness/sampling/pool.h"
 
 namespace assay::harness {
@@ -56,21 +56,25 @@ inline constexpr std::size_t most_kept_channels = 64;
 class Pilots {
  public:
   /// Null if there is none, or a fault.
-  const Pilot* find(const std::string& name) const;
+  const Pilot* find(const std::string& name) const { return get<Pilot>(name); }
   /// Throws std::out_of_range if find() returns null.
-  const Pilot& at(const std::string& name) const { return drawn_.at(name); }
-  /// Null if there is none, or a pilot.
-  const Fault* fault(const std::string& name) const;
+  const Pilot& at(const std::string& name) const { return std::get<Pilot>(all_.at(name)); }
   /// The fault of an estimator's pilot, or of its sampler's draws for `purpose`; null if none.
   const Fault* fault(const std::string& estimator, const std::string& purpose) const;
-  bool empty() const { return drawn_.empty() && faults_.empty(); }
-
-  void add(const std::string& name, std::variant<Pilot, Fault> pilot);
-  void merge(Pilots others);
+  bool empty() const { return all_.empty(); }
+  void add(const std::string& name, std::variant<Pilot, Fault> pilot) {
+    all_.emplace(name, std::move(pilot));
+  }
+  void merge(Pilots others) { all_.merge(others.all_); }
 
  private:
-  std::map<std::string, Pilot> drawn_;
-  std::map<std::string, Fault> faults_;
+  template <class Kind>
+  const Kind* get(const std::string& name) const {
+    const auto found = all_.find(name);
+    return found == all_.end() ? nullptr : std::get_if<Kind>(&found->second);
+  }
+
+  std::map<std::string, std::variant<Pilot, Fault>> all_;
 };
 
 struct PilotRun {
@@ -110,5 +114,17 @@ std::vector<std::pair<std::string, std::shared_ptr<Pool>>> pilot_pools(
 
 Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators, const PilotRun& run,
                   Progress& progress);
+
+// Demands of a suite's claims on the pilots of its estimators.
+
+/// The samplers of a question whose draws need a pilot.
+std::vector<const Subject*> piloted_draws(const Question& question);
+
+/// The pilots of a suite's questions. All questions decide what a pilot keeps, so a selection does
+/// not change it. The chosen ones decide whether a sampler's draws are piloted.
+PilotRun pilot_run_of(const std::vector<Question>& questions, const std::vector<bool>& chosen,
+                      std::uint64_t seed, unsigned threads);
+/// The same with all chosen.
+PilotRun pilot_run_of(const std::vector<Question>& questions, std::uint64_t seed, unsigned threads);
 
 }  // namespace assay::harness

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/plan/sample_size.h"
+#include "harness/plan/sizes.h"
 #include "harness/theta/constant.h"
 #include "harness/theta/theta.h"
 #include "stats/planning/boundary.h"
@@ -125,7 +125,8 @@ std::optional<double> margin_shown(const Question& question, const TestSize& siz
   constexpr double farthest = 0x1p100;
   const auto shows = [&](double margin) {
     channel.regions.within = margin;
-    return power_at(question, size, plan, channel, 0).value_or(0) >= 1 - size.share.beta;
+    return question.theta->power(question, size, plan, channel, 0).value_or(0) >=
+           1 - size.share.beta;
   };
   double above = channel.regions.within;
   if (!(above > 0)) return std::nullopt;

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <functional>
 
-#include "harness/plan/critical.h"
-#include "harness/plan/rows.h"
+#include "harness/plan/independence.h"
+#include "harness/plan/sizes.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/methods.h"
 #include "reports/words/number.h"

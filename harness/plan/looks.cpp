@@ -7,9 +7,8 @@
 #include <limits>
 #include <numbers>
 
-#include "harness/plan/critical.h"
-#include "harness/plan/rows.h"
-#include "harness/plan/sample_size.h"
+#include "harness/plan/independence.h"
+#include "harness/plan/sizes.h"
 #include "harness/sampling/pool.h"
 
 namespace assay::harness {

@@ -5,16 +5,57 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/plan/critical.h"
-#include "harness/plan/rows.h"
-#include "harness/plan/secondaries.h"
-#include "harness/question/declared_range.h"
+#include "harness/plan/image_plan.h"
+#include "harness/plan/independence.h"
+#include "harness/plan/sizes.h"
+#include "harness/question/question_sources.h"
 #include "harness/sampling/beyond_doubles.h"
 #include "harness/theta/constant.h"
 #include "harness/theta/gate.h"
 #include "harness/theta/methods.h"
 
 namespace assay::harness {
+namespace {
+
+// 64 pilot points of both sides to a cell.
+constexpr stats::CellNumbers plane_cells{.bands = 16, .cuts = 16};
+constexpr stats::CellNumbers line_cells{.bands = 64, .cuts = 1};
+
+/// True if this side's pilot may choose. Rows may only if no side has a pilot of its own.
+bool may_choose(const Question& question, std::size_t subject) {
+  return !is_recorded(question.subjects[subject]) ||
+         std::all_of(question.subjects.begin(), question.subjects.end(), is_recorded);
+}
+
+std::vector<double> pilot_values(const Question& question, std::size_t subject, std::size_t channel,
+                                 const Pilots& pilots, const Plan& plan) {
+  const Subject& side = question.subjects[subject];
+  if (pilot_of(side, pilots) == nullptr || !may_choose(question, subject)) return {};
+  return as_secondaries(side, pilot_channel(question, subject, channel, pilots).values,
+                        plan.primaries[subject]);
+}
+
+/// Both sides' pilot points, without draws that yield none.
+std::vector<stats::PlanePoint> pilot_points(const Question& question, const Pilots& pilots,
+                                            const Plan& plan) {
+  std::vector<stats::PlanePoint> points;
+  for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
+    const Subject& side = question.subjects[subject];
+    const std::vector<double> first = pilot_values(question, subject, 0, pilots, plan);
+    const std::vector<double> second = side.channels.size() > 1
+                                           ? pilot_values(question, subject, 1, pilots, plan)
+                                           : std::vector<double>(first.size(), 0);
+    const std::optional<double> none = no_point_of(side);
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      if (first[i] != none && std::isfinite(first[i]) && std::isfinite(second[i])) {
+        points.push_back({first[i], second[i]});
+      }
+    }
+  }
+  return points;
+}
+
+}  // namespace
 
 std::string unusable_pilot(const Question& question, const Pilots& pilots) {
   if (question.is().of_single_values) return "";
@@ -139,6 +180,18 @@ bool bets_on_range(const Question& question, const Pilots& pilots) {
     }
   }
   return hidden;
+}
+
+void freeze(const Question& question, const Pilots& pilots, Plan& plan) {
+  if (!plan.method.is.cells_of_pilots) return;
+  std::vector<stats::PlanePoint> points = pilot_points(question, pilots, plan);
+  if (points.empty()) {
+    plan.invalid = "the pilots gave no point to choose cells by";
+    return;
+  }
+  const bool plane = question.subjects[0].channels.size() > 1;
+  plan.method.frozen.cells = std::make_shared<const stats::SampledCells>(
+      stats::sampled_cells(std::move(points), plane ? plane_cells : line_cells));
 }
 
 }  // namespace assay::harness

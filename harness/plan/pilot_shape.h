@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "harness/pilot/pilot.h"
-#include "harness/plan/critical.h"
 #include "harness/plan/outcome.h"
+#include "harness/plan/sizes.h"
 #include "stats/gates/assumption_gates.h"
 
 namespace assay::harness {
@@ -48,5 +48,9 @@ bool hides(std::span<const double> values, double mean, double end);
 /// Every end that a decision needs is finite, and a pilot saw few values in the outer half before
 /// one, or none that vary. Two means are bet on only if both are constant.
 bool bets_on_range(const Question& question, const Pilots& pilots);
+
+/// Gives the plan's method what it takes from the pilots; sets `invalid` if they lack it. Rows of a
+/// file are their own pilot, both sides together; beside drawn values they are not used.
+void freeze(const Question& question, const Pilots& pilots, Plan& plan);
 
 }  // namespace assay::harness

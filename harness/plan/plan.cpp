@@ -7,18 +7,15 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "harness/plan/critical.h"
-#include "harness/plan/drawn_order.h"
 #include "harness/plan/gate_text.h"
+#include "harness/plan/independence.h"
 #include "harness/plan/looks.h"
 #include "harness/plan/pilot_shape.h"
-#include "harness/plan/rows.h"
-#include "harness/plan/secondaries.h"
-#include "harness/question/declared_range.h"
+#include "harness/plan/sizes.h"
+#include "harness/question/question_sources.h"
 #include "harness/sampling/pool.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/methods.h"
-#include "harness/theta/scale.h"
 #include "harness/theta/theta.h"
 #include "stats/gates/averages_gate.h"
 
@@ -113,7 +110,7 @@ std::string caution_of(const Question& question, const Pilots& pilots) {
 /// fewest secondaries that the method takes.
 std::uint64_t choose_method(const Question& question, const FamilyPlace& place,
                             const Pilots& pilots, std::uint64_t most, Plan& plan) {
-  const std::uint64_t used = largest_look(question, most);
+  const std::uint64_t used = std::min(most, question.test->secondaries.value_or(most));
   if (has_rows(question)) require_independent_sides(question, pilots, used);
   if (std::string reason = unusable_pilot(question, pilots); !reason.empty()) {
     plan.invalid = std::move(reason);

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <bit>
 
-#include "harness/plan/critical.h"
 #include "harness/plan/pilot_shape.h"
+#include "harness/plan/sizes.h"
 #include "harness/sampling/beyond_doubles.h"
 #include "harness/theta/constant.h"
 #include "stats/gates/assumption_gates.h"

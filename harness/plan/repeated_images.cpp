@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "harness/plan/rows.h"
+#include "harness/plan/independence.h"
 
 namespace assay::harness {
 namespace {

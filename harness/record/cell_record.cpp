@@ -9,7 +9,7 @@
 
 #include "harness/draws/cell_close_up.h"
 #include "harness/draws/sampler_setup.h"
-#include "harness/families/evidence_cells.h"
+#include "harness/families/law_evidence.h"
 #include "stats/cells/chi_square_fit.h"
 
 namespace assay::harness {

@@ -4,21 +4,48 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <set>
 #include <stdexcept>
 #include <utility>
 
+#include "estimators/ready_made.h"
 #include "harness/base/numbers.h"
 #include "harness/base/record_file.h"
+#include "harness/base/text_hash.h"
 #include "harness/record/comparisons.h"
+#include "harness/record/picture.h"
 #include "harness/record/record_of.h"
-#include "harness/record/shard_check.h"
 #include "harness/run/holm.h"
-#include "harness/sampling/recorded_moments.h"
 
 namespace assay::harness {
 namespace {
+
+reports::Moments recorded(const stats::Moments& moments) {
+  return {.count = moments.count,
+          .mean = moments.mean,
+          .m2 = moments.m2,
+          .m3 = moments.m3,
+          .m4 = moments.m4,
+          .minimum = moments.minimum,
+          .maximum = moments.maximum,
+          .nonzero = moments.nonzero,
+          .rest = moments.rest};
+}
+
+stats::Moments moments_of(const reports::Moments& recorded) {
+  return {.count = recorded.count,
+          .mean = recorded.mean,
+          .m2 = recorded.m2,
+          .m3 = recorded.m3,
+          .m4 = recorded.m4,
+          .minimum = recorded.minimum,
+          .maximum = recorded.maximum,
+          .nonzero = recorded.nonzero,
+          .rest = recorded.rest};
+}
 
 using reports::Verdict;
 
@@ -181,6 +208,159 @@ reports::Suite merge_suite(const std::vector<ShardFile>& shards, std::size_t ind
   return suite;
 }
 
+[[noreturn]] void refuse(const ShardFile& shard, const std::string& why) {
+  throw InputError({.file = shard.file}, why);
+}
+
+/// InputError if parts that belong together have different sizes, as after an edit by hand.
+void check_whole(const ShardFile& shard) {
+  const reports::Record& record = shard.record;
+  if (!record.shard) {
+    refuse(shard,
+           "is a whole run, not a shard; shards are made by `assay run … --shard I/N "
+           "--report json=SHARD.json`");
+  }
+  bool sound = record.shard->index >= 1 && record.shard->index <= record.shard->count &&
+               record.shard->suites.size() == record.suites.size();
+  for (std::size_t i = 0; sound && i < record.suites.size(); ++i) {
+    const reports::Suite& suite = record.suites[i];
+    const reports::ShardSuite& part = record.shard->suites[i];
+    sound = part.pictures.size() == suite.estimators.size() &&
+            part.results.size() == suite.tests.size();
+    for (std::size_t k = 0; sound && k < suite.tests.size(); ++k) {
+      const reports::ShardTest& result = part.results[k];
+      const std::size_t channels = suite.tests[k].channels.size();
+      sound = result.log_p.size() == channels && (!result.inside || result.weight > 0);
+    }
+  }
+  if (!sound)
+    refuse(shard, "its `shard` does not fit its tests: was it edited? Run the shard again");
+}
+
+struct Property {
+  const char* name;
+  std::string (*of)(const reports::Record&);
+  const char* mend;
+};
+
+std::string seeds(const reports::Record& record) {
+  std::string text;
+  for (const reports::Suite& suite : record.suites) text += fmt::format(" {}", suite.seed);
+  return text.substr(text.empty() ? 0 : 1);
+}
+
+std::string digests(const reports::Record& record) {
+  std::string text;
+  for (const reports::ShardSuite& suite : record.shard->suites) text += " " + suite.digest;
+  return text.substr(text.empty() ? 0 : 1);
+}
+
+std::string alphas(const reports::Record& record) {
+  std::string text;
+  for (const reports::Suite& suite : record.suites) {
+    text += fmt::format(" {} {}", suite.alpha, suite.beta);
+  }
+  return text.substr(text.empty() ? 0 : 1);
+}
+
+const Property properties[] = {
+    {"the number of shards",
+     [](const reports::Record& r) { return std::to_string(r.shard->count); },
+     "run all of them as --shard I/N with one N"},
+    {"the program's version",
+     [](const reports::Record& r) { return r.tool.version + " " + r.tool.commit; },
+     "run all shards by one version of assay"},
+    {"the options", [](const reports::Record& r) { return r.shard->options; },
+     "run all shards by one command, but for --shard and --report"},
+    {"the seed", seeds, "give all shards one --seed"},
+    {"alpha and beta", alphas, "run all shards with one --alpha"},
+    {"the digest of the suites and the data they name", digests,
+     "run all shards on the same files"},
+    {"the compiler", [](const reports::Record& r) { return r.environment.compiler; },
+     "run all shards by one build"},
+    {"the instruction set that rays are traced with",
+     [](const reports::Record& r) { return r.environment.isa; },
+     "run all shards on machines of one kind"}};
+
+void check_same(const ShardFile& first, const ShardFile& other) {
+  for (const Property& property : properties) {
+    const std::string here = property.of(other.record);
+    const std::string there = property.of(first.record);
+    if (here == there) continue;
+    refuse(other, fmt::format("is no part of the run that `{}` is of: {} is `{}` here and `{}` "
+                              "there; {}",
+                              first.file, property.name, here, there, property.mend));
+  }
+}
+
+/// A hash of the suite's text and its data, which all shards must share.
+std::string digest_of(const SuiteRun& run) {
+  std::uint64_t hash = text_hash(run.suite.text);
+  for (const EstimatorEntry& entry : run.suite.estimators) {
+    const auto prepared = run.estimators.find(entry.name);
+    if (prepared == run.estimators.end()) continue;  // of a skipped suite
+    if (const auto rows = recorded::observations_digest(*prepared->second.setup)) {
+      hash = text_hash(fmt::format("{:016x}", *rows), hash);
+      continue;
+    }
+    const std::string file = prepared->second.setup->data_file();
+    if (file.empty()) continue;
+    std::ifstream stream(file, std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    hash = text_hash(text, hash);
+  }
+  return fmt::format("{:016x}", hash);
+}
+
+std::uint64_t position_of(const std::string& estimator, const Suite& suite) {
+  std::uint64_t position = 0;
+  while (suite.estimators[position].name != estimator) ++position;
+  return position;
+}
+
+reports::ShardPicture picture_of(const Picture& picture, const SuiteRun& run) {
+  const Pictured shown = pictured(picture, run);
+  reports::ShardPicture part{.position = position_of(shown.name, run.suite),
+                             .by_tests = !picture.own,
+                             .secondaries = shown_by(picture, run),
+                             .drawn = shown.drawn,
+                             .averaged = shown.averaged,
+                             .image = shown.image,
+                             .channels = {}};
+  for (const PicturedChannel& channel : shown.channels) {
+    part.channels.push_back({channel.name, channel.mean, recorded(channel.moments)});
+  }
+  return part;
+}
+
+std::uint64_t position_of(const TestEntry& test, const Suite& suite) {
+  return static_cast<std::uint64_t>(&test - suite.tests.data());
+}
+
+reports::ShardTest test_of(const TestOutcome& outcome, const SuiteRun& run) {
+  const FamilyMember member = member_of(outcome);
+  return {.position = position_of(*outcome.question.test, run.suite),
+          .inside = outcome.place.inside,
+          .weight = member.weight,
+          .untested = member.untested,
+          .log_p = member.log_p,
+          .compared = compared_by(outcome.question)};
+}
+
+/// InputError unless the records are shards of one run, each at most once.
+void check_shards(const std::vector<ShardFile>& shards) {
+  std::map<std::uint64_t, std::string> seen;
+  for (const ShardFile& shard : shards) {
+    check_whole(shard);
+    check_same(shards.front(), shard);
+    const std::uint64_t index = shard.record.shard->index;
+    const auto [first, is_new] = seen.emplace(index, shard.file);
+    if (is_new) continue;
+    refuse(shard, fmt::format("is shard {} of {}, and so is `{}`; give each shard once", index,
+                              shard.record.shard->count, first->second));
+  }
+}
+
 }  // namespace
 
 std::string missing_shards(const std::vector<ShardFile>& shards) {
@@ -233,6 +413,45 @@ int merge_shards(const MergeArguments& arguments, const Output& output) {
   if (missing.empty()) return exit_code(record, output.inconclusive);
   fmt::print(stderr, "assay: {}\n", missing);
   return 1;
+}
+
+void add_shard(const std::vector<std::unique_ptr<SuiteRun>>& runs, const RunOptions& options,
+               reports::Record& record) {
+  const auto [index, count] = *options.shard;
+  reports::Shard shard{.index = index,
+                       .count = count,
+                       .options = options.command + options_text(options.selection),
+                       .suites = {}};
+  for (const auto& run : runs) {
+    reports::ShardSuite suite{.digest = digest_of(*run),
+                              .tests = run->suite.tests.size(),
+                              .pictures = {},
+                              .results = {},
+                              .elsewhere = {}};
+    for (const Picture& picture : run->pictures) {
+      suite.pictures.push_back(picture_of(picture, *run));
+    }
+    for (const TestWork& work : run->tests) suite.results.push_back(test_of(work.outcome, *run));
+    for (const Untested& each : run->untested) {
+      suite.results.push_back({.position = position_of(*each.test, run->suite)});
+    }
+    for (const Elsewhere& each : run->elsewhere) {
+      suite.elsewhere.push_back({.shard = each.shard,
+                                 .position = position_of(*each.test, run->suite),
+                                 .id = each.test->id,
+                                 .name = each.test->name,
+                                 .claim = each.test->claim.text,
+                                 .line = each.test->where.line});
+    }
+    // The record has its tests in this order.
+    std::ranges::sort(suite.results, {}, &reports::ShardTest::position);
+    shard.suites.push_back(std::move(suite));
+  }
+  record.shard = std::move(shard);
+  record.note = fmt::format(
+      "shard {} of {}: `assay merge` joins the records of all shards and adjusts their p-values by "
+      "Holm's method",
+      index, count);
 }
 
 }  // namespace assay::harness

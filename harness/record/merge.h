@@ -2,10 +2,12 @@
 
 // Joins the shards of one run to the record of the whole run.
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "harness/record/output.h"
+#include "harness/record/record_of.h"
 
 namespace assay::harness {
 
@@ -30,5 +32,9 @@ struct MergeArguments {
 };
 /// Reads, merges and reports. Returns the exit code of the whole run, 1 if a shard is missing.
 int merge_shards(const MergeArguments& arguments, const Output& output);
+
+/// Fills in `record.shard`, and adds a note on the basis of a shard's verdicts.
+void add_shard(const std::vector<std::unique_ptr<SuiteRun>>& runs, const RunOptions& options,
+               reports::Record& record);
 
 }  // namespace assay::harness

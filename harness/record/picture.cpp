@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "harness/base/numbers.h"
-#include "harness/plan/rows.h"
+#include "harness/plan/independence.h"
 #include "harness/record/image_record.h"
-#include "harness/theta/inversion.h"
+#include "harness/theta/evidence.h"
 #include "stats/gates/independence_gates.h"
 #include "stats/means/student_t.h"
 #include "stats/variances/influence.h"

@@ -13,8 +13,8 @@
 #include "harness/record/environment.h"
 #include "harness/record/image_record.h"
 #include "harness/record/law_picture.h"
+#include "harness/record/merge.h"
 #include "harness/record/picture.h"
-#include "harness/record/shard_record.h"
 #include "harness/run/pools.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/methods.h"
@@ -36,14 +36,6 @@ reports::Verdict expected_verdict(Expectation expect) {
       break;
   }
   return reports::Verdict::error;
-}
-
-reports::Histogram histogram_of(const Histogram& histogram) {
-  return {.low = histogram.low,
-          .high = histogram.high,
-          .counts = histogram.counts,
-          .below = histogram.below,
-          .above = histogram.above};
 }
 
 reports::Sample sample_of(const TestOutcome& outcome, std::size_t subject, const Drawn& drawn,
@@ -87,7 +79,7 @@ reports::Sample sample_of(const TestOutcome& outcome, std::size_t subject, const
     sample.skewness = number(moments.skewness());
     sample.kurtosis = number(moments.kurtosis());
   }
-  sample.histogram = histogram_of(details.histogram);
+  sample.histogram = details.histogram;
   if (spread && !drawn.pool().is_ready_made()) {
     const std::span<const double> values = drawn.values(index);
     sample.quantiles =

@@ -63,13 +63,11 @@ Value parameters_of(const reports::Sample& sample, const Location& where) {
 
 void read_keys(const reports::Test& recorded, TestEntry& test) {
   const Location where{.file = recorded.file};
-  std::vector<Value::Member> keys;
-  if (!recorded.over.empty()) keys.emplace_back("over", read_flow(recorded.over, where));
+  if (!recorded.over.empty()) test.over = read_sweep(read_flow(recorded.over, where));
   if (!recorded.reference.empty()) {
-    keys.emplace_back("reference", Value::scalar(recorded.reference, where));
+    read_reference(Value::scalar(recorded.reference, where), test);
   }
-  if (!recorded.cost.empty()) keys.emplace_back("cost", Value::scalar(recorded.cost, where));
-  read_test_keys({}, Value::map(std::move(keys), where), test);
+  if (!recorded.cost.empty()) test.cost = read_cost(Value::scalar(recorded.cost, where));
 }
 
 bool has_relative_effect(const Claim& claim) {
@@ -132,7 +130,7 @@ stats::LookSchedule recorded_looks(const Question& question, const Recorded& rec
   const reports::Test& test = recorded.test;
   const stats::ErrorRates errors{.alpha = test.alpha.value_or(recorded.suite.alpha),
                                  .beta = test.beta.value_or(recorded.suite.beta),
-                                 .two_sided = is_two_sided(question.test->claim.relation)};
+                                 .two_sided = two_sided(question)};
   if (test.looks.empty()) return stats::schedule_looks({most_recorded(test)}, law, errors);
   return stats::schedule_looks(test.planned_looks, law, errors);
 }

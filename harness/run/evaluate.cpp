@@ -6,11 +6,10 @@
 #include <cmath>
 
 #include "harness/base/numbers.h"
-#include "harness/plan/critical.h"
-#include "harness/plan/drawn_order.h"
 #include "harness/plan/gate_text.h"
+#include "harness/plan/independence.h"
 #include "harness/plan/plan.h"
-#include "harness/plan/rows.h"
+#include "harness/plan/sizes.h"
 #include "harness/run/activation.h"
 #include "harness/run/found_effect.h"
 #include "harness/run/image_judge.h"

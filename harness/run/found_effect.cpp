@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "harness/base/numbers.h"
-#include "harness/plan/sample_size.h"
+#include "harness/plan/sizes.h"
 #include "harness/run/image_judge.h"
 #include "harness/theta/theta.h"
 
@@ -95,8 +95,8 @@ void note_sizes(TestOutcome& outcome, const DrawnTest& test) {
     const bool equivalence = channel.regions.relation == Relation::within;
     if (!equivalence && !channel.regions.detect) continue;
     const std::optional<double> power =
-        power_at(outcome.question, full_size(outcome), outcome.plan, observed,
-                 equivalence ? 0 : *channel.regions.detect);
+        outcome.question.theta->power(outcome.question, full_size(outcome), outcome.plan, observed,
+                                      equivalence ? 0 : *channel.regions.detect);
     if (power) outcome.power = std::min(*power, outcome.power.value_or(1));
   }
 }

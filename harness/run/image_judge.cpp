@@ -7,8 +7,8 @@
 
 #include "estimators/ready_made.h"
 #include "harness/base/parallel.h"
-#include "harness/plan/critical.h"
-#include "harness/sampling/picture_look.h"
+#include "harness/plan/sizes.h"
+#include "harness/sampling/element_sums.h"
 #include "harness/sampling/pool.h"
 #include "stats/images/image_dependence.h"
 #include "stats/images/image_windows.h"

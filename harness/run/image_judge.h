@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/plan/sample_size.h"
+#include "harness/plan/sizes.h"
 #include "harness/run/evaluate.h"
 
 namespace assay::harness {

@@ -5,7 +5,7 @@
 #include "estimators/core/quoting.h"
 #include "estimators/ready_made.h"
 #include "harness/draws/consistency_setup.h"
-#include "harness/question/declared_range.h"
+#include "harness/question/question_sources.h"
 #include "harness/sampling/pool.h"
 
 namespace assay::harness {

@@ -8,7 +8,7 @@
 #include "estimators/core/program_path.h"
 #include "estimators/ready_made.h"
 #include "harness/base/interrupt.h"
-#include "harness/pilot/pilot_run.h"
+#include "harness/pilot/pilot.h"
 #include "harness/plan/plan.h"
 #include "harness/run/image_memory.h"
 #include "harness/run/picture_stream.h"

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "harness/draws/consistency_setup.h"
-#include "harness/plan/drawn_order.h"
+#include "harness/plan/independence.h"
 
 namespace assay::harness {
 namespace {

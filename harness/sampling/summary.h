@@ -13,19 +13,14 @@
 
 #include "estimators/cost.h"
 #include "harness/sampling/element_sums.h"
+#include "reports/record/record.h"
 #include "stats/basics/joint_moments.h"
 #include "stats/basics/moments.h"
 
 namespace assay::harness {
 
 /// Counts in equal bins of [low, high), and below and above it.
-struct Histogram {
-  double low = 0;
-  double high = 0;
-  std::vector<std::uint64_t> counts = {};
-  std::uint64_t below = 0;
-  std::uint64_t above = 0;
-
+struct Histogram : reports::Histogram {
   void add(double value) {
     if (value < low) {
       ++below;

@@ -9,7 +9,6 @@
 #include "harness/base/text_file.h"
 #include "harness/suite/suite_entries.h"
 #include "harness/suite/suite_keys.h"
-#include "harness/suite/suite_statements.h"
 #include "harness/suite/yaml.h"
 
 namespace assay::harness {

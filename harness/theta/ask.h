@@ -3,6 +3,7 @@
 // Binds claims to the estimators of a suite, and checks what they ask for.
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -43,5 +44,18 @@ inline bool exceeds_its_error(double value, double standard_error) {
 /// Suggests the per cent spelling of an absolute margin larger than its reference `size`; "" for
 /// other margins.
 std::string missing_per_cent(const Margin& margin, double size);
+
+// The scale that theta is on: absolute, relative to a mean, or the logarithm of a ratio.
+
+/// Divisor of a channel's theta: |reference| or |factor * other_mean| if theta is relative, else
+/// 1. `other_mean` counts only if the claim compares two.
+double unit_of_theta(const Question& question, std::size_t channel, double other_mean);
+
+/// A margin of the claim on theta's scale: ln(1 + x) for a ratio of variances.
+double margin_on_theta(const Question& question, std::size_t channel, const Margin& margin);
+
+/// True if a margin of the test is given in per cent, or as a number.
+bool has_relative_margin(const TestEntry& test);
+bool has_absolute_margin(const TestEntry& test);
 
 }  // namespace assay::harness

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "harness/question/declared_range.h"
+#include "harness/question/question_sources.h"
 #include "harness/theta/theta.h"
 
 namespace assay::harness {
@@ -128,6 +128,20 @@ std::optional<ConstantVerdict> judge_constant_variance(const Question& question,
       fmt::format("every observation is {:.10g}, so that no variance was seen that could be too "
                   "large; values never seen are not ruled out",
                   data.moments.mean)};
+}
+
+std::string lack_of_variance(const Question& question, std::size_t channel,
+                             std::span<const ChannelData> data) {
+  for (std::size_t subject = 0; subject < question.compared(); ++subject) {
+    if (is_constant(question, subject, channel, data[subject].moments)) {
+      return fmt::format(
+          "every observation of `{}` is {:.10g} but for rounding: a sample without spread says "
+          "nothing of a variance, and a rare value may be unseen; take more observations{}",
+          question.subjects[subject].estimator->name, data[subject].moments.mean,
+          question.of_two() ? ", or compare the other with a number" : "");
+    }
+  }
+  return "";
 }
 
 }  // namespace assay::harness

@@ -43,4 +43,8 @@ std::optional<ConstantVerdict> judge_constant_variance(const Question& question,
 double unseen_shift(const Question& question, std::size_t subject, std::size_t channel,
                     const ChannelData& data, double level);
 
+/// Why a channel's variance cannot be tested: a sample without spread; "" if it can.
+std::string lack_of_variance(const Question& question, std::size_t channel,
+                             std::span<const ChannelData> data);
+
 }  // namespace assay::harness

@@ -64,9 +64,6 @@ struct Frozen {
 
 struct Method;
 
-/// Part of the pilots that a method's evidence needs.
-enum class FromPilot { nothing, cells };
-
 /// Other properties of a method.
 struct MethodTraits {
   bool exact = false;               ///< The level holds at every sample size.
@@ -78,7 +75,7 @@ struct MethodTraits {
   bool of_distinct_values = false;  ///< Coarsely rounded values break its level.
   bool joins_channels = false;      ///< compares all channels of two estimators together
   stats::LookLaw over_looks = stats::LookLaw::unknown;  ///< Of its p-values at several looks.
-  FromPilot from_pilot = FromPilot::nothing;
+  bool cells_of_pilots = false;                         ///< Counts in cells that the pilots choose.
   const stats::ExactPlanning* plans = nullptr;  ///< Planning of an exact method of a mean.
 };
 

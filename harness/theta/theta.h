@@ -4,6 +4,7 @@
 // derives from Theta and answers all that others ask of it. families/ holds one file a family.
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,7 +15,7 @@
 #include "harness/theta/family.h"
 #include "harness/theta/gate.h"
 #include "harness/theta/method.h"
-#include "harness/theta/planned_channel.h"
+#include "stats/means/betting_mean.h"
 
 namespace assay::harness {
 
@@ -24,6 +25,29 @@ struct ChannelOutcome;
 struct DrawnTest;
 struct Plan;
 struct TestOutcome;
+
+/// A channel's law as planning takes it: a secondary's standard deviation, at the pilot's upper
+/// limit, and the unit of margins. A ratio has the deviations of relative influence values.
+struct PlannedChannel {
+  Regions regions = {};
+  double standard_deviation = 0;
+  double other_deviation = 0;  ///< The second subject's, times the factor.
+  double unit = 1;             ///< Theta times this is in the estimator's unit.
+  double reference_error = 0;
+  bool unseen = false;      ///< The deviation is what a constant pilot may have missed.
+  stats::Range range = {};  ///< Declared range of one mean's values.
+  double null_value = 0;    ///< The value of one mean where theta is 0.
+  std::shared_ptr<const stats::ValueCells> law = {};  ///< Values of a secondary, for bets.
+};
+
+/// A look's levels, and its secondaries of each subject, or all that it has.
+struct TestSize {
+  ErrorShare share;
+  std::uint64_t secondaries;
+};
+
+/// More secondaries than any test is given: a larger plan is impossible.
+inline constexpr std::uint64_t impossible_secondaries = std::uint64_t{1} << 53;
 
 /// Standard errors of theta's estimate where theta = 0. The error `drawn` is new in every run. The
 /// error `fixed` is the same in all: a reference's own error, recorded data.

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "harness/pilot/pilot_run.h"
-#include "harness/plan/frozen.h"
+#include "harness/pilot/pilot.h"
+#include "harness/plan/pilot_shape.h"
 #include "harness/plan/plan.h"
 #include "harness/run/evaluate.h"
 #include "harness/run/pools.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/pilot/pilot_run.h"
+#include "harness/pilot/pilot.h"
 #include "harness/plan/plan.h"
 #include "tests/harness/questions.h"
 #include "tests/harness/running.h"

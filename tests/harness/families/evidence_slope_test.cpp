@@ -1,13 +1,12 @@
-#include "harness/families/evidence_slope.h"
-
 #include <gmock/gmock.h>
 
 #include <array>
 #include <cmath>
 
-#include "harness/plan/critical.h"
+#include "harness/families/slope.h"
 #include "harness/plan/looks.h"
 #include "harness/plan/outcome.h"
+#include "harness/plan/sizes.h"
 #include "harness/theta/decision.h"
 #include "harness/theta/methods.h"
 #include "harness/theta/theta.h"

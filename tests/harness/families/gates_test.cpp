@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "harness/plan/critical.h"
 #include "harness/plan/looks.h"
 #include "harness/plan/outcome.h"
+#include "harness/plan/sizes.h"
 #include "harness/theta/methods.h"
 #include "harness/theta/theta.h"
 #include "tests/harness/questions.h"

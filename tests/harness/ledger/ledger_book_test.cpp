@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "estimators/core/value.h"
-#include "harness/ledger/ledger_line.h"
 
 namespace assay::harness {
 namespace {

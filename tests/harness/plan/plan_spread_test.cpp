@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "harness/plan/critical.h"
+#include "harness/plan/sizes.h"
 #include "stats/planning/power.h"
 #include "tests/harness/planned.h"
 

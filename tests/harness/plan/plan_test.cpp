@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "harness/plan/critical.h"
+#include "harness/plan/sizes.h"
 #include "harness/run/planned_run.h"
 #include "stats/planning/power.h"
 #include "stats/tails/tails.h"

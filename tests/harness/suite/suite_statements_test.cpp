@@ -1,7 +1,6 @@
-#include "harness/suite/suite_statements.h"
-
 #include <gtest/gtest.h>
 
+#include "harness/suite/suite_entries.h"
 #include "reports/record/statements.h"
 #include "tests/harness/running.h"
 

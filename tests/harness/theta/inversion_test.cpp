@@ -1,10 +1,9 @@
-#include "harness/theta/inversion.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
+#include "harness/theta/evidence.h"
 #include "stats/means/student_t.h"
 #include "tests/stats/samples.h"
 

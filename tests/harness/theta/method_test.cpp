@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "harness/theta/ask.h"
 #include "harness/theta/methods.h"
-#include "harness/theta/scale.h"
 #include "stats/tails/tails.h"
 #include "tests/harness/questions.h"
 #include "tests/harness/refusal.h"

@@ -1,4 +1,4 @@
-#include "harness/plan/rows.h"
+#include "harness/plan/independence.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "estimators/ready_made.h"
-#include "harness/plan/critical.h"
+#include "harness/plan/gate_text.h"
+#include "harness/plan/sizes.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/constant.h"
 #include "harness/theta/gate.h"
@@ -328,6 +329,37 @@ void require_lasting_rows(const Suite& suite, const std::string& record) {
                     "them to a file and test that: its record can be replayed",
                     entry.name,
                     name == "-" || name == "/dev/stdin" ? "standard input" : "`" + name + "`"));
+  }
+}
+
+bool shows_order(const Subject& subject) {
+  return !is_recorded(subject) && !subject.setup->image();
+}
+
+std::string why_dependent(const Subject& subject, std::span<const stats::Gate> order,
+                          std::vector<Gate>& gates) {
+  std::string why;
+  for (const stats::Gate& gate : order) {
+    if (gate.state != stats::GateState::red) continue;
+    gates.push_back(gate_of(gate, ", " + subject.estimator->name));
+    if (!why.empty()) continue;
+    why = fmt::format(
+        "the observations of `{}` are not independent: {}; an observation may rest on its own "
+        "random numbers alone, not on what was drawn before it or beside it",
+        subject.estimator->name, red_gates({gates.back()}));
+  }
+  return why;
+}
+
+void judge_drawn_order(const Question& question, const Pilots& pilots, Plan& plan) {
+  for (const Subject& side : question.subjects) {
+    const Pilot* pilot = pilot_of(side, pilots);
+    if (!shows_order(side) || pilot == nullptr) continue;
+    for (const std::size_t channel : side.channels) {
+      if (channel >= pilot->order_gates.size()) continue;
+      std::string why = why_dependent(side, pilot->order_gates[channel], plan.gates);
+      if (plan.invalid.empty()) plan.invalid = std::move(why);
+    }
   }
 }
 

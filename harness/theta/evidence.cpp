@@ -1,4 +1,4 @@
-#include "harness/theta/inversion.h"
+#include "harness/theta/evidence.h"
 
 #include <algorithm>
 #include <cmath>

@@ -47,4 +47,18 @@ stats::Moments as_tested(const Plan& plan, std::size_t subject, std::size_t chan
 /// device: they cannot be replayed.
 void require_lasting_rows(const Suite& suite, const std::string& record);
 
+// The order of drawn observations shows whether they are independent.
+
+/// True if a subject's observations are drawn one by one, and not as pictures. The order of rows is
+/// judged in rows.h.
+bool shows_order(const Subject& subject);
+
+/// Why values with these gates on their order are not independent, or "". Adds red gates.
+std::string why_dependent(const Subject& subject, std::span<const stats::Gate> order,
+                          std::vector<Gate>& gates);
+
+/// Judges what estimators drew in their pilots. Dependence makes every method invalid, a forced one
+/// as well.
+void judge_drawn_order(const Question& question, const Pilots& pilots, Plan& plan);
+
 }  // namespace assay::harness

@@ -1,0 +1,106 @@
+#include "harness/plan/sizes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimators/ready_made.h"
+#include "harness/plan/independence.h"
+#include "harness/plan/looks.h"
+#include "harness/theta/decision.h"
+#include "stats/tails/tails.h"
+
+namespace assay::harness {
+
+double critical_value(double alpha, bool two_sided) {
+  return stats::normal_quantile({stats::Tail::upper, std::log(two_sided ? alpha / 2 : alpha)});
+}
+
+double smallest_share(const Question& question, double share) {
+  const TestEntry& test = *question.test;
+  const bool planned = test.detect || test.claim.relation == Relation::within;
+  return planned && !test.secondaries ? share / static_cast<double>(most_looks) : share;
+}
+
+double smallest_level(const Question& question, const FamilyPlace& place) {
+  return smallest_share(question, place.share.alpha);
+}
+
+stats::ShapeLimits shape_limits(double critical) {
+  const double log_tail = stats::normal_tails(critical).upper;
+  const double nearer =
+      stats::normal_quantile({stats::Tail::upper, log_tail + std::log(level_factor)});
+  const double inflation = critical / nearer;
+  return {.excess_kurtosis = std::min(0.2, 2 * (inflation * inflation - 1))};
+}
+
+stats::ErrorRates planned_rates(const ErrorShare& share, const Regions& regions) {
+  if (regions.relation == Relation::within) {
+    return {.alpha = share.beta, .beta = share.beta / 2, .two_sided = false};
+  }
+  if (regions.proof()) return {.alpha = share.beta, .beta = share.beta, .two_sided = false};
+  return {.alpha = share.alpha, .beta = share.beta, .two_sided = regions.two_sided()};
+}
+
+std::uint64_t fewest_secondaries(const Question& question, std::uint64_t look) {
+  std::uint64_t fewest = look;
+  for (const Subject& side : question.subjects) fewest = std::min(fewest, side.secondaries(look));
+  return fewest;
+}
+
+stats::SampleSizes sizes_of(const Question& question, std::uint64_t look) {
+  const auto taken = [&](std::size_t subject) {
+    return static_cast<double>(question.subjects[subject].secondaries(look));
+  };
+  return {.x = taken(0), .y = taken(question.of_two() ? 1 : 0)};
+}
+
+std::uint64_t secondaries_of_floor(const Question& question, const Plan& plan) {
+  std::uint64_t floor = least_secondaries;
+  for (std::size_t i = 0; i < question.subjects.size(); ++i) {
+    const Setup& setup = *question.subjects[i].setup;
+    if (setup.observations() || setup.image() || recorded::keeps_files(setup)) continue;
+    const std::uint64_t each = std::max<std::uint64_t>(1, plan.primaries[i]);
+    floor = std::max(floor, (floor_of_evidence + each - 1) / each);
+  }
+  return floor;
+}
+
+std::uint64_t whole_secondaries(double count) {
+  return count < 0x1p53 ? static_cast<std::uint64_t>(std::ceil(count)) : impossible_secondaries;
+}
+
+bool all_piloted(const Question& question, const Pilots& pilots) {
+  return std::ranges::all_of(question.subjects,
+                             [&](const Subject& s) { return pilot_of(s, pilots) != nullptr; });
+}
+
+double distance_of(const Regions& regions) {
+  if (regions.relation == Relation::within) return regions.within;
+  return regions.detect ? *regions.detect - regions.allow : 0;
+}
+
+std::optional<std::uint64_t> most_over_channels(const Question& question,
+                                                const SizeOfChannel& of_channel) {
+  std::optional<std::uint64_t> most;
+  for (std::size_t channel = 0; channel < question.channel_count(); ++channel) {
+    const std::optional<std::uint64_t> count = of_channel(channel);
+    if (count) most = std::max(most.value_or(0), *count);
+  }
+  return most;
+}
+
+std::optional<std::uint64_t> most_of_channels(const Question& question,
+                                              const SizeOfChannel& of_channel) {
+  const auto most = most_over_channels(question, of_channel);
+  if (!most) return most;
+  return std::clamp(*most, least_secondaries, impossible_secondaries);
+}
+
+std::optional<double> detectable_effect(const Question& question, const TestSize& size,
+                                        const Plan& plan, const PlannedChannel& channel) {
+  if (channel.regions.relation == Relation::within) return std::nullopt;  // it finds nothing
+  const std::optional<double> found = question.theta->detectable(question, size, plan, channel);
+  return found && std::isfinite(*found) ? found : std::nullopt;
+}
+
+}  // namespace assay::harness

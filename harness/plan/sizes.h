@@ -1,0 +1,88 @@
+#pragma once
+
+// Sizes of tests: levels at which they are planned, secondaries of each subject, floors.
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "harness/pilot/pilot.h"
+#include "harness/plan/outcome.h"
+#include "harness/question/question.h"
+#include "harness/theta/decision.h"
+#include "harness/theta/family.h"
+#include "harness/theta/theta.h"
+#include "stats/gates/assumption_gates.h"
+#include "stats/planning/power.h"
+
+namespace assay::harness {
+
+/// The normal quantile beyond which a test at this level rejects.
+double critical_value(double alpha, bool two_sided);
+
+// Fewer observations do not show their own shape.
+inline constexpr std::uint64_t least_secondaries = 100;
+// Size of a test without `detect`.
+inline constexpr std::uint64_t usual_secondaries = 1000;
+
+// Primaries below which no mean without a declared range is decided. No test knows of a rare bright
+// value that it never drew (Bahadur & Savage 1956).
+inline constexpr std::uint64_t floor_of_evidence = std::uint64_t{1} << 14;
+
+// A method is taken to keep its level up to this factor.
+inline constexpr double level_factor = 1.25;
+
+// A test has at most so many looks: one may end after 1/181 of the last.
+inline constexpr std::size_t most_looks = 16;
+
+/// An even part of a share, for a look of this test. A look with a smaller level need not keep it
+/// better than the part.
+double smallest_share(const Question& question, double share);
+
+/// The level up to which a method of this test must keep its own.
+double smallest_level(const Question& question, const FamilyPlace& place);
+
+/// Limits of the pilot's gates at this critical value x. At the excess kurtosis (.2 at most)
+/// chi-square and F have 1.25 times their nominal level. There x is divided by sqrt(1 + excess /
+/// 2).
+stats::ShapeLimits shape_limits(double critical);
+
+/// An alarm rejects the claimed region at alpha and misses with beta. A proof rejects the forbidden
+/// region at beta. For `within` both sides are rejected, and each misses with beta / 2.
+stats::ErrorRates planned_rates(const ErrorShare& share, const Regions& regions);
+
+/// Secondaries of the subject with fewest in a look of this size.
+std::uint64_t fewest_secondaries(const Question& question, std::uint64_t look);
+
+/// Sizes of the two subjects; a single one is both.
+stats::SampleSizes sizes_of(const Question& question, std::uint64_t look);
+
+/// Secondaries that the floor of evidence asks for, at least `least_secondaries`. Rows
+/// of a file, pictures and files that a program writes are as many as somebody paid for: they have
+/// no floor.
+std::uint64_t secondaries_of_floor(const Question& question, const Plan& plan);
+
+/// A computed count, rounded up; `impossible_secondaries` if it is too large or NaN.
+std::uint64_t whole_secondaries(double count);
+
+/// True if every subject has a pilot.
+bool all_piloted(const Question& question, const Pilots& pilots);
+
+/// The distance to find from the claimed region's edge; 0 if there is none.
+double distance_of(const Regions& regions);
+
+using SizeOfChannel = std::function<std::optional<std::uint64_t>(std::size_t channel)>;
+
+/// The most secondaries that a channel needs; nullopt if none says.
+std::optional<std::uint64_t> most_over_channels(const Question& question,
+                                                const SizeOfChannel& of_channel);
+/// The same, `least_secondaries` at least and `impossible_secondaries` at most.
+std::optional<std::uint64_t> most_of_channels(const Question& question,
+                                              const SizeOfChannel& of_channel);
+
+/// The least theta that a test of that size finds with probability 1 - beta. Nullopt if no formula
+/// tells, and `within`.
+std::optional<double> detectable_effect(const Question& question, const TestSize& size,
+                                        const Plan& plan, const PlannedChannel& channel);
+
+}  // namespace assay::harness
