@@ -25,8 +25,16 @@ std::vector<Marginal> directions(double highest_theta) {
   return {{"theta", 0, highest_theta, theta}, {"phi", 0, 2 * std::numbers::pi, phi}};
 }
 
+/// Writes numbers up to the first that throws, and returns how many. Throws if that is the first.
 std::size_t each(auto in, auto out, auto number) {
-  std::ranges::transform(in, out.begin(), number);
+  for (std::size_t i = 0; i < in.size(); ++i) {
+    try {
+      out[i] = number(in[i]);
+    } catch (...) {
+      if (i == 0) throw;
+      return i;
+    }
+  }
   return in.size();
 }
 

@@ -90,8 +90,6 @@ class Sampler {
   virtual std::size_t lobe_densities(int lobe, std::span<const Point> points,
                                      std::span<double> out) const;
   virtual std::size_t evaluations(std::span<const Point> points, std::span<double> out) const;
-  /// True if it is such a sampler.
-  virtual bool is_elsewhere() const { return false; }
   /// CPU seconds that other processes have spent so far on what the calling thread asked.
   virtual double seconds_elsewhere() const { return 0; }
 };

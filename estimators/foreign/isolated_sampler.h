@@ -34,7 +34,6 @@ class IsolatedSampler final : public Sampler {
   std::size_t lobe_densities(int lobe, std::span<const Point> points,
                              std::span<double> out) const override;
   std::size_t evaluations(std::span<const Point> points, std::span<double> out) const override;
-  bool is_elsewhere() const override { return true; }
   double seconds_elsewhere() const override;
 
  private:

@@ -41,12 +41,6 @@ struct JudgedDraw {
   double density = 0;  ///< declared at its point, if asked for
 };
 
-JudgedDraw judged_alone(const Sampler& sampler, const SamplerDraw& draw) {
-  if (needs_no_density(sampler, draw)) return {draw, without_density(draw)};
-  const double density = sampler.density(draw.point);
-  return {draw, with_density(draw, density, sampler.evaluate(draw.point)), density};
-}
-
 /// Draws to compare with density() and evaluate(), and their indices.
 struct Compared {
   std::vector<std::size_t> places = {};
@@ -77,7 +71,7 @@ std::size_t ask(const Sampler& sampler, Compared& some, std::size_t draws) {
     known = write_some(std::span(some.points).first(known), some.evaluations,
                        [&](auto points, auto out) { return sampler.evaluations(points, out); });
     return known < some.points.size() ? some.places[known] : draws;
-  } catch (const std::runtime_error&) {
+  } catch (...) {
     if (some.places[0] == 0) throw;
     return some.places[0];
   }
@@ -118,13 +112,7 @@ class ConsistencyEstimator final : public Estimator {
 
  private:
   JudgedDraw next(Stream& random) {
-    const Sampler& sampler = setup_.sampler();
-    if (sampler.is_elsewhere()) {
-      return ahead_.of(random, [&](auto streams) { return judged(setup_.named(), streams); });
-    }
-    const SamplerDraw draw = sampler.sample(random);
-    sound(setup_.named(), draw);
-    return judged_alone(sampler, draw);
+    return ahead_.of(random, [&](auto streams) { return judged(setup_.named(), streams); });
   }
 
   const ConsistencySetup& setup_;
@@ -135,7 +123,8 @@ class ConsistencyEstimator final : public Estimator {
 }  // namespace
 
 double inconsistency(const Sampler& sampler, const SamplerDraw& draw) {
-  return judged_alone(sampler, draw).difference;
+  if (needs_no_density(sampler, draw)) return without_density(draw);
+  return with_density(draw, sampler.density(draw.point), sampler.evaluate(draw.point));
 }
 
 ConsistencySetup::ConsistencySetup(NamedSampler named)

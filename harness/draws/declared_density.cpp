@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -25,7 +26,10 @@ Panels affordable(Panels panels) {
 Densities checked(const NamedSampler& named, Densities densities) {
   return [&named, densities](std::span<const Point> points, std::span<double> out) {
     const std::size_t written = densities(points, out);
-    for (std::size_t i = 0; i < written; ++i) sound_density(named, points[i], out[i]);
+    for (std::size_t i = 0; i < written; ++i) {
+      if (i > 0 && !(out[i] >= 0 && std::isfinite(out[i]))) return i;
+      sound_density(named, points[i], out[i]);
+    }
     return written;
   };
 }

@@ -86,7 +86,6 @@ TEST_F(IsolatedSampler, IsAsItsProgramSays) {
   EXPECT_EQ(sampler->domain(), Domain::interval);
   EXPECT_EQ(sampler->bounds(), (std::array<double, 2>{0, 2}));
   EXPECT_EQ(sampler->rounding(), 1e-7);
-  EXPECT_TRUE(sampler->is_elsewhere());
   const auto other = setups_[0]->samplers()[1].sampler;
   EXPECT_EQ(other->domain(), Domain::sphere);
   EXPECT_EQ(other->rounding(), 1e-9);

@@ -41,7 +41,6 @@ class Elsewhere final : public Ramp {
  public:
   explicit Elsewhere(Limits limits) : limits_(limits) {}
 
-  bool is_elsewhere() const override { return true; }
   double density(const Point& p) const override {
     require(p[0] < limits_.density_below, "density");
     return Ramp::density(p);

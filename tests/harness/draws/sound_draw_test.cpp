@@ -22,7 +22,6 @@ class Always final : public Sampler {
     double rounding = 1e-9;
     std::array<double, 2> bounds = {0, 1};
     double density = 1;
-    bool elsewhere = false;
   };
   explicit Always(Terms terms) : terms_(terms) {}
 
@@ -32,7 +31,6 @@ class Always final : public Sampler {
   double density(const Point&) const override { return terms_.density; }
   double evaluate(const Point&) const override { return 1; }
   double rounding() const override { return terms_.rounding; }
-  bool is_elsewhere() const override { return terms_.elsewhere; }
 
  private:
   Terms terms_;
@@ -160,29 +158,22 @@ std::string trouble(const Setup& setup) {
 TEST(SoundDraw, IsAskedOfEveryClaimOnDraws) {
   const SamplerDraw outside{.point = {2, 0, 0}, .density = 1, .weight = 1};
   const SamplerDraw negative{.point = {.5, 0, 0}, .density = -1, .weight = -1};
-  for (const bool elsewhere : {false, true}) {
-    const Always::Terms interval{
-        .domain = Domain::interval, .draw = outside, .elsewhere = elsewhere};
-    const Always::Terms below{
-        .domain = Domain::interval, .draw = negative, .density = -1, .elsewhere = elsewhere};
-    const std::string place = "sampler `s` drew 2, outside its interval [0, 1]";
-    const std::string density = "sampler `s` drew 0.5 with density -1: a density must be >= 0";
-    EXPECT_EQ(trouble(SamplerSetup(always(interval))), place);
-    EXPECT_EQ(trouble(ConsistencySetup(always(interval))), place);
-    EXPECT_EQ(trouble(SamplerSetup(always(below))), density);
-    EXPECT_EQ(trouble(ConsistencySetup(always(below))), density);
-  }
+  const Always::Terms interval{.domain = Domain::interval, .draw = outside};
+  const Always::Terms below{.domain = Domain::interval, .draw = negative, .density = -1};
+  const std::string place = "sampler `s` drew 2, outside its interval [0, 1]";
+  const std::string density = "sampler `s` drew 0.5 with density -1: a density must be >= 0";
+  EXPECT_EQ(trouble(SamplerSetup(always(interval))), place);
+  EXPECT_EQ(trouble(ConsistencySetup(always(interval))), place);
+  EXPECT_EQ(trouble(SamplerSetup(always(below))), density);
+  EXPECT_EQ(trouble(ConsistencySetup(always(below))), density);
 }
 
 TEST(SoundDraw, ADeclaredDensityBelowZeroIsNamedWithItsPoint) {
   const SamplerDraw draw{.point = {.5, 0, 0}, .density = 1, .weight = -1};
-  for (const bool elsewhere : {false, true}) {
-    const Always::Terms below{
-        .domain = Domain::interval, .draw = draw, .density = -1, .elsewhere = elsewhere};
-    EXPECT_EQ(trouble(ConsistencySetup(always(below))),
-              "sampler `s` declares the density -1 at 0.5: a density must be non-negative and "
-              "finite");
-  }
+  const Always::Terms below{.domain = Domain::interval, .draw = draw, .density = -1};
+  EXPECT_EQ(trouble(ConsistencySetup(always(below))),
+            "sampler `s` declares the density -1 at 0.5: a density must be non-negative and "
+            "finite");
   for (const Domain domain : {Domain::interval, Domain::hemisphere}) {
     const SamplerSetup setup(always({.domain = domain, .density = -1}));
     const auto said = [](auto ask) -> std::string {
