@@ -12,6 +12,18 @@
 namespace assay::harness {
 namespace {
 
+stats::Moments moments_of(const reports::Moments& recorded) {
+  return {.count = recorded.count,
+          .mean = recorded.mean,
+          .m2 = recorded.m2,
+          .m3 = recorded.m3,
+          .m4 = recorded.m4,
+          .minimum = recorded.minimum,
+          .maximum = recorded.maximum,
+          .nonzero = recorded.nonzero,
+          .rest = recorded.rest};
+}
+
 // More pairs would not be readable.
 constexpr std::size_t most_estimators = 40;
 
@@ -27,16 +39,17 @@ std::set<Pair> pairs_of(const std::vector<std::vector<std::string>>& claimed) {
 
 /// True if both estimate one quantity, as far as known.
 bool comparable(const Pictured& first, const Pictured& second, const std::set<Pair>& claimed) {
-  if (first.image || second.image || !first.drawn || !second.drawn) return false;
+  const auto untold = [](const Pictured& each) { return each.shown.image || !each.shown.drawn; };
+  if (untold(first) || untold(second)) return false;
   if (claimed.contains(std::minmax(first.name, second.name))) return true;
-  const std::vector<PicturedChannel>& mine = first.channels;
-  const std::vector<PicturedChannel>& theirs = second.channels;
+  const std::vector<reports::ShardChannel>& mine = first.shown.channels;
+  const std::vector<reports::ShardChannel>& theirs = second.shown.channels;
   if (mine.size() != theirs.size()) return false;
   for (std::size_t i = 0; i < mine.size(); ++i) {
-    if (mine[i].name != theirs[i].name || !mine[i].mean || !theirs[i].mean) return false;
+    if (mine[i].name != theirs[i].name || !mine[i].reference || !theirs[i].reference) return false;
     // Two closed forms of one number may differ by rounding.
-    const double scale = std::max(std::abs(*mine[i].mean), std::abs(*theirs[i].mean));
-    if (std::abs(*mine[i].mean - *theirs[i].mean) > 1e-9 * scale) return false;
+    const double scale = std::max(std::abs(*mine[i].reference), std::abs(*theirs[i].reference));
+    if (std::abs(*mine[i].reference - *theirs[i].reference) > 1e-9 * scale) return false;
   }
   return true;
 }
@@ -48,12 +61,12 @@ struct ComparedPair {
 };
 
 ComparedPair compare(const Pictured& first, const Pictured& second, std::size_t channel) {
-  const stats::Moments& x = first.channels[channel].moments;
-  const stats::Moments& y = second.channels[channel].moments;
+  const stats::Moments x = moments_of(first.shown.channels[channel].moments);
+  const stats::Moments y = moments_of(second.shown.channels[channel].moments);
   ComparedPair pair{
-      .row = {.first = first.name, .second = second.name, .channel = first.channels[channel].name}};
+      .row = {.first = first.name, .second = second.name, .channel = first.shown.channels[channel].name}};
   if (!has_spread(x) || !has_spread(y)) return pair;
-  const double null = second.averaged / first.averaged;
+  const double null = second.shown.averaged / first.shown.averaged;
   pair.log_mean_p = stats::log_p_two_sided(stats::welch_t(x, y, {}));
   pair.row.mean_p = std::exp(pair.log_mean_p);
   pair.row.log10_mean_p = pair.log_mean_p / std::log(10.0);
@@ -83,6 +96,18 @@ void mark_differences(std::vector<ComparedPair>& pairs, double alpha) {
 
 }  // namespace
 
+reports::Moments recorded(const stats::Moments& moments) {
+  return {.count = moments.count,
+          .mean = moments.mean,
+          .m2 = moments.m2,
+          .m3 = moments.m3,
+          .m4 = moments.m4,
+          .minimum = moments.minimum,
+          .maximum = moments.maximum,
+          .nonzero = moments.nonzero,
+          .rest = moments.rest};
+}
+
 bool has_spread(const stats::Moments& moments) {
   return moments.count > 3 && moments.m2 > 0 && beyond_doubles(moments, "").empty();
 }
@@ -98,7 +123,7 @@ std::vector<reports::Comparison> comparisons(const std::vector<Pictured>& estima
       const Pictured& first = estimators[i];
       const Pictured& second = estimators[j];
       if (!comparable(first, second, together)) continue;
-      const std::size_t channels = std::min(first.channels.size(), second.channels.size());
+      const std::size_t channels = std::min(first.shown.channels.size(), second.shown.channels.size());
       for (std::size_t c = 0; c < channels; ++c) pairs.push_back(compare(first, second, c));
     }
   }

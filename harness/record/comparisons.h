@@ -9,20 +9,14 @@
 
 namespace assay::harness {
 
-/// An estimator's data for comparisons. A shard's are read from its record.
-struct PicturedChannel {
-  std::string name;
-  std::optional<double> mean;  ///< Analytic mean.
-  stats::Moments moments;
-};
+/// An estimator's data for comparisons, as a shard records them.
 struct Pictured {
   std::string name;
-  bool drawn = true;     ///< False: it threw.
-  bool image = false;    ///< Compared by claims, not pixel by pixel.
-  double averaged = 1;   ///< Primaries that an observation averages.
   bool averages = true;  ///< Its variance is that of a primary.
-  std::vector<PicturedChannel> channels = {};
+  reports::ShardPicture shown;
 };
+
+reports::Moments recorded(const stats::Moments& moments);
 
 /// True if moments suffice for intervals of mean and variance.
 bool has_spread(const stats::Moments& moments);

@@ -23,30 +23,6 @@
 namespace assay::harness {
 namespace {
 
-reports::Moments recorded(const stats::Moments& moments) {
-  return {.count = moments.count,
-          .mean = moments.mean,
-          .m2 = moments.m2,
-          .m3 = moments.m3,
-          .m4 = moments.m4,
-          .minimum = moments.minimum,
-          .maximum = moments.maximum,
-          .nonzero = moments.nonzero,
-          .rest = moments.rest};
-}
-
-stats::Moments moments_of(const reports::Moments& recorded) {
-  return {.count = recorded.count,
-          .mean = recorded.mean,
-          .m2 = recorded.m2,
-          .m3 = recorded.m3,
-          .m4 = recorded.m4,
-          .minimum = recorded.minimum,
-          .maximum = recorded.maximum,
-          .nonzero = recorded.nonzero,
-          .rest = recorded.rest};
-}
-
 using reports::Verdict;
 
 std::set<std::uint64_t> indices_of(const std::vector<ShardFile>& shards) {
@@ -147,18 +123,6 @@ std::vector<View> views_of(const std::vector<ShardFile>& shards, std::size_t sui
   return best;
 }
 
-Pictured pictured(const View& view) {
-  Pictured result{.name = view.row->name,
-                  .drawn = view.picture->drawn,
-                  .image = view.picture->image,
-                  .averaged = view.picture->averaged,
-                  .averages = view.row->variance_of == "primary"};
-  for (const reports::ShardChannel& channel : view.picture->channels) {
-    result.channels.push_back({channel.name, channel.reference, moments_of(channel.moments)});
-  }
-  return result;
-}
-
 /// The statements of all shards, each once, in the suite's order. A shard lacks those without one
 /// of its tests.
 std::vector<reports::Statement> statements_of(const std::vector<ShardFile>& shards,
@@ -194,7 +158,7 @@ reports::Suite merge_suite(const std::vector<ShardFile>& shards, std::size_t ind
   std::vector<Pictured> pictures;
   for (const View& view : views_of(shards, index)) {
     suite.estimators.push_back(*view.row);
-    pictures.push_back(pictured(view));
+    pictures.push_back({view.row->name, view.row->variance_of == "primary", *view.picture});
   }
   std::vector<std::vector<std::string>> compared;
   for (Part& part : parts) {
@@ -312,27 +276,6 @@ std::string digest_of(const SuiteRun& run) {
   return fmt::format("{:016x}", hash);
 }
 
-std::uint64_t position_of(const std::string& estimator, const Suite& suite) {
-  std::uint64_t position = 0;
-  while (suite.estimators[position].name != estimator) ++position;
-  return position;
-}
-
-reports::ShardPicture picture_of(const Picture& picture, const SuiteRun& run) {
-  const Pictured shown = pictured(picture, run);
-  reports::ShardPicture part{.position = position_of(shown.name, run.suite),
-                             .by_tests = !picture.own,
-                             .secondaries = shown_by(picture, run),
-                             .drawn = shown.drawn,
-                             .averaged = shown.averaged,
-                             .image = shown.image,
-                             .channels = {}};
-  for (const PicturedChannel& channel : shown.channels) {
-    part.channels.push_back({channel.name, channel.mean, recorded(channel.moments)});
-  }
-  return part;
-}
-
 std::uint64_t position_of(const TestEntry& test, const Suite& suite) {
   return static_cast<std::uint64_t>(&test - suite.tests.data());
 }
@@ -429,7 +372,7 @@ void add_shard(const std::vector<std::unique_ptr<SuiteRun>>& runs, const RunOpti
                               .results = {},
                               .elsewhere = {}};
     for (const Picture& picture : run->pictures) {
-      suite.pictures.push_back(picture_of(picture, *run));
+      suite.pictures.push_back(pictured(picture, *run).shown);
     }
     for (const TestWork& work : run->tests) suite.results.push_back(test_of(work.outcome, *run));
     for (const Untested& each : run->untested) {

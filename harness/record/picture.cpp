@@ -153,17 +153,23 @@ Pictured pictured(const Picture& picture, const SuiteRun& run) {
   const std::uint64_t count = shown_by(picture, run);
   const Sample sample = picture.pool->sample(count);
   const Drawn* const drawn = sample.drawn();
-  const bool image = picture.pool->setup()->image().has_value();
-  Pictured result{.name = picture.estimator->name,
-                  .drawn = drawn != nullptr,
-                  .image = image,
-                  .averaged = per_primary(picture),
-                  .averages = picture.estimator->nature().averages};
-  if (image || drawn == nullptr) return result;
+  const std::string& name = picture.estimator->name;
+  const auto entry = std::ranges::find(run.suite.estimators, name, &EstimatorEntry::name);
+  Pictured result{
+      .name = name,
+      .averages = picture.estimator->nature().averages,
+      .shown = {.position = static_cast<std::uint64_t>(entry - run.suite.estimators.begin()),
+                .by_tests = !picture.own,
+                .secondaries = count,
+                .drawn = drawn != nullptr,
+                .averaged = per_primary(picture),
+                .image = picture.pool->setup()->image().has_value(),
+                .channels = {}}};
+  if (result.shown.image || drawn == nullptr) return result;
   const std::vector<Channel> channels = picture.pool->setup()->channels();
   for (std::size_t i = 0; i < channels.size(); ++i) {
-    result.channels.push_back(
-        {channels[i].name, channels[i].mean, moments_of(picture, run, *drawn, i)});
+    result.shown.channels.push_back(
+        {channels[i].name, channels[i].mean, recorded(moments_of(picture, run, *drawn, i))});
   }
   return result;
 }
