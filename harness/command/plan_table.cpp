@@ -97,7 +97,6 @@ std::string primaries_text(const Plan& plan) {
 std::string effect_text(const TestOutcome& test, const Forecast& forecast) {
   const Regions& regions = test.plan.regions[0];
   std::optional<double> effect = regions.detect;
-  if (regions.relation == Relation::within) effect = regions.within;
   // Given data may find less than `detect` asks for.
   if (!effect || test.question.test->secondaries || test.question.test->budget) {
     effect = forecast.detectable;

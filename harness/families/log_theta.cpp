@@ -91,25 +91,15 @@ struct PlannedMean {
   stats::MeanPlan plan;
   double count;
 };
-PlannedMean mean_plan(const Method& method, const stats::ErrorRates& rates, double allow,
+PlannedMean mean_plan(const Method& method, const stats::ErrorRates& rates,
                       const PlannedChannel& channel, const stats::SampleSizes& sizes) {
   const double n = std::min(sizes.x, sizes.y);
   const double x = deviation_for(method, channel.standard_deviation) * std::sqrt(n / sizes.x);
   const double y = deviation_for(method, channel.other_deviation) * std::sqrt(n / sizes.y);
-  return {.plan = {.standard_deviation = std::hypot(x, y), .allow = allow, .rates = rates},
+  return {.plan = {.standard_deviation = std::hypot(x, y),
+                   .allow = channel.regions.allow,
+                   .rates = rates},
           .count = n};
-}
-
-bool is_within(const Regions& regions) { return regions.relation == Relation::within; }
-
-std::optional<std::uint64_t> planned_size(const Method& method, const ErrorShare& share,
-                                          const PlannedChannel& channel) {
-  const Regions& regions = channel.regions;
-  const bool within = is_within(regions);
-  return stats::student_t_sample_size(
-      mean_plan(method, planned_rates(share, regions), within ? 0 : regions.allow, channel, {})
-          .plan,
-      within ? regions.within : *regions.detect);
 }
 
 }  // namespace
@@ -206,8 +196,10 @@ std::optional<std::uint64_t> LogTheta::secondaries(const Question& question,
   return most_of_channels(question, [&](std::size_t i) -> std::optional<std::uint64_t> {
     const Regions& regions = plan.regions[i];
     const auto channel = from_pilots(question, i, regions, pilots, plan);
-    if (!channel || (!is_within(regions) && !regions.detect)) return std::nullopt;
-    return planned_size(plan.method, share, *channel).value_or(impossible_secondaries);
+    if (!channel || !regions.detect) return std::nullopt;
+    const PlannedMean mean = mean_plan(plan.method, planned_rates(share, regions), *channel, {});
+    return stats::student_t_sample_size(mean.plan, *regions.detect)
+        .value_or(impossible_secondaries);
   });
 }
 
@@ -233,9 +225,8 @@ PlannedChannel LogTheta::observed(const Question& question, const Regions& regio
 std::optional<double> LogTheta::detectable(const Question& question, const TestSize& size,
                                            const Plan& plan, const PlannedChannel& channel) const {
   if (!varies(channel)) return std::nullopt;
-  const PlannedMean mean =
-      mean_plan(plan.method, planned_rates(size.share, channel.regions), channel.regions.allow,
-                channel, sizes_of(question, size.secondaries));
+  const PlannedMean mean = mean_plan(plan.method, planned_rates(size.share, channel.regions),
+                                     channel, sizes_of(question, size.secondaries));
   return stats::student_t_detectable(mean.plan, mean.count);
 }
 
@@ -243,12 +234,11 @@ std::optional<double> LogTheta::power(const Question& question, const TestSize& 
                                       const Plan& plan, const PlannedChannel& channel,
                                       double effect) const {
   if (!varies(channel)) return std::nullopt;
-  const bool within = is_within(channel.regions);
-  const PlannedMean mean =
-      mean_plan(plan.method, planned_rates(size.share, channel.regions),
-                within ? 0 : channel.regions.allow, channel, sizes_of(question, size.secondaries));
+  const bool within = channel.regions.within();
+  const PlannedMean mean = mean_plan(plan.method, planned_rates(size.share, channel.regions),
+                                     channel, sizes_of(question, size.secondaries));
   const double one_margin =
-      stats::student_t_power(mean.plan, mean.count, within ? channel.regions.within : effect);
+      stats::student_t_power(mean.plan, mean.count, within ? *channel.regions.detect : effect);
   return within ? std::max(0.0, 2 * one_margin - 1) : one_margin;
 }
 

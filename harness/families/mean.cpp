@@ -142,7 +142,7 @@ std::uint64_t for_equivalence(const ErrorShare& share, const PlannedChannel& cha
   const double deviation = std::hypot(channel.standard_deviation, channel.other_deviation);
   const double z = stats::normal_quantile({stats::Tail::upper, std::log(share.beta)}) +
                    stats::normal_quantile({stats::Tail::upper, std::log(share.beta / 2)});
-  const double wanted = channel.regions.within * channel.unit / z;  // standard error of the mean
+  const double wanted = *channel.regions.detect * channel.unit / z;  // standard error of the mean
   const double left = wanted * wanted - channel.reference_error * channel.reference_error;
   if (!(left > 0)) return impossible_secondaries;
   const double count = std::ceil(deviation * deviation / left) + 2;
@@ -171,7 +171,7 @@ stats::ExactMeanPlan plan_of(const PlannedChannel& channel, const stats::ErrorRa
   return {.range = channel.range,
           .null_mean = channel.null_value,
           .law = channel.law.get(),
-          .allow = channel.regions.proof() ? 0 : channel.regions.allow * channel.unit,
+          .allow = channel.regions.allow * channel.unit,
           .rates = rates};
 }
 
@@ -221,11 +221,9 @@ std::optional<std::uint64_t> exact_equivalence_secondaries(const Question& quest
                                                            const ErrorShare& share) {
   // At each margin theta = 0 is the effect to be found, with half of the misses.
   const stats::ErrorRates rates = planned_rates(share, channel.regions);
+  if (question.of_two()) return exact_secondaries(question, plan, channel, rates);
   PlannedChannel at_margin = channel;
-  at_margin.regions.detect = channel.regions.within;
-  at_margin.regions.allow = 0;
-  if (question.of_two()) return exact_secondaries(question, plan, at_margin, rates);
-  const double margin = channel.regions.within * channel.unit;
+  const double margin = *channel.regions.detect * channel.unit;
   std::uint64_t most = 0;
   for (const int side : {1, -1}) {
     at_margin.null_value = channel.null_value + side * margin;
@@ -587,9 +585,9 @@ class MeanTheta : public Theta {
                                                  const ErrorShare& share, const Pilots& pilots,
                                                  const Plan& plan) {
     const Regions& regions = plan.regions[index];
-    const bool equivalence = regions.relation == Relation::within;
+    const bool equivalence = regions.within();
     const std::optional<PlannedChannel> channel = from_pilots(question, index, pilots, plan);
-    if (!channel || (!equivalence && !regions.detect)) return std::nullopt;
+    if (!channel || !regions.detect) return std::nullopt;
     std::optional<std::uint64_t> count;
     if (plan.method.is.plans) {
       count = equivalence
@@ -614,7 +612,7 @@ class MeanTheta : public Theta {
                                      channel.other_deviation * std::sqrt(n / sizes.y),
                                      channel.reference_error * std::sqrt(n));
     return stats::equivalence_power({.standard_deviation = spread,
-                                     .margin = channel.regions.within * channel.unit,
+                                     .margin = *channel.regions.detect * channel.unit,
                                      .alpha = share.beta,
                                      .beta = share.beta},
                                     n, 0);

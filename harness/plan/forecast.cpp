@@ -124,11 +124,11 @@ std::optional<double> margin_shown(const Question& question, const TestSize& siz
                                    PlannedChannel channel) {
   constexpr double farthest = 0x1p100;
   const auto shows = [&](double margin) {
-    channel.regions.within = margin;
+    channel.regions.detect = margin;
     return question.theta->power(question, size, plan, channel, 0).value_or(0) >=
            1 - size.share.beta;
   };
-  double above = channel.regions.within;
+  double above = *channel.regions.detect;
   if (!(above > 0)) return std::nullopt;
   constexpr double factor = 2;
   while (above > 1 / farthest && shows(above / factor)) above /= factor;

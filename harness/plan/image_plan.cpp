@@ -144,9 +144,8 @@ std::uint64_t choose_for_image(const Question& question, const Pilots& pilots, s
 std::optional<std::uint64_t> image_secondaries(const Question& question, const ErrorShare& share,
                                                const Pilots& pilots, const Plan& plan) {
   const Regions& regions = plan.regions[0];
-  const bool within = regions.relation == Relation::within;
-  if ((!within && !regions.detect) || !all_pictured(question, pilots)) return std::nullopt;
-  const double margin = within ? regions.within : *regions.detect;
+  if (!regions.detect || !all_pictured(question, pilots)) return std::nullopt;
+  const double margin = *regions.detect;
   const PilotImage image = planned_image(question, pilots, plan);
   const double unit = squared_unit(question, image);
   const double room = (margin * margin - regions.allow * regions.allow) * unit;

@@ -29,9 +29,7 @@ std::vector<Regions> regions_of(const Question& question) {
     Regions regions{.relation = test.claim.relation};
     if (test.allow) regions.allow = margin_on_theta(question, channel, *test.allow);
     if (test.detect) regions.detect = margin_on_theta(question, channel, *test.detect);
-    if (regions.relation == Relation::within) {
-      regions.within = margin_on_theta(question, channel, test.claim.margin);
-    }
+    if (regions.within()) regions.detect = margin_on_theta(question, channel, test.claim.margin);
     all.push_back(regions);
   }
   return all;

@@ -75,7 +75,6 @@ bool all_piloted(const Question& question, const Pilots& pilots) {
 }
 
 double distance_of(const Regions& regions) {
-  if (regions.relation == Relation::within) return regions.within;
   return regions.detect ? *regions.detect - regions.allow : 0;
 }
 

@@ -189,11 +189,6 @@ std::string cost_text(const TestEntry& test) {
   return kinds[static_cast<int>(test.cost)];
 }
 
-Number margin(const Regions& regions) {
-  if (regions.relation == Relation::within) return regions.within;
-  return regions.detect ? Number(*regions.detect) : Number();
-}
-
 /// True if the clock affects the numbers.
 bool is_timed(const TestWork& work) {
   const std::optional<Budget>& budget = work.outcome.question.test->budget;
@@ -251,7 +246,7 @@ reports::Test record_of_test(const TestWork& work, const std::string& file, bool
   test.tail = distance ? "upper" : tail(regions);
   test.alpha = outcome.place.share.alpha;
   test.beta = outcome.place.share.beta;
-  test.detect = margin(regions);
+  test.detect = regions.detect;
   test.allow = regions.allow;
   test.power = outcome.power;
   test.gates.assign(outcome.plan.gates.begin(), outcome.plan.gates.end());

@@ -153,15 +153,9 @@ Plan recorded_plan(const Question& question, const Recorded& recorded) {
                              [&](const reports::Sample& s) { return s.estimator == name; });
     plan.primaries.push_back(sample->primaries);
   }
-  const Relation relation = question.test->claim.relation;
-  const bool within = relation == Relation::within;
-  Regions regions{.relation = relation, .allow = test.allow.value_or(0)};
-  if (within) {
-    regions.within = test.detect.value_or(0);
-  } else if (test.detect) {
-    regions.detect = *test.detect;
-  }
-  plan.regions.assign(question.channel_count(), regions);
+  plan.regions.assign(question.channel_count(), {.relation = question.test->claim.relation,
+                                                 .allow = test.allow.value_or(0),
+                                                 .detect = test.detect});
   return plan;
 }
 

@@ -205,7 +205,7 @@ Room room_of(const TestOutcome& outcome, const ChannelOutcome& channel) {
   const double beyond = z(share.beta) + 1;
   switch (regions.relation) {
     case Relation::within:
-      return {regions.within - std::abs(estimate), beyond};
+      return {*regions.detect - std::abs(estimate), beyond};
     case Relation::less:
       return {-estimate, beyond};
     case Relation::greater:

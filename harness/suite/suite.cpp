@@ -89,30 +89,20 @@ void read_estimators(const Document& document, const Value& map, Suite& suite) {
   }
 }
 
-const EstimatorEntry* find_estimator(const Suite& suite, const std::string& name) {
-  for (const EstimatorEntry& estimator : suite.estimators) {
-    if (estimator.name == name) return &estimator;
-  }
-  return nullptr;
-}
-
 void require_estimator(const Suite& suite, const Source& source) {
-  if (find_estimator(suite, source.estimator)) return;
   std::vector<std::string> names;
   for (const EstimatorEntry& estimator : suite.estimators) names.push_back(estimator.name);
+  if (std::ranges::find(names, source.estimator) != names.end()) return;
   throw InputError(source.where, fmt::format("the suite has no estimator `{}`{}", source.estimator,
                                              suggestion(source.estimator, names)));
 }
 
 void check_sweep(const Suite& suite, const TestEntry& test) {
   if (!test.over || test.over->parameter == "primaries") return;
-  const EstimatorEntry& estimator = *find_estimator(suite, test.claim.left.source.estimator);
-  const Entry& plugin = find_plugin(estimator.plugin, estimator.where);
-  std::vector<std::string> names{"primaries"};
-  for (const ParameterInformation& p : plugin.information.parameters) names.push_back(p.name);
-  for (const std::string& name : names) {
-    if (name == test.over->parameter) return;
-  }
+  const EstimatorEntry& estimator =
+      *std::ranges::find(suite.estimators, test.claim.left.source.estimator, &EstimatorEntry::name);
+  const auto names = settable_names(find_plugin(estimator.plugin, estimator.where));
+  if (std::ranges::find(names, test.over->parameter) != names.end()) return;
   throw InputError(
       test.over->values[0].where(),
       fmt::format("`{}` ({}) has no parameter `{}`{}", estimator.name, estimator.plugin,

@@ -14,12 +14,6 @@
 namespace assay::harness {
 namespace {
 
-std::vector<std::string> parameter_names(const Entry& plugin) {
-  std::vector<std::string> names{"plugin", "primaries"};
-  for (const ParameterInformation& p : plugin.information.parameters) names.push_back(p.name);
-  return names;
-}
-
 /// True if the file has the text unbroken at the value's place.
 bool stands_in_one_piece(const Document& document, const Value& value, const std::string& text) {
   const std::string_view line = document.line(value.where().line);
@@ -328,6 +322,12 @@ std::optional<std::uint64_t> read_primaries(const Value& value, std::string_view
   return count_from(value, what, 1);
 }
 
+std::vector<std::string> settable_names(const Entry& plugin) {
+  std::vector<std::string> names{"primaries"};
+  for (const ParameterInformation& p : plugin.information.parameters) names.push_back(p.name);
+  return names;
+}
+
 EstimatorEntry read_estimator(const Document& document, const std::string& name, const Value& value,
                               const Value& scenes) {
   if (name.find('{') != std::string::npos) {
@@ -352,8 +352,9 @@ EstimatorEntry read_estimator(const Document& document, const std::string& name,
                                                 name));
   }
   const Entry& entry = find_plugin(plugin->string("`plugin`"), plugin->where());
-  const Keys keys(document, value, fmt::format("`{}` ({})", name, plugin->text()),
-                  parameter_names(entry));
+  std::vector<std::string> known = settable_names(entry);
+  known.insert(known.begin(), "plugin");
+  const Keys keys(document, value, fmt::format("`{}` ({})", name, plugin->text()), known);
   EstimatorEntry estimator{.name = name,
                            .plugin = plugin->text(),
                            .parameters = {},

@@ -20,6 +20,9 @@ TestEntry read_test(const Document& document, const Value& value);
 /// offending key.
 void read_test_keys(const Document& document, const Value& map, TestEntry& test);
 
+/// `primaries` and the plugin's parameters, which a sweep or `--set` can change.
+std::vector<std::string> settable_names(const Entry& plugin);
+
 /// `primaries:` of an estimator: a count from 1, or auto (nullopt).
 std::optional<std::uint64_t> read_primaries(const Value& value, std::string_view what);
 

@@ -24,11 +24,7 @@ std::optional<std::pair<std::string, std::string>> cut(const std::string& text, 
 }
 
 void require_parameter(const std::string& plugin, const std::string& key, const Location& where) {
-  std::vector<std::string> names;
-  for (const auto& parameter : find_plugin(plugin, where).information.parameters) {
-    names.push_back(parameter.name);
-  }
-  names.push_back("primaries");
+  const std::vector<std::string> names = settable_names(find_plugin(plugin, where));
   if (std::ranges::find(names, key) != names.end()) return;
   throw InputError(where,
                    fmt::format("{} has no parameter `{}`{}", plugin, key, suggestion(key, names)));

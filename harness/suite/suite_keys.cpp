@@ -12,22 +12,14 @@ std::string suggestion(std::string_view name, const std::vector<std::string>& ca
                       candidates.empty() ? "there is none" : "there is: " + listed(candidates));
 }
 
-namespace {
-
-bool contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::ranges::find(names, name) != names.end();
-}
-
-}  // namespace
-
 Keys::Keys(const Document& document, const Value& map, std::string what,
-           const std::vector<std::string>& known, const std::vector<std::string>& reserved)
+           const std::vector<std::string>& known)
     : document_(document), map_(map), what_(std::move(what)) {
   if (map.kind() != Value::Kind::map) {
     throw InputError(map.where(), fmt::format("{} must be a map of keys and values", what_));
   }
   for (const auto& [key, value] : map.members()) {
-    if (!contains(known, key) && !contains(reserved, key)) {
+    if (std::ranges::find(known, key) == known.end()) {
       throw InputError(document.key(value),
                        fmt::format("unknown key `{}` of {}{}", key, what_, suggestion(key, known)));
     }

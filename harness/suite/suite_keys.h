@@ -10,9 +10,9 @@ namespace assay::harness {
 /// A map of a suite file. The constructor refuses unknown keys.
 class Keys {
  public:
-  /// `what` names the map in messages: "a suite", "a test". Messages offer `known`, not `reserved`.
+  /// `what` names the map in messages: "a suite", "a test". Messages offer the known keys.
   Keys(const Document& document, const Value& map, std::string what,
-       const std::vector<std::string>& known, const std::vector<std::string>& reserved = {});
+       const std::vector<std::string>& known);
 
   const Value* find(std::string_view key) const { return map_.find(key); }
   /// The value of the key. InputError at the map if it is missing, with a line to write.

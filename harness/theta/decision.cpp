@@ -19,13 +19,12 @@ bool is_exactly_0(const Evidence& evidence) {
 }  // namespace
 
 double Regions::claimed_edge() const {
-  if (relation == Relation::within) return within;
+  if (within()) return detect.value_or(0);
   return proof() ? 0 : allow;
 }
 
 std::optional<double> Regions::forbidden_edge() const {
-  if (relation == Relation::within) return within;
-  return proof() ? std::optional(0.0) : detect;
+  return proof() && !within() ? std::optional(0.0) : detect;
 }
 
 ThetaRange Regions::between(double edge) const {

@@ -22,23 +22,22 @@ struct ThetaRange {
   double high;
 };
 
-/// Margins on theta's scale. In `<` and `>`, `detect` is only the advantage to plan for.
+/// Margins on theta's scale. `detect` of `within` is its margin. In `<` and `>` it is only the
+/// advantage to plan for.
 struct Regions {
   Relation relation = Relation::equal;
   double allow = 0;
   std::optional<double> detect = {};
-  double within = 0;
 
   bool proof() const { return is_proof(relation); }
   bool two_sided() const { return is_two_sided(relation); }
+  bool within() const { return relation == Relation::within; }
   /// True if a large theta speaks against the claim, and so for a small one.
   bool bounds_above() const { return two_sided() || is_upper(relation); }
   bool bounds_below() const { return two_sided() || !is_upper(relation); }
   /// True if a pass must exclude a forbidden region.
   bool has_forbidden() const { return proof() || detect.has_value(); }
-  bool has_margin() const {
-    return allow != 0 || detect.has_value() || relation == Relation::within;
-  }
+  bool has_margin() const { return allow != 0 || detect.has_value(); }
   /// The distance of C's ends from 0: 0, `allow` or the margin of `within`.
   double claimed_edge() const;
   /// The distance of F's ends from 0; nullopt if there is no F.

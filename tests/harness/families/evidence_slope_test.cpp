@@ -53,8 +53,8 @@ std::string state_of(const std::string& test, ErrorShare share, std::span<const 
   outcome.plan.method = methods_for(outcome.question).front();
   outcome.plan.looks = one_look(1000, outcome.place.share);
   const bool within = test == "within";
-  outcome.plan.regions = {
-      {.relation = within ? Relation::within : Relation::equal, .within = within ? 0.3 : 0}};
+  outcome.plan.regions = {{.relation = Relation::equal}};
+  if (within) outcome.plan.regions = {{.relation = Relation::within, .detect = 0.3}};
   const std::vector<Gate> gates = outcome.question.theta->gates(
       outcome, 0, data,
       critical_value(outcome.share().alpha, is_two_sided(outcome.question.test->claim.relation)));
@@ -66,7 +66,7 @@ TEST(EvidenceOfSlope, WhereEverySlopeIsRejectedTheGateIsRed) {
   const auto asked = ask_text(suite);
   const std::array<ChannelData, 4> data = bent();
   const Evidence evidence = evidence_of_slope(asked->question("within"), 0, data);
-  const Regions regions{.relation = Relation::within, .within = 0.1};
+  const Regions regions{.relation = Relation::within, .detect = 0.1};
   ASSERT_GT(std::abs(evidence.estimate), 0.1);
   ASSERT_LT(log_p_forbidden(evidence, regions), std::log(beta));
   EXPECT_EQ(state_of("within", {.alpha = 1e-4, .beta = beta}, data), "p of a power law red");

@@ -52,7 +52,8 @@ struct Judged {
 };
 
 Regions regions_of(const TestEntry& test) {
-  Regions regions{.relation = test.claim.relation, .within = test.claim.margin.value};
+  Regions regions{.relation = test.claim.relation};
+  if (regions.within()) regions.detect = test.claim.margin.value;
   if (test.allow) regions.allow = test.allow->value;
   if (test.detect) regions.detect = test.detect->value;
   return regions;

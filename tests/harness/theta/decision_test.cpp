@@ -71,7 +71,7 @@ TEST(Decision, OfProofsSplitsAtZero) {
 }
 
 TEST(Decision, OfWithinMakesTwoOneSidedTestsAtTheMargin) {
-  const Regions regions{.relation = Relation::within, .within = 0.9};
+  const Regions regions{.relation = Relation::within, .detect = 0.9};
   EXPECT_NEAR(p_claimed(regions), std::min(1.0, 2 * above(at(0.9))), 1e-14);
   EXPECT_NEAR(p_forbidden(regions), std::max(below(at(0.9)), above(at(-0.9))), 1e-14);
 }
@@ -87,7 +87,7 @@ TEST(Decision, OfADistanceHasOneDirection) {
 TEST(Decision, ClaimedRangesFollowTheRelation) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const auto range = [](Relation relation) {
-    const ThetaRange r = Regions{.relation = relation, .allow = 0.1, .within = 0.3}.claimed();
+    const ThetaRange r = Regions{.relation = relation, .allow = 0.1, .detect = 0.3}.claimed();
     return std::pair(r.low, r.high);
   };
   EXPECT_EQ(range(Relation::equal), std::pair(-0.1, 0.1));
@@ -156,7 +156,7 @@ std::vector<Case> cases() {
        true},
       {{.relation = Relation::less}, {0, -1}, {0, 1}, true, true},
       {{.relation = Relation::greater}, {0, 1}, {0, -1}, true, true},
-      {{.relation = Relation::within, .within = 6}, {5.999, -5.999, 0}, {6, -6, 7}, false, true}};
+      {{.relation = Relation::within, .detect = 6}, {5.999, -5.999, 0}, {6, -6, 7}, false, true}};
 }
 
 constexpr double level = 0.05;
@@ -203,7 +203,7 @@ TEST(Decision, ThatForgetsToDoubleIsCaught) {
 TEST(Decision, ThatExcludesOneSideOnlyIsCaught) {
   const auto one_side = [](const Evidence& evidence, const Regions& regions) {
     if (regions.relation != Relation::within) return log_p_forbidden(evidence, regions);
-    return evidence.at(regions.within).log_p_lower;
+    return evidence.at(*regions.detect).log_p_lower;
   };
   EXPECT_FALSE(keeps_promises({.forbidden = one_side}));
 }
