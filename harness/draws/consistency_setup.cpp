@@ -41,53 +41,30 @@ struct JudgedDraw {
   double density = 0;  ///< declared at its point, if asked for
 };
 
-/// Draws to compare with density() and evaluate(), and their indices.
-struct Compared {
-  std::vector<std::size_t> places = {};
-  std::vector<Point> points = {};
-  std::vector<double> densities = {};
-  std::vector<double> evaluations = {};
-};
-
-Compared compared(const Sampler& sampler, std::span<const SamplerDraw> draws) {
-  Compared some;
-  for (std::size_t i = 0; i < draws.size(); ++i) {
-    if (needs_no_density(sampler, draws[i])) continue;
-    some.places.push_back(i);
-    some.points.push_back(draws[i].point);
-  }
-  some.densities.resize(some.points.size());
-  some.evaluations.resize(some.points.size());
-  return some;
-}
-
-/// The number of leading draws whose declared numbers can be had. Throws if it is 0.
-std::size_t ask(const Sampler& sampler, Compared& some, std::size_t draws) {
-  if (some.points.empty()) return draws;
-  try {
-    std::size_t known = write_some(some.points, some.densities, [&](auto points, auto out) {
-      return sampler.densities(points, out);
-    });
-    known = write_some(std::span(some.points).first(known), some.evaluations,
-                       [&](auto points, auto out) { return sampler.evaluations(points, out); });
-    return known < some.points.size() ? some.places[known] : draws;
-  } catch (...) {
-    if (some.places[0] == 0) throw;
-    return some.places[0];
-  }
-}
-
 std::vector<JudgedDraw> judged(const NamedSampler& named, std::span<Stream> streams) {
   const Sampler& sampler = *named.sampler;
   std::vector<JudgedDraw> all;
-  const std::vector<SamplerDraw> draws = sound_draws(named, streams);
-  for (const SamplerDraw& draw : draws) all.push_back({draw, without_density(draw)});
-  Compared some = compared(sampler, draws);
-  all.resize(ask(sampler, some, draws.size()));
-  for (std::size_t i = 0; i < some.places.size() && some.places[i] < all.size(); ++i) {
-    JudgedDraw& mine = all[some.places[i]];
-    mine.difference = with_density(mine.draw, some.densities[i], some.evaluations[i]);
-    mine.density = some.densities[i];
+  std::vector<std::size_t> places;
+  std::vector<Point> points;
+  for (const SamplerDraw& draw : sound_draws(named, streams)) {
+    if (!needs_no_density(sampler, draw)) {
+      places.push_back(all.size());
+      points.push_back(draw.point);
+    }
+    all.push_back({draw, without_density(draw)});
+  }
+  std::vector<double> densities(points.size());
+  std::vector<double> evaluations(points.size());
+  all.resize(leading(places, all.size(), [&] {
+    const std::size_t known = write_some(
+        points, densities, [&](auto some, auto out) { return sampler.densities(some, out); });
+    return write_some(std::span(points).first(known), evaluations,
+                      [&](auto some, auto out) { return sampler.evaluations(some, out); });
+  }));
+  for (std::size_t i = 0; i < places.size() && places[i] < all.size(); ++i) {
+    JudgedDraw& mine = all[places[i]];
+    mine.difference = with_density(mine.draw, densities[i], evaluations[i]);
+    mine.density = densities[i];
   }
   return all;
 }

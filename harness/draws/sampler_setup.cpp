@@ -66,16 +66,11 @@ std::vector<CheckedDraw> checked_draws(const NamedSampler& named, std::span<Stre
     all.push_back({draw});
   }
   std::vector<double> densities(points.size());
-  std::size_t known = 0;
-  try {
-    known = write_some(points, densities, densities_of(named));
-  } catch (...) {
-    if (places.front() == 0) throw;
-  }
-  for (std::size_t i = 0; i < known; ++i) {
+  all.resize(leading(places, all.size(),
+                     [&] { return write_some(points, densities, densities_of(named)); }));
+  for (std::size_t i = 0; i < places.size() && places[i] < all.size(); ++i) {
     all[places[i]].impossible = is_impossible(sampler, points[i], densities[i]);
   }
-  if (known < places.size()) all.resize(places[known]);
   return all;
 }
 
@@ -151,6 +146,17 @@ std::size_t write_some(std::span<const Point> points, std::span<double> out,
     if (done == 0) throw;
   }
   return done;
+}
+
+std::size_t leading(std::span<const std::size_t> places, std::size_t draws,
+                    const std::function<std::size_t()>& ask) {
+  std::size_t known = 0;
+  try {
+    known = ask();
+  } catch (...) {
+    if (places.front() == 0) throw;
+  }
+  return known < places.size() ? places[known] : draws;
 }
 
 void require_sound(const NamedSampler& named, const Location& where) {

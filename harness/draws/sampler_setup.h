@@ -3,6 +3,7 @@
 // A sampler's draws as observations: a channel for each marginal, and one for the number of the
 // cell. Samplers are thus drawn, counted and replayed as estimators are.
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -42,6 +43,11 @@ std::vector<SamplerDraw> sound_draws(const NamedSampler& named, std::span<Stream
 /// first has none. `numbers` writes some and returns how many.
 std::size_t write_some(std::span<const Point> points, std::span<double> out,
                        const Densities& numbers);
+
+/// The number of leading draws that can be judged. Those at `places` need numbers, which `ask` has
+/// written for the first of them, and says how many. Throws if it is 0.
+std::size_t leading(std::span<const std::size_t> places, std::size_t draws,
+                    const std::function<std::size_t()>& ask);
 
 class SamplerSetup : public Setup {
  public:
