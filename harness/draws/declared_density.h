@@ -23,9 +23,9 @@ Densities densities_of_lobe(const NamedSampler& named, int lobe);
 stats::LineDensity line_density(const Sampler& sampler, std::span<const Point> drawn,
                                 Densities densities);
 
-/// True if the density is 0 at this point and around it, as no draw has it. Around is within 1e-6 of
-/// the domain's size, or the sampler's rounding() if that is more: so far rounding may move a point
-/// across an edge.
+/// True if the density is 0 at this point and around it, as no draw has it. Around is within 1e-6
+/// of the domain's size, or the sampler's rounding() if that is more. Rounding may move a point so
+/// far across an edge.
 bool is_impossible(const Sampler& sampler, const Point& point, double density);
 
 /// The density on a domain of two coordinates, in its chart by this marginal, 0 or 1. It asks for

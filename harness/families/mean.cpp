@@ -154,8 +154,8 @@ std::uint64_t for_equivalence(const ErrorShare& share, const PlannedChannel& cha
 // Barnard's maximum over the nuisance probability costs at most this (stats/means/two_valued.h).
 constexpr double two_sample_cost = 1.4;
 
-/// Sides of the reference where an effect is to be found: of an alarm those that speak against the
-/// claim, of a proof the one that it names.
+/// Sides of the reference where an effect is to be found. An alarm finds what speaks against the
+/// claim, a proof what the claim names.
 std::vector<int> sides_of(const Regions& regions) {
   if (regions.two_sided()) return {1, -1};
   return {regions.bounds_above() != regions.proof() ? 1 : -1};

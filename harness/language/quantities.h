@@ -18,7 +18,7 @@ class Theta;
 using Estimators = std::map<std::string, PreparedEstimator>;
 
 struct QuantityRow {
-  std::string word;     ///< As in claims.
+  std::string word;     ///< The word in claims.
   std::string example;  ///< A claim about it.
   std::string summary;
   /// Binds a claim about it to a suite's estimators.
@@ -47,7 +47,7 @@ const QuantityRow* find_quantity(std::string_view word);
 /// The names of the method table (theta/methods.h), each once, in its order.
 const std::vector<std::string>& method_names();
 
-/// Whether the method of this name compares all channels of two estimators together.
+/// True if the method of this name compares all channels of two estimators together.
 bool joins_channels(const std::string& method);
 
 }  // namespace assay::harness

@@ -14,8 +14,8 @@
 namespace assay::harness {
 namespace {
 
-// The pilot of an estimator that does not average, which may be a chain, has as many primaries as
-// the floor of evidence, but 512 observations at least and many_observations at most.
+// The pilot of an estimator that does not average has as many primaries as the floor of evidence.
+// It has 512 observations at least and many_observations at most. Such an estimator may be a chain.
 constexpr std::uint64_t few_observations = 512;
 constexpr std::uint64_t primaries_of_few = std::uint64_t{1} << 14;
 // An image's pilot has as many images as this pays for, at least the fewest that tell their

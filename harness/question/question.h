@@ -57,7 +57,7 @@ struct ThetaTraits {
 /// A claim, bound to the suite's estimators.
 struct Question {
   const TestEntry* test;
-  const Theta* theta;             ///< What the claim is about.
+  const Theta* theta;             ///< The number that the claim is about.
   std::vector<Subject> subjects;  ///< One or two (for a slope one a point), then perhaps a
                                   ///< reference.
   double factor = 1;              ///< Compares the first with factor * second.

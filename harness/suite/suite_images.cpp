@@ -120,7 +120,7 @@ std::vector<Layer> layers_of(const ImagesArguments& arguments, const FirstPictur
   return layers;
 }
 
-/// What both sides have, on one canvas. nullopt if their windows are equal.
+/// The window that both sides have on one canvas. nullopt if their windows are equal.
 std::optional<PictureWindow> common_window(const ImagesArguments& arguments,
                                            const FirstPictures& first, const Layer& layer) {
   const PictureWindow a = first.candidate->window(layer.of_candidate.names);
@@ -159,7 +159,7 @@ const char* rounding_of(const FirstPictures& first, const Layer& layer) {
   return words[static_cast<std::size_t>(coarsest)];
 }
 
-/// What both sides' estimators are told.
+/// The parameters of either side's estimator.
 std::vector<Value::Member> members_of(const ImagesArguments& arguments, const FirstPictures& first,
                                       const Layer& layer, const std::string& file,
                                       const Location& where) {

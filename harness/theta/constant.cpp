@@ -14,7 +14,7 @@ namespace {
 
 using reports::Verdict;
 
-/// What the constants differ by, on theta's scale, but for rounding.
+/// The constants' difference on theta's scale, but for rounding.
 struct Difference {
   double value = 0;
   double rounding = 0;

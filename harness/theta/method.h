@@ -32,7 +32,7 @@ struct ChannelData {
   std::span<const double> values = {};                   ///< Set if the method needs them.
   std::vector<std::span<const double>> all_values = {};  ///< Every channel, for Keeps::points.
   std::span<const std::uint64_t> cells = {};
-  std::vector<stats::JointMoments> joint = {};  ///< As ChannelDetails::joint.
+  std::vector<stats::JointMoments> joint = {};  ///< The channel's ChannelDetails::joint.
   stats::Moments group_variances = {};
   ImageViews images = {};  ///< The subject's elements of each observation.
   std::vector<Replicate> replicates = {};

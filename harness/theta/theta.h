@@ -1,7 +1,8 @@
 #pragma once
 
-// What a claim is about: a number theta with a claimed and a forbidden region. A family of claims
-// derives from Theta and answers all that others ask of it. families/ holds one file a family.
+// Theta is the number that a claim is about. It has a claimed and a forbidden region. A family of
+// claims derives from Theta and answers all that others ask of it. families/ holds one file a
+// family.
 
 #include <cstdint>
 #include <memory>
@@ -182,13 +183,13 @@ class Theta {
 
   // ---- Words
 
-  /// What the interval does not exclude although it speaks against the claim: "exponent".
+  /// The thing that the interval does not exclude although it speaks against the claim: "exponent".
   virtual std::string not_excluded(const ChannelOutcome&) const { return ""; }
   /// How far a detectable theta reaches.
   virtual const char* detectable_text() const { return " or more"; }
-  /// Where the data of a failed claim differ.
+  /// The place where the data of a failed claim differ.
   virtual std::string where_it_differs(const DrawnTest&) const { return ""; }
-  /// What a failed claim takes for exact.
+  /// The data that a failed claim takes for exact.
   virtual std::string taken_as_exact(const Question&) const { return ""; }
 };
 

@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -139,7 +140,7 @@ TEST(Correlated, AMeshIsRefusedBecauseItsIntegralIsUnknown) {
                 ", radiance: 1}}}");
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("scene"), std::string::npos) << error.what();
+    EXPECT_THAT(std::string(error.what()), testing::HasSubstr("scene")) << error.what();
   }
 }
 

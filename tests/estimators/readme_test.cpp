@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -23,7 +24,7 @@ TEST(EstimatorsReadme, ShowsAWholeFileThatIsCompiled) {
   const std::size_t from = begin + fence.size();
   const std::string example = readme.substr(from, readme.find("```", from) - from);
   EXPECT_EQ(example, text_of("analytic/dart_throwing.cpp"));
-  EXPECT_NE(example.find("#include"), std::string::npos);
+  EXPECT_THAT(example, testing::HasSubstr("#include"));
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // Lens integration at a pixel against independent quadrature, and the transport of frequencies.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -227,7 +228,7 @@ TEST(DepthOfField, WrongScenesAreRefusedByName) {
       prepare("depth_of_field/pixel", std::string("{scene: ") + scene + "}");
       ADD_FAILURE() << scene;
     } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find(names), std::string::npos) << error.what();
+      EXPECT_THAT(std::string(error.what()), testing::HasSubstr(names)) << error.what();
     }
   }
 }

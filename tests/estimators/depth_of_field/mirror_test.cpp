@@ -1,5 +1,6 @@
 // A wave in a curved, rough mirror: frequencies against rays, and rays to first order against rays.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -101,7 +102,7 @@ TEST(LensMirror, OneThatRaysMissIsRefused) {
     stated("{rays: exact, radius: 1, curvature: 3, pixel: 2}");
     FAIL() << "not refused";
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("curvature"), std::string::npos) << error.what();
+    EXPECT_THAT(std::string(error.what()), testing::HasSubstr("curvature")) << error.what();
   }
 }
 

@@ -1,5 +1,6 @@
 // The geometry that paths walk in.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -33,9 +34,9 @@ TEST(ClosedMesh, OpenAndTurnedTrianglesAreNamed) {
   const SceneDescription scene = read_scene(Value::scalar("furnace"), "");
   render::TriangleMesh mesh = std::get<MeshScene>(scene.form).mesh;
   std::swap(mesh.triangles[3][0], mesh.triangles[3][1]);
-  EXPECT_NE(why_not_closed(mesh).find("same way"), std::string::npos);
+  EXPECT_THAT(why_not_closed(mesh), testing::HasSubstr("same way"));
   mesh.triangles.erase(mesh.triangles.begin() + 3);
-  EXPECT_NE(why_not_closed(mesh).find("one triangle only"), std::string::npos);
+  EXPECT_THAT(why_not_closed(mesh), testing::HasSubstr("one triangle only"));
 }
 
 // Two million rays from hits all over a cube: none slips out, none hits the triangle it starts on.

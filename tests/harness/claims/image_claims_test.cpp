@@ -1,6 +1,7 @@
 // Claims about images, from YAML to verdict, record and maps.
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,6 +19,7 @@ namespace assay::harness {
 namespace {
 
 using reports::Verdict;
+using testing::HasSubstr;
 
 constexpr const char* floor_16 = "luminaire/floor, width: 16, height: 16";
 
@@ -89,8 +91,7 @@ TEST(ImageClaims, TheTileIsLocated) {
   EXPECT_EQ(winner.height, 4u);
   EXPECT_EQ(winner.component, "irradiance");
   EXPECT_GT(*winner.z, 6);
-  EXPECT_NE(test.message.find("columns 8-11, rows 8-11 (4 x 4 pixels)"), std::string::npos)
-      << test.message;
+  EXPECT_THAT(test.message, HasSubstr("columns 8-11, rows 8-11 (4 x 4 pixels)"));
 }
 
 TEST(ImageClaims, MapsHoldZMeanVarianceAdjustedPAndReference) {
@@ -150,12 +151,12 @@ TEST(ImageClaims, TooFewImagesAreInvalidAndSayWhatHelps) {
                                         "claim: mean(a) == analytic, secondaries: 15");
   EXPECT_EQ(test.verdict, Verdict::invalid);
   EXPECT_EQ(test.message.find("15 images are too few"), 0u) << test.message;
-  EXPECT_NE(test.message.find("take 16 `secondaries` or more"), std::string::npos);
+  EXPECT_THAT(test.message, HasSubstr("take 16 `secondaries` or more"));
   // 32 primaries of 16 x 16 pixels and 15 images.
   const reports::Test paid = floor_test(std::string(floor_16) + ", primaries: 32",
                                         "claim: mean(a) == analytic, budget: 122880");
   EXPECT_EQ(paid.message.find("15 images are too few"), 0u) << paid.message;
-  EXPECT_NE(paid.message.find("give a larger `budget`"), std::string::npos);
+  EXPECT_THAT(paid.message, HasSubstr("give a larger `budget`"));
 }
 
 TEST(ImageClaims, MapsReadBackEqualToTheRecord) {
@@ -209,13 +210,12 @@ TEST(ImageClaims, WhatHasNoMethodIsRefusedBeforeSampling) {
   EXPECT_EQ(of("mean(a) == mean(small)"),
             "`a` has 16 x 16 pixels of value, and `small` has 8 x 16 pixels of value: only images "
             "of one size and as many channels can be compared, element by element");
-  EXPECT_NE(of("mean(a) == mean(n)").find("`n` is no image"), std::string::npos);
-  EXPECT_NE(of("mean(a) <= analytic").find("images are claimed to be equal"), std::string::npos);
-  EXPECT_NE(of("mean(a) == 2 +- 0.1").find("common to all pixels"), std::string::npos);
-  EXPECT_NE(of("variance(a) <= 3").find("`variance` has no method for an image"),
-            std::string::npos);
-  EXPECT_NE(of("mean(a.red) == analytic").find("no part `red`"), std::string::npos);
-  EXPECT_NE(of("mean(a) == 0\n    detect: 1%").find("zero in every pixel"), std::string::npos);
+  EXPECT_THAT(of("mean(a) == mean(n)"), HasSubstr("`n` is no image"));
+  EXPECT_THAT(of("mean(a) <= analytic"), HasSubstr("images are claimed to be equal"));
+  EXPECT_THAT(of("mean(a) == 2 +- 0.1"), HasSubstr("common to all pixels"));
+  EXPECT_THAT(of("variance(a) <= 3"), HasSubstr("`variance` has no method for an image"));
+  EXPECT_THAT(of("mean(a.red) == analytic"), HasSubstr("no part `red`"));
+  EXPECT_THAT(of("mean(a) == 0\n    detect: 1%"), HasSubstr("zero in every pixel"));
 }
 
 // Pixels are independent: the variance of their mean is the mean of theirs over their number. The
@@ -269,7 +269,7 @@ TEST(ImageClaims, AFailureSaysHowMuchTooBrightWhichPlaceIs) {
   ASSERT_TRUE(test.image->winner.effect);
   EXPECT_GT(*test.image->winner.effect->low, 0);
   EXPECT_LT(*test.image->winner.effect->low, *test.image->winner.effect->estimate);
-  EXPECT_NE(test.message.find("too bright ("), std::string::npos) << test.message;
+  EXPECT_THAT(test.message, HasSubstr("too bright ("));
 }
 
 }  // namespace

@@ -455,7 +455,7 @@ TEST(CommandLineFuzz, AnyWordsAreReadOrRefused) {
       parse_command_line(arguments);
     } catch (const InputError& e) {
       EXPECT_FALSE(e.message().empty());
-      EXPECT_EQ(e.message().find('\n'), std::string::npos) << e.message();
+      EXPECT_THAT(e.message(), testing::Not(HasSubstr('\n')));
     }
   }
 }

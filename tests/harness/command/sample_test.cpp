@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <sstream>
@@ -8,6 +9,8 @@
 
 namespace assay::harness {
 namespace {
+
+using testing::HasSubstr;
 
 std::string sampled(const SampleArguments& arguments) {
   testing::internal::CaptureStdout();
@@ -45,23 +48,23 @@ TEST(Sample, DependsOnTheSeed) {
 
 TEST(Sample, OfASamplerHasItsMarginals) {
   const std::string text = sampled({.source = "luminaire/hemisphere.direction"});
-  EXPECT_NE(text.find("# columns: theta phi\n"), std::string::npos) << text;
+  EXPECT_THAT(text, HasSubstr("# columns: theta phi\n"));
 }
 
 TEST(Sample, OfTheOnlySamplerNeedsAMarginalsNameAlone) {
   const std::string named = sampled({.source = "luminaire/hemisphere.direction.theta"});
-  EXPECT_NE(named.find("# columns: theta\n"), std::string::npos) << named;
+  EXPECT_THAT(named, HasSubstr("# columns: theta\n"));
   EXPECT_EQ(sampled({.source = "luminaire/hemisphere.theta"}), named);
 }
 
 TEST(Sample, RefusesAMisspeltMarginalOfASamplerWithoutATest) {
   const std::string text = refusal([] { sample({.source = "luminaire/area.w"}); });
-  EXPECT_NE(text.find("no part `w`"), std::string::npos) << text;
+  EXPECT_THAT(text, HasSubstr("no part `w`"));
 }
 
 TEST(Sample, RefusesAPartThatIsNotThere) {
   const std::string text = refusal([] { sample({.source = "luminaire/hemisphere.directions"}); });
-  EXPECT_NE(text.find("no part `directions`"), std::string::npos) << text;
+  EXPECT_THAT(text, HasSubstr("no part `directions`"));
 }
 
 TEST(Sample, RefusesMoreRowsThanThereAre) {
@@ -69,7 +72,7 @@ TEST(Sample, RefusesMoreRowsThanThereAre) {
   const std::string option = "data=recorded,file=" + place.write("data.txt", "1\n2\n3\n");
   const std::string text =
       refusal([&] { sample({.source = "data", .estimators = {option}, .secondaries = 4}); });
-  EXPECT_NE(text.find("has 3 rows"), std::string::npos) << text;
+  EXPECT_THAT(text, HasSubstr("has 3 rows"));
 }
 
 TEST(Sample, QuotesNamesThatWouldBeSeveral) {
@@ -80,8 +83,8 @@ TEST(Sample, QuotesNamesThatWouldBeSeveral) {
   };
   const std::string header = "# columns: \"x, mean\" y \"a \"\"b\"\"\"\n1 2 3\n4 5 6\n";
   const std::string text = again("data.csv", "\"x, mean\",y,\"a \"\"b\"\"\"\n1,2,3\n4,5,6\n");
-  EXPECT_NE(text.find(header), std::string::npos) << text;
-  EXPECT_NE(again("data.txt", text).find(header), std::string::npos);
+  EXPECT_THAT(text, HasSubstr(header));
+  EXPECT_THAT(again("data.txt", text), HasSubstr(header));
 }
 
 // The file says which stream it was drawn from, and the estimator steps aside.
@@ -122,7 +125,7 @@ tests:
 )")});
     });
   };
-  EXPECT_NE(refused("many.txt").find("drawn from the same stream"), std::string::npos);
+  EXPECT_THAT(refused("many.txt"), HasSubstr("drawn from the same stream"));
   EXPECT_EQ(refused("seed2.txt"), "(nothing was refused)");
 }
 

@@ -1,5 +1,6 @@
 #include "harness/families/law_evidence.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -55,9 +56,8 @@ TEST(LawEvidence, SaysOfWhichPartThePIsAtTheMarginThatIsTested) {
   Points points = uniform_points(20000, 800, random);
   for (double& x : points.sorted) x = std::pow(x, 1.2);
   const Evidence evidence = points_against_law(points, uniform_law(0.01));
-  EXPECT_NE(evidence.most_against(0).find("the masses without a point, 0.03 apart"),
-            std::string::npos)
-      << evidence.most_against(0);
+  EXPECT_THAT(evidence.most_against(0),
+              testing::HasSubstr("the masses without a point, 0.03 apart"));
   EXPECT_EQ(evidence.most_against(0.05), "");
 }
 

@@ -80,7 +80,7 @@ TEST_F(Ledger, LimitsDoNotMoveWithTheSuite) {
   const reports::Record record = night(more, 12);
   EXPECT_NEAR(series_of(record, "nights/one").limit.value(),
               -std::log(default_ledger_budget / 2 / 1.2020569), 1e-6);
-  EXPECT_NE(record.note.find("outside the ledger"), std::string::npos) << record.note;
+  EXPECT_THAT(record.note, HasSubstr("outside the ledger"));
 }
 
 TEST_F(Ledger, NightsArePooledByTheirObservations) {

@@ -1,5 +1,6 @@
 #include "harness/plan/plan.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -105,10 +106,8 @@ TEST(Plan, OfWithinLeavesRoomForTheReferencesError) {
   const double left = of_both * of_both - 0.0025 * 0.0025;
   EXPECT_GE(uncertain, 1 / left);
   EXPECT_LE(uncertain, 1.12 / left + 3);
-  EXPECT_NE(refusal([] {
-              plan_text("  - {claim: mean(single) within 0.02 of 2 +- 0.01}\n");
-            }).find("no number of observations would decide"),
-            std::string::npos);
+  EXPECT_THAT(refusal([] { plan_text("  - {claim: mean(single) within 0.02 of 2 +- 0.01}\n"); }),
+              testing::HasSubstr("no number of observations would decide"));
 }
 
 TEST(Plan, AsksForMoreAtASmallerShare) {

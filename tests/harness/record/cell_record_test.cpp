@@ -1,5 +1,6 @@
 #include "harness/record/cell_record.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -114,7 +115,7 @@ TEST(CellRecord, NamesTheShareThatATrianglesCellsAreOf) {
 TEST(CellRecord, ShowsThePartOfAHalvedCellThatIsFarthestOff) {
   const reports::Test test = tested("distribution(narrow.direction) == density");
   ASSERT_EQ(test.maps.size(), 4u) << test.message;
-  EXPECT_NE(test.maps[2].source.find("farthest off"), std::string::npos) << test.maps[2].source;
+  EXPECT_THAT(test.maps[2].source, testing::HasSubstr("farthest off"));
   double of_sums = 0;
   double shown = 0;
   for (std::size_t i = 0; i < 512; ++i) {
@@ -198,7 +199,7 @@ TEST(CellRecord, OfTwoSamplesTheFirstIsHeldAgainstBothTogether) {
       "distribution(ward.direction) == distribution(ward.direction), test: "
       "chi-square-two-sample");
   ASSERT_EQ(test.maps.size(), 3u) << test.message;
-  EXPECT_NE(test.maps[0].source.find("of theta from top to bottom"), std::string::npos);
+  EXPECT_THAT(test.maps[0].source, testing::HasSubstr("of theta from top to bottom"));
   EXPECT_EQ(test.maps[0].width * test.maps[0].height, 256u);
   EXPECT_NEAR(sum(test.maps[0]), sum(test.maps[1]), 5 * std::sqrt(20000 * 0.25));
   double square = 0;

@@ -214,34 +214,21 @@ class Refusing : public testing::Test {
   std::vector<ShardFile> shards_;
 };
 
-TEST_F(Refusing, ADoubledShardIsNamedWithBothFiles) {
-  const ShardFile copy{"copy.json", shards_[0].record};
-  EXPECT_THAT(refused({shards_[0], shards_[1], copy}),
+TEST_F(Refusing, ShardsThatAreDoubledOrNoneAreNamed) {
+  EXPECT_THAT(refused({shards_[0], shards_[1], {"copy.json", shards_[0].record}}),
               HasSubstr("is shard 1 of 2, and so is `1.json`"));
-}
-
-TEST_F(Refusing, AWholeRunIsNoShard) {
   EXPECT_THAT(refused({shards_[0], {"whole.json", run_files({file_})}}),
               HasSubstr("is a whole run, not a shard"));
 }
 
-TEST_F(Refusing, AnotherSeedIsAnotherRun) {
+TEST_F(Refusing, OtherOptionsOrSuitesAreAnotherRun) {
   EXPECT_THAT(refused_with({.seed = 2}), HasSubstr("the seed is `2` here and `1` there"));
-}
-
-TEST_F(Refusing, OtherOptionsAreAnotherRun) {
   EXPECT_THAT(refused_with({.selection = {.filters = {"*"}}}), HasSubstr("the options"));
   EXPECT_THAT(refused_with({.command = "assay run --set normal.mean=3"}), HasSubstr("the options"));
   EXPECT_THAT(refused_with({.alpha = 0.02}), HasSubstr("alpha and beta"));
-}
-
-TEST_F(Refusing, AnotherNumberOfShardsIsAnotherRun) {
   const ShardFile other{"b.json", run_files({file_}, {.shard = std::pair(2U, 3U)})};
   EXPECT_THAT(refused({shards_[0], other}),
               HasSubstr("the number of shards is `3` here and `2` there"));
-}
-
-TEST_F(Refusing, AnotherSuiteIsAnotherRun) {
   place_.write("good.yaml", std::string(suite) + "# a remark\n");
   EXPECT_THAT(refused_with({}), HasSubstr("the digest of the suites"));
 }

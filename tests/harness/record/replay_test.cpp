@@ -15,6 +15,8 @@
 namespace assay::harness {
 namespace {
 
+using testing::HasSubstr;
+
 struct Said {
   int code;
   std::string text;
@@ -72,7 +74,7 @@ std::string recorded(const Workplace& place, const RunOptions& options = {}) {
 void expect_same_numbers(const std::string& file, const std::string& test) {
   const Said now = said({.record = file, .test = test});
   EXPECT_EQ(now.code, 0) << now.text;
-  EXPECT_NE(now.text.find("the same numbers as recorded"), std::string::npos) << now.text;
+  EXPECT_THAT(now.text, HasSubstr("the same numbers as recorded"));
 }
 
 TEST(Replay, GivesTheSameNumbersForEveryKindOfClaim) {
@@ -93,7 +95,7 @@ tests:
   - {name: forced, claim: slope(bias(ratio)) == -1, test: slope, over: {primaries: [1, 2, 4, 8]}, secondaries: 20000}
 )")});
   EXPECT_EQ(record.suites[0].tests[0].verdict, reports::Verdict::invalid);
-  EXPECT_THAT(record.suites[0].tests[0].message, testing::HasSubstr("lie on no power law"));
+  EXPECT_THAT(record.suites[0].tests[0].message, HasSubstr("lie on no power law"));
   EXPECT_EQ(record.suites[0].tests[1].verdict, reports::Verdict::fail);
   const std::string file = place.write("run.json", reports::json(record));
   for (const char* test : {"bent", "forced"}) expect_same_numbers(file, test);
@@ -110,7 +112,7 @@ tests:
   const std::string file = place.write("run.json", reports::json(record));
   const Said now = said({.record = file, .test = "cost"});
   EXPECT_EQ(now.code, 0) << now.text;
-  EXPECT_NE(now.text.find("seconds do not repeat"), std::string::npos) << now.text;
+  EXPECT_THAT(now.text, HasSubstr("seconds do not repeat"));
 }
 
 TEST(Replay, FindsATestByItsName) {
@@ -135,14 +137,13 @@ TEST(Replay, PrintsTheValueThatWasDrawn) {
   const std::vector<double> value =
       draw_observation(*uniform.setup, key_of(uniform, 1, 0, ""), primaries, 17);
   const Said now = said({.record = file, .test = "mean", .observation = 17});
-  EXPECT_NE(now.text.find(fmt::format("observation 17: {}\n", value[0])), std::string::npos)
-      << now.text;
+  EXPECT_THAT(now.text, HasSubstr(fmt::format("observation 17: {}\n", value[0])));
 }
 
 TEST(Replay, OfADrawShowsItsPoint) {
   const Workplace place;
   const Said now = said({.record = recorded(place), .test = "cells", .observation = 5});
-  EXPECT_NE(now.text.find("\n  draw of `direction`: point ("), std::string::npos) << now.text;
+  EXPECT_THAT(now.text, HasSubstr("\n  draw of `direction`: point ("));
   EXPECT_EQ(now.code, 0) << now.text;
 }
 
@@ -155,8 +156,8 @@ TEST(Replay, DrawsTheVeryObservationThatIsNotANumber) {
   ASSERT_NE(at, std::string::npos) << message;
   const std::uint64_t index = std::stoull(message.substr(at + before.size()));
   const Said now = said({.record = file, .test = "spoilt", .observation = index});
-  EXPECT_NE(now.text.find(": nan"), std::string::npos) << now.text;
-  EXPECT_NE(now.text.find("  not finite, as "), std::string::npos) << now.text;
+  EXPECT_THAT(now.text, HasSubstr(": nan"));
+  EXPECT_THAT(now.text, HasSubstr("  not finite, as "));
   EXPECT_EQ(now.code, 0);
 }
 
@@ -168,15 +169,15 @@ TEST(Replay, SaysHowManyObservationsAreNotFinite) {
   const std::string file = place.write("run.json", reports::json(record));
   const Said now = said({.record = file, .test = "spoilt"});
   EXPECT_EQ(now.code, 0) << now.text;
-  EXPECT_NE(now.text.find("error, so the numbers below decide nothing"), std::string::npos);
-  EXPECT_NE(now.text.find(line), std::string::npos) << now.text;
+  EXPECT_THAT(now.text, HasSubstr("error, so the numbers below decide nothing"));
+  EXPECT_THAT(now.text, HasSubstr(line));
   for (reports::Test& each : record.suites[0].tests) {
     if (each.name == "spoilt") each.samples[0].nonfinite = 1;
   }
   const std::string tampered = place.write("tampered.json", reports::json(record));
   const Said then = said({.record = tampered, .test = "spoilt"});
   EXPECT_EQ(then.code, 1);
-  EXPECT_NE(then.text.find("(recorded: 1)"), std::string::npos) << then.text;
+  EXPECT_THAT(then.text, HasSubstr("(recorded: 1)"));
 }
 
 TEST(Replay, HoldsOneObservationAgainstTheRecordedRange) {
@@ -185,13 +186,13 @@ TEST(Replay, HoldsOneObservationAgainstTheRecordedRange) {
   const std::string file = place.write("run.json", reports::json(record));
   const Said now = said({.record = file, .test = "mean", .observation = 17});
   EXPECT_EQ(now.code, 0);
-  EXPECT_NE(now.text.find("  lies in ["), std::string::npos) << now.text;
+  EXPECT_THAT(now.text, HasSubstr("  lies in ["));
   record.suites[0].tests[0].samples[0].minimum = 1e6;
   record.suites[0].tests[0].samples[0].maximum = 2e6;
   const std::string tampered = place.write("tampered.json", reports::json(record));
   const Said then = said({.record = tampered, .test = "mean", .observation = 17});
   EXPECT_EQ(then.code, 1);
-  EXPECT_NE(then.text.find("NOT as recorded: lies outside [1"), std::string::npos) << then.text;
+  EXPECT_THAT(then.text, HasSubstr("NOT as recorded: lies outside [1"));
 }
 
 TEST(Replay, OfOneObservationKnowsTheTwoSidesOfOneEstimatorApart) {
@@ -216,14 +217,14 @@ TEST(Replay, NoticesARecordThatWasTamperedWith) {
   const std::string file = place.write("tampered.json", reports::json(record));
   const Said now = said({.record = file, .test = "mean"});
   EXPECT_EQ(now.code, 1);
-  EXPECT_NE(now.text.find("(recorded: 6.5)"), std::string::npos) << now.text;
+  EXPECT_THAT(now.text, HasSubstr("(recorded: 6.5)"));
 }
 
 TEST(Replay, SuggestsTheTestThatWasMeant) {
   const Workplace place;
   const std::string file = recorded(place);
   const std::string text = refusal([&] { replay({.record = file, .test = "suite/meen"}); });
-  EXPECT_NE(text.find("did you mean `suite/mean`?"), std::string::npos) << text;
+  EXPECT_THAT(text, HasSubstr("did you mean `suite/mean`?"));
 }
 
 TEST(Replay, SaysThatARunIsNotThere) {
@@ -259,7 +260,7 @@ TEST(Replay, RefusesAnObservationThatWasNotDrawn) {
   const std::string file = recorded(place);
   const std::string text =
       refusal([&] { replay({.record = file, .test = "zero", .observation = 16384}); });
-  EXPECT_NE(text.find("the test used 0 to 16383"), std::string::npos) << text;
+  EXPECT_THAT(text, HasSubstr("the test used 0 to 16383"));
 }
 
 TEST(Replay, FindsRecordedDataFromTheSuitesFolder) {
@@ -280,9 +281,8 @@ tests:
   for (const std::optional<std::uint64_t> observation : {std::optional<std::uint64_t>(), {2}}) {
     const Said shorter = said({.record = file, .test = "all", .observation = observation});
     EXPECT_EQ(shorter.code, 2);
-    EXPECT_NE(shorter.text.find("the test took 3 observations of `all`, of which there are now 2"),
-              std::string::npos)
-        << shorter.text;
+    EXPECT_THAT(shorter.text,
+                HasSubstr("the test took 3 observations of `all`, of which there are now 2"));
   }
 }
 
@@ -302,10 +302,8 @@ tests:
   ASSERT_EQ(test.verdict, reports::Verdict::invalid) << test.message;
   const Said now =
       said({.record = place.write("run.json", reports::json(record)), .test = test.id});
-  EXPECT_NE(now.text.find("invalid, so the numbers below decide nothing: " + test.message),
-            std::string::npos)
-      << now.text;
-  EXPECT_NE(now.text.find("variance of an observation"), std::string::npos) << now.text;
+  EXPECT_THAT(now.text, HasSubstr("invalid, so the numbers below decide nothing: " + test.message));
+  EXPECT_THAT(now.text, HasSubstr("variance of an observation"));
 }
 
 }  // namespace

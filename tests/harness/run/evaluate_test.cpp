@@ -17,6 +17,7 @@ namespace {
 
 using reports::Verdict;
 using testing::DoubleNear;
+using testing::HasSubstr;
 using testing::Pointwise;
 
 constexpr double alpha = 0.05;
@@ -92,8 +93,8 @@ tests: [{claim: mean(it) == mean(nil))" +
                     more + "}]\n")
         .message;
   };
-  EXPECT_NE(said(", detect: 1%").find("a margin in per cent"), std::string::npos);
-  EXPECT_EQ(said("").find("margin"), std::string::npos) << said("");
+  EXPECT_THAT(said(", detect: 1%"), HasSubstr("a margin in per cent"));
+  EXPECT_THAT(said(""), testing::Not(HasSubstr("margin")));
 }
 
 std::string one_test(const std::string& estimator, const std::string& test) {
@@ -111,7 +112,7 @@ TEST(Evaluate, HeavyTailIsOpenAndSaysHowManyWouldDo) {
   const reports::Test test = judged_text("{plugin: analytic/heavy_tail, primaries: 1}",
                                          "claim: mean(it) == analytic, secondaries: 100");
   EXPECT_EQ(test.verdict, Verdict::inconclusive);
-  EXPECT_NE(test.message.find("`secondaries` would do"), std::string::npos) << test.message;
+  EXPECT_THAT(test.message, HasSubstr("`secondaries` would do"));
 }
 
 // A Pareto law of index 1.5 has no variance, but a lower bound: too much can be shown by bets, too
@@ -125,7 +126,7 @@ TEST(Evaluate, TooMuchAboveALowerBoundIsBetOn) {
   const reports::Test open =
       judged_text(heavy, "claim: mean(it) <= 4, detect: 50%, budget: 1e5, test: betting");
   EXPECT_EQ(open.verdict, Verdict::inconclusive);
-  EXPECT_NE(open.message.find("declare the range"), std::string::npos) << open.message;
+  EXPECT_THAT(open.message, HasSubstr("declare the range"));
 }
 
 TEST(Evaluate, BinomialTestsQuoteTheirOwnPower) {
@@ -141,7 +142,7 @@ TEST(Evaluate, BinomialTestsQuoteTheirOwnPower) {
 TEST(Evaluate, TwoObservationsAreJudgedInWords) {
   const reports::Test test = judged_text("{plugin: analytic/normal, primaries: 1}",
                                          "claim: mean(it) == 0, secondaries: 2");
-  EXPECT_EQ(test.message.find("_gate"), std::string::npos) << test.message;
+  EXPECT_THAT(test.message, testing::Not(HasSubstr("_gate")));
   EXPECT_NE(test.verdict, Verdict::error);
 }
 
@@ -177,7 +178,7 @@ TEST(Evaluate, SpreadsBeyondDoublesAreInvalid) {
     const reports::Record record = run_text(suite);
     for (const reports::Test& test : record.suites[0].tests) {
       EXPECT_EQ(test.verdict, Verdict::invalid) << scale << " " << test.claim << test.message;
-      EXPECT_EQ(test.message.find("internal"), std::string::npos) << test.message;
+      EXPECT_THAT(test.message, testing::Not(HasSubstr("internal")));
     }
   }
 }
@@ -188,7 +189,7 @@ TEST(Evaluate, ConstantHasNoVarianceToTest) {
     const reports::Test test =
         judged_text("{plugin: analytic/zero_variance}", std::string("claim: ") + claim);
     EXPECT_EQ(test.verdict, Verdict::invalid) << claim;
-    EXPECT_NE(test.message.find("without spread"), std::string::npos) << test.message;
+    EXPECT_THAT(test.message, HasSubstr("without spread"));
   }
 }
 
@@ -218,7 +219,7 @@ TEST(Evaluate, ConstantIsNotComparedWithSpreadWhereTheUnseenCouldDecide) {
     const reports::Test test = judged_text("{plugin: analytic/rare_spike, probability: 1e-9}",
                                            std::string("claim: ") + claim);
     EXPECT_EQ(test.verdict, Verdict::invalid) << claim;
-    EXPECT_NE(test.message.find("never seen could move"), std::string::npos) << test.message;
+    EXPECT_THAT(test.message, HasSubstr("never seen could move"));
   }
 }
 
@@ -226,8 +227,7 @@ TEST(Evaluate, NotANumberIsAnErrorWithItsPlace) {
   const reports::Test test = judged_text(
       "{plugin: mutants/rare_nan, probability: 0.05, primaries: 1}", "claim: mean(it) == 0");
   EXPECT_EQ(test.verdict, Verdict::error);
-  EXPECT_NE(test.message.find("not finite, the first is observation"), std::string::npos)
-      << test.message;
+  EXPECT_THAT(test.message, HasSubstr("not finite, the first is observation"));
   EXPECT_GT(test.samples[0].nonfinite, 0);
   EXPECT_FALSE(test.ok);
 }
@@ -238,8 +238,7 @@ TEST(Evaluate, NotANumberInThePilotIsAnErrorToo) {
       judged_text("{plugin: mutants/rare_nan, probability: 0.05, primaries: 1}",
                   "claim: efficiency(it) >= 0.1, cost: samples");
   EXPECT_EQ(test.verdict, Verdict::error) << test.message;
-  EXPECT_NE(test.message.find("not finite, the first is observation"), std::string::npos)
-      << test.message;
+  EXPECT_THAT(test.message, HasSubstr("not finite, the first is observation"));
 }
 
 TEST(Evaluate, MutantThatIsCaughtIsOk) {

@@ -1,5 +1,6 @@
 #include "harness/command/run.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,6 +15,7 @@ namespace assay::harness {
 namespace {
 
 using reports::Verdict;
+using testing::HasSubstr;
 
 constexpr const char* estimators = R"(suite: good
 estimators:
@@ -51,10 +53,10 @@ TEST(Run, ANumberThatIsNotFiniteIsNamedWithItsFile) {
       "  - {claim: mean(made) == 1, secondaries: 8}\n";
   const reports::Record record = run_files({place.write("s.yaml", suite)});
   const auto& done = record.suites[0].tests;
-  EXPECT_NE(done[0].message.find("the first is observation 1, `"), std::string::npos);
-  EXPECT_NE(done[0].message.find("rows.txt:4`"), std::string::npos) << done[0].message;
-  EXPECT_NE(done[1].message.find("the first is observation 0, `"), std::string::npos);
-  EXPECT_NE(done[1].message.find(".txt`"), std::string::npos) << done[1].message;
+  EXPECT_THAT(done[0].message, HasSubstr("the first is observation 1, `"));
+  EXPECT_THAT(done[0].message, HasSubstr("rows.txt:4`"));
+  EXPECT_THAT(done[1].message, HasSubstr("the first is observation 0, `"));
+  EXPECT_THAT(done[1].message, HasSubstr(".txt`"));
 }
 
 std::string good() { return std::string(estimators) + tests; }
@@ -110,7 +112,7 @@ TEST(Run, UnderAFilterKeepsEveryRemainingTestsNumbers) {
     const reports::Record part = run_files({file}, {.selection = {.filters = {filter}}});
     ASSERT_FALSE(part.suites[0].tests.empty()) << filter;
     ASSERT_LT(part.suites[0].tests.size(), whole.suites[0].tests.size()) << filter;
-    EXPECT_NE(part.note.find("not every test"), std::string::npos);
+    EXPECT_THAT(part.note, HasSubstr("not every test"));
     for (const reports::Test& test : part.suites[0].tests) {
       EXPECT_EQ(raw(test), raw(test_named(whole, test.name))) << test.name;
       for (const reports::Channel& channel : test.channels) EXPECT_FALSE(channel.p_adjusted);
@@ -183,8 +185,8 @@ std::string refused(const std::string& test, const RunOptions& options = {}) {
 TEST(Run, RefusesToCoarsenDetectBelowWhatIsAllowed) {
   const std::string test = "  - {claim: mean(normal) == 2, allow: 1%, detect: 4%}\n";
   const char* const words = "brings `detect` down to `allow`";
-  EXPECT_NE(refused(test, {.coarsen = 0.2}).find(words), std::string::npos);
-  EXPECT_NE(refused(test, {.coarsen = 0.25}).find(words), std::string::npos);
+  EXPECT_THAT(refused(test, {.coarsen = 0.2}), HasSubstr(words));
+  EXPECT_THAT(refused(test, {.coarsen = 0.25}), HasSubstr(words));
   EXPECT_EQ(refused(test, {.coarsen = 0.75}), "(nothing was refused)");
 }
 
@@ -222,7 +224,7 @@ TEST(Run, StopsWhereTheSuitesSecondsAreSpent) {
       "1}\ntests:\n  - {name: one, claim: mean(normal) == 0, detect: 0.001}\n");
   const reports::Test& test = test_named(record, "one");
   EXPECT_EQ(test.verdict, reports::Verdict::inconclusive);
-  EXPECT_NE(test.message.find("its budget in seconds ended here"), std::string::npos);
+  EXPECT_THAT(test.message, HasSubstr("its budget in seconds ended here"));
   EXPECT_TRUE(record.suites[0].timed);
 }
 

@@ -19,6 +19,7 @@ namespace assay::harness {
 namespace {
 
 using reports::Verdict;
+using testing::HasSubstr;
 
 reports::Test told(const std::string& test) {
   return test_named(run_text(R"(suite: told
@@ -36,7 +37,7 @@ tests:
 
 void expect_said(const reports::Test& test, Verdict verdict, const std::string& words) {
   EXPECT_EQ(test.verdict, verdict) << test.message;
-  EXPECT_NE(test.message.find(words), std::string::npos) << test.message;
+  EXPECT_THAT(test.message, HasSubstr(words));
 }
 
 TEST(Narrate, PassSaysWhatIsExcluded) {
@@ -69,7 +70,7 @@ TEST(Narrate, PassByAMarginBeyondTheOtherMeanSaysSo) {
   for (const auto& [mean, margin] : {std::pair(2., "1"), std::pair(0., "5")}) {
     const reports::Test test = beside_rows(mean, std::string("== mean(rows), detect: ") + margin);
     EXPECT_EQ(test.verdict, Verdict::pass);
-    EXPECT_EQ(test.message.find("the margin"), std::string::npos) << test.message;
+    EXPECT_THAT(test.message, testing::Not(HasSubstr("the margin")));
   }
 }
 
@@ -79,7 +80,7 @@ TEST(Narrate, SaysWhereTheDetectOfALawIsTheDefault) {
   expect_said(told(claim), Verdict::pass, words);
   expect_said(told(claim + ", budget: 200"), Verdict::inconclusive, words);
   for (const char* key : {", detect: 0.05", ", secondaries: 200"}) {
-    EXPECT_EQ(told(claim + key).message.find("default"), std::string::npos) << key;
+    EXPECT_THAT(told(claim + key).message, testing::Not(HasSubstr("default"))) << key;
   }
 }
 
@@ -171,7 +172,7 @@ TEST(Narrate, APassWhoseIntervalLeavesTheClaimOutSaysThatEvidenceIsTooLittle) {
 }
 
 TEST(Narrate, NeverSaysThatAClaimIsAccepted) {
-  EXPECT_EQ(told("claim: mean(normal) == 2").message.find("accept"), std::string::npos);
+  EXPECT_THAT(told("claim: mean(normal) == 2").message, testing::Not(HasSubstr("accept")));
 }
 
 // An inequality tells how much of its room is left; an effect the other way is no threat.
@@ -190,7 +191,7 @@ TEST(Narrate, OneSidedPassNearItsBoundSaysWhatIsExcluded) {
     const reports::Test test = told(std::string("claim: mean(normal) ") + side +
                                     ", allow: 10%, detect: 20%, secondaries: 1000");
     expect_said(test, Verdict::pass, " % or more is excluded by the ");
-    EXPECT_EQ(test.message.find("-"), std::string::npos) << test.message;
+    EXPECT_THAT(test.message, testing::Not(HasSubstr("-")));
   }
 }
 
@@ -307,7 +308,7 @@ TEST(Narrate, ShowsANumberInTheFormThatReportsShowItIn) {
   EXPECT_TRUE(shown.starts_with("×")) << shown;
   expect_said(factor, Verdict::fail, "is " + shown + " [");
   const reports::Test large = told("claim: mean(normal) == 0.15");
-  EXPECT_EQ(large.message.find("e+"), std::string::npos) << large.message;
+  EXPECT_THAT(large.message, testing::Not(HasSubstr("e+")));
 }
 
 }  // namespace

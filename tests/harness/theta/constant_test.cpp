@@ -14,7 +14,8 @@ namespace {
 
 using reports::Verdict;
 
-constexpr const char* suite = R"(suite: constants
+std::unique_ptr<Asked> asked_of(const std::string& test) {
+  return ask_text(R"(suite: constants
 estimators:
   zero: {plugin: analytic/zero_variance}                # its range is the constant, to rounding
   normal: {plugin: analytic/normal, mean: 2, deviation: 0}   # no range is declared
@@ -23,33 +24,9 @@ estimators:
   spike: {plugin: analytic/rare_spike, height: 10}      # values in [0.5, 10.5]
   dimmer: {plugin: analytic/rare_spike, height: 10}
 tests:
-  - {name: classical, claim: mean(spike) == 0.5}
-  - {name: detect, claim: mean(spike) == 0.5, detect: 0.1}
-  - {name: unbounded, claim: mean(normal) == 2, detect: 1%}
-  - {name: unseen, claim: mean(spike) == 0.51}
-  - {name: too low, claim: mean(spike) == 0.4}
-  - {name: other, claim: mean(normal) == 3}
-  - {name: bound, claim: mean(spike) <= 0.7}
-  - {name: bound with detect, claim: mean(spike) <= 0.7, detect: 10%}
-  - {name: lower bound, claim: mean(spike) >= 0.7}
-  - {name: below, claim: mean(zero) < 7}
-  - {name: below itself, claim: mean(spike) < 0.5}
-  - {name: above itself, claim: mean(spike) > 0.49}
-  - {name: within, claim: mean(zero) within 1% of 6.36}
-  - {name: not within, claim: mean(zero) within 1% of 7}
-  - {name: allowed, claim: mean(spike) == 0.499, allow: 1%, detect: 20%}
-  - {name: uncertain, claim: mean(spike) == 0.4 +- 0.5}
-  - {name: two, claim: mean(spike) == mean(normal), detect: 1%}
-  - {name: two in ranges, claim: mean(spike) == mean(dimmer), detect: 0.4}
-  - {name: nothing, claim: mean(nil) == mean(none)}
-  - {name: nothing to find, claim: mean(nil) == mean(none), detect: 1%}
-  - {name: two alike, claim: mean(spike) == 0.25 * mean(normal), detect: 0.4}
-)";
-
-struct Judged {
-  Verdict verdict;
-  std::string message;
-};
+  - {claim: )" + test +
+                  "}\n");
+}
 
 Regions regions_of(const TestEntry& test) {
   Regions regions{.relation = test.claim.relation};
@@ -59,27 +36,33 @@ Regions regions_of(const TestEntry& test) {
   return regions;
 }
 
-/// The verdict of a test whose subjects were seen `count` times, always at `values`.
-Judged judge(const std::string& name, std::uint64_t count, std::vector<double> values) {
-  const auto asked = ask_text(suite);
-  const Question& question = asked->question(name);
-  std::vector<ChannelData> data(values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    for (std::uint64_t k = 0; k < count; ++k) data[i].moments.add(values[i]);
+/// A test whose subjects were seen `count` times, always at `seen`.
+struct Case {
+  const char* test;
+  std::uint64_t count;
+  std::vector<double> seen;
+  Verdict verdict;
+  const char* why = "";
+};
+
+ConstantVerdict judge(const Case& of) {
+  const auto asked = asked_of(of.test);
+  const Question& question = asked->questions[0];
+  std::vector<ChannelData> data(of.seen.size());
+  for (std::size_t i = 0; i < of.seen.size(); ++i) {
+    for (std::uint64_t k = 0; k < of.count; ++k) data[i].moments.add(of.seen[i]);
   }
-  const Regions regions = regions_of(*question.test);
-  const ConstantVerdict verdict = judge_constant(question, 0, data, regions);
-  return {verdict.verdict, verdict.message};
+  return judge_constant(question, 0, data, regions_of(*question.test));
 }
 
 /// The same by bets on the declared range, at alpha = beta = .01.
-Verdict bet_on(const std::string& name, std::uint64_t count, std::vector<double> seen) {
-  const auto asked = ask_text(suite);
-  const Question& question = asked->question(name);
+Verdict bet_on(const Case& of) {
+  const auto asked = asked_of(of.test);
+  const Question& question = asked->questions[0];
   std::vector<std::vector<double>> values;
-  for (const double value : seen) values.emplace_back(count, value);
-  std::vector<ChannelData> data(seen.size());
-  for (std::size_t i = 0; i < seen.size(); ++i) {
+  for (const double value : of.seen) values.emplace_back(of.count, value);
+  std::vector<ChannelData> data(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
     data[i].values = values[i];
     for (const double value : values[i]) data[i].moments.add(value);
   }
@@ -94,92 +77,78 @@ Verdict bet_on(const std::string& name, std::uint64_t count, std::vector<double>
 const double integral = std::expm1(3) / 3;
 
 TEST(Constant, IsSpreadWithinTheDeclaredRounding) {
-  const auto asked = ask_text(suite);
+  const auto rounded = asked_of("mean(zero) < 7");
   stats::Moments moments;
   moments.add(integral);
   moments.add(integral * (1 + 0x1p-45));
-  EXPECT_TRUE(is_constant(asked->question("below"), 0, 0, moments));
-  EXPECT_FALSE(is_constant(asked->question("other"), 0, 0, moments)) << "declares no rounding";
+  EXPECT_TRUE(is_constant(rounded->questions[0], 0, 0, moments));
+  EXPECT_FALSE(is_constant(asked_of("mean(normal) == 3")->questions[0], 0, 0, moments))
+      << "declares no rounding";
   moments.add(integral * (1 + 0x1p-30));
-  EXPECT_FALSE(is_constant(asked->question("below"), 0, 0, moments));
+  EXPECT_FALSE(is_constant(rounded->questions[0], 0, 0, moments));
 }
 
-TEST(Constant, EqualToItsReferencePassesAClassicalTest) {
-  EXPECT_EQ(judge("classical", 10, {0.5}).verdict, Verdict::pass);
+TEST(Constant, WithoutARangeNothingBoundsWhatWasNotSeen) {
+  for (const Case& each : std::vector<Case>{
+           {"mean(spike) == 0.5", 10, {0.5}, Verdict::pass, "classical"},
+           {"mean(normal) == 2, detect: 1%", 100000, {2}, Verdict::inconclusive},
+           {"mean(normal) == 3", 100000, {2}, Verdict::invalid},
+           {"mean(spike) == 0.4 +- 0.5",
+            100000,
+            {0.5},
+            Verdict::invalid,
+            "0.1 off a reference known to 0.5 refutes nothing"},
+           {"mean(nil) == mean(none)", 1000, {0, 0}, Verdict::pass, "0 relative to 0 is none"},
+           {"mean(nil) == mean(none), detect: 1%", 1000, {0, 0}, Verdict::inconclusive},
+           {"mean(spike) == mean(normal), detect: 1%", 1000, {0.5, 2}, Verdict::invalid},
+           {"mean(spike) == 0.25 * mean(normal), detect: 0.4",
+            1000,
+            {0.5, 2},
+            Verdict::inconclusive}}) {
+    const ConstantVerdict judged = judge(each);
+    EXPECT_EQ(judged.verdict, each.verdict) << each.test << " " << each.why;
+    EXPECT_EQ(judged.message.find("declare the range") == std::string::npos,
+              judged.verdict == Verdict::pass)
+        << judged.message;
+  }
 }
 
 // Each value takes (0.6 - 0.5) / (10.5 - 0.6) of the stake from "the mean is at least 0.6". To 100
-// times the 23 bets of the mixture it takes ln(2300) / ln(1.0101) = 770 values.
-TEST(Constant, EqualToItsReferencePassesWhenTheRangeBoundsTheUnseen) {
-  EXPECT_EQ(bet_on("detect", 775, {0.5}), Verdict::pass);
-  EXPECT_EQ(bet_on("detect", 458, {0.5}), Verdict::inconclusive)
-      << "(1 - 0.01)^458 is above 0.01: no test excludes it";
+// times the 23 bets of the mixture it takes ln(2300) / ln(1.0101) = 770 values. (10.49 / 10.5)^n <=
+// 0.005 from n = 5561 on, and a mixture of 23 takes ln(4600) / ln(10 / 9.99).
+TEST(Constant, IsJudgedByBetsOnItsRange) {
+  for (const Case& each : std::vector<Case>{
+           {"mean(spike) == 0.5, detect: 0.1", 775, {0.5}, Verdict::pass},
+           {"mean(spike) == 0.5, detect: 0.1",
+            458,
+            {0.5},
+            Verdict::inconclusive,
+            "(1 - 0.01)^458 is above 0.01: no test excludes it"},
+           {"mean(spike) == 0.51", 5200, {0.5}, Verdict::pass, "nothing is forbidden"},
+           {"mean(spike) == 0.51", 8500, {0.5}, Verdict::fail},
+           {"mean(spike) == 0.4", 2, {0.5}, Verdict::fail, "nothing lies on that side"},
+           {"mean(spike) <= 0.7", 10, {0.5}, Verdict::pass},
+           {"mean(spike) <= 0.7, detect: 10%", 10, {0.5}, Verdict::inconclusive},
+           {"mean(spike) <= 0.7, detect: 10%", 1000, {0.5}, Verdict::pass},
+           {"mean(spike) >= 0.7", 10, {0.5}, Verdict::pass, "nothing is forbidden"},
+           {"mean(spike) >= 0.7", 1000, {0.5}, Verdict::fail},
+           {"mean(zero) < 7", 2, {integral}, Verdict::pass},
+           {"mean(spike) > 0.49", 2, {0.5}, Verdict::pass},
+           {"mean(spike) < 0.5",
+            10,
+            {0.5},
+            Verdict::inconclusive,
+            "0.5 is the least value there is, so the mean cannot be shown to be below it"},
+           {"mean(zero) within 1% of 6.36", 2, {integral}, Verdict::pass},
+           {"mean(zero) within 1% of 7", 2, {integral}, Verdict::fail},
+           {"mean(spike) == 0.499, allow: 1%, detect: 20%", 1000, {0.5}, Verdict::pass},
+           {"mean(spike) == mean(dimmer), detect: 0.4", 1000, {0.5, 9}, Verdict::fail},
+           {"mean(spike) == mean(dimmer), detect: 0.4", 2000, {0.5, 0.5}, Verdict::pass},
+           {"mean(spike) == mean(dimmer), detect: 0.4", 10, {0.5, 0.5}, Verdict::inconclusive}}) {
+    EXPECT_EQ(bet_on(each), each.verdict) << each.test << " " << each.count << " " << each.why;
+  }
 }
 
-TEST(Constant, EqualToItsReferenceIsInconclusiveWithoutARange) {
-  const Judged judged = judge("unbounded", 100000, {2});
-  EXPECT_EQ(judged.verdict, Verdict::inconclusive);
-  EXPECT_NE(judged.message.find("declare the range"), std::string::npos);
-}
-
-// (10.49 / 10.5)^n <= 0.005 from n = 5561 on, and a mixture of 23 takes ln(4600) / ln(10 / 9.99).
-TEST(Constant, DifferentFailsOnceTheUnseenCannotMakeItUp) {
-  EXPECT_EQ(bet_on("unseen", 5200, {0.5}), Verdict::pass) << "nothing is forbidden";
-  EXPECT_EQ(bet_on("unseen", 8500, {0.5}), Verdict::fail);
-}
-
-TEST(Constant, DifferentOnTheSideWhereNothingLiesFailsAtOnce) {
-  EXPECT_EQ(bet_on("too low", 2, {0.5}), Verdict::fail);
-}
-
-TEST(Constant, DifferentWithoutARangeIsNeverAFailure) {
-  EXPECT_EQ(judge("other", 100000, {2}).verdict, Verdict::invalid);
-}
-
-TEST(Constant, BelowAnUpperBoundIsAsClaimed) {
-  EXPECT_EQ(bet_on("bound", 10, {0.5}), Verdict::pass);
-  EXPECT_EQ(bet_on("bound with detect", 10, {0.5}), Verdict::inconclusive);
-  EXPECT_EQ(bet_on("bound with detect", 1000, {0.5}), Verdict::pass);
-}
-
-TEST(Constant, BelowALowerBoundFailsOnlyOnceTheUnseenCannotRaiseIt) {
-  EXPECT_EQ(bet_on("lower bound", 10, {0.5}), Verdict::pass) << "nothing is forbidden";
-  EXPECT_EQ(bet_on("lower bound", 1000, {0.5}), Verdict::fail);
-}
-
-TEST(Constant, ProvesAnInequalityWithItsRange) {
-  EXPECT_EQ(bet_on("below", 2, {integral}), Verdict::pass);
-  EXPECT_EQ(bet_on("above itself", 2, {0.5}), Verdict::pass);
-  EXPECT_EQ(bet_on("below itself", 10, {0.5}), Verdict::inconclusive)
-      << "0.5 is the least value there is, so the mean cannot be shown to be below it";
-}
-
-TEST(Constant, IsProvedOrRefutedWithinAMargin) {
-  EXPECT_EQ(bet_on("within", 2, {integral}), Verdict::pass);
-  EXPECT_EQ(bet_on("not within", 2, {integral}), Verdict::fail);
-}
-
-TEST(Constant, MayDifferByWhatIsAllowed) {
-  EXPECT_EQ(bet_on("allowed", 1000, {0.5}), Verdict::pass);
-}
-
-TEST(Constant, CarriesTheReferencesError) {
-  EXPECT_EQ(judge("uncertain", 100000, {0.5}).verdict, Verdict::invalid)
-      << "0.1 off a reference known to 0.5 refutes nothing";
-}
-
-// A difference of 0 relative to 0 is none.
-TEST(Constant, ComparesTwoZeros) {
-  EXPECT_EQ(judge("nothing", 1000, {0, 0}).verdict, Verdict::pass);
-  EXPECT_EQ(judge("nothing to find", 1000, {0, 0}).verdict, Verdict::inconclusive);
-}
-
-TEST(Constant, ComparesTwoWithoutARange) {
-  EXPECT_EQ(judge("two", 1000, {0.5, 2}).verdict, Verdict::invalid);
-  EXPECT_EQ(judge("two alike", 1000, {0.5, 2}).verdict, Verdict::inconclusive);
-}
-
-// The other's values lie in [0.5, 10.5] too.
 // Bets bound what was never seen, so that a run needs no spread to compare by.
 TEST(Constant, ComparesTwoByBetsInARun) {
   const std::string text = R"(suite: constants
@@ -190,12 +159,6 @@ tests:
   - {name: two constants, claim: mean(low) == mean(high), secondaries: 1000)";
   EXPECT_EQ(run_verdict(text + "}\n"), Verdict::fail);
   EXPECT_EQ(run_verdict(text + ", test: welch}\n"), Verdict::invalid);
-}
-
-TEST(Constant, ComparesTwoByBothRanges) {
-  EXPECT_EQ(bet_on("two in ranges", 1000, {0.5, 9}), Verdict::fail);
-  EXPECT_EQ(bet_on("two in ranges", 2000, {0.5, 0.5}), Verdict::pass);
-  EXPECT_EQ(bet_on("two in ranges", 10, {0.5, 0.5}), Verdict::inconclusive);
 }
 
 }  // namespace

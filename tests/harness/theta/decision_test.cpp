@@ -49,31 +49,25 @@ TEST(Decision, OfEqualityNeverExceedsOne) {
   EXPECT_EQ(log_p_claimed(normal_evidence(0, 1), {.relation = Relation::equal}), 0);
 }
 
-TEST(Decision, OfUpperBoundUsesOneTailEach) {
-  const Regions regions{.relation = Relation::at_most, .allow = 0.3, .detect = 2.5};
-  EXPECT_NEAR(p_claimed(regions), above(at(0.3)), 1e-14);
-  EXPECT_NEAR(p_forbidden(regions), below(at(2.5)), 1e-14);
+TEST(Decision, OfBoundsUsesOneTailEach) {
+  const Regions upper{.relation = Relation::at_most, .allow = 0.3, .detect = 2.5};
+  EXPECT_NEAR(p_claimed(upper), above(at(0.3)), 1e-14);
+  EXPECT_NEAR(p_forbidden(upper), below(at(2.5)), 1e-14);
+  const Regions lower{.relation = Relation::at_least, .allow = 0.3, .detect = 2.5};
+  EXPECT_NEAR(p_claimed(lower), below(at(-0.3)), 1e-14);
+  EXPECT_NEAR(p_forbidden(lower), above(at(-2.5)), 1e-14);
 }
 
-TEST(Decision, OfLowerBoundIsTheMirrorImage) {
-  const Regions regions{.relation = Relation::at_least, .allow = 0.3, .detect = 2.5};
-  EXPECT_NEAR(p_claimed(regions), below(at(-0.3)), 1e-14);
-  EXPECT_NEAR(p_forbidden(regions), above(at(-2.5)), 1e-14);
-}
-
-TEST(Decision, OfProofsSplitsAtZero) {
+TEST(Decision, OfProofsSplitsAtZeroOrTheMargin) {
   const Regions less{.relation = Relation::less, .detect = 2.5};
   EXPECT_NEAR(p_claimed(less), above(at(0)), 1e-14);
   EXPECT_NEAR(p_forbidden(less), below(at(0)), 1e-14);
   const Regions greater{.relation = Relation::greater, .detect = 2.5};
   EXPECT_NEAR(p_claimed(greater), below(at(0)), 1e-14);
   EXPECT_NEAR(p_forbidden(greater), above(at(0)), 1e-14);
-}
-
-TEST(Decision, OfWithinMakesTwoOneSidedTestsAtTheMargin) {
-  const Regions regions{.relation = Relation::within, .detect = 0.9};
-  EXPECT_NEAR(p_claimed(regions), std::min(1.0, 2 * above(at(0.9))), 1e-14);
-  EXPECT_NEAR(p_forbidden(regions), std::max(below(at(0.9)), above(at(-0.9))), 1e-14);
+  const Regions within{.relation = Relation::within, .detect = 0.9};
+  EXPECT_NEAR(p_claimed(within), std::min(1.0, 2 * above(at(0.9))), 1e-14);
+  EXPECT_NEAR(p_forbidden(within), std::max(below(at(0.9)), above(at(-0.9))), 1e-14);
 }
 
 TEST(Decision, OfADistanceHasOneDirection) {
@@ -192,43 +186,32 @@ bool keeps_promises(const Decider& decider) {
 
 TEST(Decision, ErrsNoMoreOftenThanItsLevels) { EXPECT_TRUE(keeps_promises({})); }
 
-TEST(Decision, ThatForgetsToDoubleIsCaught) {
-  const auto undoubled = [](const Evidence& evidence, const Regions& regions) {
+TEST(Decision, MutantsAreCaught) {
+  const LogP undoubled = [](const Evidence& evidence, const Regions& regions) {
     const double p = log_p_claimed(evidence, regions);
     return regions.relation == Relation::equal ? p - std::log(2.0) : p;
   };
-  EXPECT_FALSE(keeps_promises({.claimed = undoubled}));
-}
-
-TEST(Decision, ThatExcludesOneSideOnlyIsCaught) {
-  const auto one_side = [](const Evidence& evidence, const Regions& regions) {
-    if (regions.relation != Relation::within) return log_p_forbidden(evidence, regions);
-    return evidence.at(*regions.detect).log_p_lower;
-  };
-  EXPECT_FALSE(keeps_promises({.forbidden = one_side}));
-}
-
-TEST(Decision, ThatTestsDetectAtHalfItsLevelIsCaught) {
-  const auto timid = [](const Evidence& evidence, const Regions& regions) {
-    return log_p_forbidden(evidence, regions) + std::log(2.0);
-  };
-  EXPECT_FALSE(keeps_promises({.forbidden = timid}));
-}
-
-TEST(Decision, ThatForgetsTheAllowanceIsCaught) {
-  const auto strict = [](const Evidence& evidence, Regions regions) {
+  const LogP without_allowance = [](const Evidence& evidence, Regions regions) {
     regions.allow = 0;
     return log_p_claimed(evidence, regions);
   };
-  EXPECT_FALSE(keeps_promises({.claimed = strict}));
-}
-
-TEST(Decision, ThatSwapsTheDirectionsIsCaught) {
-  const auto swapped = [](const Evidence& evidence, Regions regions) {
+  const LogP swapped = [](const Evidence& evidence, Regions regions) {
     if (regions.relation == Relation::at_most) regions.relation = Relation::at_least;
     return log_p_claimed(evidence, regions);
   };
-  EXPECT_FALSE(keeps_promises({.claimed = swapped}));
+  for (const LogP& claimed : {undoubled, without_allowance, swapped}) {
+    EXPECT_FALSE(keeps_promises({.claimed = claimed}));
+  }
+  const LogP excludes_one_side = [](const Evidence& evidence, const Regions& regions) {
+    if (!regions.within()) return log_p_forbidden(evidence, regions);
+    return evidence.at(*regions.detect).log_p_lower;
+  };
+  const LogP at_half_its_level = [](const Evidence& evidence, const Regions& regions) {
+    return log_p_forbidden(evidence, regions) + std::log(2.0);
+  };
+  for (const LogP& forbidden : {excludes_one_side, at_half_its_level}) {
+    EXPECT_FALSE(keeps_promises({.forbidden = forbidden}));
+  }
 }
 
 TEST(Decision, NamesTheTailThatSpeaksAgainstTheClaim) {

@@ -1,5 +1,6 @@
 #include "harness/theta/method.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -184,7 +185,7 @@ TEST(Method, NamesAreThoseOfTheDesign) {
 TEST(Method, ThatDoesNotAnswerTheClaimIsRefusedWithThoseThatDo) {
   const auto asked = ask_text(suite);
   const std::string text = refusal([&] { find_method(asked->question("variance"), "welch"); });
-  EXPECT_NE(text.find("`chi-square`, `influence-t`"), std::string::npos) << text;
+  EXPECT_THAT(text, testing::HasSubstr("`chi-square`, `influence-t`"));
 }
 
 TEST(Method, NullHypothesisReadsAsAFormula) {
