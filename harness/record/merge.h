@@ -2,7 +2,6 @@
 
 // Joins the shards of one run to the record of the whole run.
 
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -32,9 +31,5 @@ struct MergeArguments {
 };
 /// Reads, merges and reports. Returns the exit code of the whole run, 1 if a shard is missing.
 int merge_shards(const MergeArguments& arguments, const Output& output);
-
-/// Fills in `record.shard`, and adds a note on the basis of a shard's verdicts.
-void add_shard(const std::vector<std::unique_ptr<SuiteRun>>& runs, const RunOptions& options,
-               reports::Record& record);
 
 }  // namespace assay::harness
