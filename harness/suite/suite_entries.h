@@ -3,6 +3,7 @@
 #include <functional>
 #include <vector>
 
+#include "estimators/estimator.h"
 #include "harness/suite/suite.h"
 #include "harness/suite/yaml.h"
 

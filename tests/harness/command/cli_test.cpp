@@ -455,7 +455,7 @@ TEST(CommandLineFuzz, AnyWordsAreReadOrRefused) {
       parse_command_line(arguments);
     } catch (const InputError& e) {
       EXPECT_FALSE(e.message().empty());
-      EXPECT_THAT(e.message(), testing::Not(HasSubstr('\n')));
+      EXPECT_THAT(e.message(), testing::Not(HasSubstr("\n")));
     }
   }
 }

@@ -152,7 +152,7 @@ TEST(PlanTable, ShowsNoEffectThatTheBudgetDoesNotFind) {
   const std::string text = plan_text(planned, costs_of(planned));
   const std::size_t row = text.find("betting");
   ASSERT_NE(row, std::string::npos) << text;
-  EXPECT_THAT(text.substr(row, text.find('\n', row) - row), testing::Not(HasSubstr('%'))) << text;
+  EXPECT_THAT(text.substr(row, text.find('\n', row) - row), testing::Not(HasSubstr("%"))) << text;
 }
 
 // One may take minutes: no more are drawn.
