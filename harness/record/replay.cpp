@@ -8,6 +8,8 @@
 #include <fstream>
 #include <optional>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "estimators/catalogue.h"
 #include "harness/base/interrupt.h"
@@ -15,10 +17,10 @@
 #include "harness/base/terminal.h"
 #include "harness/draws/draw_text.h"
 #include "harness/draws/sampler_setup.h"
-#include "harness/pilot/pilot_run.h"
-#include "harness/plan/critical.h"
-#include "harness/plan/frozen.h"
-#include "harness/plan/rows.h"
+#include "harness/pilot/pilot.h"
+#include "harness/plan/independence.h"
+#include "harness/plan/pilot_shape.h"
+#include "harness/plan/sizes.h"
 #include "harness/record/record_of.h"
 #include "harness/run/looks.h"
 #include "harness/run/pools.h"
@@ -63,11 +65,13 @@ Value parameters_of(const reports::Sample& sample, const Location& where) {
 
 void read_keys(const reports::Test& recorded, TestEntry& test) {
   const Location where{.file = recorded.file};
-  if (!recorded.over.empty()) test.over = read_sweep(read_flow(recorded.over, where));
+  std::vector<Value::Member> keys;
+  if (!recorded.over.empty()) keys.emplace_back("over", read_flow(recorded.over, where));
   if (!recorded.reference.empty()) {
-    read_reference(Value::scalar(recorded.reference, where), test);
+    keys.emplace_back("reference", Value::scalar(recorded.reference, where));
   }
-  if (!recorded.cost.empty()) test.cost = read_cost(Value::scalar(recorded.cost, where));
+  if (!recorded.cost.empty()) keys.emplace_back("cost", Value::scalar(recorded.cost, where));
+  read_test_keys({}, Value::map(std::move(keys), where), test);
 }
 
 bool has_relative_effect(const Claim& claim) {
@@ -130,7 +134,7 @@ stats::LookSchedule recorded_looks(const Question& question, const Recorded& rec
   const reports::Test& test = recorded.test;
   const stats::ErrorRates errors{.alpha = test.alpha.value_or(recorded.suite.alpha),
                                  .beta = test.beta.value_or(recorded.suite.beta),
-                                 .two_sided = two_sided(question)};
+                                 .two_sided = is_two_sided(question.test->claim.relation)};
   if (test.looks.empty()) return stats::schedule_looks({most_recorded(test)}, law, errors);
   return stats::schedule_looks(test.planned_looks, law, errors);
 }
@@ -225,7 +229,7 @@ std::unique_ptr<Rebuilt> rebuild(const Recorded& recorded, const std::string& re
   Question question = ask(rebuilt->suite.tests[0], rebuilt->estimators, recorded.seed);
   Plan plan = recorded_plan(question, recorded);
   require_same_rows(question, recorded, record);
-  if (takes_from_pilot(plan.method)) {
+  if (plan.method.is.cells_of_pilots) {
     freeze(question, pilots_of(*rebuilt, question, recorded.seed), plan);
   }
   rebuilt->work.outcome = {

@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "harness/plan/gate_text.h"
+#include "harness/plan/independence.h"
 #include "harness/plan/plan.h"
-#include "harness/plan/rows.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/theta.h"
 #include "reports/words/effect.h"
