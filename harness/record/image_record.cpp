@@ -215,6 +215,7 @@ void add_image(const DrawnTest& drawn, reports::Test& test) {
   if (outcome.channels.empty() || !outcome.channels[0].image) return;
   const ImageOutcome& found = *outcome.channels[0].image;
   test.image = image_of(found, *outcome.question.subjects[0].image);
+  if (!found.seen.empty()) test.image->winner.statistic = found.seen;
   if (const std::optional<PlaceEffect> effect = effect_at_place(drawn)) {
     const bool relative = effect->other != 0;
     const double unit = relative ? std::abs(effect->other) : 1;

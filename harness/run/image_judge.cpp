@@ -126,6 +126,7 @@ std::optional<PlaceEffect> effect_at_place(const DrawnTest& test) {
   const TestOutcome& outcome = test.outcome;
   const Question& question = outcome.question;
   if (outcome.channels.empty() || !outcome.channels[0].image) return {};
+  if (!outcome.channels[0].image->seen.empty()) return {};
   const stats::ImageFamily& family = outcome.channels[0].image->family;
   const stats::ImageFinding& winner = family.winner;
   if (winner.statistic != stats::ImageStatistic::window || winner.window.width == 0) return {};

@@ -14,7 +14,8 @@ namespace assay::reports {
 
 /// A sum over part of an image, or over all of it, that speaks against equality.
 struct ImageFinding {
-  std::string statistic;  ///< "window", "alternating" (signs)
+  /// "window", "alternating" (signs); of laws what differs: "the values spread more".
+  std::string statistic;
   std::string place;      ///< where, and its z, in words
   std::uint64_t x = 0, y = 0, width = 0, height = 0;  ///< the rectangle of pixels
   std::string component;

@@ -90,10 +90,16 @@ std::string found_in_image(const Image& image) {
         if (*each) *each = -**each;
       }
     }
+    // The words have the sign.
+    std::string interval = bracket(size);
+    if (size.low.value_or(0) >= 0) std::erase(interval, '+');
     return fmt::format("{} is {} too {}{}", pixels(image, winner), size_text(*size.estimate, size),
-                       dark ? "dark" : "bright", bracket(size));
+                       dark ? "dark" : "bright", interval);
   }
   if (winner.statistic == "alternating") return "the whole image differs with alternating signs";
+  if (winner.statistic != "window") {
+    return fmt::format("{}: {}", pixels(image, winner), winner.statistic);
+  }
   return fmt::format("{} is too {}", pixels(image, winner),
                      winner.z.value_or(0) > 0 ? "bright" : "dark");
 }

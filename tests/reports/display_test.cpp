@@ -59,7 +59,7 @@ TEST(Display, APassWhoseRangeLeavesTheClaimOutSaysSo) {
 TEST(Display, AnImageIsHeadlinedByItsPlace) {
   reports::Test test = failing();
   EXPECT_EQ(display(test).sentence,
-            "x 2-3, y 1-2 of green is 1.62\u00A0% too dark (+0.97\u00A0% to +2.27\u00A0%); you "
+            "x 2-3, y 1-2 of green is 1.62\u00A0% too dark (0.97\u00A0% to 2.27\u00A0%); you "
             "asked to catch "
             "0.5\u00A0%.");
   test.image->winner.effect.reset();

@@ -171,6 +171,8 @@ TEST(ImageLaws, SayWhatDiffersWhere) {
   EXPECT_NEAR(*test.channels[0].log10_p, -3, 1e-9);
   EXPECT_THAT(test.message, HasSubstr("the values are mostly larger in `b`"));
   EXPECT_THAT(test.message, HasSubstr("columns 0-"));
+  EXPECT_EQ(test.image->winner.statistic, "the values are mostly larger");
+  EXPECT_FALSE(test.image->winner.effect);
 }
 
 TEST(ImageLaws, HaveNoMarginAndAnotherImage) {
