@@ -98,7 +98,7 @@ TEST(Console, ABrokenClaimSaysWhereWhatAndHowAgain) {
       screen.broken(record.suites[0], record.suites[0].tests[2]),
       "✗ triangle luminaire: mean(winners) == mean(hemisphere)" + std::string(22, ' ') +
           "suites/triangle.yaml:18\n"
-          "    x 2-3, y 1-2 of green is 1.62 % too dark (+0.97 % to +2.27 %); you asked to catch "
+          "    x 2-3, y 1-2 of green is 1.62 % too dark (0.97 % to 2.27 %); you asked to catch "
           "0.5 %.\n"
           "    again: assay replay run.json 'triangle/mean(winners) == mean(hemisphere)'\n\n");
 }
