@@ -150,8 +150,9 @@ std::optional<PlaceEffect> effect_at_place(const DrawnTest& test) {
 
 std::string means_where_it_differs(const DrawnTest& test) {
   if (test.outcome.verdict != reports::Verdict::fail) return "";
-  const std::string& seen = test.outcome.channels[0].image->seen;
-  if (!seen.empty()) {
+  const std::vector<ChannelOutcome>& channels = test.outcome.channels;
+  if (channels.empty() || !channels[0].image) return "";
+  if (const std::string& seen = channels[0].image->seen; !seen.empty()) {
     return fmt::format("; there {} in `{}`", seen,
                        test.outcome.question.subjects[0].estimator->name);
   }
