@@ -65,7 +65,7 @@ test_renders_that_fail_are_retried_and_each_retry_is_named() {
   [ "$(wc -l <starts)" = 100 ] || fail "$(wc -l <starts) starts"
   rm -r .assay-cache starts
   touch fails
-  expect 0 run farm.yaml --report json=run.json --report console=-
+  expect 0 run farm.yaml -vv --report json=run.json --report console=-
   [ "$(wc -l <starts)" = 107 ] || fail "$(wc -l <starts) starts"
   [ "$(pictures)" = 100 ] || fail "$(pictures) pictures"
   # The renderer and the record agree on what failed.

@@ -84,7 +84,7 @@ def test_the_replay_line_finds_the_same(folder):
     finding = next(line for line in result.outlines if line.startswith("  message "))
     words = shlex.split(replay.split(None, 1)[1])
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
-    ended = subprocess.run([os.environ["ASSAY"], *words[1:], "--shard", "1/1"], capture_output=True,
+    ended = subprocess.run([os.environ["ASSAY"], *words[1:], "-vv", "--shard", "1/1"], capture_output=True,
                            text=True, check=False, cwd="/", env=environment)
     assert ended.returncode == 1, ended.stderr
     assert " ".join(finding.split()[1:]) in " ".join(ended.stdout.split())
