@@ -10,6 +10,7 @@
 #include "harness/plan/sizes.h"
 #include "harness/sampling/element_sums.h"
 #include "harness/sampling/pool.h"
+#include "harness/theta/ask.h"
 #include "stats/images/image_dependence.h"
 #include "stats/images/image_windows.h"
 #include "stats/tails/tails.h"
@@ -87,7 +88,8 @@ std::string text_of(const DrawnTest& test, const stats::AlikeImages& alike) {
       alike.correlation);
   if (alike.across) {
     return "images of equal number on both sides " + common +
-           "; give one side other seeds, or test their differences: `--paired`, in a suite `paired: true`";
+           "; give one side other seeds, or test their differences with " +
+           written_key(*test.outcome.question.test, "paired", "true");
   }
   return fmt::format("consecutive images of `{}` {}; give each image a seed of its own",
                      test.outcome.question.subjects[alike.side].estimator->name, common);

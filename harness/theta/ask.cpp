@@ -182,8 +182,8 @@ Question ask(const TestEntry& test, const Estimators& estimators, std::uint64_t 
 
 std::string written_key(const TestEntry& test, const std::string& key, const std::string& value) {
   const bool of_command_line = test.where.file == "claim";
-  return of_command_line ? fmt::format("`--{} {}`", key, value)
-                         : fmt::format("`{}: {}`", key, value);
+  if (!of_command_line) return fmt::format("`{}: {}`", key, value);
+  return value == "true" ? fmt::format("`--{}`", key) : fmt::format("`--{} {}`", key, value);
 }
 
 std::vector<Margin> margins_of(const TestEntry& test) {
