@@ -236,6 +236,7 @@ std::map<std::string, Fault> prepare_estimators(SuiteRun& run) {
       faults.emplace(entry.name, Fault{.words = words_of(std::current_exception())});
     }
   }
+  share_random_numbers(run.suite, run.estimators);
   return faults;
 }
 

@@ -89,10 +89,6 @@ PreparedEstimator prepare(const EstimatorEntry& entry, const std::string& folder
   return prepared;
 }
 
-namespace {
-
-/// Sides of `paired` claims draw the random numbers of the first of those that they are paired
-/// with, directly or through others.
 void share_random_numbers(const Suite& suite, std::map<std::string, PreparedEstimator>& prepared) {
   std::map<std::string, std::string> leader;
   const auto leader_of = [&](std::string name) {
@@ -107,13 +103,13 @@ void share_random_numbers(const Suite& suite, std::map<std::string, PreparedEsti
     if (first != second) leader[second] = first;
   }
   for (const auto& [name, unused] : leader) {
-    const PreparedEstimator& from = prepared.at(leader_of(name));
-    prepared.at(name).key_plugin = from.key_plugin;
-    prepared.at(name).key_parameters = from.key_parameters;
+    const auto from = prepared.find(leader_of(name));
+    const auto to = prepared.find(name);
+    if (from == prepared.end() || to == prepared.end()) continue;  // one could not be prepared
+    to->second.key_plugin = from->second.key_plugin;
+    to->second.key_parameters = from->second.key_parameters;
   }
 }
-
-}  // namespace
 
 std::map<std::string, PreparedEstimator> prepare_all(const Suite& suite) {
   std::map<std::string, PreparedEstimator> prepared;

@@ -39,6 +39,10 @@ PreparedEstimator prepare(const EstimatorEntry& entry, const std::string& folder
 
 std::map<std::string, PreparedEstimator> prepare_all(const Suite& suite);
 
+/// Sides of `paired` claims draw the random numbers of the first of those that they are paired
+/// with, directly or through others.
+void share_random_numbers(const Suite& suite, std::map<std::string, PreparedEstimator>& prepared);
+
 /// The key of an estimator's stream. `copy` is 1 for a claim's second source with the same key.
 /// `purpose` separates the pilot and each sampler.
 StreamKey key_of(const PreparedEstimator& estimator, std::uint64_t seed, std::uint32_t copy,

@@ -187,7 +187,8 @@ std::optional<double> departure(const Moments& some, const Moments& others) {
 }
 
 std::optional<AlikeImages> alike_in(const std::vector<Scores>& sides) {
-  if (sides.empty() || sides[0].empty() || sides[0][0].size() < fewest_sampled) return {};
+  if (sides.empty() || sides[0].size() < least_replicates || sides[0][0].size() < fewest_sampled)
+    return {};
   if (sides.size() == 2) {
     Moments equal;
     Moments others;
@@ -232,8 +233,9 @@ void RowDependence<Real>::take(const ImagePair<Real>& pair, RowRange rows,
     if (tile && !repeated_) repeated_ = tile;
   }
   sampled_.resize(sides.size());
-  // Odd, so that it meets columns and channels of every kind.
-  const std::size_t step = (extent.elements() + most_sampled - 1) / most_sampled | 1;
+  // Coprime to a row, so that it meets all columns and channels.
+  std::size_t step = (extent.elements() + most_sampled - 1) / most_sampled;
+  while (std::gcd(step, extent.row()) > 1) ++step;
   const ElementRange range = rows.elements(extent);
   for (std::size_t e = (range.first + step - 1) / step * step; e < range.last; e += step) {
     for (std::size_t s = 0; s < sides.size(); ++s) {

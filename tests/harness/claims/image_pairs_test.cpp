@@ -148,6 +148,7 @@ TEST(ImagePairs, OfPluginsDrawTheSameNumbers) {
   }
   const auto& tests = record.suites[0].tests;
   EXPECT_EQ(tests[0].samples[0].primaries, tests[0].samples[1].primaries);
+  EXPECT_EQ(tests[1].samples[0].stream, tests[1].samples[1].stream);
 }
 
 // ---- Laws
