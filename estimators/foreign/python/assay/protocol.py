@@ -134,7 +134,7 @@ class _Answers:
         if self._is_number:
             total = math.fsum([estimate(stream) for _ in range(primaries)])
             return struct.pack("<d", total / primaries)
-        total = self._flat(estimate(stream))
+        total = self._flat(estimate(stream)).copy()  # the estimate may use its array again
         for _ in range(primaries - 1):
             total = _sum(total, self._flat(estimate(stream)))
         return _bytes(total / primaries if _is_array(total) else [each / primaries for each in total])
