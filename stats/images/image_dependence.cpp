@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "stats/basics/moments.h"
+#include "stats/basics/scores.h"
 
 namespace assay::stats {
 namespace {
@@ -127,26 +128,12 @@ std::optional<RepeatedTile> repeated_in(const std::vector<const ImageStack<Real>
   return {};
 }
 
-// Midranks less their mean, over their root mean square; zeros if all values are equal.
-std::vector<float> scores_of(const std::vector<float>& values) {
-  std::vector<std::size_t> order(values.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::ranges::sort(order, {}, [&](std::size_t i) { return values[i]; });
-  std::vector<float> scores(values.size());
-  const double middle = static_cast<double>(values.size() - 1) / 2;
-  double squares = 0;
-  for (std::size_t i = 0; i < order.size();) {
-    std::size_t end = i + 1;
-    while (end < order.size() && values[order[end]] == values[order[i]]) ++end;
-    const double rank = static_cast<double>(i + end - 1) / 2 - middle;
-    for (std::size_t j = i; j < end; ++j) scores[order[j]] = static_cast<float>(rank);
-    squares += rank * rank * static_cast<double>(end - i);
-    i = end;
-  }
-  if (!(squares > 0)) return {};
-  const auto scale =
-      static_cast<float>(1 / std::sqrt(squares / static_cast<double>(values.size())));
-  for (float& score : scores) score *= scale;
+// Standardised midranks; empty if all values are equal.
+std::vector<double> scores_of(const std::vector<float>& values) {
+  std::vector<std::uint32_t> order;
+  std::vector<double> scores;
+  midranks(std::span<const float>(values), order, scores);
+  if (!standardise(scores)) scores.clear();
   return scores;
 }
 
@@ -157,11 +144,12 @@ std::vector<Scores> scored(const std::vector<std::vector<std::vector<float>>>& s
   std::vector<Scores> sides;
   for (const auto& side : sampled) sides.emplace_back(side.empty() ? 0 : side[0].size());
   for (std::size_t e = 0; !sampled.empty() && e < sampled[0].size(); ++e) {
-    std::vector<std::vector<float>> each;
+    std::vector<std::vector<double>> each;
     for (const auto& side : sampled) each.push_back(scores_of(side[e]));
     if (std::ranges::any_of(each, [](const auto& scores) { return scores.empty(); })) continue;
     for (std::size_t s = 0; s < each.size(); ++s) {
-      for (std::size_t r = 0; r < each[s].size(); ++r) sides[s][r].push_back(each[s][r]);
+      for (std::size_t r = 0; r < each[s].size(); ++r)
+        sides[s][r].push_back(static_cast<float>(each[s][r]));
     }
   }
   return sides;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "stats/basics/scores.h"
 #include "stats/basics/vector_copies.h"
 #include "stats/tails/tails.h"
 
@@ -139,64 +140,28 @@ void merge(Group& group, const Group& other) {
   }
 }
 
-// The scores of one element over all images: mean 0, mean square 1; 0 if they do not vary.
-void standardise(std::span<double> values) {
-  const auto [least, most] = std::ranges::minmax(values);
-  if (least == most) {
-    std::ranges::fill(values, 0);
-    return;
-  }
-  const auto count = static_cast<double>(values.size());
-  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / count;
-  double squares = 0;
-  for (double& value : values) {
-    value -= mean;
-    squares += value * value;
-  }
-  const double scale = 1 / std::sqrt(squares / count);
-  for (double& value : values) value *= scale;
-}
-
+// The values of one element in all images, and their scores.
 class Element {
  public:
-  explicit Element(std::size_t images) : order_(images), values_(images), scored_(images) {}
+  explicit Element(std::size_t images) : values_(images) {}
 
   std::span<double> values() { return values_; }
-  std::span<const double> scored(ImageScore score) {
-    if (score == ImageScore::value) {
-      scored_ = values_;
-      standardise(scored_);
-      rank();
-    } else {
-      scored_ = ranks_;
-      standardise(scored_);
-    }
-    if (score == ImageScore::spread) {
-      for (double& each : scored_) each *= each;
-      standardise(scored_);
-    }
-    return scored_;
+  void score() {
+    auto& [value, rank, spread] = scores_;
+    value = values_;
+    standardise(value);
+    midranks(std::span<const double>(values_), order_, rank);
+    standardise(rank);
+    spread = rank;
+    for (double& each : spread) each *= each;
+    standardise(spread);
   }
+  std::span<const double> by(std::size_t score) const { return scores_[score]; }
 
  private:
-  void rank() {
-    std::iota(order_.begin(), order_.end(), 0);
-    std::ranges::sort(order_, {}, [&](std::uint32_t i) { return values_[i]; });
-    ranks_.resize(values_.size());
-    for (std::size_t i = 0; i < order_.size();) {
-      std::size_t end = i + 1;
-      while (end < order_.size() && values_[order_[end]] == values_[order_[i]]) ++end;
-      for (std::size_t j = i; j < end; ++j) {
-        ranks_[order_[j]] = static_cast<double>(i + end - 1) / 2;
-      }
-      i = end;
-    }
-  }
-
-  std::vector<std::uint32_t> order_;
   std::vector<double> values_;
-  std::vector<double> scored_;
-  std::vector<double> ranks_;
+  std::vector<std::uint32_t> order_;
+  std::array<std::vector<double>, scores> scores_;
 };
 
 struct Place {
@@ -241,8 +206,9 @@ class Pooled {
       const std::size_t y = at.y + i / all[0].width;
       const std::size_t index = (y * extent_.width + x) * extent_.channels + at.channel;
       for (std::size_t r = 0; r < images_.size(); ++r) element.values()[r] = images_[r][index];
+      element.score();
       for (std::size_t s = 0; s < scores; ++s) {
-        const std::span<const double> scored = element.scored(static_cast<ImageScore>(s));
+        const std::span<const double> scored = element.by(s);
         for (std::size_t r = 0; r < scored.size(); ++r) {
           all[s].images[r][i] = static_cast<float>(scored[r]);
         }
