@@ -108,9 +108,7 @@ std::string explain(const Suite& suite, const Test& test, int width) {
   text += what_was_drawn(words);
   say(text);
   if (is_evidence(test) && test.verdict != Verdict::skipped && suite.alpha > 0) {
-    Record alone;
-    alone.suites = {{.alpha = suite.alpha, .tests = {Test{}}}};
-    say(false_alarms(alone) + " They are counted over all claims of the suite.");
+    say(false_alarms(suite.alpha) + " They are counted over all claims of the suite.");
   }
   const std::vector<Step> next = steps(test);
   if (next.empty()) return out;

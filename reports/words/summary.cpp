@@ -114,9 +114,7 @@ std::string error_rates(const Record& record) {
   return text;
 }
 
-std::string false_alarms(const Record& record) {
-  double alpha = 0;
-  for (const Suite& suite : record.suites) alpha += suite.tests.empty() ? 0 : suite.alpha;
+std::string false_alarms(double alpha) {
   if (!(alpha > 0)) return {};
   // The fewest runs, a power of ten, of which a whole number is meant; two digits are enough.
   double runs = 100;
@@ -125,6 +123,12 @@ std::string false_alarms(const Record& record) {
   const double some = whole() ? std::round(alpha * runs) : std::ceil(alpha * runs);
   return fmt::format("False alarms: at most {:.0f} run{} in {}.", some, some == 1 ? "" : "s",
                      in_commas(runs));
+}
+
+std::string false_alarms(const Record& record) {
+  double alpha = 0;
+  for (const Suite& suite : record.suites) alpha += suite.tests.empty() ? 0 : suite.alpha;
+  return false_alarms(alpha);
 }
 
 }  // namespace assay::reports

@@ -25,7 +25,10 @@ std::string verdict_counts(const Record&);
 /// The error rates of a run's verdicts.
 std::string error_rates(const Record&);
 
-/// "False alarms: at most 4 runs in 100."; empty without a test.
+/// "False alarms: at most 4 runs in 100." of a total alpha; empty if that is 0.
+std::string false_alarms(double alpha);
+
+/// The same of all suites with tests.
 std::string false_alarms(const Record&);
 
 }  // namespace assay::reports
