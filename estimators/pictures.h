@@ -26,7 +26,7 @@ std::vector<std::string> files_of(const std::string& pattern);
 struct PictureChannels {
   std::vector<std::string> names;       ///< As in the file.
   std::vector<std::string> components;  ///< Without the layer that all of them share.
-  /// Of each name: a depth, `Z`, `ZBack` or `Depth`, which is infinite where nothing is hit. Its
+  /// True of a name that is a depth, `Z`, `ZBack` or `Depth`, infinite where nothing is hit. Its
   /// component is 0 there, and one behind it, `Z_infinite`, is 1 there and else 0.
   std::vector<bool> depth;
 };

@@ -167,8 +167,8 @@ class ImageTheta : public Theta {
     return choose_for_image(question, pilots, most, plan);
   }
   std::optional<std::uint64_t> secondaries(const Question& question, const ErrorShare& share,
-                                           const Pilots& pilots, const Plan& plan) const override {
-    return image_secondaries(question, share, pilots, plan);
+                                           const Pilots&, const Plan& plan) const override {
+    return image_secondaries(question, share, plan);
   }
   std::uint64_t usual_size() const override { return classical_replicates; }
   std::string too_few(const Question& question, const Plan& plan) const override {
@@ -221,6 +221,7 @@ class BiasImageTheta final : public ImageTheta {
 /// Theta is the size of the mean of differences of images that share their random numbers.
 class PairedImageTheta final : public ImageTheta {
  public:
+  PairedImageTheta() : ImageTheta({.joins_channels = true, .of_images = true, .of_pairs = true}) {}
   std::string circumstances(const Question& question) const override {
     return ImageTheta::circumstances(question) + ", in pairs of equal random numbers";
   }

@@ -182,7 +182,7 @@ void VaryingPart<Real>::settle_against_reference(const Question& question,
   value_.assign(reference.value.begin(), reference.value.end());
   error_.assign(reference.standard_error.begin(), reference.standard_error.end());
   DeclaredElements channels(question.subjects[0]);
-  if (question.test->paired) channels.subtract(mapped_elements(question));
+  if (question.is().of_pairs) channels.subtract(mapped_elements(question));
   Spans spans;
   bool constants = false;
   std::vector<Replacement> replacements;

@@ -55,7 +55,7 @@ ImagePair<Real>::ImagePair(const Question& question, std::span<const ChannelData
   if (question.of_two()) {
     second_ = stats::ImageStack<Real>{
         extent_, images_of<Real>(data[1].images, mapping_of(question, 1), made_[1])};
-    if (question.test->paired) subtract();
+    if (question.is().of_pairs) subtract();
     return;
   }
   for (const Constant& reference : question.references) {

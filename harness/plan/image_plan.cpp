@@ -7,6 +7,7 @@
 
 #include "harness/base/parallel.h"
 #include "harness/image/image_pair.h"
+#include "harness/plan/independence.h"
 #include "harness/plan/repeated_images.h"
 #include "harness/plan/sizes.h"
 #include "harness/sampling/image_views.h"
@@ -42,18 +43,11 @@ stats::AnyImageStack stack_of(const ImageViews& views, const stats::ImageExtent&
   return stats::ImageStack<double>{extent, views.images<double>()};
 }
 
-/// Noise and brightness of an image at one primary an element.
-struct PilotImage {
-  double trace = 0;         ///< tr C, of the elements' covariance C
-  double root = 0;          ///< sqrt tr C^2, an upper limit
-  double squared_norm = 0;  ///< Squared norm of the mean.
-};
-
 // Standard errors above the estimate of tr C^2: pilots of heavy noise differ.
 constexpr double errors_above = 2;
 
 template <class Real>
-PilotImage pilot_image(const stats::ImageStack<Real>& pilot) {
+PlannedImage pilot_image(const stats::ImageStack<Real>& pilot) {
   const stats::ImageCovariance found = stats::image_covariance(pilot, on_all_threads);
   const double square = found.squared_trace + errors_above * found.squared_trace_error;
   return {.trace = found.trace,
@@ -61,38 +55,38 @@ PilotImage pilot_image(const stats::ImageStack<Real>& pilot) {
           .squared_norm = found.squared_mean};
 }
 
-PilotImage pilot_image(const Subject& subject, const Pilot& pilot) {
+PlannedImage pilot_image(const Subject& subject, const Pilot& pilot) {
   const ImageViews views(pilot.images, subject.channels);
   return std::visit([](const auto& stack) { return pilot_image(stack); },
                     stack_of(views, extent_of(*subject.image)));
 }
 
 /// The noise of differences, and the brightness of what is subtracted.
-PilotImage pilot_of_differences(const Question& question, const Pilots& pilots) {
+PlannedImage pilot_of_differences(const Question& question, const Pilots& pilots) {
   std::vector<ChannelData> data(2);
   for (std::size_t s = 0; s < 2; ++s) {
     data[s].images =
         ImageViews(pilot_at(question, s, pilots).images, question.subjects[s].channels);
   }
   return with_pair(question, data, [](const auto& pair) {
-    PilotImage image = pilot_image(pair.first());
-    image.squared_norm = pilot_image(*pair.subtracted()).squared_norm;
+    PlannedImage image = pilot_image(pair.first());
+    image.squared_norm = stats::image_squared_mean(*pair.subtracted());
     return image;
   });
 }
 
 /// The noise of an observation, and the brightness that margins are relative to. The root of two
 /// sides is at most the sum of theirs.
-PilotImage planned_image(const Question& question, const Pilots& pilots, const Plan& plan) {
-  if (question.test->paired) {
-    PilotImage image = pilot_of_differences(question, pilots);
+PlannedImage planned_image(const Question& question, const Pilots& pilots, const Plan& plan) {
+  if (question.is().of_pairs) {
+    PlannedImage image = pilot_of_differences(question, pilots);
     image.trace /= averaged(question, plan, 0);
     image.root /= averaged(question, plan, 0);
     return image;
   }
-  PilotImage all;
+  PlannedImage all;
   for (std::size_t s = 0; s < question.subjects.size(); ++s) {
-    const PilotImage image = pilot_image(question.subjects[s], pilot_at(question, s, pilots));
+    const PlannedImage image = pilot_image(question.subjects[s], pilot_at(question, s, pilots));
     const double square = factor_of(question, s) * factor_of(question, s);
     all.trace += square * image.trace / averaged(question, plan, s);
     all.root += square * image.root / averaged(question, plan, s);
@@ -104,7 +98,7 @@ PilotImage planned_image(const Question& question, const Pilots& pilots, const P
 /// The squared distance that `n` images exclude with probability 1 - beta if there is none. Let
 /// noise have rank d, and s = root / sqrt(d) / n. The squared distance is then s (chi^2 - d), and
 /// its jackknife error 2 s chi.
-double excluded_square(const PilotImage& image, double beta, double n) {
+double excluded_square(const PlannedImage& image, double beta, double n) {
   if (!(image.root > 0)) return 0;
   const double degrees = std::pow(image.trace / image.root, 2);
   const double t = -stats::student_t_quantile({stats::Tail::lower, std::log(beta)}, n - 1);
@@ -113,7 +107,7 @@ double excluded_square(const PilotImage& image, double beta, double n) {
 }
 
 /// The square of the margins' unit.
-double squared_unit(const Question& question, const PilotImage& last) {
+double squared_unit(const Question& question, const PlannedImage& last) {
   if (!question.theta->is_relative(question, 0)) {
     return static_cast<double>(question.subjects[0].channels.size());
   }
@@ -138,21 +132,22 @@ std::uint64_t choose_for_image(const Question& question, const Pilots& pilots, s
   note_repeated_images(question, pilots, plan);
   const bool in_looks = plans_replicates(question) && !question.test->secondaries;
   if (!in_looks || !all_pictured(question, pilots)) return stats::least_replicates;
+  // Rows have one look, whose size nothing plans.
+  if (!has_rows(question)) plan.image = planned_image(question, pilots, plan);
   return std::min<std::uint64_t>(stats::least_replicates, most);
 }
 
 std::optional<std::uint64_t> image_secondaries(const Question& question, const ErrorShare& share,
-                                               const Pilots& pilots, const Plan& plan) {
+                                               const Plan& plan) {
+  if (!plan.image) return std::nullopt;
   const Regions& regions = plan.regions[0];
-  if (!regions.detect || !all_pictured(question, pilots)) return std::nullopt;
   const double margin = *regions.detect;
-  const PilotImage image = planned_image(question, pilots, plan);
-  const double unit = squared_unit(question, image);
+  const double unit = squared_unit(question, *plan.image);
   const double room = (margin * margin - regions.allow * regions.allow) * unit;
   if (!(room > 0)) return impossible_secondaries;
   std::uint64_t count = stats::least_replicates;
   while (count < impossible_secondaries) {
-    if (excluded_square(image, share.beta, static_cast<double>(count)) <= room) break;
+    if (excluded_square(*plan.image, share.beta, static_cast<double>(count)) <= room) break;
     count += count / 8 + 1;
   }
   return std::min(count, impossible_secondaries);

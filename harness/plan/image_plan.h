@@ -23,7 +23,7 @@ std::uint64_t choose_for_image(const Question& question, const Pilots& pilots, s
 /// Replicates that exclude `detect` or prove `within` if the images are equal; nullopt without
 /// either or without pilots.
 std::optional<std::uint64_t> image_secondaries(const Question& question, const ErrorShare& share,
-                                               const Pilots& pilots, const Plan& plan);
+                                               const Plan& plan);
 
 /// Why so few replicates are no test; "" if they are enough.
 std::string too_few_replicates(const Question& question, const Plan& plan);

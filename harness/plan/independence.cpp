@@ -235,7 +235,7 @@ bool has_rows(const Question& question) {
 
 void require_independent_sides(const Question& question, const Pilots& pilots,
                                std::uint64_t count) {
-  if (question.subjects.size() < 2 || question.test->paired) return;
+  if (question.subjects.size() < 2 || question.is().of_pairs) return;
   refuse_shared_pictures(question, count);
   const std::vector<Rows> all = rows_of(question, pilots, count);
   for (const Rows& one : all) {

@@ -1,6 +1,7 @@
 #pragma once
 
-// Rows of a file: a sample that is its own pilot. Only its order shows whether it is independent.
+// Judges whether observations are independent. Rows of a file are a sample that is its own pilot,
+// and only their order shows it.
 
 #include <cstdint>
 #include <optional>
@@ -49,8 +50,8 @@ void require_lasting_rows(const Suite& suite, const std::string& record);
 
 // The order of drawn observations shows whether they are independent.
 
-/// True if a subject's observations are drawn one by one, and not as pictures. The order of rows is
-/// judged in rows.h.
+/// True if a subject's observations are drawn one by one, and not as pictures. judge_independence
+/// judges rows.
 bool shows_order(const Subject& subject);
 
 /// Why values with these gates on their order are not independent, or "". Adds red gates.

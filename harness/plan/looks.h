@@ -15,12 +15,12 @@ stats::LookSchedule plan_looks(const Question& question, const FamilyPlace& plac
 
 stats::LookSchedule one_look(std::uint64_t secondaries, const ErrorShare& share);
 
-/// The look of a test that is invalid beforehand. It decides nothing; it shows the estimators'
-/// data.
-/// Plan::postponed, each twice the size before and at most 64 times the look. A claim without
-/// `detect` has one look, whose size nobody chose. Empty if it has more looks, or somebody chose.
+/// The only look of a plan may be put off to these sizes. Each is twice the one before, the last at
+/// most 64 times the look. Empty with several looks, or if somebody chose the size.
 std::vector<std::uint64_t> postponed_looks(const Question& question, const Plan& plan);
 
+/// The look of a test that is invalid beforehand. It decides nothing; it shows the estimators'
+/// data.
 stats::LookSchedule look_for_its_picture(const Question& question, const FamilyPlace& place,
                                          const Plan& plan);
 

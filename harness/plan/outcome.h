@@ -19,6 +19,13 @@
 
 namespace assay::harness {
 
+/// Noise and brightness of an observation of an image, by the pilots.
+struct PlannedImage {
+  double trace = 0;         ///< tr C, of the elements' covariance C
+  double root = 0;          ///< sqrt tr C^2, an upper limit
+  double squared_norm = 0;  ///< Squared norm of the mean.
+};
+
 /// The design of a test, frozen before its own data are drawn.
 struct Plan {
   Method method;
@@ -38,6 +45,7 @@ struct Plan {
   std::string pilot_error = "";
   /// Set for pictures that were examined while they were read.
   std::shared_ptr<const PictureLook> look = {};
+  std::optional<PlannedImage> image = {};  ///< Set where the sizes of looks at images are planned.
 
   std::uint64_t most_secondaries() const { return looks.sizes.back(); }
 };

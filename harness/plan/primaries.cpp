@@ -64,7 +64,7 @@ Primaries choose_primaries(const std::vector<Question>& questions,
   for (bool moved = true; moved;) {
     moved = false;
     for (const Question& question : questions) {
-      if (!question.test->paired) continue;
+      if (!question.is().of_pairs) continue;
       const auto first = chosen.find(question.subjects[0].estimator->name);
       const auto second = chosen.find(question.subjects[1].estimator->name);
       if (first == chosen.end() || second == chosen.end()) continue;

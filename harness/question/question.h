@@ -49,6 +49,7 @@ struct ThetaTraits {
   bool of_single_values = false;  ///< Theta is about the law of observations, not their mean.
   bool of_a_law = false;          ///< Theta is a distance between distribution functions.
   bool of_images = false;         ///< All elements of images are compared together.
+  bool of_pairs = false;          ///< Observations share random numbers and are subtracted.
   bool batches_serve = false;     ///< Means of consecutive rows serve as well as the rows.
   bool pilots_draws = false;      ///< A sampler's draws need a pilot.
   bool fit_decides = false;       ///< Without a fit, a rejected theta says nothing: no pass.

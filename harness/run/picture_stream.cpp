@@ -132,7 +132,7 @@ class Looking {
       of_pictures_.emplace_back(pictures_);
       of_channels_.emplace_back(pictures_ * extent_.channels);
     }
-    if (question.test->paired) zeros_.resize(extent_.elements());
+    if (question.is().of_pairs) zeros_.resize(extent_.elements());
   }
 
   StreamedPictures take_all(Progress& progress) {
@@ -216,7 +216,7 @@ class Looking {
     for (std::size_t s = 0; s < sides_.size(); ++s) {
       stats::add_to_sums(of_pictures_[s], stacks[s], rows.elements(extent_), on_all_threads);
     }
-    if (question_.test->paired) {
+    if (question_.is().of_pairs) {
       const Stack differences = subtract(stacks);
       const stats::ImageReference zero{extent_, zeros_};
       take(stats::pair_of(differences, zero), {differences, stacks[1]}, rows);
@@ -261,13 +261,13 @@ class Looking {
   void finish() {
     look_->distance = distance_.distance();
     look_->dependence = dependence_.found();
-    if (question_.test->paired) {
+    if (question_.is().of_pairs) {
       look_->distance = stats::relative_to(look_->distance, norm_.distance());
     }
     look_->family = pyramid_->family();
     for (std::size_t s = 0; s < sides_.size(); ++s) {
       look_->means.push_back(channel_means(of_channels_[s], extent_));
-      if (question_.test->paired && s > 0) drop_errors(look_->means[s]);
+      if (question_.is().of_pairs && s > 0) drop_errors(look_->means[s]);
       for (double& sum : of_pictures_[s]) sum /= static_cast<double>(extent_.elements());
     }
   }
@@ -283,7 +283,7 @@ class Looking {
   stats::RowDistance<float> distance_;
   stats::RowDependence<float> dependence_;
   std::optional<Pyramid> pyramid_;
-  // Of a paired claim:
+  // A paired claim alone has these.
   std::vector<float> differences_;
   std::vector<double> zeros_;
   stats::RowDistance<float> norm_;

@@ -170,7 +170,7 @@ Question ask(const TestEntry& test, const Estimators& estimators, std::uint64_t 
   if (question.subjects.size() > 1) {
     require_pairs(question, test.claim);
     require_different_data(question, test.claim);
-    if (!test.paired) separate_streams(question, test.claim, seed);
+    if (!question.is().of_pairs) separate_streams(question, test.claim, seed);
   }
   seed_cells(question, test.claim, seed);
   question.labels = key_of(*question.subjects[0].estimator, seed, 0, "labels");

@@ -35,8 +35,21 @@ std::vector<std::vector<float>> differences_of(const ImageStack<Real>& stack, st
   return differences;
 }
 
+std::vector<double> norms_of(const std::vector<std::vector<float>>& differences,
+                             const ForEach& for_each) {
+  std::vector<double> norms(differences.size());
+  for_each(norms.size(), [&](std::size_t k) { norms[k] = dot(differences[k], differences[k]); });
+  return norms;
+}
+
+double mean_of(const std::vector<double>& norms) {
+  double mean = 0;
+  for (const double norm : norms) mean += norm / static_cast<double>(norms.size());
+  return mean;
+}
+
 template <class Real>
-double squared_norm_of_mean(const ImageStack<Real>& stack) {
+double squared_mean_of(const ImageStack<Real>& stack, double trace) {
   const auto count = static_cast<double>(stack.images.size());
   double sum = 0;
   for (std::size_t i = 0; i < stack.extent.elements(); ++i) {
@@ -44,49 +57,57 @@ double squared_norm_of_mean(const ImageStack<Real>& stack) {
     for (const std::span<const Real> image : stack.images) mean += static_cast<double>(image[i]);
     sum += mean / count * (mean / count);
   }
-  return sum;
+  return sum - trace / count;
+}
+
+template <class Real>
+std::vector<std::vector<float>> checked_differences(const ImageStack<Real>& stack) {
+  check::image_stack(function_name, stack);
+  return differences_of(stack, std::min(stack.images.size() / 2, most_pairs));
 }
 
 }  // namespace
 
 template <class Real>
 ImageCovariance image_covariance(const ImageStack<Real>& stack, const ForEach& for_each) {
-  check::image_stack(function_name, stack);
-  const std::size_t pairs = std::min(stack.images.size() / 2, most_pairs);
-  const std::vector<std::vector<float>> differences = differences_of(stack, pairs);
+  const std::vector<std::vector<float>> differences = checked_differences(stack);
+  const std::size_t pairs = differences.size();
   std::vector<std::vector<double>> squares(pairs, std::vector<double>(pairs));
-  std::vector<double> norms(pairs);
   for_each(pairs, [&](std::size_t k) {
-    norms[k] = dot(differences[k], differences[k]);
     for (std::size_t l = 0; l < k; ++l) {
       squares[k][l] = std::pow(dot(differences[k], differences[l]), 2);
     }
   });
-  const auto count = static_cast<double>(pairs);
-  ImageCovariance covariance;
   std::vector<double> of_pair(pairs);
   double all = 0;
   for (std::size_t k = 0; k < pairs; ++k) {
-    covariance.trace += norms[k] / count;
     for (std::size_t l = 0; l < k; ++l) {
       all += squares[k][l];
       of_pair[k] += squares[k][l];
       of_pair[l] += squares[k][l];
     }
   }
-  covariance.squared_trace = 2 * all / (count * (count - 1));
+  const auto count = static_cast<double>(pairs);
+  ImageCovariance covariance{.trace = mean_of(norms_of(differences, for_each)),
+                             .squared_trace = 2 * all / (count * (count - 1))};
   double spread = 0;
   for (const double own : of_pair) {
     const double without = 2 * (all - own) / ((count - 1) * (count - 2));
     spread += std::pow(without - covariance.squared_trace, 2);
   }
   covariance.squared_trace_error = std::sqrt(spread * (count - 1) / count);
-  covariance.squared_mean =
-      squared_norm_of_mean(stack) - covariance.trace / static_cast<double>(stack.images.size());
+  covariance.squared_mean = squared_mean_of(stack, covariance.trace);
   return covariance;
+}
+
+template <class Real>
+double image_squared_mean(const ImageStack<Real>& stack) {
+  return squared_mean_of(stack, mean_of(norms_of(checked_differences(stack), one_by_one)));
 }
 
 template ImageCovariance image_covariance(const ImageStack<float>&, const ForEach&);
 template ImageCovariance image_covariance(const ImageStack<double>&, const ForEach&);
+template double image_squared_mean(const ImageStack<float>&);
+template double image_squared_mean(const ImageStack<double>&);
 
 }  // namespace assay::stats

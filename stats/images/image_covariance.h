@@ -23,4 +23,8 @@ template <class Real>
 ImageCovariance image_covariance(const ImageStack<Real>& stack,
                                  const ForEach& for_each = one_by_one);
 
+// squared_mean alone, with the same bits.
+template <class Real>
+double image_squared_mean(const ImageStack<Real>& stack);
+
 }  // namespace assay::stats
