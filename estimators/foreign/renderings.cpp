@@ -241,9 +241,8 @@ std::vector<std::string> Renderings::words_of(const Task& task, const std::strin
 
 /// Why it failed, "" where it ended well. Its CPU seconds are added.
 std::string Renderings::run_program(const Task& task, const std::string& out, double& cpu_seconds) {
-  const Launch launch{.command = words_of(task, out),
-                      .folder = rendering_.folder,
-                      .memory = rendering_.memory};
+  const Launch launch{
+      .command = words_of(task, out), .folder = rendering_.folder, .memory = rendering_.memory};
   const double seconds = rendering_.timeout * static_cast<double>(task.seeds.size());
   std::string failure;
   Child child(launch);
@@ -344,8 +343,7 @@ std::vector<MissingFile> Renderings::missing(StreamKey key, std::uint64_t count,
     const std::string file = path_of(samples, seed);
     if (fs::exists(file)) continue;
     // No process has this number: the next run does not take it for a leftover.
-    const std::string part =
-        folder_of(samples) + "/" + part_prefix + "of-" + std::to_string(seed);
+    const std::string part = folder_of(samples) + "/" + part_prefix + "of-" + std::to_string(seed);
     const bool several = rendering_.takes_several();
     const std::string out = several ? part : part + "." + rendering_.ending;
     std::string line = "cd " + shell_quoted(fs::absolute(rendering_.folder).string()) + " &&";
@@ -353,8 +351,7 @@ std::vector<MissingFile> Renderings::missing(StreamKey key, std::uint64_t count,
     for (const std::string& word : words_of({{seed}, samples}, out)) {
       line += " " + shell_quoted(word);
     }
-    const std::string made =
-        several ? out + "/" + fs::path(file).filename().string() : out;
+    const std::string made = several ? out + "/" + fs::path(file).filename().string() : out;
     line += " && mv " + shell_quoted(made) + " " + shell_quoted(file);
     if (several) line += " && rmdir " + shell_quoted(out);
     files.push_back({line, seed, file});

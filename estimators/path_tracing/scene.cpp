@@ -39,8 +39,7 @@ double distance_to(const Shape& shape, const Ray& ray, double least) {
 
 /// 1 - cos of the half angle of the cone that a sphere fills; 2 from inside.
 double one_less_cosine(const Shape& sphere, const Vector3& from) {
-  const double ratio =
-      sphere.radius * sphere.radius / squared_length(sphere.corner - from);
+  const double ratio = sphere.radius * sphere.radius / squared_length(sphere.corner - from);
   return ratio < 1 ? ratio / (1 + std::sqrt(1 - ratio)) : 2;
 }
 
@@ -84,8 +83,8 @@ std::optional<Hit> Scene::closest(const Ray& ray) const {
   if (nearest == none) return {};
   const Shape& shape = shapes_[found];
   const Vector3 point = ray.origin + nearest * ray.direction;
-  const Vector3 normal = shape.kind == Shape::Kind::sphere ? (point - shape.corner) / shape.radius
-                                                           : shape.normal;
+  const Vector3 normal =
+      shape.kind == Shape::Kind::sphere ? (point - shape.corner) / shape.radius : shape.normal;
   return Hit{nearest, point, normal, &shape.material, found};
 }
 
@@ -152,10 +151,8 @@ std::vector<Shape> box() {
           parallelogram({0, 0, 0}, {0, 1, 0}, {0, 0, 1}, diffuse({.63, .06, .05})),
           parallelogram({1, 0, 0}, {0, 0, 1}, {0, 1, 0}, diffuse({.14, .45, .09}))};
 }
-constexpr Scene::Camera box_camera{.eye = {.5, .5, 2.3},
-                                   .corner = {-.6, .45, -1.3},
-                                   .right = {1.2, 0, 0},
-                                   .down = {0, -.9, 0}};
+constexpr Scene::Camera box_camera{
+    .eye = {.5, .5, 2.3}, .corner = {-.6, .45, -1.3}, .right = {1.2, 0, 0}, .down = {0, -.9, 0}};
 
 Scene mild_box() {
   std::vector<Shape> shapes = box();
@@ -168,16 +165,16 @@ Scene mild_box() {
 Scene glass_box() {
   std::vector<Shape> shapes = box();
   shapes.push_back(parallelogram({.44, .999, .44}, {.12, 0, 0}, {0, 0, .12}, emitter(90)));
-  shapes.push_back(
-      sphere({.68, .22, .6}, .22, {.surface = Surface::glass, .refraction = 1.5}));
+  shapes.push_back(sphere({.68, .22, .6}, .22, {.surface = Surface::glass, .refraction = 1.5}));
   shapes.push_back(
       sphere({.28, .26, .35}, .26, {.surface = Surface::mirror, .colour = {.95, .95, .95}}));
   return {std::move(shapes), box_camera, 5};
 }
 
 Scene plates() {
-  std::vector<Shape> shapes{parallelogram({-6, -1, -2}, {0, 0, 8}, {12, 0, 0}, diffuse({.4, .4, .4})),
-                            parallelogram({-6, -1, -2}, {12, 0, 0}, {0, 7, 0}, diffuse({.4, .4, .4}))};
+  std::vector<Shape> shapes{
+      parallelogram({-6, -1, -2}, {0, 0, 8}, {12, 0, 0}, diffuse({.4, .4, .4})),
+      parallelogram({-6, -1, -2}, {12, 0, 0}, {0, 7, 0}, diffuse({.4, .4, .4}))};
   constexpr Vector3 eye{0, 1.6, 7};
   constexpr double light_height = 2.4;
   constexpr double light_depth = -.4;
@@ -194,8 +191,8 @@ Scene plates() {
   constexpr double radii[] = {.03, .1, .3, .8};
   for (int i = 0; i < 4; ++i) {
     const double radius = radii[i];
-    shapes.push_back(
-        sphere({-2.7 + 1.8 * i, light_height, light_depth}, radius, emitter(.35 / (radius * radius))));
+    shapes.push_back(sphere({-2.7 + 1.8 * i, light_height, light_depth}, radius,
+                            emitter(.35 / (radius * radius))));
   }
   return {std::move(shapes),
           {.eye = eye, .corner = {-.4, .22, -1}, .right = {.8, 0, 0}, .down = {0, -.6, 0}},

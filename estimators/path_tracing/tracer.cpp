@@ -116,9 +116,9 @@ Colour radiance(const Scene& scene, Integrator integrator, const Defects& defect
     if (bounce == scene.bounces() || ideals == most_ideal) break;
     if (material.surface == Surface::mirror || material.surface == Surface::glass) {
       const bool mirror = material.surface == Surface::mirror;
-      ray = {hit->point, mirror ? mirrored(ray.direction, hit->normal)
-                                : through_glass(*hit, ray.direction, defects.schlick,
-                                                random.uniform())};
+      ray = {hit->point,
+             mirror ? mirrored(ray.direction, hit->normal)
+                    : through_glass(*hit, ray.direction, defects.schlick, random.uniform())};
       if (mirror) throughput = times(throughput, material.colour);
       ideal = true;
       ++ideals;

@@ -34,8 +34,8 @@ std::string help_of(const CommandText& command);
 /// assay.1, in the language of man pages.
 std::string man_page(const std::vector<CommandText>& commands);
 
-/// Lists what may stand in the place of the last of the words after `assay`. Each line has a word, a
-/// tab and its description.
+/// Lists what may stand in the place of the last of the words after `assay`. Each line has a word,
+/// a tab and its description.
 std::string completions(const std::vector<CommandText>& commands,
                         const std::vector<std::string>& words);
 

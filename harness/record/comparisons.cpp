@@ -63,8 +63,9 @@ struct ComparedPair {
 ComparedPair compare(const Pictured& first, const Pictured& second, std::size_t channel) {
   const stats::Moments x = moments_of(first.shown.channels[channel].moments);
   const stats::Moments y = moments_of(second.shown.channels[channel].moments);
-  ComparedPair pair{
-      .row = {.first = first.name, .second = second.name, .channel = first.shown.channels[channel].name}};
+  ComparedPair pair{.row = {.first = first.name,
+                            .second = second.name,
+                            .channel = first.shown.channels[channel].name}};
   if (!has_spread(x) || !has_spread(y)) return pair;
   const double null = second.shown.averaged / first.shown.averaged;
   pair.log_mean_p = stats::log_p_two_sided(stats::welch_t(x, y, {}));
@@ -123,7 +124,8 @@ std::vector<reports::Comparison> comparisons(const std::vector<Pictured>& estima
       const Pictured& first = estimators[i];
       const Pictured& second = estimators[j];
       if (!comparable(first, second, together)) continue;
-      const std::size_t channels = std::min(first.shown.channels.size(), second.shown.channels.size());
+      const std::size_t channels =
+          std::min(first.shown.channels.size(), second.shown.channels.size());
       for (std::size_t c = 0; c < channels; ++c) pairs.push_back(compare(first, second, c));
     }
   }

@@ -185,8 +185,8 @@ Primaries plan_tests(SuiteRun& run, const RunOptions& options, Progress& progres
   const std::vector<bool> chosen = chosen_of(run, options);
   if (std::none_of(chosen.begin(), chosen.end(), [](bool c) { return c; })) return {};
   const std::vector<FamilyPlace> place = places(run.suite, questions);
-  run.pilots = piloted(run, questions, chosen, used_by(questions, chosen, run, options), options,
-                       progress);
+  run.pilots =
+      piloted(run, questions, chosen, used_by(questions, chosen, run, options), options, progress);
   stop_if_interrupted();
   const Primaries primaries = choose_primaries(questions, place, run.pilots);
   for (std::size_t i = 0; i < questions.size(); ++i) {
@@ -304,7 +304,8 @@ void add_missing(const Pool& pool, std::uint64_t count, Missing& missing) {
 
 Missing missing_in_pilots(const SuiteRun& run, const RunOptions& options) {
   const std::vector<bool> chosen = chosen_of(run, options);
-  const auto used = with_sweeps(used_by(run.questions, chosen, run, options), run.questions, chosen);
+  const auto used =
+      with_sweeps(used_by(run.questions, chosen, run, options), run.questions, chosen);
   Missing missing;
   for (const auto& [name, pool] :
        pilot_pools(used, pilot_run_of(run.questions, chosen, run.seed, options.threads))) {

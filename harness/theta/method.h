@@ -76,7 +76,7 @@ struct MethodTraits {
   bool joins_channels = false;      ///< compares all channels of two estimators together
   stats::LookLaw over_looks = stats::LookLaw::unknown;  ///< Of its p-values at several looks.
   bool cells_of_pilots = false;                         ///< Counts in cells that the pilots choose.
-  const stats::ExactPlanning* plans = nullptr;  ///< Planning of an exact method of a mean.
+  const stats::ExactPlanning* plans = nullptr;          ///< Planning of an exact method of a mean.
 };
 
 /// A row of the method table (methods.h). Rows of different families of claims may share a name.

@@ -85,8 +85,8 @@ ASSAY_VECTOR_COPIES float largest_of(const float* sums, const float* scale, std:
 }
 
 // One over the standard deviation of a cell's sum over m chosen images of N, by permutation. Scores
-// add up to 0 over images, so its square is m (N - m) / (N (N - 1)) times the sum of squares. A cell
-// that does not vary has 0.
+// add up to 0 over images, so its square is m (N - m) / (N (N - 1)) times the sum of squares. A
+// cell that does not vary has 0.
 std::vector<float> scales_of(const Cells& cells, double chosen) {
   const auto all = static_cast<double>(cells.images.size());
   std::vector<double> squares(cells.count());

@@ -30,8 +30,8 @@ bool is_dark(double sum, double other) { return std::abs(sum) <= 1e-12 * other; 
 // which t is too far.
 double without_skewness(double t, double g) {
   if (!(g > 0)) return t;
-  const double shrunk = g * t < 3 ? t - g * t * t / 3 + g * g * t * t * t / 27 - g / 6
-                                  : 1 / g - g / 6;
+  const double shrunk =
+      g * t < 3 ? t - g * t * t / 3 + g * g * t * t * t / 27 - g / 6 : 1 / g - g / 6;
   return std::clamp(shrunk, 0.0, t);
 }
 
@@ -173,8 +173,9 @@ double NoisePyramid::variance_if_equal(const CellNoise& cell, const Rectangle& w
   const std::uint32_t size = std::max(window.width, window.height);
   const auto around = std::ranges::find_if(
       levels_, [&](const Level& each) { return each.side >= size || &each == &levels_.back(); });
-  const std::size_t block_of = around->index((window.x + window.width / 2) / around->side,
-                                             (window.y + window.height / 2) / around->side, channel);
+  const std::size_t block_of =
+      around->index((window.x + window.width / 2) / around->side,
+                    (window.y + window.height / 2) / around->side, channel);
   const double variance = is_zero
                               ? square(ahead) * around->noise[dark][block_of].relative_variance() /
                                     (cell.elements * replicates_[dark])
@@ -214,8 +215,7 @@ NoisePyramid::Kept NoisePyramid::kept(const CellNoise& cell, const Rectangle& wi
         error += tail[i].square_variance / square(replicates_[i]);
       }
       const double excess = tail[s].excess - tail[1 - s].excess;
-      const double excess_error =
-          std::sqrt(tail[s].excess_variance + tail[1 - s].excess_variance);
+      const double excess_error = std::sqrt(tail[s].excess_variance + tail[1 - s].excess_variance);
       margin += safety * cell.elements * std::max(0.0, excess - excess_error);
       more += std::max(0.0, lacks[s] - lacks[1 - s] - errors * cell.elements * std::sqrt(error));
     }

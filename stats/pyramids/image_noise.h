@@ -72,9 +72,9 @@ class PooledNoise {
 
 // A cell's sums, averaged over the halves, and what its elements showed.
 struct CellNoise {
-  double effect = 0;                               // Estimate of the sum of a - b.
-  std::array<double, sides_of_pair> level = {};    // Either side's own sum.
-  std::array<double, sides_of_pair> variance = {}; // What either side adds to its squared error.
+  double effect = 0;                                // Estimate of the sum of a - b.
+  std::array<double, sides_of_pair> level = {};     // Either side's own sum.
+  std::array<double, sides_of_pair> variance = {};  // What either side adds to its squared error.
   double degrees = 1;
   double more = 0;   // What its elements add if each is as bright as on the other side.
   double third = 0;  // Third cumulant of the effect, of independent elements; 0 of few.
@@ -102,9 +102,9 @@ class NoisePyramid {
 
   // The statistic of a cell: Student's t that survives what its neighbours know.
   //
-  // Noise grows with light. Were the darker side as bright as the other, its standard error would be
-  // larger in proportion. That error counts: the cell's, or that of its elements if they make up more.
-  // An element's own counts from where the sides differ by an error of each. A cell that is 0
+  // Noise grows with light. Were the darker side as bright as the other, its standard error would
+  // be larger in proportion. That error counts: the cell's, or that of its elements if they make up
+  // more. An element's own counts from where the sides differ by an error of each. A cell that is 0
   // throughout has its neighbours' relative variance. (Sums below 0 are no light, and nothing is
   // done.)
   //
@@ -124,8 +124,8 @@ class NoisePyramid {
   };
   Kept kept(const CellNoise& cell, const Rectangle& window, std::size_t channel) const;
 
-  // The bias of an element, in units of the weights, that values can hide which it never showed. Its
-  // block shows them beyond the usual largest deviation: upward of one side and downward of the
+  // The bias of an element, in units of the weights, that values can hide which it never showed.
+  // Its block shows them beyond the usual largest deviation: upward of one side and downward of the
   // other. The larger sum counts.
   double hidden(std::size_t x, std::size_t y, std::size_t channel) const;
 

@@ -130,9 +130,9 @@ double RowPyramid<Real>::hidden_squares() const {
     const double weight = found_.weights[i];
     if (!(weight > 0)) continue;
     const std::size_t place = i / extent_.channels;
-    const double bias = found_.noise.hidden(place % extent_.width, place / extent_.width,
-                                            i % extent_.channels) /
-                        weight;
+    const double bias =
+        found_.noise.hidden(place % extent_.width, place / extent_.width, i % extent_.channels) /
+        weight;
     sum += bias * bias;
   }
   return sum;
@@ -150,8 +150,7 @@ ImageFamily RowPyramid<Real>::family() {
                      .weights = {},
                      .hidden_squares = hidden_squares()};
   if (counts.different_constants > 0) {
-    family.groups.push_back(
-        certain_finding(extent_, counts.first_different, counts.difference));
+    family.groups.push_back(certain_finding(extent_, counts.first_different, counts.difference));
   } else {
     offer_cells();
     add_best(family);

@@ -269,8 +269,8 @@ double median(std::vector<double> values) {
 void python(const Workshop& workshop, const std::string& examples) {
   constexpr int pairs = 15;
   const std::string script = workshop.write("bare.py", bare_loop);
-  const auto setup = process({"env", "PYTHONPATH=" + examples + "/../python", "/usr/bin/python3",
-                              examples + "/darts.py"});
+  const auto setup = process(
+      {"env", "PYTHONPATH=" + examples + "/../python", "/usr/bin/python3", examples + "/darts.py"});
   const Drawn drawn{.observations = 4096, .block = 256, .primaries = 64};
   const std::unique_ptr<Estimator> worker = setup->make();
   of_the_program(*worker, drawn);  // to warm up

@@ -79,8 +79,7 @@ TEST(PathTracing, AGlossyBallInAFurnaceReflectsNoMoreThanItGets) {
     const stats::Moments by_bsdf = green_of(scene, Integrator::bsdf, at_the_ball, 20000);
     const stats::Moments by_both = green_of(scene, Integrator::multiple, at_the_ball, 20000);
     EXPECT_LE(by_bsdf.mean, 1 + 4.9 * error_of(by_bsdf)) << exponent;
-    EXPECT_NEAR(by_bsdf.mean, by_both.mean,
-                4.9 * std::hypot(error_of(by_bsdf), error_of(by_both)))
+    EXPECT_NEAR(by_bsdf.mean, by_both.mean, 4.9 * std::hypot(error_of(by_bsdf), error_of(by_both)))
         << exponent;
   }
 }

@@ -210,7 +210,10 @@ void add_image(Test& t) {
                   .unseen = 1,
                   .winner = finding("window", "columns 2-3, rows 1-2 of green, z = -14.2", -14.2),
                   .groups = {}};
-  t.image->groups = {t.image->winner, finding("alternating", "the whole image of red with alternating signs (rows in turn), z = +3", 3)};
+  t.image->groups = {
+      t.image->winner,
+      finding("alternating", "the whole image of red with alternating signs (rows in turn), z = +3",
+              3)};
   t.maps = {map_of("z", "", 0.5f, -14.5f), map_of("p_adjusted", "", 0.5f, -0.499f),
             map_of("mean", "winners", 0.25f, 0.5f), map_of("variance", "winners", 0.0625f, 0.0f)};
 }

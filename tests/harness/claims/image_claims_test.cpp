@@ -66,8 +66,8 @@ struct Defect {
   const char* statistic;
 };
 
-// Each defect is found and located with probability above 0.99. A last column is seen by windows and
-// by columns in turn.
+// Each defect is found and located with probability above 0.99. A last column is seen by windows
+// and by columns in turn.
 TEST(ImageClaims, MutantsAreCaughtByTheSumThatFitsThem) {
   for (const Defect& defect :
        {Defect{"tile", "window"}, Defect{"hot_pixels", "window"}, Defect{"last_column", nullptr},

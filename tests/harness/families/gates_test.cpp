@@ -62,7 +62,8 @@ TEST(Assumptions, RareCostsThatWeighAreRed) {
   EXPECT_TRUE(gates_of_costs("cost(multi) == 2", {.every = 1, .more = 1}).empty())
       << "a cost that does not vary";
   // A pool keeps costs for all its tests.
-  EXPECT_FALSE(is_red(gates_of_costs("variance(multi) == 1", rare_ones), "share of one observation"));
+  EXPECT_FALSE(
+      is_red(gates_of_costs("variance(multi) == 1", rare_ones), "share of one observation"));
   EXPECT_TRUE(gates_of_costs("cost(multi) == 1, cost: seconds", rare_ones).empty());
 }
 

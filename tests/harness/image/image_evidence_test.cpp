@@ -28,7 +28,8 @@ constexpr const char* dependent =
 /// One more observation of 256 pixels.
 using DrawImage = std::function<void(Philox&, std::vector<double>&)>;
 
-/// The mean is 1 everywhere. Two columns hold a firefly of 14 standard deviations in one pixel of 7.
+/// The mean is 1 everywhere. Two columns hold a firefly of 14 standard deviations in one pixel
+/// of 7.
 void fireflies_in_two_columns(Philox& random, std::vector<double>& image) {
   constexpr double chance = 1 / 7.0;
   constexpr double light = 0.34;

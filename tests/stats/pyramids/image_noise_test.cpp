@@ -106,11 +106,8 @@ TEST(NoisePyramid, TakesOffWhatOneSideAloneMayHaveMissed) {
 
 TEST(NoisePyramid, ScalesTheNoiseOfTheDarkerSide) {
   const NoisePyramid none({8, 8, 1}, {16, 16});
-  const CellNoise cell{.effect = -8,
-                       .level = {2, 10},
-                       .variance = {0.04, 0.5},
-                       .degrees = 20,
-                       .elements = 4};
+  const CellNoise cell{
+      .effect = -8, .level = {2, 10}, .variance = {0.04, 0.5}, .degrees = 20, .elements = 4};
   EXPECT_NEAR(none.kept(cell, pixel, 0).t, -8 / std::sqrt(0.04 * 25 + 0.5), 1e-12);
   CellNoise by_elements = cell;
   by_elements.more = 3;
@@ -121,11 +118,8 @@ TEST(NoisePyramid, ScalesTheNoiseOfTheDarkerSide) {
 }
 
 TEST(NoisePyramid, ADarkElementHasTheErrorThatItWouldHaveIfLit) {
-  const CellNoise element{.effect = -9,
-                          .level = {1, 10},
-                          .variance = {0.25, 1},
-                          .degrees = 20,
-                          .elements = 1};
+  const CellNoise element{
+      .effect = -9, .level = {1, 10}, .variance = {0.25, 1}, .degrees = 20, .elements = 1};
   // One error beyond either: 9 against 1.5.
   EXPECT_NEAR(variance_of_missing_light(element), 0.25 * (36 - 1), 1e-12);
   CellNoise black = element;
