@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 namespace assay {
 
@@ -61,6 +62,22 @@ void check(const Entry& entry, const std::vector<Entry>& entries) {
   }
 }
 
+/// Gives a mutant what its original declares, so that the two draw from equal streams.
+void inherit(Information& mutant, const Information& original) {
+  std::vector<ParameterInformation> own = std::exchange(mutant.parameters, original.parameters);
+  for (ParameterInformation& parameter : own) {
+    const auto same =
+        std::ranges::find(mutant.parameters, parameter.name, &ParameterInformation::name);
+    if (same == mutant.parameters.end()) {
+      mutant.parameters.push_back(std::move(parameter));
+    } else {
+      *same = std::move(parameter);
+    }
+  }
+  mutant.bias = original.bias;
+  mutant.averages = original.averages;
+}
+
 // `area` for `luminaire/area`, else the nearest spelling.
 std::string suggested(std::string_view name, const std::vector<std::string>& names) {
   const std::string ending = "/" + std::string(name);
@@ -74,6 +91,11 @@ std::string suggested(std::string_view name, const std::vector<std::string>& nam
 std::vector<Entry> checked(std::vector<Entry> entries) {
   std::ranges::sort(entries, {}, [](const Entry& e) { return e.information.name; });
   for (const Entry& entry : entries) check(entry, entries);
+  for (Entry& entry : entries) {
+    const Information& mutant = entry.information;
+    if (!mutant.original.empty())
+      inherit(entry.information, lookup(entries, mutant.original)->information);
+  }
   const auto twice =
       std::ranges::adjacent_find(entries, {}, [](const Entry& e) { return e.information.name; });
   if (twice != entries.end()) malformed(*twice, "is registered twice");

@@ -103,6 +103,16 @@ class Setup {
   virtual Cost cost() const { return {}; }
 };
 
+/// The parts of a set-up that states what they say. `make` gives a worker its estimator.
+struct SetupParts {
+  std::vector<Channel> channels;
+  std::function<std::unique_ptr<Estimator>()> make;
+  std::vector<NamedSampler> samplers = {};
+  std::optional<ImageShape> image = {};
+  Cost cost = {};
+};
+std::shared_ptr<const Setup> setup_of(SetupParts parts);
+
 /// Static facts of a plugin, known without preparing it; `assay describe` prints them.
 struct Information {
   std::string name;         ///< "luminaire/area"
@@ -189,30 +199,14 @@ class AveragingEstimator<Primary> final : public Estimator {
 /// The set-up of an averaging estimator with one channel. Every worker gets a copy of the primary:
 /// hold shared state by shared_ptr<const T>. `samplers` are the sources of points inside.
 template <class Primary>
-class AveragingSetup final : public Setup {
- public:
-  AveragingSetup(Channel channel, Primary primary, std::vector<NamedSampler> samplers)
-      : channel_(std::move(channel)),
-        primary_(std::move(primary)),
-        samplers_(std::move(samplers)) {}
-
-  std::vector<Channel> channels() const override { return {channel_}; }
-  std::unique_ptr<Estimator> make() const override {
-    return std::make_unique<AveragingEstimator<Primary>>(primary_);
-  }
-  std::vector<NamedSampler> samplers() const override { return samplers_; }
-
- private:
-  Channel channel_;
-  Primary primary_;
-  std::vector<NamedSampler> samplers_;
-};
-
-template <class Primary>
 std::shared_ptr<const Setup> averaging(Channel channel, Primary primary,
                                        std::vector<NamedSampler> samplers = {}) {
-  return std::make_shared<AveragingSetup<Primary>>(std::move(channel), std::move(primary),
-                                                   std::move(samplers));
+  return setup_of({.channels = {std::move(channel)},
+                   .make =
+                       [primary = std::move(primary)] {
+                         return std::make_unique<AveragingEstimator<Primary>>(primary);
+                       },
+                   .samplers = std::move(samplers)});
 }
 
 }  // namespace assay

@@ -18,7 +18,7 @@ struct ImageShape {
   /// True if the pixels of one observation are independent. They are not if they share random
   /// numbers, if a filter reaches over several, or if a chain visits them.
   bool independent = true;
-  /// Where its corner lies in the whole picture, of which a crop shows a part.
+  /// Corner in the whole picture, of which a crop shows a part.
   std::int64_t left = 0;
   std::int64_t top = 0;
 

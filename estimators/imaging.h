@@ -50,31 +50,19 @@ struct ImageParts {
   ImageStreams streams = ImageStreams::own;
 };
 
-template <class Primary>
-class ImagingSetup final : public Setup {
- public:
-  explicit ImagingSetup(ImageParts<Primary> parts) : parts_(std::move(parts)) {
-    parts_.shape.independent = parts_.streams == ImageStreams::own;
-    for (std::size_t i = 0; i < parts_.channels.size(); ++i) {
-      parts_.channels[i].name = element_name(parts_.shape, i);
-    }
-  }
-
-  std::vector<Channel> channels() const override { return parts_.channels; }
-  std::optional<ImageShape> image() const override { return parts_.shape; }
-  std::unique_ptr<Estimator> make() const override {
-    return std::make_unique<ImagingEstimator<Primary>>(parts_.primaries, parts_.streams);
-  }
-
- private:
-  ImageParts<Primary> parts_;
-};
-
 /// The set-up of an image whose elements are averages. `parts.channels` and `parts.primaries` have
 /// parts.shape.elements() entries.
 template <class Primary>
 std::shared_ptr<const Setup> imaging(ImageParts<Primary> parts) {
-  return std::make_shared<ImagingSetup<Primary>>(std::move(parts));
+  parts.shape.independent = parts.streams == ImageStreams::own;
+  for (std::size_t i = 0; i < parts.channels.size(); ++i) {
+    parts.channels[i].name = element_name(parts.shape, i);
+  }
+  const auto make = [primaries = std::move(parts.primaries), streams = parts.streams] {
+    return std::make_unique<ImagingEstimator<Primary>>(primaries, streams);
+  };
+  return setup_of(
+      {.channels = std::move(parts.channels), .make = make, .image = std::move(parts.shape)});
 }
 
 }  // namespace assay

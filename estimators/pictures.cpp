@@ -171,7 +171,7 @@ std::vector<double> read_doubles(const PictureFile& file, const PictureView& vie
 /// The same pixels of other channels, as they are in the file.
 PictureView view_of_others(const PictureView& view, const std::vector<std::string>& names) {
   PictureView others = view;
-  others.channels = {.names = names, .components = names, .depth = {}};
+  others.channels = {.names = names, .components = names};
   others.channels.depth.assign(names.size(), false);
   others.rounding = Rounding::none;
   return others;

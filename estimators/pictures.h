@@ -24,7 +24,7 @@ std::vector<std::string> files_of(const std::string& pattern);
 /// Channels in the order in which they are observed: layer after layer, red, green, blue, alpha and
 /// else by name.
 struct PictureChannels {
-  std::vector<std::string> names;       ///< As in the file.
+  std::vector<std::string> names;       ///< Names in the file.
   std::vector<std::string> components;  ///< Without the layer that all of them share.
   /// True of a name that is a depth, `Z`, `ZBack` or `Depth`, infinite where nothing is hit. Its
   /// component is 0 there, and one behind it, `Z_infinite`, is 1 there and else 0.

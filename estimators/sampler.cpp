@@ -1,6 +1,5 @@
 #include "estimators/sampler.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 

@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cstddef>
-#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,6 +20,11 @@ enum class Domain {
   hemisphere,  ///< Unit vector (x, y, z), z >= 0; measure solid angle.
   sphere,      ///< Unit vector (x, y, z); measure solid angle.
 };
+
+/// True if points are directions.
+constexpr bool has_directions(Domain domain) {
+  return domain == Domain::hemisphere || domain == Domain::sphere;
+}
 
 /// Coordinates of a point of a domain; those the domain does not use are 0.
 using Point = std::array<double, 3>;

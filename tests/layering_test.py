@@ -21,7 +21,7 @@ MAY_INCLUDE = {
 FOLDERS = {
     "stats": "basics tails planning gates means variances laws cells images pyramids",
     "reports": "record words formats viewer",
-    "harness": "base language suite sampling draws question theta image pilot plan run families record "
+    "harness": "base language suite sampling draws ranks question theta image pilot plan run families record "
                "ledger calibration command googletest",
 }
 MOST_FILES = 40  # in one folder

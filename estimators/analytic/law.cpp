@@ -223,15 +223,6 @@ double Law::high() const {
   return family_ == Family::uniform ? b_ : infinity;
 }
 
-const std::vector<std::string>& law_signatures() {
-  static const std::vector<std::string> all = [] {
-    std::vector<std::string> names;
-    for (const FamilyInformation& family : families) names.emplace_back(family.signature);
-    return names;
-  }();
-  return all;
-}
-
 ParameterInformation law_parameter() {
   return {.name = "law",
           .type = ParameterType::string,
@@ -266,23 +257,6 @@ namespace {
 using analytic::Law;
 using analytic::Variable;
 using analytic::VariableEstimator;
-
-class VariableSetup final : public Setup {
- public:
-  VariableSetup(Channel channel, const Variable& variable, std::vector<NamedSampler> samplers)
-      : channel_(std::move(channel)), variable_(variable), samplers_(std::move(samplers)) {}
-
-  std::vector<Channel> channels() const override { return {channel_}; }
-  std::unique_ptr<Estimator> make() const override {
-    return std::make_unique<VariableEstimator>(variable_);
-  }
-  std::vector<NamedSampler> samplers() const override { return samplers_; }
-
- private:
-  Channel channel_;
-  Variable variable_;
-  std::vector<NamedSampler> samplers_;
-};
 
 /// Draws X with its density, on an interval of 12 standard deviations about the mean, cut by the
 /// range. Values outside are missing mass.
@@ -323,7 +297,9 @@ std::shared_ptr<const Setup> prepare(Parameters& parameters) {
   if (law.has_density() && law.variance()) {
     samplers.push_back({"x", std::make_shared<VariableSampler>(variable)});
   }
-  return std::make_shared<const VariableSetup>(channel_of(variable), variable, samplers);
+  return setup_of({.channels = {channel_of(variable)},
+                   .make = [variable] { return std::make_unique<VariableEstimator>(variable); },
+                   .samplers = std::move(samplers)});
 }
 
 }  // namespace

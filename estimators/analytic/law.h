@@ -51,7 +51,4 @@ class Law {
   double b_;
 };
 
-/// "bernoulli(p)", …: what there is.
-const std::vector<std::string>& law_signatures();
-
 }  // namespace assay::analytic

@@ -27,8 +27,6 @@ std::shared_ptr<const Setup> prepare(Parameters& parameters) {
   const std::size_t width = parameters.count("width");
   ImageParts<Variable> parts{
       .shape = {.width = width, .height = parameters.count("height")},
-      .channels = {},
-      .primaries = {},
       .streams = parameters.boolean("shared") ? ImageStreams::shared : ImageStreams::own};
   if (parameters.boolean("colour")) parts.shape.components = {"red", "green", "blue"};
   const double spread = parameters.number("spread");

@@ -15,15 +15,14 @@ using namespace analytic;
 
 std::shared_ptr<const Setup> ratio(Parameters&) {
   // A ratio of sums lies between the extremes of f / g, at x = 1/3 and x = 1.
-  return std::make_shared<RatioSetup<SamePoint, RatioOfSums>>(
+  return ratio_setup<SamePoint, RatioOfSums>(
       Channel{.mean = integral(),
               .low = integrand(1.0 / 3) / near_density(1.0 / 3),
               .high = integrand(1) / near_density(1)});
 }
 
 std::shared_ptr<const Setup> jackknifed(Parameters&) {
-  return std::make_shared<RatioSetup<SamePoint, Jackknife<BothLeftOut>>>(
-      Channel{.mean = integral()});
+  return ratio_setup<SamePoint, Jackknife<BothLeftOut>>(Channel{.mean = integral()});
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 // The parts of the ratio estimators of e^(3x): pairs at random points, and what is made of them.
 
-#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -92,17 +91,9 @@ class RatioEstimator final : public Estimator {
 };
 
 template <class Draw, class Combine>
-class RatioSetup final : public Setup {
- public:
-  explicit RatioSetup(Channel channel) : channel_(std::move(channel)) {}
-
-  std::vector<Channel> channels() const override { return {channel_}; }
-  std::unique_ptr<Estimator> make() const override {
-    return std::make_unique<RatioEstimator<Draw, Combine>>();
-  }
-
- private:
-  Channel channel_;
-};
+std::shared_ptr<const Setup> ratio_setup(Channel channel) {
+  return setup_of({.channels = {std::move(channel)},
+                   .make = [] { return std::make_unique<RatioEstimator<Draw, Combine>>(); }});
+}
 
 }  // namespace assay::analytic

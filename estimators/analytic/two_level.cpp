@@ -41,31 +41,22 @@ class TwoLevel final : public Estimator {
   double splitting_;
 };
 
-class TwoLevelSetup final : public Setup {
- public:
-  explicit TwoLevelSetup(double splitting) : splitting_(splitting) {}
-
-  std::vector<Channel> channels() const override {
-    const double s = splitting_;
-    const double whole = std::floor(s);
-    const double of_count = (s - whole) * (1 - (s - whole));
-    const double mean = 17.0 / 6;
-    return {
-        {.mean = mean, .variance = 10.2 - mean * mean + 3.2 * (s + of_count) / (s * s), .low = 1},
-        {.name = "children",
-         .mean = s,
-         .variance = of_count,
-         .low = whole,
-         .high = std::ceil(s),
-         .diagnostic = true}};
-  }
-  std::unique_ptr<Estimator> make() const override {
-    return std::make_unique<TwoLevel>(splitting_);
-  }
-
- private:
-  double splitting_;
-};
+std::shared_ptr<const Setup> prepare(Parameters& given) {
+  const double s = given.number("splitting");
+  const double whole = std::floor(s);
+  const double of_count = (s - whole) * (1 - (s - whole));
+  const double mean = 17.0 / 6;
+  return setup_of({.channels = {{.mean = mean,
+                                 .variance = 10.2 - mean * mean + 3.2 * (s + of_count) / (s * s),
+                                 .low = 1},
+                                {.name = "children",
+                                 .mean = s,
+                                 .variance = of_count,
+                                 .low = whole,
+                                 .high = std::ceil(s),
+                                 .diagnostic = true}},
+                   .make = [s] { return std::make_unique<TwoLevel>(s); }});
+}
 
 }  // namespace
 
@@ -81,9 +72,7 @@ std::vector<Entry> analytic_two_level() {
                             .low = 0,
                             .high = 1000,
                             .low_excluded = true}}},
-           [](Parameters& given) {
-             return std::make_shared<TwoLevelSetup>(given.number("splitting"));
-           }}};
+           prepare}};
 }
 
 }  // namespace assay::plugins

@@ -1,6 +1,5 @@
 #include "brdf/albedo.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>

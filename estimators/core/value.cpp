@@ -40,17 +40,8 @@ std::string quoted(std::string_view text) {
 }
 
 const char* kind_name(Value::Kind kind) {
-  switch (kind) {
-    case Value::Kind::null:
-      return "nothing";
-    case Value::Kind::scalar:
-      return "text";
-    case Value::Kind::list:
-      return "a list";
-    case Value::Kind::map:
-      return "a map";
-  }
-  return "";
+  constexpr const char* names[] = {"nothing", "text", "a list", "a map"};
+  return names[static_cast<int>(kind)];
 }
 
 [[noreturn]] void wrong_type(const Value& value, std::string_view what, const char* wanted) {

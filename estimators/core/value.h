@@ -4,7 +4,6 @@
 // node remembers where it was written, so that whatever is wrong with it can be shown there.
 
 #include <cstdint>
-#include <memory>
 #include <stdexcept>
 #include <string>
 #include <string_view>

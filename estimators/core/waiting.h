@@ -1,6 +1,6 @@
 #pragma once
 
-// What a user may say and hear while this program waits for another one.
+// A user may interrupt while this program waits for another one, and hears of long waits.
 
 #include <string>
 

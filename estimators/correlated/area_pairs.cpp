@@ -1,7 +1,6 @@
 #include "correlated/area_pairs.h"
 
 #include <stdexcept>
-#include <utility>
 
 namespace assay::correlated {
 

@@ -154,23 +154,6 @@ class RatioEstimator final : public Estimator {
   SharedPairs source_;
 };
 
-using Make = std::function<std::unique_ptr<Estimator>()>;
-
-class PairSetup final : public Setup {
- public:
-  PairSetup(std::vector<Channel> channels, SharedPairs source, Make make)
-      : channels_(std::move(channels)), source_(std::move(source)), make_(std::move(make)) {}
-
-  std::vector<Channel> channels() const override { return channels_; }
-  std::unique_ptr<Estimator> make() const override { return make_(); }
-  std::vector<NamedSampler> samplers() const override { return source_->samplers(); }
-
- private:
-  std::vector<Channel> channels_;
-  SharedPairs source_;
-  Make make_;
-};
-
 }  // namespace
 
 LambdaRule estimated_lambda(Centre centre) {
@@ -207,28 +190,29 @@ std::vector<Channel> channels_with_lambda(const PairSource& source) {
 std::shared_ptr<const Setup> fixed(SharedPairs source, double lambda) {
   std::vector<Channel> channels;
   for (const Colour& colour : source->colours()) channels.push_back(channel_of(colour, lambda));
-  return std::make_shared<PairSetup>(std::move(channels), source, [source, lambda] {
-    return std::make_unique<FixedEstimator>(source, lambda);
-  });
+  return setup_of({std::move(channels),
+                   [source, lambda] { return std::make_unique<FixedEstimator>(source, lambda); },
+                   source->samplers()});
 }
 
 std::shared_ptr<const Setup> same_samples(SharedPairs source, LambdaRule rule) {
-  return std::make_shared<PairSetup>(channels_with_lambda(*source), source, [source, rule] {
-    return std::make_unique<SameSamplesEstimator>(source, rule);
-  });
+  return setup_of({channels_with_lambda(*source),
+                   [source, rule] { return std::make_unique<SameSamplesEstimator>(source, rule); },
+                   source->samplers()});
 }
 
 std::shared_ptr<const Setup> cross_fitted(SharedPairs source, LambdaRule rule) {
-  return std::make_shared<PairSetup>(channels_with_lambda(*source), source, [source, rule] {
-    return std::make_unique<CrossFittedEstimator>(source, rule);
-  });
+  return setup_of({channels_with_lambda(*source),
+                   [source, rule] { return std::make_unique<CrossFittedEstimator>(source, rule); },
+                   source->samplers()});
 }
 
 std::shared_ptr<const Setup> ratio(SharedPairs source) {
   std::vector<Channel> channels;
   for (const Colour& colour : source->colours()) channels.push_back(irradiance(colour));
-  return std::make_shared<PairSetup>(std::move(channels), source,
-                                     [source] { return std::make_unique<RatioEstimator>(source); });
+  return setup_of({std::move(channels),
+                   [source] { return std::make_unique<RatioEstimator>(source); },
+                   source->samplers()});
 }
 
 }  // namespace assay::correlated

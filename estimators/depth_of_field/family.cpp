@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "estimators/mutant_information.h"
-
 namespace assay::depth_of_field {
 
 ParameterInformation scene_parameter(const char* fallback) {
@@ -50,14 +48,6 @@ Channel radiance_channel(const SceneDescription& scene, const Moments& moments, 
   const double off = moments.variance_error() + 0x1p-48 * range.high * range.high;
   if (off <= 1e-8 * moments.variance()) channel.variance = moments.variance() / samples;
   return channel;
-}
-
-Information mutant_information(std::string name, const Information& original, std::string defect) {
-  Information out = original;
-  out.name = std::move(name);
-  out.original = original.name;
-  out.defect = std::move(defect);
-  return assay::mutant_information(std::move(out));
 }
 
 }  // namespace assay::depth_of_field

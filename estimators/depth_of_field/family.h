@@ -33,6 +33,4 @@ struct LensPrimary {
   double value(const PlanePoint& u, Cost& cost) const { return setting->radiance(pixel, u, cost); }
 };
 
-Information mutant_information(std::string name, const Information& original, std::string defect);
-
 }  // namespace assay::depth_of_field

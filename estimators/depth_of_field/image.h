@@ -82,29 +82,14 @@ class LensImage final : public Estimator {
   NoiseExtremes ends_;
 };
 
-template <class Shading>
-class LensImageSetup final : public Setup {
- public:
-  LensImageSetup(ImagePlan plan, Shading shading)
-      : plan_(std::make_shared<const ImagePlan>(std::move(plan))), shading_(std::move(shading)) {}
-
-  std::vector<Channel> channels() const override { return image_channels(*plan_); }
-  std::optional<ImageShape> image() const override {
-    return ImageShape{plan_->grid.width, plan_->grid.height, {"radiance"}, true};
-  }
-  std::unique_ptr<Estimator> make() const override {
-    return std::make_unique<LensImage<Shading>>(plan_, shading_);
-  }
-  std::vector<NamedSampler> samplers() const override { return lens_samplers<>(); }
-
- private:
-  std::shared_ptr<const ImagePlan> plan_;
-  Shading shading_;
-};
-
 template <class Shading = SoundShading>
 std::shared_ptr<const Setup> image_setup(ImagePlan plan, Shading shading = {}) {
-  return std::make_shared<const LensImageSetup<Shading>>(std::move(plan), std::move(shading));
+  const auto shared = std::make_shared<const ImagePlan>(std::move(plan));
+  return setup_of(
+      {.channels = image_channels(*shared),
+       .make = [shared, shading] { return std::make_unique<LensImage<Shading>>(shared, shading); },
+       .samplers = lens_samplers<>(),
+       .image = ImageShape{shared->grid.width, shared->grid.height, {"radiance"}, true}});
 }
 
 }  // namespace assay::depth_of_field

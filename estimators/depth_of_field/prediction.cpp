@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "depth_of_field/covariance.h"
 #include "depth_of_field/exact.h"

@@ -1,11 +1,10 @@
 #pragma once
 
-// An image from sparse samples of it, each an average over the lens.
-
-#include <utility>
-
 #include "depth_of_field/allocation.h"
 #include "depth_of_field/family.h"
+
+// An image from sparse samples of it, each an average over the lens.
+
 #include "depth_of_field/splat.h"
 
 namespace assay::depth_of_field {

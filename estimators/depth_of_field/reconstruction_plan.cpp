@@ -46,40 +46,25 @@ class Reconstruction final : public Estimator {
   std::vector<double> values_;  // scratch
 };
 
-class ReconstructionSetup final : public Setup {
- public:
-  explicit ReconstructionSetup(ReconstructionPlan plan)
-      : plan_(std::make_shared<const ReconstructionPlan>(std::move(plan))) {
-    const std::vector<double> bias = plan_->bias();
-    const auto larger = [](double a, double b) { return std::abs(a) < std::abs(b); };
-    worst_ = static_cast<std::size_t>(std::ranges::max_element(bias, larger) - bias.begin());
-  }
+std::size_t worst_pixel(const ReconstructionPlan& plan) {
+  const std::vector<double> bias = plan.bias();
+  const auto larger = [](double a, double b) { return std::abs(a) < std::abs(b); };
+  return static_cast<std::size_t>(std::ranges::max_element(bias, larger) - bias.begin());
+}
 
-  std::vector<Channel> channels() const override {
-    const ImageShape shape = *image();
-    std::vector<Channel> out;
-    for (std::size_t p = 0; p < plan_->exact.size(); ++p) {
-      out.push_back(radiance_channel(plan_->setting->scene(), plan_->exact[p]));
-      out.back().name = element_name(shape, p);
-      out.back().variance.reset();
-    }
-    out.push_back(out[worst_]);
-    out.back().name = "worst";
-    out.back().diagnostic = true;
-    return out;
+std::vector<Channel> channels_of(const ReconstructionPlan& plan, const ImageShape& shape,
+                                 std::size_t worst) {
+  std::vector<Channel> out;
+  for (std::size_t p = 0; p < plan.exact.size(); ++p) {
+    out.push_back(radiance_channel(plan.setting->scene(), plan.exact[p]));
+    out.back().name = element_name(shape, p);
+    out.back().variance.reset();
   }
-  std::optional<ImageShape> image() const override {
-    return ImageShape{plan_->grid.width, plan_->grid.height, {"radiance"}, false};
-  }
-  std::unique_ptr<Estimator> make() const override {
-    return std::make_unique<Reconstruction>(plan_, worst_);
-  }
-  std::vector<NamedSampler> samplers() const override { return lens_samplers<>(); }
-
- private:
-  std::shared_ptr<const ReconstructionPlan> plan_;
-  std::size_t worst_;
-};
+  out.push_back(out[worst]);
+  out.back().name = "worst";
+  out.back().diagnostic = true;
+  return out;
+}
 
 }  // namespace
 
@@ -117,7 +102,14 @@ std::vector<double> ReconstructionPlan::bias() const {
 
 std::shared_ptr<const Setup> prepare_reconstruction(Parameters& given,
                                                     const ReconstructionRules& rules) {
-  return std::make_shared<const ReconstructionSetup>(read_reconstruction_plan(given, rules));
+  const auto plan =
+      std::make_shared<const ReconstructionPlan>(read_reconstruction_plan(given, rules));
+  const std::size_t worst = worst_pixel(*plan);
+  const ImageShape shape{plan->grid.width, plan->grid.height, {"radiance"}, false};
+  return setup_of({.channels = channels_of(*plan, shape, worst),
+                   .make = [plan, worst] { return std::make_unique<Reconstruction>(plan, worst); },
+                   .samplers = lens_samplers<>(),
+                   .image = shape});
 }
 
 }  // namespace assay::depth_of_field

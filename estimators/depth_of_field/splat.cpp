@@ -1,7 +1,6 @@
 #include "depth_of_field/splat.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
 namespace assay::depth_of_field {

@@ -3,7 +3,6 @@
 // The common parameters and the channel of direct lighting.
 
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "direct_light/exact.h"

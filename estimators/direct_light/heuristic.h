@@ -2,8 +2,6 @@
 
 // Weights of two sampling techniques (Veach 1997, sections 9.2.2 and 9.2.3).
 
-#include <string>
-
 #include "estimators/parameters.h"
 
 namespace assay::direct_light {

@@ -1,7 +1,6 @@
 #include "direct_light/light_sampling.h"
 
 #include <utility>
-#include <vector>
 
 #include "luminaire/area.h"
 #include "luminaire/solid_angle.h"

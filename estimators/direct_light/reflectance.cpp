@@ -1,9 +1,7 @@
 #include "direct_light/reflectance.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
-#include <string>
 #include <utility>
 
 #include "brdf/ashikhmin_shirley.h"

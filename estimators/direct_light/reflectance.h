@@ -5,7 +5,6 @@
 
 #include <memory>
 #include <optional>
-#include <vector>
 
 #include "estimators/parameters.h"
 #include "estimators/stream.h"

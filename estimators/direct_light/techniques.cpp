@@ -1,6 +1,5 @@
 #include "direct_light/techniques.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace assay::direct_light {

@@ -68,9 +68,8 @@ std::shared_ptr<const Setup> prepare(Parameters& given) {
       {.second_moment = [](std::size_t, const render::CosineMoments& m) { return pi * m.first; },
        .largest = largest(sky->map())});
   const auto draw_one = [sky](Stream& random, Cost& cost) { return primary(*sky, random, cost); };
-  return std::make_shared<RgbSetup<decltype(draw_one)>>(
-      std::move(channels), draw_one,
-      NamedSampler{"direction", std::make_shared<CosineSampler>(sky)});
+  return rgb_setup(std::move(channels), draw_one,
+                   NamedSampler{"direction", std::make_shared<CosineSampler>(sky)});
 }
 
 }  // namespace

@@ -116,9 +116,8 @@ std::shared_ptr<const Setup> prepare(Parameters& given) {
   const auto primary = [sampler](Stream& random, Cost& cost) {
     return sampler->contribution(sampler->choose(random), cost);
   };
-  return std::make_shared<RgbSetup<decltype(primary)>>(
-      irradiance_channels(*sky, primaries(sky, sampler->total())), primary,
-      NamedSampler{"direction", sampler});
+  return rgb_setup(irradiance_channels(*sky, primaries(sky, sampler->total())), primary,
+                   NamedSampler{"direction", sampler});
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 #include "environment/sky.h"
 
-#include <algorithm>
 #include <string>
 #include <utility>
 

@@ -72,23 +72,11 @@ class RgbEstimator final : public Estimator {
 };
 
 template <class Primary>
-class RgbSetup final : public Setup {
- public:
-  RgbSetup(std::vector<Channel> channels, Primary primary, NamedSampler sampler)
-      : channels_(std::move(channels)),
-        primary_(std::move(primary)),
-        sampler_(std::move(sampler)) {}
-
-  std::vector<Channel> channels() const override { return channels_; }
-  std::unique_ptr<Estimator> make() const override {
-    return std::make_unique<RgbEstimator<Primary>>(primary_);
-  }
-  std::vector<NamedSampler> samplers() const override { return {sampler_}; }
-
- private:
-  std::vector<Channel> channels_;
-  Primary primary_;
-  NamedSampler sampler_;
-};
+std::shared_ptr<const Setup> rgb_setup(std::vector<Channel> channels, Primary primary,
+                                       NamedSampler sampler) {
+  return setup_of({.channels = std::move(channels),
+                   .make = [primary] { return std::make_unique<RgbEstimator<Primary>>(primary); },
+                   .samplers = {std::move(sampler)}});
+}
 
 }  // namespace assay::environment

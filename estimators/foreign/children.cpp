@@ -44,7 +44,7 @@ void Children::give_back(std::unique_ptr<Dialogue> dialogue) {
   idle_.push_back(std::move(dialogue));
 }
 
-/// Whether the caller is to draw the first observations. Waits while another one draws them.
+/// True if the caller is to draw the first observations. Waits while another one draws them.
 bool Children::is_to_draw(const Question& wanted) {
   std::unique_lock lock(mutex_);
   Known& known = known_[wanted.primaries];

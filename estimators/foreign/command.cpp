@@ -9,7 +9,6 @@
 
 #include "estimators/core/program_path.h"
 #include "estimators/estimator.h"
-#include "estimators/foreign/render_seed.h"
 #include "estimators/foreign/renderings.h"
 #include "estimators/foreign/setup.h"
 #include "recorded/picture_setup.h"

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <limits>
-#include <system_error>
 
 #include "estimators/core/waiting.h"
 #include "estimators/foreign/words.h"

@@ -5,7 +5,6 @@
 #include <cstring>
 #include <map>
 #include <string_view>
-#include <utility>
 
 #include "estimators/foreign/shared_object.h"
 

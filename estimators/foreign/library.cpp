@@ -17,7 +17,6 @@ foreign::LibraryChoice choice_of(Parameters& parameters) {
   foreign::LibraryChoice choice{
       .file = std::filesystem::absolute(parameters.file("file")).lexically_normal().string(),
       .estimator = parameters.string("estimator"),
-      .parameters = {},
       .folder = parameters.folder()};
   if (!parameters.given("estimator")) choice.estimator.clear();
   const Value& given = parameters.structure("parameters");

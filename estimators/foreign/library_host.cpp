@@ -17,7 +17,6 @@
 #include <thread>
 
 #include "estimators/core/flush_denormals.h"
-#include "estimators/foreign/child.h"
 #include "estimators/foreign/library_sampler.h"
 #include "estimators/foreign/library_setup.h"
 #include "estimators/foreign/reply.h"
@@ -206,7 +205,7 @@ std::shared_ptr<const PreparedLibrary> prepared(const std::vector<std::string>& 
     throw std::runtime_error("a host is given file, estimator, folder, then names and values");
   }
   foreign::LibraryChoice choice{
-      .file = arguments[0], .estimator = arguments[1], .parameters = {}, .folder = arguments[2]};
+      .file = arguments[0], .estimator = arguments[1], .folder = arguments[2]};
   for (std::size_t i = 3; i < arguments.size(); i += 2) {
     choice.parameters.emplace_back(arguments[i], arguments[i + 1]);
   }

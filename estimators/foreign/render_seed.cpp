@@ -1,6 +1,5 @@
 #include "estimators/foreign/render_seed.h"
 
-#include <algorithm>
 #include <stdexcept>
 #include <string>
 

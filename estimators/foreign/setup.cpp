@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <system_error>
 #include <utility>
 
@@ -110,7 +109,7 @@ class ForeignEstimator final : public Estimator {
     held_ = question;
   }
 
-  /// Whether the first of the observations are known; the question is then for these alone. They
+  /// True if the first of the observations are known; the question is then for these alone. They
   /// cost what they cost when they were drawn.
   bool recall(Question& question) {
     Recalled known = children_->recalled(question);
@@ -226,11 +225,8 @@ std::vector<ParameterInformation> terms_parameters() {
 }
 
 Terms read_terms(Parameters& parameters) {
-  return {.launch = {.command = {},
-                     .folder = parameters.folder(),
-                     .memory = parameters.number("memory")},
-          .timeout = parameters.number("timeout"),
-          .name = ""};
+  return {.launch = {.folder = parameters.folder(), .memory = parameters.number("memory")},
+          .timeout = parameters.number("timeout")};
 }
 
 }  // namespace assay::foreign

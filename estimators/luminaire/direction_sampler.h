@@ -2,8 +2,6 @@
 
 // The sampler of an estimator that picks directions about the receiver's normal.
 
-#include <algorithm>
-
 #include "luminaire/family.h"
 
 namespace assay::luminaire {

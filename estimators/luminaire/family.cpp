@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "estimators/mutant_information.h"
-
 namespace assay::luminaire {
 
 namespace {
@@ -34,13 +32,6 @@ Information information(std::string name, std::string summary, std::string descr
   out.description = std::move(description);
   out.parameters = {scene_parameter};
   return out;
-}
-
-Information mutant_information(std::string name, std::string original, std::string defect) {
-  return assay::mutant_information({.name = std::move(name),
-                                    .parameters = {scene_parameter},
-                                    .original = std::move(original),
-                                    .defect = std::move(defect)});
 }
 
 SharedSetting read_setting(Parameters& parameters) {

@@ -23,9 +23,6 @@ using SharedSetting = std::shared_ptr<const Setting>;
 /// Static information with the parameter `scene`, common to the family.
 Information information(std::string name, std::string summary, std::string description);
 
-/// The same for a mutant of `original`.
-Information mutant_information(std::string name, std::string original, std::string defect);
-
 SharedSetting read_setting(Parameters& parameters);
 
 /// E[X^2] for unit radiance of the primary X, if it can be had from the exact integrals.

@@ -56,7 +56,6 @@ Floor read_floor(Parameters& parameters) {
   Floor floor{.shape = {.width = parameters.count("width"),
                         .height = parameters.count("height"),
                         .components = {"irradiance"}},
-              .settings = {},
               .streams = parameters.boolean("shared") ? ImageStreams::shared : ImageStreams::own};
   const double part = parameters.number("size") / static_cast<double>(floor.shape.width);
   const Vector3 centre = scene.receiver.position;

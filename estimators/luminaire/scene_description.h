@@ -2,7 +2,6 @@
 
 // A point that receives light, a luminaire and what stands between, as a suite states them.
 
-#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>

@@ -7,9 +7,7 @@
 // receiver's cosine of a unit vector w is w.z, and every ray starts at the exact zero vector.
 
 #include <cstdint>
-#include <memory>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "estimators/cost.h"
@@ -58,8 +56,7 @@ struct LightSample {
 
 /// The shadow ray from the receiver to a point of the luminaire.
 inline render::RoundedRay shadow_ray(const render::Vector3& to_light) {
-  return render::RoundedRay(
-      {.origin = {}, .direction = to_light, .near = resolution, .far = 1 - 2 * resolution});
+  return render::RoundedRay({.direction = to_light, .near = resolution, .far = 1 - 2 * resolution});
 }
 
 class Setting {
@@ -90,7 +87,7 @@ class Setting {
 
   /// The ray from the receiver along a unit vector.
   render::RoundedRay ray(const render::Vector3& direction) const {
-    return render::RoundedRay({.origin = {}, .direction = direction, .near = near_});
+    return render::RoundedRay({.direction = direction, .near = near_});
   }
 
   /// The triangle of the luminaire that a ray from the receiver hits first, from either side; none

@@ -1,13 +1,68 @@
 #include "metropolis/chain.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
-#include "metropolis/samplers.h"
+#include "metropolis/small_step.h"
 
 namespace assay::metropolis {
 
 namespace {
+
+using SharedStep = std::shared_ptr<const SmallStep>;
+
+class StepSampler final : public Sampler {
+ public:
+  explicit StepSampler(SharedStep step) : step_(std::move(step)) {}
+
+  Domain domain() const override { return Domain::interval; }
+  std::array<double, 2> bounds() const override {
+    return {-SmallStep::largest, SmallStep::largest};
+  }
+  SamplerDraw sample(Stream& random) const override {
+    const Point point = {step_->step(random), 0, 0};
+    return {.point = point, .density = density(point), .weight = 1};
+  }
+  double density(const Point& point) const override {
+    const double length = std::abs(point[0]);
+    // Rounding may leave a step a hair outside.
+    const double hair = 1 + 0x1p-40;
+    if (length < SmallStep::smallest / hair || length > SmallStep::largest * hair) return 0;
+    return 1 / (2 * length * std::log(SmallStep::largest / SmallStep::smallest));
+  }
+  double evaluate(const Point& point) const override { return density(point); }
+  // The gap between the smallest steps ends on the borders of parts.
+  Panels panels() const override { return {.first = 32}; }
+
+ private:
+  SharedStep step_;
+};
+
+class CoordinateSampler final : public Sampler {
+ public:
+  explicit CoordinateSampler(SharedStep step) : step_(std::move(step)) {}
+
+  Domain domain() const override { return Domain::interval; }
+  SamplerDraw sample(Stream& random) const override {
+    const double before = random.uniform();
+    return {
+        .point = {step_->moved(before, random).value_or(before), 0, 0}, .density = 1, .weight = 1};
+  }
+  double density(const Point&) const override { return 1; }
+  double evaluate(const Point&) const override { return 1; }
+
+ private:
+  SharedStep step_;
+};
+
+/// The samplers of a step. One is `step`, the signed length, of density 1 / (2 |x| ln(largest /
+/// smallest)). The other is `coordinate`, a uniform number after a small step; it stays if a step
+/// is rejected. It is uniform again.
+std::vector<NamedSampler> step_samplers(const SharedStep& step) {
+  return {{"step", std::make_shared<StepSampler>(step)},
+          {"coordinate", std::make_shared<CoordinateSampler>(step)}};
+}
 
 double luminance_of(const Spectrum& s, std::size_t components) {
   return components == 1 ? s.red : paths::luminance(s);
@@ -128,50 +183,11 @@ std::vector<Channel> image_channels(const Target& target) {
   return channels;
 }
 
-/// Shape and channels, common to both.
-class ImageSetup : public Setup {
- public:
-  explicit ImageSetup(const Target& target)
-      : shape_(target.shape()), channels_(image_channels(target)) {
-    // Points fall into one pixel or another, and a chain stays near where it was.
-    shape_.independent = false;
-  }
-  std::vector<Channel> channels() const override { return channels_; }
-  std::optional<ImageShape> image() const override { return shape_; }
-
- protected:
-  ImageShape shape_;
-  std::vector<Channel> channels_;
-};
-
-class ChainSetup final : public ImageSetup {
- public:
-  explicit ChainSetup(Recipe recipe)
-      : ImageSetup(*recipe.target), recipe_(std::make_shared<const Recipe>(std::move(recipe))) {
-    channels_.push_back(
-        {.name = "normaliser", .mean = channels_.back().mean, .low = 0, .diagnostic = true});
-    channels_.push_back({.name = "acceptance", .low = 0, .high = 1, .diagnostic = true});
-  }
-  std::unique_ptr<Estimator> make() const override {
-    return std::make_unique<ChainEstimator>(recipe_);
-  }
-  std::vector<NamedSampler> samplers() const override { return step_samplers(recipe_->step); }
-
- private:
-  std::shared_ptr<const Recipe> recipe_;
-};
-
-class IndependentSetup final : public ImageSetup {
- public:
-  explicit IndependentSetup(SharedTarget target)
-      : ImageSetup(*target), target_(std::move(target)) {}
-  std::unique_ptr<Estimator> make() const override {
-    return std::make_unique<IndependentEstimator>(target_);
-  }
-
- private:
-  SharedTarget target_;
-};
+/// Points fall into one pixel or another, and a chain stays near where it was.
+ImageShape dependent(ImageShape shape) {
+  shape.independent = false;
+  return shape;
+}
 
 }  // namespace
 
@@ -180,11 +196,21 @@ std::unique_ptr<LazyCoordinates> lazy_coordinates(std::shared_ptr<const SmallSte
 }
 
 std::shared_ptr<const Setup> chain(Recipe recipe) {
-  return std::make_shared<ChainSetup>(std::move(recipe));
+  std::vector<Channel> channels = image_channels(*recipe.target);
+  channels.push_back(
+      {.name = "normaliser", .mean = channels.back().mean, .low = 0, .diagnostic = true});
+  channels.push_back({.name = "acceptance", .low = 0, .high = 1, .diagnostic = true});
+  const auto shared = std::make_shared<const Recipe>(std::move(recipe));
+  return setup_of({.channels = std::move(channels),
+                   .make = [shared] { return std::make_unique<ChainEstimator>(shared); },
+                   .samplers = step_samplers(shared->step),
+                   .image = dependent(shared->target->shape())});
 }
 
 std::shared_ptr<const Setup> independent(SharedTarget target) {
-  return std::make_shared<IndependentSetup>(std::move(target));
+  return setup_of({.channels = image_channels(*target),
+                   .make = [target] { return std::make_unique<IndependentEstimator>(target); },
+                   .image = dependent(target->shape())});
 }
 
 }  // namespace assay::metropolis

@@ -2,9 +2,6 @@
 
 // Integrands in closed form: sums of products of functions of one coordinate.
 
-#include <functional>
-#include <memory>
-#include <string>
 #include <variant>
 #include <vector>
 

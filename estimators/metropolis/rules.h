@@ -2,8 +2,6 @@
 
 // How a chain decides, what its steps count for, and how it starts.
 
-#include <memory>
-#include <span>
 #include <vector>
 
 #include "metropolis/lazy_coordinates.h"

@@ -3,8 +3,6 @@
 // The integrand of a chain.
 
 #include <memory>
-#include <optional>
-#include <string>
 #include <vector>
 
 #include "estimators/cost.h"

@@ -28,16 +28,6 @@ std::shared_ptr<const Setup> rare_nan(Parameters& parameters) {
   });
 }
 
-std::vector<ParameterInformation> rare_nan_parameters() {
-  std::vector<ParameterInformation> all = analytic::normal_parameters();
-  all.push_back({.name = "probability",
-                 .summary = "of an observation that is not a number",
-                 .fallback = "1e-3",
-                 .low = 0,
-                 .high = 1});
-  return all;
-}
-
 }  // namespace
 
 std::vector<Entry> mutants_analytic() {
@@ -56,7 +46,11 @@ std::vector<Entry> mutants_analytic() {
             .summary = "analytic/normal with an observation that is not a number, now and then.",
             .description =
                 "A normal variable; with a given probability an observation is not a number.",
-            .parameters = rare_nan_parameters(),
+            .parameters = {{.name = "probability",
+                            .summary = "of an observation that is not a number",
+                            .fallback = "1e-3",
+                            .low = 0,
+                            .high = 1}},
             .original = "analytic/normal",
             .defect = "an observation is not a number now and then."},
            rare_nan}};

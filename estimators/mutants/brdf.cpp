@@ -11,6 +11,7 @@
 #include "brdf/albedo.h"
 #include "brdf/ashikhmin_shirley.h"
 #include "brdf/ward.h"
+#include "estimators/mutant.h"
 
 namespace assay::plugins {
 
@@ -139,26 +140,18 @@ struct MirroredWeight final : Misreported {
   }
 };
 
-// All of the original's parameters, so that the key of the streams is the same. The defects are in
-// the published sampler, the only choice.
-std::vector<ParameterInformation> with_sampler(std::vector<ParameterInformation> parameters) {
-  ParameterInformation sampler = brdf::sampler_parameter();
-  sampler.summary = "the one that has the defect";
-  sampler.choices = {"published"};
-  parameters.push_back(std::move(sampler));
-  return parameters;
-}
-
-// The author's claim: the original's mean. Nothing is claimed of the range and the variance.
-Channel claimed(const render::HalfVectorBrdf& original) {
-  const Channel channel = brdf::published_channel(original);
-  return {.name = channel.name, .mean = channel.mean, .mean_error = channel.mean_error};
+// The defects are in the published sampler, the only choice.
+ParameterInformation sampler() {
+  ParameterInformation its = brdf::sampler_parameter();
+  its.summary = "the one that has the defect";
+  its.choices = {"published"};
+  return its;
 }
 
 std::shared_ptr<const Setup> mutated(Parameters& given, const render::HalfVectorBrdf& original,
-                                     std::shared_ptr<const Sampler> sampler) {
+                                     std::shared_ptr<const Sampler> broken) {
   given.string("sampler");
-  return brdf::albedo(claimed(original), std::move(sampler));
+  return brdf::albedo(only_mean(brdf::published_channel(original)), std::move(broken));
 }
 
 struct Defect {
@@ -166,33 +159,29 @@ struct Defect {
   std::string what;
 };
 
-Information information(std::string original, Defect defect,
-                        std::vector<ParameterInformation> parameters) {
+Information information(const std::string& original, const Defect& defect) {
   return {.name = "mutants/" + defect.name,
           .summary = original + " with a defect: " + defect.what,
           .description = "The albedo as " + original +
                          " estimates it with sampler: published, "
                          "but: " +
                          defect.what,
-          .parameters = with_sampler(std::move(parameters)),
-          .original = std::move(original),
-          .defect = std::move(defect.what)};
+          .parameters = {sampler()},
+          .original = original,
+          .defect = defect.what};
 }
 
 template <class Mutant>
-Entry ward(Defect defect) {
-  return {information("brdf/ward", std::move(defect), brdf::ward_parameters()),
-          [](Parameters& given) {
+Entry ward(const Defect& defect) {
+  return {information("brdf/ward", defect), [](Parameters& given) {
             auto mutant = std::make_shared<Mutant>(brdf::ward<Mutant>(given));
             return mutated(given, brdf::ward(given), brdf::published_sampler(mutant));
           }};
 }
 
 template <class Mutant>
-Entry ashikhmin_shirley(Defect defect) {
-  return {information("brdf/ashikhmin_shirley", std::move(defect),
-                      brdf::ashikhmin_shirley_parameters()),
-          [](Parameters& given) {
+Entry ashikhmin_shirley(const Defect& defect) {
+  return {information("brdf/ashikhmin_shirley", defect), [](Parameters& given) {
             auto mutant = std::make_shared<Mutant>(brdf::ashikhmin_shirley<Mutant>(given));
             return mutated(given, brdf::ashikhmin_shirley(given), brdf::published_sampler(mutant));
           }};
@@ -202,25 +191,22 @@ std::shared_ptr<const Setup> redrawn(Parameters& given, brdf::SharedBrdf origina
   return mutated(given, *original, std::make_shared<Redrawn>(brdf::published_sampler(original)));
 }
 
-Entry ward_redrawn(Defect defect) {
-  return {
-      information("brdf/ward", std::move(defect), brdf::ward_parameters()),
-      [](Parameters& given) { return redrawn(given, std::make_shared<Ward>(brdf::ward(given))); }};
+Entry ward_redrawn(const Defect& defect) {
+  return {information("brdf/ward", defect), [](Parameters& given) {
+            return redrawn(given, std::make_shared<Ward>(brdf::ward(given)));
+          }};
 }
 
-Entry ashikhmin_shirley_redrawn(Defect defect) {
-  return {information("brdf/ashikhmin_shirley", std::move(defect),
-                      brdf::ashikhmin_shirley_parameters()),
-          [](Parameters& given) {
+Entry ashikhmin_shirley_redrawn(const Defect& defect) {
+  return {information("brdf/ashikhmin_shirley", defect), [](Parameters& given) {
             return redrawn(given,
                            std::make_shared<AshikhminShirley>(brdf::ashikhmin_shirley(given)));
           }};
 }
 
 template <class Wrapper>
-Entry misreported_ward(Defect defect) {
-  return {information("brdf/ward", std::move(defect), brdf::ward_parameters()),
-          [](Parameters& given) {
+Entry misreported_ward(const Defect& defect) {
+  return {information("brdf/ward", defect), [](Parameters& given) {
             const auto original = std::make_shared<Ward>(brdf::ward(given));
             return mutated(given, *original,
                            std::make_shared<Wrapper>(brdf::published_sampler(original)));

@@ -2,14 +2,13 @@
 // one thing wrong. Biases are for the built-in rectangle, of J = 1.320523614, unless said
 // otherwise.
 
-#include <array>
 #include <numbers>
 #include <utility>
 
 #include "correlated/area_pairs.h"
 #include "correlated/parameters.h"
 #include "correlated/sky_pairs.h"
-#include "estimators/mutant_information.h"
+#include "estimators/mutant.h"
 
 namespace assay::plugins {
 
@@ -121,22 +120,6 @@ struct GreyIntegral final : AlteredPairs {
   }
 };
 
-Entry grey_integral() {
-  const std::string defect =
-      "has one J for all colours, the mean of theirs, beside a control in colour: lambda (mean J - "
-      "J) in each, nothing under a grey sky.";
-  std::vector<ParameterInformation> parameters = sky_pair_parameters();
-  parameters.push_back(lambda_parameter());
-  return {mutant_information({.name = "mutants/control_grey_integral",
-                              .parameters = parameters,
-                              .original = "correlated/sky",
-                              .defect = defect}),
-          [](Parameters& given) {
-            return fixed(std::make_shared<GreyIntegral>(read_sky_pairs(given)),
-                         given.number("lambda"));
-          }};
-}
-
 // Sum f g, not about the means, over the spread of g about its mean.
 double uncentred(const Sums& sums, double integral) {
   const double spread = sums.lack_squared - sums.lack * sums.lack / sums.count;
@@ -182,20 +165,6 @@ class PooledEstimator final : public Estimator {
   std::vector<SharedPairs> pixels_;
 };
 
-class PooledSetup final : public Setup {
- public:
-  explicit PooledSetup(std::vector<SharedPairs> pixels) : pixels_(std::move(pixels)) {}
-
-  std::vector<Channel> channels() const override { return channels_with_lambda(*pixels_[0]); }
-  std::unique_ptr<Estimator> make() const override {
-    return std::make_unique<PooledEstimator>(pixels_);
-  }
-  std::vector<NamedSampler> samplers() const override { return pixels_[0]->samplers(); }
-
- private:
-  std::vector<SharedPairs> pixels_;
-};
-
 // The receiver and its neighbours, a fiftieth of the luminaire's width apart.
 std::shared_ptr<const Setup> pooled_lambda(Parameters& given) {
   const auto own = read_area_pairs(given);
@@ -209,76 +178,61 @@ std::shared_ptr<const Setup> pooled_lambda(Parameters& given) {
     pixels.push_back(std::make_shared<const AreaPairs>(scene, given.where("scene")));
   }
   only_published_rule(given);
-  return std::make_shared<PooledSetup>(std::move(pixels));
-}
-
-std::vector<ParameterInformation> with_scene(std::vector<ParameterInformation> more) {
-  std::vector<ParameterInformation> all = luminaire::information("", "", "").parameters;
-  for (ParameterInformation& p : more) all.push_back(std::move(p));
-  return all;
-}
-
-Entry fixed_mutant(const char* name, const char* defect,
-                   std::function<std::shared_ptr<const Setup>(Parameters&)> prepare) {
-  Information information =
-      mutant_information({.name = name, .original = "correlated/area", .defect = defect});
-  information.parameters = with_scene({lambda_parameter()});
-  return {std::move(information), std::move(prepare)};
-}
-
-Entry rule_mutant(const char* name, const char* original, const char* defect,
-                  std::function<std::shared_ptr<const Setup>(Parameters&)> prepare) {
-  Information information =
-      mutant_information({.name = name, .original = original, .defect = defect});
-  information.parameters = with_scene(rule_parameters());
-  information.averages = false;
-  return {std::move(information), std::move(prepare)};
+  return setup_of({.channels = channels_with_lambda(*own),
+                   .make = [pixels] { return std::make_unique<PooledEstimator>(pixels); },
+                   .samplers = own->samplers()});
 }
 
 }  // namespace
 
 std::vector<Entry> mutants_correlated() {
   return {
-      fixed_mutant("mutants/control_added_twice",
-                   "adds the control where it should be taken away, J + g: 2 lambda J too much.",
-                   altered<AddedTwice>),
-      fixed_mutant("mutants/control_unclipped",
-                   "integrates the control over the whole polygon, that below the receiver's "
-                   "horizon too: nothing on `rectangle`, lambda (unclipped - clipped) where the "
-                   "luminaire crosses the horizon.",
-                   unclipped_integral),
-      fixed_mutant("mutants/control_without_pi",
-                   "takes the form factor for the control's integral, J / pi: lambda J (1/pi - 1).",
-                   altered<WithoutPi>),
-      fixed_mutant("mutants/control_without_radiance",
-                   "leaves the luminaire's radiance L out of J: lambda J (1/L - 1), nothing at L = "
-                   "1.",
-                   without_radiance),
-      fixed_mutant("mutants/control_visible",
-                   "lets occluders shade the control's samples but not its integral: lambda (J - "
-                   "I).",
-                   altered<VisibleControl>),
-      fixed_mutant("mutants/control_elsewhere",
-                   "evaluates the control at other points than the integrand: no bias, but the "
-                   "variance grows to Var f + lambda^2 Var g.",
-                   altered<OtherPoints>),
-      rule_mutant("mutants/lambda_uncentred", "correlated/area_cross_fitted",
-                  "divides the sum of f g, not taken about the means, by the spread of g: lambda "
-                  "tends to (Cov + I J) / Var g; no bias, more variance.",
-                  [](Parameters& given) {
-                    only_published_rule(given);
-                    return cross_fitted(read_area_pairs(given), uncentred);
-                  }),
-      rule_mutant(
-          "mutants/lambda_own_half", "correlated/area_cross_fitted",
-          "takes lambda from the samples that it corrects: where the part x < -0.5 of "
-          "`rectangle` is seen, +7 % with 2 primaries, +4.6 % with 4, +1.1 % with 16.",
+      mutant({"control_added_twice", "correlated/area",
+              "adds the control where it should be taken away, J + g: 2 lambda J too much."},
+             altered<AddedTwice>),
+      mutant({"control_unclipped", "correlated/area",
+              "integrates the control over the whole polygon, that below the receiver's "
+              "horizon too: nothing on `rectangle`, lambda (unclipped - clipped) where the "
+              "luminaire crosses the horizon."},
+             unclipped_integral),
+      mutant({"control_without_pi", "correlated/area",
+              "takes the form factor for the control's integral, J / pi: lambda J (1/pi - 1)."},
+             altered<WithoutPi>),
+      mutant({"control_without_radiance", "correlated/area",
+              "leaves the luminaire's radiance L out of J: lambda J (1/L - 1), nothing at L = "
+              "1."},
+             without_radiance),
+      mutant({"control_visible", "correlated/area",
+              "lets occluders shade the control's samples but not its integral: lambda (J - "
+              "I)."},
+             altered<VisibleControl>),
+      mutant({"control_elsewhere", "correlated/area",
+              "evaluates the control at other points than the integrand: no bias, but the "
+              "variance grows to Var f + lambda^2 Var g."},
+             altered<OtherPoints>),
+      mutant({"lambda_uncentred", "correlated/area_cross_fitted",
+              "divides the sum of f g, not taken about the means, by the spread of g: lambda "
+              "tends to (Cov + I J) / Var g; no bias, more variance."},
+             [](Parameters& given) {
+               only_published_rule(given);
+               return cross_fitted(read_area_pairs(given), uncentred);
+             }),
+      mutant(
+          {"lambda_own_half", "correlated/area_cross_fitted",
+           "takes lambda from the samples that it corrects: where the part x < -0.5 of "
+           "`rectangle` is seen, +7 % with 2 primaries, +4.6 % with 4, +1.1 % with 16."},
           [](Parameters& given) { return same_samples(read_area_pairs(given), read_rule(given)); }),
-      rule_mutant("mutants/lambda_pooled", "correlated/area_cross_fitted",
-                  "takes one lambda from the samples of three receivers side by side and corrects "
-                  "those samples with it: about a third of the bias of one receiver alone.",
-                  pooled_lambda),
-      grey_integral(),
+      mutant({"lambda_pooled", "correlated/area_cross_fitted",
+              "takes one lambda from the samples of three receivers side by side and corrects "
+              "those samples with it: about a third of the bias of one receiver alone."},
+             pooled_lambda),
+      mutant({"control_grey_integral", "correlated/sky",
+              "has one J for all colours, the mean of theirs, beside a control in colour: lambda "
+              "(mean J - J) in each, nothing under a grey sky."},
+             [](Parameters& given) {
+               return fixed(std::make_shared<GreyIntegral>(read_sky_pairs(given)),
+                            given.number("lambda"));
+             }),
   };
 }
 

@@ -7,6 +7,7 @@
 #include "depth_of_field/pixel.h"
 #include "depth_of_field/reconstruction.h"
 #include "depth_of_field/two_stage.h"
+#include "estimators/mutant.h"
 
 namespace assay::plugins {
 
@@ -128,55 +129,50 @@ std::shared_ptr<const Setup> unnormalised(Parameters& given) {
   return prepare_reconstruction(given, rules);
 }
 
-using Prepare = std::shared_ptr<const Setup> (*)(Parameters&);
-
-Entry mutant(const char* name, const Information& original, const char* defect, Prepare prepare) {
-  return {mutant_information(std::string("mutants/") + name, original, defect), prepare};
-}
-
 }  // namespace
 
 std::vector<Entry> mutants_depth_of_field() {
   return {
-      mutant("lens_crowded", pixel_information(),
-             "draws lens points with a radius in proportion to a random number, not to its root: "
-             "too many near the middle; +9 % where a segment of the disc is lit at d / r = 1/2, "
-             "and its sampler shows it.",
+      mutant({"lens_crowded", "depth_of_field/pixel",
+              "draws lens points with a radius in proportion to a random number, not to its root: "
+              "too many near the middle; +9 % where a segment of the disc is lit at d / r = 1/2, "
+              "and its sampler shows it."},
              prepare_pixel<CrowdedDisc>),
       mutant(
-          "lens_blur_by_depth", pixel_information(),
-          "has discs of confusion of radius A |depth - focus| / depth, divided by the depth and "
-          "not by the focus: too small behind the focal plane; +42 % at the crest of `sinusoid`.",
+          {"lens_blur_by_depth", "depth_of_field/pixel",
+           "has discs of confusion of radius A |depth - focus| / depth, divided by the depth and "
+           "not by the focus: too small behind the focal plane; +42 % at the crest of `sinusoid`."},
           blur_by_depth),
-      mutant("lens_pilot_reused", two_stage_information(),
-             "averages the pilot with the samples that it asks for: too few follow a pilot that "
-             "saw nothing; too dark where a small part of the lens is lit.",
+      mutant({"lens_pilot_reused", "depth_of_field/two_stage",
+              "averages the pilot with the samples that it asks for: too few follow a pilot that "
+              "saw nothing; too dark where a small part of the lens is lit."},
              prepare_two_stage<PilotReused>),
-      mutant("lens_stopped_by_error", two_stage_information(),
-             "draws until the samples' own estimate of their error is small enough: stops too "
-             "early where it has seen nothing; too dark where a small part of the lens is lit.",
+      mutant({"lens_stopped_by_error", "depth_of_field/two_stage",
+              "draws until the samples' own estimate of their error is small enough: stops too "
+              "early where it has seen nothing; too dark where a small part of the lens is lit."},
              prepare_two_stage<StoppedByItsError>),
       mutant(
-          "lens_divided_by_mean", image_information(),
-          "divides each pixel's sum by the mean number of lens samples, not by the pixel's: "
-          "too bright by its share of samples where there is variance, dark where there is none.",
+          {"lens_divided_by_mean", "depth_of_field/image",
+           "divides each pixel's sum by the mean number of lens samples, not by the pixel's: "
+           "too bright by its share of samples where there is variance, dark where there is none."},
           divided_by_the_mean),
-      mutant("lens_sharp_background", image_information(),
-             "gives the lens no aperture in pixels whose middle sees no surface: what is blurred "
-             "across the background there is cut off.",
+      mutant({"lens_sharp_background", "depth_of_field/image",
+              "gives the lens no aperture in pixels whose middle sees no surface: what is blurred "
+              "across the background there is cut off."},
              sharp_background),
-      mutant("lens_fronts_ignored", image_information(),
-             "predicts nothing from occluders in front of the focal plane: no bias, but one lens "
-             "sample where there is most noise.",
+      mutant({"lens_fronts_ignored", "depth_of_field/image",
+              "predicts nothing from occluders in front of the focal plane: no bias, but one lens "
+              "sample where there is most noise."},
              fronts_ignored),
-      mutant("bandwidth_signed", reconstruction_information(),
-             "takes the largest frequency with its sign: those that are all negative count as "
-             "none, and waves are sampled eight pixels apart.",
+      mutant({"bandwidth_signed", "depth_of_field/reconstruction",
+              "takes the largest frequency with its sign: those that are all negative count as "
+              "none, and waves are sampled eight pixels apart."},
              signed_maximum),
-      mutant("splats_unnormalised", reconstruction_information(),
-             "does not divide by the sum of the weights: too bright where dense samples and sparse "
-             "ones meet, too dark beyond the last sample.",
-             unnormalised),
+      mutant(
+          {"splats_unnormalised", "depth_of_field/reconstruction",
+           "does not divide by the sum of the weights: too bright where dense samples and sparse "
+           "ones meet, too dark beyond the last sample."},
+          unnormalised),
   };
 }
 

@@ -7,6 +7,8 @@
 
 #include <functional>
 
+#include "estimators/mutant.h"
+
 namespace assay::plugins {
 
 namespace {
@@ -60,7 +62,7 @@ double last_column(const Pixel& p, const ImageShape& shape) {
 }
 
 std::vector<Channel> only_means(std::vector<Channel> channels) {
-  for (Channel& channel : channels) channel = {.mean = channel.mean};
+  for (Channel& channel : channels) channel = only_mean(channel);
   return channels;
 }
 
@@ -75,28 +77,25 @@ std::shared_ptr<const Setup> weighted(Parameters& parameters, const Weight& weig
       {floor.shape, only_means(floor_channels(floor)), std::move(primaries), floor.streams});
 }
 
-Entry mutant(const char* name, const char* defect, Weight weight) {
-  Information information = mutant_information(name, "luminaire/floor", defect);
-  information.parameters = floor_parameters();
-  return {std::move(information), [weight = std::move(weight)](Parameters& parameters) {
-            return weighted(parameters, weight);
-          }};
+Entry entry(const char* name, const char* defect, Weight weight) {
+  return mutant({name, "luminaire/floor", defect}, [weight = std::move(weight)](Parameters& given) {
+    return weighted(given, weight);
+  });
 }
 
 }  // namespace
 
 std::vector<Entry> mutants_floor() {
-  return {
-      mutant("mutants/floor_hot_pixels", "is 30 % too bright in four single pixels.", hot_pixels),
-      mutant("mutants/floor_tile",
-             "is 2 % too bright in one tile, a quarter of the width and of the height.", tile),
-      mutant("mutants/floor_global", "is 0.4 % too bright in every pixel.", everywhere),
-      mutant("mutants/floor_interlaced",
-             "is 0.5 % too bright in the even rows and 0.5 % too dark in the odd ones: the "
-             "image's mean is right.",
-             every_other_row),
-      mutant("mutants/floor_last_column",
-             "is 10 % too dark in the last column, where a filter was cut off.", last_column)};
+  return {entry("floor_hot_pixels", "is 30 % too bright in four single pixels.", hot_pixels),
+          entry("floor_tile",
+                "is 2 % too bright in one tile, a quarter of the width and of the height.", tile),
+          entry("floor_global", "is 0.4 % too bright in every pixel.", everywhere),
+          entry("floor_interlaced",
+                "is 0.5 % too bright in the even rows and 0.5 % too dark in the odd ones: the "
+                "image's mean is right.",
+                every_other_row),
+          entry("floor_last_column",
+                "is 10 % too dark in the last column, where a filter was cut off.", last_column)};
 }
 
 }  // namespace assay::plugins

@@ -3,6 +3,7 @@
 // Expected biases are for the built-in scene `triangle` unless said otherwise; those of the maps
 // depend on the order of its vertices.
 
+#include "estimators/mutant.h"
 #include "luminaire/area.h"
 #include "luminaire/solid_angle.h"
 
@@ -120,22 +121,17 @@ struct UniformAngle {
   }
 };
 
-// Entries. The channel keeps the original's mean, which is the reference to be missed; its variance
-// and range are the original's alone.
+// Entries.
 
-Channel only_mean(const Channel& original) {
-  return {.name = original.name, .mean = original.mean, .mean_error = original.mean_error};
-}
+using Make = std::shared_ptr<const Setup> (*)(SharedSetting);
 
-Entry mutant(Information information,
-             std::function<std::shared_ptr<const Setup>(SharedSetting)> of) {
-  return {std::move(information),
-          [of = std::move(of)](Parameters& parameters) { return of(read_setting(parameters)); }};
+Entry entry(const Mutant& its, Make make) {
+  return mutant(its, [make](Parameters& parameters) { return make(read_setting(parameters)); });
 }
 
 template <class Term>
 Entry term_mutant(const char* name, const char* defect) {
-  return mutant(mutant_information(name, "luminaire/area", defect), [](SharedSetting setting) {
+  return entry({name, "luminaire/area", defect}, [](SharedSetting setting) {
     return averaging(only_mean(area_channel(*setting)), AreaPrimary<UniformTriangle, Term>(setting),
                      point_samplers<>(setting));
   });
@@ -143,11 +139,10 @@ Entry term_mutant(const char* name, const char* defect) {
 
 template <class Map>
 Entry arvo_mutant(const char* name, const char* defect) {
-  return mutant(
-      mutant_information(name, "luminaire/solid_angle", defect), [](SharedSetting setting) {
-        return averaging(only_mean(solid_angle_channel(*setting)), SolidAnglePrimary<Map>(setting),
-                         solid_angle_samplers<Map>(setting));
-      });
+  return entry({name, "luminaire/solid_angle", defect}, [](SharedSetting setting) {
+    return averaging(only_mean(solid_angle_channel(*setting)), SolidAnglePrimary<Map>(setting),
+                     solid_angle_samplers<Map>(setting));
+  });
 }
 
 std::shared_ptr<const Setup> unwarped_triangle(SharedSetting setting) {
@@ -179,46 +174,45 @@ std::shared_ptr<const Setup> unclipped_reference(SharedSetting setting) {
 std::vector<Entry> mutants_luminaire() {
   return {
       term_mutant<NoReceiverCosine>(
-          "mutants/no_cosine", "forgets the receiver's cosine: the result is L Omega; +13.8 %."),
-      term_mutant<NoLightCosine>("mutants/no_light_cosine",
-                                 "forgets the luminaire's cosine; +31.9 %."),
+          "no_cosine", "forgets the receiver's cosine: the result is L Omega; +13.8 %."),
+      term_mutant<NoLightCosine>("no_light_cosine", "forgets the luminaire's cosine; +31.9 %."),
       term_mutant<NoChangeOfVariables>(
-          "mutants/no_change_of_variables",
+          "no_change_of_variables",
           "forgets light_cosine / r^2, which turns solid angle into area; +134 %."),
-      term_mutant<InverseDistance>("mutants/inverse_distance", "divides by r, not r^2; +28.9 %."),
+      term_mutant<InverseDistance>("inverse_distance", "divides by r, not r^2; +28.9 %."),
       term_mutant<ReversedDifference>(
-          "mutants/reversed_difference",
+          "reversed_difference",
           "takes the connection from the luminaire to the receiver and does not clamp: the "
           "irradiance comes out negative; -200 %."),
       term_mutant<AbsoluteReceiverCosine>(
-          "mutants/absolute_cosine",
+          "absolute_cosine",
           "takes the receiver's cosine absolutely, so that a luminaire below the horizon shines: "
           "nothing on `triangle`, too bright where a luminaire crosses the horizon."),
       term_mutant<TwoSidedLight>(
-          "mutants/two_sided_light",
+          "two_sided_light",
           "lets both sides of the luminaire emit: nothing where the emitting side faces the "
           "receiver; a luminaire that faces away shines."),
-      term_mutant<OnePercentMore>("mutants/one_percent", "is scaled by 1.01; +1 %."),
-      mutant(mutant_information("mutants/nonuniform_triangle", "luminaire/area",
-                                "maps (x, y) to (x, y (1 - x)), which is not uniform in the "
-                                "triangle, at the uniform density; -25.4 %."),
-             unwarped_triangle),
-      mutant(mutant_information("mutants/half_dropped", "luminaire/area",
-                                "takes points of the unit square, counts those outside the "
-                                "triangle as zero and does not double the others; -50 %."),
-             half_dropped),
-      mutant(mutant_information("mutants/solid_angle_density", "luminaire/area",
-                                "divides points uniform in area by the density 1 / Omega of "
-                                "directions uniform in solid angle; -4.0 %."),
-             solid_angle_density),
-      mutant(mutant_information("mutants/unclipped_reference", "luminaire/area",
-                                "states as its mean Lambert's formula without clipping at the "
-                                "horizon; the estimator is sound. Nothing on `triangle`, wrong "
-                                "where a luminaire crosses the horizon."),
-             unclipped_reference),
-      arvo_mutant<UniformArc>("mutants/arvo_uniform_arc",
+      term_mutant<OnePercentMore>("one_percent", "is scaled by 1.01; +1 %."),
+      entry({"nonuniform_triangle", "luminaire/area",
+             "maps (x, y) to (x, y (1 - x)), which is not uniform in the "
+             "triangle, at the uniform density; -25.4 %."},
+            unwarped_triangle),
+      entry({"half_dropped", "luminaire/area",
+             "takes points of the unit square, counts those outside the "
+             "triangle as zero and does not double the others; -50 %."},
+            half_dropped),
+      entry({"solid_angle_density", "luminaire/area",
+             "divides points uniform in area by the density 1 / Omega of "
+             "directions uniform in solid angle; -4.0 %."},
+            solid_angle_density),
+      entry({"unclipped_reference", "luminaire/area",
+             "states as its mean Lambert's formula without clipping at the "
+             "horizon; the estimator is sound. Nothing on `triangle`, wrong "
+             "where a luminaire crosses the horizon."},
+            unclipped_reference),
+      arvo_mutant<UniformArc>("arvo_uniform_arc",
                               "takes c' uniform on the arc from a to c; +0.32 %."),
-      arvo_mutant<UniformAngle>("mutants/arvo_uniform_angle",
+      arvo_mutant<UniformAngle>("arvo_uniform_angle",
                                 "takes the angle from b uniform, not its cosine; -4.7 %."),
   };
 }

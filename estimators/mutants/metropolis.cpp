@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "estimators/mutant_information.h"
+#include "estimators/mutant.h"
 #include "metropolis/parameters.h"
 
 namespace assay::plugins {
@@ -172,23 +172,18 @@ Defect bookkeeping() {
   };
 }
 
-Entry mutant(const std::string& original, const char* name, const std::string& defect,
-             Defect apply) {
-  return {mutant_information({.name = std::string("mutants/metropolis_") + name,
-                              .parameters = chain_parameters(),
-                              .averages = false,
-                              .original = original,
-                              .defect = defect}),
-          [original, apply = std::move(apply)](Parameters& given) {
-            const Ingredients parts = read_ingredients(given);
-            std::shared_ptr<const Rules> sound = std::make_shared<MeanValueRules>();
-            if (original != "metropolis/mean_value") {
-              sound = std::make_shared<MultipleImportanceRules>(parts.p_large);
-            }
-            Recipe recipe = metropolis::recipe(parts, std::move(sound));
-            apply(recipe, parts);
-            return chain(std::move(recipe));
-          }};
+Entry entry(const std::string& original, const char* name, const char* defect, Defect apply) {
+  return mutant({std::string("metropolis_") + name, original, defect},
+                [original, apply = std::move(apply)](Parameters& given) {
+                  const Ingredients parts = read_ingredients(given);
+                  std::shared_ptr<const Rules> sound = std::make_shared<MeanValueRules>();
+                  if (original != "metropolis/mean_value") {
+                    sound = std::make_shared<MultipleImportanceRules>(parts.p_large);
+                  }
+                  Recipe recipe = metropolis::recipe(parts, std::move(sound));
+                  apply(recipe, parts);
+                  return chain(std::move(recipe));
+                });
 }
 
 }  // namespace
@@ -197,67 +192,66 @@ std::vector<Entry> mutants_metropolis() {
   const std::string mean_value = "metropolis/mean_value";
   const std::string multiple = "metropolis/multiple_importance";
   return {
-      mutant(mean_value, "asymmetric",
-             "steps up three times as often as down: -29 %, +11 %; the image's mean is right.",
-             steps<Asymmetric>()),
-      mutant(mean_value, "clamped",
-             "clamps coordinates to [0, 1) where it should wrap them: nothing where little lies at "
-             "the border; +16 % in the first of 64 pixels of `boundary` at p_large 0.1.",
-             steps<Clamped>()),
-      mutant(mean_value, "inverted_ratio", "accepts with min(1, I(x) / I(y)): -63 %, +1240 %.",
-             rules<InvertedRatio>()),
-      mutant(mean_value, "unbounded_ratio",
-             "weighs by a = I(y) / I(x) without the minimum with 1: +31 %, -200 %.",
-             rules<UnboundedRatio>()),
-      mutant(mean_value, "rejected_not_counted",
-             "averages over the states it moves to, as if those it stays in did not count: -24 %, "
-             "+29 %; the image's mean is right.",
-             rules<RejectedNotCounted>()),
-      mutant(mean_value, "current_dropped",
-             "leaves out the part of the current state, (1 - a): -46 %, -1 %.",
-             rules<CurrentDropped>()),
-      mutant(
-          mean_value, "current_pixel",
-          "adds what a proposal brings to the pixel of the current state: nothing in grey, where "
-          "by detailed balance as much leaves a pixel as enters it; colours bleed, +122 % blue "
-          "and -20 % red in the first pixel of `coloured_peak`.",
-          rules<CurrentPixel<MeanValueRules>>()),
-      mutant(multiple, "current_pixel_multiple",
-             "adds what a proposal brings to the pixel of the current state: +18 %, -29 %.",
-             rules<CurrentPixel<MultipleImportanceRules>>()),
-      mutant(multiple, "large_omitted", "leaves [large] out of the weights: -10 %, -71 %.",
-             rules<LargeFixed<false>>()),
-      mutant(multiple, "large_always",
-             "takes every step's weight for that of a large one: +46 %, +15 %.",
-             rules<LargeFixed<true>>()),
-      mutant(mean_value, "normaliser_scaled", "takes 1.05 b for b: +5 % everywhere.",
-             start<ScaledNormaliser>()),
-      mutant(multiple, "normaliser_scaled_multiple", "takes 1.05 b for b: +5 %, +1 %.",
-             start<ScaledNormaliser>()),
-      mutant(mean_value, "other_normaliser",
-             "estimates b from other points than those that it starts from: -27 %, +8.5 % with 16 "
-             "points and 100 steps; like 1 / bootstrap.",
-             start<OtherNormaliser>()),
-      mutant(mean_value, "first_restored",
-             "puts only the first coordinate back when a proposal is rejected: -18 %, +9 %.",
-             bookkeeping<FirstRestored>()),
-      mutant(mean_value, "large_not_saved",
-             "sets coordinates aside before small steps but not before large ones: -20 %, +73 %.",
-             bookkeeping<LargeNotSaved>()),
-      mutant(mean_value, "large_time_on_rejection",
-             "dates the last large step even if it was rejected, so that the state is drawn "
-             "afresh under the chain: -17 %, +32 %.",
-             bookkeeping<LargeTimeOnRejection>()),
-      mutant(
+      entry(mean_value, "asymmetric",
+            "steps up three times as often as down: -29 %, +11 %; the image's mean is right.",
+            steps<Asymmetric>()),
+      entry(mean_value, "clamped",
+            "clamps coordinates to [0, 1) where it should wrap them: nothing where little lies at "
+            "the border; +16 % in the first of 64 pixels of `boundary` at p_large 0.1.",
+            steps<Clamped>()),
+      entry(mean_value, "inverted_ratio", "accepts with min(1, I(x) / I(y)): -63 %, +1240 %.",
+            rules<InvertedRatio>()),
+      entry(mean_value, "unbounded_ratio",
+            "weighs by a = I(y) / I(x) without the minimum with 1: +31 %, -200 %.",
+            rules<UnboundedRatio>()),
+      entry(mean_value, "rejected_not_counted",
+            "averages over the states it moves to, as if those it stays in did not count: -24 %, "
+            "+29 %; the image's mean is right.",
+            rules<RejectedNotCounted>()),
+      entry(mean_value, "current_dropped",
+            "leaves out the part of the current state, (1 - a): -46 %, -1 %.",
+            rules<CurrentDropped>()),
+      entry(mean_value, "current_pixel",
+            "adds what a proposal brings to the pixel of the current state: nothing in grey, where "
+            "by detailed balance as much leaves a pixel as enters it; colours bleed, +122 % blue "
+            "and -20 % red in the first pixel of `coloured_peak`.",
+            rules<CurrentPixel<MeanValueRules>>()),
+      entry(multiple, "current_pixel_multiple",
+            "adds what a proposal brings to the pixel of the current state: +18 %, -29 %.",
+            rules<CurrentPixel<MultipleImportanceRules>>()),
+      entry(multiple, "large_omitted", "leaves [large] out of the weights: -10 %, -71 %.",
+            rules<LargeFixed<false>>()),
+      entry(multiple, "large_always",
+            "takes every step's weight for that of a large one: +46 %, +15 %.",
+            rules<LargeFixed<true>>()),
+      entry(mean_value, "normaliser_scaled", "takes 1.05 b for b: +5 % everywhere.",
+            start<ScaledNormaliser>()),
+      entry(multiple, "normaliser_scaled_multiple", "takes 1.05 b for b: +5 %, +1 %.",
+            start<ScaledNormaliser>()),
+      entry(mean_value, "other_normaliser",
+            "estimates b from other points than those that it starts from: -27 %, +8.5 % with 16 "
+            "points and 100 steps; like 1 / bootstrap.",
+            start<OtherNormaliser>()),
+      entry(mean_value, "first_restored",
+            "puts only the first coordinate back when a proposal is rejected: -18 %, +9 %.",
+            bookkeeping<FirstRestored>()),
+      entry(mean_value, "large_not_saved",
+            "sets coordinates aside before small steps but not before large ones: -20 %, +73 %.",
+            bookkeeping<LargeNotSaved>()),
+      entry(mean_value, "large_time_on_rejection",
+            "dates the last large step even if it was rejected, so that the state is drawn "
+            "afresh under the chain: -17 %, +32 %.",
+            bookkeeping<LargeTimeOnRejection>()),
+      entry(
           mean_value, "no_catching_up",
           "leaves out the small steps that a coordinate has missed: nothing where all paths look "
           "at the same coordinates; -4 % in the even of two pixels of `branches` at p_large 0.02.",
           bookkeeping<NoCatchingUp>()),
-      mutant(mean_value, "not_freshened",
-             "forgets that a coordinate has missed anything, large steps too: nothing where all "
-             "paths look at the same coordinates; -50 % or so in the even of two pixels of "
-             "`branches` at p_large 0.02.",
-             bookkeeping<NotFreshened>()),
+      entry(mean_value, "not_freshened",
+            "forgets that a coordinate has missed anything, large steps too: nothing where all "
+            "paths look at the same coordinates; -50 % or so in the even of two pixels of "
+            "`branches` at p_large 0.02.",
+            bookkeeping<NotFreshened>()),
   };
 }
 

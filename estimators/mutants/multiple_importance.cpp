@@ -10,8 +10,7 @@
 #include <utility>
 
 #include "direct_light/family.h"
-#include "direct_light/samplers.h"
-#include "estimators/mutant_information.h"
+#include "estimators/mutant.h"
 
 namespace assay::plugins {
 
@@ -157,92 +156,67 @@ std::shared_ptr<const Setup> one_sample(Parameters& given) {
                    OneSamplePrimary<Combination>(of, probabilities, combination));
 }
 
-struct Described {
-  std::string name;
-  std::string defect;
-};
-
-using Prepare = std::shared_ptr<const Setup> (*)(Parameters&);
-
-Entry mutant(const std::string& original, std::vector<ParameterInformation> more,
-             const Described& described, Prepare prepare) {
-  more.push_back(heuristic_parameter());
-  return {mutant_information({.name = "mutants/" + described.name,
-                              .parameters = parameters_with(std::move(more)),
-                              .original = original,
-                              .defect = described.defect}),
-          prepare};
-}
-
-Entry of_multi_sample(const Described& described, Prepare prepare) {
-  return mutant("direct_light/multi_sample", count_parameters(), described, prepare);
-}
-
-Entry of_one_sample(const Described& described, Prepare prepare) {
-  return mutant("direct_light/one_sample", {probability_parameter()}, described, prepare);
-}
-
 }  // namespace
 
 std::vector<Entry> mutants_multiple_importance() {
   return {
-      of_multi_sample({"weights_squared",
-                       "squares the weights, which then do not sum to 1: minus twice the integral "
-                       "of w_l w_b f, -46.9 %."},
-                      multi_sample<Unnormalised>),
-      of_multi_sample({"brdf_unweighted",
-                       "takes samples of the BRDF that hit the light with the weight 1, so that "
-                       "what both techniques find counts twice: I_l too much, +52.4 %."},
-                      multi_sample<UnweightedBrdf>),
-      of_multi_sample({"brdf_weight_of_light",
-                       "gives samples of the BRDF the weight of the light: I_l - I_b, +4.7 %; -80 "
-                       "% where the BRDF is much the better technique."},
-                      multi_sample<ExchangedForBrdf>),
-      of_multi_sample({"weights_exchanged",
-                       "gives each technique the weight of the other: they sum to 1, no bias, but "
-                       "each technique counts where it is the worse one: 1.7 times the variance, "
-                       "190 times under the large light of `suites/direct-light.yaml`."},
-                      multi_sample<Exchanged>),
-      of_multi_sample({"brdf_weight_by_area",
-                       "weighs samples of the BRDF against the density of light samples per area "
-                       "instead of per solid angle, without cos / r^2: +29.5 %, and another bias "
-                       "in another unit of length."},
-                      multi_sample<AreaDensityForBrdf>),
-      of_multi_sample({"weights_by_area",
-                       "takes the light's density per area in the weights of both techniques: they "
-                       "sum to 1, no bias, but the variance depends on the unit of length: 13 "
-                       "times as much on the rough surface of `suites/direct-light.yaml`."},
-                      multi_sample<AreaDensityInWeights>),
-      of_multi_sample({"light_density_by_area",
-                       "takes the density of light samples per area for that per solid angle, in "
-                       "the weight and in the quotient: +41.1 %."},
-                      multi_sample<Sound, AreaDensity>),
-      of_multi_sample({"brdf_divided_by_light_density",
-                       "divides samples of the BRDF by the density of the light's samples: I_l + "
-                       "the integral of w_b f p_b / p_l, +4.6 %."},
-                      multi_sample<LightDensityForBrdf>),
-      of_multi_sample(
-          {"brdf_weight_without_counts",
+      mutant({"weights_squared", "direct_light/multi_sample",
+              "squares the weights, which then do not sum to 1: minus twice the integral "
+              "of w_l w_b f, -46.9 %."},
+             multi_sample<Unnormalised>),
+      mutant({"brdf_unweighted", "direct_light/multi_sample",
+              "takes samples of the BRDF that hit the light with the weight 1, so that "
+              "what both techniques find counts twice: I_l too much, +52.4 %."},
+             multi_sample<UnweightedBrdf>),
+      mutant({"brdf_weight_of_light", "direct_light/multi_sample",
+              "gives samples of the BRDF the weight of the light: I_l - I_b, +4.7 %; -80 "
+              "% where the BRDF is much the better technique."},
+             multi_sample<ExchangedForBrdf>),
+      mutant({"weights_exchanged", "direct_light/multi_sample",
+              "gives each technique the weight of the other: they sum to 1, no bias, but "
+              "each technique counts where it is the worse one: 1.7 times the variance, "
+              "190 times under the large light of `suites/direct-light.yaml`."},
+             multi_sample<Exchanged>),
+      mutant({"brdf_weight_by_area", "direct_light/multi_sample",
+              "weighs samples of the BRDF against the density of light samples per area "
+              "instead of per solid angle, without cos / r^2: +29.5 %, and another bias "
+              "in another unit of length."},
+             multi_sample<AreaDensityForBrdf>),
+      mutant({"weights_by_area", "direct_light/multi_sample",
+              "takes the light's density per area in the weights of both techniques: they "
+              "sum to 1, no bias, but the variance depends on the unit of length: 13 "
+              "times as much on the rough surface of `suites/direct-light.yaml`."},
+             multi_sample<AreaDensityInWeights>),
+      mutant({"light_density_by_area", "direct_light/multi_sample",
+              "takes the density of light samples per area for that per solid angle, in "
+              "the weight and in the quotient: +41.1 %."},
+             multi_sample<Sound, AreaDensity>),
+      mutant({"brdf_divided_by_light_density", "direct_light/multi_sample",
+              "divides samples of the BRDF by the density of the light's samples: I_l + "
+              "the integral of w_b f p_b / p_l, +4.6 %."},
+             multi_sample<LightDensityForBrdf>),
+      mutant(
+          {"brdf_weight_without_counts", "direct_light/multi_sample",
            "leaves the numbers of samples out of the weights of the BRDF: -24.0 % with one sample "
            "of the light and three of the BRDF, nothing where the numbers are equal."},
           multi_sample<NoCountsForBrdf>),
-      of_multi_sample({"weights_without_counts",
-                       "leaves the numbers of samples out of all weights: they sum to 1, no bias, "
-                       "but more variance where the numbers differ: 5.2 times under the large "
-                       "light of `suites/direct-light.yaml` with one and three."},
-                      multi_sample<NoCounts>),
-      of_multi_sample({"light_from_behind",
-                       "lets rays of the BRDF see the back of the light: a light that faces away "
-                       "shines, nothing where the front is seen."},
-                      multi_sample<Sound, BackSideSeen>),
-      of_multi_sample({"misses_not_counted",
-                       "averages samples of the BRDF over those that hit the light: +31.3 % with "
-                       "four of them, nothing with one."},
-                      multi_sample<Sound, Techniques, MissesNotCounted>),
-      of_one_sample({"no_selection_probability",
-                     "does not divide by the probability of the technique: -50 % where that is "
-                     "0.5, (c_l - 1) I_l + (c_b - 1) I_b."},
-                    one_sample<NoSelection>),
+      mutant({"weights_without_counts", "direct_light/multi_sample",
+              "leaves the numbers of samples out of all weights: they sum to 1, no bias, "
+              "but more variance where the numbers differ: 5.2 times under the large "
+              "light of `suites/direct-light.yaml` with one and three."},
+             multi_sample<NoCounts>),
+      mutant({"light_from_behind", "direct_light/multi_sample",
+              "lets rays of the BRDF see the back of the light: a light that faces away "
+              "shines, nothing where the front is seen."},
+             multi_sample<Sound, BackSideSeen>),
+      mutant({"misses_not_counted", "direct_light/multi_sample",
+              "averages samples of the BRDF over those that hit the light: +31.3 % with "
+              "four of them, nothing with one."},
+             multi_sample<Sound, Techniques, MissesNotCounted>),
+      mutant({"no_selection_probability", "direct_light/one_sample",
+              "does not divide by the probability of the technique: -50 % where that is "
+              "0.5, (c_l - 1) I_l + (c_b - 1) I_b."},
+             one_sample<NoSelection>),
   };
 }
 

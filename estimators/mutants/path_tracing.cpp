@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "mutant_information.h"
+#include "estimators/mutant.h"
 #include "path_tracing/image.h"
 
 namespace assay::plugins {
@@ -13,23 +13,21 @@ using namespace path_tracing;
 struct Defect {
   const char* name;
   const char* does;
-  const char* amount;  // What it is, and its fallback.
+  const char* amount;  // Meaning of the amount, and its fallback.
   const char* fallback;
   void (*put)(Picture&, double);
 };
 
 Entry entry(const Defect& defect) {
-  Information information = image_information();
-  information.name = std::string("mutants/") + defect.name;
-  information.original = "path_tracing/image";
-  information.defect = defect.does;
-  information.parameters.push_back(
-      {.name = "amount", .summary = defect.amount, .fallback = defect.fallback});
-  return {mutant_information(std::move(information)), [put = defect.put](Parameters& given) {
-            Picture picture = read_picture(given);
-            put(picture, given.number("amount"));
-            return image_setup(std::move(picture));
-          }};
+  return mutant({defect.name,
+                 "path_tracing/image",
+                 defect.does,
+                 {{.name = "amount", .summary = defect.amount, .fallback = defect.fallback}}},
+                [put = defect.put](Parameters& given) {
+                  Picture picture = read_picture(given);
+                  put(picture, given.number("amount"));
+                  return image_setup(std::move(picture));
+                });
 }
 
 }  // namespace
@@ -39,25 +37,25 @@ std::vector<Entry> mutants_path_tracing() {
   for (const Defect& defect : std::initializer_list<Defect>{
            {"paths_light_density", "takes a wrong density of points on emitters.",
             "relative error of the density", "0.05",
-            [](Picture& p, double amount) { p.defects.light_density = amount; }},
+            [](Picture&p, double amount) { p.defects.light_density = amount; }},
            {"paths_weight", "gives full weight to emitters that a path hits.",
             "part of the way from the right weight to 1", "1",
-            [](Picture& p, double amount) { p.defects.weight = amount; }},
+            [](Picture&p, double amount) { p.defects.weight = amount; }},
            {"paths_roulette", "does not make up for paths that Russian roulette ends.",
             "part of the compensation that is left out", "1",
-            [](Picture& p, double amount) { p.defects.roulette = amount; }},
+            [](Picture&p, double amount) { p.defects.roulette = amount; }},
            {"paths_clamp", "cuts bright paths off.", "largest value of a path", "10",
-            [](Picture& p, double amount) { p.defects.clamp = amount; }},
+            [](Picture&p, double amount) { p.defects.clamp = amount; }},
            {"paths_tile", "shifts a tile.", "pixels", "1",
-            [](Picture& p, double amount) { p.shift = amount; }},
+            [](Picture&p, double amount) { p.shift = amount; }},
            {"paths_dead_pixel", "loses the light of one pixel.", "part that is lost", "1",
-            [](Picture& p, double amount) { p.dead = amount; }},
+            [](Picture&p, double amount) { p.dead = amount; }},
            {"paths_shadow_offset", "starts shadow rays too far from their surface.",
             "distance, of a room of size 1", "0.05",
-            [](Picture& p, double amount) { p.defects.shadow_offset = amount; }},
+            [](Picture&p, double amount) { p.defects.shadow_offset = amount; }},
            {"paths_schlick", "takes Schlick's approximation for Fresnel's reflectance.",
             "part of the way from one to the other", "1",
-            [](Picture& p, double amount) { p.defects.schlick = amount; }}}) {
+            [](Picture&p, double amount) { p.defects.schlick = amount; }}}) {
     entries.push_back(entry(defect));
   }
   return entries;

@@ -2,9 +2,7 @@
 
 #include "analytic/ratio.h"
 
-#include <utility>
-
-#include "estimators/mutant_information.h"
+#include "estimators/mutant.h"
 
 namespace assay::plugins {
 
@@ -41,37 +39,31 @@ struct DenominatorLeftOut {
 };
 
 template <class Draw, class Combine>
-Entry mutant(const char* name, const char* original, const char* defect) {
-  return {mutant_information({.name = std::string("mutants/") + name,
-                              .bias = BiasClass::inverse_primaries,
-                              .averages = false,
-                              .original = original,
-                              .defect = defect}),
-          [](Parameters&) {
-            return std::make_shared<RatioSetup<Draw, Combine>>(Channel{.mean = integral()});
-          }};
+Entry entry(const Mutant& its) {
+  return mutant(
+      its, [](Parameters&) { return ratio_setup<Draw, Combine>(Channel{.mean = integral()}); });
 }
 
 }  // namespace
 
 std::vector<Entry> mutants_ratio() {
   return {
-      mutant<OtherPoint, RatioOfSums>(
-          "ratio_of_other_points", "analytic/ratio",
-          "evaluates the target at other points than the integrand: consistent, but of 50 times "
-          "the variance, and M times the bias tends to I Var g = +3.03 for -0.50."),
-      mutant<SamePoint, MeanOfRatios>(
-          "mean_of_ratios", "analytic/ratio",
-          "averages the ratios f / g in place of dividing the sums: the mean is that of f / g, "
-          "5.96, -6.3 % whatever M."),
-      mutant<SamePoint, Jackknife<NumeratorLeftOut>>(
-          "jackknifed_numerator", "analytic/jackknifed_ratio",
-          "leaves points out of the numerator alone: repairs nothing, M times the bias tends to "
-          "-0.50 as without the jackknife."),
-      mutant<SamePoint, Jackknife<DenominatorLeftOut>>(
-          "jackknifed_denominator", "analytic/jackknifed_ratio",
-          "leaves points out of the denominator alone: takes I Var g away and leaves - Cov(f, g), "
-          "M times the bias tends to -3.54.")};
+      entry<OtherPoint, RatioOfSums>(
+          {"ratio_of_other_points", "analytic/ratio",
+           "evaluates the target at other points than the integrand: consistent, but of 50 times "
+           "the variance, and M times the bias tends to I Var g = +3.03 for -0.50."}),
+      entry<SamePoint, MeanOfRatios>(
+          {"mean_of_ratios", "analytic/ratio",
+           "averages the ratios f / g in place of dividing the sums: the mean is that of f / g, "
+           "5.96, -6.3 % whatever M."}),
+      entry<SamePoint, Jackknife<NumeratorLeftOut>>(
+          {"jackknifed_numerator", "analytic/jackknifed_ratio",
+           "leaves points out of the numerator alone: repairs nothing, M times the bias tends to "
+           "-0.50 as without the jackknife."}),
+      entry<SamePoint, Jackknife<DenominatorLeftOut>>(
+          {"jackknifed_denominator", "analytic/jackknifed_ratio",
+           "leaves points out of the denominator alone: takes I Var g away and leaves - Cov(f, g), "
+           "M times the bias tends to -3.54."})};
 }
 
 }  // namespace assay::plugins

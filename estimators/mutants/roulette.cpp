@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "estimators/mutant_information.h"
+#include "estimators/mutant.h"
 #include "paths/roulette_setup.h"
 
 namespace assay::plugins {
@@ -143,32 +143,22 @@ struct Defect {
   std::string what;
 };
 
-Information information(const Kind& kind, const Defect& defect) {
-  const std::string original = kind.original;
-  std::vector<ParameterInformation> parameters = improved_parameters();
-  // The classical roulette knows no terminal value.
-  if (original == classical.original) parameters.resize(3);
-  return mutant_information({.name = "mutants/" + defect.name,
-                             .parameters = std::move(parameters),
-                             .original = original,
-                             .defect = defect.what});
-}
-
 // `broken` makes a trace from a shared world, a sound roulette and how light is learnt of.
 template <class MakeTrace>
-Entry mutant(const Kind& kind, const Defect& defect, const MakeTrace& trace_of) {
-  return {information(kind, defect), [kind, trace_of](Parameters& parameters) {
-            const Scene scene = paths::read_scene(parameters);
-            const RoulettePlan plan = kind.read(parameters, scene);
-            return with_world(scene, [&](const auto& world) {
-              return mutant_setup(scene, trace_of(world, plan.roulette(scene), plan.direct));
-            });
-          }};
+Entry entry(const Kind& kind, const Defect& defect, const MakeTrace& trace_of) {
+  return mutant({defect.name, kind.original, defect.what},
+                [kind, trace_of](Parameters& parameters) {
+                  const Scene scene = paths::read_scene(parameters);
+                  const RoulettePlan plan = kind.read(parameters, scene);
+                  return with_world(scene, [&](const auto& world) {
+                    return mutant_setup(scene, trace_of(world, plan.roulette(scene), plan.direct));
+                  });
+                });
 }
 
 template <class Broken>
 Entry roulette_mutant(const Kind& kind, const Defect& defect) {
-  return mutant(kind, defect, [](const auto& world, const Roulette& sound, Direct direct) -> Trace {
+  return entry(kind, defect, [](const auto& world, const Roulette& sound, Direct direct) -> Trace {
     return [world, broken = Broken{sound}, direct](Stream& random, Tally& tally, Cost& cost) {
       trace(*world, broken, direct, random, tally, cost);
     };
@@ -228,35 +218,34 @@ std::vector<Entry> mutants_roulette() {
                                             {"throughput_not_divided",
                                              "does not divide the throughput by the probability to "
                                              "go on; -33 % in a furnace of albedo 0.5."}),
-      mutant(classical,
-             {"depth_limit",
-              "loses what comes after eight reflections; -0.2 % in a furnace of albedo 0.5, -13.4 "
-              "% of albedo 0.8."},
-             [](const auto& world, const Roulette& sound, Direct direct) {
-               return depth_limited(world, sound, direct);
-             }),
-      mutant(
-          improved,
-          {"terminal_from_hindsight",
-           "raises the terminal value to what the path finds when it goes on; learns of light by "
-           "hits whatever `direct` says. Nothing in a furnace, -10 % in the built-in sphere."},
-          [](const auto& world, const Roulette& sound, Direct) -> Trace {
-            return [world, sound](Stream& random, Tally& tally, Cost& cost) {
-              trace_hindsight(*world, sound, random, tally, cost);
-            };
-          }),
-      {information(improved, {"direct_light_twice",
-                              "leaves the direct light in the terminal value although it is learnt "
-                              "of separately: still unbiased, but of a larger variance."}),
-       direct_light_twice},
+      entry(classical,
+            {"depth_limit",
+             "loses what comes after eight reflections; -0.2 % in a furnace of albedo 0.5, -13.4 "
+             "% of albedo 0.8."},
+            [](const auto& world, const Roulette& sound, Direct direct) {
+              return depth_limited(world, sound, direct);
+            }),
+      entry(improved,
+            {"terminal_from_hindsight",
+             "raises the terminal value to what the path finds when it goes on; learns of light by "
+             "hits whatever `direct` says. Nothing in a furnace, -10 % in the built-in sphere."},
+            [](const auto& world, const Roulette& sound, Direct) -> Trace {
+              return [world, sound](Stream& random, Tally& tally, Cost& cost) {
+                trace_hindsight(*world, sound, random, tally, cost);
+              };
+            }),
+      mutant({"direct_light_twice", improved.original,
+              "leaves the direct light in the terminal value although it is learnt "
+              "of separately: still unbiased, but of a larger variance."},
+             direct_light_twice),
       roulette_mutant<DarkSurfacesEnd>(
           classical, {"dark_surfaces_end",
                       "never goes on from surfaces whose albedo is below 0.3, and counts nothing "
                       "for it; too dark where there are such surfaces."}),
-      {information(classical, {"survival_above_one",
-                               "goes on with 1.2 times the probability and divides by all of it, "
-                               "above 1, too; too dark where an albedo exceeds 5/6."}),
-       survival_above_one},
+      mutant({"survival_above_one", classical.original,
+              "goes on with 1.2 times the probability and divides by all of it, "
+              "above 1, too; too dark where an albedo exceeds 5/6."},
+             survival_above_one),
       roulette_mutant<DividedByItself>(
           classical, {"divided_by_itself",
                       "divides each colour by its own albedo, so that the throughput stays what it "

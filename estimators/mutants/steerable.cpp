@@ -6,7 +6,7 @@
 #include <functional>
 #include <utility>
 
-#include "estimators/mutant_information.h"
+#include "estimators/mutant.h"
 #include "luminaire/setting.h"
 #include "sky/estimator.h"
 #include "steerable/directions.h"
@@ -214,78 +214,63 @@ std::shared_ptr<const Setup> redrawn(const Parts& parts) {
   return sky::sky_setup(parts.setting, sound, primary, true);
 }
 
-Entry mutant(const char* name, const char* defect,
-             std::function<std::shared_ptr<const Setup>(const Parts&)> of) {
-  Information information = mutant_information({.name = name,
-                                                .parameters = sky::parameters(),
-                                                .original = "steerable/sky",
-                                                .defect = defect});
-  for (ParameterInformation& p : steerable::parameters()) {
-    information.parameters.push_back(std::move(p));
-  }
-  information.parameters.push_back(sky::strata_parameter());
-  return {std::move(information), [of = std::move(of)](Parameters& given) {
-            const SharedSetting setting = sky::read_setting(given);
-            return of({.setting = setting,
-                       .tree = read_tree(given, *setting),
-                       .lobe = read_lobe(given),
-                       .strata = given.count("strata")});
-          }};
-}
-
-Entry triangle_mutant() {
-  const std::string defect =
-      "takes T with s b for 2 s b, so that the second coordinate does not reach the far side.";
-  return {
-      mutant_information({.name = "mutants/triangle_transcribed",
-                          .parameters = triangle_parameters(),
-                          .original = "steerable/triangle",
-                          .defect = defect}),
-      [](Parameters& given) { return triangle_setup<Transcribed>(read_weights(given), false); }};
+Entry entry(const char* name, const char* defect,
+            std::function<std::shared_ptr<const Setup>(const Parts&)> of) {
+  return mutant({name, "steerable/sky", defect}, [of = std::move(of)](Parameters& given) {
+    const SharedSetting setting = sky::read_setting(given);
+    return of({.setting = setting,
+               .tree = read_tree(given, *setting),
+               .lobe = read_lobe(given),
+               .strata = given.count("strata")});
+  });
 }
 
 }  // namespace
 
 std::vector<Entry> mutants_steerable() {
   return {
-      mutant("mutants/steerable_no_jacobian",
-             "forgets |q|^3 / d, which turns the density per area into one per solid angle; -0.3 % "
-             "(smooth and peaked), at level 2 -5 %.",
-             replaced<LinearTriangle, NoMeasure>),
-      mutant("mutants/steerable_transcribed",
-             "samples triangles with s b for 2 s b in T; less than 0.1 % (smooth), +0.26 % "
-             "(peaked); other orders of the triangles' vertices give other biases.",
-             replaced<Transcribed, PlaneToSphere>),
-      mutant(
-          "mutants/steerable_no_offset",
-          "leaves the offset away and clamps negative weights, but not in the normaliser; -3.2 % "
-          "(smooth), -0.74 % (peaked).",
-          [](const Parts& parts) { return clamped(parts, 0); }),
-      mutant("mutants/steerable_small_offset",
-             "has the offset 0.09 and clamps negative weights, but not in the normaliser; -0.68 % "
-             "(smooth), -0.16 % (peaked).",
-             [](const Parts& parts) { return clamped(parts, 0.09); }),
-      mutant("mutants/steerable_analytic_normaliser",
-             "divides by the analytic irradiance instead of the root's weight; -14.5 % (smooth), "
-             "-9.0 % (peaked).",
-             analytic_normaliser),
-      mutant("mutants/steerable_redrawn",
-             "draws again where a direction falls below the horizon, at an unchanged density; +8.7 "
-             "% (smooth), +2.0 % (peaked).",
-             redrawn),
-      mutant("mutants/steerable_absolute_cosine",
-             "takes the cosine absolutely, so that the sky below the horizon shines; +122 % "
-             "(smooth), +25 % (peaked).",
-             [](const Parts& parts) { return with(parts, steered(parts), &absolute_cosine); }),
-      mutant("mutants/steerable_map_density",
-             "declares the density of the sky times the lobe itself, not that of their interpolant "
-             "on triangles, which is drawn from; -0.44 % (smooth), +0.12 % (peaked).",
-             map_density),
-      mutant("mutants/steerable_flipped",
-             "turns directions below the horizon round without adding the density of the direction "
-             "that they came from; +7.1 % (smooth), +1.5 % (peaked).",
-             flipped),
-      triangle_mutant(),
+      entry("steerable_no_jacobian",
+            "forgets |q|^3 / d, which turns the density per area into one per solid angle; -0.3 % "
+            "(smooth and peaked), at level 2 -5 %.",
+            replaced<LinearTriangle, NoMeasure>),
+      entry("steerable_transcribed",
+            "samples triangles with s b for 2 s b in T; less than 0.1 % (smooth), +0.26 % "
+            "(peaked); other orders of the triangles' vertices give other biases.",
+            replaced<Transcribed, PlaneToSphere>),
+      entry("steerable_no_offset",
+            "leaves the offset away and clamps negative weights, but not in the normaliser; -3.2 % "
+            "(smooth), -0.74 % (peaked).",
+            [](const Parts& parts) { return clamped(parts, 0); }),
+      entry("steerable_small_offset",
+            "has the offset 0.09 and clamps negative weights, but not in the normaliser; -0.68 % "
+            "(smooth), -0.16 % (peaked).",
+            [](const Parts& parts) { return clamped(parts, 0.09); }),
+      entry("steerable_analytic_normaliser",
+            "divides by the analytic irradiance instead of the root's weight; -14.5 % (smooth), "
+            "-9.0 % (peaked).",
+            analytic_normaliser),
+      entry("steerable_redrawn",
+            "draws again where a direction falls below the horizon, at an unchanged density; +8.7 "
+            "% (smooth), +2.0 % (peaked).",
+            redrawn),
+      entry("steerable_absolute_cosine",
+            "takes the cosine absolutely, so that the sky below the horizon shines; +122 % "
+            "(smooth), +25 % (peaked).",
+            [](const Parts& parts) { return with(parts, steered(parts), &absolute_cosine); }),
+      entry("steerable_map_density",
+            "declares the density of the sky times the lobe itself, not that of their interpolant "
+            "on triangles, which is drawn from; -0.44 % (smooth), +0.12 % (peaked).",
+            map_density),
+      entry("steerable_flipped",
+            "turns directions below the horizon round without adding the density of the direction "
+            "that they came from; +7.1 % (smooth), +1.5 % (peaked).",
+            flipped),
+      mutant({"triangle_transcribed", "steerable/triangle",
+              "takes T with s b for 2 s b, so that the second coordinate does not reach the far "
+              "side."},
+             [](Parameters& given) {
+               return triangle_setup<Transcribed>(read_weights(given), false);
+             }),
   };
 }
 

@@ -4,7 +4,7 @@
 #include <numbers>
 #include <utility>
 
-#include "estimators/mutant_information.h"
+#include "estimators/mutant.h"
 #include "virtual_lights/family.h"
 
 namespace assay::plugins {
@@ -58,32 +58,10 @@ struct ClampedDistance : Classic {
 
 // Entries.
 
-Information described(const char* name, const char* original, const char* defect) {
-  return mutant_information(
-      {.name = std::string("mutants/") + name, .original = original, .defect = defect});
-}
-
-Information of_weighted(const char* name, const char* defect) {
-  Information information = described(name, "virtual_lights/weighted", defect);
-  information.parameters = weighted_parameters();
-  information.bias = BiasClass::inverse_primaries;
-  information.averages = false;
-  return information;
-}
-
-Information of_classic(const char* name, const char* defect) {
-  Information information = described(name, "virtual_lights/classic", defect);
-  information.parameters = room_parameters();
-  return information;
-}
-
 template <class Broken>
-Entry weighted_mutant(const char* name, const char* defect) {
-  return {of_weighted(name, defect), [](Parameters& parameters) {
-            const Scene scene = read_room(parameters);
-            const Weighted sound = read_weighted(parameters, scene.room);
-            return setup(scene, weighted_recipe(Broken{sound}));
-          }};
+std::shared_ptr<const Setup> weighted(Parameters& parameters) {
+  const Scene scene = read_room(parameters);
+  return setup(scene, weighted_recipe(Broken{read_weighted(parameters, scene.room)}));
 }
 
 std::shared_ptr<const Setup> other_paths(Parameters& parameters) {
@@ -109,51 +87,53 @@ std::shared_ptr<const Setup> clamped_distance(Parameters& parameters) {
   return setup(scene, recipe(ClampedDistance{{scene.room}, parameters.number("least_distance")}));
 }
 
-Information clamped_information() {
-  Information information = of_classic(
-      "clamped_distance",
-      "takes no distance for less than `least_distance`: the spikes are gone, and so is the light "
-      "that they stand for, more of it the nearer the receiver is to a corner.");
-  information.parameters.push_back({.name = "least_distance",
-                                    .summary = "in units of the scene's longest side",
-                                    .fallback = "0.1",
-                                    .low = 0});
-  return information;
-}
+const ParameterInformation least_distance{.name = "least_distance",
+                                          .summary = "in units of the scene's longest side",
+                                          .fallback = "0.1",
+                                          .low = 0};
 
 }  // namespace
 
 std::vector<Entry> mutants_virtual_lights() {
   return {
-      weighted_mutant<TargetIntegralOne>(
-          "target_integral_one",
-          "takes the target's integral for 1 although not all of it can be shot at: 1 / G - 1 too "
-          "much, +20 % in a cube that emits evenly, +32 % in the middle of the floor where the "
-          "ceiling alone emits. It does not fall with M. `target_integral` is read and of no "
-          "account."),
-      weighted_mutant<DensityOfDirection>(
-          "density_of_direction",
-          "divides the target, a density by area, by the density of the direction that the light "
-          "was shot along: inconsistent, the limit depends on the units of length; -13 % in the "
-          "middle of the floor of a unit cube that emits evenly."),
-      weighted_mutant<TargetUnhidden>(
-          "target_unhidden",
-          "leaves the visibility between receiver and virtual light out of the target: too dark "
-          "where something hides a part of what would be seen (by their form factors, -3.6 % in "
-          "suites/data/room.obj); nothing in convex rooms."),
-      weighted_mutant<MeanOfWeights>(
-          "mean_of_weights",
-          "averages the ratios of integrand and target in place of dividing their sums: "
-          "inconsistent; by the marginal density +47 % in the middle of the floor of a cube whose "
-          "ceiling alone emits."),
-      {of_weighted("target_of_other_paths",
-                   "sums the target over other paths than the integrand: consistent, but the "
-                   "spikes of the two no longer cancel."),
-       other_paths},
-      {of_classic("power_not_divided",
-                  "gives each of M virtual lights the power of all: M times too much."),
-       power_not_divided},
-      {clamped_information(), clamped_distance}};
+      mutant(
+          {"target_integral_one", "virtual_lights/weighted",
+           "takes the target's integral for 1 although not all of it can be shot at: 1 / G - 1 too "
+           "much, +20 % in a cube that emits evenly, +32 % in the middle of the floor where the "
+           "ceiling alone emits. It does not fall with M. `target_integral` is read and of no "
+           "account."},
+          weighted<TargetIntegralOne>),
+      mutant(
+          {"density_of_direction", "virtual_lights/weighted",
+           "divides the target, a density by area, by the density of the direction that the light "
+           "was shot along: inconsistent, the limit depends on the units of length; -13 % in the "
+           "middle of the floor of a unit cube that emits evenly."},
+          weighted<DensityOfDirection>),
+      mutant(
+          {"target_unhidden", "virtual_lights/weighted",
+           "leaves the visibility between receiver and virtual light out of the target: too dark "
+           "where something hides a part of what would be seen (by their form factors, -3.6 % in "
+           "suites/data/room.obj); nothing in convex rooms."},
+          weighted<TargetUnhidden>),
+      mutant(
+          {"mean_of_weights", "virtual_lights/weighted",
+           "averages the ratios of integrand and target in place of dividing their sums: "
+           "inconsistent; by the marginal density +47 % in the middle of the floor of a cube whose "
+           "ceiling alone emits."},
+          weighted<MeanOfWeights>),
+      mutant({"target_of_other_paths", "virtual_lights/weighted",
+              "sums the target over other paths than the integrand: consistent, but the "
+              "spikes of the two no longer cancel."},
+             other_paths),
+      mutant({"power_not_divided", "virtual_lights/classic",
+              "gives each of M virtual lights the power of all: M times too much."},
+             power_not_divided),
+      mutant({"clamped_distance",
+              "virtual_lights/classic",
+              "takes no distance for less than `least_distance`: the spikes are gone, and so is "
+              "the light that they stand for, more of it the nearer the receiver is to a corner.",
+              {least_distance}},
+             clamped_distance)};
 }
 
 }  // namespace assay::plugins

@@ -1,10 +1,11 @@
 // Mutants of go with the winners: the sound parts with one replaced.
 
-#include <algorithm>
-#include <utility>
+#include "paths/winners.h"
 
-#include "estimators/mutant_information.h"
-#include "paths/winners_setup.h"
+#include <algorithm>
+
+#include "estimators/mutant.h"
+#include "paths/family.h"
 
 namespace assay::plugins {
 
@@ -93,52 +94,43 @@ struct FirstVertex {
 
 // Entries.
 
-struct Defect {
-  std::string name;
-  std::string what;
-};
-
-Information information(const Defect& defect) {
-  return mutant_information({.name = "mutants/" + defect.name,
-                             .parameters = winners_parameters(),
-                             .original = "paths/winners",
-                             .defect = defect.what});
+Entry of_winners(const char* name, const char* defect,
+                 std::function<std::shared_ptr<const Setup>(Parameters&)> prepare) {
+  return mutant({name, "paths/winners", defect}, std::move(prepare));
 }
 
 template <class Broken>
-Entry tree_mutant(const Defect& defect) {
-  return {information(defect), [](Parameters& parameters) {
-            const Scene scene = paths::read_scene(parameters);
-            const Direct direct = read_direct(parameters, scene);
-            const Broken broken{Winners(parameters.number("splitting"))};
-            return with_world(scene, [&](const auto& world) {
-              return mutant_setup(
-                  scene, [world, broken, direct](Stream& random, Tally& tally, Cost& cost) {
-                    Tree(*world, broken, direct).trace(random, tally, cost);
-                  });
-            });
-          }};
+Entry tree_mutant(const char* name, const char* defect) {
+  return of_winners(name, defect, [](Parameters& parameters) {
+    const Scene scene = paths::read_scene(parameters);
+    const Direct direct = read_direct(parameters, scene);
+    const Broken broken{Winners(parameters.number("splitting"))};
+    return with_world(scene, [&](const auto& world) {
+      return mutant_setup(scene, [world, broken, direct](Stream& random, Tally& tally, Cost& cost) {
+        Tree(*world, broken, direct).trace(random, tally, cost);
+      });
+    });
+  });
 }
 
 template <class Another>
-Entry first_vertex_mutant(const Defect& defect) {
-  return {
-      information(defect), [](Parameters& parameters) {
-        const Scene scene = paths::read_scene(parameters);
-        const Direct direct = read_direct(parameters, scene);
-        const FirstVertex first{parameters.number("splitting"), direct, sum(scene.global.all) / 2};
-        return with_world(scene, [&](const auto& world) {
-          return mutant_setup(scene, [world, first](Stream& random, Tally& tally, Cost& cost) {
-            first.trace(*world, Another{}, random, tally, cost);
-          });
-        });
-      }};
+Entry first_vertex_mutant(const char* name, const char* defect) {
+  return of_winners(name, defect, [](Parameters& parameters) {
+    const Scene scene = paths::read_scene(parameters);
+    const Direct direct = read_direct(parameters, scene);
+    const FirstVertex first{parameters.number("splitting"), direct, sum(scene.global.all) / 2};
+    return with_world(scene, [&](const auto& world) {
+      return mutant_setup(scene, [world, first](Stream& random, Tally& tally, Cost& cost) {
+        first.trace(*world, Another{}, random, tally, cost);
+      });
+    });
+  });
 }
 
 // If a child follows from every n of a half or more, some surface must have fewer.
 template <class Broken>
-Entry rounding_mutant(const Defect& defect) {
-  Entry entry = tree_mutant<Broken>(defect);
+Entry rounding_mutant(const char* name, const char* defect) {
+  Entry entry = tree_mutant<Broken>(name, defect);
   entry.prepare = [prepare = entry.prepare](Parameters& parameters) {
     const Scene scene = paths::read_scene(parameters);
     bool ends = !scene.law;
@@ -158,28 +150,28 @@ Entry rounding_mutant(const Defect& defect) {
 std::vector<Entry> mutants_winners() {
   return {
       tree_mutant<DrawnNumber>(
-          {"drawn_number",
-           "divides by the number of children that was drawn, not by the expected one: where none "
-           "is drawn nothing makes up for it; -57 % in the built-in sphere."}),
+          "drawn_number",
+          "divides by the number of children that was drawn, not by the expected one: where none "
+          "is drawn nothing makes up for it; -57 % in the built-in sphere."),
       rounding_mutant<AtLeastOneChild>(
-          {"at_least_one_child",
-           "has max(1, floor(n)) children of weight a / n where n is 1/2 or more; too bright where "
-           "n is below 1, too dark above."}),
-      rounding_mutant<RoundedNumber>(
-          {"rounded_number", "rounds the number of children to the nearest, weight a / n."}),
-      first_vertex_mutant<WhileBright>({"split_while_bright",
-                                        "draws children of the first vertex until one is dark, and "
-                                        "takes their mean; -28 % in the built-in sphere."}),
+          "at_least_one_child",
+          "has max(1, floor(n)) children of weight a / n where n is 1/2 or more; too bright where "
+          "n is below 1, too dark above."),
+      rounding_mutant<RoundedNumber>("rounded_number",
+                                     "rounds the number of children to the nearest, weight a / n."),
+      first_vertex_mutant<WhileBright>("split_while_bright",
+                                       "draws children of the first vertex until one is dark, and "
+                                       "takes their mean; -28 % in the built-in sphere."),
       first_vertex_mutant<AsTheFirstChildSays>(
-          {"number_from_first_child",
-           "has one child of the first vertex, and if that is bright more, and takes the mean of "
-           "all; -31 % in the built-in sphere."}),
-      tree_mutant<CappedNumber>({"capped_number",
-                                 "has two children at most, weighted as if there were no limit; "
-                                 "-37.5 % in the built-in sphere, nothing where n is 2 or less."}),
-      tree_mutant<SmallNumbersDropped>({"small_numbers_dropped",
-                                        "has no children where fewer than 0.1 are expected; too "
-                                        "dark where albedos are that small, nothing elsewhere."}),
+          "number_from_first_child",
+          "has one child of the first vertex, and if that is bright more, and takes the mean of "
+          "all; -31 % in the built-in sphere."),
+      tree_mutant<CappedNumber>("capped_number",
+                                "has two children at most, weighted as if there were no limit; "
+                                "-37.5 % in the built-in sphere, nothing where n is 2 or less."),
+      tree_mutant<SmallNumbersDropped>("small_numbers_dropped",
+                                       "has no children where fewer than 0.1 are expected; too "
+                                       "dark where albedos are that small, nothing elsewhere."),
   };
 }
 

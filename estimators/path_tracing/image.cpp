@@ -32,24 +32,6 @@ class PictureEstimator final : public Estimator {
   std::shared_ptr<const Picture> picture_;
 };
 
-class PictureSetup final : public Setup {
- public:
-  explicit PictureSetup(Picture picture)
-      : picture_(std::make_shared<const Picture>(std::move(picture))) {}
-  std::vector<Channel> channels() const override {
-    return element_channels(*image(), {.low = 0});
-  }
-  std::optional<ImageShape> image() const override {
-    return ImageShape{picture_->width, picture_->height, colours, true};
-  }
-  std::unique_ptr<Estimator> make() const override {
-    return std::make_unique<PictureEstimator>(picture_);
-  }
-
- private:
-  std::shared_ptr<const Picture> picture_;
-};
-
 }  // namespace
 
 void render(const Picture& picture, Stream& random, std::uint64_t primaries, std::span<double> out,
@@ -62,8 +44,8 @@ void render(const Picture& picture, Stream& random, std::uint64_t primaries, std
       const double shift = in_tile(picture, x, y) ? picture.shift : 0;
       Colour sum;
       for (std::uint64_t i = 0; i < primaries; ++i) {
-        const double s = (static_cast<double>(x) + shift + mine.uniform()) /
-                         static_cast<double>(picture.width);
+        const double s =
+            (static_cast<double>(x) + shift + mine.uniform()) / static_cast<double>(picture.width);
         const double t =
             (static_cast<double>(y) + mine.uniform()) / static_cast<double>(picture.height);
         const Ray ray{camera.eye,
@@ -123,7 +105,11 @@ Picture read_picture(Parameters& given) {
 }
 
 std::shared_ptr<const Setup> image_setup(Picture picture) {
-  return std::make_shared<const PictureSetup>(std::move(picture));
+  const auto shared = std::make_shared<const Picture>(std::move(picture));
+  const ImageShape shape{shared->width, shared->height, colours, true};
+  return setup_of({.channels = element_channels(shape, {.low = 0}),
+                   .make = [shared] { return std::make_unique<PictureEstimator>(shared); },
+                   .image = shape});
 }
 
 }  // namespace assay::path_tracing

@@ -9,7 +9,7 @@
 
 namespace assay::path_tracing {
 
-/// What to render, and what is wrong with it.
+/// A picture to render, and its defects.
 struct Picture {
   std::shared_ptr<const Scene> scene;
   Integrator integrator = Integrator::multiple;
@@ -24,7 +24,7 @@ struct Picture {
 Information image_information();
 Picture read_picture(Parameters& given);
 
-/// Writes red, green and blue of every pixel: each the mean of `primaries` paths through uniform
+/// Writes red, green and blue of every pixel. Each is the mean of `primaries` paths through uniform
 /// points of the pixel, from a substream of its own.
 void render(const Picture& picture, Stream& random, std::uint64_t primaries, std::span<double> out,
             Cost& cost);

@@ -46,13 +46,7 @@ double one_less_cosine(const Shape& sphere, const Vector3& from) {
 }  // namespace
 
 Shape sphere(const Vector3& centre, double radius, const Material& material) {
-  return {.kind = Shape::Kind::sphere,
-          .corner = centre,
-          .first = {},
-          .second = {},
-          .radius = radius,
-          .normal = {},
-          .material = material};
+  return {.kind = Shape::Kind::sphere, .corner = centre, .radius = radius, .material = material};
 }
 
 Shape parallelogram(const Vector3& corner, const Vector3& first, const Vector3& second,

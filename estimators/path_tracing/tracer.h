@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "estimators/cost.h"
-#include "estimators/stream.h"
 #include "estimators/path_tracing/scene.h"
+#include "estimators/stream.h"
 
 namespace assay::path_tracing {
 
@@ -20,14 +20,14 @@ enum class Integrator {
 std::vector<std::string> integrator_names();
 Integrator integrator_of(const std::string& name);
 
-/// What a mutant does wrong; everything here is right.
+/// The errors of a mutant; by default all is right.
 struct Defects {
-  double light_density = 0;   ///< relative error of the density of points on emitters
-  double weight = 0;          ///< part of the way of the bsdf's weight to 1
-  double roulette = 0;        ///< part of the compensation that is left out
-  double clamp = 0;           ///< largest value of a path's component, if above 0
-  double shadow_offset = 0;   ///< added to the offset of shadow rays
-  double schlick = 0;         ///< part of the way from Fresnel's reflectance to Schlick's
+  double light_density = 0;  ///< relative error of the density of points on emitters
+  double weight = 0;         ///< part of the way of the bsdf's weight to 1
+  double roulette = 0;       ///< part of the compensation that is left out
+  double clamp = 0;          ///< largest value of a path's component, if above 0
+  double shadow_offset = 0;  ///< added to the offset of shadow rays
+  double schlick = 0;        ///< part of the way from Fresnel's reflectance to Schlick's
 };
 
 /// One path from the camera. Russian roulette from the third bounce on.

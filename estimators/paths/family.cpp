@@ -117,27 +117,6 @@ class Walks final : public Estimator {
   bool grey_;
 };
 
-class WalkSetup final : public Setup {
- public:
-  WalkSetup(std::vector<Channel> channels, std::unique_ptr<const Walks> walks,
-            std::vector<NamedSampler> samplers, const Cost& cost)
-      : channels_(std::move(channels)),
-        walks_(std::move(walks)),
-        samplers_(std::move(samplers)),
-        cost_(cost) {}
-
-  std::vector<Channel> channels() const override { return channels_; }
-  std::unique_ptr<Estimator> make() const override { return std::make_unique<Walks>(*walks_); }
-  std::vector<NamedSampler> samplers() const override { return samplers_; }
-  Cost cost() const override { return cost_; }
-
- private:
-  std::vector<Channel> channels_;
-  std::unique_ptr<const Walks> walks_;
-  std::vector<NamedSampler> samplers_;
-  Cost cost_;
-};
-
 std::vector<Channel> channels(const Scene& scene, const Knowledge& known) {
   std::vector<Channel> all;
   for (std::size_t c = 0; c < (scene.grey ? 1 : 3); ++c) {
@@ -194,9 +173,11 @@ Knowledge knowledge(const Scene& scene, const std::optional<Steps>& steps) {
 
 std::shared_ptr<const Setup> setup(const Scene& scene, const Knowledge& known, Trace trace,
                                    std::vector<NamedSampler> samplers, const Cost& cost) {
-  return std::make_shared<WalkSetup>(channels(scene, known),
-                                     std::make_unique<const Walks>(std::move(trace), scene.grey),
-                                     std::move(samplers), cost);
+  return setup_of({.channels = channels(scene, known),
+                   .make = [trace = std::move(trace),
+                            grey = scene.grey] { return std::make_unique<Walks>(trace, grey); },
+                   .samplers = std::move(samplers),
+                   .cost = cost});
 }
 
 std::shared_ptr<const Setup> mutant_setup(const Scene& scene, Trace trace) {

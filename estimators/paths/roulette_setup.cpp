@@ -49,8 +49,7 @@ class Lengths final : public Sampler {
     Cost uncounted;
     Tally tally;
     trace(*world_, roulette_, Direct::hit, random, tally, uncounted);
-    return {.point = {},
-            .density = 0,
+    return {.density = 0,
             .weight = 1,
             .lobe = static_cast<int>(std::min<std::uint64_t>(tally.vertices, cells) - 1)};
   }

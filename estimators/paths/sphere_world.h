@@ -2,8 +2,6 @@
 
 // Paths inside a sphere with zones, by rays and without.
 
-#include <numbers>
-
 #include "estimators/cost.h"
 #include "estimators/stream.h"
 #include "paths/scene_description.h"

@@ -5,7 +5,9 @@
 // floor(n + u) of them, each of weight W a / n. They are n on average, so the expectation is that
 // of one child of weight W a.
 
-#include "paths/winners_setup.h"
+#include "paths/winners.h"
+
+#include "paths/family.h"
 
 namespace assay::plugins {
 
@@ -53,7 +55,13 @@ std::vector<Entry> paths_winners() {
             "number of children there too in grey scenes without mirrors. Diagnostic channels: "
             "vertices, bounce_1 to bounce_6. Cost: a camera ray, a closest-hit ray a child, a "
             "shadow ray where one is traced. Sampler: direction.",
-        .parameters = winners_parameters()},
+        .parameters = {scene_parameter("sphere"),
+                       direct_parameter(),
+                       {.name = "splitting",
+                        .summary = "N, children of a diffuse vertex of weight and albedo 1",
+                        .fallback = "4",
+                        .low = 1,
+                        .high = 1000}}},
        prepare}};
 }
 

@@ -32,7 +32,7 @@ ZoneMoments moments(const std::vector<ZoneSteps>& zones) {
     score += z.fraction * z.score;
     albedo += z.fraction * z.albedo;
   }
-  ZoneMoments out{.mean = score / (1 - albedo), .square = {}};
+  ZoneMoments out{.mean = score / (1 - albedo)};
   // E[X^2 | z] = (D+e)^2 + 2 (D+e)(a mu - e) + Var D + (a^2 S - 2 a e mu + e^2) / s.
   double known = 0;
   double factor = 0;

@@ -59,7 +59,7 @@ constexpr std::array formats{
            "iconv -f UTF-16 -t UTF-8"},
 };
 
-/// What a line to paste calls a file. Of a pipe only its user knows what it came from.
+/// The name of a file in a line to paste. Only its user knows what a pipe came from.
 std::string to_paste(const std::string& file) {
   return file == called("-") || is_read_once(file) ? "FILE" : file;
 }

@@ -5,8 +5,6 @@
 #include <bit>
 #include <charconv>
 #include <cstdint>
-#include <cstring>
-#include <optional>
 #include <string>
 
 #include "estimators/core/value.h"

@@ -19,11 +19,10 @@ class Seen {
 
   /// Copies are no independent observations: they would make the variance too small.
   void refuse_a_copy(std::uint64_t index, const PictureDigest& digest) {
-    const auto other = pictures_.note(index, digest);
-    if (!other) return;
-    const auto [first, second] = std::minmax(*other, index);
-    throw InputError({.file = stack_->files[second]},
-                     "is the same picture as `" + stack_->files[first] +
+    const auto same = pictures_.note(index, digest);
+    if (!same) return;
+    throw InputError({.file = stack_->files[same->second]},
+                     "is the same picture as `" + stack_->files[same->first] +
                          "`, bit for bit: give each render a seed of its own, or leave it out");
   }
   const SeenPictures& pictures() const { return pictures_; }

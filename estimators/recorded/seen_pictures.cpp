@@ -64,17 +64,20 @@ void PictureDigest::add(std::span<const float> texels) {
   }
 }
 
-std::optional<std::uint64_t> SeenPictures::note(std::uint64_t index, const PictureDigest& digest) {
+std::optional<std::pair<std::uint64_t, std::uint64_t>> SeenPictures::note(
+    std::uint64_t index, const PictureDigest& digest) {
   if (!digest.finite() || digest.one_value()) return {};
   const std::scoped_lock lock(mutex_);
   const std::uint64_t first = by_digest_.try_emplace(digest.value(), index).first->second;
-  return first == index ? std::nullopt : std::optional(first);
+  if (first != index && !repeated_) repeated_ = std::minmax({first, index});
+  return all_alike() ? std::nullopt : repeated_;
 }
 
 std::optional<std::pair<std::uint64_t, std::uint64_t>> SeenPictures::shared_with(
     const SeenPictures& other, std::uint64_t count) const {
   const std::scoped_lock lock(mutex_, other.mutex_);
   std::optional<std::pair<std::uint64_t, std::uint64_t>> found;
+  if (all_alike() || other.all_alike()) return found;
   for (const auto& [digest, index] : other.by_digest_) {
     const auto mine = by_digest_.find(digest);
     if (mine == by_digest_.end() || mine->second >= count || index >= count) continue;

@@ -34,19 +34,23 @@ class PictureDigest {
 
 class SeenPictures {
  public:
-  /// Notes the picture of an observation by its digest. Returns another one that had the same, or
-  /// nullopt. Pictures of one value throughout, which noise may never have reached, give nullopt.
-  /// So do pictures with texels that are not finite. Thread-safe.
-  std::optional<std::uint64_t> note(std::uint64_t index, const PictureDigest& digest);
+  /// Notes the picture of an observation by its digest. Returns two that had the same, or nullopt.
+  /// Pictures of one value throughout, which noise may never have reached, count for nothing. So do
+  /// pictures with texels that are not finite, and pictures as long as all are alike: they have no
+  /// noise, such as a layer of depth. Thread-safe.
+  std::optional<std::pair<std::uint64_t, std::uint64_t>> note(std::uint64_t index,
+                                                              const PictureDigest& digest);
 
   /// Indices below `count` of a picture here and of one there that had the same digest, the first
-  /// there; nullopt where no two do. Of what was noted so far: pictures of one value throughout,
-  /// which are all alike without noise, count for nothing.
+  /// there; nullopt where no two do, or where all of a side are alike. Of what was noted so far.
   std::optional<std::pair<std::uint64_t, std::uint64_t>> shared_with(const SeenPictures& other,
                                                                      std::uint64_t count) const;
 
  private:
+  bool all_alike() const { return by_digest_.size() == 1 && repeated_; }
+
   mutable std::mutex mutex_;
+  std::optional<std::pair<std::uint64_t, std::uint64_t>> repeated_ = {};
   std::map<std::uint64_t, std::uint64_t> by_digest_;
 };
 

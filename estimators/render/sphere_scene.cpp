@@ -90,8 +90,7 @@ Vector3 SphereScene::exit(const Vector3& origin, const Vector3& direction,
 
 bool SphereScene::occluded(const Vector3& from, const Vector3& to) const {
   const double distance = length(to - from);
-  Query query{.context = {},
-              .origin = from,
+  Query query{.origin = from,
               .direction = (to - from) / distance,
               .from_surface = true,
               .far = distance * (1 - 1e-9)};

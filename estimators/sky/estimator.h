@@ -2,7 +2,6 @@
 
 // The estimator that all ways to draw directions share.
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -90,29 +89,6 @@ class SkyEstimator final : public Estimator {
   std::size_t colours_;
 };
 
-template <class Primary>
-class SkySetup final : public Setup {
- public:
-  SkySetup(std::vector<Channel> channels, Primary primary, std::size_t colours,
-           std::vector<NamedSampler> samplers)
-      : channels_(std::move(channels)),
-        primary_(std::move(primary)),
-        colours_(colours),
-        samplers_(std::move(samplers)) {}
-
-  std::vector<Channel> channels() const override { return channels_; }
-  std::unique_ptr<Estimator> make() const override {
-    return std::make_unique<SkyEstimator<Primary>>(primary_, colours_);
-  }
-  std::vector<NamedSampler> samplers() const override { return samplers_; }
-
- private:
-  std::vector<Channel> channels_;
-  Primary primary_;
-  std::size_t colours_;
-  std::vector<NamedSampler> samplers_;
-};
-
 /// A set-up with the sampler `direction`; `diagnostic` adds the channels `below` and `nodes`;
 /// `gain` is that of irradiance_channels().
 template <class Primary>
@@ -124,10 +100,13 @@ std::shared_ptr<const Setup> sky_setup(const SharedSetting& setting, SharedDirec
     channels.push_back({.name = "below", .low = 0, .high = 1, .diagnostic = true});
     channels.push_back({.name = "nodes", .low = 0, .diagnostic = true});
   }
-  std::vector<NamedSampler> samplers{
-      {"direction", std::make_shared<DirectionSampler>(setting, std::move(directions))}};
-  return std::make_shared<SkySetup<Primary>>(std::move(channels), std::move(primary),
-                                             setting->colours(), std::move(samplers));
+  const auto make = [primary = std::move(primary), colours = setting->colours()] {
+    return std::make_unique<SkyEstimator<Primary>>(primary, colours);
+  };
+  return setup_of({.channels = std::move(channels),
+                   .make = make,
+                   .samplers = {{"direction", std::make_shared<DirectionSampler>(
+                                                  setting, std::move(directions))}}});
 }
 
 /// `strata`, of all estimators of the family.

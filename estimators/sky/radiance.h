@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <memory>
-#include <optional>
 
 #include "estimators/parameters.h"
 #include "render/environment_map.h"

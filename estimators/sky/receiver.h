@@ -25,7 +25,7 @@ class Receiver {
   /// renderer cannot know beforehand.
   bool visible(const render::Vector3& w, Cost& cost) const {
     ++cost.shadow_rays;
-    return !scene_ || !scene_->occluded({.origin = {}, .direction = w});
+    return !scene_ || !scene_->occluded({.direction = w});
   }
 
  private:

@@ -3,7 +3,6 @@
 // Directions with density in proportion to a sky times a steerable lobe.
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <utility>
 

@@ -4,7 +4,6 @@
 // all nodes are one scalar product away.
 
 #include <cstddef>
-#include <span>
 #include <vector>
 
 #include "sky/harmonics.h"

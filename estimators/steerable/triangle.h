@@ -2,8 +2,6 @@
 
 // The parts of the estimator and the samplers of points of a triangle with linear density.
 
-#include <array>
-#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -87,27 +85,12 @@ class TriangleEstimator final : public Estimator {
 };
 
 template <class Warp>
-class TriangleSetup final : public Setup {
- public:
-  TriangleSetup(const VertexWeights& weights, bool sound) : weights_(weights), sound_(sound) {}
-
-  std::vector<Channel> channels() const override { return triangle_channels(weights_, sound_); }
-  std::unique_ptr<Estimator> make() const override {
-    return std::make_unique<TriangleEstimator<Warp>>(weights_);
-  }
-  std::vector<NamedSampler> samplers() const override {
-    return {{"point", std::make_shared<TrianglePointSampler<Warp>>(weights_)},
-            {"square", std::make_shared<TriangleSquareSampler<Warp>>(weights_)}};
-  }
-
- private:
-  VertexWeights weights_;
-  bool sound_;
-};
-
-template <class Warp>
 std::shared_ptr<const Setup> triangle_setup(const VertexWeights& weights, bool sound) {
-  return std::make_shared<TriangleSetup<Warp>>(weights, sound);
+  return setup_of(
+      {.channels = triangle_channels(weights, sound),
+       .make = [weights] { return std::make_unique<TriangleEstimator<Warp>>(weights); },
+       .samplers = {{"point", std::make_shared<TrianglePointSampler<Warp>>(weights)},
+                    {"square", std::make_shared<TriangleSquareSampler<Warp>>(weights)}}});
 }
 
 }  // namespace assay::steerable

@@ -112,7 +112,7 @@ void find_walls(const TriangleMesh& mesh, Enclosure& room) {
 
 Enclosure enclosure(const TriangleMesh& mesh, const Vector3& point) {
   const TriangleMesh whole = welded(mesh);
-  Enclosure room{.why_open = paths::why_not_closed(whole), .why_not_convex = {}, .wall_of = {}};
+  Enclosure room{.why_open = paths::why_not_closed(whole)};
   if (room.why_open.empty()) {
     const int turns = paths::winding_number(whole, point);
     // Seen counter-clockwise from inside, the triangles' solid angles are negative.

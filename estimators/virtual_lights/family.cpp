@@ -49,26 +49,6 @@ std::vector<Channel> channels(const Scene& scene, const Recipe& recipe) {
   return all;
 }
 
-class LightsSetup final : public Setup {
- public:
-  LightsSetup(const Scene& scene, Recipe recipe)
-      : channels_(virtual_lights::channels(scene, recipe)),
-        recipe_(std::move(recipe)),
-        grey_(scene.grey) {}
-
-  std::vector<Channel> channels() const override { return channels_; }
-  std::unique_ptr<Estimator> make() const override {
-    return std::make_unique<LightsEstimator>(recipe_, grey_);
-  }
-  std::vector<NamedSampler> samplers() const override { return {paths::direction_sampler()}; }
-  Cost cost() const override { return {.camera_rays = 1}; }
-
- private:
-  std::vector<Channel> channels_;
-  Recipe recipe_;
-  bool grey_;
-};
-
 void require_diffuse(Parameters& parameters, const paths::MeshWorld& world) {
   bool light = false;
   for (std::size_t i = 0; i < world.patches(); ++i) {
@@ -174,7 +154,13 @@ std::vector<ParameterInformation> weighted_parameters() {
 }
 
 std::shared_ptr<const Setup> setup(const Scene& scene, Recipe recipe) {
-  return std::make_shared<LightsSetup>(scene, std::move(recipe));
+  std::vector<Channel> its = channels(scene, recipe);
+  return setup_of(
+      {.channels = std::move(its),
+       .make = [recipe = std::move(recipe),
+                grey = scene.grey] { return std::make_unique<LightsEstimator>(recipe, grey); },
+       .samplers = {paths::direction_sampler()},
+       .cost = {.camera_rays = 1}});
 }
 
 }  // namespace assay::virtual_lights

@@ -4,7 +4,6 @@
 // them. Parts that a mutant can replace are members of a template parameter.
 
 #include <numbers>
-#include <utility>
 
 #include "virtual_lights/exact.h"
 

@@ -1,6 +1,5 @@
 #include "virtual_lights/room.h"
 
-#include <algorithm>
 #include <numbers>
 #include <utility>
 
@@ -73,7 +72,7 @@ LightPath Room::shoot(Stream& random, Cost& cost) const {
   double x = random.uniform();
   const std::uint32_t side = sides_[shares_.pick(x)];
   const double y = random.uniform();
-  LightPath path{.from = world_->on_patch(side, x, y), .at = {}, .power = {}};
+  LightPath path{.from = world_->on_patch(side, x, y)};
   path.at = world_->reflected(path.from, random, cost);
   const Spectrum& emission = path.from.surface->emission;
   path.power = pi * shares_.total() / paths::mean(emission) * emission;

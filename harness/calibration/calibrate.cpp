@@ -11,7 +11,6 @@
 #include "harness/base/terminal.h"
 #include "harness/calibration/calibration_runs.h"
 #include "harness/record/environment.h"
-#include "harness/record/record_of.h"
 #include "reports/report_formats.h"
 #include "stats/means/binomial.h"
 
@@ -45,11 +44,10 @@ double mean_observations(const VerdictCounts& counts) {
   return static_cast<double>(counts.observations) / static_cast<double>(counts.runs);
 }
 
-std::vector<std::pair<std::string, std::uint64_t>> by_frequency(const VerdictCounts& counts) {
-  std::vector<std::pair<std::string, std::uint64_t>> methods(counts.methods.begin(),
-                                                             counts.methods.end());
-  std::stable_sort(methods.begin(), methods.end(),
-                   [](const auto& a, const auto& b) { return a.second > b.second; });
+std::vector<reports::MethodRuns> by_frequency(const VerdictCounts& counts) {
+  std::vector<reports::MethodRuns> methods;
+  for (const auto& [method, runs] : counts.methods) methods.push_back({method, runs});
+  std::ranges::stable_sort(methods, std::greater{}, &reports::MethodRuns::runs);
   return methods;
 }
 

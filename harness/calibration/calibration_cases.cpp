@@ -106,136 +106,115 @@ Facts facts_of(const std::string& law) {
   return facts;
 }
 
-/// A case as text, before its tests are made.
+/// The kinds of `detect`.
+enum class Effect { none, shift, ratio, law, cells, slope, bias, part };
+
+std::optional<Margin> margin_of(Effect effect, const Facts& facts) {
+  if (effect == Effect::none) return std::nullopt;
+  const double values[] = {facts.shift(), variance_effect, law_effect, cell_effect,
+                           slope_effect,  image_bias,      image_part};
+  return Margin{.value = values[static_cast<int>(effect) - 1],
+                .relative = effect == Effect::ratio || effect == Effect::part};
+}
+
+bool any_law(const Facts&) { return true; }
+bool has_density(const Facts& facts) { return facts.has_density; }
+
+/// A case as text, with numbers of the law by their names.
 struct Draft {
   std::string method;
   std::string question;
   std::string holds;
   std::string off = "";
-  std::optional<Margin> detect = {};
+  Effect detect = Effect::none;
   bool is_default = true;
+  bool (*suits)(const Facts&) = any_law;
   CostKind cost = CostKind::samples;
   std::uint64_t alone = classical_samples;  ///< Observations of a method alone.
 };
 
-void means(const Facts& f, std::vector<Draft>& drafts) {
-  const Margin detect{.value = f.shift()};
-  const auto against = [&](const char* relation, double reference) {
-    return fmt::format("mean(x) {} {:.17g}", relation, reference);
-  };
-  drafts.push_back(
-      {"t", "mean == number", against("==", f.mean), against("==", f.mean - f.shift()), detect});
-  drafts.push_back(
-      {"t", "mean <= number", against("<=", f.mean), against("<=", f.mean - f.shift()), detect});
-  drafts.push_back(
-      {"t", "mean >= number", against(">=", f.mean), against(">=", f.mean + f.shift()), detect});
-  drafts.push_back(
-      {"welch", "mean == mean", "mean(x) == mean(y)", "mean(shifted) == mean(y)", detect});
-  const std::string within = fmt::format("within {:.17g} of", f.shift());
-  drafts.push_back({"tost", "mean within x of number", against(within.c_str(), f.mean),
-                    against(within.c_str(), f.mean - f.shift())});
-  std::vector<const char*> others{"skewness-corrected-t"};
-  if (f.two_valued()) others.push_back("binomial");
-  if (f.bounded()) others.push_back("betting");
-  for (const char* method : others) {
-    drafts.push_back({.method = method,
-                      .question = "mean == number",
-                      .holds = against("==", f.mean),
-                      .is_default = false});
-  }
-  if (f.bounded() || !std::isfinite(f.low)) return;
-  drafts.push_back({.method = "betting",
-                    .question = "mean <= number",
-                    .holds = against("<=", f.mean),
-                    .is_default = false});
-}
-
-void variances(const Facts& f, std::vector<Draft>& drafts) {
-  const Margin detect{.value = variance_effect, .relative = true};
-  const auto against = [&](const char* relation, double factor) {
-    return fmt::format("variance(x) {} {:.17g}", relation, f.variance() / factor);
-  };
-  const double factor = 1 + variance_effect;
-  drafts.push_back(
-      {"chi-square", "variance == number", against("==", 1), against("==", factor), detect});
-  drafts.push_back(
-      {"chi-square", "variance <= number", against("<=", 1), against("<=", factor), detect});
-  drafts.push_back({"F", "variance == variance", "variance(x) == variance(y)",
-                    fmt::format("variance(x) == {:.17g} * variance(y)", factor), detect});
-  drafts.push_back({.method = "influence-t",
-                    .question = "variance == number",
-                    .holds = against("==", 1),
-                    .is_default = false});
-  drafts.push_back({.method = "influence-t",
-                    .question = "variance == variance",
-                    .holds = "variance(x) == variance(y)",
-                    .is_default = false});
-  drafts.push_back({"influence-t", "total variance == number", "total_" + against("==", 1),
-                    "total_" + against("==", factor), detect});
-  drafts.push_back({"influence-t", "efficiency == efficiency", "efficiency(x) == efficiency(y)",
-                    "efficiency(y) == efficiency(scaled)", detect});
-  const auto costly = [&](const char* method, const char* question, const std::string& holds,
-                          const std::string& off) {
-    drafts.push_back({.method = method,
-                      .question = question,
-                      .holds = holds,
-                      .off = off,
-                      .detect = detect,
-                      .cost = CostKind::rays});
-  };
-  costly("influence-t", "efficiencies at random costs",
-         "efficiency(costly) == efficiency(other_costly)", "");
-  costly("influence-t", "cost == cost", "cost(costly) == cost(other_costly)",
-         fmt::format("cost(costly) == {:.17g} * cost(other_costly)", factor));
-  costly("influence-t", "cost <= cost", "cost(costly) <= cost(other_costly)",
-         fmt::format("cost(costly) <= {:.17g} * cost(other_costly)", 1 / factor));
-  drafts.push_back({"slope", "slope of variance", "slope(variance(x)) == 2",
-                    fmt::format("slope(variance(x)) == {}", 2 - slope_effect),
-                    Margin{.value = slope_effect}});
-}
-
-void laws_themselves(const Facts& f, std::vector<Draft>& drafts) {
-  const Margin detect{.value = law_effect};
-  if (f.has_density) {
-    drafts.push_back({"ks", "law == law given", "distribution(x) == " + f.law,
-                      "distribution(moved) == " + f.law, detect});
-    drafts.push_back({"ks", "law == law", "distribution(x) == distribution(y)",
-                      "distribution(moved) == distribution(y)", detect});
-    drafts.push_back({.method = "chi-square-two-sample",
-                      .question = "draws == draws",
-                      .holds = "distribution(x.x) == distribution(y.x)",
-                      .is_default = false});
-    drafts.push_back({"chi-square-fit", "draws == density", "distribution(x.x) == density", "",
-                      Margin{.value = cell_effect}});
-    drafts.push_back({"quantile", "median == median", "quantile(x, 0.5) == quantile(y, 0.5)",
-                      "quantile(shifted, 0.5) == quantile(y, 0.5)", Margin{.value = f.shift()}});
-    return;
-  }
-  drafts.push_back({"ks", "law == law", "distribution(x) == distribution(y)", "", detect});
-}
-
-std::vector<Draft> images() {
-  std::vector<Draft> drafts;
-  const Margin bias{.value = image_bias};
-  drafts.push_back({"image", "image == analytic", "mean(picture) == analytic",
-                    fmt::format("bias(picture) == {:.17g}", image_bias), bias});
-  const Margin part{.value = image_part, .relative = true};
-  drafts.push_back({"image", "image == image", "mean(picture) == mean(other_picture)",
-                    fmt::format("mean(picture) == {:.17g} * mean(other_picture)", 1 + image_part),
-                    part});
-  const std::string within = fmt::format("mean(picture) within {:.17g} of ", image_bias);
-  drafts.push_back({"image", "image within x of analytic", within + "analytic",
-                    fmt::format("bias(picture) within {0:.17g} of {0:.17g}", image_bias)});
-  for (Draft& draft : drafts) draft.alone = classical_replicates;
+const std::vector<Draft>& all_drafts() {
+  static const std::vector<Draft> drafts{
+      {"t", "mean == number", "mean(x) == {mean}", "mean(x) == {less}", Effect::shift},
+      {"t", "mean <= number", "mean(x) <= {mean}", "mean(x) <= {less}", Effect::shift},
+      {"t", "mean >= number", "mean(x) >= {mean}", "mean(x) >= {more}", Effect::shift},
+      {"welch", "mean == mean", "mean(x) == mean(y)", "mean(shifted) == mean(y)", Effect::shift},
+      {"tost", "mean within x of number", "mean(x) within {shift} of {mean}",
+       "mean(x) within {shift} of {less}"},
+      {"skewness-corrected-t", "mean == number", "mean(x) == {mean}", "", Effect::none, false},
+      {"binomial", "mean == number", "mean(x) == {mean}", "", Effect::none, false,
+       [](const Facts& f) { return f.two_valued(); }},
+      {"betting", "mean == number", "mean(x) == {mean}", "", Effect::none, false,
+       [](const Facts& f) { return f.bounded(); }},
+      {"betting", "mean <= number", "mean(x) <= {mean}", "", Effect::none, false,
+       [](const Facts& f) { return std::isfinite(f.low) && !f.bounded(); }},
+      {"chi-square", "variance == number", "variance(x) == {variance}", "variance(x) == {smaller}",
+       Effect::ratio},
+      {"chi-square", "variance <= number", "variance(x) <= {variance}", "variance(x) <= {smaller}",
+       Effect::ratio},
+      {"F", "variance == variance", "variance(x) == variance(y)",
+       "variance(x) == {factor} * variance(y)", Effect::ratio},
+      {"influence-t", "variance == number", "variance(x) == {variance}", "", Effect::none, false},
+      {"influence-t", "variance == variance", "variance(x) == variance(y)", "", Effect::none,
+       false},
+      {"influence-t", "total variance == number", "total_variance(x) == {variance}",
+       "total_variance(x) == {smaller}", Effect::ratio},
+      {"influence-t", "efficiency == efficiency", "efficiency(x) == efficiency(y)",
+       "efficiency(y) == efficiency(scaled)", Effect::ratio},
+      {"influence-t", "efficiencies at random costs",
+       "efficiency(costly) == efficiency(other_costly)", "", Effect::ratio, true, any_law,
+       CostKind::rays},
+      {"influence-t", "cost == cost", "cost(costly) == cost(other_costly)",
+       "cost(costly) == {factor} * cost(other_costly)", Effect::ratio, true, any_law,
+       CostKind::rays},
+      {"influence-t", "cost <= cost", "cost(costly) <= cost(other_costly)",
+       "cost(costly) <= {inverse} * cost(other_costly)", Effect::ratio, true, any_law,
+       CostKind::rays},
+      {"slope", "slope of variance", "slope(variance(x)) == 2", "slope(variance(x)) == {slope}",
+       Effect::slope},
+      {"ks", "law == law given", "distribution(x) == {law}", "distribution(moved) == {law}",
+       Effect::law, true, has_density},
+      {"ks", "law == law", "distribution(x) == distribution(y)",
+       "distribution(moved) == distribution(y)", Effect::law, true, has_density},
+      {"chi-square-two-sample", "draws == draws", "distribution(x.x) == distribution(y.x)", "",
+       Effect::none, false, has_density},
+      {"chi-square-fit", "draws == density", "distribution(x.x) == density", "", Effect::cells,
+       true, has_density},
+      {"quantile", "median == median", "quantile(x, 0.5) == quantile(y, 0.5)",
+       "quantile(shifted, 0.5) == quantile(y, 0.5)", Effect::shift, true, has_density},
+      {"ks", "law == law", "distribution(x) == distribution(y)", "", Effect::law, true,
+       [](const Facts& f) { return !f.has_density; }},
+      {"image", "image == analytic", "mean(picture) == analytic", "bias(picture) == {bias}",
+       Effect::bias, true, any_law, CostKind::samples, classical_replicates},
+      {"image", "image == image", "mean(picture) == mean(other_picture)",
+       "mean(picture) == {brighter} * mean(other_picture)", Effect::part, true, any_law,
+       CostKind::samples, classical_replicates},
+      {"image", "image within x of analytic", "mean(picture) within {bias} of analytic",
+       "bias(picture) within {bias} of {bias}", Effect::none, true, any_law, CostKind::samples,
+       classical_replicates}};
   return drafts;
 }
 
 std::vector<Draft> drafts_of(const Facts& facts) {
+  const auto written = [&](const std::string& claim) {
+    const auto exact = [](double value) { return fmt::format("{:.17g}", value); };
+    const double factor = 1 + variance_effect;
+    return fmt::format(
+        fmt::runtime(claim), fmt::arg("law", facts.law), fmt::arg("mean", exact(facts.mean)),
+        fmt::arg("less", exact(facts.mean - facts.shift())),
+        fmt::arg("more", exact(facts.mean + facts.shift())),
+        fmt::arg("shift", exact(facts.shift())), fmt::arg("variance", exact(facts.variance())),
+        fmt::arg("smaller", exact(facts.variance() / factor)), fmt::arg("factor", exact(factor)),
+        fmt::arg("inverse", exact(1 / factor)), fmt::arg("slope", 2 - slope_effect),
+        fmt::arg("bias", exact(image_bias)), fmt::arg("brighter", exact(1 + image_part)));
+  };
   std::vector<Draft> drafts;
-  means(facts, drafts);
-  variances(facts, drafts);
-  laws_themselves(facts, drafts);
-  for (Draft& draft : images()) drafts.push_back(std::move(draft));
+  for (const Draft& draft : all_drafts()) {
+    if (!draft.suits(facts)) continue;
+    drafts.push_back(draft);
+    drafts.back().holds = written(draft.holds);
+    drafts.back().off = written(draft.off);
+  }
   return drafts;
 }
 
@@ -249,22 +228,21 @@ TestEntry test_of(const std::string& claim, const Draft& draft) {
   return test;
 }
 
-TestEntry planned(const std::string& claim, const Draft& draft, const CalibrationScope& scope) {
-  TestEntry test = test_of(claim, draft);
-  test.secondaries = scope.samples;
-  test.detect = draft.detect;
-  return test;
-}
-
-CalibrationCase case_of(const Draft& draft, const CalibrationScope& scope) {
+CalibrationCase case_of(const Draft& draft, const Facts& facts, const CalibrationScope& scope) {
   CalibrationCase made{.method = draft.method, .question = draft.question};
   made.proof = parse_claim(draft.holds, {}).relation == Relation::within;
   made.alone = test_of(made.proof ? draft.off : draft.holds, draft);
   made.alone->method = draft.method;
   made.alone->secondaries = scope.samples.value_or(draft.alone);
   if (!draft.is_default) return made;
-  made.holds = planned(draft.holds, draft, scope);
-  if (!draft.off.empty()) made.off = planned(draft.off, draft, scope);
+  const auto planned = [&](const std::string& claim) {
+    TestEntry test = test_of(claim, draft);
+    test.secondaries = scope.samples;
+    test.detect = margin_of(draft.detect, facts);
+    return test;
+  };
+  made.holds = planned(draft.holds);
+  if (!draft.off.empty()) made.off = planned(draft.off);
   return made;
 }
 
@@ -325,7 +303,7 @@ CalibrationBench::CalibrationBench(const CalibrationScope& scope) : law(scope.la
   }
   for (const Draft& draft : drafts_of(facts)) {
     const bool wanted = scope.methods.empty() || std::ranges::count(scope.methods, draft.method);
-    if (wanted) cases.push_back(case_of(draft, scope));
+    if (wanted) cases.push_back(case_of(draft, facts, scope));
   }
 }
 

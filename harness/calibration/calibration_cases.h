@@ -4,7 +4,6 @@
 // `detect`, and each method alone.
 
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <mutex>
-#include <set>
 #include <thread>
 
 #include "harness/base/interrupt.h"
@@ -64,7 +63,7 @@ Pilots pilots_of(const std::vector<Question>& questions, std::uint64_t seed) {
   std::vector<const PreparedEstimator*> estimators;
   for (const auto& [name, estimator] : used) estimators.push_back(estimator);
   Silence silence;
-  return run_pilots(estimators, pilot_run_of(questions, seed, 1), silence);
+  return run_pilots(estimators, pilot_run_of(questions, seed, threads(1)), silence);
 }
 
 /// Turns off histograms, which a calibration does not show.
@@ -123,7 +122,7 @@ void run_once(const CalibrationBench& bench, const std::vector<Item>& items, std
   }
   leave_out_pictures(pools);
   Silence silence;
-  sample_in_looks(open, pools.all(), {.threads = 1}, silence);
+  sample_in_looks(open, pools.all(), {.executor = threads(1)}, silence);
   if (interrupted()) return;
   for (std::size_t i = 0; i < items.size(); ++i) {
     if (works[i]) tally(counts_of(counts, items[i]), works[i]->outcome, items[i].proof);

@@ -163,6 +163,7 @@ Examples:
   assay run suites/luminaire.yaml --set triangle_area.scene=rectangle --seed 7
   assay run suites/luminaire.yaml --coarsen 4      a quick look: four times coarser effects
   assay run suites/luminaire.yaml --seed random --ledger nightly.ledger      every night
+  assay run suites/luminaire.yaml --checkpoint run.ckpt      goes on where it was killed
   assay run suites/luminaire.yaml --shard 2/4 --report json=2.json      a part, for `assay merge`
 )");
   add_suites(options, command);
@@ -172,6 +173,11 @@ Examples:
   options.flag("--fail-fast",
                "draw no more once a claim is broken, the others are not run; default all are",
                command.options.fail_fast);
+  options.add({"--checkpoint", "FILE", Replay::nowhere, "", {"*"}}, command.options.checkpoint,
+              "keep what was drawn in a file, from which the same command goes on after a kill or "
+              "Ctrl-C; removed at the end; default none");
+  options.add({"--checkpoint-every", "S", Replay::nowhere}, command.options.checkpoint_every,
+              read_positive, "seconds between two writes of it; default 60");
   options.add({"--ledger", "FILE", Replay::nowhere, "", {"*"}}, command.options.ledger,
               "add the run's evidence to a file of nights with fresh seeds and alarm at what they "
               "say together; default none");
@@ -224,6 +230,9 @@ Examples:
               "of a bias or an efficiency: the truth, as 6.36, '6.36 +- 0.01' or an estimator; "
               "default what the plugin knows");
   options.add({"--cost", "KIND"}, given.cost, "rays, samples or seconds; default rays");
+  options.choice("--paired", given.paired, true,
+                 "of the means of two images: both draw the same random numbers, and their "
+                 "differences are tested; default their own");
   options.add({"--budget", "B"}, given.budget,
               "the most it may cost, as 1e7 primaries or 30s of CPU time; default none");
   add_estimators(options, given.estimators);
@@ -284,8 +293,8 @@ Examples:
                  "are the means equal? the default");
   options.choice(
       "--paired", given.question, ImageQuestion::paired,
-      "are the means of differences 0? pictures of one name or number have one seed: finds "
-      "much less");
+      "are the means of differences 0? finds much less; two pictures have one seed if their names "
+      "say the same where the names of a side differ");
   options.choice(
       "--law", given.question, ImageQuestion::law,
       "do pictures have one law, as of one renderer with other seeds? exact for any noise");

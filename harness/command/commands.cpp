@@ -10,10 +10,13 @@
 #include "harness/base/terminal.h"
 #include "harness/command/plan_table.h"
 #include "harness/command/run.h"
+#include "harness/command/run_identity.h"
 #include "harness/command/tables.h"
+#include "harness/ranks/ranks.h"
 #include "harness/record/last_run.h"
 #include "harness/record/recorded_test.h"
 #include "harness/run/unit_cost.h"
+#include "harness/sampling/checkpoint.h"
 #include "harness/suite/files_read.h"
 #include "reports/formats/explain.h"
 
@@ -31,20 +34,41 @@ bool selects_nothing(const std::vector<Suite>& suites, const Selection& selectio
 
 }  // namespace
 
+unsigned threads_of_rank(const RunOptions& options) { return std::max(1U, options.threads); }
+
 int run_suites(const std::vector<Suite>& suites, const RunOptions& options, const Output& output) {
   std::vector<std::string> kept = files_read(suites);
-  if (!options.ledger.empty()) kept.push_back(options.ledger);
+  for (const std::string& file : {options.ledger, options.checkpoint}) {
+    if (!file.empty()) kept.push_back(file);
+  }
   require_writable(output, kept);
+  if (options.ranks != nullptr && options.shard) {
+    throw InputError({}, "ranks draw one run together, and --shard makes several: leave one out");
+  }
   if (selects_nothing(suites, options.selection)) return nothing_ran;
   const std::unique_ptr<Progress> progress = make_progress(output.quiet);
   std::string ledger_fault;
   RunReports console(output);
+  RunOptions drawn = options;
+  if (options.ranks != nullptr) {
+    drawn.threads = threads_of_rank(options);
+    drawn.executor = std::make_shared<Ranks>(*options.ranks, options.seed,
+                                             identity_of(suites, options), drawn.threads);
+  }
+  std::shared_ptr<Checkpoint> checkpoint;
+  if (!options.checkpoint.empty()) {
+    checkpoint = std::make_shared<Checkpoint>(
+        options.checkpoint, std::chrono::duration<double>(options.checkpoint_every),
+        identity_of(suites, options), executor_of(drawn));
+    drawn.executor = checkpoint;
+  }
   reports::Record record = run(
-      suites, options, *progress,
+      suites, drawn, *progress,
       [&](const reports::Suite& suite, const reports::Test& test) { console.tell(suite, test); },
       &ledger_fault);
   console.write_and_annotate(record);
   if (output.kept) keep_last_run(record, output.detail > 0);
+  if (checkpoint) checkpoint->remove();
   if (!ledger_fault.empty()) throw std::runtime_error(ledger_fault);
   const int code = exit_code(record, output.inconclusive);
   return code == nothing_ran && options.shard_of_runner ? 0 : code;
@@ -54,7 +78,7 @@ int plan_suites(const std::vector<Suite>& suites, const RunOptions& options, boo
   if (selects_nothing(suites, options.selection)) return nothing_ran;
   const std::unique_ptr<Progress> progress = make_progress(quiet);
   const PlannedRun planned = plan_run(suites, options, *progress);
-  const UnitCosts costs = measure_costs(planned, options.threads, *progress);
+  const UnitCosts costs = measure_costs(planned, executor_of(options), *progress);
   fmt::print("{}", plan_text(planned, costs));
   return plan_exit_code(planned, costs);
 }

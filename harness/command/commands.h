@@ -13,6 +13,8 @@ namespace assay::harness {
 
 /// Runs the suites and writes the reports. Returns 4 without a report if no test is selected.
 int run_suites(const std::vector<Suite>& suites, const RunOptions& options, const Output& output);
+/// Threads of each rank: as given, else one, since launchers start a rank for each core.
+unsigned threads_of_rank(const RunOptions& options);
 /// Prints a line for each file that programs would render for a run: command, seed and file, with
 /// tabs between.
 int list_renders(const std::vector<Suite>& suites, const RunOptions& options, bool quiet);

@@ -23,21 +23,9 @@ std::string hanging(const std::string& text, std::size_t indent, std::size_t han
 }
 
 const char* type_name(ParameterType type) {
-  switch (type) {
-    case ParameterType::number:
-      return "number";
-    case ParameterType::count:
-      return "count";
-    case ParameterType::boolean:
-      return "true or false";
-    case ParameterType::string:
-      return "text";
-    case ParameterType::texts:
-      return "list of texts";
-    case ParameterType::structure:
-      return "structure";
-  }
-  return "";
+  constexpr const char* names[] = {"number", "count",         "true or false",
+                                   "text",   "list of texts", "structure"};
+  return names[static_cast<int>(type)];
 }
 
 const char* bias_text(const Information& information) {
@@ -45,19 +33,11 @@ const char* bias_text(const Information& information) {
   if (!information.original.empty()) return "that of its defect";
   if (information.name == "recorded") return "unknown: the observations were made elsewhere";
   if (information.says_nature) return "what the program says of it; unknown where it says nothing";
-  switch (information.bias) {
-    case BiasClass::unbiased:
-      return "unbiased";
-    case BiasClass::inverse_primaries:
-      return "falls like 1 / primaries";
-    case BiasClass::inverse_bootstrap:
-      return "falls like 1 / bootstrap";
-    case BiasClass::start_up:
-      return "start-up: the chain has not forgotten where it began";
-    case BiasClass::reconstruction:
-      return "reconstruction: that of a filter or an interpolation";
-  }
-  return "";
+  constexpr const char* classes[] = {"unbiased", "falls like 1 / primaries",
+                                     "falls like 1 / bootstrap",
+                                     "start-up: the chain has not forgotten where it began",
+                                     "reconstruction: that of a filter or an interpolation"};
+  return classes[static_cast<int>(information.bias)];
 }
 
 const char* primaries_text(const Information& information) {
@@ -67,19 +47,9 @@ const char* primaries_text(const Information& information) {
 }
 
 const char* domain_name(Domain domain) {
-  switch (domain) {
-    case Domain::interval:
-      return "interval";
-    case Domain::square:
-      return "unit square";
-    case Domain::triangle:
-      return "triangle (barycentric)";
-    case Domain::hemisphere:
-      return "hemisphere (solid angle)";
-    case Domain::sphere:
-      return "sphere (solid angle)";
-  }
-  return "";
+  constexpr const char* names[] = {"interval", "unit square", "triangle (barycentric)",
+                                   "hemisphere (solid angle)", "sphere (solid angle)"};
+  return names[static_cast<int>(domain)];
 }
 
 /// "(0, 1]", "[1, inf)", "a, b or c"; "" if anything is allowed.

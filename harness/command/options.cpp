@@ -33,7 +33,7 @@ Texts subcommand_names(const CLI::App& app) {
 std::string key_of_a_suite(const CLI::App& sub, const std::string& option) {
   if (sub.get_name() != "run" && sub.get_name() != "plan") return "";
   for (const char* key : {"detect", "allow", "test", "over", "reference", "cost", "budget",
-                          "primaries", "secondaries"}) {
+                          "paired", "primaries", "secondaries"}) {
     if (option == std::string("--") + key) return key;
   }
   return "";

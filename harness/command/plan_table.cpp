@@ -5,10 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <set>
 
 #include "harness/plan/forecast.h"
-#include "harness/run/observation_faults.h"
 #include "harness/theta/theta.h"
 #include "reports/words/columns.h"
 #include "reports/words/effect.h"
@@ -35,17 +33,9 @@ struct Row {
   double not_ok = 0;
 };
 
-std::string plain(const std::string& text) {
-  std::string out;
-  for (std::size_t i = 0; i < text.size();) {
-    const char32_t c = reports::next_code_point(text, i);
-    reports::append_code_point(out, c == 0xA0 ? U' ' : c);
-  }
-  return out;
-}
-
 std::string count_of(double count) {
-  return plain(reports::count_text(static_cast<std::uint64_t>(std::llround(count))));
+  return reports::plain_spaces(
+      reports::count_text(static_cast<std::uint64_t>(std::llround(count))));
 }
 
 /// The cost of a test's last look, or of a pool.
@@ -102,7 +92,7 @@ std::string effect_text(const TestOutcome& test, const Forecast& forecast) {
     effect = forecast.detectable;
   }
   if (!effect) return unknown;
-  return plain(reports::margin_text(
+  return reports::plain_spaces(reports::margin_text(
       *effect, {.quantity = test.question.is().logarithm ? "ln(ratio)" : "",
                 .relative = test.question.theta->is_relative(test.question, 0)}));
 }
@@ -182,14 +172,14 @@ Row row_of(const TestWork& work, const Pilots& pilots, const UnitCosts& costs) {
   const Plan& plan = test.plan;
   const Total total = total_of(work, costs);
   const Forecast expected = forecast(test, pilots);
-  Row row{.name = test.question.test->name, .cells = {}, .notes = gate_notes(plan.gates)};
+  Row row{.name = test.question.test->name, .notes = gate_notes(plan.gates)};
   row.cells = {plan.method.name,
                primaries_text(plan),
                fmt::format("{}", plan.looks.sizes.size()),
                count_of(static_cast<double>(plan.most_secondaries())),
                count_of(total.primaries),
                total.known ? count_of(total.rays) : unknown,
-               total.known ? plain(reports::duration(total.seconds)) : unknown,
+               total.known ? reports::plain_spaces(reports::duration(total.seconds)) : unknown,
                effect_text(test, expected)};
   if (plan.invalid.empty()) {
     if (expected.if_off) {
@@ -211,7 +201,7 @@ Row row_of(const TestWork& work, const Pilots& pilots, const UnitCosts& costs) {
 class Page {
  public:
   void line(const std::string& text) {
-    std::string whole = plain(text);
+    std::string whole = reports::plain_spaces(text);
     whole.erase(whole.find_last_not_of(' ') + 1);
     out_ += whole + "\n";
   }
@@ -325,7 +315,7 @@ Total expected_total(const PlannedRun& planned, const UnitCosts& costs) {
 
 std::string total_text(const Total& total) {
   return fmt::format("{} primaries, {} rays, {} of CPU time", count_of(total.primaries),
-                     count_of(total.rays), plain(reports::duration(total.seconds)));
+                     count_of(total.rays), reports::plain_spaces(reports::duration(total.seconds)));
 }
 
 void write_totals(Page& page, const PlannedRun& planned, const UnitCosts& costs) {

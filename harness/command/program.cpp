@@ -14,8 +14,11 @@
 #include "harness/base/terminal.h"
 #include "harness/command/cli.h"
 #include "harness/command/failure.h"
+#include "harness/command/run_identity.h"
 #include "harness/command/shard_environment.h"
+#include "harness/ranks/ranks.h"
 #include "harness/record/replay.h"
+#include "harness/run/planned_run.h"
 
 namespace assay::harness {
 
@@ -41,11 +44,25 @@ std::vector<Suite> load(const std::vector<std::string>& files,
   return suites;
 }
 
+/// What a command that ranks can share runs.
+struct Loaded {
+  std::vector<Suite> suites;
+  RunOptions options;
+};
+
+Loaded loaded(const RunCommand& command) {
+  Loaded all{load(command.suites, command.assignments), command.options};
+  all.options.assigns = !command.assignments.empty();
+  take_shard_from(system_environment, all.options);
+  return all;
+}
+
+Loaded loaded(const CheckCommand& command) {
+  return {{suite_of_claim(command.arguments)}, command.options};
+}
+
 int act(const RunCommand& command) {
-  const std::vector<Suite> suites = load(command.suites, command.assignments);
-  RunOptions options = command.options;
-  options.assigns = !command.assignments.empty();
-  take_shard_from(system_environment, options);
+  const auto [suites, options] = loaded(command);
   return run_suites(suites, options, command.output);
 }
 
@@ -55,7 +72,8 @@ int act(const PlanCommand& command) {
 }
 
 int act(const CheckCommand& command) {
-  return run_suites({suite_of_claim(command.arguments)}, command.options, command.output);
+  const auto [suites, options] = loaded(command);
+  return run_suites(suites, options, command.output);
 }
 
 /// Keeps freed memory in the process. Pictures allocate and free tens of megabytes, and new pages
@@ -102,26 +120,32 @@ int flushed(int code) {
   return code == 0 ? trouble : code;
 }
 
-int guarded(const std::vector<std::string>& arguments, Command& command) {
-  command = parse_command_line(arguments);
+void begin_process() {
   watch_interrupts();
   set_stop_question(interrupted);
-  set_notice([](const std::string& sentence) { say_beside_progress(sentence); });
   set_library_host("/proc/self/exe");
+}
+
+int guarded(const std::vector<std::string>& arguments, Command& command, Messages* ranks) {
+  command = parse_command_line(arguments);
+  begin_process();
+  set_notice([](const std::string& sentence) { say_beside_progress(sentence); });
+  if (auto* run = std::get_if<RunCommand>(&command)) run->options.ranks = ranks;
+  if (auto* check = std::get_if<CheckCommand>(&command)) check->options.ranks = ranks;
   const int code = std::visit([](const auto& c) { return act(c); }, command);
   return interrupted() ? stopped : flushed(code);
 }
 
 }  // namespace
 
-int program(const std::vector<std::string>& arguments) {
+int program(const std::vector<std::string>& arguments, Messages* ranks) {
   // The program starts itself with this word, to keep a library's crash out of the run.
   if (!arguments.empty() && arguments.front() == library_host_word) {
     return host_library({arguments.begin() + 1, arguments.end()});
   }
   Command command;
   try {
-    return guarded(arguments, command);
+    return guarded(arguments, command, ranks);
   } catch (const InputError& e) {
     fmt::print(stderr, "{}", failure_text(e, claim_of(command)));
   } catch (const std::runtime_error& e) {
@@ -133,6 +157,20 @@ int program(const std::vector<std::string>& arguments) {
     fmt::print(stderr, "assay: an estimator threw something that is no std::exception\n");
   }
   return interrupted() ? stopped : trouble;
+}
+
+int program_of_rank(const std::vector<std::string>& arguments, Messages& ranks) {
+  begin_process();
+  serve(ranks, [&](std::optional<std::uint64_t> seed) {
+    const Command command = parse_command_line(arguments);
+    const auto* const check = std::get_if<CheckCommand>(&command);
+    Loaded all = check != nullptr ? loaded(*check) : loaded(std::get<RunCommand>(command));
+    all.options.seed = seed;
+    const auto run = std::make_shared<const PlannedRun>(prepare_run(all.suites, all.options));
+    return PreparedRank{identity_of(all.suites, all.options), setups_of(*run),
+                        threads_of_rank(all.options), run};
+  });
+  return 0;
 }
 
 }  // namespace assay::harness

@@ -123,7 +123,7 @@ reports::Record run_in_arena(const std::vector<Suite>& suites, const RunOptions&
   Listener listener(planned, options, broken);
   if (listener.hear_untested()) {
     sample_in_looks(tests, planned.pools.all(),
-                    {.threads = options.threads,
+                    {.executor = executor_of(options),
                      .cheapest_first = options.fail_fast,
                      .decided = [&](const TestWork& work) { return listener.hear(work); }},
                     progress);

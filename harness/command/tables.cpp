@@ -17,27 +17,16 @@ namespace {
 constexpr std::size_t width = 80;
 
 const char* kept_text(Keeps keeps) {
-  switch (keeps) {
-    case Keeps::moments:
-      return "four moments of a channel";
-    case Keeps::values:
-      return "the values of a channel";
-    case Keeps::points:
-      return "the values of all channels together";
-    case Keeps::cells:
-      return "counts in the cells of the density";
-    case Keeps::powers:
-      return "eight moments of a channel";
-    case Keeps::costs:
-      return "moments of values and costs together";
-    case Keeps::group_variances:
-      return "moments of the channels' summed variances";
-    case Keeps::blocks:
-      return "values and CPU times of 32 replicates";
-    case Keeps::images:
-      return "whole images";
-  }
-  return "";
+  constexpr const char* texts[] = {"four moments of a channel",
+                                   "the values of a channel",
+                                   "the values of all channels together",
+                                   "counts in the cells of the density",
+                                   "eight moments of a channel",
+                                   "moments of values and costs together",
+                                   "moments of the channels' summed variances",
+                                   "values and CPU times of 32 replicates",
+                                   "whole images"};
+  return texts[static_cast<int>(keeps)];
 }
 
 /// A sentence for each property that a user may have to know.

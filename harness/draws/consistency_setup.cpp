@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <span>
-#include <stdexcept>
 #include <vector>
 
 #include "estimators/core/flush_denormals.h"

@@ -12,17 +12,7 @@ namespace assay::harness {
 namespace {
 
 std::size_t coordinates(Domain domain) {
-  switch (domain) {
-    case Domain::interval:
-      return 1;
-    case Domain::square:
-    case Domain::triangle:
-      return 2;
-    case Domain::hemisphere:
-    case Domain::sphere:
-      break;
-  }
-  return 3;
+  return domain == Domain::interval ? 1 : has_directions(domain) ? 3 : 2;
 }
 
 }  // namespace

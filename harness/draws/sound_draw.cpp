@@ -18,31 +18,19 @@ constexpr double least_length_slack = 1e-4;
 constexpr double least_slack = 1e-6;
 constexpr double single_rounding = std::numeric_limits<float>::epsilon();
 
-bool on_directions(const Sampler& sampler) {
-  return sampler.domain() == Domain::hemisphere || sampler.domain() == Domain::sphere;
-}
-
 std::string in_words(const Sampler& sampler, const Point& p) {
   if (sampler.domain() == Domain::interval) return fmt::format("{}", p[0]);
-  if (!on_directions(sampler)) return fmt::format("({}, {})", p[0], p[1]);
+  if (!has_directions(sampler.domain())) return fmt::format("({}, {})", p[0], p[1]);
   return fmt::format("({}, {}, {})", p[0], p[1], p[2]);
 }
 
 std::string domain_in_words(const Sampler& sampler) {
   const auto [low, high] = sampler.bounds();
-  switch (sampler.domain()) {
-    case Domain::interval:
-      return fmt::format("interval [{}, {}]", low, high);
-    case Domain::square:
-      return "square (u and v from 0 to 1)";
-    case Domain::triangle:
-      return "triangle (u >= 0, v >= 0, u + v <= 1)";
-    case Domain::hemisphere:
-      return "hemisphere (z >= 0)";
-    case Domain::sphere:
-      break;
-  }
-  return "sphere";
+  if (sampler.domain() == Domain::interval) return fmt::format("interval [{}, {}]", low, high);
+  constexpr const char* others[] = {"square (u and v from 0 to 1)",
+                                    "triangle (u >= 0, v >= 0, u + v <= 1)", "hemisphere (z >= 0)",
+                                    "sphere"};
+  return others[static_cast<int>(sampler.domain()) - 1];
 }
 
 double length_of(const Point& p) { return std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]); }
@@ -69,22 +57,15 @@ double slack_of_interval(double slack, Range range) {
 /// Settles all coordinates of a point. u + v may exceed 1 by rounding: cells allow for it.
 bool settle(Point& p, const Sampler& sampler) {
   const double slack = std::max(least_slack, sampler.rounding());
-  switch (sampler.domain()) {
-    case Domain::interval: {
-      const auto [low, high] = sampler.bounds();
-      return settle(p[0], {low, high}, slack_of_interval(slack, {low, high}));
-    }
-    case Domain::triangle:
-      if (!(p[0] + p[1] <= 1 + slack)) return false;
-      [[fallthrough]];
-    case Domain::square:
-      return settle(p[0], {0, 1}, slack) && settle(p[1], {0, 1}, slack);
-    case Domain::hemisphere:
-      return settle(p[2], {0, 2}, slack);
-    case Domain::sphere:
-      break;
+  const Domain domain = sampler.domain();
+  if (domain == Domain::interval) {
+    const auto [low, high] = sampler.bounds();
+    return settle(p[0], {low, high}, slack_of_interval(slack, {low, high}));
   }
-  return true;
+  if (domain == Domain::sphere) return true;
+  if (domain == Domain::hemisphere) return settle(p[2], {0, 2}, slack);
+  if (domain == Domain::triangle && !(p[0] + p[1] <= 1 + slack)) return false;
+  return settle(p[0], {0, 1}, slack) && settle(p[1], {0, 1}, slack);
 }
 
 void require_lobe(const NamedSampler& named, int lobe) {
@@ -95,7 +76,7 @@ void require_lobe(const NamedSampler& named, int lobe) {
 }
 
 void require_unit(const NamedSampler& named, const Point& point) {
-  if (!on_directions(*named.sampler)) return;
+  if (!has_directions(named.sampler->domain())) return;
   const double length = length_of(point);
   if (std::abs(length - 1) <= least_length_slack) return;
   if (std::abs(length - 1) <= named.sampler->rounding()) return;
@@ -117,20 +98,12 @@ void require_density(const NamedSampler& named, const SamplerDraw& draw) {
 bool is_plainly_sound(Domain domain, const SamplerDraw& draw) {
   if (draw.lobe != 0 || !(draw.density >= 0)) return false;
   const auto& [x, y, z] = draw.point;
-  const double off = std::abs(x * x + y * y + z * z - 1);
-  switch (domain) {
-    case Domain::hemisphere:
-      return z >= 0 && off <= least_length_slack;
-    case Domain::sphere:
-      return off <= least_length_slack;
-    case Domain::square:
-      return x >= 0 && x <= 1 && y >= 0 && y <= 1;
-    case Domain::triangle:
-      return x >= 0 && y >= 0 && x + y <= 1;
-    case Domain::interval:
-      break;
+  if (has_directions(domain)) {
+    return (z >= 0 || domain == Domain::sphere) &&
+           std::abs(x * x + y * y + z * z - 1) <= least_length_slack;
   }
-  return false;
+  const bool in_square = x >= 0 && x <= 1 && y >= 0 && y <= 1;
+  return domain != Domain::interval && in_square && (domain == Domain::square || x + y <= 1);
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "estimators/ready_made.h"
 #include "harness/families/families.h"
@@ -73,6 +72,22 @@ void require_something(const Question& question) {
   }
 }
 
+/// Only images of as many primaries have one law, or share their random numbers.
+void require_equal_primaries(const Question& question) {
+  std::vector<std::string> words;
+  for (const Subject& side : question.subjects) {
+    if (side.setup->observations()) return;  // files do not tell
+    const auto& given = side.estimator->primaries;
+    const bool one = question.is().of_single_values && !given;
+    words.push_back(given || one ? fmt::format("{}", given.value_or(1)) : "auto");
+  }
+  if (words[0] == words[1]) return;
+  refuse(question, fmt::format("`{}` has `primaries: {}` and `{}` has `primaries: {}`; give both "
+                               "as many",
+                               question.subjects[0].estimator->name, words[0],
+                               question.subjects[1].estimator->name, words[1]));
+}
+
 // ---- Pairs
 
 std::string counts_text(const Question& question) {
@@ -85,33 +100,66 @@ std::string counts_text(const Question& question) {
   return words + ": each picture needs a partner of the same seed on the other side";
 }
 
-/// The number in a file's name that partners have in common, without leading zeros.
-std::string last_number(const std::string& file) {
-  const std::size_t end = file.find_last_of("0123456789");
-  if (end == std::string::npos) return "";
-  const std::size_t before = file.find_last_not_of("0123456789", end);
-  const std::string digits = file.substr(before + 1, end - before);
-  return digits.substr(std::min(digits.find_first_not_of('0'), digits.size() - 1));
+bool is_digit(char c) { return '0' <= c && c <= '9'; }
+
+/// Characters at the beginning that all names have in common, without part of a number.
+std::size_t common_beginning(const std::vector<std::string>& names) {
+  std::size_t length = names[0].size();
+  for (const std::string& name : names) {
+    const auto end = names[0].begin() + static_cast<std::ptrdiff_t>(length);
+    const auto differs = std::mismatch(names[0].begin(), end, name.begin(), name.end()).first;
+    length = static_cast<std::size_t>(differs - names[0].begin());
+  }
+  const bool in_number = std::ranges::any_of(names, [&](const std::string& name) {
+    return length < name.size() && is_digit(name[length]);
+  });
+  while (in_number && length > 0 && is_digit(names[0][length - 1])) --length;
+  return length;
 }
 
-bool are_partners(const std::string& one, const std::string& other) {
-  const std::filesystem::path first(one);
-  const std::filesystem::path second(other);
-  if (first.filename() == second.filename()) return true;
-  const std::string number = last_number(first.stem().string());
-  return !number.empty() && number == last_number(second.stem().string());
+void remove_beginnings(std::vector<std::string>& names) {
+  const std::size_t length = common_beginning(names);
+  for (std::string& name : names) {
+    name.erase(0, length);
+    std::ranges::reverse(name);
+  }
+}
+
+std::string without_leading_zeros(const std::string& text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool leads =
+        (out.empty() || !is_digit(out.back())) && i + 1 < text.size() && is_digit(text[i + 1]);
+    if (text[i] != '0' || !leads) out += text[i];
+  }
+  return out;
+}
+
+/// What tells a side's pictures apart: their names without the beginning and the end that all have
+/// in common.
+std::vector<std::string> keys_of(const Setup& side) {
+  std::vector<std::string> names;
+  for (std::uint64_t i = 0; i < *side.observations(); ++i) {
+    names.push_back(recorded::observation_place(side, {.index = i}));
+  }
+  remove_beginnings(names);
+  remove_beginnings(names);  // which are the ends now
+  for (std::string& name : names) name = without_leading_zeros(name);
+  return names;
 }
 
 void require_partners(const Question& question) {
   const Setup& first = *question.subjects[0].setup;
   const Setup& second = *question.subjects[1].setup;
-  for (std::uint64_t i = 0; i < *first.observations(); ++i) {
-    const std::string one = recorded::observation_place(first, {.index = i});
-    const std::string other = recorded::observation_place(second, {.index = i});
-    if (are_partners(one, other)) continue;
-    refuse(question, fmt::format("`{}` and `{}` have neither name nor number in common: a pair of "
-                                 "one seed has the same file name, or the same last number in it",
-                                 one, other));
+  const std::vector<std::string> keys = keys_of(first);
+  const std::vector<std::string> others = keys_of(second);
+  for (std::uint64_t i = 0; i < keys.size(); ++i) {
+    if (keys[i] == others[i] && std::ranges::count(keys, keys[i]) == 1) continue;
+    refuse(question,
+           fmt::format("`{}` and `{}` are no pair of one seed: where the names of a side differ, "
+                       "they say `{}` and `{}`; a pair says the same there, and no other does",
+                       recorded::observation_place(first, {.index = i}),
+                       recorded::observation_place(second, {.index = i}), keys[i], others[i]));
   }
 }
 
@@ -175,11 +223,6 @@ class ImageTheta : public Theta {
     return too_few_replicates(question, plan);
   }
 
-  std::string lack_of_numbers(const DrawnTest& test, std::size_t channel,
-                              std::span<const ChannelData> data) const override {
-    const std::string reason = Theta::lack_of_numbers(test, channel, data);
-    return reason.empty() ? dependence_of_images(test, data) : reason;
-  }
   ChannelEvidence evidence(const DrawnTest& test, std::size_t,
                            std::span<const ChannelData> data) const override {
     ImageEvidence found = evidence_of_images(test.outcome.question, image_test(test), data);
@@ -231,16 +274,20 @@ class PairedImageTheta final : public ImageTheta {
     const Setup& second = *question.subjects[1].setup;
     if (first.observations() != second.observations()) refuse(question, counts_text(question));
     if (first.observations()) require_partners(question);
-    if (question.subjects[0].estimator->primaries != question.subjects[1].estimator->primaries) {
+    require_equal_primaries(question);
+    if (question.subjects[0].estimator == question.subjects[1].estimator) {
       refuse(question,
-             "a pair shares its random numbers only with as many `primaries` on both "
-             "sides");
+             fmt::format("both sides of the pairs are `{}`, which equals itself; name another "
+                         "estimator, or leave `paired` out",
+                         question.subjects[0].estimator->name));
     }
   }
 };
 
 /// Theta is 0 if both images have one law. It has no size.
 class ImageLawTheta final : public ImageTheta {
+  static constexpr double least_alpha = 1e-5;
+
  public:
   ImageLawTheta()
       : ImageTheta({.joins_channels = true, .of_single_values = true, .of_a_law = true}) {}
@@ -262,6 +309,18 @@ class ImageLawTheta final : public ImageTheta {
              "`distribution(new) == distribution(old)`");
     }
     ImageTheta::check(question);
+    require_equal_primaries(question);
+  }
+  std::uint64_t choose(const Question& question, const FamilyPlace& place, const Pilots& pilots,
+                       std::uint64_t most, Plan& plan) const override {
+    if (place.share.alpha < least_alpha && plan.invalid.empty()) {
+      plan.invalid = fmt::format(
+          "its share of alpha is {:.2g}, for which 1 / alpha labels would be drawn, and a test of "
+          "laws takes a share of {:g} or more: give it more `weight`, or the suite a larger "
+          "`alpha`",
+          place.share.alpha, least_alpha);
+    }
+    return ImageTheta::choose(question, place, pilots, most, plan);
   }
   void check_margin(const Question&, const Margin& margin) const override {
     throw InputError(margin.where,
@@ -270,8 +329,7 @@ class ImageLawTheta final : public ImageTheta {
   }
   ChannelEvidence evidence(const DrawnTest& test, std::size_t,
                            std::span<const ChannelData> data) const override {
-    ImageEvidence found =
-        evidence_of_image_laws(test.outcome.question, {.share = test.outcome.share()}, data);
+    ImageEvidence found = evidence_of_image_laws(test.outcome.question, image_test(test), data);
     return {.evidence = std::move(found.evidence), .image = std::move(found.outcome)};
   }
 };

@@ -14,7 +14,6 @@
 #include "harness/plan/sizes.h"
 #include "harness/question/question_sources.h"
 #include "harness/run/evaluate.h"
-#include "harness/theta/methods.h"
 #include "stats/basics/sorted.h"
 #include "stats/cells/chi_square_fit.h"
 #include "stats/gates/quantisation_gate.h"

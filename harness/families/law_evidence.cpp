@@ -268,12 +268,11 @@ DeclaredLaw declared_law(const Question& question, std::size_t channel) {
   const auto* draws = dynamic_cast<const SamplerSetup*>(question.subjects[0].setup.get());
   DeclaredLaw declared;
   if (!question.law.name.empty()) {
-    declared.law = {.cdf = law_cdf(question.law), .left_limit = {}, .of_sorted = {}};
+    declared.law = {.cdf = law_cdf(question.law)};
   } else {
     const stats::TabulatedLaw& table = draws->marginal_law(question.channel_name(channel));
-    declared.law = {.cdf = std::cref(table), .left_limit = {}, .of_sorted = [&table](auto values) {
-                      return table.of_sorted(values);
-                    }};
+    declared.law = {.cdf = std::cref(table),
+                    .of_sorted = [&table](auto values) { return table.of_sorted(values); }};
     declared.error = table.error;
   }
   if (draws != nullptr) {

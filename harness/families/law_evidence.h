@@ -5,7 +5,6 @@
 // point.
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 

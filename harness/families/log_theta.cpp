@@ -111,8 +111,7 @@ RatioSide without_truth(const stats::Influence& influence) {
 Evidence by_influence(const Method&, const Question& question, std::size_t channel,
                       std::span<const ChannelData> data) {
   const auto& family = dynamic_cast<const LogTheta&>(*question.theta);
-  LogRatio ratio{.sides = {},
-                 .log_null = family.log_null(question, channel, data),
+  LogRatio ratio{.log_null = family.log_null(question, channel, data),
                  .sign = family.is_inverse() ? -1.0 : 1.0};
   std::vector<Influence> known;
   double variance = 0;

@@ -8,7 +8,6 @@
 #include "estimators/ready_made.h"
 #include "harness/families/families.h"
 #include "harness/families/mean_evidence.h"
-#include "harness/plan/independence.h"
 #include "harness/plan/pilot_shape.h"
 #include "harness/plan/sizes.h"
 #include "harness/question/question_sources.h"

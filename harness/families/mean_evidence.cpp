@@ -8,10 +8,8 @@
 #include <functional>
 #include <limits>
 #include <memory>
-#include <vector>
 
 #include "harness/question/question_sources.h"
-#include "harness/theta/constant.h"
 #include "harness/theta/evidence.h"
 #include "harness/theta/theta.h"
 #include "stats/basics/mean_rounding.h"

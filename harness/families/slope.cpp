@@ -9,7 +9,6 @@
 
 #include "harness/families/families.h"
 #include "harness/families/log_theta.h"
-#include "harness/plan/pilot_shape.h"
 #include "harness/plan/sizes.h"
 #include "harness/question/question_sources.h"
 #include "harness/run/evaluate.h"
@@ -371,7 +370,7 @@ Question bind_slope(const TestEntry& test, const Estimators& estimators) {
   const Claim& claim = test.claim;
   require_slope(claim);
   require_counted(test);
-  Question question{.test = &test, .theta = claim.left.row->slope, .subjects = {}};
+  Question question{.test = &test, .theta = claim.left.row->slope};
   const PreparedEstimator& estimator = estimator_of(claim.left.source, estimators);
   for (const Value& value : test.over->values) {
     auto point =

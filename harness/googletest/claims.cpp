@@ -3,7 +3,6 @@
 #include <cstdlib>
 #include <map>
 #include <memory>
-#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -19,7 +18,6 @@
 #include "reports/words/describe.h"
 #include "reports/words/evidence.h"
 #include "reports/words/number.h"
-#include "reports/words/summary.h"
 
 namespace assay::googletest {
 namespace {
@@ -118,14 +116,10 @@ harness::PreparedEstimator prepared(const Source& source, const std::string& str
           .listed = source.name,
           .entry = &setup->entry(),
           .setup = setup,
-          .parameters = "",
-          .folder = "",
           .key_plugin = "googletest",
           .key_parameters = stream,
           .primaries = source.averages ? std::optional<std::uint64_t>() : 1,
-          .original = nullptr,
-          .where = {},
-          .given = {}};
+          .original = nullptr};
 }
 
 /// One claim with its sources and margins.
@@ -166,8 +160,8 @@ reports::Test tested(const std::string& claim, const Asked& asked, const ClaimBu
   std::vector<const harness::PreparedEstimator*> used;
   for (const harness::Subject& subject : question.subjects) used.push_back(subject.estimator);
   harness::Silence silence;
-  const harness::Pilots pilots =
-      harness::run_pilots(used, harness::pilot_run_of({question}, seed, 0), silence);
+  const harness::Pilots pilots = harness::run_pilots(
+      used, harness::pilot_run_of({question}, seed, harness::threads()), silence);
   TestWork work{.outcome = {.question = question,
                             .place = place[0],
                             .plan = harness::plan_test(

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "estimators/stream.h"
+#include "harness/base/interrupt.h"
 #include "harness/base/parallel.h"
 #include "harness/image/image_uniform.h"
 #include "harness/sampling/element_sums.h"
@@ -169,16 +170,29 @@ std::string all_alike(const Question& question) {
 
 /// Pictures of files that are alike and were not refused have no noise, such as a layer of depth.
 /// What is drawn should vary.
-void require_spread(const Question& question, bool any, const stats::ImageDistance& distance) {
-  if (any && distance.bias_variance > 0) return;
+void require_spread(const Question& question, bool varies) {
   const bool files = std::ranges::all_of(question.subjects, [](const Subject& side) {
     return side.setup->observations().has_value();
   });
-  if (files && !any) return;
+  if (varies || files) return;
   throw stats::ZeroVariance(fmt::format(
       "{}: without spread nothing can be said of what was never seen; see that the seed changes "
       "the image, take fewer `primaries`, or more observations",
       all_alike(question)));
+}
+
+template <class Real>
+bool varies(const stats::ImageStack<Real>& stack) {
+  return std::ranges::any_of(
+      stack.images, [&](const auto& image) { return !std::ranges::equal(image, stack.images[0]); });
+}
+
+template <class Real>
+void require_independent(const ImageTest& test, const ImagePair<Real>& pair) {
+  if (!test.require_independent) return;
+  test.require_independent(pair.with([](const auto& first, const auto& second) {
+    return stats::image_dependence(stats::pair_of(first, second), on_all_threads);
+  }));
 }
 
 /// Tests the pair and measures its distance.
@@ -186,12 +200,14 @@ template <class Real>
 stats::ImageDistance look_at(const Question& question, const ImageTest& test,
                              const ImagePair<Real>& pair, ImageOutcome& outcome) {
   stats::check::replicates("image", pair.fewest_replicates());
+  require_independent(test, pair);
   const bool relative = question.theta->is_relative(question, 0);
   const auto errors =
       test.independent ? stats::ElementErrors::independent : stats::ElementErrors::unknown;
   const stats::ImageDistance distance = distance_of(pair, relative, errors);
   const VaryingPart varying(question, pair);
-  require_spread(question, varying.any(), distance);
+  const auto* const partners = pair.subtracted();
+  require_spread(question, varying.any() || (partners != nullptr && varies(*partners)));
   outcome.unseen = varying.unseen();
   outcome.replicates = pair.most_replicates();
   look_at_family(varying, pair.extent(), outcome);
@@ -203,12 +219,12 @@ stats::ImageDistance look_at(const Question& question, const ImageTest& test,
 
 /// The same for pictures that were looked at while reading. They declare neither rounding nor
 /// range, so an element that never varied stays as it is.
-stats::ImageDistance look_at(const Question& question, const ImageTest&, const PictureLook& look,
-                             ImageOutcome& outcome) {
+stats::ImageDistance look_at(const Question& question, const ImageTest& test,
+                             const PictureLook& look, ImageOutcome& outcome) {
+  if (test.require_independent) test.require_independent(look.dependence);
   const stats::ImageExtent extent = extent_of(*question.subjects[0].image);
   const bool relative = question.theta->is_relative(question, 0);
   const stats::ImageDistance distance = in_units_of_margin(look.distance, extent, relative);
-  require_spread(question, look.family.tested > 0, distance);
   outcome.replicates = look.pictures;
   outcome.family = look.family;
   outcome.z = look.z;
@@ -224,9 +240,10 @@ std::string range_text(std::int64_t first, std::uint32_t count, const char* name
 
 // ---- Laws
 
+// A small p-value is known to a third: ten labels are as extreme. Beyond so many labels, one is.
 constexpr double least_permutations = 999;
-// A test that rejects draws so many times the fewest that can.
 constexpr double permutations_over_fewest = 10;
+constexpr double usual_permutations = 9999;
 
 /// All subsets of one size are alike: the first steps of Fisher and Yates's shuffle.
 std::vector<std::uint32_t> drawn_subset(StreamKey key, std::uint64_t index, std::size_t count,
@@ -242,30 +259,45 @@ std::vector<std::uint32_t> drawn_subset(StreamKey key, std::uint64_t index, std:
   return all;
 }
 
-std::string seen_text(const stats::ImageLawFinding& most) {
-  const bool more = most.z > 0;
+std::string seen_text(const stats::ImageLawFinding& most, const std::string& side) {
+  const auto text = [&](const char* what) {
+    return fmt::format("the {} {} in {}", what, most.z > 0 ? "larger" : "smaller", side);
+  };
   switch (most.score) {
     case stats::ImageScore::value:
-      return more ? "the mean is larger" : "the mean is smaller";
+      return text("mean is");
     case stats::ImageScore::rank:
-      return more ? "the values are mostly larger" : "the values are mostly smaller";
+      return text("values are mostly");
     case stats::ImageScore::spread:
       break;
   }
-  return more ? "the values spread more" : "the values spread less";
+  return text("spread of the values is");
+}
+
+std::size_t permutations_at(double alpha) {
+  const double many = std::min(permutations_over_fewest / alpha - 1, usual_permutations);
+  return static_cast<std::size_t>(std::max({least_permutations, many, std::ceil(1 / alpha) - 1}));
+}
+
+void until_interrupted(std::size_t count, const std::function<void(std::size_t)>& work) {
+  on_all_threads(count, [&](std::size_t i) {
+    if (!interrupted()) work(i);
+  });
+  stop_if_interrupted();
 }
 
 template <class Real>
 stats::ImageLawTest law_test_of(const Question& question, const ImageTest& test,
                                 const ImagePair<Real>& pair) {
+  require_independent(test, pair);
+  require_spread(question, varies(pair.first()) || varies(pair.second()));
   return stats::image_law_test(
       pair.first(), pair.second(),
-      {.permutations = static_cast<std::size_t>(
-           std::max(least_permutations, permutations_over_fewest / test.share.alpha - 1)),
-       .draw = [key = question.labels](
+      {.permutations = permutations_at(test.share.alpha),
+       .draw = [key = test.labels](
                    std::uint64_t index, std::size_t count,
                    std::size_t size) { return drawn_subset(key, index, count, size); },
-       .for_each = on_all_threads});
+       .for_each = until_interrupted});
 }
 
 }  // namespace
@@ -286,7 +318,7 @@ ImageEvidence evidence_of_image_laws(const Question& question, const ImageTest& 
                            .adjusted_log_p = law.log_p};
   result.outcome.family = {
       .log_p = law.log_p, .winner = most, .groups = {most}, .tested = extent.elements()};
-  result.outcome.seen = seen_text(law.most);
+  result.outcome.seen = seen_text(law.most, question.subjects[0].estimator->name);
   result.outcome.z = std::move(law.z);
   const stats::TestResult equal{
       .statistic = law.most.z,
@@ -294,14 +326,14 @@ ImageEvidence evidence_of_image_laws(const Question& question, const ImageTest& 
       .log_p_lower = 0,
       .log_p_upper = law.log_p,
       .exactness = stats::Exactness::exact};
-  result.evidence = {.estimate = std::abs(law.most.z),
+  constexpr double unknown = std::numeric_limits<double>::infinity();
+  result.evidence = {.estimate = unknown,
                      .at = [equal](double) { return equal; },
                      .interval =
-                         [](double confidence) {
-                           constexpr double unknown = std::numeric_limits<double>::infinity();
+                         [=](double confidence) {
                            return stats::Interval{-unknown, unknown, confidence};
                          },
-                     .quantity = "largest z of a cell",
+                     .quantity = "difference of the laws",
                      .distance = true};
   return result;
 }

@@ -5,10 +5,13 @@
 // The family of cells of every size and alternating sums tests theta = 0 (stats/image_pyramid.h).
 // The unbiased squared bias tests other values (stats/image_equivalence.h).
 
+#include <functional>
+
 #include "harness/image/image_constants.h"
 #include "harness/image/image_pair.h"
 #include "harness/theta/evidence.h"
 #include "harness/theta/family.h"
+#include "stats/images/image_dependence.h"
 #include "stats/images/image_family.h"
 
 namespace assay::harness {
@@ -20,6 +23,9 @@ struct ImageTest {
   ErrorShare share = {};              ///< Share of this look.
   bool independent = true;            ///< False: an image's elements depend on each other.
   const PictureLook* look = nullptr;  ///< Look at pictures, taken while reading.
+  StreamKey labels = {};              ///< Of a permutation test.
+  /// Throws std::domain_error if images depend on each other.
+  std::function<void(const stats::ImageDependence&)> require_independent = {};
 };
 
 struct ImageOutcome {
@@ -27,7 +33,7 @@ struct ImageOutcome {
   std::vector<UnseenElement> unseen = {};
   std::vector<double> z = {};  ///< For every element: Welch's, or of the bound on the unseen.
   std::size_t replicates = 0;  ///< The larger side's.
-  std::string seen = {};       ///< What differs at the place, of a test of laws.
+  std::string seen = {};       ///< What differs at the place and on which side, of laws.
   double wanted = 0;           ///< Replicates that would decide, roughly; 0: none.
   double uniform_error = 0;    ///< Standard error of a theta that is the same everywhere.
 };
@@ -37,7 +43,7 @@ struct ImageEvidence {
   ImageOutcome outcome;
 };
 
-/// Throws std::domain_error for fewer than 16 replicates, and if nothing varies.
+/// Throws std::domain_error for fewer than 16 replicates, and if nothing varies that is drawn.
 ImageEvidence evidence_of_images(const Question& question, const ImageTest& test,
                                  std::span<const ChannelData> data);
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "harness/language/claim_lexer.h"
 #include "harness/language/laws.h"

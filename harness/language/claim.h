@@ -10,7 +10,6 @@
 //              cost | distribution | integral | inconsistency
 //   relation = "==" | "<=" | ">=" | "<" | ">" | "within" margin "of"
 
-#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>

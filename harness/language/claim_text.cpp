@@ -1,28 +1,13 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "harness/language/claim.h"
 
 namespace assay::harness {
 
 const char* to_string(Relation relation) {
-  switch (relation) {
-    case Relation::equal:
-      return "==";
-    case Relation::at_most:
-      return "<=";
-    case Relation::at_least:
-      return ">=";
-    case Relation::less:
-      return "<";
-    case Relation::greater:
-      return ">";
-    case Relation::within:
-      return "within";
-  }
-  return "";
+  constexpr const char* names[] = {"==", "<=", ">=", "<", ">", "within"};
+  return names[static_cast<int>(relation)];
 }
 
 namespace {
@@ -75,9 +60,8 @@ std::string to_string(const Source& source) {
 }
 
 std::string to_string(const Quantity& quantity) {
-  const std::string inner =
-      fmt::format("{}({}{})", quantity.row->word, to_string(quantity.source),
-                  arguments_text(quantity.arguments));
+  const std::string inner = fmt::format("{}({}{})", quantity.row->word, to_string(quantity.source),
+                                        arguments_text(quantity.arguments));
   return quantity.slope ? fmt::format("slope({})", inner) : inner;
 }
 

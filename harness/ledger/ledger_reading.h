@@ -2,7 +2,6 @@
 
 // Combines the nights of a series.
 
-#include <optional>
 #include <vector>
 
 #include "harness/ledger/ledger_book.h"

@@ -1,12 +1,10 @@
 #include "harness/pilot/pilot.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "estimators/ready_made.h"
 #include "harness/base/interrupt.h"
 #include "harness/sampling/recorded_run.h"
-#include "harness/sampling/scheduler.h"
 #include "harness/theta/method.h"
 #include "harness/theta/methods.h"
 #include "stats/images/image.h"
@@ -215,7 +213,7 @@ Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators, const
   const auto named = pilot_pools(estimators, run);
   std::vector<std::shared_ptr<Pool>> pools;
   for (const auto& [name, pool] : named) pools.push_back(pool);
-  draw_all(pools, {.threads = run.threads, .phase = "pilot"}, progress);
+  draw_all(pools, {.executor = run.executor, .phase = "pilot"}, progress);
   Pilots pilots;
   if (interrupted()) return pilots;
   for (const auto& [name, pool] : named) pilots.add(name, read(*pool));
@@ -232,8 +230,8 @@ std::vector<const Subject*> piloted_draws(const Question& question) {
 }
 
 PilotRun pilot_run_of(const std::vector<Question>& questions, const std::vector<bool>& chosen,
-                      std::uint64_t seed, unsigned threads) {
-  PilotRun run{.seed = seed, .threads = threads, .with_cost = costly(questions)};
+                      std::uint64_t seed, std::shared_ptr<Executor> executor) {
+  PilotRun run{.seed = seed, .executor = std::move(executor), .with_cost = costly(questions)};
   for (std::size_t i = 0; i < questions.size(); ++i) {
     if (!chosen[i]) continue;
     for (const Subject* subject : piloted_draws(questions[i])) run.draws.push_back(subject);
@@ -242,8 +240,9 @@ PilotRun pilot_run_of(const std::vector<Question>& questions, const std::vector<
 }
 
 PilotRun pilot_run_of(const std::vector<Question>& questions, std::uint64_t seed,
-                      unsigned threads) {
-  return pilot_run_of(questions, std::vector<bool>(questions.size(), true), seed, threads);
+                      std::shared_ptr<Executor> executor) {
+  return pilot_run_of(questions, std::vector<bool>(questions.size(), true), seed,
+                      std::move(executor));
 }
 
 }  // namespace assay::harness

@@ -14,7 +14,7 @@
 #include "harness/base/progress.h"
 #include "harness/question/question.h"
 #include "harness/sampling/element_sums.h"
-#include "harness/sampling/pool.h"
+#include "harness/sampling/executor.h"
 
 namespace assay::harness {
 
@@ -79,7 +79,7 @@ class Pilots {
 
 struct PilotRun {
   std::uint64_t seed;
-  unsigned threads;
+  std::shared_ptr<Executor> executor = threads();
   std::set<std::string> with_cost = {};    ///< estimators whose costs are needed
   std::vector<const Subject*> draws = {};  ///< samplers whose draws are needed too
 };
@@ -123,8 +123,9 @@ std::vector<const Subject*> piloted_draws(const Question& question);
 /// The pilots of a suite's questions. All questions decide what a pilot keeps, so a selection does
 /// not change it. The chosen ones decide whether a sampler's draws are piloted.
 PilotRun pilot_run_of(const std::vector<Question>& questions, const std::vector<bool>& chosen,
-                      std::uint64_t seed, unsigned threads);
+                      std::uint64_t seed, std::shared_ptr<Executor> executor);
 /// The same with all chosen.
-PilotRun pilot_run_of(const std::vector<Question>& questions, std::uint64_t seed, unsigned threads);
+PilotRun pilot_run_of(const std::vector<Question>& questions, std::uint64_t seed,
+                      std::shared_ptr<Executor> executor);
 
 }  // namespace assay::harness

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "harness/plan/independence.h"
 #include "harness/plan/sizes.h"

@@ -8,7 +8,6 @@
 #include "harness/base/parallel.h"
 #include "harness/image/image_pair.h"
 #include "harness/plan/independence.h"
-#include "harness/plan/repeated_images.h"
 #include "harness/plan/sizes.h"
 #include "harness/sampling/image_views.h"
 #include "harness/theta/theta.h"
@@ -129,7 +128,6 @@ bool plans_replicates(const Question& question) {
 std::uint64_t choose_for_image(const Question& question, const Pilots& pilots, std::uint64_t most,
                                Plan& plan) {
   if (const Pilot* const pilot = pilot_of(question.subjects[0], pilots)) plan.look = pilot->look;
-  note_repeated_images(question, pilots, plan);
   const bool in_looks = plans_replicates(question) && !question.test->secondaries;
   if (!in_looks || !all_pictured(question, pilots)) return stats::least_replicates;
   // Rows have one look, whose size nothing plans.

@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <memory>
 #include <vector>
 
 #include "estimators/ready_made.h"
 #include "harness/plan/gate_text.h"
-#include "harness/plan/sizes.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/constant.h"
 #include "harness/theta/gate.h"

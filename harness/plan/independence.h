@@ -4,7 +4,6 @@
 // and only their order shows it.
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>

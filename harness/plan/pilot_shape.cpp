@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/plan/image_plan.h"
 #include "harness/plan/independence.h"
-#include "harness/plan/sizes.h"
 #include "harness/question/question_sources.h"
 #include "harness/sampling/beyond_doubles.h"
 #include "harness/theta/constant.h"

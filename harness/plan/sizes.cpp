@@ -4,8 +4,6 @@
 #include <cmath>
 
 #include "estimators/ready_made.h"
-#include "harness/plan/independence.h"
-#include "harness/plan/looks.h"
 #include "harness/theta/decision.h"
 #include "stats/tails/tails.h"
 

@@ -22,8 +22,9 @@ struct Subject {
   std::shared_ptr<const Setup> setup;
   std::string purpose = "";  ///< Separates a sampler's streams from its estimator's.
   std::uint32_t copy = 0;
-  std::vector<std::size_t> channels;  ///< The channels that the claim is about.
-  bool averages = true;               ///< True if the variance falls like 1 / primaries.
+  std::optional<StreamKey> stream = {};  ///< Given by a record, of a replay.
+  std::vector<std::size_t> channels;     ///< The channels that the claim is about.
+  bool averages = true;                  ///< True if the variance falls like 1 / primaries.
   std::optional<ImageShape> image = {};
   /// Owns `estimator` if it is a point of a sweep.
   std::shared_ptr<const PreparedEstimator> own = nullptr;
@@ -70,7 +71,6 @@ struct Question {
   /// The truth for each subject and channel, about which a mean squared error in an efficiency or a
   /// bias in a slope is taken. Empty: the variance, or the mean itself.
   std::vector<std::vector<Constant>> truths = {};
-  StreamKey labels = {};           ///< Of the random labels of a permutation test.
   std::vector<double> sizes = {};  ///< For a slope: the values of the swept parameter.
 
   const ThetaTraits& is() const;

@@ -116,10 +116,8 @@ const PreparedEstimator& estimator_of(const Source& source, const Estimators& es
 }
 
 Subject estimates(const Source& source, const PreparedEstimator& estimator) {
-  Subject subject{.estimator = &estimator,
-                  .setup = estimator.setup,
-                  .channels = {},
-                  .averages = estimator.nature().averages};
+  Subject subject{
+      .estimator = &estimator, .setup = estimator.setup, .averages = estimator.nature().averages};
   if (auto image = estimator.setup->image()) {
     subject.channels = elements_named(*image, source.part);
     if (!subject.channels.empty()) subject.image = std::move(image);
@@ -154,7 +152,6 @@ Subject draws(const Source& source, const Estimators& estimators, Draws what) {
   Subject subject{.estimator = &estimator,
                   .setup = sampler_setup(*named, source.where),
                   .purpose = named->name,
-                  .channels = {},
                   .averages = false};
   if (what == Draws::consistency) {
     subject.setup = consistency_setup(*named, source.where);
@@ -217,6 +214,7 @@ std::string image_name(const ImageShape& shape) {
 }
 
 StreamKey stream_of(const Subject& subject, std::uint64_t seed) {
+  if (subject.stream) return *subject.stream;
   return subject.setup->data_stream().value_or(
       key_of(*subject.estimator, seed, subject.copy, subject.purpose));
 }

@@ -2,7 +2,6 @@
 
 // Parts of a claim, bound to a suite's estimators.
 
-#include <map>
 #include <string>
 #include <vector>
 

@@ -155,11 +155,9 @@ void add_cells(const DrawnTest& drawn, reports::Test& test) {
                        std::span<const double> values) {
     reports::Map map{.name = name,
                      .source = axes,
-                     .file = "",
                      .width = width,
                      .height = values.size() / width,
-                     .components = {"draws"},
-                     .texels = {}};
+                     .components = {"draws"}};
     for (const double value : values) map.texels.values.push_back(static_cast<float>(value));
     test.maps.push_back(std::move(map));
   };

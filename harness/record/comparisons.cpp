@@ -18,8 +18,8 @@ stats::Moments moments_of(const reports::Moments& recorded) {
           .m2 = recorded.m2,
           .m3 = recorded.m3,
           .m4 = recorded.m4,
-          .minimum = recorded.minimum,
-          .maximum = recorded.maximum,
+          .minimum = recorded.min,
+          .maximum = recorded.max,
           .nonzero = recorded.nonzero,
           .rest = recorded.rest};
 }
@@ -103,8 +103,8 @@ reports::Moments recorded(const stats::Moments& moments) {
           .m2 = moments.m2,
           .m3 = moments.m3,
           .m4 = moments.m4,
-          .minimum = moments.minimum,
-          .maximum = moments.maximum,
+          .min = moments.minimum,
+          .max = moments.maximum,
           .nonzero = moments.nonzero,
           .rest = moments.rest};
 }

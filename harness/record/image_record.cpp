@@ -47,9 +47,7 @@ reports::Image image_of(const ImageOutcome& outcome, const ImageShape& shape) {
                        .replicates = outcome.replicates,
                        .tested = family.tested,
                        .constant = family.equal_constants - outcome.unseen.size(),
-                       .unseen = outcome.unseen.size(),
-                       .winner = {},
-                       .groups = {}};
+                       .unseen = outcome.unseen.size()};
   if (family.groups.empty()) return image;
   image.winner = finding_of(family.winner, shape);
   for (const stats::ImageFinding& group : family.groups) {
@@ -68,13 +66,8 @@ float narrow(double value) {
 template <class Value>
 reports::Map map_of(const char* name, const ImageShape& shape, const Value& value) {
   constexpr std::size_t at_a_time = std::size_t{1} << 16;
-  reports::Map map{.name = name,
-                   .source = "",
-                   .file = "",
-                   .width = shape.width,
-                   .height = shape.height,
-                   .components = shape.components,
-                   .texels = {}};
+  reports::Map map{
+      .name = name, .width = shape.width, .height = shape.height, .components = shape.components};
   std::vector<float>& texels = map.texels.values;
   texels.resize(shape.elements());
   on_all_threads((texels.size() + at_a_time - 1) / at_a_time, [&](std::size_t part) {
@@ -186,7 +179,7 @@ reports::Sample image_sample(const TestOutcome& outcome, std::size_t subject, co
                          .plugin = side.estimator->entry->information.name,
                          .parameters = side.estimator->parameters,
                          .channel = image_name(*side.image),
-                         .stream = stream_text(drawn.pool()),
+                         .stream = stream_text(drawn.pool().key()),
                          .primaries = outcome.plan.primaries[subject],
                          .secondaries = outcome.secondaries(subject)};
   const Extremes extremes = extremes_of(summary, side.channels);
@@ -203,8 +196,8 @@ reports::Sample image_sample(const TestOutcome& outcome, std::size_t subject, co
   if (means.count > 0) {
     sample.mean = number(means.mean);
     sample.variance = number(variance / static_cast<double>(means.count));
-    sample.minimum = number(extremes.minimum);
-    sample.maximum = number(extremes.maximum);
+    sample.min = number(extremes.minimum);
+    sample.max = number(extremes.maximum);
   }
   sample.cost = cost_of(summary);
   return sample;

@@ -1,7 +1,5 @@
 #include "harness/record/last_run.h"
 
-#include <fmt/format.h>
-
 #include <filesystem>
 
 #include "harness/base/environment_variables.h"

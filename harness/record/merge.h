@@ -16,11 +16,10 @@ struct ShardFile {
 };
 
 /// The record of the whole run, with Holm over each suite's family. It equals one run's record byte
-/// for byte, except for suites marked `timed` and what `reports::without_times` clears. The first
-/// shard gives `started`; the run's `seconds` are the sum. Shards may come in any order. The tests
-/// of a missing shard are skipped. InputError with file names for a record that is no shard, and
-/// for a doubled shard. InputError also for different suites, data files, seeds, options, versions
-/// or instruction sets.
+/// for byte, except for suites marked `timed`, times and threads. The first shard gives `started`;
+/// the run's `seconds` are the sum. Shards may come in any order. The tests of a missing shard are
+/// skipped. InputError with file names for a record that is no shard, and for a doubled shard.
+/// InputError also for different suites, data files, seeds, options, versions or instruction sets.
 reports::Record merge(std::vector<ShardFile> shards);
 
 /// The shards that are not there, in words; "" if all are.

@@ -60,7 +60,7 @@ class RunReports {
 
  private:
   const Output& output_;
-  std::FILE* stream_;  ///< Where the console is read; null if a file has it.
+  std::FILE* stream_;  ///< Terminal or log that shows the console; null if a file has it.
   reports::Console console_;
 };
 

@@ -20,20 +20,9 @@ using reports::Estimate;
 using reports::Number;
 
 const char* bias_name(std::optional<BiasClass> bias) {
-  if (!bias) return "unknown";
-  switch (*bias) {
-    case BiasClass::unbiased:
-      return "unbiased";
-    case BiasClass::inverse_primaries:
-      return "O(1/M)";
-    case BiasClass::inverse_bootstrap:
-      return "O(1/bootstrap)";
-    case BiasClass::start_up:
-      return "start-up";
-    case BiasClass::reconstruction:
-      break;
-  }
-  return "reconstruction";
+  constexpr const char* names[] = {"unbiased", "O(1/M)", "O(1/bootstrap)", "start-up",
+                                   "reconstruction"};
+  return bias ? names[static_cast<int>(*bias)] : "unknown";
 }
 
 double per_primary(const Picture& picture) {
@@ -106,7 +95,7 @@ reports::EstimatorSummary summarise(const Picture& picture, const SuiteRun& run)
       .bias = picture.estimator->setup->observations() ? "unknown" : bias_name(nature.bias),
       .original = information.original,
       .defect = information.defect,
-      .stream = stream_text(*picture.pool),
+      .stream = stream_text(picture.pool->key()),
       .primaries = picture.pool->primaries(),
       .secondaries = count,
       .confidence = confidence,
@@ -147,8 +136,6 @@ reports::Cost cost_of(const Summary& summary) {
           .seconds = summary.seconds};
 }
 
-std::string stream_text(const Pool& pool) { return fmt::format("{:016x}", pool.key().bits); }
-
 Pictured pictured(const Picture& picture, const SuiteRun& run) {
   const std::uint64_t count = shown_by(picture, run);
   const Sample sample = picture.pool->sample(count);
@@ -163,8 +150,7 @@ Pictured pictured(const Picture& picture, const SuiteRun& run) {
                 .secondaries = count,
                 .drawn = drawn != nullptr,
                 .averaged = per_primary(picture),
-                .image = picture.pool->setup()->image().has_value(),
-                .channels = {}}};
+                .image = picture.pool->setup()->image().has_value()}};
   if (result.shown.image || drawn == nullptr) return result;
   const std::vector<Channel> channels = picture.pool->setup()->channels();
   for (std::size_t i = 0; i < channels.size(); ++i) {

@@ -17,7 +17,4 @@ std::vector<std::string> compared_by(const Question& question);
 
 reports::Cost cost_of(const Summary& summary);
 
-/// The pool's stream in the record: 16 hexadecimal digits.
-std::string stream_text(const Pool& pool);
-
 }  // namespace assay::harness

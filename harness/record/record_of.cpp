@@ -8,7 +8,6 @@
 
 #include "estimators/rendered.h"
 #include "harness/base/numbers.h"
-#include "harness/base/quantiles.h"
 #include "harness/record/cell_record.h"
 #include "harness/record/environment.h"
 #include "harness/record/image_record.h"
@@ -18,6 +17,7 @@
 #include "harness/run/pools.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/methods.h"
+#include "stats/tails/tails.h"
 
 namespace assay::harness {
 namespace {
@@ -25,17 +25,27 @@ namespace {
 using reports::Number;
 
 reports::Verdict expected_verdict(Expectation expect) {
-  switch (expect) {
-    case Expectation::pass:
-      return reports::Verdict::pass;
-    case Expectation::fail:
-      return reports::Verdict::fail;
-    case Expectation::invalid:
-      return reports::Verdict::invalid;
-    case Expectation::error:
-      break;
+  using enum reports::Verdict;
+  constexpr reports::Verdict verdicts[] = {pass, fail, invalid, error};
+  return verdicts[static_cast<int>(expect)];
+}
+
+/// At most 99 points of a normal quantile plot of the values, at the probabilities (i - 1/2) / k.
+std::vector<reports::QuantilePoint> quantile_points(std::span<const double> values) {
+  std::vector<double> sorted;
+  std::copy_if(values.begin(), values.end(), std::back_inserter(sorted),
+               [](double value) { return std::isfinite(value); });
+  std::sort(sorted.begin(), sorted.end());
+  constexpr std::size_t most_points = 99;
+  const std::size_t points = std::min(sorted.size(), most_points);
+  std::vector<reports::QuantilePoint> plot;
+  for (std::size_t i = 0; i < points; ++i) {
+    const double probability = (static_cast<double>(i) + 0.5) / static_cast<double>(points);
+    const auto rank = static_cast<std::size_t>(probability * static_cast<double>(sorted.size()));
+    plot.push_back({.normal = stats::normal_quantile({stats::Tail::lower, std::log(probability)}),
+                    .observed = sorted[rank]});
   }
-  return reports::Verdict::error;
+  return plot;
 }
 
 reports::Sample sample_of(const TestOutcome& outcome, std::size_t subject, const Drawn& drawn,
@@ -51,7 +61,7 @@ reports::Sample sample_of(const TestOutcome& outcome, std::size_t subject, const
                          .plugin = side.estimator->entry->information.name,
                          .parameters = side.estimator->parameters,
                          .channel = side.setup->channels()[index].name,
-                         .stream = stream_text(drawn.pool()),
+                         .stream = stream_text(drawn.pool().key()),
                          .primaries = outcome.plan.primaries[subject],
                          .secondaries = summary.count};
   sample.nonzero = moments.nonzero;
@@ -71,8 +81,8 @@ reports::Sample sample_of(const TestOutcome& outcome, std::size_t subject, const
   if (outcome.plan.method.keeps == Keeps::cells) return sample;
   if (moments.count > 0) {
     sample.mean = number(moments.mean);
-    sample.minimum = number(moments.minimum);
-    sample.maximum = number(moments.maximum);
+    sample.min = number(moments.minimum);
+    sample.max = number(moments.maximum);
   }
   if (moments.count > 1) sample.variance = number(moments.variance());
   if (spread) {
@@ -226,6 +236,7 @@ reports::Test head_of(const TestEntry& entry, const std::string& file) {
           .over = over_text(entry),
           .reference = reference_text(entry),
           .cost = cost_text(entry),
+          .paired = entry.paired,
           .expected = expected_verdict(entry.expect)};
 }
 

@@ -33,7 +33,7 @@ bool is_broken(const TestWork& work);
 
 reports::Record record_of(const SuiteRuns& runs, const RunOptions& options);
 
-/// What is known of a suite before its tests.
+/// A suite without its tests.
 reports::Suite head_of(const SuiteRun& run);
 
 }  // namespace assay::harness

@@ -71,6 +71,7 @@ void read_keys(const reports::Test& recorded, TestEntry& test) {
     keys.emplace_back("reference", Value::scalar(recorded.reference, where));
   }
   if (!recorded.cost.empty()) keys.emplace_back("cost", Value::scalar(recorded.cost, where));
+  if (recorded.paired) keys.emplace_back("paired", Value::scalar("true", where));
   read_test_keys({}, Value::map(std::move(keys), where), test);
 }
 
@@ -177,8 +178,7 @@ Pilots pilots_of(const Rebuilt& rebuilt, const Question& question, std::uint64_t
   std::vector<const PreparedEstimator*> all;
   for (const auto& [name, estimator] : rebuilt.estimators) all.push_back(&estimator);
   const std::unique_ptr<Progress> progress = make_progress(false);
-  Pilots pilots =
-      run_pilots(all, {.seed = seed, .threads = 0, .draws = piloted_draws(question)}, *progress);
+  Pilots pilots = run_pilots(all, {.seed = seed, .draws = piloted_draws(question)}, *progress);
   stop_if_interrupted();
   if (const std::string why = where_pilots_stopped(question, pilots); !why.empty()) {
     throw std::runtime_error(why);
@@ -221,6 +221,15 @@ void require_same_rows(const Question& question, const Recorded& recorded,
   }
 }
 
+/// Another test of the suite may have paired an estimator, so the record alone knows its numbers.
+void draw_recorded_streams(Question& question, const reports::Test& test) {
+  for (std::size_t i = 0; i < question.subjects.size(); ++i) {
+    Subject& side = question.subjects[i];
+    const reports::Sample* const sample = recorded_of(test, question, i, side.channels[0]);
+    if (sample != nullptr) side.stream = read_stream(sample->stream);
+  }
+}
+
 std::unique_ptr<Rebuilt> rebuild(const Recorded& recorded, const std::string& record) {
   auto rebuilt = std::make_unique<Rebuilt>();
   rebuilt->suite = suite_of(recorded, record);
@@ -229,6 +238,7 @@ std::unique_ptr<Rebuilt> rebuild(const Recorded& recorded, const std::string& re
   Question question = ask(rebuilt->suite.tests[0], rebuilt->estimators, recorded.seed);
   Plan plan = recorded_plan(question, recorded);
   require_same_rows(question, recorded, record);
+  draw_recorded_streams(question, recorded.test);
   if (plan.method.is.cells_of_pilots) {
     freeze(question, pilots_of(*rebuilt, question, recorded.seed), plan);
   }
@@ -256,10 +266,10 @@ bool print_against(const reports::Sample& sample, double value) {
                     : fmt::format("NOT as recorded: all {} were finite", sample.secondaries));
     return same;
   }
-  if (!sample.minimum || !sample.maximum) return true;
-  const bool same = *sample.minimum <= value && value <= *sample.maximum;
+  if (!sample.min || !sample.max) return true;
+  const bool same = *sample.min <= value && value <= *sample.max;
   fmt::print("  {} [{}, {}], the range of the {} recorded\n",
-             same ? "lies in" : "NOT as recorded: lies outside", *sample.minimum, *sample.maximum,
+             same ? "lies in" : "NOT as recorded: lies outside", *sample.min, *sample.max,
              sample.secondaries);
   return same;
 }

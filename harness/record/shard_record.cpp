@@ -53,16 +53,10 @@ reports::ShardTest test_of(const TestOutcome& outcome, const SuiteRun& run) {
 void add_shard(const std::vector<std::unique_ptr<SuiteRun>>& runs, const RunOptions& options,
                reports::Record& record) {
   const auto [index, count] = *options.shard;
-  reports::Shard shard{.index = index,
-                       .count = count,
-                       .options = options.command + options_text(options.selection),
-                       .suites = {}};
+  reports::Shard shard{
+      .index = index, .count = count, .options = options.command + options_text(options.selection)};
   for (const auto& run : runs) {
-    reports::ShardSuite suite{.digest = digest_of(*run),
-                              .tests = run->suite.tests.size(),
-                              .pictures = {},
-                              .results = {},
-                              .elsewhere = {}};
+    reports::ShardSuite suite{.digest = digest_of(*run), .tests = run->suite.tests.size()};
     for (const Picture& picture : run->pictures) {
       suite.pictures.push_back(pictured(picture, *run).shown);
     }

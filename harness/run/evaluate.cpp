@@ -57,20 +57,10 @@ ChannelOutcome channel_outcome(const DrawnTest& test, std::size_t channel,
 }
 
 int badness(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::error:
-      return 4;
-    case Verdict::fail:
-      return 3;
-    case Verdict::invalid:
-      return 2;
-    case Verdict::inconclusive:
-      return 1;
-    case Verdict::pass:
-    case Verdict::skipped:
-      break;
-  }
-  return 0;
+  constexpr Verdict worse[] = {Verdict::inconclusive, Verdict::invalid, Verdict::fail,
+                               Verdict::error};
+  const auto* const at = std::ranges::find(worse, verdict);
+  return at == std::end(worse) ? 0 : static_cast<int>(at - worse) + 1;
 }
 
 /// Computes numbers and gates of every channel at the current look. Returns the verdicts of
@@ -252,7 +242,7 @@ std::vector<Sample> TestWork::samples() const {
 }
 
 std::optional<DrawnTest> drawn(const TestWork& work) {
-  DrawnTest test{.outcome = work.outcome, .samples = {}};
+  DrawnTest test{.outcome = work.outcome};
   for (const Sample& sample : work.samples()) {
     if (sample.drawn() == nullptr) return std::nullopt;
     test.samples.push_back(*sample.drawn());

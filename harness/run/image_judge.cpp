@@ -57,59 +57,71 @@ double other_mean(const DrawnTest& test, const std::vector<std::size_t>& element
   return question.of_two() ? question.factor * mean + question.offset : mean;
 }
 
-/// "`b.exr`", or "image 3 of `b`".
+/// "`b.exr`", or "image 3 of `b`"; of a pair "`b.exr` less `a.exr`".
 std::string name_of(const DrawnTest& test, const stats::WhichImage& which) {
-  const Subject& side = test.outcome.question.subjects[which.side];
+  const Question& question = test.outcome.question;
+  const Subject& side = question.subjects[which.side];
   const Pool& pool = test.samples[which.side].pool();
   const std::string place = recorded::observation_place(
       *side.setup, {.index = which.index, .key = pool.key(), .primaries = pool.primaries()});
-  if (!place.empty()) return "`" + place + "`";
-  return fmt::format("image {} of `{}`", which.index, side.estimator->name);
+  const std::string name = place.empty()
+                               ? fmt::format("image {} of `{}`", which.index, side.estimator->name)
+                               : "`" + place + "`";
+  const bool has_partner = question.is().of_pairs && which.side == 0;
+  return has_partner ? name + " less " + name_of(test, {1, which.index}) : name;
+}
+
+/// What to do where images depend on each other: those of equal number on both sides, or others.
+std::string mend_of(const DrawnTest& test, bool across) {
+  const Question& question = test.outcome.question;
+  if (!across) {
+    return fmt::format("give each {} a seed of its own, and see that all its bits count",
+                       question.is().of_pairs ? "pair" : "image");
+  }
+  const bool pairs = question.theta->of_pairs() != nullptr;
+  return "give one side other seeds" + (pairs ? ", or test their differences with " +
+                                                    written_key(*question.test, "paired", "true")
+                                              : "");
 }
 
 std::string text_of(const DrawnTest& test, const stats::RepeatedTile& repeated) {
-  const ImageShape& shape = *test.outcome.question.subjects[0].image;
+  const Question& question = test.outcome.question;
+  const ImageShape& shape = *question.subjects[0].image;
   const stats::Rectangle& tile = repeated.tile;
+  const bool across =
+      repeated.one.side != repeated.other.side && repeated.one.index == repeated.other.index;
   return fmt::format(
-      "images depend on each other: {} and {} are the same at x {}-{}, y {}-{}, bit for bit{}; "
-      "give "
-      "each image a seed of its own, and see that all its bits count",
-      name_of(test, repeated.one), name_of(test, repeated.other), shape.left + tile.x,
-      shape.left + tile.x + tile.width - 1, shape.top + tile.y,
-      shape.top + tile.y + tile.height - 1,
-      repeated.tiles > 1 ? fmt::format(", and {} more tiles repeat", repeated.tiles - 1) : "");
+      "{} depend on each other: {} and {} are the same at x {}-{}, y {}-{}, bit for bit{}; {}",
+      question.is().of_pairs ? "differences" : "images", name_of(test, repeated.one),
+      name_of(test, repeated.other), shape.left + tile.x, shape.left + tile.x + tile.width - 1,
+      shape.top + tile.y, shape.top + tile.y + tile.height - 1,
+      repeated.tiles > 1 ? fmt::format(", and {} more tiles repeat", repeated.tiles - 1) : "",
+      mend_of(test, across));
 }
 
 std::string text_of(const DrawnTest& test, const stats::AlikeImages& alike) {
-  const std::string common = fmt::format(
-      "share random numbers, as {} and {} (their ranks correlate by {:.2g} on average)",
-      name_of(test, {alike.side, 0}),
+  const Question& question = test.outcome.question;
+  const std::string which = alike.across ? "images of equal number on both sides"
+                            : question.is().of_pairs
+                                ? "consecutive differences"
+                                : fmt::format("consecutive images of `{}`",
+                                              question.subjects[alike.side].estimator->name);
+  return fmt::format(
+      "{} share random numbers, as {} and {} (their ranks correlate by {:.2g} on average); {}",
+      which, name_of(test, {alike.side, 0}),
       name_of(test, alike.across ? stats::WhichImage{1, 0} : stats::WhichImage{alike.side, 1}),
-      alike.correlation);
-  if (alike.across) {
-    return "images of equal number on both sides " + common +
-           "; give one side other seeds, or test their differences with " +
-           written_key(*test.outcome.question.test, "paired", "true");
-  }
-  return fmt::format("consecutive images of `{}` {}; give each image a seed of its own",
-                     test.outcome.question.subjects[alike.side].estimator->name, common);
+      alike.correlation, mend_of(test, alike.across));
+}
+
+/// Throws std::domain_error if images of the test depend on each other.
+void require_independent(const DrawnTest& test, const stats::ImageDependence& found) {
+  // One seed on both sides repeats the tiles that no difference reaches.
+  const bool of_one_seed = found.alike && found.alike->across;
+  if (found.repeated && !of_one_seed) throw std::domain_error(text_of(test, *found.repeated));
+  if (found.alike) throw std::domain_error(text_of(test, *found.alike));
 }
 
 }  // namespace
-
-std::string dependence_of_images(const DrawnTest& test, std::span<const ChannelData> data) {
-  const std::shared_ptr<const PictureLook>& look = test.outcome.plan.look;
-  const stats::ImageDependence found =
-      look ? look->dependence : with_pair(test.outcome.question, data, [](const auto& pair) {
-        return pair.with([](const auto& first, const auto& second) {
-          return stats::image_dependence(stats::pair_of(first, second), on_all_threads);
-        });
-      });
-  // One seed on both sides repeats the tiles that no difference reaches.
-  const bool of_one_seed = found.alike && found.alike->across;
-  if (found.repeated && !of_one_seed) return text_of(test, *found.repeated);
-  return found.alike ? text_of(test, *found.alike) : "";
-}
 
 ImageTest image_test(const DrawnTest& test) {
   const TestOutcome& outcome = test.outcome;
@@ -117,7 +129,9 @@ ImageTest image_test(const DrawnTest& test) {
   return {.share = outcome.share(),
           .independent = std::all_of(subjects.begin(), subjects.end(),
                                      [](const Subject& s) { return s.image->independent; }),
-          .look = outcome.plan.look.get()};
+          .look = outcome.plan.look.get(),
+          .labels = stream_key(test.samples[0].pool().key().bits, "labels", "", 0),
+          .require_independent = [&](const auto& found) { require_independent(test, found); }};
 }
 
 ImageViews images_of(const DrawnTest& test, std::size_t subject) {
@@ -140,10 +154,9 @@ std::optional<PlaceEffect> effect_at_place(const DrawnTest& test) {
     return PlaceEffect{difference, {difference, difference, 1}, base};
   }
   const double half =
-      effect.margin +
       effect.standard_error *
-          stats::student_t_quantile({stats::Tail::upper, std::log((1 - confidence_at_place) / 2)},
-                                    effect.degrees);
+      stats::student_t_quantile({stats::Tail::upper, std::log((1 - confidence_at_place) / 2)},
+                                effect.degrees);
   return PlaceEffect{
       .estimate = effect.estimate,
       .interval = {effect.estimate - half, effect.estimate + half, confidence_at_place},
@@ -154,21 +167,21 @@ std::string means_where_it_differs(const DrawnTest& test) {
   if (test.outcome.verdict != reports::Verdict::fail) return "";
   const std::vector<ChannelOutcome>& channels = test.outcome.channels;
   if (channels.empty() || !channels[0].image) return "";
-  if (const std::string& seen = channels[0].image->seen; !seen.empty()) {
-    return fmt::format("; there {} in `{}`", seen,
-                       test.outcome.question.subjects[0].estimator->name);
-  }
+  if (const std::string& seen = channels[0].image->seen; !seen.empty()) return "; there " + seen;
   const std::optional<PlaceEffect> effect = effect_at_place(test);
   if (!effect) return "";
   const bool relative = effect->other != 0;
   const double unit = relative ? std::abs(effect->other) / 100 : 1;
   const char* const per_cent = relative ? " %" : "";
-  return fmt::format("; there it is {:.3g}{} too {} ({:.3g} to {:.3g}{}): {:.5g} against {:.5g}",
+  return fmt::format("; there it is {:.3g}{} too {} ({:.3g} to {:.3g}{}): {:.5g} against {:.5g}{}",
                      std::abs(effect->estimate) / unit, per_cent,
                      effect->estimate < 0 ? "dark" : "bright",
                      (effect->estimate < 0 ? -effect->interval.high : effect->interval.low) / unit,
                      (effect->estimate < 0 ? -effect->interval.low : effect->interval.high) / unit,
-                     per_cent, effect->other + effect->estimate, effect->other);
+                     per_cent, effect->other + effect->estimate, effect->other,
+                     effect->interval.low < effect->interval.high
+                         ? ""
+                         : ", without noise; if it should vary, give each image a seed of its own");
 }
 
 std::optional<double> detectable_uniformly(const TestOutcome& outcome, const TestSize& size,

@@ -2,18 +2,14 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "harness/plan/sizes.h"
 #include "harness/run/evaluate.h"
 
 namespace assay::harness {
 
-/// Settings of the family's test at the current look.
+/// Settings of the family's test at the current look. They refer to `test`.
 ImageTest image_test(const DrawnTest& test);
-
-/// Which images of the test depend on each other, and how; "" if none do.
-std::string dependence_of_images(const DrawnTest& test, std::span<const ChannelData> data);
 
 /// The observations of this look: the subject's elements of each.
 ImageViews images_of(const DrawnTest& test, std::size_t subject);

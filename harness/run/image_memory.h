@@ -2,7 +2,6 @@
 
 // Checks that pictures fit into memory before they are read.
 
-#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>

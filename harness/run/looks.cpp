@@ -5,7 +5,6 @@
 #include <set>
 
 #include "harness/base/interrupt.h"
-#include "harness/sampling/scheduler.h"
 
 namespace assay::harness {
 namespace {
@@ -94,7 +93,7 @@ bool take_next(TestWork& work, const Clocks& clocks) {
 std::uint64_t cost_of_look(const TestWork& work) {
   std::uint64_t cost = 0;
   for (std::size_t i = 0; i < work.pools.size(); ++i) {
-    const std::uint64_t wanted = work.outcome.secondaries(i), there = work.pools[i]->drawn();
+    const std::uint64_t wanted = work.outcome.secondaries(i), there = work.pools[i]->requested();
     if (wanted > there) cost += (wanted - there) * work.pools[i]->primaries();
   }
   return cost;
@@ -118,7 +117,7 @@ void sample_in_looks(const std::vector<TestWork*>& tests,
         work->pools[i]->request(work->outcome.secondaries(i));
       }
     }
-    draw_all(pools, {.threads = rounds.threads}, claims);
+    draw_all(pools, {.executor = rounds.executor}, claims);
     if (interrupted()) return;
     const Clocks clocks = read_clocks(tests);
     for (TestWork* work : next) {

@@ -6,6 +6,7 @@
 
 #include "harness/base/progress.h"
 #include "harness/run/evaluate.h"
+#include "harness/sampling/executor.h"
 
 namespace assay::harness {
 
@@ -13,7 +14,7 @@ namespace assay::harness {
 using Decided = std::function<bool(const TestWork&)>;
 
 struct Rounds {
-  unsigned threads = 0;         ///< 0: all cores
+  std::shared_ptr<Executor> executor = threads();
   bool cheapest_first = false;  ///< A round takes one look, that with the fewest primaries.
   Decided decided = {};
 };

@@ -226,7 +226,7 @@ class Looking {
     }
   }
 
-  /// What is tested, and whose means are compared.
+  /// Takes the pair that is tested, and the stacks whose means are compared.
   void take(const stats::ImagePair<float>& pair,
             std::array<std::reference_wrapper<const Stack>, 2> compared, stats::RowRange rows) {
     if (rows.first == 0) {

@@ -3,7 +3,6 @@
 // Claims on two stacks of pictures that are never held as a whole. Rows are read once; the pilot
 // and the test take what they need of them before the next rows.
 
-#include <map>
 #include <string>
 #include <vector>
 

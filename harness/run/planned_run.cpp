@@ -128,7 +128,8 @@ Pilots piloted(const SuiteRun& run, const std::vector<Question>& questions,
   }
   if (used.empty()) return pilots;
   pilots.merge(run_pilots(with_sweeps(used, questions, chosen),
-                          pilot_run_of(questions, chosen, run.seed, options.threads), progress));
+                          pilot_run_of(questions, chosen, run.seed, executor_of(options)),
+                          progress));
   return pilots;
 }
 
@@ -153,10 +154,12 @@ void plan_picture(SuiteRun& run, const std::vector<Question>& questions,
     const std::uint64_t automatic = !estimator->nature().averages ? 1
                                     : found != primaries.end()    ? found->second
                                                                   : picture_primaries;
-    const auto pool = pools.for_picture({.estimator = *estimator,
-                                         .copy = first_copy(questions, *estimator),
-                                         .primaries = estimator->primaries.value_or(automatic)},
-                                        run.seed, pilots);
+    const auto pool =
+        pools.find_or_make({.estimator = estimator,
+                            .setup = estimator->setup,
+                            .copy = first_copy(questions, *estimator),
+                            .channels = {}},
+                           estimator->primaries.value_or(automatic), run.seed, pilots);
     Picture picture{estimator, pool};
     if (shown_by(picture, run) == 0) {
       const bool image = estimator->setup->image().has_value();
@@ -308,7 +311,7 @@ Missing missing_in_pilots(const SuiteRun& run, const RunOptions& options) {
       with_sweeps(used_by(run.questions, chosen, run, options), run.questions, chosen);
   Missing missing;
   for (const auto& [name, pool] :
-       pilot_pools(used, pilot_run_of(run.questions, chosen, run.seed, options.threads))) {
+       pilot_pools(used, pilot_run_of(run.questions, chosen, run.seed, executor_of(options)))) {
     add_missing(*pool, pool->requested(), missing);
   }
   return missing;
@@ -336,10 +339,32 @@ std::vector<foreign::MissingFile> missing_files(const std::vector<Suite>& suites
   return files;
 }
 
-PlannedRun plan_run(const std::vector<Suite>& suites, const RunOptions& options,
-                    Progress& progress) {
+NamedSetups setups_of(const PlannedRun& run) {
+  NamedSetups setups;
+  for (std::size_t i = 0; i < run.suites.size(); ++i) {
+    for (const auto& [name, estimator] : run.suites[i]->estimators) {
+      setups.emplace_back(fmt::format("{} {}", i, name), estimator.setup);
+    }
+    for (const Question& question : run.suites[i]->questions) {
+      for (std::size_t k = 0; k < question.subjects.size(); ++k) {
+        setups.emplace_back(fmt::format("{} {} {}", i, question.test->id, k),
+                            question.subjects[k].setup);
+      }
+    }
+  }
+  return setups;
+}
+
+PlannedRun prepare_run(const std::vector<Suite>& suites, const RunOptions& options) {
   PlannedRun planned;
   for (const Suite& suite : suites) planned.suites.push_back(prepare_suite(suite, options));
+  return planned;
+}
+
+PlannedRun plan_run(const std::vector<Suite>& suites, const RunOptions& options,
+                    Progress& progress) {
+  PlannedRun planned = prepare_run(suites, options);
+  executor_of(options)->introduce(setups_of(planned));
   std::vector<Primaries> primaries;
   for (auto& run : planned.suites) primaries.push_back(plan_tests(*run, options, progress));
   if (options.shard) keep_shard(planned.suites, *options.shard);

@@ -8,6 +8,7 @@
 #include "estimators/rendered.h"
 #include "harness/run/pools.h"
 #include "harness/run/suite_run.h"
+#include "harness/sampling/executor.h"
 #include "harness/suite/run_options.h"
 
 namespace assay::harness {
@@ -16,6 +17,12 @@ struct PlannedRun {
   std::vector<std::unique_ptr<SuiteRun>> suites;
   Pools pools;  ///< For the selected tests and the suites' pictures; nothing is drawn.
 };
+
+/// Set-ups of all estimators and of all sides of claims.
+NamedSetups setups_of(const PlannedRun& run);
+
+/// Prepares all suites; nothing is drawn. InputError for any mistake.
+PlannedRun prepare_run(const std::vector<Suite>& suites, const RunOptions& options);
 
 /// Prepares all suites, then draws the pilots of the selected tests and freezes their plans.
 /// InputError for any mistake, before the first pilot.

@@ -6,6 +6,7 @@
 
 #include "harness/draws/consistency_setup.h"
 #include "harness/plan/independence.h"
+#include "harness/question/question_sources.h"
 
 namespace assay::harness {
 namespace {
@@ -109,28 +110,32 @@ void keep_for(const Method& method, const Subject& side, Pool& pool) {
 
 }  // namespace
 
-std::shared_ptr<Pool> Pools::find_or_make(const Wanted& wanted, std::uint64_t seed,
-                                          const Pilots& pilots) {
-  const StreamKey key = key_of(wanted.estimator, seed, wanted.copy, wanted.purpose);
-  const Identity identity{wanted.estimator.entry->information.name,
-                          wanted.estimator.parameters,
-                          wanted.estimator.folder,
-                          wanted.purpose,
-                          key.bits,
-                          wanted.primaries};
-  std::shared_ptr<Pool>& pool = pools_[identity];
+PoolIdentity pool_identity(const Subject& side, std::uint64_t primaries, std::uint64_t seed) {
+  const PreparedEstimator& estimator = *side.estimator;
+  return {estimator.entry->information.name,
+          estimator.parameters,
+          estimator.folder,
+          side.purpose,
+          stream_of(side, seed).bits,
+          primaries};
+}
+
+std::shared_ptr<Pool> Pools::find_or_make(const Subject& side, std::uint64_t primaries,
+                                          std::uint64_t seed, const Pilots& pilots) {
+  std::shared_ptr<Pool>& pool = pools_[pool_identity(side, primaries, seed)];
   if (pool) return pool;
-  pool = std::make_shared<Pool>(wanted.setup, key, wanted.primaries);
-  const Pilot* const pilot = pilots.find(wanted.estimator.name);
-  const auto rows = wanted.setup->observations();
+  const std::string& name = side.estimator->name;
+  pool = std::make_shared<Pool>(side.setup, stream_of(side, seed), primaries);
+  const Pilot* const pilot = pilots.find(name);
+  const auto rows = side.setup->observations();
   if (rows && pilot != nullptr && pilot->kept && pilot->kept->size() == *rows) {
     pool->take_known(pilot->kept);
   }
   // Asking again may take another time-out.
-  if (const Fault* fault = pilots.fault(wanted.estimator.name, wanted.purpose)) pool->fail(*fault);
-  const auto* draws = dynamic_cast<const SamplerSetup*>(wanted.setup.get());
+  if (const Fault* fault = pilots.fault(name, side.purpose)) pool->fail(*fault);
+  const auto* draws = dynamic_cast<const SamplerSetup*>(side.setup.get());
   pool->plan(draws != nullptr ? sampler_plan(*draws)
-                              : estimator_plan(*pool, wanted.estimator, pilots));
+                              : estimator_plan(*pool, *side.estimator, pilots));
   all_.push_back(pool);
   return pool;
 }
@@ -148,12 +153,7 @@ std::shared_ptr<Pool> Pools::for_subject(const Question& question, std::size_t s
                                          const Plan& plan, std::uint64_t seed,
                                          const Pilots& pilots) {
   const Subject& side = question.subjects[subject];
-  const std::shared_ptr<Pool> pool = find_or_make({.estimator = *side.estimator,
-                                                   .setup = side.setup,
-                                                   .purpose = side.purpose,
-                                                   .copy = side.copy,
-                                                   .primaries = plan.primaries[subject]},
-                                                  seed, pilots);
+  const std::shared_ptr<Pool> pool = find_or_make(side, plan.primaries[subject], seed, pilots);
   if (plan.method.keeps == Keeps::values || plan.method.keeps == Keeps::points) {
     for (const std::size_t channel : side.channels) {
       std::uint64_t& keep = pool->plans()[channel].keep;
@@ -173,16 +173,6 @@ std::shared_ptr<Pool> Pools::for_subject(const Question& question, std::size_t s
   for (const std::uint64_t size : plan.looks.sizes) pool->mark(side.secondaries(size));
   for (const std::uint64_t size : plan.postponed) pool->mark(side.secondaries(size));
   return pool;
-}
-
-std::shared_ptr<Pool> Pools::for_picture(const Shown& picture, std::uint64_t seed,
-                                         const Pilots& pilots) {
-  return find_or_make({.estimator = picture.estimator,
-                       .setup = picture.estimator.setup,
-                       .purpose = "",
-                       .copy = picture.copy,
-                       .primaries = picture.primaries},
-                      seed, pilots);
 }
 
 }  // namespace assay::harness

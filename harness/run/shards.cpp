@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "harness/plan/forecast.h"
+#include "harness/run/pools.h"
 
 namespace assay::harness {
 namespace {
@@ -13,8 +14,8 @@ namespace {
 // A shard may draw so many times its fair part, to save what another shard would draw again.
 constexpr double slack = 1.1;
 
-/// The cost of a prefix of each stream, by the stream's key and primaries.
-using Prefixes = std::map<std::pair<std::uint64_t, std::uint64_t>, double>;
+/// The cost of a prefix of each pool.
+using Prefixes = std::map<PoolIdentity, double>;
 
 /// Rays and samples of an observation.
 double observation_cost(const Subject& subject, std::uint64_t primaries, const Pilots& pilots) {
@@ -32,8 +33,7 @@ Prefixes prefixes_of(const TestOutcome& test, const SuiteRun& run) {
   const std::uint64_t expected = expected_secondaries(test, run.pilots);
   for (std::size_t i = 0; i < test.question.subjects.size(); ++i) {
     const Subject& side = test.question.subjects[i];
-    const StreamKey key = key_of(*side.estimator, run.seed, side.copy, side.purpose);
-    double& prefix = cost[{key.bits, test.plan.primaries[i]}];
+    double& prefix = cost[pool_identity(side, test.plan.primaries[i], run.seed)];
     prefix = std::max(prefix, static_cast<double>(side.secondaries(expected)) *
                                   observation_cost(side, test.plan.primaries[i], run.pilots));
   }

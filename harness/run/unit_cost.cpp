@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "harness/base/interrupt.h"
-#include "harness/sampling/scheduler.h"
+#include "harness/sampling/executor.h"
 
 namespace assay::harness {
 namespace {
@@ -54,7 +54,8 @@ const Summary* piloted(const Pool& pool, const PreparedEstimator& estimator,
 
 }  // namespace
 
-UnitCosts measure_costs(const PlannedRun& planned, unsigned threads, Progress& progress) {
+UnitCosts measure_costs(const PlannedRun& planned, const std::shared_ptr<Executor>& executor,
+                        Progress& progress) {
   Timings timings;
   UnitCosts costs;
   for (const auto& run : planned.suites) {
@@ -78,7 +79,7 @@ UnitCosts measure_costs(const PlannedRun& planned, unsigned threads, Progress& p
   }
   std::vector<std::shared_ptr<Pool>> pools;
   for (const Timed& timed : timings.all()) pools.push_back(timed.pool);
-  draw_all(pools, {.threads = threads, .phase = "costs"}, progress);
+  draw_all(pools, {.executor = executor, .phase = "costs"}, progress);
   stop_if_interrupted();
   for (const Timed& timed : timings.all()) {
     const Sample sample = timed.pool->sample(timed.pool->requested());

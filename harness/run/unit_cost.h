@@ -22,6 +22,7 @@ using UnitCosts = std::map<const Pool*, std::variant<UnitCost, Fault>>;
 /// Draws about 16 thousand primaries (times an image's elements) for each pool, at its primaries
 /// for each secondary. A single primary would cost more than its share. Non-averaging estimators
 /// use the pilot. Does not change the pools.
-UnitCosts measure_costs(const PlannedRun& planned, unsigned threads, Progress& progress);
+UnitCosts measure_costs(const PlannedRun& planned, const std::shared_ptr<Executor>& executor,
+                        Progress& progress);
 
 }  // namespace assay::harness

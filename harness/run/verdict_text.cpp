@@ -8,11 +8,11 @@
 
 #include "harness/plan/gate_text.h"
 #include "harness/plan/independence.h"
-#include "harness/plan/plan.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/theta.h"
 #include "reports/words/effect.h"
 #include "reports/words/number.h"
+#include "reports/words/text.h"
 #include "stats/tails/tails.h"
 
 namespace assay::harness {
@@ -22,14 +22,6 @@ using reports::Verdict;
 
 std::string p_text(double log_p) {
   return "p = " + reports::p_text(std::exp(log_p), log_p / std::log(10.0));
-}
-
-/// Programs read messages too, so spaces are plain.
-std::string plain(std::string text) {
-  const std::string no_break = "\u00A0";
-  for (std::size_t at = text.find(no_break); at != std::string::npos; at = text.find(no_break, at))
-    text.replace(at, no_break.size(), " ");
-  return text;
 }
 
 /// "difference from the reference is +0.31 % [+0.12 %, +0.5 %] (99 % interval)".
@@ -44,7 +36,10 @@ std::string finding(const reports::Effect& effect) {
   return fmt::format("{} is {}", reports::effect_name(effect), reports::named_effect_text(effect));
 }
 
-std::string finding(const ChannelOutcome& channel) { return finding(channel.effect); }
+std::string finding(const ChannelOutcome& channel) {
+  const bool sizeless = channel.image && !channel.effect.estimate;  // a law of images
+  return sizeless ? reports::effect_name(channel.effect) : finding(channel.effect);
+}
 
 std::string in_channel(const TestOutcome& outcome, const ChannelOutcome& channel) {
   return outcome.question.channel_count() > 1 ? " in channel " + channel.name : "";
@@ -319,7 +314,7 @@ std::string told(const TestOutcome& outcome) {
 }  // namespace
 
 std::string narrate(const TestOutcome& outcome) {
-  return outcome.channels.empty() ? "" : plain(told(outcome));
+  return outcome.channels.empty() ? "" : reports::plain_spaces(told(outcome));
 }
 
 }  // namespace assay::harness

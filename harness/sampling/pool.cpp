@@ -102,14 +102,13 @@ class Intake {
   std::vector<Waiting> waiting_;
 };
 
-/// Channels keep values of observations below it.
+}  // namespace
+
 std::uint64_t most_kept(std::span<const ChannelPlan> plan) {
   std::uint64_t most = 0;
   for (const ChannelPlan& channel : plan) most = std::max(most, channel.keep);
   return most;
 }
-
-}  // namespace
 
 std::uint64_t primaries_of_observation(const Setup& setup, std::uint64_t primaries) {
   const std::optional<ImageShape> image = setup.image();
@@ -157,7 +156,7 @@ Sample Pool::sample(std::uint64_t count) const {
 
 double Pool::seconds() const {
   if (is_ready_made()) return ready_made_->seconds;
-  const auto beyond = prefixes_.upper_bound(drawn());
+  const auto beyond = prefixes_.upper_bound(std::min(drawn(), requested_));
   return beyond == prefixes_.begin() ? 0 : std::prev(beyond)->second->seconds;
 }
 
@@ -340,6 +339,35 @@ void Pool::end_drawing() {
     }
     prefix = std::move(sums);
   }
+}
+
+Recipe Pool::recipe() const {
+  Recipe recipe{.key = key_,
+                .primaries = primaries_,
+                .plan = plan_,
+                .grouped_channels = grouped_channels_,
+                .kept_observations = kept_observations_};
+  for (const auto& [count, unused] : prefixes_) recipe.marks.push_back(count);
+  return recipe;
+}
+
+bool Pool::can_be_drawn_elsewhere() const {
+  return !is_ready_made() && !known_ && !keeps_blocks_ && !setup_->observations() &&
+         !recorded::unknown_channels(*setup_) && !recorded::keeps_files(*setup_);
+}
+
+Pool::BlockParts Pool::parts_of(const Block& block) {
+  BlockParts parts{block.whole, block.values, block.observations, block.fault};
+  for (const auto& [count, sums] : block.partial) parts.partial.emplace_back(count, &sums);
+  return parts;
+}
+
+Pool::BlockParts Pool::drawn_parts() const {
+  BlockParts parts{running_, values_, *kept_, fault_};
+  for (const auto& [count, sums] : prefixes_) {
+    if (count > 0 && count <= drawn()) parts.partial.emplace_back(count, sums.get());
+  }
+  return parts;
 }
 
 void Pool::keep_block(const Summary& block, std::uint64_t first) {

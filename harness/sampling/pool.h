@@ -49,6 +49,19 @@ std::uint64_t block_size_of(std::uint64_t primaries);
 /// neighbours share take thousands.
 inline constexpr std::uint64_t ordered_values = 16384;
 
+/// All that decides the numbers of a pool's blocks, beside its set-up.
+struct Recipe {
+  StreamKey key = {};
+  std::uint64_t primaries = 1;
+  std::vector<ChannelPlan> plan = {};
+  std::vector<std::size_t> grouped_channels = {};
+  std::uint64_t kept_observations = 0;
+  std::vector<std::uint64_t> marks = {};
+};
+
+/// Channels keep values of observations below it.
+std::uint64_t most_kept(std::span<const ChannelPlan> plan);
+
 class Pool {
  public:
   Pool(std::shared_ptr<const Setup> setup, StreamKey key, std::uint64_t primaries);
@@ -98,7 +111,10 @@ class Pool {
   void fail(const Fault& fault) { fault_ = fault; }
   /// The reason if drawing ended early: nothing more will be drawn.
   const std::optional<Fault>& fault() const { return fault_; }
-  /// CPU seconds of drawing up to the largest marked count that is drawn.
+  Recipe recipe() const;
+  /// True if another process can draw the blocks: they need neither files nor this one's clock.
+  bool can_be_drawn_elsewhere() const;
+  /// CPU seconds of drawing up to the largest marked count that was requested and is drawn.
   double seconds() const;
 
   // For the scheduler. Observations per block are a function of `primaries` alone.
@@ -111,12 +127,23 @@ class Pool {
   /// A drawn block, and copies of it at the marks inside.
   struct Block {
     Summary whole;
-    std::vector<std::vector<double>> values;  ///< of each channel, if kept
-    KeptObservations observations;            ///< if kept
-    std::vector<std::pair<std::uint64_t, Summary>> partial;
-    std::optional<Fault> fault;
+    std::vector<std::vector<double>> values = {};  ///< of each channel, if kept
+    KeptObservations observations = {};            ///< if kept
+    std::vector<std::pair<std::uint64_t, Summary>> partial = {};
+    std::optional<Fault> fault = {};
     std::uint64_t size = 0;  ///< observations when complete
   };
+  /// What a block consists of.
+  struct BlockParts {
+    const Summary& whole;
+    const std::vector<std::vector<double>>& values;
+    const KeptObservations& observations;
+    const std::optional<Fault>& fault;
+    std::vector<std::pair<std::uint64_t, const Summary*>> partial = {};
+  };
+  static BlockParts parts_of(const Block& block);
+  /// All that is drawn, as one block.
+  BlockParts drawn_parts() const;
   /// Draws observations [first, last) of one block with a worker's estimator, made if needed.
   /// Thread-safe. An exception of the source becomes the block's fault.
   Block draw(const std::function<Estimator&()>& estimator, std::uint64_t first,

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <filesystem>
 
 #include "estimators/catalogue.h"
@@ -125,6 +126,16 @@ StreamKey key_of(const PreparedEstimator& estimator, std::uint64_t seed, std::ui
   const std::string plugin =
       purpose.empty() ? estimator.key_plugin : estimator.key_plugin + "#" + purpose;
   return stream_key(seed, plugin, estimator.key_parameters, copy);
+}
+
+std::string stream_text(StreamKey key) { return fmt::format("{:016x}", key.bits); }
+
+std::optional<StreamKey> read_stream(const std::string& text) {
+  StreamKey key;
+  const char* const end = text.data() + text.size();
+  const auto [last, error] = std::from_chars(text.data(), end, key.bits, 16);
+  if (error != std::errc() || last != end) return {};
+  return key;
 }
 
 }  // namespace assay::harness

@@ -48,4 +48,8 @@ void share_random_numbers(const Suite& suite, std::map<std::string, PreparedEsti
 StreamKey key_of(const PreparedEstimator& estimator, std::uint64_t seed, std::uint32_t copy,
                  const std::string& purpose);
 
+/// A key in the record: 16 hexadecimal digits. nullopt if the text is something else.
+std::string stream_text(StreamKey key);
+std::optional<StreamKey> read_stream(const std::string& text);
+
 }  // namespace assay::harness

@@ -21,35 +21,11 @@ namespace {
 
 struct Kept {
   std::vector<const reports::Sample*> channels = {};
-  std::uint32_t copy = 0;
 
   auto worth() const {
     return std::tuple(channels.size(), !channels[0]->with_cost.empty(), channels[0]->secondaries);
   }
 };
-
-/// Keeps only these names of a list of canonical parameters.
-std::string only(const std::string& parameters, const std::vector<std::string>& names) {
-  std::string kept;
-  for (const std::string& piece : split_outside_brackets(parameters)) {
-    const std::string name = piece.substr(0, piece.find('='));
-    if (std::find(names.begin(), names.end(), name) == names.end()) continue;
-    kept += (kept.empty() ? "" : ",") + piece;
-  }
-  return kept;
-}
-
-/// The plugin whose stream a sample is from, and the parameters that shape the stream. A mutant
-/// uses its original's.
-std::pair<std::string, std::string> stream_of(const reports::Sample& sample) {
-  for (const Entry& entry : catalogue()) {
-    if (entry.information.name != sample.plugin) continue;
-    const std::string& original = entry.information.original;
-    const Entry& source = original.empty() ? entry : find_plugin(original, {});
-    return {source.information.name, only(sample.parameters, parameter_names(source.information))};
-  }
-  return {sample.plugin, sample.parameters};
-}
 
 /// The samples of the estimator in a test. nullopt for a test of something else. Also nullopt if
 /// two sources share a name and cannot be told apart.
@@ -68,13 +44,6 @@ std::optional<Kept> kept_in(const reports::Test& test, const std::string& estima
     if (channels.insert(sample.channel).second) kept.channels.push_back(&sample);
   }
   if (kept.channels.empty()) return std::nullopt;
-  // The second of two sources of one stream has the copy.
-  const bool second = !named(sources.front());
-  for (const reports::Sample& other : test.samples) {
-    const bool same_stream = other.estimator == sources.front().estimator &&
-                             stream_of(other) == stream_of(*kept.channels[0]);
-    if (second && same_stream) kept.copy = 1;
-  }
   return kept;
 }
 
@@ -83,8 +52,8 @@ stats::Moments moments_of(const reports::Sample& sample) {
   stats::Moments moments{.count = sample.secondaries,
                          .mean = *sample.mean,
                          .m2 = *sample.variance * (n - 1),
-                         .minimum = sample.minimum.value_or(*sample.mean),
-                         .maximum = sample.maximum.value_or(*sample.mean),
+                         .minimum = sample.min.value_or(*sample.mean),
+                         .maximum = sample.max.value_or(*sample.mean),
                          .nonzero = sample.nonzero};
   const double spread = moments.m2 / n;
   moments.m3 = sample.skewness.value_or(0) * n * std::pow(spread, 1.5);
@@ -139,10 +108,7 @@ RecordedRun::Contents contents_of(const Kept& kept, const reports::Suite& suite)
   for (const reports::EstimatorSummary& row : suite.estimators) {
     if (row.name == first.estimator) contents.averages = row.variance_of == "primary";
   }
-  if (first.plugin != "recorded") {
-    const auto [plugin, parameters] = stream_of(first);
-    contents.stream = stream_key(suite.seed, plugin, parameters, kept.copy);
-  }
+  if (first.plugin != "recorded") contents.stream = read_stream(first.stream);
   return contents;
 }
 

@@ -121,6 +121,7 @@ struct CheckArguments {
   std::optional<std::string> reference = {};  ///< an estimator or a number
   std::optional<std::string> cost = {};
   std::optional<std::string> budget = {};
+  bool paired = false;
 };
 Suite suite_of_claim(const CheckArguments&);
 

@@ -355,11 +355,7 @@ EstimatorEntry read_estimator(const Document& document, const std::string& name,
   std::vector<std::string> known = settable_names(entry);
   known.insert(known.begin(), "plugin");
   const Keys keys(document, value, fmt::format("`{}` ({})", name, plugin->text()), known);
-  EstimatorEntry estimator{.name = name,
-                           .plugin = plugin->text(),
-                           .parameters = {},
-                           .primaries = {},
-                           .where = document.key(value)};
+  EstimatorEntry estimator{.name = name, .plugin = plugin->text(), .where = document.key(value)};
   if (const Value* v = keys.find("primaries")) {
     estimator.primaries = read_primaries(*v, "`primaries`");
   }

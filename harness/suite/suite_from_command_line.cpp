@@ -112,7 +112,6 @@ EstimatorEntry plugin_itself(const Source& source) {
   return {.name = source.estimator,
           .plugin = plugin.information.name,
           .parameters = Value::map({}, source.where),
-          .primaries = {},
           .where = source.where};
 }
 
@@ -156,6 +155,7 @@ Value keys_of(const CheckArguments& arguments) {
   add("reference", arguments.reference);
   add("cost", arguments.cost);
   add("budget", arguments.budget);
+  if (arguments.paired) add("paired", "true");
   return Value::map(std::move(keys));
 }
 
@@ -184,7 +184,6 @@ EstimatorEntry parse_estimator_option(const std::string& text) {
   EstimatorEntry entry{.name = head->first,
                        .plugin = find_plugin(head->second, where).information.name,
                        .parameters = Value::map({}, where),
-                       .primaries = {},
                        .where = where};
   std::vector<std::string> seen;
   for (std::size_t i = 1; i < pieces.size(); ++i) {

@@ -44,7 +44,6 @@ EstimatorEntry entry(const std::string& name, const Location& where,
   return {.name = name,
           .plugin = "recorded",
           .parameters = Value::map(std::move(members), where),
-          .primaries = {},
           .where = where};
 }
 
@@ -137,10 +136,11 @@ std::optional<PictureWindow> common_window(const ImagesArguments& arguments,
     return PictureWindow{left, top, static_cast<std::size_t>(right - left),
                          static_cast<std::size_t>(bottom - top)};
   }
-  throw InputError(place("--reference", arguments.reference),
-                   fmt::format("its pictures have {} x {} pixels at x {}, y {}, those of "
-                               "--candidate {} x {} at x {}, y {}; render both at one size",
-                               b.width, b.height, b.left, b.top, a.width, a.height, a.left, a.top));
+  throw InputError(
+      place("--reference", arguments.reference),
+      fmt::format("its pictures have {} x {} pixels at x {}, y {}, those of "
+                  "--candidate {} x {} at x {}, y {}; render the same part on both, at one size",
+                  b.width, b.height, b.left, b.top, a.width, a.height, a.left, a.top));
 }
 
 const char* rounding_of(const FirstPictures& first, const Layer& layer) {

@@ -2,7 +2,6 @@
 
 // `assay images`: compares two sets of rendered pictures without a suite file.
 
-#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -10,8 +9,8 @@
 
 namespace assay::harness {
 
-/// What is asked of two sets of pictures: are their means equal, are the means of their differences
-/// 0 where equal names have equal seeds, or is their whole law the same?
+/// The question about two sets of pictures. Are their means equal? Are the means of differences 0,
+/// where equal names have equal seeds? Is their whole law the same?
 enum class ImageQuestion { means, paired, law };
 
 struct ImagesArguments {

@@ -173,7 +173,6 @@ Question ask(const TestEntry& test, const Estimators& estimators, std::uint64_t 
     if (!question.is().of_pairs) separate_streams(question, test.claim, seed);
   }
   seed_cells(question, test.claim, seed);
-  question.labels = key_of(*question.subjects[0].estimator, seed, 0, "labels");
   require_moments_suffice(question);
   for (const Margin& margin : margins_of(test)) question.theta->check_margin(question, margin);
   check_sizes(question);

@@ -3,7 +3,6 @@
 // A method as a plan has it: its name, what it keeps, what it takes from the pilot.
 
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>

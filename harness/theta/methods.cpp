@@ -11,21 +11,13 @@
 namespace assay::harness {
 namespace {
 
+/// The null hypothesis of a strict relation is its contrary.
 std::string relation_text(const TestEntry& test) {
-  switch (test.claim.relation) {
-    case Relation::equal:
-      return "=";
-    case Relation::less:
-      return "<=";
-    case Relation::greater:
-      return ">=";
-    case Relation::at_most:
-    case Relation::at_least:
-      return to_string(test.claim.relation);
-    case Relation::within:
-      break;
+  if (test.claim.relation == Relation::within) {
+    return fmt::format("within {} of", to_string(test.claim.margin));
   }
-  return fmt::format("within {} of", to_string(test.claim.margin));
+  constexpr const char* texts[] = {"=", "<=", ">=", "<=", ">="};
+  return texts[static_cast<int>(test.claim.relation)];
 }
 
 [[noreturn]] void refuse(const Question& question, const std::string& method,

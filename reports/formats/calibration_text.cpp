@@ -59,7 +59,7 @@ const std::vector<Column>& table_columns() {
          return count_text(static_cast<std::uint64_t>(l.rates->observations + 0.5));
        }},
       {"by", 21,
-       [](const ClaimLine& l) { return l.rates->by.empty() ? "" : l.rates->by.front().first; }},
+       [](const ClaimLine& l) { return l.rates->by.empty() ? "" : l.rates->by.front().method; }},
   };
   return all;
 }
@@ -107,6 +107,27 @@ std::string wrapped_detect(const Calibration& calibration) {
 }
 
 }  // namespace
+
+bool above(const Calibration& calibration, const CalibrationCell& cell) {
+  return cell.mistaken().low > calibration.tolerance * cell.alpha;
+}
+
+bool unflagged(const Calibration& calibration, const CalibrationCell& cell) {
+  return cell.alone_not_red.low > calibration.tolerance * cell.alpha;
+}
+
+std::size_t defects(const Calibration& calibration) {
+  return static_cast<std::size_t>(std::count_if(
+      calibration.cells.begin(), calibration.cells.end(),
+      [&](const auto& cell) { return above(calibration, cell) || unflagged(calibration, cell); }));
+}
+
+std::string verdict_sentence(const Calibration& calibration) {
+  const std::size_t bad = defects(calibration);
+  if (bad == 0)
+    return fmt::format("no cell of {} is found to err too often", calibration.cells.size());
+  return fmt::format("{} of {} cells err too often", bad, calibration.cells.size());
+}
 
 std::string console(const Calibration& calibration) {
   std::string out;

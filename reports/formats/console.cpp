@@ -3,16 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <set>
 
-#include "reports/formats/console_rows.h"
 #include "reports/words/columns.h"
 #include "reports/words/describe.h"
 #include "reports/words/display.h"
+#include "reports/words/effect.h"
+#include "reports/words/evidence.h"
 #include "reports/words/kill_matrix.h"
-#include "reports/words/kill_text.h"
 #include "reports/words/ledger.h"
 #include "reports/words/number.h"
 #include "reports/words/statement_text.h"
@@ -34,30 +33,110 @@ bool is_single(const Record& record) {
   return record.suites.size() == 1 && record.suites[0].tests.size() == 1;
 }
 
-// A terminal renders a no-break space in its own way: copied text should hold plain ones.
-std::string plain_spaces(const std::string& text) {
-  std::string result;
-  for (std::size_t i = 0; i < text.size();) {
-    const char32_t c = next_code_point(text, i);
-    append_code_point(result, c == 0xA0 ? U' ' : c);
-  }
-  return result;
-}
-
 std::string plain(const std::string& text) { return plain_spaces(one_line(text)); }
 
 const char* colour_of(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::passed:
-      return "\x1b[32m";
-    case Outcome::failed:
-      return "\x1b[1;31m";
-    case Outcome::inconclusive:
-      return "\x1b[33m";
-    case Outcome::skipped:
-      break;
+  constexpr const char* colours[] = {"\x1b[32m", "\x1b[1;31m", "\x1b[33m", "\x1b[2m"};
+  return colours[static_cast<int>(outcome)];
+}
+
+/// One test as text, clean and without line feeds; no-break spaces keep numbers whole.
+struct TestRow {
+  std::string verdict;  ///< with its mark
+  std::string name;
+  std::string number;
+  std::string cost;
+};
+
+/// Columns of a suite's table. If names have too little room, the cost goes first (width 0; the
+/// suite's totals have it). Then the number moves below the name.
+struct RowLayout {
+  int verdict = 0;
+  int name = 0;
+  int number = 0;
+  int cost = 0;
+  bool number_below = false;
+};
+
+constexpr int row_indent = 2;
+constexpr int row_gap = 2;
+constexpr int least_row_name = 30;
+
+template <class Member>
+int widest(const std::vector<TestRow>& rows, Member member) {
+  int result = 0;
+  for (const TestRow& row : rows) result = std::max(result, columns(row.*member));
+  return result;
+}
+
+int with_gap(int width) { return width > 0 ? width + row_gap : 0; }
+
+int name_room(const RowLayout& layout, int width) {
+  return width - row_indent - with_gap(layout.verdict) - with_gap(layout.cost) -
+         (layout.number_below ? 0 : with_gap(layout.number));
+}
+
+std::string trimmed(std::string text) {
+  text.erase(text.find_last_not_of(' ') + 1);
+  return text;
+}
+
+RowLayout layout_of(const std::vector<TestRow>& rows, int width) {
+  RowLayout layout{.verdict = widest(rows, &TestRow::verdict),
+                   .number = widest(rows, &TestRow::number),
+                   .cost = widest(rows, &TestRow::cost)};
+  if (name_room(layout, width) < least_row_name) layout.cost = 0;
+  layout.number_below = name_room(layout, width) < least_row_name;
+  layout.name = name_room(layout, width);
+  return layout;
+}
+
+/// The lines of one row, none wider than the width that the layout was made for.
+std::vector<std::string> row_lines(const TestRow& row, const RowLayout& layout) {
+  const std::string margin(static_cast<std::size_t>(row_indent + with_gap(layout.verdict)), ' ');
+  const std::vector<std::string> name = wrap(row.name, layout.name);
+  std::string first = std::string(row_indent, ' ') +
+                      pad_right(row.verdict, with_gap(layout.verdict)) +
+                      pad_right(name.front(), with_gap(layout.name));
+  if (!layout.number_below) first += pad_right(row.number, with_gap(layout.number));
+  if (layout.cost > 0) first += row.cost;
+  std::vector<std::string> lines = {trimmed(first)};
+  for (std::size_t i = 1; i < name.size(); ++i) lines.push_back(margin + name[i]);
+  if (layout.number_below && !row.number.empty()) {
+    for (const std::string& part : wrap(row.number, layout.name)) lines.push_back(margin + part);
   }
-  return "\x1b[2m";
+  return lines;
+}
+
+/// The confidence of most of a suite's intervals, as "99.98 %": it is said once, above the table.
+std::string common_confidence(const Suite& suite) {
+  std::map<std::string, int> counts;
+  for (const Test& test : suite.tests) {
+    const Effect effect = deciding_channel(test).effect;
+    if (is_evidence(test) && effect.estimate && !interval_text(effect).empty())
+      ++counts[confidence_text(effect.confidence)];
+  }
+  const auto most =
+      std::max_element(counts.begin(), counts.end(),
+                       [](const auto& a, const auto& b) { return a.second < b.second; });
+  return most == counts.end() ? std::string() : most->first;
+}
+
+/// The row of a test in a suite whose common confidence is given.
+TestRow row_of(const Test& test, const std::string& common) {
+  const Effect effect = deciding_channel(test).effect;
+  std::string number = is_evidence(test) ? effect_text(effect) : std::string();
+  if (!is_evidence(test)) {
+    // The number rests on a violated assumption; the record has it.
+  } else if (number.empty()) {
+    number = headline_p(test).text();
+  } else if (!interval_text(effect).empty() && confidence_text(effect.confidence) != common) {
+    number += fmt::format(" at {}", confidence_text(effect.confidence));
+  }
+  return {.verdict = mark(outcome(test)) + " " + verdict_text(test),
+          .name = one_line(test.name),
+          .number = one_line(number),
+          .cost = one_line(cost_text(total_cost(test)))};
 }
 
 class Screen {

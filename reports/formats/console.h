@@ -1,7 +1,7 @@
 #pragma once
 
-// What a person reads in a terminal or a log. There is one writer, for a run under way and for a
-// saved record.
+// The text for a terminal or a log. There is one writer, for a run under way and for a saved
+// record.
 
 #include <set>
 #include <string>

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "reports/words/columns.h"
 #include "reports/words/describe.h"
 #include "reports/words/display.h"
@@ -20,12 +18,12 @@ namespace {
 /// A text as a sentence of its own. A word of a claim, as `mean(a)`, keeps its letters.
 std::string sentence(std::string text) {
   const std::size_t word = text.find_first_not_of("abcdefghijklmnopqrstuvwxyz");
-  if (word != std::string::npos && word > 0 && text[word] == ' ')
+  if (word != std::string::npos && word > 1 && text[word] == ' ')
     text[0] = static_cast<char>(text[0] - 'a' + 'A');
   return text.empty() || text.ends_with('.') ? text : text + ".";
 }
 
-/// What the verdict means.
+/// The meaning of the verdict.
 std::string meaning(const Test& test) {
   if (test.expected == Verdict::fail && test.verdict == Verdict::pass) return "";
   if (standing(test) == Standing::caught) return "This is as the suite expects.";
@@ -51,7 +49,7 @@ std::string what_was_found(const Test& test, const TestDisplay& words) {
       test.verdict == Verdict::skipped || test.expected != Verdict::pass) {
     return sentence(trouble(test));
   }
-  return words.sentence;
+  return sentence(words.sentence);
 }
 
 /// How sure the finding is.

@@ -6,8 +6,8 @@
 
 namespace assay::reports {
 
-/// What happened to a test, in sentences for a reader without a course in statistics. Then what to
-/// do next, as lines to paste.
+/// Tells what happened to a test, in sentences for a reader without a course in statistics, and
+/// what to do next, as lines to paste.
 std::string explain(const Suite&, const Test&, int width);
 
 }  // namespace assay::reports

@@ -4,10 +4,10 @@
 #include <nlohmann/json.hpp>
 
 #include "reports/formats/base64.h"
-#include "reports/formats/display_fields.h"
 #include "reports/record/calibration.h"
-#include "reports/record/calibration_fields.h"
-#include "reports/record/fields.h"
+#include "reports/record/statements.h"
+#include "reports/words/display.h"
+#include "reports/words/evidence.h"
 #include "reports/words/number.h"
 #include "reports/words/text.h"
 
@@ -18,26 +18,6 @@ using Json = nlohmann::ordered_json;
 
 template <class T>
 Json tree(const T& value);
-
-class Writer {
- public:
-  template <class T>
-  void operator()(const char* key, const T& value) {
-    object_[key] = tree(value);
-  }
-  template <class T>
-  void repeated(const char* key, const T& value) {
-    object_[key] = tree(value);
-  }
-  template <class T>
-  void display(const T& value) {
-    object_["display"] = tree(reports::display(value));
-  }
-  Json take() { return std::move(object_); }
-
- private:
-  Json object_ = Json::object();
-};
 
 Json leaf(double value) {
   if (std::isfinite(value)) return value;
@@ -63,12 +43,30 @@ Json leaf(const std::vector<T>& values) {
   return array;
 }
 
+/// Adds what follows from a value: sentences, answers, and the numbers of a test's worst channel.
+/// Readers want them in their place; nothing reads them back.
+template <class T>
+void derive(const T& value, Json& object) {
+  if constexpr (std::same_as<T, Suite>) object["answers"] = tree(answers(value));
+  if constexpr (std::same_as<T, Test>) {
+    Json worst = tree(worst_channel(value));
+    for (const std::string_view name : keys_of_worst_channel) {
+      const std::string key(name);
+      object[key] = std::move(worst[key]);
+    }
+  }
+  if constexpr (requires { display(value); }) object["display"] = tree(display(value));
+}
+
 template <class T>
 Json tree(const T& value) {
-  if constexpr (requires(Writer & w) { fields(w, value); }) {
-    Writer writer;
-    fields(writer, value);
-    return writer.take();
+  if constexpr (has_fields<T>) {
+    Json object = Json::object();
+    for_each_field(value, [&](std::string_view key, const auto& member) {
+      object[std::string(key)] = tree(member);
+    });
+    derive(value, object);
+    return object;
   } else {
     return leaf(value);
   }

@@ -102,17 +102,11 @@ std::string element(const char* name, const std::string& attributes, const std::
 std::string outcome_element(const Test& test) {
   const std::string message = attribute("message", headline(test));
   const std::string type = attribute("type", to_string(test.verdict));
-  switch (outcome(test)) {
-    case Outcome::passed:
-      return {};
-    case Outcome::failed:
-      return element(test.verdict == Verdict::error ? "error" : "failure", message + type,
-                     plain_text(test));
-    case Outcome::inconclusive:
-    case Outcome::skipped:
-      break;
-  }
-  return element("skipped", message, {});
+  const Outcome result = outcome(test);
+  if (result == Outcome::passed) return {};
+  if (result != Outcome::failed) return element("skipped", message, {});
+  return element(test.verdict == Verdict::error ? "error" : "failure", message + type,
+                 plain_text(test));
 }
 
 // GitLab and Jenkins know a case by its class name and name, and drop a second one silently.

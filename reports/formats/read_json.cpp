@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -12,7 +11,8 @@
 #include <utility>
 
 #include "reports/formats/base64.h"
-#include "reports/record/fields.h"
+#include "reports/formats/json.h"
+#include "reports/words/display.h"
 #include "reports/words/text.h"
 
 namespace assay::reports {
@@ -34,50 +34,6 @@ using Json = nlohmann::ordered_json;
 
 template <class T>
 void read(const Json& node, const std::string& place, T& value);
-
-// Reads the members of one object; finish() then refuses what was not asked for.
-class Reader {
- public:
-  Reader(const Json& object, std::string place) : object_(object), place_(std::move(place)) {
-    if (!object_.is_object()) wrong_type(place_, "an object", object_);
-  }
-
-  template <class T>
-  void operator()(const char* key, T& value) {
-    read(member(key), place_.empty() ? key : place_ + "." + key, value);
-  }
-
-  template <class T>
-  void repeated(const char* key, const T&) {
-    T unused{};
-    (*this)(key, unused);
-  }
-
-  /// The sentences follow from the record: they are not read, and may be missing.
-  template <class T>
-  void display(const T&) {
-    known_.insert("display");
-  }
-
-  void finish() const {
-    for (const auto& item : object_.items()) {
-      if (!known_.contains(item.key()))
-        fail(place_, fmt::format("the key \"{}\" is unknown", item.key()));
-    }
-  }
-
- private:
-  [[gnu::noinline]] const Json& member(const char* key) {
-    const auto found = object_.find(key);
-    if (found == object_.end()) fail(place_, fmt::format("the key \"{}\" is missing", key));
-    known_.insert(key);
-    return *found;
-  }
-
-  const Json& object_;
-  std::string place_;
-  std::set<std::string> known_;
-};
 
 bool special_number(const Json& node, double& value) {
   if (!node.is_string()) return false;
@@ -146,15 +102,11 @@ void leaf(const Json& node, const std::string& place, int& value) {
 }
 
 void leaf(const Json& node, const std::string& place, Verdict& value) {
-  static constexpr std::array all = {Verdict::pass,    Verdict::fail,  Verdict::inconclusive,
-                                     Verdict::invalid, Verdict::error, Verdict::skipped};
-  for (const Verdict verdict : all) {
-    if (node == to_string(verdict)) {
-      value = verdict;
-      return;
-    }
-  }
-  wrong_type(place, "pass, fail, inconclusive, invalid, error or skipped", node);
+  const auto* const name =
+      std::ranges::find_if(verdict_names, [&](auto each) { return node == each; });
+  if (name == std::end(verdict_names))
+    wrong_type(place, "pass, fail, inconclusive, invalid, error or skipped", node);
+  value = static_cast<Verdict>(name - verdict_names);
 }
 
 template <class T>
@@ -169,12 +121,38 @@ void leaf(const Json& node, const std::string& place, std::vector<T>& values) {
   }
 }
 
+/// True for a key that follows from others: it is written for readers, never read.
+template <class T>
+bool is_derived(std::string_view key) {
+  if constexpr (std::same_as<T, Test>) {
+    if (std::ranges::find(keys_of_worst_channel, key) != keys_of_worst_channel.end()) return true;
+  }
+  if constexpr (std::same_as<T, Suite>) {
+    if (key == "answers") return true;
+  }
+  return key == "display" && requires(const T& value) { display(value); };
+}
+
+const Json& member(const Json& object, const std::string& place, const std::string& key) {
+  const auto found = object.find(key);
+  if (found == object.end()) fail(place, fmt::format("the key \"{}\" is missing", key));
+  return *found;
+}
+
 template <class T>
 void read(const Json& node, const std::string& place, T& value) {
-  if constexpr (requires(Reader & r) { fields(r, value); }) {
-    Reader reader(node, place);
-    fields(reader, value);
-    reader.finish();
+  if constexpr (has_fields<T>) {
+    if (!node.is_object()) wrong_type(place, "an object", node);
+    std::set<std::string_view> known;
+    for_each_field(value, [&](std::string_view name, auto& field) {
+      const std::string key(name);
+      read(member(node, place, key), place.empty() ? key : place + "." + key, field);
+      known.insert(name);
+    });
+    for (const auto& item : node.items()) {
+      if (!known.contains(item.key()) && !is_derived<T>(item.key()))
+        fail(place, fmt::format("the key \"{}\" is unknown", item.key()));
+    }
   } else {
     leaf(node, place, value);
   }
@@ -218,7 +196,7 @@ Json parse(std::string_view text) {
   }
 }
 
-/// Adds the keys that version 2 has and version 1 had not.
+/// Adds the keys that earlier versions had not.
 void upgrade(Json& root) {
   const auto each = [](Json& node, const char* key, const auto& visit) {
     if (!node.is_object() || !node.contains(key) || !node[key].is_array()) return;
@@ -230,6 +208,7 @@ void upgrade(Json& root) {
   each(root, "suites", [&](Json& suite) {
     each(suite, "tests", [&](Json& test) {
       each(test, "looks", add_effect);
+      if (test.is_object()) test.emplace("paired", false);
       if (!test.is_object() || !test.contains("image") || !test["image"].is_object()) return;
       each(test["image"], "groups", add_effect);
       if (test["image"].contains("winner")) add_effect(test["image"]["winner"]);
@@ -242,7 +221,7 @@ void check_version(const Json& root) {
   if (!root.is_object() || !root.contains("schema"))
     fail("", "not a record of assay: the key \"schema\" is missing");
   const Json& version = root["schema"];
-  if (version != 1 && version != schema_version)
+  if (version != 1 && version != 2 && version != schema_version)
     fail("schema",
          fmt::format("written with version {} of the record, this program reads 1 to {}",
                      version.is_number() ? version.dump() : version.type_name(), schema_version));
@@ -268,7 +247,7 @@ Record read_json(std::string_view text, std::string_view file_name) {
   try {
     Json root = parse(text);
     check_version(root);
-    if (root["schema"] == 1) upgrade(root);
+    if (root["schema"] != schema_version) upgrade(root);
     Record record;
     read(root, "", record);
     check_maps(record);

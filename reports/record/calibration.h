@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "reports/record/record.h"
@@ -21,6 +20,14 @@ struct Rate {
   double value() const {
     return runs == 0 ? 0 : static_cast<double>(count) / static_cast<double>(runs);
   }
+  ASSAY_FIELDS(Rate, count, runs, low, high)
+};
+
+/// A method, and the number of runs that it judged.
+struct MethodRuns {
+  std::string method;
+  std::uint64_t runs = 0;
+  ASSAY_FIELDS(MethodRuns, method, runs)
 };
 
 /// The verdicts on one claim over the runs. The first four rates add up to 1.
@@ -31,10 +38,11 @@ struct VerdictRates {
   Rate invalid;             ///< or error, or refused before sampling
   Rate red;                 ///< a gate is red
   double observations = 0;  ///< mean over the runs, of each subject
-  /// The methods that judged, with their numbers of runs, the most frequent first.
-  std::vector<std::pair<std::string, std::uint64_t>> by = {};
+  /// The most frequent first.
+  std::vector<MethodRuns> by = {};
 
   std::uint64_t runs() const { return pass.runs; }
+  ASSAY_FIELDS(VerdictRates, pass, fail, inconclusive, invalid, red, observations, by)
 };
 
 /// A method on a question about a law at one alpha.
@@ -56,9 +64,12 @@ struct CalibrationCell {
 
   const Rate& mistaken() const { return proof ? off.pass : holds.fail; }
   const Rate& alone_mistaken() const { return proof ? alone.pass : alone.fail; }
+  ASSAY_FIELDS(CalibrationCell, method, question, law, alpha, proof, holds, off, alone,
+               alone_not_red)
 };
 
 struct Calibration {
+  std::string report = "calibration";
   Tool tool;
   Environment environment;
   std::uint64_t seed = 1;
@@ -69,6 +80,8 @@ struct Calibration {
   double error = 0.001;     ///< Probability that any cell's limit is beyond the truth.
   std::string detect;       ///< The `detect` of each kind of question, in words.
   std::vector<CalibrationCell> cells = {};
+  ASSAY_FIELDS(Calibration, report, tool, environment, seed, runs, started, seconds, tolerance,
+               error, detect, cells)
 };
 
 /// True if the procedure errs too often for certain.

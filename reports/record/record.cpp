@@ -1,5 +1,6 @@
 #include "reports/record/record.h"
 
+#include <algorithm>
 #include <map>
 #include <tuple>
 
@@ -32,24 +33,6 @@ class Draws {
 
 }  // namespace
 
-const char* to_string(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::pass:
-      return "pass";
-    case Verdict::fail:
-      return "fail";
-    case Verdict::inconclusive:
-      return "inconclusive";
-    case Verdict::invalid:
-      return "invalid";
-    case Verdict::error:
-      return "error";
-    case Verdict::skipped:
-      break;
-  }
-  return "skipped";
-}
-
 Outcome outcome(const Test& test) {
   if (test.verdict == Verdict::skipped) return Outcome::skipped;
   if (test.ok) return Outcome::passed;
@@ -57,24 +40,13 @@ Outcome outcome(const Test& test) {
 }
 
 Tally tally(const Suite& suite) {
-  Tally result;
-  for (const Test& test : suite.tests) {
-    switch (outcome(test)) {
-      case Outcome::passed:
-        ++result.passed;
-        break;
-      case Outcome::failed:
-        ++result.failed;
-        break;
-      case Outcome::inconclusive:
-        ++result.inconclusive;
-        break;
-      case Outcome::skipped:
-        ++result.skipped;
-        break;
-    }
-  }
-  return result;
+  const auto count = [&](Outcome kind) {
+    return static_cast<int>(std::ranges::count(suite.tests, kind, outcome));
+  };
+  return {.passed = count(Outcome::passed),
+          .failed = count(Outcome::failed),
+          .inconclusive = count(Outcome::inconclusive),
+          .skipped = count(Outcome::skipped)};
 }
 
 Tally tally(const Record& record) {
@@ -93,20 +65,6 @@ int alarms(const Ledger& ledger) {
   int count = 0;
   for (const LedgerSeries& series : ledger.series) count += series.alarm;
   return count;
-}
-
-Record without_times(Record record) {
-  record.started.clear();
-  record.seconds = 0;
-  record.environment.threads = 0;
-  for (Suite& suite : record.suites) {
-    suite.retries.clear();
-    for (EstimatorSummary& estimator : suite.estimators) estimator.cost.seconds = 0;
-    for (Test& test : suite.tests) {
-      for (Sample& sample : test.samples) sample.cost.seconds = 0;
-    }
-  }
-  return record;
 }
 
 Cost total_cost(const std::vector<Cost>& costs) {

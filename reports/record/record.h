@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "reports/record/record_effect.h"
@@ -16,17 +15,21 @@
 
 namespace assay::reports {
 
-inline constexpr int schema_version = 2;
+inline constexpr int schema_version = 3;
 
 /// The verdict of a test. `skipped` was not run (another shard's).
 enum class Verdict { pass, fail, inconclusive, invalid, error, skipped };
-const char* to_string(Verdict);
+inline constexpr const char* verdict_names[] = {"pass",    "fail",  "inconclusive",
+                                                "invalid", "error", "skipped"};
+constexpr const char* to_string(Verdict verdict) {
+  return verdict_names[static_cast<int>(verdict)];
+}
 
 struct Tool {
   std::string name = "assay";
   std::string version;
   std::string commit;
-  bool operator==(const Tool&) const = default;
+  ASSAY_FIELDS(Tool, name, version, commit)
 };
 
 struct Environment {
@@ -34,7 +37,7 @@ struct Environment {
   std::string cpu;
   std::string isa;  ///< instruction set that rays were traced with; their bits depend on it
   int threads = 0;
-  bool operator==(const Environment&) const = default;
+  ASSAY_FIELDS(Environment, compiler, cpu, isa, threads)
 };
 
 struct Cost {
@@ -43,7 +46,7 @@ struct Cost {
   std::uint64_t shadow_rays = 0;
   std::uint64_t samples = 0;
   double seconds = 0;  ///< CPU seconds of drawing
-  bool operator==(const Cost&) const = default;
+  ASSAY_FIELDS(Cost, camera_rays, closest_hit_rays, shadow_rays, samples, seconds)
 };
 
 /// Counts of observations in equal bins over [low, high); the rest below and above.
@@ -53,14 +56,14 @@ struct Histogram {
   std::vector<std::uint64_t> counts;
   std::uint64_t below = 0;
   std::uint64_t above = 0;
-  bool operator==(const Histogram&) const = default;
+  ASSAY_FIELDS(Histogram, low, high, counts, below, above)
 };
 
 /// Points of a normal quantile plot: theoretical standard normal quantile, observed value.
 struct QuantilePoint {
   double normal;
   double observed;
-  bool operator==(const QuantilePoint&) const = default;
+  ASSAY_FIELDS(QuantilePoint, normal, observed)
 };
 
 /// The joint variation of the cost c and the value x of an observation. Sums over the observations:
@@ -68,7 +71,7 @@ struct QuantilePoint {
 struct CostMoments {
   std::string kind;  ///< rays, samples
   double mean = 0, m2 = 0, m11 = 0, m21 = 0;
-  bool operator==(const CostMoments&) const = default;
+  ASSAY_FIELDS(CostMoments, kind, mean, m2, m11, m21)
 };
 
 /// Observations of one channel of one estimator, as one test saw them.
@@ -82,14 +85,16 @@ struct Sample {
   std::string stream;
   std::uint64_t primaries = 0;
   std::uint64_t secondaries = 0;
-  Number mean, variance, skewness, kurtosis, minimum, maximum;  ///< of secondary estimates
+  Number mean, variance, skewness, kurtosis, min, max;  ///< of secondary estimates
   std::uint64_t nonzero = 0;
   std::uint64_t nonfinite = 0;
   Histogram histogram;
   std::vector<QuantilePoint> quantiles;
   Cost cost;
   std::vector<CostMoments> with_cost;  ///< where a claim on a cost or an efficiency kept them
-  bool operator==(const Sample&) const = default;
+  ASSAY_FIELDS(Sample, estimator, plugin, parameters, channel, stream, primaries, secondaries, mean,
+               variance, skewness, kurtosis, min, max, nonzero, nonfinite, histogram, quantiles,
+               cost, with_cost)
 };
 
 /// An assumption checked. state: green, amber, red.
@@ -98,13 +103,13 @@ struct Gate {
   Number value;
   Number limit;
   std::string state;
-  bool operator==(const Gate&) const = default;
+  ASSAY_FIELDS(Gate, name, value, limit, state)
 };
 
 struct Distribution {
   std::string family;  ///< of the statistic under the null hypothesis
   std::vector<double> parameters;
-  bool operator==(const Distribution&) const = default;
+  ASSAY_FIELDS(Distribution, family, parameters)
 };
 
 /// An empirical distribution function at one of its values, what the law it is drawn from may be
@@ -115,7 +120,7 @@ struct LawPoint {
   double low = 0;       ///< of the band
   double high = 0;
   Number law;  ///< null where two samples are compared
-  bool operator==(const LawPoint&) const = default;
+  ASSAY_FIELDS(LawPoint, value, observed, low, high, law)
 };
 
 /// The empirical law of one sample: with probability `confidence` all of its band's points hold the
@@ -124,7 +129,7 @@ struct EmpiricalLaw {
   std::string source;  ///< the estimator's name
   double confidence = 0;
   std::vector<LawPoint> points;
-  bool operator==(const EmpiricalLaw&) const = default;
+  ASSAY_FIELDS(EmpiricalLaw, source, confidence, points)
 };
 
 /// The numbers of one channel of a claim.
@@ -140,7 +145,8 @@ struct Channel {
   Effect effect;
   Number reference;  ///< what the mean is marked against in the histogram, if a number
   std::vector<EmpiricalLaw> laws;  ///< of a claim about laws of one coordinate: one or two
-  bool operator==(const Channel&) const = default;
+  ASSAY_FIELDS(Channel, name, statistic, distribution, p_value, log10_p, p_adjusted, p_pass,
+               log10_p_adjusted, log10_p_pass, effect, reference, laws)
 };
 
 /// One look: what the first so many observations say by themselves. It rejects the claim or the
@@ -154,7 +160,7 @@ struct Look {
   Number p_pass;
   Number log10_p_pass;
   std::optional<Effect> effect;  ///< that of the worst channel; absent if the look is void
-  bool operator==(const Look&) const = default;
+  ASSAY_FIELDS(Look, secondaries, alpha, beta, log10_p, p_pass, log10_p_pass, effect)
 };
 
 struct Test {
@@ -165,6 +171,7 @@ struct Test {
   int line = 0;
   std::vector<std::string> tags;
   std::string over, reference, cost;  ///< these keys of the test, as replay needs them; "" if unset
+  bool paired = false;                ///< the same
   Verdict verdict = Verdict::skipped;
   Verdict expected = Verdict::pass;
   bool ok = false;
@@ -186,7 +193,10 @@ struct Test {
   std::vector<Map> maps;  ///< of an image
   std::string message;    ///< what a reader needs to know: what was excluded, or what would decide
   std::string replay;     ///< command that gives the same numbers again
-  bool operator==(const Test&) const = default;
+  ASSAY_FIELDS(Test, name, id, claim, file, line, tags, over, reference, cost, paired, verdict,
+               expected, ok, method, forced, null_hypothesis, tail, alpha, beta, detect, allow,
+               detectable, power, planned_looks, looks, gates, samples, channels, image, maps,
+               message, replay)
 };
 
 /// One channel of an estimator for the suite's picture.
@@ -196,7 +206,7 @@ struct EstimatorChannel {
   Estimate variance;  ///< of one primary estimate where it averages, else of the secondary
   Number reference;   ///< analytic mean
   Number reference_variance;
-  bool operator==(const EstimatorChannel&) const = default;
+  ASSAY_FIELDS(EstimatorChannel, name, mean, variance, reference, reference_variance)
 };
 
 /// An estimator of a suite with everything drawn from it.
@@ -215,7 +225,8 @@ struct EstimatorSummary {
       variance_of;  ///< what `variance` in channels is of: "primary", "secondary", or not said
   std::vector<EstimatorChannel> channels;
   Cost cost;
-  bool operator==(const EstimatorSummary&) const = default;
+  ASSAY_FIELDS(EstimatorSummary, name, plugin, parameters, bias, original, defect, stream,
+               primaries, secondaries, confidence, variance_of, channels, cost)
 };
 
 /// A pair of estimators of a suite at its alpha: descriptive, not part of the family.
@@ -227,7 +238,8 @@ struct Comparison {
   bool means_differ = false;              ///< after Holm over the pairs of the suite
   bool variances_differ = false;
   Number variance_ratio;  ///< first over second, one primary of each
-  bool operator==(const Comparison&) const = default;
+  ASSAY_FIELDS(Comparison, first, second, channel, mean_p, variance_p, log10_mean_p,
+               log10_variance_p, means_differ, variances_differ, variance_ratio)
 };
 
 /// A sentence from elsewhere, and the names of the tests that answer it. The answer is not part of
@@ -239,7 +251,7 @@ struct Statement {
   std::vector<std::string> holds;  ///< Tests whose expected verdicts show it true.
   std::vector<std::string> fails;  ///< Tests whose expected verdicts show it false.
   int line = 0;                    ///< in the suite's file
-  bool operator==(const Statement&) const = default;
+  ASSAY_FIELDS(Statement, text, source, condition, holds, fails, line)
 };
 
 /// A program of an estimator that failed and was started again.
@@ -248,7 +260,7 @@ struct Retry {
   std::uint64_t seed = 0;   ///< of the observation
   std::uint64_t retry = 1;  ///< from 1
   std::string reason;
-  bool operator==(const Retry&) const = default;
+  ASSAY_FIELDS(Retry, estimator, seed, retry, reason)
 };
 
 struct Suite {
@@ -264,7 +276,8 @@ struct Suite {
   std::vector<Comparison> comparisons;
   std::vector<Test> tests;
   std::vector<Statement> statements;
-  bool operator==(const Suite&) const = default;
+  ASSAY_FIELDS(Suite, name, file, about, seed, alpha, beta, timed, retries, estimators, comparisons,
+               tests, statements)
 };
 
 /// One-pass moments of the finite values of a channel. m2, m3 and m4 are sums of powers of
@@ -272,17 +285,17 @@ struct Suite {
 struct Moments {
   std::uint64_t count = 0;
   double mean = 0, m2 = 0, m3 = 0, m4 = 0;
-  double minimum = 0, maximum = 0;
+  double min = 0, max = 0;
   std::uint64_t nonzero = 0;
   double rest = 0;
-  bool operator==(const Moments&) const = default;
+  ASSAY_FIELDS(Moments, count, mean, m2, m3, m4, min, max, nonzero, rest)
 };
 
 struct ShardChannel {
   std::string name;
   Number reference;  ///< analytic mean
   Moments moments;
-  bool operator==(const ShardChannel&) const = default;
+  ASSAY_FIELDS(ShardChannel, name, reference, moments)
 };
 
 /// The moments behind an estimator of a shard's suite, at the same place in `Suite::estimators`.
@@ -294,7 +307,7 @@ struct ShardPicture {
   double averaged = 1;            ///< Primaries that an observation averages.
   bool image = false;
   std::vector<ShardChannel> channels;  ///< none of an image
-  bool operator==(const ShardPicture&) const = default;
+  ASSAY_FIELDS(ShardPicture, position, by_tests, secondaries, drawn, averaged, image, channels)
 };
 
 /// A test's part in Holm's method over the whole suite, at the same place in `Suite::tests`.
@@ -305,7 +318,7 @@ struct ShardTest {
   std::uint64_t untested = 0;         ///< Channels without a p-value.
   std::vector<double> log_p;          ///< Natural logarithms, one a channel of the test.
   std::vector<std::string> compared;  ///< The estimators of a claim about two.
-  bool operator==(const ShardTest&) const = default;
+  ASSAY_FIELDS(ShardTest, position, inside, weight, untested, log_p, compared)
 };
 
 /// A selected test of another shard.
@@ -316,7 +329,7 @@ struct ShardElsewhere {
   std::string name;
   std::string claim;
   int line = 0;
-  bool operator==(const ShardElsewhere&) const = default;
+  ASSAY_FIELDS(ShardElsewhere, shard, position, id, name, claim, line)
 };
 
 struct ShardSuite {
@@ -325,7 +338,7 @@ struct ShardSuite {
   std::vector<ShardPicture> pictures;
   std::vector<ShardTest> results;
   std::vector<ShardElsewhere> elsewhere;
-  bool operator==(const ShardSuite&) const = default;
+  ASSAY_FIELDS(ShardSuite, digest, tests, pictures, results, elsewhere)
 };
 
 /// A run that is one part of several, with all that joining the parts takes.
@@ -334,7 +347,7 @@ struct Shard {
   std::uint64_t count = 1;
   std::string options;             ///< the command without seed, shard and reports
   std::vector<ShardSuite> suites;  ///< in the record's order
-  bool operator==(const Shard&) const = default;
+  ASSAY_FIELDS(Shard, index, count, options, suites)
 };
 
 struct Record {
@@ -348,7 +361,8 @@ struct Record {
   std::vector<Suite> suites;
   Ledger ledger;
   std::optional<Shard> shard;  ///< none: a whole run, or shards merged
-  bool operator==(const Record&) const = default;
+  ASSAY_FIELDS(Record, schema, tool, environment, seed, started, seconds, note, suites, ledger,
+               shard)
 };
 
 /// The meaning of a test's verdict and expectation for the run.
@@ -369,10 +383,6 @@ struct Tally {
 };
 Tally tally(const Suite&);
 Tally tally(const Record&);
-
-/// The record without what differs between two runs of the same suite, seed and program: `started`,
-/// every `seconds`, and `environment.threads`. Two runs agree when these are equal byte for byte.
-Record without_times(Record);
 
 /// The cost of a test. The same draws count once, though each of their channels has a sample.
 Cost total_cost(const Test&);

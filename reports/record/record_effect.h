@@ -1,17 +1,21 @@
 #pragma once
 
-// Numbers with their intervals.
+// Numbers that may not exist, and their intervals.
 
+#include <optional>
 #include <string>
 
-#include "reports/record/optional_number.h"
+#include "reports/record/fields.h"
 
 namespace assay::reports {
+
+/// A number of the record that may not exist: JSON null.
+using Number = std::optional<double>;
 
 /// A number with its interval at `confidence`.
 struct Estimate {
   Number value, low, high;
-  bool operator==(const Estimate&) const = default;
+  ASSAY_FIELDS(Estimate, value, low, high)
 };
 
 /// theta of the claim: its estimate, and the interval that the verdict rests on. A fail, and a pass
@@ -22,7 +26,7 @@ struct Effect {
   Number estimate, low, high;
   double confidence = 0;
   bool relative = false;  ///< in units of the reference: shown in per cent
-  bool operator==(const Effect&) const = default;
+  ASSAY_FIELDS(Effect, quantity, estimate, low, high, confidence, relative)
 };
 
 }  // namespace assay::reports

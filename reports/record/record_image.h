@@ -7,14 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "reports/record/optional_number.h"
 #include "reports/record/record_effect.h"
 
 namespace assay::reports {
 
 /// A sum over part of an image, or over all of it, that speaks against equality.
 struct ImageFinding {
-  /// "window", "alternating" (signs); of laws what differs: "the values spread more".
+  /// "window", "alternating" (signs); of laws what differs: "the mean is larger in a".
   std::string statistic;
   std::string place;                                  ///< where, and its z, in words
   std::uint64_t x = 0, y = 0, width = 0, height = 0;  ///< the rectangle of pixels
@@ -23,7 +22,8 @@ struct ImageFinding {
   Number log10_p;
   Number log10_p_adjusted;       ///< in the family of everything that was looked at in the image
   std::optional<Effect> effect;  ///< difference of the means over the rectangle, of the winner
-  bool operator==(const ImageFinding&) const = default;
+  ASSAY_FIELDS(ImageFinding, statistic, place, x, y, width, height, component, z, log10_p,
+               log10_p_adjusted, effect)
 };
 
 /// A claim on all elements of an image together.
@@ -36,7 +36,8 @@ struct Image {
   std::uint64_t unseen = 0;          ///< Elements that do not vary and differ from it.
   ImageFinding winner;               ///< The least adjusted p.
   std::vector<ImageFinding> groups;  ///< The best of each group of sums.
-  bool operator==(const Image&) const = default;
+  ASSAY_FIELDS(Image, width, height, components, replicates, tested, constant, unseen, winner,
+               groups)
 };
 
 /// Numbers of an image; in JSON base64 of little-endian 32-bit floats.
@@ -57,7 +58,7 @@ struct Map {
   std::uint64_t width = 0, height = 0;
   std::vector<std::string> components;
   Texels texels;
-  bool operator==(const Map&) const = default;
+  ASSAY_FIELDS(Map, name, source, file, width, height, components, texels)
 };
 
 }  // namespace assay::reports

@@ -2,22 +2,21 @@
 
 // The part of the record that tells of a ledger: what many nights with fresh seeds say together.
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
-#include "reports/record/optional_number.h"
+#include "reports/record/record_effect.h"
 
 namespace assay::reports {
 
-/// What one night said, and all nights up to it.
+/// The evidence of one night, and of all nights up to it.
 struct LedgerNight {
   std::string date;  ///< UTC, ISO 8601
   std::string commit;
-  Number estimate, low, high;  ///< Of theta, with the night's own 95 % interval.
+  Number estimate, low, high;  ///< Theta by this night, with its own 95 % interval.
   Number log_p;                ///< ln of the p-value of a night without an estimate.
   Number log_e;                ///< ln of the e-value of all nights up to it.
-  bool operator==(const LedgerNight&) const = default;
+  ASSAY_FIELDS(LedgerNight, date, commit, estimate, low, high, log_p, log_e)
 };
 
 /// One channel of one claim in the ledger: what all nights with fresh seeds say together.
@@ -41,7 +40,9 @@ struct LedgerSeries {
 
   /// ln of the e-value of all nights.
   Number log_e() const { return nights.empty() ? Number() : nights.back().log_e; }
-  bool operator==(const LedgerSeries&) const = default;
+  ASSAY_FIELDS(LedgerSeries, test, channel, series, quantity, relative, nights, estimate,
+               standard_error, reference_error, limit, alarm, since, moved, moved_commit,
+               moved_from, moved_to, added, note)
 };
 
 /// The ledger that a run added to, of the tests it ran. An empty file name: none was kept.
@@ -49,7 +50,7 @@ struct Ledger {
   std::string file;
   Number budget;  ///< of each suite, over all nights
   std::vector<LedgerSeries> series;
-  bool operator==(const Ledger&) const = default;
+  ASSAY_FIELDS(Ledger, file, budget, series)
 };
 
 /// Series with an alarm.

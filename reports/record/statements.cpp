@@ -27,19 +27,8 @@ Voice voice_of(const Suite& suite, const std::optional<std::size_t>& place) {
 }  // namespace
 
 const char* to_string(Answer answer) {
-  switch (answer) {
-    case Answer::yes:
-      return "yes";
-    case Answer::only_if:
-      return "only if";
-    case Answer::no:
-      return "no";
-    case Answer::open:
-      return "open";
-    case Answer::contradicted:
-      break;
-  }
-  return "contradicted";
+  constexpr const char* names[] = {"yes", "only if", "no", "open", "contradicted"};
+  return names[static_cast<int>(answer)];
 }
 
 Answer answer(const Suite& suite, const Statement& statement) {

@@ -3,7 +3,6 @@
 #include <zlib.h>
 
 #include <cstdint>
-#include <span>
 #include <stdexcept>
 #include <string_view>
 #include <vector>

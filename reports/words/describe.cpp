@@ -13,8 +13,8 @@
 #include "reports/words/evidence.h"
 #include "reports/words/image_text.h"
 #include "reports/words/number.h"
-#include "reports/words/text.h"
 #include "reports/words/summary.h"
+#include "reports/words/text.h"
 
 namespace assay::reports {
 namespace {
@@ -220,7 +220,7 @@ std::string data_text(const Number& value) {
 std::vector<Fact> facts(const Test& test) {
   std::vector<Fact> result;
   const auto add = [&result](const char* label, std::string sentence) {
-    if (!sentence.empty()) result.emplace_back(label, std::move(sentence));
+    if (!sentence.empty()) result.push_back({label, std::move(sentence)});
   };
   const Channel channel = deciding_channel(test);
   add("expected", expectation_fact(test));

@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "reports/record/record.h"
@@ -45,7 +44,10 @@ std::string data_text(const Number& value);
 std::string headline(const Test&);
 
 /// A label and a sentence.
-using Fact = std::pair<std::string, std::string>;
+struct Fact {
+  std::string label, text;
+  ASSAY_FIELDS(Fact, label, text)
+};
 
 /// Everything that a reader of a verdict needs, in reading order: claim, null hypothesis, estimate,
 /// p-values, margins, expectation, channels, assumptions, message. Without place and replay

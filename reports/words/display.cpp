@@ -149,12 +149,11 @@ std::optional<KillDisplay> kills(const Suite& suite) {
   const KillMatrix matrix = kill_matrix(suite);
   if (!is_worth_showing(matrix)) return std::nullopt;
   KillDisplay shown{.methods = matrix.methods,
-                    .rows = {},
                     .totals = kill_totals(suite, matrix),
                     .legend = kill_matrix_legend};
   for (const KillRow& row : matrix.rows) {
     const EstimatorSummary& mutant = suite.estimators[row.mutant];
-    shown.rows.push_back({.mutant = mutant.name, .defect = mutant.defect, .cells = {}});
+    shown.rows.push_back({.mutant = mutant.name, .defect = mutant.defect});
     for (const std::optional<KillCell>& cell : row.cells) {
       if (!cell) {
         shown.rows.back().cells.emplace_back();
@@ -179,33 +178,15 @@ std::set<std::string> estimators_of(const Test& test) {
 }  // namespace
 
 const char* to_string(Standing standing) {
-  switch (standing) {
-    case Standing::broken:
-      return "broken";
-    case Standing::undecided:
-      return "undecided";
-    case Standing::holds:
-      return "holds";
-    case Standing::caught:
-      return "caught";
-    case Standing::not_run:
-      break;
-  }
-  return "not run";
+  constexpr const char* names[] = {"broken", "undecided", "holds", "caught", "not run"};
+  return names[static_cast<int>(standing)];
 }
 
 Standing standing(const Test& test) {
-  switch (outcome(test)) {
-    case Outcome::failed:
-      return Standing::broken;
-    case Outcome::inconclusive:
-      return Standing::undecided;
-    case Outcome::skipped:
-      return Standing::not_run;
-    case Outcome::passed:
-      break;
-  }
-  return test.expected == Verdict::pass ? Standing::holds : Standing::caught;
+  // In the order of outcomes.
+  const Standing standings[] = {test.expected == Verdict::pass ? Standing::holds : Standing::caught,
+                                Standing::broken, Standing::undecided, Standing::not_run};
+  return standings[static_cast<int>(outcome(test))];
 }
 
 TestDisplay display(const Test& test) {
@@ -227,7 +208,7 @@ TestDisplay display(const Test& test) {
 }
 
 SuiteDisplay display(const Suite& suite) {
-  SuiteDisplay words{.levels = levels_text(suite), .kills = kills(suite), .statements = {}};
+  SuiteDisplay words{.levels = levels_text(suite), .kills = kills(suite)};
   for (const Statement& statement : suite.statements) {
     words.statements.push_back({.answer = whole_answer(suite, statement),
                                 .holds = findings(suite, statement.holds),
@@ -254,7 +235,7 @@ std::vector<Suspect> suspects(const Suite& suite) {
         std::max_element(count.begin(), count.end(), [&](const auto& a, const auto& b) {
           return std::pair(a.second, -claims[a.first]) < std::pair(b.second, -claims[b.first]);
         });
-    Suspect suspect{.suite = suite.name, .name = "", .tests = {}, .sentence = ""};
+    Suspect suspect{.suite = suite.name};
     if (worst == count.end()) {
       suspect.name = broken.front()->name;
       suspect.tests = {broken.front()->id};

@@ -31,6 +31,8 @@ struct TestDisplay {
   std::string place;
   std::string cost;
   std::vector<Fact> facts;
+  ASSAY_FIELDS(TestDisplay, standing, verdict, sentence, effect, interval, margin, chance, place,
+               cost, facts)
 };
 TestDisplay display(const Test&);
 
@@ -39,27 +41,32 @@ struct KillCellDisplay {
   std::string text;
   std::string sentence;
   bool killed = false;
+  ASSAY_FIELDS(KillCellDisplay, test, text, sentence, killed)
 };
 struct KillRowDisplay {
   std::string mutant;
   std::string defect;
   std::vector<std::optional<KillCellDisplay>> cells;
+  ASSAY_FIELDS(KillRowDisplay, mutant, defect, cells)
 };
 struct KillDisplay {
   std::vector<std::string> methods;
   std::vector<KillRowDisplay> rows;
   std::string totals;
   std::string legend;
+  ASSAY_FIELDS(KillDisplay, methods, rows, totals, legend)
 };
 struct StatementDisplay {
   std::string answer;
   std::string holds;
   std::string fails;
+  ASSAY_FIELDS(StatementDisplay, answer, holds, fails)
 };
 struct SuiteDisplay {
   std::string levels;
   std::optional<KillDisplay> kills;
   std::vector<StatementDisplay> statements;
+  ASSAY_FIELDS(SuiteDisplay, levels, kills, statements)
 };
 SuiteDisplay display(const Suite&);
 
@@ -70,6 +77,7 @@ struct Suspect {
   std::string name;
   std::vector<std::string> tests;  ///< ids of its broken claims
   std::string sentence;            ///< "4 of its 17 claims broken"
+  ASSAY_FIELDS(Suspect, suite, name, tests, sentence)
 };
 /// Every broken claim belongs to one suspect. Suspects with more broken claims come first.
 std::vector<Suspect> suspects(const Suite&);
@@ -78,6 +86,7 @@ struct SeriesDisplay {
   std::string name;
   std::string sentence;
   std::string alarm;  ///< empty without one
+  ASSAY_FIELDS(SeriesDisplay, name, sentence, alarm)
 };
 struct RecordDisplay {
   std::string verdict;  ///< "5 of 126 claims broken; 1 ledger alarm"
@@ -89,6 +98,7 @@ struct RecordDisplay {
   std::string quiet;
   std::vector<std::string> notes;
   std::vector<SeriesDisplay> series;
+  ASSAY_FIELDS(RecordDisplay, verdict, counts, rates, seed, suspects, ledger, quiet, notes, series)
 };
 RecordDisplay display(const Record&);
 

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "reports/record/record.h"
+#include "reports/record/record_effect.h"
 
 namespace assay::reports {
 

@@ -63,4 +63,9 @@ std::string kill_totals(const Suite&, const KillMatrix&);
 /// How to read the short texts.
 extern const char* const kill_matrix_legend;
 
+/// A heading and a line for each mutant, none wider than `width` columns: names are shortened where
+/// the numbers need the room, numbers never. Columns that do not fit stand in a second block, with
+/// the mutants that have something there.
+std::vector<std::string> kill_lines(const Suite& suite, const KillMatrix& matrix, int width);
+
 }  // namespace assay::reports

@@ -70,13 +70,6 @@ std::string series_sentence(const LedgerSeries& series) {
                      theta_sentence(series), e_text(series.log_e()), e_text(series.limit));
 }
 
-std::string night_value(const LedgerSeries& series, const LedgerNight& night) {
-  if (!night.estimate || !night.low || !night.high) return e_text(night.log_p);
-  return fmt::format("{} [{}, {}]", with_sign(*night.estimate, series.relative),
-                     with_sign(*night.low, series.relative),
-                     with_sign(*night.high, series.relative));
-}
-
 std::string alarm_sentence(const LedgerSeries& series) {
   if (!series.alarm) return {};
   std::string text = fmt::format(

@@ -25,9 +25,6 @@ std::string e_text(const Number& log_e);
 /// 667".
 std::string series_sentence(const LedgerSeries&);
 
-/// A night's estimate with its interval, or its p-value: "+0.031 % [+0.021 %, +0.041 %]".
-std::string night_value(const LedgerSeries&, const LedgerNight&);
-
 /// The first night of an alarm, and the night at which theta most likely moved. Empty without an
 /// alarm.
 std::string alarm_sentence(const LedgerSeries&);

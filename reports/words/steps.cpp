@@ -5,7 +5,6 @@
 #include "reports/words/describe.h"
 #include "reports/words/display.h"
 #include "reports/words/evidence.h"
-#include "reports/words/summary.h"
 
 namespace assay::reports {
 
@@ -19,7 +18,7 @@ std::string trouble(const Test& test) {
 
 namespace {
 
-/// What a message asks to write; "" if it asks for nothing.
+/// The text that a message asks to write; "" if it asks for nothing.
 std::string asked_for(const std::string& message) {
   constexpr std::string_view lead = "write `";
   const std::size_t at = message.rfind(lead);

@@ -1,6 +1,6 @@
 #pragma once
 
-// What to do about a claim that is not as it should be.
+// Steps to take about a claim that is not as it should be.
 
 #include <string>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace assay::reports {
 
-/// What is the matter with a claim, without a p-value where it can be said so.
+/// The trouble with a claim, without a p-value where it can be said so.
 std::string trouble(const Test&);
 
 /// Something to do, and a line to paste for it.

@@ -26,33 +26,15 @@ std::string of_claims(int some, int total) {
 
 /// The rank of a test in lists that begin with what needs a look: not ok, undecided, not run, ok.
 int urgency(const Test& test) {
-  switch (outcome(test)) {
-    case Outcome::failed:
-      return 0;
-    case Outcome::inconclusive:
-      return 1;
-    case Outcome::skipped:
-      return 2;
-    case Outcome::passed:
-      break;
-  }
-  return 3;
+  constexpr int ranks[] = {3, 0, 1, 2};  // in the order of outcomes
+  return ranks[static_cast<int>(outcome(test))];
 }
 
 }  // namespace
 
 std::string mark(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::passed:
-      return "✓";
-    case Outcome::failed:
-      return "✗";
-    case Outcome::inconclusive:
-      return "?";
-    case Outcome::skipped:
-      break;
-  }
-  return "–";
+  constexpr const char* marks[] = {"✓", "✗", "?", "–"};
+  return marks[static_cast<int>(outcome)];
 }
 
 std::string verdict_text(const Test& test) {
@@ -106,7 +88,7 @@ std::string error_rates(const Record& record) {
   if (!(alpha > 0)) return {};
   std::string text = fmt::format(
       "If every claim were true, some test would fail by chance with probability {} at most.",
-      human(alpha));
+      human(std::min(alpha, 1.0)));
   if (planned && beta > 0)
     text += fmt::format(
         " A claim that is off by its \"detect\" or more passes with probability {} at most.",
@@ -116,6 +98,7 @@ std::string error_rates(const Record& record) {
 
 std::string false_alarms(double alpha) {
   if (!(alpha > 0)) return {};
+  if (alpha >= 1) return "False alarms: in any run, as the suites' alphas add up to 1 or more.";
   // The fewest runs, a power of ten, of which a whole number is meant; two digits are enough.
   double runs = 100;
   const auto whole = [&] { return std::abs(alpha * runs - std::round(alpha * runs)) < 1e-6; };

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 
 namespace assay::reports {
 namespace {
@@ -36,72 +37,31 @@ bool showable(char32_t c) {
   return c == '\n' || c == '\t' || !(control(c) || layout_control(c) || non_character(c));
 }
 
-std::string replace(std::string_view text, std::string_view (*form)(char)) {
+/// A character and what is written for it.
+struct Form {
+  char character;
+  std::string_view written;
+};
+
+constexpr Form xml_forms[] = {
+    {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
+
+constexpr Form white_forms[] = {{'\n', "&#10;"}, {'\t', "&#9;"}};
+
+// Numeric references also keep GitHub from linking @names and #numbers.
+constexpr Form markdown_forms[] = {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'@', "&#64;"},
+                                   {'#', "&#35;"}, {'|', "\\|"},  {'*', "\\*"},  {'_', "\\_"},
+                                   {'`', "\\`"},   {'~', "\\~"},  {'[', "\\["},  {']', "\\]"},
+                                   {'$', "\\$"},   {'\\', "\\\\"}};
+
+std::string replace(std::string_view text, std::span<const Form> forms) {
   std::string result;
   result.reserve(text.size() + text.size() / 8);
   for (const char& c : text) {
-    const std::string_view written = form(c);
-    result.append(written.empty() ? std::string_view(&c, 1) : written);
+    const auto form = std::ranges::find(forms, c, &Form::character);
+    result.append(form == forms.end() ? std::string_view(&c, 1) : form->written);
   }
   return result;
-}
-
-std::string_view xml_form(char c) {
-  switch (c) {
-    case '&':
-      return "&amp;";
-    case '<':
-      return "&lt;";
-    case '>':
-      return "&gt;";
-    case '"':
-      return "&quot;";
-    case '\'':
-      return "&#39;";
-    default:
-      return {};
-  }
-}
-
-std::string_view white_form(char c) {
-  if (c == '\n') return "&#10;";
-  return c == '\t' ? std::string_view("&#9;") : std::string_view();
-}
-
-// Numeric references also keep GitHub from linking @names and #numbers.
-std::string_view markdown_form(char c) {
-  switch (c) {
-    case '&':
-      return "&amp;";
-    case '<':
-      return "&lt;";
-    case '>':
-      return "&gt;";
-    case '@':
-      return "&#64;";
-    case '#':
-      return "&#35;";
-    case '|':
-      return "\\|";
-    case '*':
-      return "\\*";
-    case '_':
-      return "\\_";
-    case '`':
-      return "\\`";
-    case '~':
-      return "\\~";
-    case '[':
-      return "\\[";
-    case ']':
-      return "\\]";
-    case '$':
-      return "\\$";
-    case '\\':
-      return "\\\\";
-    default:
-      return {};
-  }
 }
 
 }  // namespace
@@ -158,14 +118,21 @@ std::string one_line(std::string_view text) {
   return result;
 }
 
-std::string escape_xml(std::string_view text) { return replace(clean(text), xml_form); }
+std::string plain_spaces(std::string text) {
+  constexpr std::string_view no_break = "\u00A0";
+  for (std::size_t at = 0; (at = text.find(no_break, at)) != std::string::npos;)
+    text.replace(at, no_break.size(), " ");
+  return text;
+}
+
+std::string escape_xml(std::string_view text) { return replace(clean(text), xml_forms); }
 
 std::string escape_attribute(std::string_view text) {
-  return replace(escape_xml(text), white_form);
+  return replace(escape_xml(text), white_forms);
 }
 
 std::string escape_markdown(std::string_view text) {
-  return replace(one_line(text), markdown_form);
+  return replace(one_line(text), markdown_forms);
 }
 
 std::string cap(std::string text, std::size_t bytes) {

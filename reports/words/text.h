@@ -27,6 +27,9 @@ std::string clean(std::string_view text);
 /// clean(), with line feeds and tabs as spaces: for names, headings and table cells.
 std::string one_line(std::string_view text);
 
+/// No-break spaces as plain ones: terminals and programs treat them in their own ways.
+std::string plain_spaces(std::string text);
+
 /// clean(), with & < > " ' as references: for text between XML or HTML tags.
 std::string escape_xml(std::string_view text);
 

@@ -1,7 +1,6 @@
 #include "stats/basics/joint_moments.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "stats/basics/vector_copies.h"
 

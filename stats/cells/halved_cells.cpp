@@ -13,7 +13,7 @@ std::size_t HalvedCells::index(double x, double y) const {
 
 HalvedCells whole_cells(const PlaneGrid& grid) {
   check_borders(grid);
-  HalvedCells all{.grid = grid, .parts = {}, .halves = {}, .cells = {}, .grid_cells = {}};
+  HalvedCells all{.grid = grid};
   for (std::size_t i = 0; i < grid.size(); ++i) {
     all.parts.push_back({.whole = true, .number = i});
     all.cells.push_back(grid.cell(i));

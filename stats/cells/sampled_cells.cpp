@@ -49,8 +49,7 @@ SampledCells sampled_cells(std::vector<PlanePoint> points, CellNumbers numbers) 
   }
   std::sort(points.begin(), points.end(),
             [](const auto& a, const auto& b) { return a.first < b.first; });
-  SampledCells cells{
-      .band_borders = borders(points, numbers.bands, first_of), .cut_borders = {}, .before = {}};
+  SampledCells cells{.band_borders = borders(points, numbers.bands, first_of)};
   std::size_t behind = 0;
   auto begin = points.begin();
   for (std::size_t band = 0; band <= cells.band_borders.size(); ++band) {

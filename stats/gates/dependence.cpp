@@ -5,10 +5,24 @@
 
 #include "stats/basics/check.h"
 #include "stats/basics/errors.h"
-#include "stats/gates/normal_test.h"
+#include "stats/tails/tails.h"
+#include "stats/tails/test_result.h"
 
 namespace assay::stats {
 namespace {
+
+// An estimate that is normal about theta, in the limit, and its standard error.
+struct NormalEstimate {
+  double value = 0;
+  double standard_error = 1;
+};
+
+// Null hypothesis: theta = 0 (<= 0, >= 0), by z = value / standard_error. Asymptotic.
+TestResult normal_test(NormalEstimate estimate) {
+  const double z = estimate.value / estimate.standard_error;
+  const LogTails tails = normal_tails(z);
+  return {z, {"normal", {}}, tails.lower, tails.upper, Exactness::asymptotic};
+}
 
 class Sequence {
  public:

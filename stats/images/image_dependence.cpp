@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <numeric>
+#include <string_view>
 
 #include "stats/basics/moments.h"
 #include "stats/basics/scores.h"
@@ -12,7 +14,8 @@ namespace assay::stats {
 namespace {
 
 constexpr std::size_t tile_side = 8;
-constexpr std::size_t telling_values = 8;
+// Probability that independent images repeat a tile anywhere.
+constexpr double chance = 1e-6;
 constexpr std::size_t most_sampled = 16384;
 constexpr std::size_t fewest_sampled = 64;
 // Pairs whose indices differ by at most so much show how alike others are.
@@ -25,6 +28,11 @@ std::vector<const ImageStack<Real>*> sides_of(const ImagePair<Real>& pair) {
   std::vector<const ImageStack<Real>*> sides{&pair.a};
   if (pair.b != nullptr) sides.push_back(pair.b);
   return sides;
+}
+
+std::size_t tiles_across(std::size_t size) { return (size + tile_side - 1) / tile_side; }
+std::size_t tiles_of(const ImageExtent& extent) {
+  return tiles_across(extent.width) * tiles_across(extent.height);
 }
 
 // The pixels of a tile that the image has.
@@ -68,36 +76,35 @@ bool equal_in(const Rectangle& tile, const ImageStack<Real>& a, std::size_t i,
   return true;
 }
 
-// True if half of the tile's pixels tell images apart, by one of their channels.
+// The logarithm of a bound on the probability that another image repeats this one's tile.
 template <class Real>
-bool tells_apart(const std::vector<const ImageStack<Real>*>& sides, const Rectangle& tile) {
+double log_chance(const std::vector<const ImageStack<Real>*>& sides, const WhichImage& image,
+                  const Rectangle& tile) {
   const std::size_t channels = sides[0]->extent.channels;
-  std::size_t telling = 0;
-  std::vector<Real> values;
-  for (std::size_t row = 0; row < tile.height; ++row) {
-    for (std::size_t x = 0; x < tile.width; ++x) {
-      bool tells = false;
-      for (std::size_t c = 0; c < channels && !tells; ++c) {
-        values.clear();
-        for (const ImageStack<Real>* stack : sides) {
-          for (std::size_t r = 0; r < stack->images.size(); ++r) {
-            values.push_back(row_of(*stack, r, tile, row)[x * channels + c]);
-          }
-        }
-        std::ranges::sort(values);
-        std::size_t different = 0;
-        std::size_t most = 0;
-        for (auto at = values.begin(); at != values.end(); ++different) {
-          const auto end = std::upper_bound(at, values.end(), *at);
-          most = std::max(most, static_cast<std::size_t>(end - at));
-          at = end;
-        }
-        tells = different >= telling_values && 2 * most <= values.size();
+  std::map<std::string_view, double> by_value;
+  for (std::size_t i = 0; i < std::size_t{tile.width} * tile.height; ++i) {
+    const auto place_of = [&](const ImageStack<Real>& stack, std::size_t index) {
+      const Real* const row = row_of(stack, index, tile, i / tile.width);
+      return std::string_view(reinterpret_cast<const char*>(row + i % tile.width * channels),
+                              channels * sizeof(Real));
+    };
+    const std::string_view value = place_of(*sides[image.side], image.index);
+    double equal = 0;
+    double all = 0;
+    for (const ImageStack<Real>* stack : sides) {
+      for (std::size_t r = 0; r < stack->images.size(); ++r, ++all) {
+        equal += place_of(*stack, r) == value ? 1 : 0;
       }
-      telling += tells ? 1 : 0;
     }
+    by_value[value] += std::log(equal / all);
   }
-  return 2 * telling >= tile_side * tile_side;
+  double sum = 0;
+  double least = 0;
+  for (const auto& [value, log_p] : by_value) {
+    sum += log_p;
+    least = std::min(least, log_p);
+  }
+  return sum - least;
 }
 
 struct Seen {
@@ -115,15 +122,19 @@ std::optional<RepeatedTile> repeated_in(const std::vector<const ImageStack<Real>
     }
   }
   std::ranges::stable_sort(seen, {}, &Seen::digest);
+  const auto all = static_cast<double>(seen.size());
+  const double compared = all * (all - 1) / 2 * static_cast<double>(tiles_of(sides[0]->extent));
+  bool known = false;  // The images up to here repeat by chance.
   for (std::size_t i = 1; i < seen.size(); ++i) {
     const WhichImage& one = seen[i - 1].image;
     const WhichImage& other = seen[i].image;
-    if (seen[i - 1].digest != seen[i].digest ||
-        !equal_in(tile, *sides[one.side], one.index, *sides[other.side], other.index)) {
-      continue;
+    const bool repeats =
+        seen[i - 1].digest == seen[i].digest &&
+        equal_in(tile, *sides[one.side], one.index, *sides[other.side], other.index);
+    if (repeats && !known && log_chance(sides, one, tile) < std::log(chance / compared)) {
+      return RepeatedTile{.tile = tile, .one = one, .other = other, .tiles = 1};
     }
-    if (!tells_apart(sides, tile)) return {};
-    return RepeatedTile{.tile = tile, .one = one, .other = other, .tiles = 1};
+    known = repeats;
   }
   return {};
 }
@@ -208,8 +219,8 @@ void RowDependence<Real>::take(const ImagePair<Real>& pair, RowRange rows,
                                const ForEach& for_each) {
   const std::vector<const ImageStack<Real>*> sides = sides_of(pair);
   const ImageExtent& extent = pair.a.extent;
-  const std::size_t across = (extent.width + tile_side - 1) / tile_side;
-  const std::size_t down = (rows.last - rows.first + tile_side - 1) / tile_side;
+  const std::size_t across = tiles_across(extent.width);
+  const std::size_t down = tiles_across(rows.last - rows.first);
   std::vector<std::optional<RepeatedTile>> found(across * down);
   for_each(found.size(), [&](std::size_t i) {
     const Rectangle tile =

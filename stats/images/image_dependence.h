@@ -15,6 +15,7 @@ namespace assay::stats {
 struct WhichImage {
   std::size_t side = 0;
   std::size_t index = 0;
+  friend bool operator==(const WhichImage&, const WhichImage&) = default;
 };
 
 // Two images that agree in a tile bit for bit, although its elements vary.
@@ -23,6 +24,7 @@ struct RepeatedTile {
   WhichImage one = {};
   WhichImage other = {};
   std::size_t tiles = 0;  // That are repeated anywhere.
+  friend bool operator==(const RepeatedTile&, const RepeatedTile&) = default;
 };
 
 // Images that are more alike than others: each with the next of its side, or with that of the same
@@ -31,19 +33,23 @@ struct AlikeImages {
   bool across = false;
   std::size_t side = 0;    // If not across.
   double correlation = 0;  // Mean over the pairs, of ranks among the side's images.
+  friend bool operator==(const AlikeImages&, const AlikeImages&) = default;
 };
 
 struct ImageDependence {
   std::optional<RepeatedTile> repeated = {};
   std::optional<AlikeImages> alike = {};
+  friend bool operator==(const ImageDependence&, const ImageDependence&) = default;
 };
 
 // Do images depend on each other? Null hypothesis: all images are independent, those of a side of
 // one law.
 //
-// Tiles of 8 x 8 pixels are compared bit for bit over all images. A pixel tells apart if it has
-// eight values or more. None of them may be in more than half of the images. Half of a repeated
-// tile's pixels tell apart. Independent pixels then agree with probability below 2^-60.
+// Tiles of 8 x 8 pixels are compared bit for bit over all images. A value has a frequency among the
+// images at its pixel. Let q be the product of the frequencies of a tile's values. Two independent
+// images agree in such values with probability q at most. A tile is repeated if q times the number
+// of comparisons is below 1e-6. The value that weighs most in q is left out: pixels may be black
+// together. Other pixels of a tile are taken as independent of each other.
 //
 // At most 16384 elements are ranked among the side's images. The mean correlation of neighbours,
 // and of equal indices across, is held against that of other pairs with indices near each other. It

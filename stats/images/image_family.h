@@ -13,11 +13,9 @@ enum class ImageStatistic { window, alternating };
 // Direction in which an alternating sum changes its sign.
 enum class Alternation { columns, rows, checkerboard };
 
-// The mean difference at a place, weighted as the test weighs it. `margin` was taken off |estimate|
-// before it was divided by the standard error.
+// The mean difference at a place, weighted as the test weighs it.
 struct ImageEffect {
   double estimate = 0;
-  double margin = 0;
   double standard_error = 0;
   double degrees = 1;
 };
@@ -29,8 +27,8 @@ struct ImageFinding {
   std::uint32_t size = 1;
   Rectangle window;
   std::size_t channel = 0;
-  double z = 0;      // Positive where the first image is brighter.
-  double log_p = 0;  // Of this one sum, two-sided.
+  double z = 0;               // Positive where the first image is brighter.
+  double log_p = 0;           // Of this one sum, two-sided.
   double adjusted_log_p = 0;  // In the family of everything that was looked at; at most 0.
   Alternation alternation = Alternation::columns;
   ImageEffect effect = {};

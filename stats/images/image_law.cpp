@@ -17,10 +17,12 @@ constexpr const char* function_name = "image_law_test";
 constexpr std::size_t scores = 3;
 // Side of the tiles that threads take.
 constexpr std::size_t tile_side = 32;
-// Permutations are drawn in batches, the first of which mostly settles a true hypothesis. After so
-// many that are as extreme, no more are drawn.
+// Results of so many tiles are kept apart before they are merged.
+constexpr std::size_t tiles_at_a_time = 64;
+// Permutations are drawn in batches of twice the size before, as the elements are scored for each.
+// The first mostly settles a true hypothesis. After so many that are as extreme, no more are drawn.
 constexpr std::size_t first_batch_size = 64;
-constexpr std::size_t batch_size = 256;
+constexpr std::size_t largest_batch_size = 4096;
 constexpr std::size_t enough = 10;
 
 // The first side's images, one list for each labelling.
@@ -252,25 +254,27 @@ void note_elements(const Cells& values, const Place& at, const ImageExtent& exte
 template <class Real>
 Groups groups_of(const Pooled<Real>& pooled, const Labels& labels, const ForEach& for_each,
                  std::span<double> z) {
-  std::vector<Groups> found(pooled.tiles());
+  Groups all;
   // By tile, score and image.
   std::vector<std::array<std::vector<float>, scores>> sums(pooled.tiles());
-  for_each(pooled.tiles(), [&](std::size_t tile) {
-    const Place at = pooled.place(tile);
-    std::array<Cells, scores> scored = pooled.scored(at);
-    if (!z.empty()) note_elements(scored[0], at, pooled.extent(), labels[0], z);
-    for (std::size_t s = 0; s < scores; ++s) {
-      Cells cells =
-          look_upward(std::move(scored[s]), tile_side / 2, labels, at.channel, found[tile][s]);
-      while (cells.count() > 1) cells = doubled(cells);
-      for (const std::vector<float>& image : cells.images) sums[tile][s].push_back(image[0]);
-    }
-  });
-  Groups all;
-  for (const Groups& groups : found) {
-    for (std::size_t s = 0; s < scores; ++s) {
-      all[s].resize(std::max(all[s].size(), groups[s].size()));
-      for (std::size_t l = 0; l < groups[s].size(); ++l) merge(all[s][l], groups[s][l]);
+  for (std::size_t first = 0; first < sums.size(); first += tiles_at_a_time) {
+    std::vector<Groups> found(std::min(tiles_at_a_time, sums.size() - first));
+    for_each(found.size(), [&](std::size_t i) {
+      const Place at = pooled.place(first + i);
+      std::array<Cells, scores> scored = pooled.scored(at);
+      if (!z.empty()) note_elements(scored[0], at, pooled.extent(), labels[0], z);
+      for (std::size_t s = 0; s < scores; ++s) {
+        Cells cells =
+            look_upward(std::move(scored[s]), tile_side / 2, labels, at.channel, found[i][s]);
+        while (cells.count() > 1) cells = doubled(cells);
+        for (const auto& image : cells.images) sums[first + i][s].push_back(image[0]);
+      }
+    });
+    for (const Groups& groups : found) {
+      for (std::size_t s = 0; s < scores; ++s) {
+        all[s].resize(std::max(all[s].size(), groups[s].size()));
+        for (std::size_t l = 0; l < groups[s].size(); ++l) merge(all[s][l], groups[s][l]);
+      }
     }
   }
   // Tiles are the cells of larger sizes.
@@ -310,11 +314,12 @@ std::vector<double> statistics_of(const Groups& groups, std::size_t labellings) 
 }
 
 ImageLawFinding most_of(const Groups& groups, const ImageExtent& extent) {
-  ImageLawFinding most;
+  ImageLawFinding most{.window = {0, 0, static_cast<std::uint32_t>(extent.width),
+                                  static_cast<std::uint32_t>(extent.height)}};
   double least = 1;
   for (std::size_t s = 0; s < scores; ++s) {
     for (const Group& group : groups[s]) {
-      if (group.cells == 0) continue;
+      if (group.cells == 0 || !(group.largest[0] > 0)) continue;
       const double log_p =
           adjusted(log_p_two_sided(normal_tails(static_cast<double>(group.largest[0]))),
                    {static_cast<double>(group.cells), 1});
@@ -348,11 +353,12 @@ ImageLawTest image_law_test(const ImageStack<Real>& a, const ImageStack<Real>& b
   std::iota(labels[0].begin(), labels[0].end(), 0);
   std::size_t as_small = 0;
   double observed = 0;
+  std::size_t batch = first_batch_size;
   while (test.permutations < options.permutations && as_small < enough) {
     labels.resize(1);
     const bool first_batch = test.permutations == 0;
-    const std::size_t size = std::min(first_batch ? first_batch_size : batch_size,
-                                      options.permutations - test.permutations);
+    const std::size_t size = std::min(batch, options.permutations - test.permutations);
+    batch = std::min(2 * batch, largest_batch_size);
     for (std::size_t i = 0; i < size; ++i) {
       labels.push_back(options.draw(test.permutations + i, all, first));
     }

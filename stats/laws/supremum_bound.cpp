@@ -1,7 +1,6 @@
 #include "stats/laws/supremum_bound.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include "stats/tails/special.h"

@@ -35,7 +35,7 @@ ValueCells::Cell cell_of(std::span<const double> values) {
   return cell;
 }
 
-// What a bet gains of a value, as a share of itself. Rounding may take a value past the range's
+// The gain of a bet on a value, as a share of itself. Rounding may take a value past the range's
 // end.
 double gain(double value, double null, double room) {
   return std::max(-1.0, (value - null) / room);

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstdint>
-
 #include "stats/basics/moments.h"
 #include "stats/gates/assumption_gates.h"
 #include "stats/means/student_t.h"

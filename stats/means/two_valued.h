@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstdint>
-
 #include "stats/basics/moments.h"
 #include "stats/means/binomial.h"
 #include "stats/means/range.h"

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 
 #include "stats/basics/check.h"
 #include "stats/planning/boundary.h"

@@ -25,13 +25,13 @@ bool Candidates::wants(StudentValue value) {
   // Student's tails are heavier than the normal law's: |z| <= |t|, but for the rounding of z.
   constexpr double rounding = 1e-6;
   ++windows_;
-  return kept_.size() < most || std::abs(value.t) * (1 + rounding) >= std::abs(kept_.back().finding.z);
+  return kept_.size() < most ||
+         std::abs(value.t) * (1 + rounding) >= std::abs(kept_.back().finding.z);
 }
 
 void Candidates::keep(const Candidate& candidate) {
-  const auto place = std::ranges::find_if(kept_, [&](const Candidate& other) {
-    return beats(candidate.finding, other.finding);
-  });
+  const auto place = std::ranges::find_if(
+      kept_, [&](const Candidate& other) { return beats(candidate.finding, other.finding); });
   kept_.insert(place, candidate);
   if (kept_.size() > most) kept_.pop_back();
 }
@@ -48,7 +48,6 @@ void offer(BestCell& best, const Candidate& candidate, const NoisePyramid& noise
   ImageFinding finding = candidate.finding;
   finding.z = t_to_z(value);
   finding.effect = {.estimate = candidate.noise.effect,
-                    .margin = kept.margin,
                     .standard_error = kept.standard_error,
                     .degrees = candidate.noise.degrees};
   if (best.value.degrees > 0 && !beats(finding, best.finding)) return;

@@ -114,21 +114,6 @@ WelchCells window_moments(const CoarseImages& coarse, const Groups& groups, std:
   return moments;
 }
 
-// The largest deviations of a window's elements.
-void add_largest(const CoarseImages& coarse, const Rectangle& blocks, std::size_t channel,
-                 CellNoise& noise) {
-  for (std::size_t y = blocks.y; y < blocks.y + blocks.height; ++y) {
-    for (std::size_t x = blocks.x; x < blocks.x + blocks.width; ++x) {
-      const std::size_t i = (y * coarse.extent.width + x) * coarse.extent.channels + channel;
-      for (std::size_t s = 0; s < sides_of_pair; ++s) {
-        for (std::size_t d = 0; d < directions; ++d) {
-          noise.largest[s][d] = std::max(noise.largest[s][d], coarse.largest[s][i][d]);
-        }
-      }
-    }
-  }
-}
-
 // One channel's numbers of blocks, as sums over windows.
 WindowSums channel_sums(const ImageExtent& blocks, const std::vector<double>& numbers,
                         std::size_t channel) {
@@ -148,8 +133,8 @@ void offer_coarse_cells(const CoarseImages& coarse, const Groups& groups, std::s
   const Groups in_blocks = coarse_groups(groups);
   const WelchCells moments = window_moments(coarse, in_blocks, channel);
   const WindowSums third = channel_sums(coarse.extent, coarse.third, channel);
-  const WindowSums more = channel_sums(coarse.extent, coarse.more, channel);
-  const WindowSums base = channel_sums(coarse.extent, coarse.base.blocks, channel);
+  const WindowSums weights = channel_sums(coarse.extent, coarse.weights.blocks, channel);
+  const WindowSums squares = channel_sums(coarse.extent, coarse.squared_weights.blocks, channel);
   for_each_window(in_blocks, [&](const WindowGroup& group, std::size_t i, std::size_t window) {
     // Different constants of two images were found before.
     if (!moments.varied(window)) return;
@@ -163,20 +148,14 @@ void offer_coarse_cells(const CoarseImages& coarse, const Groups& groups, std::s
     candidate.finding.channel = channel;
     if (alternating) candidate.finding.alternation = static_cast<Alternation>(i);
     moments.put(window, candidate.noise);
-    const Rectangle& elements = candidate.finding.window;
-    candidate.noise.elements = static_cast<double>(elements.width) * elements.height;
-    // Signs in turn cancel what the elements lack, and their skewness.
-    if (alternating) candidate.noise.elements = 0;
+    // Signs in turn cancel the skewness.
     if (!alternating) {
       candidate.noise.third = third.of(group, i);
-      candidate.noise.more = std::max(more.of(group, i), 0.0);
-      candidate.noise.level = {base.of(group, i) + candidate.noise.effect, base.of(group, i)};
+      candidate.noise.weight = squares.of(group, i) / weights.of(group, i);
     }
     const StudentValue value = own_value(candidate.noise);
     candidate.finding.z = t_to_z(value);
     ++best[g].windows;
-    if (!beats(candidate.finding, best[g])) return;
-    if (!alternating) add_largest(coarse, group.windows[i], channel, candidate.noise);
     offer(best[g], candidate, noise);
   });
 }

@@ -1,6 +1,8 @@
 #include "stats/pyramids/image_fine_cells.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 #include <optional>
 
 #include "stats/basics/vector_copies.h"
@@ -77,42 +79,35 @@ ASSAY_VECTOR_COPIES void add_row(const ColumnSums& to, double sign, std::size_t 
   }
 }
 
-// What one replicate adds to the moments of a row of elements.
-struct RowMoments {
-  double* m2;
-  double* m3;
-  float* up;
-  float* down;
-  float* deviation;
+// Sums of powers of a row of elements' weighted deviations.
+struct RowPowers {
+  double* squares;
+  double* cubes;
+  double* sixths;
 };
 
 template <class Real>
 inline __attribute__((always_inline)) void deviate(const Real* value, const double* mean,
-                                                   const double* weight, const RowMoments& to,
+                                                   const double* weight, const RowPowers& to,
                                                    std::size_t size) {
-  double* const __restrict m2 = to.m2;
-  double* const __restrict m3 = to.m3;
-  float* const __restrict up = to.up;
-  float* const __restrict down = to.down;
-  float* const __restrict deviation = to.deviation;
+  double* const __restrict squares = to.squares;
+  double* const __restrict cubes = to.cubes;
+  double* const __restrict sixths = to.sixths;
   for (std::size_t i = 0; i < size; ++i) {
     const double d = weight[i] * (static_cast<double>(value[i]) - mean[i]);
-    const auto rounded = static_cast<float>(d);
-    m2[i] += d * d;
-    m3[i] += d * d * d;
-    up[i] = std::max(up[i], rounded);
-    down[i] = std::max(down[i], -rounded);
-    deviation[i] = rounded;
+    const double square = d * d;
+    const double cube = square * d;
+    squares[i] += square;
+    cubes[i] += cube;
+    sixths[i] += cube * cube;
   }
 }
-ASSAY_VECTOR_COPIES void add_row_moments(const float* value, const double* mean,
-                                         const double* weight, const RowMoments& to,
-                                         std::size_t size) {
+ASSAY_VECTOR_COPIES void add_powers(const float* value, const double* mean, const double* weight,
+                                    const RowPowers& to, std::size_t size) {
   deviate(value, mean, weight, to, size);
 }
-ASSAY_VECTOR_COPIES void add_row_moments(const double* value, const double* mean,
-                                         const double* weight, const RowMoments& to,
-                                         std::size_t size) {
+ASSAY_VECTOR_COPIES void add_powers(const double* value, const double* mean, const double* weight,
+                                    const RowPowers& to, std::size_t size) {
   deviate(value, mean, weight, to, size);
 }
 
@@ -170,6 +165,7 @@ class FineTiles {
   void take(const Tile& tile) {
     candidates_.assign(cells_.groups.size(), {});
     elements_.start();
+    find_light(tile);
     const std::size_t size = Tile::rows * tile.stride();
     for (std::size_t k = 0; k < fine_squares.size(); ++k) {
       moments_[k].start(size / (fine_squares[k].step * fine_squares[k].step));
@@ -184,7 +180,7 @@ class FineTiles {
       count_varied(tile, h);
     }
     if (!coarse_.squared_error.blocks.empty()) add_reference_error(tile);
-    add_base(tile);
+    add_weights(tile);
     offer_elements(tile);
     for (std::size_t k = 0; k < fine_squares.size(); ++k) offer_squares(tile, k);
     const std::size_t across = (extent_.width + Tile::columns - 1) / Tile::columns;
@@ -199,28 +195,29 @@ class FineTiles {
 
   // Elements that begin in a tile, row after row, without those beyond it.
   struct Elements {
-    explicit Elements(const ImageExtent& extent)
-        : stride(Tile::columns * extent.channels), deviation(stride) {}
+    explicit Elements(const ImageExtent& extent) : stride(Tile::columns * extent.channels) {}
     void start() {
-      const std::size_t size = Tile::rows * stride;
       for (std::vector<double>* each :
-           {&effect, &variance[0], &variance[1], &reciprocal_degrees, &third, &more}) {
-        each->assign(size, 0.0);
+           {&effect, &variance[0], &variance[1], &reciprocal_degrees, &third, &light}) {
+        each->assign(Tile::rows * stride, 0.0);
       }
-      for (auto& side : largest) {
-        for (std::vector<float>& each : side) each.assign(size, 0.0F);
+    }
+    void start_part() {
+      for (std::vector<double>* each : {&squares, &cubes, &sixths}) {
+        each->assign(Tile::rows * stride, 0.0);
       }
     }
     std::size_t stride;
-    std::vector<double> m2;  // Of the current part.
-    std::vector<double> m3;
-    std::vector<float> deviation;  // Of one row.
+    std::vector<double> light;
+    // These are of the current part.
+    std::vector<double> squares;
+    std::vector<double> cubes;
+    std::vector<double> sixths;
+    // These add up the parts that are done.
     std::vector<double> effect;
     std::array<std::vector<double>, sides_of_pair> variance;
     std::vector<double> reciprocal_degrees;
     std::vector<double> third;
-    std::vector<double> more;
-    std::array<std::array<std::vector<float>, directions>, sides_of_pair> largest;
   };
 
   std::size_t rows_of(const Tile& tile) const {
@@ -245,8 +242,7 @@ class FineTiles {
 
   void take_elements(const Tile& tile, const ImageStack<Real>& stack, Part part, double factor) {
     Elements& all = elements_;
-    all.m2.assign(Tile::rows * all.stride, 0.0);
-    all.m3.assign(Tile::rows * all.stride, 0.0);
+    all.start_part();
     const Half& own = cells_.half[part.half];
     const Half& other = cells_.half[1 - part.half];
     const std::size_t size = columns_of(tile) * extent_.channels;
@@ -257,23 +253,27 @@ class FineTiles {
         const std::size_t element = ((tile.y + y) * extent_.width + tile.x) * extent_.channels;
         const std::size_t here = element - own.first;
         const std::size_t row = y * all.stride;
-        add_row_moments(stack.at(r, element), own.mean[part.side].data() + here,
-                        other.weight.data() + here,
-                        {all.m2.data() + row, all.m3.data() + row,
-                         all.largest[part.side][upward].data() + row,
-                         all.largest[part.side][downward].data() + row, all.deviation.data()},
-                        size);
-        note_rare(tile, y, size, part.side);
+        add_powers(
+            stack.at(r, element), own.mean[part.side].data() + here, other.weight.data() + here,
+            {all.squares.data() + row, all.cubes.data() + row, all.sixths.data() + row}, size);
+        note_rare(tile, stack.at(r, element), part, y, size);
       }
     }
     finish_elements(tile, part, static_cast<double>(count), factor);
   }
 
-  void note_rare(const Tile& tile, std::size_t y, std::size_t size, std::size_t side) {
+  // Deviations beyond twice the light of the block are rare.
+  void note_rare(const Tile& tile, const Real* value, Part part, std::size_t y, std::size_t size) {
+    const std::size_t here =
+        ((tile.y + y) * extent_.width + tile.x) * extent_.channels - cells_.half[0].first;
+    const double* const mean = cells_.half[part.half].mean[part.side].data() + here;
+    const double* const weight = cells_.half[1 - part.half].weight.data() + here;
+    const double* const light = elements_.light.data() + y * elements_.stride;
+    constexpr double rare = 2;
     for (std::size_t i = 0; i < size; ++i) {
-      const float deviation = elements_.deviation[i];
-      if (std::abs(deviation) <= PooledNoise::least_rare) continue;
-      found_.noise.at(side, tile.x + i / extent_.channels, tile.y + y, i % extent_.channels)
+      const double deviation = static_cast<double>(value[i]) - mean[i];
+      if (std::abs(deviation) <= rare * light[i] || weight[i] == 0) continue;
+      found_.noise.at(part.side, tile.x + i / extent_.channels, tile.y + y, i % extent_.channels)
           .add_rare(deviation);
     }
   }
@@ -283,97 +283,125 @@ class FineTiles {
     const Half& other = cells_.half[1 - part.half];
     Elements& all = elements_;
     const double third_factor = factor * factor * factor / (count * count * count);
-    for_each_element(tile, [&](std::size_t i, std::size_t element, std::size_t x, std::size_t y,
-                               std::size_t c) {
-      const std::size_t here = element - own.first;
-      const double weight = other.weight[here];
-      if (part.side == 0) all.effect[i] += factor * weight * own.difference[here];
-      if (weight == 0) return;
-      const double variance = factor * factor * all.m2[i] / (count * (count - 1));
-      all.variance[part.side][i] += variance;
-      all.reciprocal_degrees[i] += variance * variance / (count - 1);
-      all.third[i] += third_factor * all.m3[i];
-      found_.noise.at(part.side, x, y, c)
-          .add_element({.replicates = count,
-                        .sum_of_squares = all.m2[i],
-                        .mean = weight * own.mean[part.side][here]});
-    });
+    for_each_element(
+        tile, [&](std::size_t i, std::size_t element, std::size_t x, std::size_t y, std::size_t c) {
+          const std::size_t here = element - own.first;
+          const double weight = other.weight[here];
+          if (part.side == 0) all.effect[i] += factor * weight * own.difference[here];
+          if (weight == 0) return;
+          const double variance = factor * factor * all.squares[i] / (count * (count - 1));
+          all.variance[part.side][i] += variance;
+          all.reciprocal_degrees[i] += variance * variance / (count - 1);
+          all.third[i] += third_factor * all.cubes[i];
+          found_.noise.at(part.side, x, y, c)
+              .add({.count = count,
+                    .squares = all.squares[i] / (weight * weight) * count / (count - 1),
+                    .cubes = all.cubes[i] / (weight * weight * weight),
+                    .sixths = all.sixths[i] / std::pow(weight, 6)});
+        });
   }
 
-  // Tests each element, and leaves what it showed to its block.
+  // Tests each element.
   void offer_elements(const Tile& tile) {
     Elements& all = elements_;
-    for_each_element(tile, [&](std::size_t i, std::size_t element, std::size_t x, std::size_t y,
-                               std::size_t c) {
-      const std::size_t block =
-          (y / block_side * coarse_.extent.width + x / block_side) * extent_.channels + c;
-      coarse_.third[block] += all.third[i];
-      Candidate candidate;
-      for (std::size_t s = 0; s < sides_of_pair; ++s) {
-        for (std::size_t d = 0; d < directions; ++d) {
-          float& largest = coarse_.largest[s][block][d];
-          candidate.noise.largest[s][d] = all.largest[s][d][i];
-          largest = std::max(largest, all.largest[s][d][i]);
-        }
-      }
-      const std::size_t here = element - cells_.half[0].first;
-      found_.weights[element] =
-          static_cast<float>((cells_.half[0].weight[here] + cells_.half[1].weight[here]) / 2);
-      const double own = all.variance[0][i] + all.variance[1][i];
-      if (!(own > 0)) {
-        note_constant(element);
-        found_.z[element] = 0;
-        return;
-      }
-      ++counts_.tested;
-      for (std::size_t s = 0; s < sides_of_pair; ++s) {
-        if (s == 1 && cells_.pair.b == nullptr) continue;
-        found_.noise.at(s, x, y, c).add_largest(candidate.noise.largest[s]);
-      }
-      candidate.finding.window = {static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 1,
-                                  1};
-      candidate.finding.channel = c;
-      candidate.noise.effect = all.effect[i];
-      const double base = base_of(element);
-      candidate.noise.level = {base + all.effect[i], base};
-      candidate.noise.variance = {all.variance[0][i], all.variance[1][i] + error_of(element)};
-      const double total = candidate.noise.variance[0] + candidate.noise.variance[1];
-      candidate.noise.degrees = total * total / all.reciprocal_degrees[i];
-      candidate.noise.elements = 1;
-      all.more[i] = variance_of_missing_light(candidate.noise);
-      coarse_.more[block] += all.more[i];
-      const StudentValue value = own_value(candidate.noise);
-      found_.z[element] = candidate.finding.z = t_to_z(value);
-      if (candidates_[0].wants(value)) candidates_[0].keep(candidate);
+    for_each_element(
+        tile, [&](std::size_t i, std::size_t element, std::size_t x, std::size_t y, std::size_t c) {
+          const std::size_t block =
+              (y / block_side * coarse_.extent.width + x / block_side) * extent_.channels + c;
+          coarse_.third[block] += all.third[i];
+          const double weight = weight_of(element);
+          found_.weights[element] = static_cast<float>(weight);
+          const double own = all.variance[0][i] + all.variance[1][i];
+          if (!(own > 0)) {
+            note_constant(element);
+            found_.z[element] = 0;
+            return;
+          }
+          ++counts_.tested;
+          note_noisier(i, element, x, y, c);
+          Candidate candidate;
+          candidate.finding.window = {static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
+                                      1, 1};
+          candidate.finding.channel = c;
+          candidate.noise.effect = all.effect[i];
+          candidate.noise.variance = {all.variance[0][i], all.variance[1][i] + error_of(element)};
+          const double total = candidate.noise.variance[0] + candidate.noise.variance[1];
+          candidate.noise.degrees = total * total / all.reciprocal_degrees[i];
+          candidate.noise.weight = weight;
+          const StudentValue value = own_value(candidate.noise);
+          found_.z[element] = candidate.finding.z = t_to_z(value);
+          if (candidates_[0].wants(value)) candidates_[0].keep(candidate);
+        });
+  }
+
+  double mean_of(std::size_t side, std::size_t element) const {
+    if (side == 1 && cells_.pair.b == nullptr) return cells_.pair.reference->value[element];
+    const std::size_t here = element - cells_.half[0].first;
+    return std::midpoint(cells_.half[0].mean[side][here], cells_.half[1].mean[side][here]);
+  }
+
+  // Which side has the larger variance over its squared mean?
+  void note_noisier(std::size_t i, std::size_t element, std::size_t x, std::size_t y,
+                    std::size_t c) {
+    const auto noise = [&](std::size_t side) {
+      return elements_.variance[side][i] * std::pow(mean_of(1 - side, element), 2);
+    };
+    found_.noise.at(0, x, y, c).add_element(noise(0) > noise(1));
+    if (cells_.pair.b != nullptr) found_.noise.at(1, x, y, c).add_element(noise(1) > noise(0));
+  }
+
+  double weight_of(std::size_t element) const {
+    const std::size_t here = element - cells_.half[0].first;
+    return (cells_.half[0].weight[here] + cells_.half[1].weight[here]) / 2;
+  }
+
+  // The mean of the brighter side, or its error where that is larger.
+  double light_of(std::size_t element) const {
+    const double weight = weight_of(element);
+    if (weight == 0) return 0;
+    return std::max({1 / weight, std::abs(mean_of(0, element)), std::abs(mean_of(1, element))});
+  }
+  // An element's light is the mean over its block.
+  void find_light(const Tile& tile) {
+    constexpr std::size_t block = NoisePyramid::block;
+    const std::size_t across = Tile::columns / block;
+    struct Mean {
+      double sum = 0;
+      double count = 0;
+    };
+    std::vector<Mean> mean(Tile::rows / block * across * extent_.channels);
+    const auto of_block = [&](std::size_t x, std::size_t y, std::size_t c) -> Mean& {
+      return mean[((y - tile.y) / block * across + (x - tile.x) / block) * extent_.channels + c];
+    };
+    for_each_element(tile, [&](std::size_t, std::size_t element, auto... place) {
+      const double light = light_of(element);
+      Mean& here = of_block(place...);
+      here.sum += light;
+      here.count += light > 0 ? 1 : 0;
+    });
+    for_each_element(tile, [&](std::size_t i, std::size_t, auto... place) {
+      const Mean& here = of_block(place...);
+      elements_.light[i] = here.count > 0 ? here.sum / here.count : 0;
     });
   }
 
-  // The weighted mean of what the first image is held against.
-  double base_of(std::size_t element) const {
-    const std::size_t here = element - cells_.half[0].first;
-    double sum = 0;
-    for (std::size_t h = 0; h < halves; ++h) {
-      const double mean = cells_.pair.reference != nullptr
-                              ? cells_.pair.reference->value[element]
-                              : cells_.half[h].mean[1][here];
-      sum += cells_.half[1 - h].weight[here] * mean / halves;
-    }
-    return sum;
-  }
-  void add_base(const Tile& tile) {
+  // Sums of the weights and of their squares.
+  void add_weights(const Tile& tile) {
     fill_tile(tile, sums_.values(), [&](std::size_t first, std::span<double> out) {
-      for (std::size_t i = 0; i < out.size(); ++i) out[i] = base_of(first + i);
+      for (std::size_t i = 0; i < out.size(); ++i) out[i] = weight_of(first + i);
     });
     sums_.add_up(tile);
-    keep_blocks(tile, coarse_.base);
+    keep_blocks(tile, coarse_.weights);
+    for (std::size_t k = 0; k < fine_squares.size(); ++k) weights_[k] = sums_.of(k);
+    for (double& weight : sums_.values()) weight *= weight;
+    sums_.add_up(tile);
+    keep_blocks(tile, coarse_.squared_weights);
   }
 
   // A reference's squared error, weighted as the element is.
   double error_of(std::size_t element) const {
     if (coarse_.squared_error.blocks.empty()) return 0;
-    const std::size_t here = element - cells_.half[0].first;
-    const double weight = (cells_.half[0].weight[here] + cells_.half[1].weight[here]) / 2;
-    const double error = weight * cells_.pair.reference->standard_error[element];
+    const double error = weight_of(element) * cells_.pair.reference->standard_error[element];
     return error * error;
   }
 
@@ -530,42 +558,15 @@ class FineTiles {
     Candidate candidate;
     candidate.finding.size = cells_.groups[*group].size;
     candidate.finding.window = square;
-    candidate.noise.elements = static_cast<double>(square.width * square.height);
     for (std::size_t c = 0; c < extent_.channels; ++c) {
       if (!moments.varied(first + c)) continue;
       candidate.finding.channel = c;
       moments.put(first + c, candidate.noise);
       const StudentValue value = own_value(candidate.noise);
       if (!candidates_[*group].wants(value)) continue;
-      const double base = sums_.of(k)[first + c];
-      candidate.noise.level = {base + candidate.noise.effect, base};
+      candidate.noise.weight = sums_.of(k)[first + c] / weights_[k][first + c];
       candidate.finding.z = t_to_z(value);
-      candidate.noise.largest = {};
-      candidate.noise.more = 0;
-      add_elements(candidate);
       candidates_[*group].keep(candidate);
-    }
-  }
-
-  // What the elements of a square showed, as far as they are in the tile.
-  void add_elements(Candidate& candidate) const {
-    const Rectangle& square = candidate.finding.window;
-    const std::size_t bottom = std::min<std::size_t>(square.height, Tile::rows - square.y % Tile::rows);
-    const std::size_t right =
-        std::min<std::size_t>(square.width, Tile::columns - square.x % Tile::columns);
-    for (std::size_t y = 0; y < bottom; ++y) {
-      for (std::size_t x = 0; x < right; ++x) {
-        const std::size_t i = (square.y % Tile::rows + y) * elements_.stride +
-                              (square.x % Tile::columns + x) * extent_.channels +
-                              candidate.finding.channel;
-        candidate.noise.more += elements_.more[i];
-        for (std::size_t s = 0; s < sides_of_pair; ++s) {
-          for (std::size_t d = 0; d < directions; ++d) {
-            float& largest = candidate.noise.largest[s][d];
-            largest = std::max(largest, elements_.largest[s][d][i]);
-          }
-        }
-      }
     }
   }
 
@@ -581,6 +582,7 @@ class FineTiles {
   std::vector<double> signed_column_sums_;
   std::array<WelchCells, fine_squares.size()> moments_;  // Squares that begin in the tile.
   std::array<GroupsOfSide, fine_squares.size()> groups_;
+  std::array<std::vector<double>, fine_squares.size()> weights_;  // Sums over the squares.
   Elements elements_;
 };
 
@@ -601,9 +603,8 @@ CoarseImages empty_blocks(const ImagePair<Real>& pair) {
     return (stack.images.size() + 1 - h) / halves;
   };
   coarse.third.resize(coarse.extent.elements());
-  coarse.base = none;
-  coarse.more.resize(coarse.extent.elements());
-  for (auto& side : coarse.largest) side.resize(coarse.extent.elements());
+  coarse.weights = none;
+  coarse.squared_weights = none;
   for (std::size_t h = 0; h < halves; ++h) {
     coarse.images[h][0].assign(per_half(pair.a, h), none);
     if (pair.b != nullptr) coarse.images[h][1].assign(per_half(*pair.b, h), none);

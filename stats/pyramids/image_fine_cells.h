@@ -40,10 +40,9 @@ struct CoarseImages {
   std::array<std::array<std::vector<BlockSums>, sides_of_pair>, halves> images;
   std::array<BlockSums, halves> varied;  // Number of elements that vary and have a weight.
   BlockSums squared_error;               // Of a reference, weighted; empty if it has none.
-  BlockSums base;                        // Weighted means of what is held against.
-  std::vector<double> more;              // Variance of missing light (image_noise.h), by block.
-  std::vector<double> third;             // Third cumulants of the effects of elements, by block.
-  std::array<std::vector<Largest>, sides_of_pair> largest;  // Of each block's elements.
+  BlockSums weights;                     // Of the elements, averaged over the halves.
+  BlockSums squared_weights;
+  std::vector<double> third;  // Third cumulants of the effects of elements, by block.
 };
 
 struct ElementCounts {
@@ -69,8 +68,8 @@ struct FineFindings {
   NoisePyramid noise;
   std::vector<std::vector<Candidates>> tiles;  // A group's candidates, in every tile.
   ElementCounts counts;
-  std::vector<float> weights;                  // Of every element, averaged over the halves.
-  std::span<double> z;                         // Of every element alone, by its own noise.
+  std::vector<float> weights;  // Of every element, averaged over the halves.
+  std::span<double> z;         // Of every element alone, by its own noise.
 };
 
 // Nothing found yet; z has room for every element.

@@ -1,128 +1,109 @@
 #include "stats/pyramids/image_noise.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstdint>
 
 namespace assay::stats {
 namespace {
 
-constexpr std::uint32_t bits_of_half_octave = 22;
-
-std::size_t half_octave(float size) {
-  return (std::bit_cast<std::uint32_t>(size) -
-          std::bit_cast<std::uint32_t>(PooledNoise::least_rare)) >>
-         bits_of_half_octave;
-}
-
-float lower_end(std::size_t bin) {
-  return std::bit_cast<float>(std::bit_cast<std::uint32_t>(PooledNoise::least_rare) +
-                              (static_cast<std::uint32_t>(bin) << bits_of_half_octave));
-}
-
 double square(double x) { return x * x; }
 
-// True if a sum is 0 within the rounding of the other.
-bool is_dark(double sum, double other) { return std::abs(sum) <= 1e-12 * other; }
-
-// Hall's transformation of |t|, where g is the skewness of the numerator in the direction from
-// which t is too far.
-double without_skewness(double t, double g) {
-  if (!(g > 0)) return t;
-  const double shrunk =
-      g * t < 3 ? t - g * t * t / 3 + g * g * t * t * t / 27 - g / 6 : 1 / g - g / 6;
-  return std::clamp(shrunk, 0.0, t);
+PooledNoise::Powers powers_of(double x, double count) {
+  const double cube = x * x * x;
+  return {
+      .count = 0, .squares = count * x * x, .cubes = count * cube, .sixths = count * cube * cube};
 }
 
 }  // namespace
 
-void PooledNoise::add_element(const Element& element) {
-  const double variance = element.sum_of_squares / (element.replicates - 1);
-  count_ += element.replicates;
-  squares_ += variance * element.replicates;
-  if (!(element.mean > 0)) return;
-  ++lit_;
-  relative_variances_ += variance / square(element.mean);
+void PooledNoise::add(const Powers& powers) {
+  common_.count += powers.count;
+  common_.squares += powers.squares;
+  common_.cubes += powers.cubes;
+  common_.sixths += powers.sixths;
 }
 
-double PooledNoise::relative_variance() const { return lit_ > 0 ? relative_variances_ / lit_ : 0; }
+void PooledNoise::add_element(bool noisier) {
+  elements_ += 1;
+  noisier_ += noisier ? 1 : 0;
+}
 
-void PooledNoise::add_rare(float deviation) {
-  const float size = std::abs(deviation);
-  Bin& bin = rare_[deviation > 0 ? upward : downward][std::min(half_octave(size), bins - 1)];
+PooledNoise::Powers PooledNoise::powers_of(std::size_t direction, const Bin& bin) {
+  return stats::powers_of((direction == 0 ? 1.0 : -1.0) * bin.sum / bin.count, bin.count);
+}
+
+// Octaves that fall off the end join the common values.
+void PooledNoise::raise(int top) {
+  if (top <= top_) return;
+  const int rise = std::min(top - top_, octaves);
+  for (std::size_t d = 0; d < rare_.size(); ++d) {
+    Tail& tail = rare_[d];
+    for (auto bin = tail.end() - rise; bin != tail.end(); ++bin) {
+      if (bin->count > 0) add(powers_of(d, *bin));
+    }
+    std::shift_right(tail.begin(), tail.end(), rise);
+    std::fill_n(tail.begin(), rise, Bin{});
+  }
+  top_ = top;
+}
+
+void PooledNoise::add_rare(double deviation) {
+  const double size = std::abs(deviation);
+  const int octave = std::ilogb(size) + 1;
+  raise(octave);
+  if (top_ - octave >= octaves) return;
+  Bin& bin = rare_[deviation > 0 ? 0 : 1][static_cast<std::size_t>(top_ - octave)];
   bin.count += 1;
-  bin.sum += size;
-}
-
-void PooledNoise::add_largest(const Largest& largest) {
-  ++elements_;
-  for (std::size_t d = 0; d < directions; ++d) largest_[d] += largest[d];
-}
-
-double PooledNoise::usual_largest(std::size_t direction) const {
-  constexpr double least = least_rare;
-  return elements_ > 0 ? std::max(least, largest_[direction] / elements_) : least;
+  bin.sum += static_cast<float>(size);
+  add(stats::powers_of(deviation, -1));
 }
 
 void PooledNoise::merge(const PooledNoise& other) {
-  count_ += other.count_;
-  squares_ += other.squares_;
+  add(other.common_);
   elements_ += other.elements_;
-  lit_ += other.lit_;
-  relative_variances_ += other.relative_variances_;
-  for (std::size_t d = 0; d < directions; ++d) largest_[d] += other.largest_[d];
-  for (std::size_t d = 0; d < directions; ++d) {
-    for (std::size_t i = 0; i < bins; ++i) {
-      rare_[d][i].count += other.rare_[d][i].count;
-      rare_[d][i].sum += other.rare_[d][i].sum;
-    }
-  }
-}
-
-PooledNoise::Tail PooledNoise::beyond(std::size_t direction, double c) const {
-  if (count_ == 0) return {};
-  double excess = 0;
-  double squared_excess = 0;
-  double squares = squares_;
-  double fourths = 0;
-  double common = squares_;  // Squares of the values that are not rare.
-  for (std::size_t d = 0; d < directions; ++d) {
-    for (std::size_t i = 0; i < bins; ++i) {
-      const Bin& bin = rare_[d][i];
-      if (bin.count == 0) continue;
-      const double mean = static_cast<double>(bin.sum) / bin.count;
-      common -= bin.count * square(mean);
-      const double low = lower_end(i);
-      const double high = lower_end(i + 1);
-      if (d != direction || (c >= high && i + 1 < bins)) {
-        fourths += bin.count * square(square(mean));
+  noisier_ += other.noisier_;
+  if (other.top_ == no_octave) return;
+  raise(other.top_);
+  for (std::size_t d = 0; d < rare_.size(); ++d) {
+    for (int i = 0; i < octaves; ++i) {
+      const Bin& from = other.rare_[d][static_cast<std::size_t>(i)];
+      if (from.count == 0) continue;
+      const int to = i + top_ - other.top_;
+      if (to >= octaves) {
+        add(powers_of(d, from));
         continue;
       }
-      // The values of the bin that c cuts are taken to be spread evenly.
-      const bool cut = c > low && i + 1 < bins;
-      const double above = cut ? bin.count * (high - c) / (high - low) : bin.count;
-      const double centre = cut ? (high + c) / 2 : std::max(mean, c);
-      excess += above * (centre - c);
-      squared_excess += above * square(centre - c);
-      squares -= above * (square(centre) - square(c));
-      fourths += above * square(square(c)) + (bin.count - above) * square(square(low));
+      rare_[d][static_cast<std::size_t>(to)].count += from.count;
+      rare_[d][static_cast<std::size_t>(to)].sum += from.sum;
     }
   }
-  common = std::max(common, 0.0);
-  return {.excess = excess / count_,
-          .excess_variance = squared_excess / square(count_),
-          .square = std::max(squares, 0.0) / count_,
-          .square_variance = (fourths + 3 * square(common) / count_) / square(count_)};
 }
 
-double variance_of_missing_light(const CellNoise& element) {
-  const std::size_t dark = element.level[0] < element.level[1] ? 0 : 1;
-  const double error = std::sqrt(element.variance[dark]);
-  const double ahead = element.level[1 - dark] - std::sqrt(element.variance[1 - dark]);
-  if (is_dark(element.level[dark], ahead)) return square(std::max(ahead, 0.0));
-  const double behind = element.level[dark] + error;
-  return behind > 0 && ahead > behind ? square(error) * (square(ahead / behind) - 1) : 0;
+PooledNoise::Moments PooledNoise::cut_off(int octave) const {
+  if (!(common_.count > 0)) return {};
+  const double c = std::ldexp(1, octave);
+  Powers all = common_;
+  for (std::size_t d = 0; d < rare_.size(); ++d) {
+    for (const Bin& bin : rare_[d]) {
+      if (bin.count == 0) continue;
+      const double x = std::min(c, static_cast<double>(bin.sum) / bin.count);
+      const Powers powers = stats::powers_of(d == 0 ? x : -x, bin.count);
+      all.squares += powers.squares;
+      all.cubes += powers.cubes;
+      all.sixths += powers.sixths;
+    }
+  }
+  return {.second = all.squares / all.count,
+          .third = all.cubes / all.count,
+          .squared_error = all.sixths / square(all.count)};
+}
+
+double PooledNoise::hidden_squares(double replicates) const {
+  const Moments all = cut_off(top_);
+  if (!(all.third > 0)) return 0;
+  const double size = all.third / all.second;
+  const double probability = all.second / square(size);
+  return elements_ * square(size * probability * std::exp(-replicates * probability));
 }
 
 NoisePyramid::NoisePyramid(const ImageExtent& extent,
@@ -134,7 +115,7 @@ NoisePyramid::NoisePyramid(const ImageExtent& extent,
   level.channels = extent.channels;
   for (std::size_t s = 0; s < sides_of_pair; ++s) {
     replicates_[s] = static_cast<double>(replicates[s]);
-    if (replicates[s] > 0) level.noise[s].resize(level.width * level.height * level.channels);
+    level.noise[s].resize(level.width * level.height * level.channels);
   }
 }
 
@@ -147,7 +128,6 @@ void NoisePyramid::build() {
                  .channels = fine.channels,
                  .noise = {}};
     for (std::size_t s = 0; s < sides_of_pair; ++s) {
-      if (replicates_[s] == 0) continue;
       coarse.noise[s].resize(coarse.width * coarse.height * coarse.channels);
       for (std::size_t y = 0; y < fine.height; ++y) {
         for (std::size_t x = 0; x < fine.width; ++x) {
@@ -162,87 +142,63 @@ void NoisePyramid::build() {
   }
 }
 
-double NoisePyramid::variance_if_equal(const CellNoise& cell, const Rectangle& window,
-                                       std::size_t channel) const {
-  const double plain = cell.variance[0] + cell.variance[1];
-  const std::size_t dark = cell.level[0] < cell.level[1] ? 0 : 1;
-  const double ahead = cell.level[1 - dark];
-  const double behind = cell.level[dark];
-  const bool is_zero = is_dark(behind, ahead);
-  if (replicates_[dark] == 0 || !(ahead > 0) || (behind < 0 && !is_zero)) return plain;
-  const std::uint32_t size = std::max(window.width, window.height);
-  const auto around = std::ranges::find_if(
-      levels_, [&](const Level& each) { return each.side >= size || &each == &levels_.back(); });
-  const std::size_t block_of =
-      around->index((window.x + window.width / 2) / around->side,
-                    (window.y + window.height / 2) / around->side, channel);
-  const double variance = is_zero
-                              ? square(ahead) * around->noise[dark][block_of].relative_variance() /
-                                    (cell.elements * replicates_[dark])
-                              : cell.variance[dark] * square(ahead / behind);
-  return std::max(variance + cell.variance[1 - dark], plain + cell.more);
-}
-
 NoisePyramid::Kept NoisePyramid::kept(const CellNoise& cell, const Rectangle& window,
                                       std::size_t channel) const {
   constexpr std::size_t sides_around = 4;
-  constexpr double safety = 3;
-  constexpr double errors = 2;
-  const double own = variance_if_equal(cell, window, channel);
+  constexpr double errors_of_signs = 6;
   const std::uint32_t size = std::max(window.width, window.height);
   const std::size_t x = window.x + window.width / 2;
   const std::size_t y = window.y + window.height / 2;
-  const double effect = std::abs(cell.effect);
-  Kept kept{.t = effect / std::sqrt(own), .margin = 0, .standard_error = std::sqrt(own)};
-  double neighbours = -1;  // What neighbours add to the variance.
+  const double direction = cell.effect < 0 ? 1 : -1;
+  const double variance = cell.variance[0] + cell.variance[1];
+  bool alike = true;
+  double whole = 0;
+  double beyond_error = 0;
   for (const Level& level : levels_) {
     if (level.side < sides_around * size && &level != &levels_.back()) continue;
     const std::size_t block_of = level.index(x / level.side, y / level.side, channel);
-    double margin = 0;
-    double more = 0;
-    for (std::size_t s = 0; s < sides_of_pair; ++s) {
-      // A side that is too low lacks upward values, one that is too high lacks downward ones.
-      const std::size_t direction = (s == 0) == (cell.effect < 0) ? upward : downward;
-      std::array<PooledNoise::Tail, sides_of_pair> tail;
-      std::array<double, sides_of_pair> lacks = {};
-      double error = 0;
-      for (std::size_t i = 0; i < sides_of_pair; ++i) {
-        if (replicates_[i] == 0) continue;
-        tail[i] = level.noise[i][block_of].beyond(
-            direction, std::max(cell.largest[i][direction], PooledNoise::least_rare));
-        lacks[i] =
-            std::max(0.0, cell.elements * tail[i].square / replicates_[i] - cell.variance[i]);
-        error += tail[i].square_variance / square(replicates_[i]);
-      }
-      const double excess = tail[s].excess - tail[1 - s].excess;
-      const double excess_error = std::sqrt(tail[s].excess_variance + tail[1 - s].excess_variance);
-      margin += safety * cell.elements * std::max(0.0, excess - excess_error);
-      more += std::max(0.0, lacks[s] - lacks[1 - s] - errors * cell.elements * std::sqrt(error));
+    const PooledNoise& a = level.noise[0][block_of];
+    const PooledNoise& b = level.noise[1][block_of];
+    if (replicates_[1] > 0) {
+      const double more = std::abs(a.noisier() - b.noisier());
+      alike = alike && more <= errors_of_signs * std::sqrt(a.noisier() + b.noisier());
     }
-    if (neighbours < 0) neighbours = more;
-    const double standard_error = std::sqrt(own + neighbours);
-    const double t = std::max(0.0, effect - margin) / standard_error;
-    if (t <= kept.t) kept = {.t = t, .margin = margin, .standard_error = standard_error};
+    const int top = std::max(a.top(), b.top());
+    for (int octave = top; octave > top - PooledNoise::octaves; --octave) {
+      double second = 0;
+      double third = 0;
+      double squared_error = 0;
+      for (std::size_t s = 0; s < sides_of_pair; ++s) {
+        const double n = replicates_[s];
+        if (n == 0) continue;
+        const PooledNoise::Moments moments = level.noise[s][block_of].cut_off(octave);
+        second += moments.second / n;
+        third += (s == 0 ? direction : -direction) * moments.third / (n * n);
+        squared_error += moments.squared_error / square(n * n);
+      }
+      if (!(second > 0)) continue;
+      whole = std::max(whole, third / second);
+      beyond_error = std::max(beyond_error, (third - std::sqrt(squared_error)) / second);
+    }
   }
-  const double plain = cell.variance[0] + cell.variance[1];
-  const double skewness = cell.third / (plain * std::sqrt(plain));
-  kept.t = without_skewness(kept.t, cell.effect < 0 ? skewness : -skewness);
-  kept.t = std::copysign(kept.t, cell.effect);
-  return kept;
+  const double growth = std::max(
+      {0.0, direction * cell.third / variance, cell.weight * (alike ? beyond_error : whole)});
+  const double standard_error = std::sqrt(variance + std::abs(cell.effect) * growth);
+  return {.t = cell.effect / standard_error, .standard_error = standard_error};
 }
 
-double NoisePyramid::hidden(std::size_t x, std::size_t y, std::size_t channel) const {
-  const Level& level = levels_[0];
-  const std::size_t i = level.index(x / block, y / block, channel);
-  std::array<double, directions> bias = {};  // Of the first image, down and up.
-  for (std::size_t s = 0; s < sides_of_pair; ++s) {
-    if (replicates_[s] == 0) continue;
-    const PooledNoise& noise = level.noise[s][i];
-    for (std::size_t d = 0; d < directions; ++d) {
-      bias[s == 0 ? d : 1 - d] += noise.beyond(d, noise.usual_largest(d)).excess;
+double NoisePyramid::hidden_squares() const {
+  const Level& fine = levels_[0];
+  double sum = 0;
+  for (std::size_t i = 0; i < fine.width * fine.height * fine.channels; ++i) {
+    double larger = 0;
+    for (std::size_t s = 0; s < sides_of_pair; ++s) {
+      if (replicates_[s] == 0) continue;
+      larger = std::max(larger, fine.noise[s][i].hidden_squares(replicates_[s]));
     }
+    sum += larger;
   }
-  return std::max(bias[0], bias[1]);
+  return sum;
 }
 
 }  // namespace assay::stats

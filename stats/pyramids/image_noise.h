@@ -11,79 +11,74 @@ namespace assay::stats {
 
 // Internal to image_pyramid: what neighbours tell of the noise of a cell.
 //
-// A cell of a few replicates may have missed the rare bright values that carry part of its mean.
-// Then its mean is too low, and its variance says that it is exact. Its neighbours saw such values.
+// A mean and its variance move together where noise is skewed. A cell that missed the rare bright
+// values that carry part of its mean is too dark, and its variance says that it is exact. Were its
+// mean larger by d, its variance would be larger by d k3 / k2, where k2 and k3 are the second and
+// third cumulants of its noise. Its neighbours saw such values, and tell k3 / k2.
 
 inline constexpr std::size_t sides_of_pair = 2;
 
-// The direction of a deviation, and of a tail.
-inline constexpr std::size_t upward = 0;
-inline constexpr std::size_t downward = 1;
-inline constexpr std::size_t directions = 2;
-// The largest deviation of a cell's elements, in either direction.
-using Largest = std::array<float, directions>;
-
-// Deviations of single elements of single replicates from the element's mean, in units of the
-// weights. Beyond least_rare they are counted in bins, two an octave.
+// Deviations of single elements of single replicates from the element's mean. Rare ones are counted
+// in octaves, the 16 up to the largest.
 class PooledNoise {
  public:
-  static constexpr float least_rare = 2;
-
-  // An element's replicates in units of the weights.
-  struct Element {
-    double replicates = 0;
-    double sum_of_squares = 0;  // Of deviations.
-    double mean = 0;
+  // Sums of powers of the deviations of some values.
+  struct Powers {
+    double count = 0;
+    double squares = 0;
+    double cubes = 0;
+    double sixths = 0;  // The squared error of the cubes.
   };
-  void add_element(const Element& element);
-  // Takes one deviation x with |x| > least_rare of an element that was added.
-  void add_rare(float deviation);
-  // Takes the largest deviations of one element of all replicates.
-  void add_largest(const Largest& largest);
+  void add(const Powers& powers);
+  // Takes a deviation, not 0, that is among those that are added.
+  void add_rare(double deviation);
+  // Takes an element that varies; `noisier` if it has more relative variance than the other side's.
+  void add_element(bool noisier);
   void merge(const PooledNoise& other);
 
-  // The law of min(x, c) and of (x - c)+ in one direction, where c >= least_rare.
-  struct Tail {
-    double excess = 0;  // Mean of (x - c)+.
-    double excess_variance = 0;
-    double square = 0;  // Mean of min(x, c)^2.
-    double square_variance = 0;
+  // Mean square and mean cube of the deviations cut off at +-2^octave, and the cube's squared
+  // error.
+  struct Moments {
+    double second = 0;
+    double third = 0;
+    double squared_error = 0;
   };
-  Tail beyond(std::size_t direction, double c) const;
-  // Mean of an element's largest deviation, or least_rare.
-  double usual_largest(std::size_t direction) const;
-  // Mean over the elements of variance / mean^2 of one replicate.
-  double relative_variance() const;
+  Moments cut_off(int octave) const;
+  static constexpr int octaves = 16;
+  int top() const { return top_; }  // No rare deviation is beyond +-2^top.
+  double noisier() const { return noisier_; }
+
+  // The square, summed over the elements, of the mean that each lacks if it missed the values that
+  // carry the skewness in so many replicates. Those are taken to be of one size, as in a law of two
+  // values.
+  double hidden_squares(double replicates) const;
 
  private:
-  static constexpr std::size_t bins = 24;
   struct Bin {
     float count = 0;
     float sum = 0;
   };
-  double count_ = 0;
-  double squares_ = 0;
+  using Tail = std::array<Bin, octaves>;
+  void raise(int top);
+  // The powers of a bin's values, as if each were their mean.
+  static Powers powers_of(std::size_t direction, const Bin& bin);
+
+  Powers common_;  // Without the rare, but for their count.
   double elements_ = 0;
-  double lit_ = 0;  // Number of elements whose mean is above 0.
-  double relative_variances_ = 0;
-  std::array<double, directions> largest_ = {};  // Sums over the elements.
-  std::array<std::array<Bin, bins>, directions> rare_;
+  double noisier_ = 0;
+  static constexpr int no_octave = -100'000;
+  int top_ = no_octave;
+  std::array<Tail, 2> rare_ = {};  // Upward, downward; from the top down.
 };
 
-// A cell's sums, averaged over the halves, and what its elements showed.
+// A cell's sums, averaged over the halves.
 struct CellNoise {
   double effect = 0;                                // Estimate of the sum of a - b.
-  std::array<double, sides_of_pair> level = {};     // Either side's own sum.
   std::array<double, sides_of_pair> variance = {};  // What either side adds to its squared error.
   double degrees = 1;
-  double more = 0;   // What its elements add if each is as bright as on the other side.
-  double third = 0;  // Third cumulant of the effect, of independent elements; 0 of few.
-  double elements = 0;
-  std::array<Largest, sides_of_pair> largest = {};
+  double third = 0;   // Third cumulant of the effect, of independent elements; 0 of few.
+  double weight = 0;  // Sum of the squared weights over that of the weights; 0 if signs alternate.
 };
-
-// What an element adds to its cell's variance if it is as bright as on the other side.
-double variance_of_missing_light(const CellNoise& element);
 
 // The noise of blocks of 8 x 8 elements, and of 2 x 2 blocks each up to the whole image.
 class NoisePyramid {
@@ -100,34 +95,24 @@ class NoisePyramid {
   // To be called after the last element.
   void build();
 
-  // The statistic of a cell: Student's t that survives what its neighbours know.
+  // The statistic of a cell: Student's t, with the variance that it had if the means were equal.
+  // For an effect of size d that is v + d k3 / k2, where k3 counts in the direction that makes the
+  // effect smaller. The largest k3 / k2 is taken: of the cell itself, and of every block of four
+  // times its side up to the whole image, its deviations cut off at every octave. Cutting off keeps
+  // the rarest values from drowning the others.
   //
-  // Noise grows with light. Were the darker side as bright as the other, its standard error would
-  // be larger in proportion. That error counts: the cell's, or that of its elements if they make up
-  // more. An element's own counts from where the sides differ by an error of each. A cell that is 0
-  // throughout has its neighbours' relative variance. (Sums below 0 are no light, and nothing is
-  // done.)
-  //
-  // Let c be the cell's own largest deviation, and e the mean of (x - c)+ over the noise of a block
-  // around it. The cell lacks e if it missed all larger values. Where one side lacks more than the
-  // other, 3 (e_a - e_b - 1 error) is taken off the effect. That is done for every block from four
-  // times the cell's side up to the whole image. A side also lacks variance if values below c have
-  // more of it in the block. What one side lacks beyond the other and 2 errors is added. Two sides
-  // of one law lack the same, and nothing changes.
-  //
-  // A cell with a third cumulant takes Hall's correction for skewness (1992, J. R. Statist. Soc. B
-  // 54, 221) where it shrinks t. Beyond the point where it grows again t is cut off.
+  // Two sides of one law have k3 = 0, and a block's k3 counts beyond its error. It counts whole
+  // where the sides have different laws: one is noisier for its mean in too many elements (sign
+  // test).
   struct Kept {
     double t = 0;
-    double margin = 0;          // What was taken off the effect.
-    double standard_error = 0;  // With the variance of the neighbours.
+    double standard_error = 0;
   };
   Kept kept(const CellNoise& cell, const Rectangle& window, std::size_t channel) const;
 
-  // The bias of an element, in units of the weights, that values can hide which it never showed.
-  // Its block shows them beyond the usual largest deviation: upward of one side and downward of the
-  // other. The larger sum counts.
-  double hidden(std::size_t x, std::size_t y, std::size_t channel) const;
+  // The squared bias, summed over the elements, that values can hide which they never showed. In
+  // each block the larger side's counts.
+  double hidden_squares() const;
 
  private:
   struct Level {
@@ -140,9 +125,6 @@ class NoisePyramid {
       return (y * width + x) * channels + channel;
     }
   };
-  double variance_if_equal(const CellNoise& cell, const Rectangle& window,
-                           std::size_t channel) const;
-
   std::array<double, sides_of_pair> replicates_ = {};  // 0: no side, but a reference.
   std::vector<Level> levels_;
 };

@@ -8,8 +8,8 @@
 
 namespace assay::stats {
 
-// image_pyramid for images that are read rows after rows, with the same bits. It keeps z and a weight
-// for each element, and for each 4 x 4 elements one number a replicate.
+// image_pyramid for images that are read rows after rows, with the same bits. It keeps z and a
+// weight for each element, and for each 4 x 4 elements one number a replicate.
 template <class Real>
 class RowPyramid {
  public:
@@ -29,7 +29,6 @@ class RowPyramid {
  private:
   void offer_cells();
   void add_best(ImageFamily& family) const;
-  double hidden_squares() const;
 
   ImageExtent extent_;
   ForEach for_each_;

@@ -60,7 +60,6 @@ void divide_by_weights(ImageFinding& finding, const std::vector<float>& weights,
   }
   if (!(sum > 0)) return;
   finding.effect.estimate /= sum;
-  finding.effect.margin /= sum;
   finding.effect.standard_error /= sum;
 }
 
@@ -124,21 +123,6 @@ void RowPyramid<Real>::add_best(ImageFamily& family) const {
 }
 
 template <class Real>
-double RowPyramid<Real>::hidden_squares() const {
-  double sum = 0;
-  for (std::size_t i = 0; i < found_.weights.size(); ++i) {
-    const double weight = found_.weights[i];
-    if (!(weight > 0)) continue;
-    const std::size_t place = i / extent_.channels;
-    const double bias =
-        found_.noise.hidden(place % extent_.width, place / extent_.width, i % extent_.channels) /
-        weight;
-    sum += bias * bias;
-  }
-  return sum;
-}
-
-template <class Real>
 ImageFamily RowPyramid<Real>::family() {
   const ElementCounts& counts = found_.counts;
   ImageFamily family{.log_p = 0,
@@ -148,7 +132,7 @@ ImageFamily RowPyramid<Real>::family() {
                      .equal_constants = counts.equal_constants,
                      .different_constants = counts.different_constants,
                      .weights = {},
-                     .hidden_squares = hidden_squares()};
+                     .hidden_squares = found_.noise.hidden_squares()};
   if (counts.different_constants > 0) {
     family.groups.push_back(certain_finding(extent_, counts.first_different, counts.difference));
   } else {

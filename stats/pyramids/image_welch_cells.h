@@ -16,8 +16,8 @@ struct WelchCells {
   std::vector<double> mean;
   std::vector<double> m2;
   // The parts that are done.
-  std::vector<double> effect;                                  // Estimate of a - b.
-  std::array<std::vector<double>, sides_of_pair> variance;     // Its squared error, by side.
+  std::vector<double> effect;                               // Estimate of a - b.
+  std::array<std::vector<double>, sides_of_pair> variance;  // Its squared error, by side.
   std::vector<double> reciprocal_degrees;  // Sum of variance_g^2 / (n_g - 1) over the parts.
 
   void start(std::size_t cells);

@@ -128,7 +128,7 @@ class Table {
   TabulatedLaw result() {
     std::sort(parts_.begin(), parts_.end(),
               [](const Part& a, const Part& b) { return a.span.low < b.span.low; });
-    TabulatedLaw law{.place = {parts_.front().span.low}, .cumulated = {0}, .slopes = {}};
+    TabulatedLaw law{.place = {parts_.front().span.low}, .cumulated = {0}};
     double largest_departure = 0;
     for (const Part& part : parts_) {
       append(law, part.span.middle(), part.first);

@@ -10,8 +10,8 @@
 
 #include "estimators/catalogue.h"
 #include "estimators/core/flush_denormals.h"
+#include "harness/sampling/executor.h"
 #include "harness/sampling/pool.h"
-#include "harness/sampling/scheduler.h"
 #include "tests/bench/paired.h"
 
 namespace {
@@ -44,7 +44,7 @@ double by_harness(const std::shared_ptr<const Setup>& setup, std::uint64_t total
   }
   pool->request(total / primaries);
   harness::Silence silence;
-  harness::draw_all({pool}, {.threads = threads}, silence);
+  harness::draw_all({pool}, {.executor = harness::threads(threads)}, silence);
   return pool->sample(total / primaries).drawn()->summary().channels[0].moments.mean;
 }
 

@@ -20,7 +20,7 @@
 #include "harness/families/law_evidence.h"
 #include "harness/record/record_of.h"
 #include "harness/run/planned_run.h"
-#include "harness/sampling/scheduler.h"
+#include "harness/sampling/executor.h"
 
 namespace {
 
@@ -86,7 +86,7 @@ Rounds sample(std::vector<harness::TestWork*> open,
     for (harness::TestWork* work : open) {
       for (const auto& pool : work->pools) pool->request(work->outcome.secondaries());
     }
-    harness::draw_all(pools, {.threads = 1}, silence);
+    harness::draw_all(pools, {.executor = harness::threads(1)}, silence);
     seconds.draws += clock.lap();
     std::erase_if(open, [](harness::TestWork* work) {
       harness::take_look(*work, true);

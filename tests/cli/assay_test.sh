@@ -442,19 +442,6 @@ test_calibration_tells_what_errs_and_writes_its_reports() {
   contains err '--runs'
 }
 
-# A record without its times: reports::without_times.
-timeless() {
-  /usr/bin/python3 - "$1" <<'END'
-import json, sys
-def clear(node):
-    if isinstance(node, dict):
-        return {key: clear(value) for key, value in node.items() if key != "seconds"}
-    return [clear(item) for item in node] if isinstance(node, list) else node
-record = json.load(open(sys.argv[1]))
-del record["started"], record["environment"]["threads"]
-print(json.dumps(clear(record), indent=1))
-END
-}
 # shown FILE EXPRESSION: of a record, by Python.
 shown() { /usr/bin/python3 -c "import json, sys; r = json.load(open('$1')); print($2)"; }
 

@@ -32,3 +32,17 @@ contains() {
 }
 lacks() { ! grep -qF -- "$2" "$1" || fail "\`$2\` in $1"; }
 empty() { [ ! -s "$1" ] || fail "$1 is not empty"; }
+
+# A record without its times: reports::without_times.
+timeless() {
+  /usr/bin/python3 - "$1" <<'END'
+import json, sys
+def clear(node):
+    if isinstance(node, dict):
+        return {key: clear(value) for key, value in node.items() if key != "seconds"}
+    return [clear(item) for item in node] if isinstance(node, list) else node
+record = json.load(open(sys.argv[1]))
+del record["started"], record["environment"]["threads"]
+print(json.dumps(clear(record), indent=1))
+END
+}

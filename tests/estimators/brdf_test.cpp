@@ -1,17 +1,11 @@
 // The reflectances against formulas written out again here and brute-force sums.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <numbers>
-
 #include "render/brdf_ashikhmin_shirley.h"
 #include "render/brdf_integrals.h"
 #include "render/brdf_ward.h"
 #include "render/rejection.h"
 #include "tests/estimators/draws.h"
+#include "tests/prelude.h"
 
 namespace assay {
 namespace {
@@ -20,7 +14,6 @@ using render::AshikhminShirley;
 using render::Target;
 using render::Vector3;
 using render::Ward;
-using ::testing::HasSubstr;
 using namespace assay::draws;
 using std::numbers::pi;
 
@@ -125,31 +118,10 @@ TEST(Brdf, IsotropicLobesDoNotDependOnTheAzimuth) {
   EXPECT_NEAR(one.brdf, other.brdf, 1e-10);
 }
 
-// False alarm: 2 reflectances x 4 samplers x 2 comparisons at 1e-6 each.
-TEST(Brdf, SampledMeansAndVariancesAreThoseOfTheQuadrature) {
-  for (const Case& brdf : cases) {
-    for (const char* kind : {"published", "density_rejection", "brdf_rejection"}) {
-      const auto plugin = prepare(brdf.plugin, "{sampler: " + std::string(kind) + "}");
-      const Channel channel = plugin.setup->channels()[0];
-      const Sample sample = observe(plugin, 100000)[0];
-      EXPECT_NEAR(sample.mean(), *channel.mean, five * sample.mean_error()) << kind;
-      EXPECT_NEAR(sample.variance(), *channel.variance, five * sample.variance_error()) << kind;
-      EXPECT_GE(*std::ranges::min_element(sample.values), channel.low) << kind;
-      EXPECT_LE(*std::ranges::max_element(sample.values), channel.high) << kind;
-    }
-  }
-}
-
 TEST(Brdf, SamplingFromTheIntegrandLeavesNoVariance) {
   for (const Case& brdf : cases) {
     const auto plugin = prepare(brdf.plugin, "{sampler: brdf_cosine_rejection}");
-    const Channel channel = plugin.setup->channels()[0];
-    EXPECT_EQ(*channel.variance, 0);
-    const Sample sample = observe(plugin, 1000)[0];
-    for (const double value : sample.values) {
-      EXPECT_GE(value, channel.low);
-      EXPECT_LE(value, channel.high);
-    }
+    EXPECT_EQ(*plugin.setup->channels()[0].variance, 0);
   }
 }
 
@@ -292,13 +264,6 @@ TEST(Brdf, RejectionRefusesABoundThatIsExceeded) {
     for (int i = 0; i < 100000; ++i) sample_by_rejection(brdf, Target::density, random);
   };
   EXPECT_THROW(draw_many(), std::logic_error);
-}
-
-TEST(Brdf, RefusesParametersOutOfRange) {
-  EXPECT_THROW(prepare("brdf/ward", "{alpha_x: 0}"), InputError);
-  EXPECT_THROW(prepare("brdf/ward", "{theta_i: 1.6}"), InputError);
-  EXPECT_THROW(prepare("brdf/ward", "{sampler: rejection}"), InputError);
-  EXPECT_THROW(prepare("brdf/ashikhmin_shirley", "{nu: -1}"), InputError);
 }
 
 }  // namespace

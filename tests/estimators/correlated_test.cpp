@@ -1,14 +1,9 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <fstream>
-#include <numbers>
 
 #include "correlated/area_pairs.h"
 #include "correlated/estimators.h"
 #include "tests/estimators/draws.h"
+#include "tests/estimators/scenes.h"
+#include "tests/prelude.h"
 
 namespace assay {
 namespace {
@@ -17,13 +12,8 @@ using correlated::Centre;
 using correlated::Sums;
 using namespace assay::draws;
 
-/// The built-in rectangle, hidden where x > t by a screen half-way up.
 std::string hidden_beyond(double t, const std::string& more = "") {
-  const std::string edge = std::to_string(t / 2);
-  return "{scene: {receiver: {position: [0, 0, 0], normal: [0, 0, 1]}, light: {polygon: [[-.8, "
-         "-.6, "
-         "1], [.9, -.6, 1], [.9, .8, 1], [-.8, .8, 1]], radiance: 1}, occluders: [{polygon: [[" +
-         edge + ", -9, .5], [9, -9, .5], [9, 9, .5], [" + edge + ", 9, .5]]}]}" + more + "}";
+  return "{scene: " + tests::hidden_beyond(t) + more + "}";
 }
 
 double exact_sd(double t, double lambda) {
@@ -55,21 +45,6 @@ TEST(Correlated, TheBestLambdaLiesOutsideTheUnitInterval) {
   // It is where the variance is least.
   EXPECT_LT(exact_sd(.5, best(.5)), exact_sd(.5, best(.5) + .01));
   EXPECT_LT(exact_sd(.5, best(.5)), exact_sd(.5, best(.5) - .01));
-}
-
-// False alarm: 9 comparisons of means and of variances at 1e-6 each.
-TEST(Correlated, SampledMeansAndVariancesAreExact) {
-  for (const double t : {.5, .05, -.5}) {
-    for (const char* lambda : {"0", "1", "-0.7"}) {
-      const auto plugin =
-          prepare("correlated/area", hidden_beyond(t, std::string(", lambda: ") + lambda));
-      const Channel channel = plugin.setup->channels()[0];
-      const Sample sample = observe(plugin, 200000)[0];
-      EXPECT_NEAR(sample.mean(), *channel.mean, five * sample.mean_error()) << t << lambda;
-      EXPECT_NEAR(sample.variance(), *channel.variance, five * sample.variance_error())
-          << t << lambda;
-    }
-  }
 }
 
 TEST(Correlated, WhereNothingIsHiddenTheEstimateIsTheIntegral) {
@@ -131,39 +106,6 @@ TEST(Correlated, CrossFittingIsUnbiasedAndTheSameSamplesAreNot) {
   EXPECT_NEAR(sound.mean(), exact, five * sound.mean_error());
 }
 
-TEST(Correlated, AMeshIsRefusedBecauseItsIntegralIsUnknown) {
-  const std::string file = testing::TempDir() + "correlated_mesh.obj";
-  std::ofstream(file) << "v 0 0 1\nv 1 0 1\nv 0 1 1\nf 1 3 2\n";
-  try {
-    prepare("correlated/area",
-            "{scene: {receiver: {position: [0, 0, 0], normal: [0, 0, 1]}, light: {obj: " + file +
-                ", radiance: 1}}}");
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_THAT(std::string(error.what()), testing::HasSubstr("scene")) << error.what();
-  }
-}
-
-const std::string data = ASSAY_SOURCE_DIR "/suites/data";
-
-// False alarm 1e-6 each.
-TEST(Correlated, SkiesAreUnbiasedHoweverTheyAreSampled) {
-  for (const char* sampling : {"uniform", "cosine", "emittance", "steered"}) {
-    for (const char* lambda : {"0", "1"}) {
-      const auto plugin = prepare(
-          "correlated/sky",
-          std::string("{sky: {map: sky.exr}, sampling: ") + sampling + ", lambda: " + lambda + "}",
-          data);
-      const auto channels = plugin.setup->channels();
-      const auto samples = observe(plugin, 50000);
-      for (std::size_t c = 0; c < 3; ++c) {
-        EXPECT_NEAR(samples[c].mean(), *channels[c].mean, five * samples[c].mean_error())
-            << sampling << lambda;
-      }
-    }
-  }
-}
-
 TEST(Correlated, UnderAUniformSkyTheControlIsAll) {
   const auto plugin = prepare("correlated/sky", "{sky: {uniform: 3}, sampling: uniform}");
   const Sample sample = observe(plugin, 50)[0];
@@ -179,43 +121,6 @@ TEST(Correlated, ByTheCosineTheControlCorrectsNothing) {
   for (std::size_t i = 0; i < 100; ++i) EXPECT_NEAR(with.values[i], without.values[i], 1e-13);
   const Sample lambda = observe(prepare("correlated/sky_same_samples", sky + "}"), 100, 16)[1];
   for (const double x : lambda.values) EXPECT_EQ(x, 0);
-}
-
-TEST(Correlated, ABlackSkyIsRefusedWhereItIsSampledBy) {
-  EXPECT_THROW(prepare("correlated/sky", "{sky: {uniform: 0}, sampling: emittance}"), InputError);
-  EXPECT_NO_THROW(prepare("correlated/sky", "{sky: {uniform: 0}, sampling: cosine}"));
-}
-
-struct Bias {
-  const char* mutant;
-  std::string parameters;
-  double expected;  // of the irradiance, absolutely
-};
-
-// False alarm 1e-6 each.
-TEST(Correlated, MutantsAreBiasedAsExpected) {
-  const double j = 1.320523614;
-  const double i = .17087090832672724;
-  const std::string horizon =
-      "{scene: {receiver: {position: [0, 0, 0], normal: [.9, 0, .3]}, light: {polygon: [[-.8, -.6, "
-      "1], [.9, -.6, 1], [.9, .8, 1], [-.8, .8, 1]], radiance: 1}}, lambda: .5}";
-  const std::string bright =
-      "{scene: {receiver: {position: [0, 0, 0], normal: [0, 0, 1]}, light: {polygon: [[-.8, -.6, "
-      "1], [.9, -.6, 1], [.9, .8, 1], [-.8, .8, 1]], radiance: 2}}, lambda: .5}";
-  const std::vector<Bias> table = {
-      {"mutants/control_added_twice", hidden_beyond(-.5), 2 * j},
-      {"mutants/control_without_pi", hidden_beyond(-.5), j * (1 / std::numbers::pi - 1)},
-      {"mutants/control_visible", hidden_beyond(-.5, ", lambda: .5"), .5 * (j - i)},
-      {"mutants/control_elsewhere", hidden_beyond(-.5), 0},
-      {"mutants/control_unclipped", horizon, .5 * (.44965 - .5091770)},
-      {"mutants/control_without_radiance", bright, .5 * (j - 2 * j)}};
-  for (const auto& [name, parameters, expected] : table) {
-    const auto mutant = prepare(name, parameters);
-    const Sample sample = observe(mutant, 100000)[0];
-    EXPECT_NEAR(sample.mean() - *mutant.setup->channels()[0].mean, expected,
-                five * sample.mean_error() + 5e-6)
-        << name;
-  }
 }
 
 TEST(Correlated, MutantsOfLambdaSpoilItsLimitOrItsIndependence) {

@@ -85,6 +85,34 @@ inline std::vector<Sample> observe(const Prepared& plugin, std::uint64_t count,
   return samples;
 }
 
+/// The parameters of a scene.
+inline std::string scene(const std::string& text) { return "{scene: " + text + "}"; }
+
+/// Holds every channel against the mean, the variance and the range that it declares.
+inline void expect_declared(const Prepared& plugin, std::uint64_t count,
+                            std::uint64_t primaries = 1) {
+  const std::vector<Channel> channels = plugin.setup->channels();
+  const std::vector<Sample> samples = observe(plugin, count, primaries);
+  const double n = plugin.information.averages ? static_cast<double>(primaries) : 1;
+  ASSERT_TRUE(channels.at(0).mean);
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    const Channel& declared = channels[c];
+    const Sample& sample = samples[c];
+    SCOPED_TRACE(declared.name);
+    if (declared.mean) {
+      EXPECT_NEAR(
+          sample.mean(), *declared.mean,
+          five * sample.mean_error() + declared.rounding + 1e-10 * std::abs(*declared.mean));
+    }
+    if (declared.variance) {
+      EXPECT_NEAR(n * sample.variance(), *declared.variance,
+                  five * n * sample.variance_error() + 1e-14);
+    }
+    EXPECT_GE(std::ranges::min(sample.values), declared.low);
+    EXPECT_LE(std::ranges::max(sample.values), declared.high);
+  }
+}
+
 /// Upper quantile of chi-square at 1e-6, after Wilson and Hilferty (1931).
 inline double chi_square_bound(double freedom) {
   const double a = 2 / (9 * freedom);

@@ -1,12 +1,9 @@
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <numbers>
 
 #include "render/environment_map.h"
 #include "render/patch_integrals.h"
 #include "tests/estimators/draws.h"
 #include "tests/estimators/sky.h"
+#include "tests/prelude.h"
 
 namespace assay {
 namespace {
@@ -36,32 +33,12 @@ TEST(Environment, TheSharedPictureIsWhatItsProgramMakes) {
   }
 }
 
-// False alarm: 2 plugins x 3 normals x 3 channels x 2 comparisons at 1e-6 each.
-TEST(Environment, SampledMeansAndVariancesAreExact) {
-  for (const char* name : {"cosine", "emittance"}) {
-    for (const char* normal : {"[0, 0, 1]", "[.3, -.5, .8]", "[-1, 0.2, -2]"}) {
-      const auto plugin = sky_plugin(name, std::string(", normal: ") + normal);
-      const auto channels = plugin.setup->channels();
-      const auto samples = observe(plugin, 200000);
-      ASSERT_EQ(channels.size(), 3u);
-      for (std::size_t c = 0; c < 3; ++c) {
-        const Sample& sample = samples[c];
-        EXPECT_NEAR(sample.mean(), *channels[c].mean, five * sample.mean_error()) << name;
-        EXPECT_NEAR(sample.variance(), *channels[c].variance, five * sample.variance_error())
-            << name << normal;
-        EXPECT_LT(channels[c].mean_error, 1e-9 * *channels[c].mean);
-        EXPECT_LE(*std::ranges::max_element(sample.values), channels[c].high);
-        EXPECT_GE(*std::ranges::min_element(sample.values), channels[c].low);
-      }
-    }
-  }
-}
-
 TEST(Environment, BothEstimatorsHaveOneMean) {
   const auto a = sky_plugin("cosine").setup->channels();
   const auto b = sky_plugin("emittance").setup->channels();
   for (std::size_t c = 0; c < 3; ++c) {
     EXPECT_EQ(a[c].mean, b[c].mean);
+    EXPECT_LT(a[c].mean_error, 1e-9 * *a[c].mean);
     EXPECT_LT(*b[c].variance, *a[c].variance) << "the sun is where emittance sampling looks";
   }
   EXPECT_EQ(a[0].name, "r");
@@ -168,13 +145,6 @@ TEST(Environment, CosineDirectionsFollowTheirDensity) {
   Pearson pearson;
   for (const double count : counts) pearson.add(count, draws / 256.0);
   EXPECT_TRUE(pearson.passes()) << pearson.statistic;
-}
-
-TEST(Environment, RefusesBadReceiversAndOccluders) {
-  EXPECT_THROW(sky_plugin("cosine", ", normal: [0, 0, 0]"), InputError);
-  EXPECT_THROW(sky_plugin("cosine", ", normal: up"), InputError);
-  EXPECT_THROW(sky_plugin("cosine", ", position: [0, 0]"), InputError);
-  EXPECT_THROW(sky_plugin("cosine", ", occluders: [{ball: 1}]"), InputError);
 }
 
 }  // namespace

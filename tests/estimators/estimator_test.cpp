@@ -1,6 +1,6 @@
 #include "estimators/estimator.h"
 
-#include <gtest/gtest.h>
+#include "tests/prelude.h"
 
 namespace assay {
 namespace {

@@ -1,11 +1,7 @@
 #include "estimators/core/first_words.h"
 
-#include <gtest/gtest.h>
-
-#include <string>
-#include <vector>
-
 #include "estimators/catalogue.h"
+#include "tests/prelude.h"
 
 namespace assay {
 namespace {

@@ -1,15 +1,9 @@
 #include "estimators/parameters.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <stdexcept>
+#include "tests/prelude.h"
 
 namespace assay {
 namespace {
-
-using testing::HasSubstr;
-using testing::StartsWith;
 
 const std::vector<ParameterInformation> declared = {
     {.name = "radius", .summary = "of the disc", .low = 0, .high = 10, .low_excluded = true},
@@ -36,12 +30,7 @@ Parameters parameters(std::vector<Value::Member> given) {
 }
 
 std::string refusal(std::vector<Value::Member> given) {
-  try {
-    parameters(std::move(given));
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return thrown<InputError>([&] { parameters(std::move(given)); });
 }
 
 TEST(Parameters, GivenValuesAndFallbacksAreRead) {
@@ -82,7 +71,7 @@ TEST(Parameters, ValuesOutOfRangeAreRefused) {
     EXPECT_THAT(refusal({{"radius", scalar(text)}}), HasSubstr("must be above 0 and at most 10"))
         << text;
   }
-  EXPECT_EQ(refusal({{"radius", scalar("10")}}), "");
+  EXPECT_EQ(refusal({{"radius", scalar("10")}}), thrown([] {}));
   EXPECT_THAT(refusal({{"radius", scalar("1")}, {"steps", scalar("0")}}),
               HasSubstr("must be at least 1"));
   EXPECT_THAT(refusal({{"radius", scalar("1")}, {"mode", scalar("fst")}}),
@@ -123,13 +112,9 @@ TEST(Parameters, FilesAreRelativeToTheFolder) {
 }
 
 TEST(Parameters, RefuseNamesPluginParameterAndPlace) {
-  Parameters p = parameters({{"radius", scalar("1", 9)}});
-  try {
-    p.refuse("radius", "is too small for the scene");
-  } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(),
-                 "suite.yaml:9:3: family/plugin: parameter `radius` is too small for the scene");
-  }
+  const Parameters p = parameters({{"radius", scalar("1", 9)}});
+  EXPECT_EQ(thrown<InputError>([&] { p.refuse("radius", "is too small for the scene"); }),
+            "suite.yaml:9:3: family/plugin: parameter `radius` is too small for the scene");
 }
 
 }  // namespace

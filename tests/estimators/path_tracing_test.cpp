@@ -1,11 +1,7 @@
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
-#include <vector>
 
 #include "estimators/path_tracing/image.h"
 #include "stats/basics/moments.h"
+#include "tests/prelude.h"
 
 namespace assay::path_tracing {
 namespace {

@@ -1,6 +1,6 @@
 #include "estimators/core/quoting.h"
 
-#include <gtest/gtest.h>
+#include "tests/prelude.h"
 
 namespace assay {
 namespace {

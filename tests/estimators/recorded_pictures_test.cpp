@@ -1,32 +1,16 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <filesystem>
 
 #include "estimators/core/text_pattern.h"
 #include "recorded/picture_setup.h"
 #include "tests/estimators/draws.h"
 #include "tests/estimators/exr.h"
 #include "tests/estimators/exr_kinds.h"
+#include "tests/prelude.h"
 
 namespace assay {
 namespace {
 
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-
-class Pictures : public ::testing::Test {
+class Pictures : public InFolder {
  protected:
-  Pictures() {
-    const auto* const test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::path(::testing::TempDir()) /
-              (std::string("assay_pictures_") + test->name());
-    std::filesystem::create_directories(folder_);
-  }
-  ~Pictures() override { std::filesystem::remove_all(folder_); }
-
-  std::string file(const std::string& name) const { return (folder_ / name).string(); }
   recorded::PictureChannels choose(const std::vector<std::string>& channels,
                                    const std::string& patterns = "usual") const {
     draws::write_scan_lines(file("a.exr"), {.channels = channels});
@@ -41,15 +25,8 @@ class Pictures : public ::testing::Test {
     return draws::prepare("recorded", parameters, folder_.string());
   }
   std::string refusal(const std::string& parameters) const {
-    try {
-      prepare(parameters);
-    } catch (const InputError& error) {
-      return error.message();
-    }
-    return "nothing was refused";
+    return thrown<InputError>([&] { prepare(parameters); });
   }
-
-  std::filesystem::path folder_;
 };
 
 TEST(Patterns, KnowStarsAndQuestionMarks) {
@@ -93,18 +70,14 @@ TEST_F(Pictures, ChooseByPatternsInTheOrderOfColours) {
 }
 
 TEST_F(Pictures, RefuseWhereTheChoiceIsNotPlain) {
-  try {
-    choose({"a.R", "a.G", "a.B", "b.R", "b.G", "b.B"});
-    ADD_FAILURE();
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.message(), HasSubstr("choose them with `channels`"));
-  }
-  try {
-    choose({"R", "G", "B"}, "Q*");
-    ADD_FAILURE();
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.message(), HasSubstr("no channel matches `Q*`; it has `B`, `G`, `R`"));
-  }
+  EXPECT_THAT(thrown<InputError>([&] {
+                choose({"a.R", "a.G", "a.B", "b.R", "b.G", "b.B"});
+              }),
+              HasSubstr("choose them with `channels`"));
+  EXPECT_THAT(thrown<InputError>([&] {
+                choose({"R", "G", "B"}, "Q*");
+              }),
+              HasSubstr("no channel matches `Q*`; it has `B`, `G`, `R`"));
 }
 
 TEST_F(Pictures, AreOneObservationEachInTheOrderOfTheirNames) {
@@ -131,13 +104,10 @@ TEST_F(Pictures, ThatAreCopiesAreRefusedByName) {
   const draws::Prepared pictures = prepare("{file: *.exr}");
   draws::observe(pictures, 2);
   draws::observe(pictures, 2);
-  try {
-    draws::observe(pictures, 3);
-    ADD_FAILURE() << "a copy was taken for an observation";
-  } catch (const InputError& error) {
-    EXPECT_EQ(error.where().file, file("c.exr"));
-    EXPECT_THAT(error.message(), HasSubstr("is the same picture as `" + file("a.exr") + "`"));
-  }
+  EXPECT_EQ(thrown<InputError>([&] {
+              draws::observe(pictures, 3);
+            }).find(file("c.exr") + ": is the same picture as `" + file("a.exr") + "`"),
+            0u);
 }
 
 TEST_F(Pictures, OfOneValueThroughoutMayBeEqual) {

@@ -1,18 +1,7 @@
 #include <fcntl.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <zlib.h>
-
-#include <atomic>
-#include <chrono>
-#include <cstdlib>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <limits>
-#include <thread>
 
 #include "estimators/core/line_error.h"
 #include "estimators/core/waiting.h"
@@ -20,14 +9,10 @@
 #include "recorded/byte_source.h"
 #include "recorded/table.h"
 #include "tests/estimators/draws.h"
+#include "tests/prelude.h"
 
 namespace assay {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::ElementsAreArray;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 /// As gzip does it.
 std::string packed(const std::string& text) {
@@ -45,21 +30,9 @@ std::string packed(const std::string& text) {
   return out;
 }
 
-// A file of its own for every test, gone afterwards.
-class Recorded : public ::testing::Test {
+class Recorded : public InFolder {
  protected:
-  Recorded() {
-    const auto* const test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::path(::testing::TempDir()) /
-              (std::string("assay_recorded_") + test->name());
-    std::filesystem::create_directories(folder_);
-  }
-  ~Recorded() override { std::filesystem::remove_all(folder_); }
-
-  std::string write(const std::string& text) const {
-    std::ofstream(folder_ / "data.txt", std::ios::binary) << text;
-    return (folder_ / "data.txt").string();
-  }
+  std::string write(const std::string& text) const { return place_.write("data.txt", text); }
   recorded::Table read(const std::string& text) const {
     return recorded::read_table(write(text), recorded::Rows::several);
   }
@@ -89,8 +62,14 @@ class Recorded : public ::testing::Test {
     write(text);
     return draws::prepare("recorded", "{file: data.txt" + more + "}", folder_.string());
   }
-
-  std::filesystem::path folder_;
+  std::string said_of(const std::string& name) const {
+    return thrown<InputError>([&] { recorded::read_table(name, recorded::Rows::several); });
+  }
+  /// Why a plugin's file is refused.
+  std::string said_of_file(const std::string& name) const {
+    return thrown<InputError>(
+        [&] { draws::prepare("recorded", "{file: " + name + "}", folder_.string()); });
+  }
 };
 
 TEST_F(Recorded, ReadsColumnsByWhiteSpaceOrCommas) {
@@ -171,25 +150,11 @@ TEST_F(Recorded, RefusesAFileWithoutRows) {
   expect_refused("# columns: a\n\n", {0, 0}, "no rows");
 }
 
-TEST_F(Recorded, RefusesAFileThatIsNotThere) {
-  EXPECT_THROW(recorded::read_table((folder_ / "none.txt").string(), recorded::Rows::several),
-               InputError);
-  try {
-    draws::prepare("recorded", "{file: none.txt}", folder_.string());
-    FAIL() << "a missing file was accepted";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.message(), HasSubstr("none.txt"));
-    EXPECT_THAT(error.message(), HasSubstr("cannot be read: No such file or directory"));
-  }
-}
-
-TEST_F(Recorded, RefusesAFolder) {
-  try {
-    draws::prepare("recorded", "{file: .}", folder_.string());
-    FAIL() << "a folder was accepted";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.message(), HasSubstr("cannot be read: it is a folder"));
-  }
+TEST_F(Recorded, RefusesAFileThatIsNotThereAndAFolder) {
+  EXPECT_NE(said_of(file("none.txt")), thrown([] {}));
+  EXPECT_THAT(said_of_file("none.txt"),
+              AllOf(HasSubstr("none.txt"), HasSubstr("cannot be read: No such file or directory")));
+  EXPECT_THAT(said_of_file("."), HasSubstr("cannot be read: it is a folder"));
 }
 
 TEST_F(Recorded, ObservationIsTheRow) {
@@ -205,15 +170,6 @@ TEST_F(Recorded, ObservationIsTheRow) {
   EXPECT_THAT(samples[1].values, ElementsAre(2, 4, 6));
 }
 
-TEST_F(Recorded, AnyObservationCanBeReadAlone) {
-  const auto plugin = prepare("1\n2\n3\n");
-  double out = 0;
-  Cost cost;
-  Stream random(plugin.key, 2);
-  plugin.setup->make()->secondary(random, 1, {&out, 1}, cost);
-  EXPECT_EQ(out, 3);
-}
-
 TEST_F(Recorded, PicksOneColumn) {
   const auto plugin = prepare("# columns: a b\n1 2\n3 4\n", ", column: b");
   ASSERT_EQ(plugin.setup->channels().size(), 1u);
@@ -222,16 +178,10 @@ TEST_F(Recorded, PicksOneColumn) {
 }
 
 TEST_F(Recorded, RefusesAColumnThatIsNotThere) {
-  try {
-    prepare("# columns: a b\n1 2\n", ", column: c");
-    FAIL() << "an unknown column was accepted";
-  } catch (const InputError& error) {
-    EXPECT_THAT(
-        error.message(),
-        HasSubstr("parameter `column` must be a column of the file, but it is `c`; there is: "
-                  "`a`, `b`"));
-    EXPECT_THAT(error.message(), HasSubstr("`a`, `b`"));
-  }
+  EXPECT_THAT(
+      thrown<InputError>([&] { prepare("# columns: a b\n1 2\n", ", column: c"); }),
+      HasSubstr(
+          "parameter `column` must be a column of the file, but it is `c`; there is: `a`, `b`"));
 }
 
 TEST_F(Recorded, RefusesMoreThanItHas) {
@@ -310,18 +260,11 @@ TEST_F(Recorded, NamesBinaryFiles) {
       {"PF\n1 1\n-1\n\0\0\x80?"s, "PFM"},         {"1 2\n3 \0 4\n"s, "binary"},
   };
   for (const auto& [bytes, said] : kinds) {
-    const Refusal refused = [&] {
-      try {
-        recorded::read_table(write(bytes), recorded::Rows::several);
-      } catch (const InputError& error) {
-        return Refusal{error.where().line, error.where().column, error.message()};
-      }
-      return Refusal{-1, -1, "nothing was refused"};
-    }();
-    EXPECT_EQ(refused.line, 0) << said;
-    EXPECT_THAT(refused.message, HasSubstr("is a binary file, not text"));
-    EXPECT_THAT(refused.message, HasSubstr(said));
-    EXPECT_EQ(refused.message.find_first_of("\x7f\x89\xff\0"s), std::string::npos) << said;
+    const std::string file = write(bytes);
+    const std::string refused = said_of(file);
+    EXPECT_EQ(refused.find(file + ": "), 0u) << said << ": without a line";
+    EXPECT_THAT(refused, AllOf(HasSubstr("is a binary file, not text"), HasSubstr(said)));
+    EXPECT_EQ(refused.find_first_of("\x7f\x89\xff\0"s), std::string::npos) << said;
   }
   // Letters alone make no picture.
   EXPECT_THAT(read("PF\n1\n2\n").columns, ElementsAre("PF"));
@@ -335,14 +278,9 @@ const std::string of_hdf5("\x89HDF\r\n\x1a\n\0", 9);
 // What is to be pasted can be pasted.
 TEST_F(Recorded, QuotesTheNameOfABinaryFile) {
   const std::string file = (folder_ / "it's \"my\" file").string();
-  const auto said = [&](const std::string& bytes) -> std::string {
+  const auto said = [&](const std::string& bytes) {
     std::ofstream(file, std::ios::binary) << bytes;
-    try {
-      recorded::read_table(file, recorded::Rows::several);
-    } catch (const InputError& error) {
-      return error.message();
-    }
-    return "nothing was refused";
+    return said_of(file);
   };
   const std::string folder = folder_.string();
   const std::string in_shell = "'" + folder + "/it'\\''s \"my\" file'";
@@ -354,21 +292,23 @@ TEST_F(Recorded, QuotesTheNameOfABinaryFile) {
   EXPECT_THAT(said(std::string(8, '\0')), HasSubstr("numpy.fromfile(" + in_python + ")"));
 }
 
-/// Why standard input is refused that holds these bytes.
+/// What is said of standard input that holds a file's bytes.
 std::string refusal_of_standard_input(const std::string& file) {
   const int standard = dup(STDIN_FILENO);
   const int other = open(file.c_str(), O_RDONLY);
   EXPECT_EQ(dup2(other, STDIN_FILENO), STDIN_FILENO);
-  std::string message = "nothing was refused";
+  std::string said;
   try {
     recorded::read_table("-", recorded::Rows::several);
+  } catch (const LineError& error) {
+    said = error.what() + std::string(" in ") + error.line();
   } catch (const InputError& error) {
-    message = error.message();
+    said = error.message();
   }
   dup2(standard, STDIN_FILENO);
   close(other);
   close(standard);
-  return message;
+  return said;
 }
 
 TEST_F(Recorded, SaysWhatToPutBeforeAssayWhereStandardInputIsBinary) {
@@ -411,20 +351,8 @@ TEST_F(Recorded, ReadsAPipeOnceAndForAll) {
 }
 
 TEST_F(Recorded, ReadsStandardInput) {
-  const std::string file = write("1\n2\nx\n");
-  const int standard = dup(STDIN_FILENO);
-  const int other = open(file.c_str(), O_RDONLY);
-  ASSERT_EQ(dup2(other, STDIN_FILENO), STDIN_FILENO);
-  try {
-    recorded::read_table("-", recorded::Rows::several);
-    ADD_FAILURE() << "`x` was taken";
-  } catch (const LineError& error) {
-    EXPECT_EQ(to_string(error.where()), "standard input:3:1");
-    EXPECT_EQ(error.line(), "x");
-  }
-  dup2(standard, STDIN_FILENO);
-  close(other);
-  close(standard);
+  const std::string said = refusal_of_standard_input(write("1\n2\nx\n"));
+  EXPECT_THAT(said, AllOf(StartsWith("standard input:3:1: "), EndsWith(" in x")));
 }
 
 std::atomic<bool> asked_to_stop{false};
@@ -444,12 +372,7 @@ TEST_F(Recorded, StopsReadingWhenAsked) {
     std::this_thread::sleep_for(std::chrono::seconds(2));
   });
   for (const std::string& file : {pipe, write("1\n2\n")}) {
-    try {
-      recorded::read_table(file, recorded::Rows::several);
-      ADD_FAILURE() << "read to the end: " << file;
-    } catch (const std::runtime_error& error) {
-      EXPECT_STREQ(error.what(), "interrupted");
-    }
+    EXPECT_EQ(thrown([&] { recorded::read_table(file, recorded::Rows::several); }), "interrupted");
   }
   set_stop_question(nullptr);
   user.join();
@@ -473,12 +396,10 @@ TEST_F(Recorded, RefusesAFileThatChangesMeanwhile) {
     recorded::ByteSource source(write(numbers));
     source.take(source.look().size());
     std::filesystem::resize_file(folder_ / "data.txt", longer ? 300000 : 100000);
-    try {
-      while (!source.look().empty()) source.take(source.look().size());
-      ADD_FAILURE() << "the change went unnoticed";
-    } catch (const InputError& error) {
-      EXPECT_THAT(error.message(), HasSubstr("changed while it was read"));
-    }
+    EXPECT_THAT(thrown<InputError>([&] {
+                  while (!source.look().empty()) source.take(source.look().size());
+                }),
+                HasSubstr("changed while it was read"));
   }
 }
 

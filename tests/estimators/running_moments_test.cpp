@@ -2,9 +2,7 @@
 
 #include "estimators/core/running_moments.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
+#include "tests/prelude.h"
 
 namespace assay {
 namespace {

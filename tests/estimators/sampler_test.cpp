@@ -1,9 +1,6 @@
 #include "estimators/sampler.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
+#include "tests/prelude.h"
 
 namespace assay {
 namespace {

@@ -1,9 +1,3 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
 
 #include "render/polygon.h"
 #include "sky/harmonics.h"
@@ -11,6 +5,7 @@
 #include "sky/radiance.h"
 #include "sky/setting.h"
 #include "tests/estimators/draws.h"
+#include "tests/prelude.h"
 
 namespace assay {
 namespace {
@@ -22,7 +17,6 @@ using std::numbers::pi;
 
 const std::string data = ASSAY_SOURCE_DIR "/suites/data";
 const std::string smooth = "{harmonics: [3, .4, -.3, .5, .2, -.35, .3, .25, -.2]}";
-const std::string peaked = "{peak: {base: .2, height: 20, sharpness: 60, direction: [.3, .2, .8]}}";
 
 sky::SharedSetting setting(const std::string& parameters) {
   Parameters given("sky/cosine", sky::parameters(), parse_flow(parameters), data);
@@ -108,25 +102,6 @@ TEST(Skies, APeakHasItsIrradianceWhateverTheNormal) {
   EXPECT_NEAR(both("[1, 0, 0]", "[-1, 0, 0]"), both("[0, 1, 0]", "[0, -1, 0]"), 1e-11);
 }
 
-// False alarm 1e-6 each.
-TEST(Skies, AreSampledToTheirIrradiance) {
-  for (const std::string& sky :
-       {std::string("{uniform: 2}"), smooth, peaked,
-        std::string("{gradient: {base: 1, slope: [.5, .2, .3]}}"), std::string("{map: sky.exr}")}) {
-    for (const char* plugin : {"sky/uniform", "sky/cosine"}) {
-      const auto prepared = prepare(plugin, "{sky: " + sky + ", normal: [.3, -.5, .8]}", data);
-      const auto channels = prepared.setup->channels();
-      const auto samples = observe(prepared, 100000);
-      for (std::size_t c = 0; c < channels.size(); ++c) {
-        EXPECT_NEAR(samples[c].mean(), *channels[c].mean,
-                    five * samples[c].mean_error() + 1e-10 * *channels[c].mean)
-            << plugin << sky;
-        EXPECT_LE(*std::ranges::max_element(samples[c].values), channels[c].high) << plugin << sky;
-      }
-    }
-  }
-}
-
 // pi / 2 + 2 / 3 bx + pi / 3 bz behind a wall; pi cos^2 30 behind a disc. False alarm 1e-6 each.
 TEST(Skies, AreHiddenByOccluders) {
   const auto walled = prepare(
@@ -141,38 +116,6 @@ TEST(Skies, AreHiddenByOccluders) {
   EXPECT_NEAR(behind_wall.mean(), pi / 2 + 1. / 3 + .1 * pi, five * behind_wall.mean_error());
   EXPECT_NEAR(behind_disc.mean(), .75 * pi, five * behind_disc.mean_error());
   EXPECT_FALSE(walled.setup->channels()[0].mean) << "no closed form past occluders";
-}
-
-std::string refusal(const std::string& sky, const std::string& folder = data) {
-  try {
-    prepare("sky/cosine", "{sky: " + sky + "}", folder);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-TEST(Skies, OfNegativeOrNonFiniteRadianceAreRefused) {
-  using testing::HasSubstr;
-  EXPECT_THAT(refusal("{uniform: -1}"), HasSubstr("radiance falls to -1"));
-  EXPECT_THAT(refusal("{uniform: nan}"), HasSubstr("uniform"));
-  EXPECT_THAT(refusal("{uniform: inf}"), HasSubstr("uniform"));
-  EXPECT_THAT(refusal("{gradient: {base: 1, slope: [1, 1, 0]}}"), HasSubstr("negative"));
-  EXPECT_THAT(refusal("{harmonics: [1, 3, 0, 0, 0, 0, 0, 0, 0]}"), HasSubstr("negative"));
-  EXPECT_THAT(refusal("{peak: {base: .2, height: -1, sharpness: 3, direction: [0, 0, 1]}}"),
-              HasSubstr("negative"));
-  EXPECT_THAT(refusal("{peak: {base: .2, height: 1, sharpness: 0, direction: [0, 0, 1]}}"),
-              HasSubstr("`sharpness` must be above 0"));
-}
-
-TEST(Skies, ThatAreMisspeltAreRefused) {
-  using testing::HasSubstr;
-  EXPECT_THAT(refusal("{unifrom: 1}"), HasSubstr("did you mean `uniform`"));
-  EXPECT_THAT(refusal("{uniform: 1, map: sky.exr}"), HasSubstr("one key"));
-  EXPECT_THAT(refusal("{harmonics: [1, 2]}"), HasSubstr("nine"));
-  EXPECT_THAT(refusal("{gradient: {base: 1, slop: [0, 0, 0]}}"), HasSubstr("`slope`"));
-  EXPECT_THAT(refusal("{gradient: {base: 1}}"), HasSubstr("lacks the key `slope`"));
-  EXPECT_THAT(refusal("{map: nothing.exr}"), HasSubstr("nothing.exr"));
 }
 
 }  // namespace

@@ -1,16 +1,11 @@
 #include "estimators/stream.h"
 
 #include <Random123/philox.h>
-#include <gtest/gtest.h>
 
-#include <bit>
 #include <boost/math/distributions/chi_squared.hpp>
-#include <functional>
-#include <set>
-#include <stdexcept>
-#include <vector>
 
 #include "tests/estimators/table.h"
+#include "tests/prelude.h"
 
 namespace assay {
 namespace {

@@ -1,11 +1,7 @@
 #include "estimators/core/value.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "estimators/core/flow.h"
+#include "tests/prelude.h"
 
 namespace assay {
 namespace {
@@ -24,13 +20,11 @@ TEST(Value, NumbersAreReadAsWritten) {
 TEST(Value, TextThatIsNotANumberIsRefusedAtItsPlace) {
   for (const char* text :
        {"", "1x", "0x10", "++1", "+-1", "1 2", "5%", "1,000", "one", "1e999", ".", "- 1"}) {
-    try {
-      Value::scalar(text, {"suite.yaml", 3, 7}).number("parameter `radius`");
-      ADD_FAILURE() << text;
-    } catch (const InputError& error) {
-      EXPECT_THAT(error.what(), testing::StartsWith("suite.yaml:3:7: parameter `radius`"));
-      EXPECT_THAT(error.message(), testing::HasSubstr("`" + std::string(text) + "`"));
-    }
+    EXPECT_THAT(thrown<InputError>([&] {
+                  Value::scalar(text, {"suite.yaml", 3, 7}).number("parameter `radius`");
+                }),
+                AllOf(StartsWith("suite.yaml:3:7: parameter `radius`"),
+                      HasSubstr("`" + std::string(text) + "`")));
   }
 }
 

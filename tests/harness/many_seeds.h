@@ -10,15 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "harness/pilot/pilot.h"
-#include "harness/plan/pilot_shape.h"
-#include "harness/plan/plan.h"
 #include "harness/run/evaluate.h"
 #include "harness/run/pools.h"
-#include "harness/sampling/scheduler.h"
+#include "harness/sampling/executor.h"
 #include "harness/theta/methods.h"
-#include "tests/harness/questions.h"
-#include "tests/harness/running.h"
+#include "tests/harness/planned.h"
 #include "tests/stats/calibration.h"
 
 namespace assay::harness {
@@ -57,30 +53,6 @@ inline std::map<std::string, Outcomes> over_seeds(
   return outcomes;
 }
 
-/// A suite piloted and planned as a run does it.
-struct Prepared {
-  std::unique_ptr<Asked> asked;
-  std::vector<FamilyPlace> place;
-  Pilots pilots;
-  std::vector<Plan> plans;
-};
-
-inline Prepared prepare_text(const std::string& text, std::uint64_t seed) {
-  Prepared prepared{.asked = ask_text(text, seed)};
-  prepared.place = places(prepared.asked->suite, prepared.asked->questions);
-  std::vector<const PreparedEstimator*> all;
-  for (const auto& [name, estimator] : prepared.asked->estimators) all.push_back(&estimator);
-  Silence silence;
-  prepared.pilots = run_pilots(all, pilot_run_of(prepared.asked->questions, seed, 1), silence);
-  const Primaries primaries =
-      choose_primaries(prepared.asked->questions, prepared.place, prepared.pilots);
-  for (std::size_t i = 0; i < prepared.place.size(); ++i) {
-    prepared.plans.push_back(
-        plan_test(prepared.asked->questions[i], prepared.place[i], prepared.pilots, primaries));
-  }
-  return prepared;
-}
-
 /// Takes ln p of both regions at the first look of every test, without what a record adds. A record
 /// takes a hundred times as long. Another test checks that a run finds the same numbers.
 inline void take_first_looks(const Prepared& prepared, std::uint64_t seed,
@@ -93,7 +65,7 @@ inline void take_first_looks(const Prepared& prepared, std::uint64_t seed,
     Pools pools;
     work.pools = pools.for_question(question, plan, seed, prepared.pilots);
     for (const auto& pool : work.pools) pool->request(plan.looks.sizes.front());
-    draw_all(pools.all(), {.threads = 1}, silence);
+    draw_all(pools.all(), {.executor = threads(1)}, silence);
     const Evidence evidence = evidence_of(plan.method, question, 0, data_of(*drawn(work), 0));
     Outcomes& mine = outcomes[question.test->name];
     mine.log_p.push_back(log_p_claimed(evidence, plan.regions[0]));
@@ -138,7 +110,9 @@ inline std::string estimators_of(const std::map<std::string, std::string>& entri
                                  const std::string& tests) {
   std::string text = "estimators:\n";
   for (const auto& [name, entry] : entries) {
-    if (tests.find("(" + name) == std::string::npos) continue;
+    const bool named = tests.find("(" + name) != std::string::npos ||
+                       tests.find("reference: " + name) != std::string::npos;
+    if (!named) continue;
     text += "  " + name + ": {" + entry + "}\n";
   }
   return text;

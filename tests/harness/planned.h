@@ -12,15 +12,33 @@
 namespace assay::harness {
 
 /// A suite piloted and planned as a run does it.
-struct Planned {
+struct Prepared {
   std::unique_ptr<Asked> asked;
   std::vector<FamilyPlace> place;
   Pilots pilots;
   std::vector<Plan> plans;
 };
 
-inline Planned plan_text(const std::string& tests, std::uint64_t seed = 1) {
-  Planned planned{.asked = ask_text(R"(suite: plans
+inline Prepared prepare_text(const std::string& text, std::uint64_t seed) {
+  Prepared prepared{.asked = ask_text(text, seed)};
+  prepared.place = places(prepared.asked->suite, prepared.asked->questions);
+  std::vector<const PreparedEstimator*> all;
+  for (const auto& [name, estimator] : prepared.asked->estimators) all.push_back(&estimator);
+  Silence silence;
+  prepared.pilots =
+      run_pilots(all, pilot_run_of(prepared.asked->questions, seed, threads(1)), silence);
+  const Primaries primaries =
+      choose_primaries(prepared.asked->questions, prepared.place, prepared.pilots);
+  for (std::size_t i = 0; i < prepared.place.size(); ++i) {
+    prepared.plans.push_back(
+        plan_test(prepared.asked->questions[i], prepared.place[i], prepared.pilots, primaries));
+  }
+  return prepared;
+}
+
+/// Tests of the plans of these estimators.
+inline Prepared plan_text(const std::string& tests, std::uint64_t seed = 1) {
+  return prepare_text(R"(suite: plans
 estimators:
   normal: {plugin: analytic/normal, mean: 2}
   coin: {plugin: analytic/law, law: bernoulli(0.5), primaries: 1}
@@ -40,19 +58,8 @@ estimators:
   far: {plugin: analytic/rare_spike, probability: 1e-12, height: 1e6, primaries: 1}
   spike: {plugin: analytic/rare_spike, probability: 0.0001, height: 10, noise: 0.1, primaries: 1}
 tests:
-)" + tests)};
-  planned.place = places(planned.asked->suite, planned.asked->questions);
-  std::vector<const PreparedEstimator*> all;
-  for (const auto& [name, estimator] : planned.asked->estimators) all.push_back(&estimator);
-  Silence silence;
-  planned.pilots = run_pilots(all, pilot_run_of(planned.asked->questions, seed, 1), silence);
-  const Primaries primaries =
-      choose_primaries(planned.asked->questions, planned.place, planned.pilots);
-  for (std::size_t i = 0; i < planned.place.size(); ++i) {
-    planned.plans.push_back(
-        plan_test(planned.asked->questions[i], planned.place[i], planned.pilots, primaries));
-  }
-  return planned;
+)" + tests,
+                      seed);
 }
 
 }  // namespace assay::harness

@@ -1,42 +1,22 @@
 #pragma once
 
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <filesystem>
-#include <fstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "harness/command/run.h"
 #include "reports/formats/json.h"
+#include "tests/prelude.h"
+#include "tests/reports/without_times.h"
 
 namespace assay::harness {
 
-/// A folder of the current test alone, removed at its end.
-class Workplace {
- public:
-  Workplace() {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    // Two builds may be tested at once.
-    path_ = std::filesystem::temp_directory_path() /
-            fmt::format("assay_{}_{}_{}", info->test_suite_name(), info->name(), getpid());
-    std::filesystem::create_directories(path_);
-  }
-  ~Workplace() { std::filesystem::remove_all(path_); }
-  Workplace(const Workplace&) = delete;
-  Workplace& operator=(const Workplace&) = delete;
+using Workplace = tests::Folder;
 
-  std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(path_ / name) << text;
-    return (path_ / name).string();
-  }
-  std::string file(const std::string& name) const { return (path_ / name).string(); }
-
- private:
-  std::filesystem::path path_;
+/// A test with one.
+class Placed : public Test {
+ protected:
+  const Workplace place;
 };
 
 inline reports::Record run_files(const std::vector<std::string>& files,
@@ -45,6 +25,24 @@ inline reports::Record run_files(const std::vector<std::string>& files,
   for (const std::string& file : files) suites.push_back(load_suite(file));
   Silence silence;
   return run(suites, options, silence);
+}
+
+/// What a command prints, and its exit code.
+struct Said {
+  int code = 0;
+  std::string text;
+  std::string errors;
+};
+
+inline Said said_by(const std::function<int()>& command) {
+  internal::CaptureStdout();
+  internal::CaptureStderr();
+  Said said{.code = command()};
+  std::fflush(stdout);
+  std::fflush(stderr);
+  said.text = internal::GetCapturedStdout();
+  said.errors = internal::GetCapturedStderr();
+  return said;
 }
 
 /// Runs a suite given as text.

@@ -124,6 +124,28 @@ def test_the_seed_can_be_given_and_stands_in_the_header(folder):
     assert f"--seed {seed} " in "\n".join(drawn)
 
 
+def test_workers_of_xdist_have_records_of_their_own(folder, monkeypatch):
+    monkeypatch.setenv("PYTEST_XDIST_WORKER", "gw3")
+    run(folder, "-k", "n1").assert_outcomes(passed=5, deselected=16)
+    records = [each.name for each in (folder.path / ".pytest_cache/d/assay").glob("*.json")]
+    assert records == ["normal.claims.gw3.json"]
+
+
+def test_a_quantity_may_have_several_functions(tmp_path):
+    import types
+
+    from assay.claims import claim, write_suite
+
+    module = types.ModuleType("two")
+    module.__file__ = "two.py"
+    module.first = claim("covariance(second, it.left, 0.5) == normal(0, 1)")(lambda rng: 0.0)
+    module.second = lambda rng: 0.0
+    write_suite(module, tmp_path / "two.yaml")
+    text = (tmp_path / "two.yaml").read_text()
+    assert "covariance(second, first.left, 0.5) == normal(0, 1)" in text
+    assert "  first: " in text and "  second: " in text
+
+
 def test_properties_stand_in_the_junit_file(folder):
     run(folder, "-k", "0.26", "--junitxml", "j.xml")
     text = (folder.path / "j.xml").read_text()

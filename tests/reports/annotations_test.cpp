@@ -1,19 +1,13 @@
 #include "reports/formats/annotations.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include <algorithm>
-
 #include "random_record.h"
+#include "tests/prelude.h"
 
 namespace assay::reports {
 namespace {
-
-using testing::HasSubstr;
-using testing::Not;
-using testing::StartsWith;
 
 assay::reports::Test test(const std::string& id, Verdict verdict, double log10_p = -3) {
   assay::reports::Test t;

@@ -1,18 +1,12 @@
 #include "reports/record/calibration.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "reports/words/columns.h"
+#include "tests/prelude.h"
 
 namespace assay::reports {
 namespace {
-
-using testing::HasSubstr;
-using testing::Not;
 
 Rate rate(std::uint64_t count, double low, double high) {
   return {.count = count, .runs = 1000, .low = low, .high = high};

@@ -7,6 +7,7 @@
 #include <clocale>
 
 #include "reports/words/text.h"
+#include "tests/prelude.h"
 #include "tests/reports/random_record.h"
 
 namespace assay::reports {

@@ -1,9 +1,6 @@
 #include "reports/words/describe.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
+#include "tests/prelude.h"
 #include "tests/reports/example_record.h"
 
 namespace assay::reports {

@@ -1,27 +1,20 @@
 #include "reports/words/display.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include <cmath>
-#include <set>
-
-#include "tests/reports/example_tests.h"
+#include "tests/prelude.h"
+#include "tests/reports/example_record.h"
 #include "tests/reports/random_record.h"
 
 namespace assay::reports {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-
 Test claim_of(const std::string& claim, Verdict verdict, const Effect& effect) {
-  reports::Test test = base(claim, 1);
+  reports::Test test = base(claim);
   test.verdict = verdict;
   test.ok = verdict == Verdict::pass;
-  test.channels = {channel("value", effect)};
+  test.channels = {channel(effect)};
   return test;
 }
 
@@ -89,8 +82,7 @@ TEST(Display, StandingsTellPlantedBugsFromClaimsThatHold) {
 
 Test broken_claim(const std::string& name, const std::vector<std::string>& estimators) {
   reports::Test test = claim_of(name, Verdict::fail, mean_effect(0.02, 0.01));
-  for (const std::string& estimator : estimators)
-    test.samples.push_back(sample(estimator, {0.5, 0.1, 0.0}));
+  for (const std::string& estimator : estimators) test.samples.push_back(sample(estimator));
   return test;
 }
 

@@ -1,6 +1,6 @@
 #include "reports/words/evidence.h"
 
-#include <gtest/gtest.h>
+#include "tests/prelude.h"
 
 namespace assay::reports {
 namespace {

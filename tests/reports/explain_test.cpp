@@ -1,21 +1,16 @@
 #include "reports/formats/explain.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include <sstream>
-
 #include "reports/words/columns.h"
 #include "reports/words/text.h"
+#include "tests/prelude.h"
 #include "tests/reports/example_record.h"
 #include "tests/reports/random_record.h"
 
 namespace assay::reports {
 namespace {
-
-using testing::HasSubstr;
-using testing::Not;
 
 std::string explained(const char* name) {
   for (const Suite& suite : example_record().suites) {
@@ -33,6 +28,20 @@ TEST(Explain, AFailSaysWhatIsWrongHowUnlikelyAndHowToSeeIt) {
   EXPECT_THAT(text, HasSubstr("The chance of such data, if nothing is wrong, is less than 1 in a"));
   EXPECT_THAT(text, HasSubstr("  again:\n    assay replay run.json"));
   EXPECT_THAT(text, HasSubstr("--report html=difference.html"));
+}
+
+TEST(Explain, AFindingOfLawsIsASentence) {
+  Suite suite = example_record().suites[0];
+  for (reports::Test& test : suite.tests) {
+    if (!test.image || test.verdict != Verdict::fail) continue;
+    test.image->winner = {.statistic = "the mean is larger in a",
+                          .place = "the whole image, z = +7.9",
+                          .width = test.image->width,
+                          .height = test.image->height,
+                          .component = "red"};
+    EXPECT_THAT(explain(suite, test, 1000),
+                HasSubstr("The claim is wrong. The whole image of red: the mean is larger in a"));
+  }
 }
 
 TEST(Explain, APassSaysWhatItExcludes) {

@@ -1,12 +1,9 @@
 #include "reports/record/file.h"
 
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <fstream>
-#include <iterator>
-#include <thread>
+#include "tests/prelude.h"
 
 namespace assay::reports {
 namespace {

@@ -1,21 +1,13 @@
 // Every writer against an approved file. After a wanted change of a format, run the test program
 // with ASSAY_APPROVE=1 in the environment, read the difference, and commit the files.
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <sstream>
-
 #include "reports/formats/console.h"
 #include "reports/formats/json.h"
 #include "reports/formats/junit.h"
 #include "reports/formats/markdown.h"
 #include "reports/formats/metrics.h"
 #include "reports/record/file.h"
+#include "tests/prelude.h"
 #include "tests/reports/example_record.h"
 
 namespace assay::reports {

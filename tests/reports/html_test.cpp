@@ -1,19 +1,16 @@
 #include "reports/viewer/html.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 #include <zlib.h>
 
-#include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
-#include <string_view>
 
 #include "reports/formats/base64.h"
 #include "reports/formats/read_json.h"
 #include "reports/viewer/pictures.h"
 #include "reports/words/text.h"
+#include "tests/prelude.h"
 #include "tests/reports/example_record.h"
 #include "tests/reports/large_records.h"
 #include "tests/reports/random_record.h"
@@ -22,9 +19,6 @@
 
 namespace assay::reports {
 namespace {
-
-using testing::HasSubstr;
-using testing::Not;
 
 std::string between(const std::string& text, std::string_view open, std::string_view close) {
   const std::size_t start = text.find(open) + open.size();

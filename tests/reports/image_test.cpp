@@ -3,13 +3,12 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include <limits>
-
 #include "example_record.h"
 #include "reports/formats/base64.h"
 #include "reports/formats/console.h"
 #include "reports/formats/junit.h"
 #include "reports/formats/markdown.h"
+#include "tests/prelude.h"
 
 namespace assay::reports {
 namespace {

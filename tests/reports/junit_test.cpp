@@ -4,6 +4,7 @@
 #include <rapidcheck/gtest.h>
 
 #include "reports/words/text.h"
+#include "tests/prelude.h"
 #include "tests/reports/example_record.h"
 #include "tests/reports/random_record.h"
 

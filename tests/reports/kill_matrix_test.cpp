@@ -1,11 +1,9 @@
 #include "reports/words/kill_matrix.h"
 
-#include <gtest/gtest.h>
-
 #include "reports/formats/console.h"
 #include "reports/formats/markdown.h"
 #include "reports/words/columns.h"
-#include "reports/words/kill_text.h"
+#include "tests/prelude.h"
 
 namespace assay::reports {
 namespace {

@@ -7,7 +7,7 @@
 #include <random>
 #include <utility>
 
-#include "tests/reports/example_tests.h"
+#include "tests/reports/example_record.h"
 
 namespace assay::reports {
 namespace {
@@ -44,7 +44,7 @@ void make_distinct(Test& test, std::mt19937_64& bits) {
     sample.histogram.counts.assign(60, 0);
     for (std::uint64_t& bin : sample.histogram.counts) bin = count(bits);
     for (Number* number : {&sample.mean, &sample.variance, &sample.skewness, &sample.kurtosis,
-                           &sample.minimum, &sample.maximum})
+                           &sample.min, &sample.max})
       *number = normal(bits);
   }
   test.looks.clear();
@@ -101,7 +101,7 @@ Record pair(const Area& area, double raised_z, double raised_value) {
   test.name = test.claim = "mean(candidate) == mean(reference)";
   test.id = "images/" + test.name;
   test.replay = "assay images --candidate 'new/*.exr' --reference 'old/*.exr' --seed 1";
-  test.samples = {sample("candidate", {0.5, 0.1, 0.0}), sample("reference", {0.5, 0.1, 0.0})};
+  test.samples = {sample("candidate"), sample("reference")};
   const auto first = [](double centre, double half) {
     return static_cast<std::uint64_t>(centre - half);
   };

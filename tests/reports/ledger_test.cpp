@@ -1,23 +1,16 @@
 #include "reports/words/ledger.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "reports/formats/console.h"
 #include "reports/formats/json.h"
 #include "reports/formats/junit.h"
 #include "reports/formats/markdown.h"
 #include "reports/formats/read_json.h"
 #include "reports/words/number.h"
+#include "tests/prelude.h"
 #include "tests/reports/example_record.h"
 
 namespace assay::reports {
 namespace {
-
-using testing::HasSubstr;
-using testing::Not;
 
 Record without_alarm() {
   Record record = example_record();

@@ -3,9 +3,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include <sstream>
-
 #include "reports/words/text.h"
+#include "tests/prelude.h"
 #include "tests/reports/example_record.h"
 #include "tests/reports/random_record.h"
 

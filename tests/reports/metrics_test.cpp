@@ -1,21 +1,16 @@
 #include "reports/formats/metrics.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include <charconv>
-#include <optional>
-#include <set>
-#include <sstream>
 
 #include "example_record.h"
 #include "random_record.h"
+#include "tests/prelude.h"
 
 namespace assay::reports {
 namespace {
-
-using testing::HasSubstr;
 
 /// Reads OpenMetrics 1.0 as far as gauges need it. Its grammar: families of HELP and TYPE, then
 /// samples `name{label="escaped",…} number`, each once, and a last line `# EOF`. Returns the

@@ -1,9 +1,6 @@
 #include "reports/words/number.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
+#include "tests/prelude.h"
 
 namespace assay::reports {
 namespace {

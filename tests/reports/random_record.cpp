@@ -3,7 +3,7 @@
 #include <limits>
 #include <vector>
 
-#include "reports/record/fields.h"
+#include "reports/record/record.h"
 
 namespace assay::reports {
 
@@ -30,14 +30,10 @@ namespace {
 /// Fills every member of a record that the JSON form has.
 class Randomise {
  public:
-  template <class T>
-  void operator()(const char*, T& value) {
-    fill(value);
+  template <has_fields T>
+  static void fill(T& value) {
+    for_each_field(value, [](std::string_view, auto& field) { fill(field); });
   }
-  template <class T>
-  void repeated(const char*, const T&) {}
-  template <class T>
-  void display(const T&) {}
 
  private:
   static void fill(double& value) { value = *any_double(); }
@@ -60,8 +56,7 @@ class Randomise {
   }
   // Gives a map as many numbers as elements.
   static void fill(Map& map) {
-    Randomise inner;
-    fields(inner, map);
+    fill<Map>(map);
     map.width = *rc::gen::inRange<std::uint64_t>(0, 4);
     map.height = *rc::gen::inRange<std::uint64_t>(0, 4);
     map.texels.values.resize(map.width * map.height * map.components.size());
@@ -73,20 +68,13 @@ class Randomise {
     value.reset();
     if (*rc::gen::arbitrary<bool>()) fill(value.emplace());
   }
-  template <class T>
-  requires requires(Randomise& r, T& value) { fields(r, value); }
-  static void fill(T& value) {
-    Randomise inner;
-    fields(inner, value);
-  }
 };
 
 }  // namespace
 
 Record random_record() {
   Record record;
-  Randomise randomise;
-  fields(randomise, record);
+  Randomise::fill(record);
   record.schema = schema_version;
   return record;
 }

@@ -1,9 +1,8 @@
 #include "reports/record/record.h"
 
-#include <gtest/gtest.h>
-
 #include "reports/words/describe.h"
 #include "reports/words/summary.h"
+#include "tests/prelude.h"
 #include "tests/reports/example_record.h"
 
 namespace assay::reports {

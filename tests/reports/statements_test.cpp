@@ -9,6 +9,7 @@
 #include "reports/formats/read_json.h"
 #include "reports/words/columns.h"
 #include "reports/words/statement_text.h"
+#include "tests/prelude.h"
 #include "tests/reports/example_record.h"
 
 namespace assay::reports {

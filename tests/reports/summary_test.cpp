@@ -1,7 +1,6 @@
 #include "reports/words/summary.h"
 
-#include <gtest/gtest.h>
-
+#include "tests/prelude.h"
 #include "tests/reports/example_record.h"
 
 namespace assay::reports {
@@ -44,6 +43,8 @@ TEST(Verdicts, FalseAlarmsAreWholeRuns) {
   EXPECT_EQ(rate(0.01 / 3), "False alarms: at most 34 runs in 10,000.");
   EXPECT_EQ(rate(1e-9), "False alarms: at most 1 run in 1,000,000,000.");
   EXPECT_EQ(rate(0.5), "False alarms: at most 50 runs in 100.");
+  EXPECT_EQ(rate(1.5), "False alarms: in any run, as the suites' alphas add up to 1 or more.");
+  EXPECT_THAT(error_rates(record), testing::HasSubstr("with probability 1 at most"));
   EXPECT_EQ(false_alarms(Record{}), "");
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include "tests/prelude.h"
 #include "tests/reports/random_record.h"
 
 namespace assay::reports {

@@ -1,11 +1,6 @@
 // Every p-value under its own null hypothesis. False-alarm rate of each test: 1e-5
 // (tests/stats/calibration.h). The seed is 1, and streams are numbered in order of writing.
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <iostream>
-
 #include "stats/cells/chi_square_fit.h"
 #include "stats/laws/kolmogorov_smirnov.h"
 #include "stats/means/binomial.h"
@@ -15,6 +10,7 @@
 #include "stats/planning/holm.h"
 #include "stats/variances/chi_square_variance.h"
 #include "stats/variances/f_ratio.h"
+#include "tests/prelude.h"
 #include "tests/stats/expect_calibrated.h"
 #include "tests/stats/multinomial.h"
 #include "tests/stats/samples.h"
@@ -22,23 +18,12 @@
 namespace assay::stats {
 namespace {
 
-using tests::draw_moments;
-using tests::expect_calibrated;
-using tests::Experiment;
-using tests::multinomial;
-using tests::Philox;
-using tests::sample_of;
-using tests::Shape;
-using tests::sorted;
-
 Moments normals(Philox& random, std::size_t n, double sd = 1) {
   return draw_moments(n, [&] { return sd * random.normal(); });
 }
 
-TEST(Calibration, StudentTOnThreeNormalValuesIsUniform) {
-  expect_calibrated({1, 40000}, [](Philox& random) {
-    return log_p_two_sided(student_t(normals(random, 3), {0}));
-  });
+CALIBRATED(Calibration, StudentTOnThreeNormalValuesIsUniform, 1, 40000) {
+  return log_p_two_sided(student_t(normals(random, 3), {0}));
 }
 
 TEST(Calibration, BothTailsOfStudentTAreUniform) {
@@ -46,26 +31,20 @@ TEST(Calibration, BothTailsOfStudentTAreUniform) {
   expect_calibrated({3}, [](Philox& r) { return student_t(normals(r, 7), {0}).log_p_upper; });
 }
 
-TEST(Calibration, StudentTAgainstANoisyReferenceIsUniform) {
-  expect_calibrated({4}, [](Philox& random) {
-    const Moments x = normals(random, 30);
-    return log_p_two_sided(student_t(x, {.2 * random.normal(), .2}));
-  });
+CALIBRATED(Calibration, StudentTAgainstANoisyReferenceIsUniform, 4) {
+  const Moments x = normals(random, 30);
+  return log_p_two_sided(student_t(x, {.2 * random.normal(), .2}));
 }
 
-TEST(Calibration, WelchWithUnequalSizesAndVariancesIsUniform) {
-  expect_calibrated({5, 40000}, [](Philox& random) {
-    const Moments x = normals(random, 10, 1.8);
-    return log_p_two_sided(welch_t(x, normals(random, 100), {}));
-  });
+CALIBRATED(Calibration, WelchWithUnequalSizesAndVariancesIsUniform, 5, 40000) {
+  const Moments x = normals(random, 10, 1.8);
+  return log_p_two_sided(welch_t(x, normals(random, 100), {}));
 }
 
-TEST(Calibration, AWelchContrastIsUniformAtItsOwnNull) {
-  expect_calibrated({6}, [](Philox& random) {
-    const Moments x = draw_moments(40, [&] { return 5.5 + 2 * random.normal(); });
-    const Moments y = draw_moments(20, [&] { return 5 + random.normal(); });
-    return welch_t(x, y, {1.1, 0}).log_p_upper;
-  });
+CALIBRATED(Calibration, AWelchContrastIsUniformAtItsOwnNull, 6) {
+  const Moments x = draw_moments(40, [&] { return 5.5 + 2 * random.normal(); });
+  const Moments y = draw_moments(20, [&] { return 5 + random.normal(); });
+  return welch_t(x, y, {1.1, 0}).log_p_upper;
 }
 
 TEST(Calibration, ChiSquareVarianceOnThreeNormalValuesIsUniform) {
@@ -151,10 +130,8 @@ TEST(Calibration, KolmogorovSmirnovMarginsHoldAtTheirOwnNull) {
 // Counts of n draws from a discrete law by its cumulative probabilities.
 const std::vector<double> uneven{.02, .05, .08, .1, .15, .2, .1, .1, .1, .1};
 
-TEST(Calibration, ChiSquareFitIsUniform) {
-  expect_calibrated({26, 5000}, [](Philox& random) {
-    return chi_square_fit({multinomial(random, 2000, uneven), uneven}).test.log_p_upper;
-  });
+CALIBRATED(Calibration, ChiSquareFitIsUniform, 26, 5000) {
+  return chi_square_fit({multinomial(random, 2000, uneven), uneven}).test.log_p_upper;
 }
 
 TEST(Calibration, ChiSquareFitEffectIsUniformAtItsOwnNull) {

@@ -1,11 +1,6 @@
 // Each method is broken in one known way, and the calibration of tests/stats/calibration.h must
 // notice. With these repetitions every one misses by at least twice the threshold in expectation.
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
-
 #include "stats/cells/chi_square_fit.h"
 #include "stats/laws/kolmogorov_smirnov.h"
 #include "stats/means/binomial.h"
@@ -15,19 +10,12 @@
 #include "stats/planning/holm.h"
 #include "stats/tails/kolmogorov.h"
 #include "stats/tails/tails.h"
+#include "tests/prelude.h"
 #include "tests/stats/expect_calibrated.h"
 #include "tests/stats/samples.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::draw_moments;
-using tests::expect_caught;
-using tests::Experiment;
-using tests::Philox;
-using tests::sample_of;
-using tests::Shape;
-using tests::sorted;
 
 Moments normals(Philox& random, std::size_t n, double sd = 1) {
   return draw_moments(n, [&] { return sd * random.normal(); });
@@ -37,178 +25,137 @@ double two_sided(LogTails tails) {
   return std::min(0.0, std::numbers::ln2 + std::min(tails.lower, tails.upper));
 }
 
-TEST(Mutants, StudentTWithNDegreesOfFreedomIsCaught) {
-  expect_caught({101, 40000}, [](Philox& random) {
-    const Moments x = normals(random, 3);
-    return two_sided(student_t_tails(x.mean / x.standard_error(), 3));
-  });
+CAUGHT(Mutants, StudentTWithNDegreesOfFreedomIsCaught, 101, 40000) {
+  const Moments x = normals(random, 3);
+  return two_sided(student_t_tails(x.mean / x.standard_error(), 3));
 }
 
-TEST(Mutants, StudentTWithTheVarianceDividedByNIsCaught) {
-  expect_caught({102, 40000}, [](Philox& random) {
-    const Moments x = normals(random, 5);
-    return two_sided(student_t_tails(x.mean / (std::sqrt(x.m2 / 5) / std::sqrt(5)), 4));
-  });
+CAUGHT(Mutants, StudentTWithTheVarianceDividedByNIsCaught, 102, 40000) {
+  const Moments x = normals(random, 5);
+  return two_sided(student_t_tails(x.mean / (std::sqrt(x.m2 / 5) / std::sqrt(5)), 4));
 }
 
-TEST(Mutants, StudentTFromTheNormalLawIsCaught) {
-  expect_caught({103, 20000}, [](Philox& random) {
-    const Moments x = normals(random, 7);
-    return two_sided(normal_tails(x.mean / x.standard_error()));
-  });
+CAUGHT(Mutants, StudentTFromTheNormalLawIsCaught, 103, 20000) {
+  const Moments x = normals(random, 7);
+  return two_sided(normal_tails(x.mean / x.standard_error()));
 }
 
-TEST(Mutants, AOneSidedTailDoubledIsCaught) {
-  expect_caught({104}, [](Philox& random) {
-    return std::min(0.0, std::numbers::ln2 + student_t(normals(random, 7), {0}).log_p_upper);
-  });
+CAUGHT(Mutants, AOneSidedTailDoubledIsCaught, 104) {
+  return std::min(0.0, std::numbers::ln2 + student_t(normals(random, 7), {0}).log_p_upper);
 }
 
-TEST(Mutants, ATwoSidedPValueNotDoubledIsCaught) {
-  expect_caught({105}, [](Philox& random) {
-    const TestResult result = student_t(normals(random, 7), {0});
-    return std::min(result.log_p_lower, result.log_p_upper);
-  });
+CAUGHT(Mutants, ATwoSidedPValueNotDoubledIsCaught, 105) {
+  const TestResult result = student_t(normals(random, 7), {0});
+  return std::min(result.log_p_lower, result.log_p_upper);
 }
 
-TEST(Mutants, AReferenceErrorIgnoredIsCaught) {
-  expect_caught({106}, [](Philox& random) {
-    const Moments x = normals(random, 30);
-    return log_p_two_sided(student_t(x, {.2 * random.normal()}));
-  });
+CAUGHT(Mutants, AReferenceErrorIgnoredIsCaught, 106) {
+  const Moments x = normals(random, 30);
+  return log_p_two_sided(student_t(x, {.2 * random.normal()}));
 }
 
-TEST(Mutants, PooledVarianceOfUnequalSamplesIsCaught) {
-  expect_caught({107}, [](Philox& random) {
-    const Moments x = normals(random, 10, 1.8);
-    const Moments y = normals(random, 100);
-    const double pooled = (x.m2 + y.m2) / 108;
-    return two_sided(
-        student_t_tails((x.mean - y.mean) / std::sqrt(pooled * (1 / 10.0 + 1 / 100.0)), 108));
-  });
+CAUGHT(Mutants, PooledVarianceOfUnequalSamplesIsCaught, 107) {
+  const Moments x = normals(random, 10, 1.8);
+  const Moments y = normals(random, 100);
+  const double pooled = (x.m2 + y.m2) / 108;
+  return two_sided(
+      student_t_tails((x.mean - y.mean) / std::sqrt(pooled * (1 / 10.0 + 1 / 100.0)), 108));
 }
 
-TEST(Mutants, AContrastWhoseScaleIsNotSquaredIsCaught) {
-  expect_caught({108}, [](Philox& random) {
-    const Moments x = draw_moments(40, [&] { return 10 + random.normal(); });
-    const Moments y = draw_moments(20, [&] { return 5 + random.normal(); });
-    const double se = std::sqrt(x.variance() / 40 + 2 * y.variance() / 20);
-    return two_sided(student_t_tails((x.mean - 2 * y.mean) / se, 35));
-  });
+CAUGHT(Mutants, AContrastWhoseScaleIsNotSquaredIsCaught, 108) {
+  const Moments x = draw_moments(40, [&] { return 10 + random.normal(); });
+  const Moments y = draw_moments(20, [&] { return 5 + random.normal(); });
+  const double se = std::sqrt(x.variance() / 40 + 2 * y.variance() / 20);
+  return two_sided(student_t_tails((x.mean - 2 * y.mean) / se, 35));
 }
 
-TEST(Mutants, ChiSquareWithNDegreesOfFreedomIsCaught) {
-  expect_caught({109, 20000},
-                [](Philox& random) { return chi_square_tails(normals(random, 6).m2, 6).upper; });
+CAUGHT(Mutants, ChiSquareWithNDegreesOfFreedomIsCaught, 109, 20000) {
+  return chi_square_tails(normals(random, 6).m2, 6).upper;
 }
 
-TEST(Mutants, ChiSquareOnPrimariesIsCaught) {
-  expect_caught({110}, [](Philox& random) {
-    return chi_square_tails(draw_moments(50, [&] { return random.exponential(); }).m2, 49).upper;
-  });
+CAUGHT(Mutants, ChiSquareOnPrimariesIsCaught, 110) {
+  return chi_square_tails(draw_moments(50, [&] { return random.exponential(); }).m2, 49).upper;
 }
 
-TEST(Mutants, FWithExchangedDegreesOfFreedomIsCaught) {
-  expect_caught({111, 20000}, [](Philox& random) {
-    const Moments x = normals(random, 4);
-    const Moments y = normals(random, 20);
-    return f_tails(x.variance() / y.variance(), {19, 3}).upper;
-  });
+CAUGHT(Mutants, FWithExchangedDegreesOfFreedomIsCaught, 111, 20000) {
+  const Moments x = normals(random, 4);
+  const Moments y = normals(random, 20);
+  return f_tails(x.variance() / y.variance(), {19, 3}).upper;
 }
 
-TEST(Mutants, FOnPrimariesIsCaught) {
-  expect_caught({112, 10000}, [](Philox& random) {
-    const Moments x = draw_moments(60, [&] { return random.exponential(); });
-    const Moments y = draw_moments(60, [&] { return random.exponential(); });
-    return two_sided(f_tails(x.variance() / y.variance(), {59, 59}));
-  });
+CAUGHT(Mutants, FOnPrimariesIsCaught, 112, 10000) {
+  const Moments x = draw_moments(60, [&] { return random.exponential(); });
+  const Moments y = draw_moments(60, [&] { return random.exponential(); });
+  return two_sided(f_tails(x.variance() / y.variance(), {59, 59}));
 }
 
-TEST(Mutants, AsymptoticKolmogorovSmirnovOnFewValuesIsCaught) {
-  expect_caught({115, 20000}, [](Philox& random) {
-    const auto values = sorted(sample_of(6, [&] { return random.uniform(); }));
-    const ContinuousLaw uniform{[](double u) { return u; }};
-    return log_kolmogorov_limit(std::sqrt(6) * ks_distance(values, uniform).distance);
-  });
+CAUGHT(Mutants, AsymptoticKolmogorovSmirnovOnFewValuesIsCaught, 115, 20000) {
+  const auto values = sorted(sample_of(6, [&] { return random.uniform(); }));
+  const ContinuousLaw uniform{[](double u) { return u; }};
+  return log_kolmogorov_limit(std::sqrt(6) * ks_distance(values, uniform).distance);
 }
 
-TEST(Mutants, KolmogorovSmirnovFromOneSideOnlyIsCaught) {
-  expect_caught({116}, [](Philox& random) {
-    const auto values = sorted(sample_of(20, [&] { return random.uniform(); }));
-    double d = 0;
-    for (std::size_t i = 0; i < 20; ++i)
-      d = std::max(d, (static_cast<double>(i) + 1) / 20 - values[i]);
-    return kolmogorov_tails(std::clamp(d, 0.0, 1.0), 20).upper;
-  });
+CAUGHT(Mutants, KolmogorovSmirnovFromOneSideOnlyIsCaught, 116) {
+  const auto values = sorted(sample_of(20, [&] { return random.uniform(); }));
+  double d = 0;
+  for (std::size_t i = 0; i < 20; ++i)
+    d = std::max(d, (static_cast<double>(i) + 1) / 20 - values[i]);
+  return kolmogorov_tails(std::clamp(d, 0.0, 1.0), 20).upper;
 }
 
-TEST(Mutants, KolmogorovSmirnovWithAFittedMeanIsCaught) {
-  expect_caught({117}, [](Philox& random) {
-    auto values = sorted(sample_of(30, [&] { return random.normal(); }));
-    const double mean = tests::moments_of(values).mean;
-    const ContinuousLaw fitted{[&](double v) { return std::exp(normal_tails(v - mean).lower); }};
-    return kolmogorov_smirnov(ks_distance(values, fitted)).log_p_upper;
-  });
+CAUGHT(Mutants, KolmogorovSmirnovWithAFittedMeanIsCaught, 117) {
+  auto values = sorted(sample_of(30, [&] { return random.normal(); }));
+  const double mean = tests::moments_of(values).mean;
+  const ContinuousLaw fitted{[&](double v) { return std::exp(normal_tails(v - mean).lower); }};
+  return kolmogorov_smirnov(ks_distance(values, fitted)).log_p_upper;
 }
 
-TEST(Mutants, TiesWalkedOneAtATimeAreCaught) {
-  expect_caught({118, 20000, Shape::at_most_uniform}, [](Philox& random) {
-    const auto x = sorted(sample_of(40, [&] { return std::max(0.0, random.normal()); }));
-    const auto y = sorted(sample_of(40, [&] { return std::max(0.0, random.normal()); }));
-    std::size_t i = 0;
-    std::size_t j = 0;
-    std::int64_t largest = 0;
-    while (i < 40 && j < 40) {
-      (x[i] <= y[j] ? i : j) += 1;
-      largest =
-          std::max(largest, std::abs(static_cast<std::int64_t>(i) - static_cast<std::int64_t>(j)));
-    }
-    return smirnov_upper_tail({static_cast<std::uint64_t>(largest), 40, 40}).log_p;
-  });
+CAUGHT(Mutants, TiesWalkedOneAtATimeAreCaught, 118, 20000, Shape::at_most_uniform) {
+  const auto x = sorted(sample_of(40, [&] { return std::max(0.0, random.normal()); }));
+  const auto y = sorted(sample_of(40, [&] { return std::max(0.0, random.normal()); }));
+  std::size_t i = 0;
+  std::size_t j = 0;
+  std::int64_t largest = 0;
+  while (i < 40 && j < 40) {
+    (x[i] <= y[j] ? i : j) += 1;
+    largest =
+        std::max(largest, std::abs(static_cast<std::int64_t>(i) - static_cast<std::int64_t>(j)));
+  }
+  return smirnov_upper_tail({static_cast<std::uint64_t>(largest), 40, 40}).log_p;
 }
 
-TEST(Mutants, AChiSquareFitThatCountsEveryCellAsADegreeOfFreedomIsCaught) {
-  expect_caught({119, 20000}, [](Philox& random) {
-    std::vector<std::uint64_t> counts(5);
-    for (int i = 0; i < 200; ++i) ++counts[static_cast<std::size_t>(5 * random.uniform())];
-    const ChiSquareFit fit = chi_square_fit({counts, std::vector<double>(5, .2)});
-    return chi_square_tails(fit.test.statistic, 5).upper;
-  });
+CAUGHT(Mutants, AChiSquareFitThatCountsEveryCellAsADegreeOfFreedomIsCaught, 119, 20000) {
+  std::vector<std::uint64_t> counts(5);
+  for (int i = 0; i < 200; ++i) ++counts[static_cast<std::size_t>(5 * random.uniform())];
+  const ChiSquareFit fit = chi_square_fit({counts, std::vector<double>(5, .2)});
+  return chi_square_tails(fit.test.statistic, 5).upper;
 }
 
-TEST(Mutants, ABinomialTailWithoutItsOwnCountIsCaught) {
-  expect_caught({120, 20000, Shape::at_most_uniform}, [](Philox& random) {
-    std::uint64_t hits = 0;
-    for (int i = 0; i < 50; ++i) hits += random.uniform() < .07;
-    return binomial_tails(hits + 1, {50, .07}).upper;
-  });
+CAUGHT(Mutants, ABinomialTailWithoutItsOwnCountIsCaught, 120, 20000, Shape::at_most_uniform) {
+  std::uint64_t hits = 0;
+  for (int i = 0; i < 50; ++i) hits += random.uniform() < .07;
+  return binomial_tails(hits + 1, {50, .07}).upper;
 }
 
-TEST(Mutants, EquivalenceByTheSmallerOfTwoPValuesIsCaught) {
-  expect_caught({121, 20000, Shape::at_most_uniform}, [](Philox& random) {
-    const Moments x = draw_moments(60, [&] { return .5 + random.normal(); });
-    const Equivalence both = equivalence(student_t(x, {-.5}), student_t(x, {.5}));
-    return std::min(both.at_low.log_p_upper, both.at_high.log_p_lower);
-  });
+CAUGHT(Mutants, EquivalenceByTheSmallerOfTwoPValuesIsCaught, 121, 20000, Shape::at_most_uniform) {
+  const Moments x = draw_moments(60, [&] { return .5 + random.normal(); });
+  const Equivalence both = equivalence(student_t(x, {-.5}), student_t(x, {.5}));
+  return std::min(both.at_low.log_p_upper, both.at_high.log_p_lower);
 }
 
-TEST(Mutants, MultiplicityIgnoredIsCaught) {
-  expect_caught({122, 20000, Shape::at_most_uniform}, [](Philox& random) {
-    double smallest = 0;
-    for (int i = 0; i < 20; ++i) smallest = std::min(smallest, std::log(random.uniform()));
-    return smallest;
-  });
+CAUGHT(Mutants, MultiplicityIgnoredIsCaught, 122, 20000, Shape::at_most_uniform) {
+  double smallest = 0;
+  for (int i = 0; i < 20; ++i) smallest = std::min(smallest, std::log(random.uniform()));
+  return smallest;
 }
 
-TEST(Mutants, CorrelatedStepsTakenAsIndependentAreCaught) {
-  expect_caught({123, 5000}, [](Philox& random) {
-    double state = random.normal();
-    const Moments chain = draw_moments(200, [&] {
-      state = .9 * state + std::sqrt(1 - .81) * random.normal();
-      return state;
-    });
-    return log_p_two_sided(student_t(chain, {0}));
+CAUGHT(Mutants, CorrelatedStepsTakenAsIndependentAreCaught, 123, 5000) {
+  double state = random.normal();
+  const Moments chain = draw_moments(200, [&] {
+    state = .9 * state + std::sqrt(1 - .81) * random.normal();
+    return state;
   });
+  return log_p_two_sided(student_t(chain, {0}));
 }
 
 }  // namespace

@@ -1,26 +1,17 @@
 // Predicted power against simulated rejections. Hoeffding's bound gives a false-alarm rate of 1e-5
 // each. |rate - power| <= sqrt(ln(2e5) / (2 R)), .0247 at R = 10000, .0391 at R = 4000.
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-
 #include "stats/cells/chi_square_fit.h"
 #include "stats/laws/kolmogorov_smirnov.h"
 #include "stats/means/equivalence.h"
 #include "stats/means/student_t.h"
 #include "stats/means/welch_t.h"
 #include "stats/planning/power.h"
+#include "tests/prelude.h"
 #include "tests/stats/samples.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::draw_moments;
-using tests::Philox;
-using tests::sample_of;
-using tests::sorted;
 
 struct Simulation {
   std::uint32_t test_case;

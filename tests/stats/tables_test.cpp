@@ -1,8 +1,3 @@
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
 
 #include "stats/cells/chi_square_two_sample.h"
 #include "stats/laws/kolmogorov_smirnov.h"
@@ -12,14 +7,12 @@
 #include "stats/variances/chi_square_variance.h"
 #include "stats/variances/f_ratio.h"
 #include "tests/lehmer.h"
+#include "tests/prelude.h"
 #include "tests/stats/samples.h"
 #include "tests/stats/table.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::moments_of;
-using tests::Row;
 
 // The data sets of make_tables.py, tests_rows.
 std::vector<double> sample(int k, int size) {

@@ -1,4 +1,4 @@
-// What broke: a card a suspect, and a card a ledger's alarm.
+// Cards show what broke: a card a suspect, and a card a ledger's alarm.
 import { useContext } from "preact/hooks";
 import { NightsChart } from "./charts";
 import { Copy } from "./claims";

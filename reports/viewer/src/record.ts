@@ -246,7 +246,7 @@ export interface Page {
   test: Map<string, Test>;
 }
 
-/// What the page holds: a record, or something else that its JSON text tells.
+/// Reads what the page holds: a record, or something else that its JSON text tells.
 export async function unpack<Other>(base64: string): Promise<Page | Other> {
   const text = atob(base64);
   const packed = new Uint8Array(text.length);

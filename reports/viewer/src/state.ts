@@ -1,4 +1,4 @@
-// What a reader chose. It stands in the address, so that a reload or a link shows the same.
+// The choices of a reader. They stand in the address, so that a reload or a link shows the same.
 import { useEffect, useState } from "preact/hooks";
 import type { Standing, Test } from "./record";
 

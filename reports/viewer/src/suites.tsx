@@ -1,4 +1,4 @@
-// What a suite says beside its claims: planted bugs, estimators, statements of sources.
+// A suite shows these beside its claims: planted bugs, estimators, statements of sources.
 import { useState, useContext } from "preact/hooks";
 import type { ComponentChildren } from "preact";
 import { PlaneChart } from "./charts";

@@ -2,14 +2,9 @@
 
 #include "depth_of_field/allocation.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numeric>
-#include <vector>
-
 #include "depth_of_field/exact.h"
 #include "tests/estimators/table.h"
+#include "tests/prelude.h"
 
 namespace assay {
 namespace {

@@ -1,16 +1,11 @@
 // Lens integration at a pixel against independent quadrature, and the transport of frequencies.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <array>
-#include <numbers>
-
 #include "depth_of_field/covariance.h"
 #include "depth_of_field/exact.h"
 #include "depth_of_field/spectrum.h"
 #include "tests/estimators/draws.h"
 #include "tests/estimators/table.h"
+#include "tests/prelude.h"
 
 namespace assay {
 namespace {
@@ -172,65 +167,6 @@ TEST(DepthOfField, ForLowFrequenciesTheCovariancePredictsTheDiscsVariance) {
   const auto waves = Spectrum({{.5, 0, 1}}).travel(3).at_camera(lens);
   const Covariance covariance = Covariance(1, {.position = .25}).travel(3);
   EXPECT_NEAR(covariance.lens_variance(lens) / lens_variance(waves, lens), 1, 1e-3);
-}
-
-// False alarm 1e-6 each.
-TEST(DepthOfField, RaysThroughTheLensHaveTheExactMoments) {
-  for (const std::string& scene :
-       {std::string("edge"), std::string("sinusoid"), std::string(corner)}) {
-    const auto plugin =
-        prepare("depth_of_field/pixel", "{scene: " + scene + ", pixel: [.04, .01]}");
-    const Channel channel = plugin.setup->channels()[0];
-    const Sample sample = observe(plugin, 100000)[0];
-    EXPECT_NEAR(sample.mean(), *channel.mean, five * sample.mean_error()) << scene;
-    EXPECT_NEAR(sample.variance(), *channel.variance, five * sample.variance_error()) << scene;
-  }
-}
-
-// False alarm 1e-6 each.
-TEST(DepthOfField, JitterAndFreshPilotsLeaveNoBias) {
-  for (const char* plugin : {"depth_of_field/pixel", "depth_of_field/two_stage"}) {
-    const std::string jitter = std::string(plugin) == "depth_of_field/pixel" ? ", jitter: 3" : "";
-    const auto prepared = prepare(plugin, "{pixel: [.14, 0]" + jitter + "}");
-    const Sample sample = observe(prepared, 60000)[0];
-    EXPECT_NEAR(sample.mean(), *prepared.setup->channels()[0].mean, five * sample.mean_error());
-  }
-}
-
-struct Refusal {
-  const char* scene;
-  const char* names;
-};
-
-TEST(DepthOfField, WrongScenesAreRefusedByName) {
-  const std::vector<Refusal> table = {
-      {"egde", "edge"},
-      {"{lens: {radius: 0, focus: 1}, planes: [{depth: 1, x: [0, 1], y: [0, 1], radiance: 1}]}",
-       "radius"},
-      {"{lens: {radius: 1, focus: -1}, planes: [{depth: 1, x: [0, 1], y: [0, 1], radiance: 1}]}",
-       "focus"},
-      {"{lens: {radius: 1, focus: 1}, planes: []}", "planes"},
-      {"{lens: {radius: 1, focus: 1}, planes: [{depth: 0, x: [0, 1], y: [0, 1], radiance: 1}]}",
-       "depth"},
-      {"{lens: {radius: 1, focus: 1}, planes: [{depth: 1, x: [1, 0], y: [0, 1], radiance: 1}]}",
-       "ascend"},
-      {"{lens: {radius: 1, focus: 1}, planes: [{depth: 1, x: [0, 1], y: [0, 1], radiance: 1, "
-       "amplitude: 2, wavelength: 1}]}",
-       "amplitude"},
-      {"{lens: {radius: 1, focus: 1}, planes: [{depth: 1, x: [0, 1], y: [0, 1], radiance: 1, "
-       "amplitude: 1}]}",
-       "wavelength"},
-      {"{lens: {radius: 1, focus: 1}, planes: [{depth: 1, x: [0, 2], y: [0, 2], radiance: 1}, "
-       "{depth: 1, x: [1, 3], y: [1, 3], radiance: 2}]}",
-       "overlap"}};
-  for (const auto& [scene, names] : table) {
-    try {
-      prepare("depth_of_field/pixel", std::string("{scene: ") + scene + "}");
-      ADD_FAILURE() << scene;
-    } catch (const InputError& error) {
-      EXPECT_THAT(std::string(error.what()), testing::HasSubstr(names)) << error.what();
-    }
-  }
 }
 
 }  // namespace

@@ -2,15 +2,10 @@
 
 #include "depth_of_field/prediction.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
-#include <string>
-
 #include "depth_of_field/allocation.h"
 #include "depth_of_field/exact.h"
 #include "estimators/core/flow.h"
+#include "tests/prelude.h"
 
 namespace assay {
 namespace {

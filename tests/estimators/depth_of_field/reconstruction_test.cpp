@@ -3,21 +3,16 @@
 
 #include "depth_of_field/reconstruction.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "tests/estimators/depth_of_field/plans.h"
 #include "tests/estimators/draws.h"
 #include "tests/estimators/table.h"
+#include "tests/prelude.h"
 
 namespace assay {
 namespace {
 
 using namespace depth_of_field;
 using namespace assay::draws;
-using tests::reconstruction_plan;
 
 // At x the sinusoid behind the lens has the mean 1/2 + 1/2 j(3) cos(30 x): 2 x 15 of the footprint.
 double sinusoid(double x) { return .5 + .5 * disc_response(3) * std::cos(30 * x); }
@@ -133,12 +128,6 @@ TEST(Reconstruction, CostsItsSamplesAndThePass) {
   for (const std::uint64_t n : plan.counts) rays += n;
   EXPECT_EQ(cost.camera_rays, 3 * rays);
   EXPECT_EQ(cost.samples, 3u);
-}
-
-TEST(Reconstruction, OtherSpacingsAreRefused) {
-  for (const char* spacing : {"3", "6", "7"}) {
-    EXPECT_THROW(reconstruction_plan(wave(spacing)), InputError) << spacing;
-  }
 }
 
 }  // namespace

@@ -2,9 +2,7 @@
 
 #include "depth_of_field/splat.h"
 
-#include <gtest/gtest.h>
-
-#include <numbers>
+#include "tests/prelude.h"
 
 namespace assay {
 namespace {

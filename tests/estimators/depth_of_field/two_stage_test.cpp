@@ -2,7 +2,7 @@
 
 #include "depth_of_field/two_stage.h"
 
-#include <gtest/gtest.h>
+#include "tests/prelude.h"
 
 namespace assay {
 namespace {

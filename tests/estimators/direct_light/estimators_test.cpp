@@ -1,14 +1,9 @@
 // Direct lighting against closed forms, quadrature from elsewhere and theorems.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <numbers>
-
-#include "tests/estimators/direct_light/scenes.h"
 #include "tests/estimators/draws.h"
+#include "tests/estimators/scenes.h"
 #include "tests/estimators/table.h"
+#include "tests/prelude.h"
 
 namespace assay {
 namespace {
@@ -19,7 +14,6 @@ using direct_light_scenes::parameters;
 using direct_light_scenes::scene;
 using direct_light_scenes::small;
 using std::numbers::pi;
-using ::testing::HasSubstr;
 
 Channel channel(const std::string& plugin, const std::string& given) {
   return prepare("direct_light/" + plugin, given).setup->channels()[0];
@@ -89,21 +83,6 @@ TEST(DirectLight, WhereALobeCannotBeLookedForEverywhereNoMeanIsStated) {
   EXPECT_TRUE(stated("brdf", "100"));
   for (const char* plugin : {"light", "brdf", "multi_sample", "one_sample"}) {
     EXPECT_FALSE(stated(plugin, "10000")) << plugin;
-  }
-}
-
-// False-alarm rate 1e-6 each.
-TEST(DirectLight, SampledMeansAndVariancesAreExact) {
-  for (const auto& [plugin, more] : tabulated) {
-    const auto prepared =
-        prepare(std::string("direct_light/") + plugin, parameters("small", "glossy", more));
-    const Channel known = prepared.setup->channels()[0];
-    const Sample sample = observe(prepared, 100000)[0];
-    EXPECT_NEAR(sample.mean(), *known.mean, five * sample.mean_error()) << plugin << more;
-    EXPECT_NEAR(sample.variance(), *known.variance, five * sample.variance_error())
-        << plugin << more;
-    EXPECT_LE(*std::ranges::max_element(sample.values), known.high);
-    EXPECT_GE(*std::ranges::min_element(sample.values), known.low);
   }
 }
 
@@ -245,28 +224,6 @@ TEST(DirectLight, FromBehindALightIsDark) {
     const Sample sample = observe(prepared, 200)[0];
     for (const double x : sample.values) EXPECT_EQ(x, 0);
   }
-}
-
-std::string refusal(const std::string& given) {
-  try {
-    prepare("direct_light/one_sample", "{" + given + "}");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-TEST(DirectLight, RefusesWhatItCannotSample) {
-  EXPECT_EQ(refusal("brdf: {lambert: {albedo: 1}}"), "");
-  EXPECT_THAT(refusal("brdf: {lambert: {albedo: 1.5}}"), HasSubstr("`albedo`"));
-  EXPECT_THAT(refusal("brdf: {lambert: {}}"), HasSubstr("needs the parameter `albedo`"));
-  EXPECT_THAT(refusal("brdf: {wart: {alpha_x: 1}}"), HasSubstr("did you mean `ward`?"));
-  EXPECT_THAT(refusal("brdf: {ward: {alpha: 1}}"), HasSubstr("no parameter `alpha`"));
-  EXPECT_THAT(refusal("brdf: {ward: {alpha_x: 0}}"), HasSubstr("`alpha_x`"));
-  EXPECT_THAT(refusal("brdf: {ward: {}, lambert: {albedo: 0.5}}"), HasSubstr("one of the keys"));
-  EXPECT_THAT(refusal("brdf: ward"), HasSubstr("must be a map"));
-  EXPECT_THAT(refusal("light_probability: 1"), HasSubstr("nothing to combine"));
-  EXPECT_THAT(refusal("light_sampling: solid"), HasSubstr("must be one of solid_angle, area"));
 }
 
 }  // namespace

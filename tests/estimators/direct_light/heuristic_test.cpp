@@ -1,18 +1,13 @@
 #include "direct_light/heuristic.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <vector>
-
 #include "tests/estimators/draws.h"
+#include "tests/prelude.h"
 
 namespace assay {
 namespace {
 
 using direct_light::Heuristic;
 using direct_light::Pair;
-using ::testing::HasSubstr;
 
 const std::vector<Heuristic> all{Heuristic::balance(), Heuristic::power(2), Heuristic::power(3.5),
                                  Heuristic::cutoff(.2), Heuristic::maximum()};
@@ -58,27 +53,6 @@ TEST(Heuristic, ATechniqueThatCannotDrawThereWeighsNothing) {
     EXPECT_EQ(heuristic({0, 3}).light, 0);
     EXPECT_EQ(heuristic({3, 0}).brdf, 0);
   }
-}
-
-std::string refusal(const std::string& heuristic) {
-  try {
-    draws::prepare("direct_light/multi_sample", "{heuristic: " + heuristic + "}");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-TEST(Heuristic, RefusesWhatIsNone) {
-  EXPECT_EQ(refusal("{power: 1.5}"), "");
-  EXPECT_EQ(refusal("{cutoff: 0}"), "");
-  EXPECT_EQ(refusal("maximum"), "");
-  EXPECT_THAT(refusal("ballance"), HasSubstr("none of balance, power, maximum"));
-  EXPECT_THAT(refusal("{powr: 2}"), HasSubstr("did you mean `power`?"));
-  EXPECT_THAT(refusal("{power: 0.5}"), HasSubstr("1 or more"));
-  EXPECT_THAT(refusal("{cutoff: 2}"), HasSubstr("in [0, 1]"));
-  EXPECT_THAT(refusal("{power: 2, cutoff: 0.1}"), HasSubstr("one of the keys"));
-  EXPECT_THAT(refusal("[2]"), HasSubstr("must be a map"));
 }
 
 }  // namespace

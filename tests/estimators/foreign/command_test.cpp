@@ -1,25 +1,16 @@
 // The plugin `command`: programs that write a file for each seed.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <fstream>
 #include <mutex>
-#include <set>
 
 #include "estimators/core/waiting.h"
 #include "estimators/foreign/render_seed.h"
 #include "estimators/ready_made.h"
 #include "tests/estimators/draws.h"
 #include "tests/estimators/exr_kinds.h"
+#include "tests/prelude.h"
 
 namespace assay {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 TEST(RenderSeed, IsPositiveOf31BitsAndNeverTwiceInAStream) {
   const StreamKey key = stream_key(1, "command", "a", 0);
@@ -41,57 +32,38 @@ TEST(RenderSeed, OfTwoStreamsThatMeetIsRefused) {
   EXPECT_THROW(ledger.note({100}, 10), std::runtime_error);
 }
 
-class Commands : public ::testing::Test {
+class Commands : public InFolder {
  protected:
-  Commands() {
-    const auto* const test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::path(::testing::TempDir()) /
-              (std::string("assay_command_") + test->name());
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  ~Commands() override { std::filesystem::remove_all(folder_); }
-
-  std::string file(const std::string& name) const { return (folder_ / name).string(); }
   // A program that notes every start: SEED SAMPLES OUT.
   void write_program(const std::string& body) const {
     std::ofstream(file("render.sh")) << "echo start >>log\n" << body << "\n";
   }
-  // The plugin, and what differs from two programs at a time that write text.
-  draws::Prepared prepare(std::vector<Value::Member> more = {}) const {
-    const auto words = [](const std::vector<std::string>& texts) {
-      std::vector<Value> items;
-      for (const std::string& text : texts) items.push_back(Value::scalar(text));
-      return Value::list(std::move(items));
-    };
-    std::vector<Value::Member> members{
-        {"command",
-         words({"sh", "render.sh", several_ ? "{seeds}" : "{seed}", "{samples}", "{out}"})},
-        {"jobs", Value::scalar("2")}};
-    if (more.empty()) more = {{"output", Value::scalar("text")}};
-    members.insert(members.end(), more.begin(), more.end());
+  /// The plugin with these words as its command, and more parameters.
+  draws::Prepared prepare_command(const std::vector<std::string>& words,
+                                  std::vector<Value::Member> more) const {
+    std::vector<Value> items;
+    for (const std::string& word : words) items.push_back(Value::scalar(word));
+    more.emplace_back("command", Value::list(std::move(items)));
     const Entry& entry = find_plugin("command", {});
-    Parameters given("command", entry.information.parameters, Value::map(members),
+    Parameters given("command", entry.information.parameters, Value::map(std::move(more)),
                      folder_.string());
     auto setup = entry.prepare(given);
     given.require_all_read();
     return {std::move(setup), stream_key(1, "command", given.canonical(), 0), entry.information};
   }
+  // Two programs at a time that write text, where no other parameters are given.
+  draws::Prepared prepare(std::vector<Value::Member> more = {as_text}) const {
+    more.emplace_back("jobs", Value::scalar("2"));
+    return prepare_command(
+        {"sh", "render.sh", several_ ? "{seeds}" : "{seed}", "{samples}", "{out}"},
+        std::move(more));
+  }
   std::size_t starts() const {
-    const std::string log = draws::bytes_of(file("log"));
+    const std::string log = bytes_in(file("log"));
     return static_cast<std::size_t>(std::count(log.begin(), log.end(), '\n'));
   }
-  template <class Act>
-  std::string failure(const Act& act) const {
-    try {
-      act();
-    } catch (const std::exception& error) {
-      return error.what();
-    }
-    return "nothing failed";
-  }
 
-  std::filesystem::path folder_;
+  inline static const Value::Member as_text{"output", Value::scalar("text")};
   bool several_ = false;
 };
 
@@ -126,16 +98,9 @@ TEST_F(Commands, RunAgainWhenAFileThatTheyReadHasChanged) {
 // Files after a `=`, and files that a line of a shell names.
 TEST_F(Commands, RunAgainWhenAFileInsideAnArgumentHasChanged) {
   const auto value_of = [&](const std::vector<std::string>& words) {
-    std::vector<Value> items;
-    for (const std::string& word : words) items.push_back(Value::scalar(word));
-    const Entry& entry = find_plugin("command", {});
-    Parameters given(
-        "command", entry.information.parameters,
-        Value::map({{"command", Value::list(items)}, {"output", Value::scalar("text")}}),
-        folder_.string());
-    return draws::observe({entry.prepare(given), stream_key(1, "c", "", 0), entry.information},
-                          1)[0]
-        .values[0];
+    draws::Prepared plugin = prepare_command(words, {as_text});
+    plugin.key = stream_key(1, "c", "", 0);
+    return draws::observe(plugin, 1)[0].values[0];
   };
   std::ofstream(file("render.sh")) << "cp ${1#--scene=} $2\n";
   for (const double value : {1.0, 2.0}) {
@@ -166,7 +131,7 @@ TEST_F(Commands, CountTheSecondsOfTheirPrograms) {
 TEST_F(Commands, AreToldTheirFolderByTheirEnvironmentToo) {
   write_program("grep -z ^PWD= /proc/$$/environ | tr -d '\\0' >where; echo 1 >$3");
   prepare();
-  EXPECT_EQ(draws::bytes_of(file("where")), "PWD=" + std::filesystem::canonical(folder_).string());
+  EXPECT_EQ(bytes_in(file("where")), "PWD=" + std::filesystem::canonical(folder_).string());
 }
 
 TEST_F(Commands, MayMakeSeveralFilesAtATime) {
@@ -190,8 +155,8 @@ TEST_F(Commands, NameTheFileOfAnObservation) {
   draws::observe(plugin, 3, 4);
   const std::string place =
       recorded::observation_place(*plugin.setup, {.index = 2, .key = plugin.key, .primaries = 4});
-  EXPECT_EQ(draws::bytes_of(place), std::to_string(foreign::render_seed(plugin.key, 2)) + "\n");
-  EXPECT_THAT(failure([&] { draws::observe(plugin, 1, 8); }),
+  EXPECT_EQ(bytes_in(place), std::to_string(foreign::render_seed(plugin.key, 2)) + "\n");
+  EXPECT_THAT(thrown([&] { draws::observe(plugin, 1, 8); }),
               HasSubstr(std::to_string(foreign::render_seed(plugin.key, 0)) +
                         ".txt:2:1: `1x` is not a number"));
 }
@@ -208,14 +173,14 @@ TEST_F(Commands, WritePictures) {
 
 TEST_F(Commands, ThatFailSayHowAndWhatTheySaidLast) {
   write_program("echo what a pity >&2; exit 3");
-  const std::string text = failure([&] { prepare(); });
+  const std::string text = thrown([&] { prepare(); });
   EXPECT_THAT(text, HasSubstr("ended with exit status 3"));
   EXPECT_THAT(text, HasSubstr("what a pity"));
   write_program("true");
-  EXPECT_THAT(failure([&] { prepare(); }), HasSubstr("wrote no file"));
+  EXPECT_THAT(thrown([&] { prepare(); }), HasSubstr("wrote no file"));
   write_program("sleep 60");
-  EXPECT_THAT(failure([&] {
-                prepare({{"output", Value::scalar("text")}, {"timeout", Value::scalar("0.2")}});
+  EXPECT_THAT(thrown([&] {
+                prepare({as_text, {"timeout", Value::scalar("0.2")}});
               }),
               HasSubstr("took more than"));
 }
@@ -224,30 +189,26 @@ TEST_F(Commands, ThatFailSayHowAndWhatTheySaidLast) {
 template <class Act>
 std::string refusal(const Act& act) {
   try {
-    act();
-  } catch (const InputError& error) {
-    return to_string(error.where()) + ": " + error.message();
+    return thrown<InputError>(act);
   } catch (const std::exception& error) {
     return std::string("no mistake of the suite: ") + error.what();
   }
-  return "nothing was refused";
 }
 
 TEST_F(Commands, RefuseAFileOfDependsThatIsNotThere) {
   write_program("echo 1 >$3");
-  EXPECT_EQ(refusal([&] {
-              prepare({{"output", Value::scalar("text")},
-                       {"depends", Value::list({Value::scalar("none.txt")}, {"s.yaml", 4, 7})}});
-            }),
-            "s.yaml:4:7: command: parameter `depends` cannot be used: there is no file "
-            "`none.txt`; it is sought from the suite's folder");
+  EXPECT_EQ(
+      refusal([&] {
+        prepare({as_text, {"depends", Value::list({Value::scalar("none.txt")}, {"s.yaml", 4, 7})}});
+      }),
+      "s.yaml:4:7: command: parameter `depends` cannot be used: there is no file "
+      "`none.txt`; it is sought from the suite's folder");
 }
 
 TEST_F(Commands, RefuseACacheThatCannotBeMade) {
   write_program("echo 1 >$3");
   EXPECT_THAT(refusal([&] {
-                prepare({{"output", Value::scalar("text")},
-                         {"cache", Value::scalar("render.sh", {"s.yaml", 4, 7})}});
+                prepare({as_text, {"cache", Value::scalar("render.sh", {"s.yaml", 4, 7})}});
               }),
               AllOf(HasSubstr("s.yaml:4:7: command: parameter `cache` cannot be used: the folder "
                               "`" +
@@ -288,11 +249,11 @@ TEST_F(Commands, SayToMendAProgramWhosePictureCannotBeRead) {
 TEST_F(Commands, ThatFailOnceLeaveNothingBehind) {
   write_program("echo 1 >$3; test $2 = 1");
   const draws::Prepared plugin = prepare();
-  EXPECT_THAT(failure([&] { draws::observe(plugin, 1, 2); }), HasSubstr("exit status 1"));
+  EXPECT_THAT(thrown([&] { draws::observe(plugin, 1, 2); }), HasSubstr("exit status 1"));
   for (const auto& entry : std::filesystem::recursive_directory_iterator(file(".assay-cache"))) {
     EXPECT_FALSE(entry.path().filename().string().starts_with("part-")) << entry.path();
   }
-  EXPECT_THAT(failure([&] { draws::observe(prepare(), 1, 2); }), HasSubstr("exit status 1"));
+  EXPECT_THAT(thrown([&] { draws::observe(prepare(), 1, 2); }), HasSubstr("exit status 1"));
 }
 
 std::vector<std::string> said;
@@ -303,8 +264,7 @@ TEST_F(Commands, ThatFailAreStartedAgain) {
   write_program(
       "test -e tried.$1.$2 || { touch tried.$1.$2; echo half >$3; echo bad luck >&2; exit 3; }; "
       "echo \"$1 $2\" >$3");
-  const std::vector<Value::Member> once{{"output", Value::scalar("text")},
-                                        {"retries", Value::scalar("1")}};
+  const std::vector<Value::Member> once{as_text, {"retries", Value::scalar("1")}};
   set_notice([](const std::string& sentence) {
     const std::scoped_lock lock(saying);
     said.push_back(sentence);
@@ -320,21 +280,18 @@ TEST_F(Commands, ThatFailAreStartedAgain) {
   for (const auto& entry : std::filesystem::recursive_directory_iterator(file(".assay-cache"))) {
     if (!entry.is_regular_file() || entry.path().filename() == "command.txt") continue;
     ++files;
-    EXPECT_THAT(draws::bytes_of(entry.path().string()),
-                HasSubstr(entry.path().stem().string() + " "));
+    EXPECT_THAT(bytes_in(entry.path().string()), HasSubstr(entry.path().stem().string() + " "));
   }
   EXPECT_EQ(files, 4U);
   ASSERT_EQ(said.size(), 4U);
   EXPECT_THAT(said[0], HasSubstr("ended with exit status 3; its standard error ends with: bad "
                                  "luck; it is started again, retry 1 of 1"));
-  EXPECT_THAT(failure([&] { draws::observe(prepare(), 1, 8); }), HasSubstr("exit status 3"));
+  EXPECT_THAT(thrown([&] { draws::observe(prepare(), 1, 8); }), HasSubstr("exit status 3"));
 }
 
 TEST_F(Commands, ThatFailAtEachRetrySayHowOften) {
   write_program("echo what a pity >&2; exit 3");
-  const std::string text = failure([&] {
-    prepare({{"output", Value::scalar("text")}, {"retries", Value::scalar("2")}});
-  });
+  const std::string text = thrown([&] { prepare({as_text, {"retries", Value::scalar("2")}}); });
   EXPECT_THAT(text, HasSubstr("exit status 3"));
   EXPECT_THAT(text, HasSubstr("what a pity; it has failed 3 times (`retries: 2`)"));
   EXPECT_EQ(starts(), 3U);
@@ -343,11 +300,10 @@ TEST_F(Commands, ThatFailAtEachRetrySayHowOften) {
 TEST_F(Commands, ThatMakeSomeFilesAreStartedAgainForTheOthers) {
   several_ = true;
   write_program("echo $1 >>asked; echo ${1%%,*} >$3/${1%%,*}.txt");
-  const draws::Prepared plugin =
-      prepare({{"output", Value::scalar("text")}, {"retries", Value::scalar("2")}});
+  const draws::Prepared plugin = prepare({as_text, {"retries", Value::scalar("2")}});
   const auto worker = plugin.setup->make();
   worker->announce({.key = plugin.key, .first = 0, .last = 3});
-  std::string wanted = draws::bytes_of(file("asked"));
+  std::string wanted = bytes_in(file("asked"));
   for (std::uint64_t i = 0; i < 3; ++i) {
     Stream random(plugin.key, i);
     Cost cost;
@@ -358,14 +314,13 @@ TEST_F(Commands, ThatMakeSomeFilesAreStartedAgainForTheOthers) {
       wanted += std::to_string(foreign::render_seed(plugin.key, j)) + (j < 2 ? "," : "\n");
     }
   }
-  EXPECT_EQ(draws::bytes_of(file("asked")), wanted);
+  EXPECT_EQ(bytes_in(file("asked")), wanted);
 }
 
 // Eight of half a second, two at a time, take longer than each may.
 TEST_F(Commands, HaveTheirTimeFromTheirStart) {
   write_program("sleep 0.5; echo $1 >$3");
-  const draws::Prepared plugin =
-      prepare({{"output", Value::scalar("text")}, {"timeout", Value::scalar("1.5")}});
+  const draws::Prepared plugin = prepare({as_text, {"timeout", Value::scalar("1.5")}});
   const auto worker = plugin.setup->make();
   worker->announce({.key = plugin.key, .first = 0, .last = 8});
   for (std::uint64_t i = 0; i < 8; ++i) {
@@ -380,27 +335,14 @@ TEST_F(Commands, HaveTheirTimeFromTheirStart) {
 
 TEST_F(Commands, NeedAPlaceForSamplesToTakeOtherThanOne) {
   std::ofstream(file("render.sh")) << "echo 1 >$2\n";
-  const Entry& entry = find_plugin("command", {});
-  std::vector<Value> words;
-  for (const char* word : {"sh", "render.sh", "{seed}", "{out}"}) {
-    words.push_back(Value::scalar(word));
-  }
-  Parameters given("command", entry.information.parameters,
-                   Value::map({{"command", Value::list(words)}, {"output", Value::scalar("text")}}),
-                   folder_.string());
-  const draws::Prepared plugin{entry.prepare(given), stream_key(1, "c", "", 0), entry.information};
+  const draws::Prepared plugin = prepare_command({"sh", "render.sh", "{seed}", "{out}"}, {as_text});
   EXPECT_EQ(draws::observe(plugin, 1)[0].values[0], 1);
-  EXPECT_THAT(failure([&] { draws::observe(plugin, 1, 4); }), HasSubstr("no place `{samples}`"));
+  EXPECT_THAT(thrown([&] { draws::observe(plugin, 1, 4); }), HasSubstr("no place `{samples}`"));
 }
 
 TEST_F(Commands, NeedPlacesForSeedAndFile) {
   const auto refused = [&](const std::vector<std::string>& words) {
-    std::vector<Value> items;
-    for (const std::string& word : words) items.push_back(Value::scalar(word));
-    const Entry& entry = find_plugin("command", {});
-    Parameters given("command", entry.information.parameters,
-                     Value::map({{"command", Value::list(items)}}), folder_.string());
-    return failure([&] { entry.prepare(given); });
+    return thrown([&] { prepare_command(words, {}); });
   };
   EXPECT_THAT(refused({"render", "{out}"}), HasSubstr("has no place `{seed}`"));
   EXPECT_THAT(refused({"render", "{seed}"}), HasSubstr("has no place `{out}`"));

@@ -3,16 +3,12 @@
 
 #include "estimators/foreign/examination.h"
 
-#include <gmock/gmock.h>
-
 #include "estimators/core/thread_seconds.h"
 #include "tests/estimators/foreign/library.h"
+#include "tests/prelude.h"
 
 namespace assay::foreign {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
 
 using Examination = Library;
 

@@ -2,18 +2,12 @@
 
 // Programs that answer, and programs that do not, for the tests of `process` and `library`.
 
-#include <gtest/gtest.h>
 #include <sys/wait.h>
 
 #include <cerrno>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <memory>
-#include <string>
-#include <vector>
 
 #include "estimators/catalogue.h"
+#include "tests/prelude.h"
 
 namespace assay::foreign {
 
@@ -22,25 +16,13 @@ using SharedSetup = std::shared_ptr<const Setup>;
 
 inline const std::string examples = std::string(ASSAY_SOURCE_DIR) + "/estimators/foreign/examples";
 
-/// A folder of the current test alone. At the end no program that it started may be left.
-class Programs : public ::testing::Test {
+/// At the end no program that it started may be left.
+class Programs : public InFolder {
  protected:
-  Programs() {
-    const auto* const test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::path(::testing::TempDir()) /
-              (std::string("assay_") + test->test_suite_name() + "_" + test->name());
-    std::filesystem::create_directories(folder_);
-  }
-  ~Programs() override { std::filesystem::remove_all(folder_); }
   void TearDown() override {
     setups_.clear();
     EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1) << "a program was left";
     EXPECT_EQ(errno, ECHILD);
-  }
-
-  std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-    return (folder_ / name).string();
   }
 
   /// A plugin with parameters as a map.
@@ -69,27 +51,20 @@ class Programs : public ::testing::Test {
   }
 
   std::string refusal(const std::vector<std::string>& command, double timeout = 20) {
-    try {
-      run(command, timeout);
-    } catch (const InputError& error) {
-      return error.message();
-    }
-    return "nothing was refused";
+    return thrown<InputError>([&] { run(command, timeout); });
   }
-
   /// The message of an exception that is no InputError.
   std::string fault(const std::vector<std::string>& command, double timeout = 20) {
     try {
       run(command, timeout);
     } catch (const InputError& error) {
-      return "refused: " + error.message();
+      return std::string("refused: ") + error.what();
     } catch (const std::runtime_error& error) {
       return error.what();
     }
     return "nothing was thrown";
   }
 
-  std::filesystem::path folder_;
   std::vector<SharedSetup> setups_;
 };
 
@@ -114,12 +89,7 @@ inline std::vector<double> draw(const Setup& setup, std::uint64_t count, std::ui
 
 /// Why observations could not be drawn.
 inline std::string failure(const Setup& setup, std::uint64_t count, std::uint64_t block) {
-  try {
-    draw(setup, count, block);
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "nothing failed";
+  return thrown([&] { draw(setup, count, block); });
 }
 
 }  // namespace assay::foreign

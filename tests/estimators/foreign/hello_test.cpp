@@ -1,29 +1,11 @@
 #include "estimators/foreign/hello.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <limits>
+#include "tests/prelude.h"
 
 namespace assay::foreign {
 namespace {
 
-using ::testing::HasSubstr;
-
-std::string refusal(const std::string& text) {
-  try {
-    parse_hello(text);
-  } catch (const ProtocolError& error) {
-    return error.what();
-  }
-  return "nothing was refused";
-}
-
 Hello hello(const std::string& lines) { return parse_hello("assay 1 text\n" + lines + "ready\n"); }
-std::string wrong(const std::string& lines) {
-  return refusal("assay 1 text\n" + lines + "ready\n");
-}
-
 TEST(Hello, NamesChannelsInOrder) {
   const Hello said = hello("channel area\nchannel nodes diagnostic\n");
   ASSERT_EQ(said.channels.size(), 2u);
@@ -89,24 +71,6 @@ TEST(Hello, AnnouncesSamplers) {
   EXPECT_EQ(said.width(), 1u);
 }
 
-TEST(Hello, RefusesSamplersThatCannotBe) {
-  const auto wrong_sampler = [](const std::string& line) {
-    return refusal("assay 1 binary\nchannel x\n" + line + "\nready\n");
-  };
-  EXPECT_THAT(wrong_sampler("sampler lens"), HasSubstr("a sampler has a name"));
-  EXPECT_THAT(wrong_sampler("sampler two.words square"), HasSubstr("a sampler has a name"));
-  EXPECT_THAT(wrong_sampler("sampler lens circle"), HasSubstr("a domain is interval, square"));
-  EXPECT_THAT(wrong_sampler("sampler lens interval low"), HasSubstr("pairs of a word"));
-  EXPECT_THAT(wrong_sampler("sampler lens interval low 1 high 1"), HasSubstr("is empty"));
-  EXPECT_THAT(wrong_sampler("sampler lens interval low nan"), HasSubstr("not a number"));
-  EXPECT_THAT(wrong_sampler("sampler lens square rounding -1"), HasSubstr("from 0"));
-  EXPECT_THAT(wrong_sampler("sampler lens square rounding inf"), HasSubstr("below 1"));
-  EXPECT_THAT(wrong_sampler("sampler lens square low 0"), HasSubstr("of an interval low"));
-  EXPECT_THAT(wrong_sampler("sampler lens square middle 1"), HasSubstr("rounding is known"));
-  EXPECT_THAT(wrong_sampler("sampler lens square\nsampler lens sphere"), HasSubstr("twice"));
-  EXPECT_THAT(wrong("channel x\nsampler lens square\n"), HasSubstr("binary only"));
-}
-
 TEST(Hello, SurvivesBeingWrittenAndReadAgain) {
   const std::string lines =
       "assay 1 binary\nimage 2 2 red green\nindependent\nrange -inf 10\n"
@@ -124,53 +88,25 @@ TEST(Hello, IsWholeOnceALineEndsIt) {
   EXPECT_FALSE(is_whole_hello("already\n"));
 }
 
-TEST(Hello, RefusesWhatIsNoHello) {
-  EXPECT_THAT(refusal(""), HasSubstr("says nothing"));
-  EXPECT_THAT(refusal("Loading scene…\n"), HasSubstr("the first is `assay 1 text`"));
-  EXPECT_THAT(refusal("assay 1\nchannel a\nready\n"), HasSubstr("`assay 1`"));
-  EXPECT_THAT(refusal("assay 2 text\nchannel a\nready\n"), HasSubstr("speaks version 2"));
-  EXPECT_THAT(refusal("assay 1 json\nchannel a\nready\n"), HasSubstr("`text` or `binary`"));
-  EXPECT_THAT(refusal("assay 1 text\nchannel a\n"), HasSubstr("does not end with `ready`"));
-  EXPECT_THAT(refusal("assay 1 text\nready\n"), HasSubstr("neither a `channel` nor an `image`"));
-  EXPECT_THAT(refusal("assay 1 text\nchannel a\nready\n3.14\n"), HasSubstr("after `ready`"));
-}
-
-TEST(Hello, RefusesLinesThatItDoesNotKnow) {
-  EXPECT_THAT(wrong("chanel a\n"), HasSubstr("`chanel a`"));
-  EXPECT_THAT(wrong("channel a mean\n"), HasSubstr("needs a number"));
-  EXPECT_THAT(wrong("channel a mean zero\n"), HasSubstr("`zero` is not a number"));
-  EXPECT_THAT(wrong("channel a mean inf\n"), HasSubstr("not finite"));
-  EXPECT_THAT(wrong("channel a low nan\n"), HasSubstr("`nan` is not a number"));
-  EXPECT_THAT(wrong("channel a variance -1\n"), HasSubstr("cannot be negative"));
-  EXPECT_THAT(wrong("channel a low 2 high 1\n"), HasSubstr("the range is empty"));
-  EXPECT_THAT(wrong("channel a median 1\n"), HasSubstr("are known"));
-  EXPECT_THAT(wrong("channel two.words\n"), HasSubstr("letters, digits"));
-  EXPECT_THAT(wrong("channel a\nchannel a\n"), HasSubstr("`a` twice"));
-  EXPECT_THAT(wrong("image 2 2\nchannel x0y0\n"), HasSubstr("leave such channels out"));
-  EXPECT_THAT(wrong("channel a\nbias small\n"), HasSubstr("bias is unknown, unbiased"));
-  EXPECT_THAT(wrong("channel a\naverages 3\n"), HasSubstr("nothing follows"));
-}
-
-TEST(Hello, RefusesImagesThatCannotBe) {
-  EXPECT_THAT(wrong("image 3\n"), HasSubstr("a width and a height"));
-  EXPECT_THAT(wrong("image 0 3\n"), HasSubstr("above 0"));
-  EXPECT_THAT(wrong("image -1 3\n"), HasSubstr("above 0"));
-  EXPECT_THAT(wrong("image 4294967296 4294967296\n"), HasSubstr("at most"));
-  EXPECT_THAT(wrong("image 18446744073709551615 1\n"), HasSubstr("at most"));
-  EXPECT_THAT(wrong("image 8 8 red red\n"), HasSubstr("component twice"));
-  EXPECT_THAT(wrong("image 8 8\nimage 8 8\n"), HasSubstr("one image"));
-  EXPECT_THAT(wrong("image 8 8\nchannel a\n"), HasSubstr("such a channel is `diagnostic`"));
-  EXPECT_THAT(wrong("channel a\nrange 0 1\n"), HasSubstr("there is no `image`"));
-  EXPECT_THAT(wrong("channel a\nindependent\n"), HasSubstr("after the `image`"));
+TEST(Hello, IsRefusedForEachMistake) {
+  std::ifstream file(ASSAY_SOURCE_DIR "/tests/tables/refused_hellos.txt");
+  int count = 0;
+  for (std::string line; std::getline(file, line);) {
+    const std::size_t arrow = line.find(" => ");
+    if (arrow == std::string::npos || line.starts_with('#')) continue;
+    const std::string text = std::regex_replace(line.substr(0, arrow), std::regex("\\\\n"), "\n");
+    EXPECT_THAT(thrown<ProtocolError>([&] { parse_hello(text); }),
+                HasSubstr(line.substr(arrow + 4)))
+        << line;
+    ++count;
+  }
+  EXPECT_GT(count, 40);
 }
 
 TEST(Hello, GivesTheProgramsOwnWordsWhereItRefuses) {
-  try {
-    parse_hello("assay 1 text\nerror the licence server is away\n");
-    FAIL() << "a refusal was not noticed";
-  } catch (const Refusal& refusal) {
-    EXPECT_STREQ(refusal.what(), "the licence server is away");
-  }
+  EXPECT_EQ(
+      thrown<Refusal>([] { parse_hello("assay 1 text\nerror the licence server is away\n"); }),
+      "the licence server is away");
 }
 
 }  // namespace

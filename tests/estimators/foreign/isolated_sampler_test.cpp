@@ -3,20 +3,12 @@
 
 #include "estimators/foreign/isolated_sampler.h"
 
-#include <gmock/gmock.h>
-
-#include <cmath>
-#include <thread>
-
 #include "estimators/core/flush_denormals.h"
 #include "tests/estimators/foreign/foreign.h"
+#include "tests/prelude.h"
 
 namespace assay::foreign {
 namespace {
-
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::Not;
 
 // A ramp on [0, 2]: density x / 2, evaluation 1. A draw is as far as the observation's number says,
 // so that tests know what was asked. {} is done to each question, about `items`.
@@ -73,12 +65,7 @@ std::vector<double> densities(const Sampler& sampler, std::span<const Point> poi
 }
 
 std::string failure_at(const Sampler& sampler, std::span<const Point> points) {
-  try {
-    densities(sampler, points);
-  } catch (const NoAnswer& failure) {
-    return failure.what();
-  }
-  return "nothing failed";
+  return thrown<NoAnswer>([&] { densities(sampler, points); });
 }
 
 TEST_F(IsolatedSampler, IsAsItsProgramSays) {
@@ -172,13 +159,11 @@ TEST_F(IsolatedSampler, NamesThePointAtWhichItsProgramEnds) {
 TEST_F(IsolatedSampler, NamesThePointAtWhichItsProgramHangs) {
   const auto sampler = ramp_that("if what == 2: import time; time.sleep(765432)", 0.3);
   EXPECT_EQ(densities(*sampler, points(3)).size(), 3u);
-  try {
-    sampler->evaluate({.25, 0, 0});
-    FAIL() << "it went on";
-  } catch (const NoAnswer& failure) {
-    EXPECT_THAT(failure.what(), AllOf(HasSubstr("sampler `ramp` at (0.25): "),
-                                      HasSubstr("for 1 evaluation within 0.3 seconds")));
-  }
+  EXPECT_THAT(thrown<NoAnswer>([&] {
+                sampler->evaluate({.25, 0, 0});
+              }),
+              AllOf(HasSubstr("sampler `ramp` at (0.25): "),
+                    HasSubstr("for 1 evaluation within 0.3 seconds")));
 }
 
 TEST_F(IsolatedSampler, TellsTheFailureOfAllWhereEachCanBeHad) {
@@ -201,7 +186,7 @@ TEST_F(IsolatedSampler, MustAnswerTheSameAgain) {
     for (auto& mine : why) {
       threads.emplace_back([&] {
         for (int i = 0; i < 200; ++i) {
-          if (mine = failure_at(*seeded, points(500)); mine != "nothing failed") return;
+          if (mine = failure_at(*seeded, points(500)); mine != thrown([] {})) return;
         }
       });
     }
@@ -223,12 +208,7 @@ TEST_F(IsolatedSampler, MustAnswerWithNumbers) {
   for (const char* const draw : {"(0, 0, 0, float('nan'), 1, 1)", "(0, 0, 0, 1, 1, .5)"}) {
     const auto sampler = ramp_that(std::string("draw = lambda key, index: ") + draw);
     Stream random(StreamKey{3}, 7);
-    try {
-      sampler->sample(random);
-      ADD_FAILURE() << draw;
-    } catch (const NoAnswer& failure) {
-      EXPECT_THAT(failure.what(), HasSubstr("is no draw"));
-    }
+    EXPECT_THAT(thrown<NoAnswer>([&] { sampler->sample(random); }), HasSubstr("is no draw"));
   }
 }
 

@@ -36,12 +36,7 @@ class Library : public Programs {
   }
 
   std::string refusal(const std::string& file, std::vector<Value::Member> more = {}) {
-    try {
-      load(file, std::move(more));
-    } catch (const InputError& error) {
-      return error.message();
-    }
-    return "nothing was refused";
+    return thrown<InputError>([&] { load(file, std::move(more)); });
   }
 };
 

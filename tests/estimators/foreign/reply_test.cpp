@@ -1,16 +1,9 @@
 #include "estimators/foreign/reply.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstring>
+#include "tests/prelude.h"
 
 namespace assay::foreign {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
 constexpr Question question{.key = 0x123456789abcdef0, .first = 5, .count = 2, .primaries = 64};
 const std::string text_question = "305419896 2596069104 5 2 64\n";

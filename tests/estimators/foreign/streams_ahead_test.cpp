@@ -1,6 +1,6 @@
 #include "estimators/foreign/streams_ahead.h"
 
-#include <gtest/gtest.h>
+#include "tests/prelude.h"
 
 namespace assay::foreign {
 namespace {

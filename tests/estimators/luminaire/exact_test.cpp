@@ -1,12 +1,10 @@
 #include "luminaire/exact.h"
 
-#include <gtest/gtest.h>
-
-#include <numbers>
-
 #include "estimators/core/flow.h"
-#include "tests/estimators/sampling.h"
+#include "tests/estimators/draws.h"
+#include "tests/estimators/scenes.h"
 #include "tests/estimators/table.h"
+#include "tests/prelude.h"
 
 namespace assay::luminaire {
 namespace {
@@ -40,7 +38,7 @@ TEST(ExactIntegrals, AgreeWithQuadrature) {
 
 TEST(ExactIntegrals, HaveTheGoldenDigits) {
   const auto irradiance = [](const std::string& scene) {
-    return *tests::prepared("luminaire/area", scene)->channels()[0].mean;
+    return *draws::prepare("luminaire/area", draws::scene(scene)).setup->channels()[0].mean;
   };
   EXPECT_NEAR(irradiance("triangle"), 0.481046907316, 5e-13);
   EXPECT_NEAR(irradiance("cornell_triangle") * 0.5 / std::numbers::pi, 0.16216329, 5e-9);

@@ -1,11 +1,10 @@
 // How far Embree's single precision moves the outline of a luminaire.
 
-#include <gtest/gtest.h>
-
 #include "estimators/core/flow.h"
 #include "estimators/stream.h"
 #include "luminaire/setting.h"
 #include "render/hemisphere.h"
+#include "tests/prelude.h"
 
 namespace assay::luminaire {
 namespace {

@@ -1,18 +1,15 @@
 // The samplers inside the luminaire family against the densities they declare.
 
-#include <gtest/gtest.h>
-
 #include <boost/math/distributions/chi_squared.hpp>
-#include <cmath>
-#include <functional>
-#include <vector>
 
-#include "tests/estimators/sampling.h"
+#include "tests/estimators/draws.h"
+#include "tests/estimators/scenes.h"
+#include "tests/prelude.h"
 
 namespace assay {
 namespace {
 
-constexpr std::uint64_t draws = 1u << 20;
+constexpr std::uint64_t draw_count = 1u << 20;
 
 const Sampler& sampler_of(const std::shared_ptr<const Setup>& setup, const std::string& name,
                           std::shared_ptr<const Sampler>& keep) {
@@ -29,12 +26,12 @@ double uniform_p(const Sampler& sampler,
   constexpr std::size_t side = 32;
   std::vector<double> cells(side * side);
   Stream random(stream_key(1, "samplers_test", "", 0), 0);
-  for (std::uint64_t i = 0; i < draws; ++i) {
+  for (std::uint64_t i = 0; i < draw_count; ++i) {
     const auto [u, v] = coordinates(sampler.sample(random).point);
     const auto cell = [](double x) { return std::min(side - 1, std::size_t(x * double(side))); };
     ++cells[cell(u) * side + cell(v)];
   }
-  const double expected = double(draws) / double(cells.size());
+  const double expected = double(draw_count) / double(cells.size());
   double statistic = 0;
   for (const double count : cells) statistic += (count - expected) * (count - expected) / expected;
   const boost::math::chi_squared law(double(cells.size()) - 1);
@@ -83,7 +80,9 @@ const std::vector<Case> cases = {{"luminaire/hemisphere", "direction", hemispher
 TEST(LuminaireSamplers, FollowTheirDensities) {
   for (const Case& c : cases) {
     std::shared_ptr<const Sampler> keep;
-    EXPECT_GT(c.p_value(sampler_of(tests::prepared(c.plugin, "triangle"), c.sampler, keep)), 1e-4)
+    EXPECT_GT(c.p_value(sampler_of(draws::prepare(c.plugin, draws::scene("triangle")).setup,
+                                   c.sampler, keep)),
+              1e-4)
         << c.plugin;
   }
 }
@@ -93,16 +92,18 @@ TEST(LuminaireSamplers, MutatedOnesDoNot) {
                         Case{"mutants/arvo_uniform_arc", "square", square_p},
                         Case{"mutants/arvo_uniform_angle", "square", square_p}}) {
     std::shared_ptr<const Sampler> keep;
-    EXPECT_LT(c.p_value(sampler_of(tests::prepared(c.plugin, "triangle"), c.sampler, keep)), 1e-9)
+    EXPECT_LT(c.p_value(sampler_of(draws::prepare(c.plugin, draws::scene("triangle")).setup,
+                                   c.sampler, keep)),
+              1e-9)
         << c.plugin;
   }
 }
 
-// The weights' mean is the integral of evaluate(): the irradiance. False-alarm rate 1e-4 each.
+// The weights' mean is the integral of evaluate(): the irradiance. False-alarm rate 1e-6 each.
 TEST(LuminaireSamplers, WeightsAverageToTheIrradiance) {
   for (const char* plugin :
        {"luminaire/hemisphere", "luminaire/cosine", "luminaire/area", "luminaire/solid_angle"}) {
-    const auto setup = tests::prepared(plugin, "triangle");
+    const auto setup = draws::prepare(plugin, draws::scene("triangle")).setup;
     for (const NamedSampler& named : setup->samplers()) {
       Stream random(stream_key(1, plugin, named.name, 0), 0);
       double sum = 0;
@@ -117,17 +118,18 @@ TEST(LuminaireSamplers, WeightsAverageToTheIrradiance) {
       }
       const double mean = sum / count;
       const double error = std::sqrt((squares / count - mean * mean) / count);
-      EXPECT_LT(std::abs(mean - 0.481046907316) / error, tests::z_limit)
+      EXPECT_LT(std::abs(mean - 0.481046907316) / error, draws::five)
           << plugin << '.' << named.name;
     }
   }
 }
 
 TEST(LuminaireSamplers, SolidAngleDirectionsLieInsideAndHaveDensityOneOverOmega) {
-  for (const std::string scene : {"triangle", "rectangle", tests::horizon_scene}) {
+  for (const std::string& scene :
+       {std::string("triangle"), std::string("rectangle"), horizon_scene}) {
     std::shared_ptr<const Sampler> keep;
-    const Sampler& sampler =
-        sampler_of(tests::prepared("luminaire/solid_angle", scene), "direction", keep);
+    const Sampler& sampler = sampler_of(
+        draws::prepare("luminaire/solid_angle", draws::scene(scene)).setup, "direction", keep);
     EXPECT_EQ(sampler.domain(),
               scene == tests::horizon_scene ? Domain::sphere : Domain::hemisphere);
     Stream random(stream_key(1, "solid_angle", scene, 0), 0);

@@ -1,13 +1,9 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
 
 #include "metropolis/chain.h"
 #include "metropolis/parameters.h"
 #include "metropolis/product_target.h"
 #include "tests/estimators/draws.h"
+#include "tests/prelude.h"
 
 namespace assay {
 namespace {
@@ -67,19 +63,6 @@ TEST(MetropolisTargets, FarTailsOfAGaussianKeepTheirDigits) {
   EXPECT_NEAR(integral(Factor(Gaussian{.7, .01}), 0, .5) / 6.90270e-91, 1, 1e-4);
 }
 
-// False alarm 1e-6 each of some 70 comparisons.
-TEST(MetropolisTargets, IndependentPointsFindTheExactImage) {
-  for (const char* target : {"constant", "peak", "coloured_peak", "boundary", "mixture", "branches",
-                             "sphere", "coloured_sphere"}) {
-    const auto plugin = prepare("metropolis/independent", std::string("{target: ") + target + "}");
-    const std::vector<double> exact = means(plugin);
-    const auto samples = observe(plugin, 2000, 200);
-    for (std::size_t i = 0; i < exact.size(); ++i) {
-      EXPECT_NEAR(samples[i].mean(), exact[i], five * samples[i].mean_error()) << target << i;
-    }
-  }
-}
-
 TEST(MetropolisTargets, AMixtureInPlaceIsTheBuiltInOne) {
   const auto named = prepare("metropolis/independent", "{target: mixture}");
   const auto in_place = prepare("metropolis/independent",
@@ -87,29 +70,6 @@ TEST(MetropolisTargets, AMixtureInPlaceIsTheBuiltInOne) {
                                 "30, centre: [.3, .3, .3, .3], "
                                 "width: .1}, {height: 60, centre: .7, width: .08}]}}}");
   EXPECT_EQ(means(named), means(in_place));
-}
-
-struct Form {
-  const char* plugin;
-  std::string parameters;
-};
-
-// False alarm 1e-6 each of some 200 comparisons.
-TEST(MetropolisChains, AreUnbiasedInEveryPixelFromTheBootstrap) {
-  for (const std::string target : {"constant", "peak", "coloured_peak", "boundary", "mixture",
-                                   "branches", "sphere", "coloured_sphere"}) {
-    for (const char* boundary : {"wrap", "reflect", "reject"}) {
-      const auto plugin =
-          prepare("metropolis/mean_value",
-                  "{target: " + target + ", boundary: " + boundary + ", bootstrap: 64}");
-      const std::vector<double> exact = means(plugin);
-      const auto samples = observe(plugin, 2000, 100);
-      for (std::size_t i = 0; i < exact.size(); ++i) {
-        EXPECT_NEAR(samples[i].mean(), exact[i], five * samples[i].mean_error())
-            << target << boundary << i;
-      }
-    }
-  }
 }
 
 // If all points are of one importance, only the pixel is left to chance.
@@ -198,50 +158,6 @@ TEST(MetropolisChains, LargeStepsAndLengthForgetAUniformStart) {
   EXPECT_LT(rare.first, half.first - five * std::hypot(rare.second, half.second));
   EXPECT_LT(half.first, longer.first - five * std::hypot(half.second, longer.second));
   EXPECT_LT(half.first, -five * half.second);
-}
-
-std::string refusal(const std::string& plugin, const std::string& parameters) {
-  try {
-    prepare(plugin, parameters);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-TEST(MetropolisParameters, AreRefusedByNameAndReason) {
-  using testing::AllOf;
-  using testing::HasSubstr;
-  const std::string plugin = "metropolis/mean_value";
-  EXPECT_THAT(refusal(plugin, "{p_large: 0}"),
-              AllOf(HasSubstr("p_large"), HasSubstr("never leaves")));
-  EXPECT_THAT(refusal(plugin, "{p_large: 1.5}"), HasSubstr("p_large"));
-  EXPECT_THAT(refusal(plugin, "{bootstrap: 0}"),
-              AllOf(HasSubstr("bootstrap"), HasSubstr("normaliser")));
-  EXPECT_THAT(refusal(plugin, "{pixels: 1}"), HasSubstr("pixels"));
-  EXPECT_THAT(refusal(plugin, "{boundary: clamp}"), HasSubstr("boundary"));
-  EXPECT_THAT(refusal(plugin, "{target: peek}"), AllOf(HasSubstr("target"), HasSubstr("`peak`")));
-  EXPECT_THAT(refusal(plugin, "{target: {mixture: {dimensions: 33, base: 1, lobes: []}}}"),
-              HasSubstr("dimensions"));
-  EXPECT_THAT(refusal(plugin, "{target: {mixture: {dimensions: 2, base: 0, lobes: []}}}"),
-              HasSubstr("0 everywhere"));
-  EXPECT_THAT(refusal(plugin,
-                      "{target: {mixture: {dimensions: 2, base: 1, lobes: [{height: 1, centre: "
-                      "[.1], width: .1}]}}}"),
-              HasSubstr("centre"));
-  EXPECT_THAT(refusal(plugin,
-                      "{target: {mixture: {dimensions: 2, base: 1, lobes: [{height: 1, centre: "
-                      ".1, width: 0}]}}}"),
-              HasSubstr("width"));
-  EXPECT_THAT(refusal(plugin,
-                      "{target: {sphere: {zones: [{top: 1, emission: 1, albedo: .5}], survival: "
-                      "1}}}"),
-              HasSubstr("survival"));
-  EXPECT_THAT(refusal(plugin,
-                      "{target: {sphere: {zones: [{top: 1, emission: 1, albedo: 1}], survival: "
-                      ".5}}}"),
-              HasSubstr("albedo"));
-  EXPECT_THAT(refusal(plugin, "{target: [peak]}"), HasSubstr("target"));
 }
 
 }  // namespace

@@ -1,12 +1,8 @@
 #include "metropolis/lazy_coordinates.h"
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-
 #include "metropolis/rules.h"
 #include "tests/estimators/draws.h"
+#include "tests/prelude.h"
 
 namespace assay {
 namespace {

@@ -1,22 +1,16 @@
 // Each mutant of depth of field against quadrature, against sums over all ways that samples can
 // fall, or against the same picture worked out from the plan.
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-
 #include "tests/estimators/depth_of_field/plans.h"
 #include "tests/estimators/draws.h"
 #include "tests/estimators/table.h"
+#include "tests/prelude.h"
 
 namespace assay {
 namespace {
 
 using namespace depth_of_field;
 using namespace assay::draws;
-using tests::image_plan;
-using tests::reconstruction_plan;
 
 // False alarm 1e-6 each of 6. Every defect is at least 8 % of the mean, ten times the bound.
 TEST(LensMutants, MeansAtAPixelAreThoseOfTheDefect) {

@@ -1,13 +1,7 @@
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <map>
-#include <string>
-#include <utility>
-#include <vector>
 
 #include "tests/estimators/draws.h"
 #include "tests/estimators/table.h"
+#include "tests/prelude.h"
 #include "tests/stats/calibration.h"
 
 namespace assay {

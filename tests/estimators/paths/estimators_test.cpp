@@ -1,81 +1,12 @@
 // Path estimators against their closed forms and one another.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <fstream>
-#include <ostream>
-
 #include "tests/estimators/draws.h"
+#include "tests/prelude.h"
 
 namespace assay {
 namespace {
 
 constexpr std::uint64_t observations = 1u << 17;
-
-struct Case {
-  const char* plugin;
-  std::string parameters;
-};
-
-void PrintTo(const Case& c, std::ostream* out) { *out << c.plugin << ' ' << c.parameters; }
-
-class Paths : public testing::TestWithParam<Case> {};
-
-// Every mean and variance that is stated, diagnostics included; false-alarm rate 1e-6 each (the
-// variances' a little more, their estimates being skewed).
-TEST_P(Paths, AgreeWithTheirClosedForms) {
-  const draws::Prepared plugin = draws::prepare(GetParam().plugin, GetParam().parameters);
-  const std::vector<draws::Sample> samples = draws::observe(plugin, observations);
-  const std::vector<Channel> channels = plugin.setup->channels();
-  ASSERT_TRUE(channels[0].mean.has_value());
-  for (std::size_t c = 0; c < channels.size(); ++c) {
-    const draws::Sample& sample = samples[c];
-    if (channels[c].mean) {
-      EXPECT_LE(std::abs(sample.mean() - *channels[c].mean),
-                draws::five * sample.mean_error() + channels[c].rounding)
-          << channels[c].name;
-    }
-    if (channels[c].variance) {
-      EXPECT_LT(std::abs(sample.variance() - *channels[c].variance),
-                draws::five * sample.variance_error())
-          << channels[c].name;
-    }
-  }
-}
-
-const std::string zones =
-    "zones: [{top: -.2, emission: 0, albedo: .2}, {top: .7, emission: .1, albedo: .9}, {top: 1, "
-    "emission: 2, albedo: .5}], camera: {position: [.1, 0, 0], direction: [0, 0, -1]}";
-
-INSTANTIATE_TEST_SUITE_P(
-    Table, Paths,
-    testing::Values(
-        Case{"paths/plain", "{scene: furnace}"}, Case{"paths/plain", "{scene: sphere}"},
-        Case{"paths/plain", "{scene: coloured_sphere}"},
-        Case{"paths/plain", "{scene: {" + zones + "}, survival: .9}"},
-        Case{"paths/ray_free", "{scene: sphere}"},
-        Case{"paths/ray_free", "{scene: coloured_sphere}"},
-        Case{"paths/roulette", "{scene: furnace}"}, Case{"paths/roulette", "{scene: sphere}"},
-        Case{"paths/roulette", "{scene: sphere, direct: exact}"},
-        Case{"paths/roulette", "{scene: sphere, direct: sampled}"},
-        Case{"paths/roulette", "{scene: {" + zones + "}, rule: radiance}"},
-        Case{"paths/roulette", "{scene: coloured_sphere, rule: throughput}"},
-        Case{"paths/roulette", "{scene: coloured_sphere, rule: radiance}"},
-        Case{"paths/roulette", "{scene: coloured_sphere, rule: radiance, direct: exact}"},
-        Case{"paths/improved_roulette", "{scale: .5}"},
-        Case{"paths/improved_roulette", "{scale: 2}"},
-        Case{"paths/improved_roulette", "{terminal: local}"},
-        Case{"paths/improved_roulette", "{scene: sphere}"},
-        Case{"paths/improved_roulette", "{scene: {" + zones + "}}"},
-        Case{"paths/improved_roulette", "{scene: {" + zones + "}, direct: sampled}"},
-        Case{"paths/improved_roulette", "{scene: coloured_sphere, rule: radiance}"},
-        Case{"paths/winners", "{scene: furnace}"}, Case{"paths/winners", "{scene: sphere}"},
-        Case{"paths/winners", "{scene: {" + zones + "}, splitting: 2.5}"},
-        Case{"paths/winners", "{scene: sphere, direct: exact, splitting: 8}"},
-        Case{"paths/winners", "{scene: sphere, direct: sampled}"},
-        Case{"paths/winners", "{scene: coloured_sphere}"}));
 
 double stated_variance(const char* plugin, const std::string& parameters) {
   return draws::prepare(plugin, parameters).setup->channels()[0].variance.value();
@@ -125,17 +56,10 @@ TEST(Mirrors, KeepTheRadianceOfAFurnace) {
                                      {"paths/improved_roulette", ", scale: .5"},
                                      {"paths/improved_roulette", ", scale: .5, direct: exact"},
                                      {"paths/winners", ", direct: exact"}}) {
+    SCOPED_TRACE(std::string(plugin) + more);
     const draws::Prepared prepared = draws::prepare(plugin, "{" + mirror_room() + more + "}");
-    const auto samples = draws::observe(prepared, observations);
-    const Channel channel = prepared.setup->channels()[0];
-    EXPECT_DOUBLE_EQ(channel.mean.value(), 1 / 0.3);
-    EXPECT_LT(std::abs(samples[0].mean() - 1 / 0.3), draws::five * samples[0].mean_error())
-        << plugin << more;
-    if (channel.variance) {
-      EXPECT_LT(std::abs(samples[0].variance() - *channel.variance),
-                draws::five * samples[0].variance_error())
-          << plugin << more;
-    }
+    EXPECT_DOUBLE_EQ(prepared.setup->channels()[0].mean.value(), 1 / 0.3);
+    draws::expect_declared(prepared, observations);
   }
 }
 
@@ -217,32 +141,6 @@ TEST(Cost, LocalEstimatesAreCostOfTheSetUp) {
   const draws::Prepared local = draws::prepare("paths/improved_roulette", "{terminal: local}");
   EXPECT_EQ(local.setup->cost().closest_hit_rays, 24u * 256u);
   EXPECT_EQ(draws::prepare("paths/improved_roulette").setup->cost().rays(), 0u);
-}
-
-std::string refusal(const char* plugin, const std::string& parameters) {
-  try {
-    draws::prepare(plugin, parameters);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "not refused";
-}
-
-TEST(PathParameters, ThatMakeNoSenseAreRefusedByName) {
-  EXPECT_THAT(refusal("paths/ray_free", "{scene: furnace}"),
-              testing::HasSubstr("only a sphere can be walked without rays"));
-  EXPECT_THAT(refusal("paths/roulette", "{scene: box, direct: exact}"),
-              testing::AllOf(testing::HasSubstr("direct"), testing::HasSubstr("furnaces only")));
-  EXPECT_THAT(refusal("paths/improved_roulette", "{scene: sphere, terminal: local}"),
-              testing::HasSubstr("use `global`"));
-  EXPECT_THAT(refusal("paths/winners", "{splitting: .5}"), testing::HasSubstr("splitting"));
-  EXPECT_THAT(refusal("paths/plain", "{survival: 1}"), testing::HasSubstr("survival"));
-  EXPECT_THAT(refusal("paths/roulette", "{rule: albedo}"), testing::HasSubstr("rule"));
-  EXPECT_THAT(
-      refusal("paths/roulette",
-              "{direct: sampled, scene: {zones: [{top: 1, emission: 0, albedo: .5}], camera: "
-              "{position: [0, 0, 0], direction: [0, 0, 1]}}}"),
-      testing::HasSubstr("no surface emits"));
 }
 
 }  // namespace

@@ -1,15 +1,10 @@
 // The geometry that paths walk in.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
-
 #include "estimators/core/flow.h"
 #include "paths/closed_mesh.h"
 #include "paths/mesh_world.h"
 #include "paths/sphere_world.h"
+#include "tests/prelude.h"
 
 namespace assay::paths {
 namespace {

@@ -1,6 +1,6 @@
 #include "paths/zone_law.h"
 
-#include <gtest/gtest.h>
+#include "tests/prelude.h"
 
 namespace assay::paths {
 namespace {

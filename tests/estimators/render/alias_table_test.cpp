@@ -1,10 +1,6 @@
 #include "render/alias_table.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <limits>
-#include <vector>
+#include "tests/prelude.h"
 
 namespace assay {
 namespace {

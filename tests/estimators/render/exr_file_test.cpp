@@ -1,34 +1,16 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <bit>
-#include <cstdint>
-#include <filesystem>
-#include <span>
 
 #include "estimators/core/value.h"
 #include "estimators/picture_file.h"
 #include "tests/estimators/exr_kinds.h"
+#include "tests/prelude.h"
 
 namespace assay {
 namespace {
 
 using namespace assay::draws;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 
-class ExrFiles : public ::testing::Test {
+class ExrFiles : public InFolder {
  protected:
-  ExrFiles() {
-    const auto* const test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::path(::testing::TempDir()) /
-              (std::string("assay_exr_file_") + test->name());
-    std::filesystem::create_directories(folder_);
-    file_ = (folder_ / "picture.exr").string();
-  }
-  ~ExrFiles() override { std::filesystem::remove_all(folder_); }
-
   std::vector<std::string> names() const {
     std::vector<std::string> names;
     const auto picture = open_picture(file_);
@@ -72,17 +54,10 @@ class ExrFiles : public ::testing::Test {
     }
   }
   void expect_refused(const std::string& why, const std::vector<std::string>& channels = {"R"}) {
-    try {
-      read(channels);
-      ADD_FAILURE() << "nothing was refused";
-    } catch (const InputError& error) {
-      EXPECT_EQ(error.where().file, file_);
-      EXPECT_THAT(error.message(), HasSubstr(why));
-    }
+    EXPECT_THAT(thrown<InputError>([&] { read(channels); }),
+                AllOf(StartsWith(file_), HasSubstr(why)));
   }
-
-  std::filesystem::path folder_;
-  std::string file_;
+  const std::string file_ = file("picture.exr");
 };
 
 TEST_F(ExrFiles, ReadsScanLinesOfEveryLosslessCompressionAndBothTypes) {

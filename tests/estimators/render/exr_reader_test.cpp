@@ -1,17 +1,8 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <limits>
-#include <numbers>
 
 #include "render/environment_map.h"
 #include "tests/estimators/draws.h"
 #include "tests/estimators/exr.h"
+#include "tests/prelude.h"
 
 namespace assay {
 namespace {
@@ -19,45 +10,23 @@ namespace {
 using render::EnvironmentMap;
 using render::Rgb;
 using render::Vector3;
-using ::testing::HasSubstr;
 using namespace assay::draws;
 using std::numbers::pi;
 
-class Exr : public ::testing::Test {
+class Exr : public InFolder {
  protected:
-  Exr() {
-    const auto* const test = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ =
-        std::filesystem::path(::testing::TempDir()) / (std::string("assay_exr_") + test->name());
-    std::filesystem::create_directories(folder_);
-    file_ = (folder_ / "map.exr").string();
-  }
-  ~Exr() override { std::filesystem::remove_all(folder_); }
-
   void write(const std::vector<std::string>& channels, std::vector<float> values,
              int height = 1) const {
     const int width = static_cast<int>(values.size() / channels.size()) / height;
     write_exr(file_, {width, height, channels, std::move(values)});
   }
-  std::string bytes() const {
-    std::ifstream stream(file_, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-  }
-  void write_bytes(const std::string& text) const {
-    std::ofstream(file_, std::ios::binary) << text;
-  }
+  std::string bytes() const { return bytes_in(file_); }
+  void write_bytes(const std::string& text) const { place_.write("map.exr", text); }
   void expect_refused(const std::string& why) const {
-    try {
-      render::read_environment(file_);
-      ADD_FAILURE() << "accepted, but " << why;
-    } catch (const InputError& error) {
-      EXPECT_EQ(error.where().file, file_);
-      EXPECT_THAT(error.message(), HasSubstr(why));
-    }
+    EXPECT_THAT(thrown<InputError>([&] { render::read_environment(file_); }),
+                AllOf(StartsWith(file_), HasSubstr(why)));
   }
-
-  std::filesystem::path folder_;
-  std::string file_;
+  const std::string file_ = file("map.exr");
 };
 
 TEST_F(Exr, ReadsColoursAndGrey) {
@@ -148,13 +117,9 @@ TEST_F(Exr, RefusesCroppedPictures) {
 
 TEST_F(Exr, ThePluginNamesItsParameterAndTheFile) {
   write({"R"}, {1});
-  try {
-    prepare("environment/cosine", "{map: map.exr}", folder_.string());
-    FAIL() << "accepted";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.message(), HasSubstr("environment/cosine: parameter `map`"));
-    EXPECT_THAT(error.message(), HasSubstr("map.exr"));
-  }
+  EXPECT_THAT(thrown<InputError>(
+                  [&] { prepare("environment/cosine", "{map: map.exr}", folder_.string()); }),
+              AllOf(HasSubstr("environment/cosine: parameter `map`"), HasSubstr("map.exr")));
 }
 
 TEST_F(Exr, EmittanceRefusesABlackSky) {

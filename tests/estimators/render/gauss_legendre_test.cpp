@@ -1,6 +1,6 @@
 #include "render/gauss_legendre.h"
 
-#include <gtest/gtest.h>
+#include "tests/prelude.h"
 
 namespace assay::render {
 namespace {

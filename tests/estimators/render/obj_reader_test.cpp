@@ -1,38 +1,24 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <fstream>
 
 #include "estimators/core/value.h"
 #include "render/triangle_mesh.h"
+#include "tests/prelude.h"
 
 namespace assay::render {
 namespace {
 
-class ObjReader : public testing::Test {
+class ObjReader : public InFolder {
  protected:
-  ~ObjReader() override { std::filesystem::remove(file_); }
-
-  TriangleMesh read(const std::string& text) {
-    std::ofstream(file_) << text;
-    return read_obj(file_.string());
-  }
-
-  // The message about a text, without the path.
+  TriangleMesh read(const std::string& text) { return read_obj(write("a.obj", text)); }
+  // The message about a text, behind its line.
   std::string refusal(const std::string& text) {
     try {
       read(text);
     } catch (const InputError& error) {
-      EXPECT_EQ(error.where().file, file_.string());
+      EXPECT_EQ(error.where().file, file("a.obj"));
       return std::to_string(error.where().line) + ": " + error.message();
     }
     return "";
   }
-
-  const std::filesystem::path file_ =
-      std::filesystem::path(testing::TempDir()) /
-      (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + ".obj");
 };
 
 const std::string corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
@@ -64,7 +50,6 @@ TEST_F(ObjReader, TakesCarriageReturnsAndTabs) {
 }
 
 TEST_F(ObjReader, RefusesWhatIsWrongAtItsLine) {
-  using testing::StartsWith;
   EXPECT_THAT(refusal(corners + "l 1 2\n"), StartsWith("5: the statement `l`"));
   EXPECT_THAT(refusal("v 0 0\n"), StartsWith("1: a vertex needs three finite numbers"));
   EXPECT_THAT(refusal("v 0 0 0 1\n"), StartsWith("1: a vertex has exactly three"));
@@ -86,7 +71,7 @@ TEST_F(ObjReader, RefusesWhatIsWrongAtItsLine) {
 TEST_F(ObjReader, RefusesAFileWithoutFacesOrThatIsNotThere) {
   EXPECT_EQ(refusal(corners), "0: the OBJ file holds no face");
   EXPECT_THROW(read_obj("/nowhere/lamp.obj"), InputError);
-  EXPECT_THROW(read_obj(testing::TempDir()), InputError);
+  EXPECT_THROW(read_obj(folder_.string()), InputError);
 }
 
 }  // namespace

@@ -1,14 +1,7 @@
 #include "render/patch_integrals.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <numbers>
-#include <vector>
-
 #include "render/environment_map.h"
+#include "tests/prelude.h"
 
 namespace assay {
 namespace {

@@ -1,8 +1,6 @@
 #include "render/polygon.h"
 
-#include <gtest/gtest.h>
-
-#include <numbers>
+#include "tests/prelude.h"
 
 namespace assay::render {
 namespace {

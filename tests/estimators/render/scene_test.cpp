@@ -1,10 +1,10 @@
 #include "render/scene.h"
 
-#include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
 #include "estimators/stream.h"
 #include "render/hemisphere.h"
+#include "tests/prelude.h"
 
 namespace assay::render {
 namespace {

@@ -1,9 +1,8 @@
 #include "render/spherical_triangle.h"
 
-#include <gtest/gtest.h>
-
 #include "estimators/stream.h"
 #include "render/polygon.h"
+#include "tests/prelude.h"
 
 namespace assay::render {
 namespace {

@@ -1,12 +1,7 @@
 #include "render/unit_circle.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-
 #include "estimators/stream.h"
+#include "tests/prelude.h"
 
 namespace assay::render {
 namespace {

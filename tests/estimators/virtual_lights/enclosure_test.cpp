@@ -1,9 +1,6 @@
 #include "virtual_lights/enclosure.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <set>
+#include "tests/prelude.h"
 
 namespace assay::virtual_lights {
 namespace {

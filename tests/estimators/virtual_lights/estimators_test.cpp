@@ -1,15 +1,9 @@
 // Virtual lights and their mutants against closed forms and quadrature.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cstdio>
-#include <string>
-
 #include "render/vector.h"
 #include "tests/estimators/draws.h"
 #include "tests/estimators/table.h"
+#include "tests/prelude.h"
 
 namespace assay {
 namespace {
@@ -204,41 +198,6 @@ TEST(VirtualLights, AGivenIntegralScalesTheEstimate) {
   const Sample a = observe(one, 20, 16)[0];
   const Sample b = observe(half, 20, 16)[0];
   for (std::size_t i = 0; i < 20; ++i) EXPECT_DOUBLE_EQ(a.values[i], 2 * b.values[i]);
-}
-
-std::string refusal(const std::string& plugin, const std::string& parameters) {
-  try {
-    prepare(plugin, parameters);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "not refused";
-}
-
-TEST(VirtualLights, BadInputIsRefusedByNameAndReason) {
-  using testing::AllOf;
-  using testing::HasSubstr;
-  const std::string weighted = "virtual_lights/weighted";
-  EXPECT_THAT(refusal(weighted, in({.sides = 5})),
-              AllOf(HasSubstr("target_integral"), HasSubstr("this one is open"),
-                    HasSubstr("belongs to one triangle only")));
-  EXPECT_THAT(refusal(weighted, in({.even = false, .sides = 5}, ", weighting: marginal")),
-              AllOf(HasSubstr("weighting"), HasSubstr("belongs to one triangle only")));
-  EXPECT_THAT(refusal(weighted, in(even, ", target_integral: 0")),
-              AllOf(HasSubstr("target_integral"), HasSubstr("at most 1")));
-  EXPECT_THAT(refusal(weighted, in(even, ", target_integral: 1.2")), HasSubstr("at most 1"));
-  EXPECT_THAT(refusal(weighted, "{scene: box}"), HasSubstr("target_integral"));
-  EXPECT_THAT(refusal(weighted, in(even, ", shininess: 5")),
-              AllOf(HasSubstr("target_integral"), HasSubstr("glossy")));
-  EXPECT_THAT(refusal("virtual_lights/classic", "{scene: box, shininess: 5}"),
-              AllOf(HasSubstr("shininess"), HasSubstr("along its normal")));
-  EXPECT_THAT(refusal(weighted, "{scene: sphere}"), HasSubstr("need triangles"));
-  EXPECT_THAT(refusal("virtual_lights/classic", in({.albedo = "1"})), HasSubstr("below 1"));
-  EXPECT_THAT(refusal("virtual_lights/classic", in({.albedo = "0"})), HasSubstr("albedo 0"));
-  EXPECT_THAT(refusal("virtual_lights/classic",
-                      "{scene: {camera: {position: [.5, .5, .5], direction: [0, 0, -1]}, surfaces: "
-                      "[{polygon: [[0,0,0],[1,0,0],[1,1,0]], emission: 0, albedo: .5}]}}"),
-              HasSubstr("no surface emits"));
 }
 
 // 1 / G - 1 whatever M.

@@ -25,12 +25,8 @@ TEST(LockedFile, MakesTheFileAndReplacesItWhole) {
 
 TEST(LockedFile, NamesAPathThatCannotBeOpened) {
   const Workplace place;
-  try {
-    const LockedFile lock(place.file("missing/n.ledger"));
-    FAIL() << "it was locked";
-  } catch (const std::runtime_error& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("missing/n.ledger"));
-  }
+  EXPECT_THAT(thrown<std::runtime_error>([&] { LockedFile(place.file("missing/n.ledger")); }),
+              HasSubstr("missing/n.ledger"));
 }
 
 // Read, add one, write: without turns some of the 400 would be lost almost surely.

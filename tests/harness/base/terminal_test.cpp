@@ -1,18 +1,12 @@
 #include "harness/base/terminal.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cstdlib>
-#include <sstream>
-
 #include "reports/words/columns.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
 
 using namespace std::chrono_literals;
-using testing::HasSubstr;
 
 /// A clock that the test turns.
 struct Hands {

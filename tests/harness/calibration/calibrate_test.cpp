@@ -1,17 +1,11 @@
 #include "harness/calibration/calibrate.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-
 #include "harness/calibration/calibration_runs.h"
 #include "tests/harness/refusal.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
-
-using testing::HasSubstr;
 
 reports::Calibration measured(const CalibrateArguments& arguments) {
   Silence silence;
@@ -39,7 +33,7 @@ TEST(Calibrate, TheTTestKeepsItsLevelAndFindsItsEffectOnNormalData) {
   EXPECT_EQ(t.holds.invalid.count, 0U);
   EXPECT_EQ(t.alone.red.count, 0U);
   EXPECT_GT(t.off.fail.count, 380U);
-  EXPECT_EQ(t.holds.by, (std::vector<std::pair<std::string, std::uint64_t>>{{"t", 400}}));
+  EXPECT_EQ(t.holds.by, (std::vector<reports::MethodRuns>{{"t", 400}}));
   EXPECT_EQ(reports::defects(result), 0U);
 }
 
@@ -52,7 +46,7 @@ TEST(Calibrate, FAloneIsFarOffOnExponentialDataAndItsGateIsRed) {
   EXPECT_GT(f.alone.fail.count, 20U);
   EXPECT_EQ(f.alone.red.count, 300U);
   EXPECT_EQ(f.alone_not_red.count, 0U);
-  EXPECT_EQ(f.holds.by.at(0).first, "influence-t");
+  EXPECT_EQ(f.holds.by.at(0).method, "influence-t");
   // P(more than 14 of 300 at .01) = 8e-7.
   EXPECT_LE(f.mistaken().count, 14U);
   EXPECT_EQ(reports::defects(result), 0U);

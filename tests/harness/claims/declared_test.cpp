@@ -1,17 +1,12 @@
 // What estimators declare, and what the program finds that they do.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <string>
-
 #include "tests/harness/running.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
 
 using reports::Verdict;
-using testing::HasSubstr;
 
 /// A test of a program that declares `averages`. `observation` makes a number of the list `draws`.
 reports::Test judged(const std::string& law, const std::string& observation, int seed) {
@@ -27,7 +22,7 @@ assay.serve(mine, averages=True)
   const std::string file =
       place.write("mine.yaml",
                   "suite: mine\nestimators:\n  mine: {plugin: process, command: [python3, "
-                  "mine.py]}\ntests:\n  - {claim: variance(mine) == 1, detect: 20%}\n");
+                  "mine.py]}\ntests:\n  - {claim: variance(mine) == 1, secondaries: 2000}\n");
   return run_files({file}, {.seed = static_cast<std::uint64_t>(seed)}).suites[0].tests[0];
 }
 

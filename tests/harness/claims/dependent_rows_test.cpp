@@ -1,17 +1,13 @@
 // Rows that depend on each other: what the order tells, and what is made of it.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "tests/harness/recorded_rows.h"
+#include "tests/prelude.h"
+#include "tests/stats/calibration.h"
 
 namespace assay::harness {
 namespace {
 
 using reports::Verdict;
-using testing::HasSubstr;
 
 // Ten chains that take turns: neighbours are of different chains and know nothing of each other.
 TEST(DependentRows, OfChainsThatTakeTurnsAreInvalid) {
@@ -45,7 +41,7 @@ assay.serve(moving)
                         wide + "]}\ntests:\n  - {claim: mean(x) == 0.5" + more + "}\n");
     return run_files({file}, {.seed = seed}).suites[0].tests[0];
   };
-  for (int seed = 1; seed <= 5; ++seed) {
+  for (int seed = 1; seed <= (tests::is_long() ? 5 : 2); ++seed) {
     const reports::Test test = judged_with("5", "", seed);
     EXPECT_EQ(test.verdict, Verdict::invalid) << test.message;
     EXPECT_THAT(test.message, HasSubstr("the observations of `x` are not independent"));

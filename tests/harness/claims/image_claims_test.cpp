@@ -1,11 +1,6 @@
 // Claims about images, from YAML to verdict, record and maps.
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 
 #include "harness/command/commands.h"
 #include "harness/record/image_record.h"
@@ -14,12 +9,12 @@
 #include "reports/formats/read_json.h"
 #include "tests/estimators/exr.h"
 #include "tests/harness/running.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
 
 using reports::Verdict;
-using testing::HasSubstr;
 
 constexpr const char* floor_16 = "luminaire/floor, width: 16, height: 16";
 
@@ -45,8 +40,10 @@ const reports::Map& map_named(const reports::Test& test, const std::string& name
   return *found;
 }
 
+using ImageClaims = Placed;
+
 // False alarm 0.01 at seed 1.
-TEST(ImageClaims, AnImageThatIsRightPassesAndStatesWhatItExcluded) {
+TEST_F(ImageClaims, AnImageThatIsRightPassesAndStatesWhatItExcluded) {
   const reports::Test test = floor_test(std::string(floor_16) + ", primaries: 32",
                                         "claim: mean(a) == analytic, detect: 2%");
   EXPECT_EQ(test.verdict, Verdict::pass) << test.message;
@@ -68,7 +65,7 @@ struct Defect {
 
 // Each defect is found and located with probability above 0.99. A last column is seen by windows
 // and by columns in turn.
-TEST(ImageClaims, MutantsAreCaughtByTheSumThatFitsThem) {
+TEST_F(ImageClaims, MutantsAreCaughtByTheSumThatFitsThem) {
   for (const Defect& defect :
        {Defect{"tile", "window"}, Defect{"hot_pixels", "window"}, Defect{"last_column", nullptr},
         Defect{"interlaced", "alternating"}, Defect{"global", "window"}}) {
@@ -81,7 +78,7 @@ TEST(ImageClaims, MutantsAreCaughtByTheSumThatFitsThem) {
   }
 }
 
-TEST(ImageClaims, TheTileIsLocated) {
+TEST_F(ImageClaims, TheTileIsLocated) {
   const reports::Test test =
       floor_test(mutant("tile"), "claim: mean(a) == analytic, secondaries: 256, expect: fail");
   const reports::ImageFinding& winner = test.image->winner;
@@ -94,7 +91,7 @@ TEST(ImageClaims, TheTileIsLocated) {
   EXPECT_THAT(test.message, HasSubstr("columns 8-11, rows 8-11 (4 x 4 pixels)"));
 }
 
-TEST(ImageClaims, MapsHoldZMeanVarianceAdjustedPAndReference) {
+TEST_F(ImageClaims, MapsHoldZMeanVarianceAdjustedPAndReference) {
   const reports::Test test =
       floor_test(mutant("tile"), "claim: mean(a) == analytic, secondaries: 64, expect: fail");
   std::vector<std::string> names;
@@ -117,19 +114,18 @@ TEST(ImageClaims, MapsHoldZMeanVarianceAdjustedPAndReference) {
   }
 }
 
-TEST(ImageClaims, ThreadsChangeNoBit) {
+TEST_F(ImageClaims, ThreadsChangeNoBit) {
   const std::string text = floor_suite(std::string(floor_16) + ", shared: true, primaries: 32",
                                        "claim: mean(a) == mean(b), detect: 3%");
   const auto without_times = [](reports::Record record) {
     return reports::json(reports::without_times(std::move(record)));
   };
-  const Workplace place;
   const std::string file = place.write("suite.yaml", text);
   const std::string one = without_times(run_files({file}, {.threads = 1}));
   EXPECT_EQ(one, without_times(run_files({file}, {.threads = 3})));
 }
 
-TEST(ImageClaims, AComponentOrAPixelCanBeNamed) {
+TEST_F(ImageClaims, AComponentOrAPixelCanBeNamed) {
   const std::string text =
       "suite: s\nestimators:\n  a: {plugin: analytic/ramp, colour: true, primaries: 16}\ntests:\n"
       "  - claim: mean(a.green) within 5% of analytic\n"
@@ -146,7 +142,7 @@ TEST(ImageClaims, AComponentOrAPixelCanBeNamed) {
   EXPECT_EQ(tests[2].verdict, Verdict::pass) << tests[2].message;
 }
 
-TEST(ImageClaims, TooFewImagesAreInvalidAndSayWhatHelps) {
+TEST_F(ImageClaims, TooFewImagesAreInvalidAndSayWhatHelps) {
   const reports::Test test = floor_test(std::string(floor_16) + ", primaries: 32",
                                         "claim: mean(a) == analytic, secondaries: 15");
   EXPECT_EQ(test.verdict, Verdict::invalid);
@@ -159,8 +155,7 @@ TEST(ImageClaims, TooFewImagesAreInvalidAndSayWhatHelps) {
   EXPECT_THAT(paid.message, HasSubstr("give a larger `budget`"));
 }
 
-TEST(ImageClaims, MapsReadBackEqualToTheRecord) {
-  const Workplace place;
+TEST_F(ImageClaims, MapsReadBackEqualToTheRecord) {
   const std::string suite = place.write(
       "s.yaml", floor_suite(mutant("tile"), "claim: mean(a) == mean(b), secondaries: 16"));
   reports::Record record = run_files({suite});
@@ -178,49 +173,19 @@ TEST(ImageClaims, MapsReadBackEqualToTheRecord) {
   EXPECT_EQ(map_named(test, "other_mean").source, "b");
 }
 
-TEST(ImageClaims, TheRecordedMethodIsDrawnAgainToTheBit) {
-  const Workplace place;
+TEST_F(ImageClaims, TheRecordedMethodIsDrawnAgainToTheBit) {
   const std::string suite =
       place.write("s.yaml", floor_suite(std::string(floor_16) + ", shared: true, primaries: 8",
                                         "claim: mean(a) == mean(b), detect: 5%"));
   const std::string json = place.write("run.json", reports::json(run_files({suite})));
-  testing::internal::CaptureStdout();
-  const int code = replay({.record = json, .test = "s/mean(a) == mean(b)"});
-  const std::string printed = testing::internal::GetCapturedStdout();
-  EXPECT_EQ(code, 0) << printed;
-}
-
-std::string refusal(const std::string& text) {
-  try {
-    run_text(text);
-  } catch (const InputError& error) {
-    return error.message();
-  }
-  return "";
-}
-
-TEST(ImageClaims, WhatHasNoMethodIsRefusedBeforeSampling) {
-  const auto of = [](const std::string& claim) {
-    return refusal(
-        "suite: s\nestimators:\n  a: {plugin: analytic/ramp}\n"
-        "  small: {plugin: analytic/ramp, width: 8}\n"
-        "  n: {plugin: analytic/normal}\ntests:\n  - claim: " +
-        claim + "\n");
-  };
-  EXPECT_EQ(of("mean(a) == mean(small)"),
-            "`a` has 16 x 16 pixels of value, and `small` has 8 x 16 pixels of value: only images "
-            "of one size and as many channels can be compared, element by element");
-  EXPECT_THAT(of("mean(a) == mean(n)"), HasSubstr("`n` is no image"));
-  EXPECT_THAT(of("mean(a) <= analytic"), HasSubstr("images are claimed to be equal"));
-  EXPECT_THAT(of("mean(a) == 2 +- 0.1"), HasSubstr("common to all pixels"));
-  EXPECT_THAT(of("variance(a) <= 3"), HasSubstr("`variance` has no method for an image"));
-  EXPECT_THAT(of("mean(a.red) == analytic"), HasSubstr("no part `red`"));
-  EXPECT_THAT(of("mean(a) == 0\n    detect: 1%"), HasSubstr("zero in every pixel"));
+  const Said said =
+      said_by([&] { return replay({.record = json, .test = "s/mean(a) == mean(b)"}); });
+  EXPECT_EQ(said.code, 0) << said.text;
 }
 
 // Pixels are independent: the variance of their mean is the mean of theirs over their number. The
 // quantile of nearly as many degrees of freedom as the image has numbers is the normal's.
-TEST(ImageClaims, TheMeanOfAnImageHasAnIntervalInTheSuitesPicture) {
+TEST_F(ImageClaims, TheMeanOfAnImageHasAnIntervalInTheSuitesPicture) {
   const reports::Record record = run_text(floor_suite(
       std::string(floor_16) + ", primaries: 32", "claim: mean(a) == analytic, secondaries: 32"));
   const reports::EstimatorSummary& summary = record.suites[0].estimators[0];
@@ -234,7 +199,7 @@ TEST(ImageClaims, TheMeanOfAnImageHasAnIntervalInTheSuitesPicture) {
 }
 
 // Against a constant that is wrong nearly everywhere, and against another image at twice the scale.
-TEST(ImageClaims, ConstantsAndFactorsAreMetPixelByPixel) {
+TEST_F(ImageClaims, ConstantsAndFactorsAreMetPixelByPixel) {
   const std::string text =
       "suite: s\nestimators:\n  a: {plugin: analytic/ramp, primaries: 16}\ntests:\n"
       "  - {claim: mean(a) == 5, secondaries: 32, expect: fail}\n"
@@ -254,7 +219,7 @@ reports::Test chains_test(const std::string& plugin) {
 }
 
 // False alarm 0.01 at seed 1.
-TEST(ImageClaims, DependentPixelsOfChainsAreJudgedByTheirCells) {
+TEST_F(ImageClaims, DependentPixelsOfChainsAreJudgedByTheirCells) {
   EXPECT_EQ(chains_test("metropolis/mean_value").verdict, Verdict::pass);
   const reports::Test broken = chains_test("mutants/metropolis_inverted_ratio");
   EXPECT_EQ(broken.verdict, Verdict::fail) << broken.message;
@@ -262,7 +227,7 @@ TEST(ImageClaims, DependentPixelsOfChainsAreJudgedByTheirCells) {
 }
 
 // The effect at the place in units of the picture, with an interval that leaves 0 out.
-TEST(ImageClaims, AFailureSaysHowMuchTooBrightWhichPlaceIs) {
+TEST_F(ImageClaims, AFailureSaysHowMuchTooBrightWhichPlaceIs) {
   const reports::Test test =
       floor_test(mutant("tile"), "claim: mean(a) == mean(b), secondaries: 64");
   ASSERT_EQ(test.verdict, Verdict::fail) << test.message;

@@ -2,9 +2,9 @@
 // The seeds are 1, 2, 3, ….
 
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 
 #include "tests/harness/many_seeds.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {

@@ -1,21 +1,17 @@
 // Claims about images that share their random numbers, and about the laws of images.
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
 
 #include "tests/estimators/exr.h"
 #include "tests/harness/refusal.h"
 #include "tests/harness/running.h"
 #include "tests/philox.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
 
 using reports::Verdict;
-using ::testing::HasSubstr;
 
 constexpr int width = 24;
 constexpr int height = 16;
@@ -55,8 +51,9 @@ reports::Test of_files(const Workplace& place, const std::string& lines) {
 
 constexpr const char* paired = "{claim: mean(b) == mean(a), paired: true}";
 
-TEST(ImagePairs, ShowADifferenceThatNoiseHides) {
-  const Workplace place;
+using ImagePairs = Placed;
+
+TEST_F(ImagePairs, ShowADifferenceThatNoiseHides) {
   write_pairs(place, {.share = 1e-4});
   const reports::Test apart = of_files(place, "{claim: mean(b) == mean(a)}");
   EXPECT_EQ(apart.verdict, Verdict::invalid) << apart.message;
@@ -73,8 +70,7 @@ TEST(ImagePairs, ShowADifferenceThatNoiseHides) {
   EXPECT_NEAR(*test.channels[0].effect.estimate, 1e-4 / std::sqrt(3), 2e-6);
 }
 
-TEST(ImagePairs, GiveTheNumbersOfTheWholeRowByRow) {
-  const Workplace place;
+TEST_F(ImagePairs, GiveTheNumbersOfTheWholeRowByRow) {
   write_pairs(place, {.share = 1e-4});
   const reports::Test rows = of_files(place, paired);
   const reports::Test whole =
@@ -85,32 +81,29 @@ TEST(ImagePairs, GiveTheNumbersOfTheWholeRowByRow) {
   EXPECT_EQ(rows.message, whole.message);
 }
 
-TEST(ImagePairs, EqualInEveryBitPass) {
-  const Workplace place;
+TEST_F(ImagePairs, EqualInEveryBitPass) {
   write_pairs(place, {});
   const reports::Test test = of_files(place, paired);
   EXPECT_EQ(test.verdict, Verdict::pass) << test.message;
   EXPECT_EQ(*test.channels[0].effect.high, 0);
 }
 
-TEST(ImagePairs, PassWithoutASeedInCommon) {
-  const Workplace place;
+TEST_F(ImagePairs, PassWithoutASeedInCommon) {
   write_pairs(place, {.own_seeds = true});
   EXPECT_EQ(of_files(place, paired).verdict, Verdict::pass);
 }
 
-TEST(ImagePairs, AreFoundByNumberAndRefusedWithoutAPartner) {
-  const Workplace place;
+TEST_F(ImagePairs, AreFoundByNumberAndRefusedWithoutAPartner) {
   write_pairs(place, {.share = 1e-3, .second_name = "new"});
   EXPECT_EQ(of_files(place, paired).verdict, Verdict::fail);
   const auto refused = [&] { return refusal([&] { of_files(place, paired); }); };
   std::filesystem::rename(place.file("new31.exr"), place.file("new32.exr"));
-  EXPECT_THAT(refused(), HasSubstr("have neither name nor number in common"));
+  EXPECT_THAT(refused(), HasSubstr("they say `32` and `31`; a pair says the same there"));
   std::filesystem::remove(place.file("new32.exr"));
   EXPECT_THAT(refused(), HasSubstr("needs a partner of the same seed"));
 }
 
-TEST(ImagePairs, AreOfTwoImages) {
+TEST_F(ImagePairs, AreOfTwoImages) {
   const auto refused = [](const std::string& test) {
     return refusal([&] {
       run_text(
@@ -136,7 +129,7 @@ std::string floors(const std::string& tests) {
 }
 
 // The integrators share a seed whatever their plugins are called.
-TEST(ImagePairs, OfPluginsDrawTheSameNumbers) {
+TEST_F(ImagePairs, OfPluginsDrawTheSameNumbers) {
   const reports::Record record = run_text(floors(
       "  - {claim: mean(broken) == mean(sound), paired: true, secondaries: 32, expect: fail}\n"
       "  - {claim: mean(other) == mean(sound), paired: true, secondaries: 32}\n"
@@ -151,12 +144,93 @@ TEST(ImagePairs, OfPluginsDrawTheSameNumbers) {
   EXPECT_EQ(tests[1].samples[0].stream, tests[1].samples[1].stream);
 }
 
+TEST_F(ImagePairs, ThatAreDrawnAlikePass) {
+  const std::string lines =
+      "  - {claim: mean(same) == mean(sound), paired: true, secondaries: 16}\n"
+      "  - {claim: mean(same) == mean(sound), name: planned, paired: true, detect: 1%}\n";
+  const std::string suite = floors(lines);
+  const std::size_t at = suite.find("tests:");
+  const reports::Record record = run_text(
+      suite.substr(0, at) +
+      "  same: {plugin: mutants/paths_schlick, integrator: light, width: 24, height: 16}\n" +
+      suite.substr(at));
+  for (const reports::Test& test : record.suites[0].tests) {
+    EXPECT_EQ(test.verdict, Verdict::pass) << test.message;
+    EXPECT_EQ(*test.channels[0].effect.high, 0);
+  }
+}
+
+TEST_F(ImagePairs, AreOfTwoEstimatorsWithAsManyPrimaries) {
+  const auto refused = [](const std::string& lines) {
+    return refusal([&] { run_text(floors(lines)); });
+  };
+  EXPECT_THAT(refused("  - {claim: mean(sound) == mean(sound), paired: true}\n"),
+              HasSubstr("name another estimator, or leave `paired` out"));
+  const auto unequal = [](const std::string& test) {
+    return refusal([&] {
+      run_text(
+          "suite: s\nestimators:\n"
+          "  one: {plugin: path_tracing/image, integrator: light}\n"
+          "  four: {plugin: path_tracing/image, integrator: bsdf, primaries: 4}\n"
+          "tests:\n  - " +
+          test + "\n");
+    });
+  };
+  EXPECT_THAT(unequal("{claim: mean(one) == mean(four), paired: true}"),
+              HasSubstr("`one` has `primaries: auto` and `four` has `primaries: 4`"));
+  EXPECT_THAT(unequal("{claim: distribution(one) == distribution(four)}"),
+              HasSubstr("`one` has `primaries: 1` and `four` has `primaries: 4`; give both"));
+}
+
+// The first 64 of the name is no seed, and neither is what a side's names have in common.
+TEST_F(ImagePairs, AreFoundByWhatTellsTheNamesOfASideApart) {
+  write_pairs(place, {.share = 1e-3});
+  const auto rename = [&](const char* side, const auto& name_of) {
+    for (int i = 0; i < pictures; ++i) {
+      std::filesystem::rename(place.file(fmt::format("{}{:02}.exr", side, i)),
+                              place.file(name_of(i)));
+    }
+  };
+  rename("a", [](int i) { return fmt::format("a_{}_64spp.exr", 10 + i); });
+  rename("b", [](int i) { return fmt::format("b2_{:03}_128spp.exr", 10 + i); });
+  EXPECT_EQ(of_files(place, paired).verdict, Verdict::fail);
+  for (int i = 0; i < pictures; ++i) {
+    std::filesystem::rename(place.file(fmt::format("b2_{:03}_128spp.exr", 10 + i)),
+                            place.file(fmt::format("b2_{:03}_64spp.exr", 110 + i)));
+  }
+  EXPECT_THAT(refusal([&] { of_files(place, paired); }), HasSubstr("they say `110` and `10`"));
+}
+
+/// Pictures 3 and 7 of a side are the same in their first tile.
+void repeat_a_tile(const Workplace& place, const char* side) {
+  for (const int i : {3, 7}) {
+    tests::Philox random(static_cast<std::uint32_t>(900 + i + (side[0] == 'a' ? 50 : 0)));
+    tests::Philox common(static_cast<std::uint32_t>(side[0]));
+    draws::Picture picture{width, height, {"R", "G", "B"}, {}};
+    for (int texel = 0; texel < width * height * 3; ++texel) {
+      const bool first = texel / 3 % width < 8 && texel / 3 / width < 8;
+      picture.values.push_back(static_cast<float>((first ? common : random).uniform()));
+    }
+    draws::write_exr(place.file(fmt::format("{}{:02}.exr", side, i)), picture);
+  }
+}
+
+TEST_F(ImagePairs, NameDifferencesThatRepeat) {
+  write_pairs(place, {.own_seeds = true});
+  for (const char* side : {"a", "b"}) repeat_a_tile(place, side);
+  const reports::Test test = of_files(place, paired);
+  EXPECT_EQ(test.verdict, Verdict::invalid);
+  EXPECT_THAT(test.message, HasSubstr("differences depend on each other"));
+  EXPECT_THAT(test.message, ContainsRegex("b03.exr` less `.*a03.exr` and `.*b07.exr` less"));
+}
+
 // ---- Laws
 
 constexpr const char* laws = "{claim: distribution(b) == distribution(a)}";
 
-TEST(ImageLaws, OfOneRendererPassWithHeavyNoise) {
-  const Workplace place;
+using ImageLaws = Placed;
+
+TEST_F(ImageLaws, OfOneRendererPassWithHeavyNoise) {
   write_pairs(place, {.own_seeds = true});
   const reports::Test test = of_files(place, laws);
   EXPECT_EQ(test.verdict, Verdict::pass) << test.message;
@@ -164,20 +238,50 @@ TEST(ImageLaws, OfOneRendererPassWithHeavyNoise) {
   EXPECT_FALSE(test.detectable);
 }
 
-TEST(ImageLaws, SayWhatDiffersWhere) {
-  const Workplace place;
+TEST_F(ImageLaws, SayWhatDiffersWhere) {
   write_pairs(place, {.share = .2, .own_seeds = true});
   const reports::Test test = of_files(place, laws);
   EXPECT_EQ(test.verdict, Verdict::fail) << test.message;
   EXPECT_NEAR(*test.channels[0].log10_p, -3, 1e-9);
-  EXPECT_THAT(test.message, HasSubstr("the values are mostly larger in `b`"));
+  EXPECT_THAT(test.message, HasSubstr("there the values are mostly larger in b"));
   EXPECT_THAT(test.message, HasSubstr("columns 0-"));
-  EXPECT_EQ(test.image->winner.statistic, "the values are mostly larger");
+  EXPECT_EQ(test.image->winner.statistic, "the values are mostly larger in b");
   EXPECT_FALSE(test.image->winner.effect);
 }
 
-TEST(ImageLaws, HaveNoMarginAndAnotherImage) {
-  const Workplace place;
+TEST_F(ImageLaws, DoNotOfferPairs) {
+  write_pairs(place, {.share = 1e-4});
+  const reports::Test test = of_files(place, laws);
+  EXPECT_EQ(test.verdict, Verdict::invalid);
+  EXPECT_THAT(test.message, EndsWith("give one side other seeds"));
+}
+
+TEST_F(ImageLaws, TakeAShareOfAlphaThatLabelsCanReach) {
+  write_pairs(place, {.own_seeds = true});
+  const std::string text =
+      "suite: s\nalpha: 1e-6\nestimators:\n  a: {plugin: recorded, file: 'a*.exr'}\n"
+      "  b: {plugin: recorded, file: 'b*.exr'}\ntests:\n  - " +
+      std::string(laws) + "\n";
+  const reports::Test test = run_files({place.write("s.yaml", text)}).suites[0].tests[0];
+  EXPECT_EQ(test.verdict, Verdict::invalid);
+  EXPECT_THAT(test.message, HasSubstr("takes a share of 1e-05 or more: give it more `weight`"));
+}
+
+TEST_F(ImageLaws, OfPicturesWithoutNoiseAreOfTheWholeImage) {
+  for (int i = 0; i < 16; ++i) {
+    const draws::Picture flat{
+        width, height, {"R", "G", "B"}, std::vector<float>(width * height * 3, 1)};
+    for (const char* side : {"a", "b"}) {
+      draws::write_exr(place.file(fmt::format("{}{:02}.exr", side, i)), flat);
+    }
+  }
+  const reports::Test test = of_files(place, laws);
+  EXPECT_EQ(test.verdict, Verdict::pass) << test.message;
+  EXPECT_EQ(test.image->winner.width, static_cast<std::uint64_t>(width));
+  EXPECT_FALSE(test.channels[0].effect.estimate);
+}
+
+TEST_F(ImageLaws, HaveNoMarginAndAnotherImage) {
   write_pairs(place, {});
   const auto refused = [&](const std::string& lines) {
     return refusal([&] { of_files(place, lines); });

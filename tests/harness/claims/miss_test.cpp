@@ -2,20 +2,17 @@
 // They pass with probability beta at most. The seeds are 1, 2, 3, ….
 
 #include <fmt/format.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
 
 #include "stats/means/binomial.h"
 #include "tests/harness/known_effects.h"
 #include "tests/harness/many_seeds.h"
 #include "tests/philox.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
 
 using reports::Verdict;
-using tests::Shape;
 
 constexpr double alpha = 0.1;
 constexpr double beta = 0.1;

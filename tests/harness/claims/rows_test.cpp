@@ -1,16 +1,12 @@
 // Rows of a file: how many there must be, how skewed they may be, and that none is there twice.
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 
 #include "tests/harness/many_seeds.h"
 #include "tests/harness/recorded_rows.h"
 #include "tests/harness/refusal.h"
 #include "tests/philox.h"
+#include "tests/prelude.h"
 #include "tests/stats/laws.h"
 #include "tests/stats/samples.h"
 
@@ -18,13 +14,12 @@ namespace assay::harness {
 namespace {
 
 using reports::Verdict;
-using testing::AllOf;
-using testing::HasSubstr;
 namespace laws = tests::laws;
 
+using Rows = Placed;
+
 // The variance of one value between 0 and 1 is 64 times that of such a mean.
-TEST(Rows, OfAVarianceBesideAPrimarysSayWhatIsCompared) {
-  const Workplace place;
+TEST_F(Rows, OfAVarianceBesideAPrimarysSayWhatIsCompared) {
   place.write("rows.txt", file_of(rows_of(300, 7, [](Philox& random) {
                 double sum = 0;
                 for (int i = 0; i < 64; ++i) sum += random.uniform() / 64;
@@ -41,7 +36,7 @@ TEST(Rows, OfAVarianceBesideAPrimarysSayWhatIsCompared) {
 }
 
 // 50 rows, each four times and in no order: their mean has half the standard error that is true.
-TEST(Rows, CopiedAndShuffledAreInvalid) {
+TEST_F(Rows, CopiedAndShuffledAreInvalid) {
   Philox random(9);
   std::vector<double> rows = rows_of(50, 8, normal);
   for (int i = 0; i < 150; ++i) rows.push_back(rows[static_cast<std::size_t>(i) % 50]);
@@ -54,7 +49,7 @@ TEST(Rows, CopiedAndShuffledAreInvalid) {
 // 20 states of a chain of unit variance in equilibrium: exactly the law that is claimed, and failed
 // under a third of the seeds. A forced test takes rows for independent that do not show the
 // contrary.
-TEST(Rows, TooFewToShowThatTheyAreIndependentAreInvalid) {
+TEST_F(Rows, TooFewToShowThatTheyAreIndependentAreInvalid) {
   Philox random(13);
   const std::vector<double> chain = tests::autoregressive(.9, 20, random);
   for (const char* claim :
@@ -74,10 +69,9 @@ TEST(Rows, TooFewToShowThatTheyAreIndependentAreInvalid) {
 
 // A column that never varies stands beside one that does. The message is about the column that
 // varies; if the constant decides, the message names it.
-TEST(Rows, AConstantColumnSpeaksForItselfAlone) {
+TEST_F(Rows, AConstantColumnSpeaksForItselfAlone) {
   std::string text = "# columns: moving still\n";
   for (const double value : rows_of(500, 3, normal)) text += fmt::format("{} 2\n", 2 + value);
-  const Workplace place;
   place.write("rows.txt", text);
   const auto judged_at = [&](const char* claim) {
     return run_files({place.write("suite.yaml",
@@ -98,10 +92,9 @@ TEST(Rows, AConstantColumnSpeaksForItselfAlone) {
 
 // Black in one channel: no variance was seen there that could be too large. With something to prove
 // or to find, or a variance that is to be met, what was never seen decides.
-TEST(Rows, OfAConstantColumnNoVarianceIsTooLarge) {
+TEST_F(Rows, OfAConstantColumnNoVarianceIsTooLarge) {
   std::string text = "# columns: moving still\n";
   for (const double value : rows_of(5000, 3, normal)) text += fmt::format("{} 0\n", 2 + value);
-  const Workplace place;
   place.write("rows.txt", text);
   const reports::Record record = run_files({place.write(
       "suite.yaml",
@@ -123,7 +116,7 @@ TEST(Rows, OfAConstantColumnNoVarianceIsTooLarge) {
   }
 }
 
-TEST(Rows, TooFewAreInvalidAndTheForcedTestStillRuns) {
+TEST_F(Rows, TooFewAreInvalidAndTheForcedTestStillRuns) {
   const std::vector<double> rows = rows_of(5, 1, normal);
   const reports::Test test = judged(rows, "claim: mean(rows) == 0");
   EXPECT_EQ(test.verdict, Verdict::invalid);
@@ -133,7 +126,7 @@ TEST(Rows, TooFewAreInvalidAndTheForcedTestStillRuns) {
 }
 
 // One sentence: what happened, how many rows it takes, what to write.
-TEST(Rows, TooFewSayHowManyItTakesAndWhatToWrite) {
+TEST_F(Rows, TooFewSayHowManyItTakesAndWhatToWrite) {
   const Draw lognormal = [](Philox& random) { return std::exp(1.2 * random.normal()); };
   const Draw skewed = [](Philox& random) { return std::exp(2 * random.normal()); };
   const Draw heavy = [](Philox& random) { return std::exp(4 * random.normal()); };
@@ -158,7 +151,7 @@ TEST(Rows, TooFewSayHowManyItTakesAndWhatToWrite) {
 }
 
 // Their least and largest value are no bounds of what they come from.
-TEST(Rows, DeclareNoRangeForAForcedTest) {
+TEST_F(Rows, DeclareNoRangeForAForcedTest) {
   const std::vector<double> rows = rows_of(60, 1, normal);
   for (const char* test :
        {"claim: mean(rows) == 0, test: betting", "claim: mean(rows) <= 1, test: betting"}) {
@@ -167,7 +160,7 @@ TEST(Rows, DeclareNoRangeForAForcedTest) {
 }
 
 // Claims whose plan rests on sixth powers of what the pilot saw.
-TEST(Rows, ThatAreNotFiniteAreAnErrorWithTheFirstOfThem) {
+TEST_F(Rows, ThatAreNotFiniteAreAnErrorWithTheFirstOfThem) {
   std::vector<double> rows = rows_of(3000, 3, normal);
   rows[17] = std::nan("");
   const reports::Test test = judged(rows, "claim: variance(rows) == 1");
@@ -176,8 +169,7 @@ TEST(Rows, ThatAreNotFiniteAreAnErrorWithTheFirstOfThem) {
                                            HasSubstr("rows.txt:18`")));
 }
 
-TEST(Rows, AreOfUnknownBias) {
-  const Workplace place;
+TEST_F(Rows, AreOfUnknownBias) {
   place.write("rows.txt", file_of(rows_of(60, 1, normal)));
   const reports::Record record = run_files({place.write(
       "suite.yaml",
@@ -188,13 +180,13 @@ TEST(Rows, AreOfUnknownBias) {
   }
 }
 
-TEST(Rows, OfANormalLawAreTestedByStudentsT) {
+TEST_F(Rows, OfANormalLawAreTestedByStudentsT) {
   const reports::Test test = judged(rows_of(150, 2, normal), "claim: mean(rows) == 0");
   EXPECT_EQ(test.verdict, Verdict::pass);
   EXPECT_EQ(test.method, "t");
 }
 
-TEST(Rows, OfASkewedLawAreCorrected) {
+TEST_F(Rows, OfASkewedLawAreCorrected) {
   const Draw exponential = [](Philox& random) { return random.exponential(); };
   EXPECT_EQ(judged(rows_of(600, 3, exponential), "claim: mean(rows) == 1").method,
             "skewness-corrected-t");
@@ -204,7 +196,7 @@ TEST(Rows, OfASkewedLawAreCorrected) {
   EXPECT_EQ(test.verdict, Verdict::pass) << test.message;
 }
 
-TEST(Rows, RoundedCoarselyAreNotHeldAgainstAContinuousLaw) {
+TEST_F(Rows, RoundedCoarselyAreNotHeldAgainstAContinuousLaw) {
   const Draw bytes = [](Philox& random) { return std::round(random.uniform() * 256) / 256; };
   const reports::Test test =
       judged(rows_of(50000, 8, bytes), "claim: 'distribution(rows) == uniform(0, 1)'");
@@ -212,7 +204,7 @@ TEST(Rows, RoundedCoarselyAreNotHeldAgainstAContinuousLaw) {
   EXPECT_THAT(test.message, HasSubstr("rounded too coarsely"));
 }
 
-TEST(Rows, BeyondWhatDoublesHoldAreInvalidInWords) {
+TEST_F(Rows, BeyondWhatDoublesHoldAreInvalidInWords) {
   for (const double unit : {1e200, 1e-300}) {
     const Draw scaled = [unit](Philox& random) { return unit * random.normal(); };
     const reports::Test test = judged(rows_of(200, 9, scaled), "claim: mean(rows) == 0");
@@ -222,7 +214,7 @@ TEST(Rows, BeyondWhatDoublesHoldAreInvalidInWords) {
 }
 
 // Ten times the same 100 rows failed true claims: their standard error is too small by sqrt(10).
-TEST(Rows, ThatOccurAgainInBlocksAreInvalidAndSayWhich) {
+TEST_F(Rows, ThatOccurAgainInBlocksAreInvalidAndSayWhich) {
   const std::vector<double> block = rows_of(100, 10, normal);
   std::vector<double> rows;
   for (int i = 0; i < 10; ++i) rows.insert(rows.end(), block.begin(), block.end());
@@ -235,7 +227,7 @@ TEST(Rows, ThatOccurAgainInBlocksAreInvalidAndSayWhich) {
   }
 }
 
-TEST(Rows, WithoutASpreadAskForTheirSeeds) {
+TEST_F(Rows, WithoutASpreadAskForTheirSeeds) {
   const reports::Test test = judged(std::vector<double>(60, 0.5), "claim: mean(rows) == 0.25");
   EXPECT_EQ(test.verdict, Verdict::invalid);
   EXPECT_THAT(test.message, HasSubstr("if they should vary, has each a seed of its own?"));
@@ -256,7 +248,7 @@ std::string refusal_of_two(const std::vector<double>& left, const std::vector<do
   });
 }
 
-TEST(Rows, OfTheOtherSideInAnotherOrderAreRefused) {
+TEST_F(Rows, OfTheOtherSideInAnotherOrderAreRefused) {
   Philox random(10);
   const std::vector<double> rows = rows_of(200, 11, normal);
   std::vector<double> again = rows;
@@ -266,7 +258,7 @@ TEST(Rows, OfTheOtherSideInAnotherOrderAreRefused) {
                     HasSubstr("in another order, bit for bit; give the two sides")));
 }
 
-TEST(Rows, OfBothSidesMustNotBeTheSame) {
+TEST_F(Rows, OfBothSidesMustNotBeTheSame) {
   const std::vector<double> left = rows_of(100, 11, normal);
   std::vector<double> right = rows_of(60, 12, normal);
   right.insert(right.end(), left.begin(), left.begin() + 40);
@@ -300,7 +292,7 @@ Rate rate_of(const tests::Law& law, std::size_t count, std::uint32_t runs) {
 // Level .05; a rate of 1.25 times it exceeds the bound with probability below 6e-6 (Chernoff, 400
 // files). Before there was a least number of rows lognormal(1.5) failed .19 of its
 // true claims at n = 50.
-TEST(Rows, KeepTheLevelWhateverTheirLaw) {
+TEST_F(Rows, KeepTheLevelWhateverTheirLaw) {
   const tests::Law heavy{"lognormal(1.5)", std::exp(1.125),
                          [](Philox& r) { return std::exp(1.5 * r.normal()); }};
   for (const tests::Law& law : {laws::normal, laws::exponential, laws::lognormal_one, heavy}) {

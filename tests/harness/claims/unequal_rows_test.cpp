@@ -1,12 +1,6 @@
 // Two recorded files of unequal length: every row of both is tested.
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
 
 #include "harness/command/commands.h"
 #include "harness/record/replay.h"
@@ -16,6 +10,7 @@
 #include "tests/harness/recorded_rows.h"
 #include "tests/harness/refusal.h"
 #include "tests/lehmer.h"
+#include "tests/prelude.h"
 #include "tests/stats/samples.h"
 #include "tests/stats/table.h"
 
@@ -23,7 +18,6 @@ namespace assay::harness {
 namespace {
 
 using reports::Verdict;
-using testing::HasSubstr;
 
 struct Rows {
   std::vector<double> a;
@@ -54,15 +48,17 @@ Rows lehmer_rows(double k, std::size_t n, std::size_t m) {
 
 using Sizes = std::vector<std::uint64_t>;
 
-TEST(UnequalRows, AgreeWithRFromFilesToTheRecord) {
+using UnequalRows = Placed;
+
+TEST_F(UnequalRows, AgreeWithRFromFilesToTheRecord) {
   for (const tests::Row& row : tests::read_table("unequal")) {
     SCOPED_TRACE(row.text("k"));
     const Sizes sizes{static_cast<std::uint64_t>(row["n"]), static_cast<std::uint64_t>(row["m"])};
     Rows rows = lehmer_rows(row["k"], sizes[0], sizes[1]);
     for (double& y : rows.b) y = y * row["scale"] + row["shift"];
-    const Workplace place;
+    const Workplace folder;
     const reports::Suite suite =
-        judged(place, rows,
+        judged(folder, rows,
                "  - {claim: mean(a) == mean(b), test: welch}\n"
                "  - {claim: variance(a) == variance(b), test: F}\n"
                "  - {claim: distribution(a) == distribution(b), test: ks}\n"
@@ -80,8 +76,7 @@ TEST(UnequalRows, AgreeWithRFromFilesToTheRecord) {
   }
 }
 
-TEST(UnequalRows, AreTestedByTheUsualMethods) {
-  const Workplace place;
+TEST_F(UnequalRows, AreTestedByTheUsualMethods) {
   const reports::Suite suite = judged(place, lehmer_rows(1, 400, 250),
                                       "  - {claim: mean(a) == mean(b)}\n"
                                       "  - {claim: mean(a) within 0.5 of mean(b)}\n"
@@ -98,9 +93,8 @@ TEST(UnequalRows, AreTestedByTheUsualMethods) {
   }
 }
 
-TEST(UnequalRows, OfVariancesAreEachWeighedByTheirNumber) {
+TEST_F(UnequalRows, OfVariancesAreEachWeighedByTheirNumber) {
   const Rows rows = lehmer_rows(7, 4000, 2900);
-  const Workplace place;
   const reports::Suite suite = judged(place, rows,
                                       "  - {claim: variance(a) == variance(b)}\n"
                                       "  - {claim: total_variance(a) == total_variance(b)}\n"
@@ -121,8 +115,7 @@ TEST(UnequalRows, OfVariancesAreEachWeighedByTheirNumber) {
 }
 
 // 600 of one law and 1200 of another that needs 1000: the file with fewer rows decides.
-TEST(UnequalRows, AreTooFewForAVarianceWhereOneFileHasTooFew) {
-  const Workplace place;
+TEST_F(UnequalRows, AreTooFewForAVarianceWhereOneFileHasTooFew) {
   const reports::Suite suite =
       judged(place, lehmer_rows(8, 1200, 600), "  - {claim: variance(a) == variance(b)}\n");
   EXPECT_EQ(suite.tests[0].verdict, Verdict::inconclusive);
@@ -131,8 +124,7 @@ TEST(UnequalRows, AreTooFewForAVarianceWhereOneFileHasTooFew) {
                     HasSubstr("if the values are near normal, add `test: F`")));
 }
 
-TEST(UnequalRows, OfDependentChainsAreAllAveragedInBatches) {
-  const Workplace place;
+TEST_F(UnequalRows, OfDependentChainsAreAllAveragedInBatches) {
   const reports::Suite suite = judged(place, {chain(0.9, 9000, 5), chain(0.9, 6000, 6)},
                                       "  - {claim: mean(a) == mean(b)}\n");
   EXPECT_EQ(suite.tests[0].method, "batch-means");
@@ -141,18 +133,16 @@ TEST(UnequalRows, OfDependentChainsAreAllAveragedInBatches) {
 }
 
 // A chain among the rows that an equal number would have left out.
-TEST(UnequalRows, AreJudgedForIndependenceToTheirEnd) {
+TEST_F(UnequalRows, AreJudgedForIndependenceToTheirEnd) {
   Rows rows = lehmer_rows(3, 400, 250);
   for (std::size_t i = 250; i < 400; ++i) rows.a[i] = rows.a[i - 150];
-  const Workplace place;
   const reports::Suite suite = judged(place, rows, "  - {claim: mean(a) == mean(b)}\n");
   EXPECT_EQ(suite.tests[0].verdict, Verdict::invalid);
   EXPECT_THAT(suite.tests[0].message, HasSubstr("those from 251 to 400 are those from 101 to 250"));
 }
 
-TEST(UnequalRows, AreCappedByNumberAndBudget) {
+TEST_F(UnequalRows, AreCappedByNumberAndBudget) {
   const Rows rows = lehmer_rows(4, 400, 250);
-  const Workplace place;
   const reports::Suite suite =
       judged(place, rows,
              "  - {name: aaa, claim: mean(a) == mean(b), secondaries: 300}\n"
@@ -169,9 +159,8 @@ TEST(UnequalRows, AreCappedByNumberAndBudget) {
       HasSubstr("`secondaries: 401` is more than the 400 observations that `a` has"));
 }
 
-TEST(UnequalRows, FindAsMuchWhicheverSideIsLonger) {
+TEST_F(UnequalRows, FindAsMuchWhicheverSideIsLonger) {
   const Rows rows = lehmer_rows(5, 400, 250);
-  const Workplace place;
   const std::string tests =
       "  - {claim: mean(a) == mean(b), detect: 0.5}\n"
       "  - {claim: variance(a) == variance(b), test: F, detect: 50%}\n"
@@ -187,8 +176,7 @@ TEST(UnequalRows, FindAsMuchWhicheverSideIsLonger) {
   }
 }
 
-TEST(UnequalRows, SayHowManyOfEachWouldDecide) {
-  const Workplace place;
+TEST_F(UnequalRows, SayHowManyOfEachWouldDecide) {
   const reports::Suite suite =
       judged(place, lehmer_rows(6, 400, 240), "  - {claim: mean(a) == mean(b), detect: 0.01}\n");
   EXPECT_EQ(suite.tests[0].verdict, Verdict::inconclusive);
@@ -196,9 +184,8 @@ TEST(UnequalRows, SayHowManyOfEachWouldDecide) {
               testing::ContainsRegex("about [0-9.,k]+M? and [0-9.,k]+M? secondaries"));
 }
 
-TEST(UnequalRows, AreReplayedWhileTheyAreAsManyAsTheyWere) {
+TEST_F(UnequalRows, AreReplayedWhileTheyAreAsManyAsTheyWere) {
   const Rows rows = lehmer_rows(2, 400, 250);
-  const Workplace place;
   judged(place, rows, "  - {name: two, claim: mean(a) == mean(b)}\n");
   const reports::Record record = run_files({place.file("suite.yaml")});
   const std::string file = place.write("run.json", reports::json(record));
@@ -225,7 +212,7 @@ std::vector<double> in_order_of(const std::vector<double>& keys,
 }
 
 // The mean is known to half its last digit alone, which is 3e-7 of the difference.
-TEST(UnequalRows, OfALargeMeanLoseNoDigitOfIt) {
+TEST_F(UnequalRows, OfALargeMeanLoseNoDigitOfIt) {
   Rows rows{{10000000.2}, {1000000.2}};
   for (int i = 0; i < 500; ++i) {
     rows.a.insert(rows.a.end(), {10000000.1, 10000000.3});
@@ -234,7 +221,6 @@ TEST(UnequalRows, OfALargeMeanLoseNoDigitOfIt) {
   // Rows that alternate depend on each other.
   rows.a = in_order_of(tests::lehmer_sums(2001, rows.a.size()), rows.a);
   rows.b = in_order_of(tests::lehmer_sums(2002, rows.b.size()), rows.b);
-  const Workplace place;
   const reports::Suite suite =
       judged(place, rows,
              "  - {claim: mean(a) == 10000000.2003, test: t}\n"

@@ -1,12 +1,9 @@
 // suites/zoo.yaml against the catalogue: no mutant may be missing there, and none may survive every
 // method.
 
-#include <gtest/gtest.h>
-
-#include <set>
-
 #include "estimators/catalogue.h"
 #include "harness/suite/suite.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {

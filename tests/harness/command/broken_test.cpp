@@ -1,16 +1,13 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "harness/command/run.h"
 #include "harness/record/output.h"
 #include "tests/harness/running.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
 
 using reports::Verdict;
-using testing::ElementsAre;
-using testing::HasSubstr;
 
 // `wrong` is refuted at its first look, `dear` takes many.
 constexpr const char* suite = R"(suite: hasty
@@ -40,8 +37,9 @@ Heard heard(const Workplace& place, const std::string& text, const RunOptions& o
   return all;
 }
 
-TEST(BrokenClaims, AreToldWithTheirCommandWhenTheyAreDecided) {
-  const Workplace place;
+using BrokenClaims = Placed;
+
+TEST_F(BrokenClaims, AreToldWithTheirCommandWhenTheyAreDecided) {
   const Heard all = heard(place, suite, {.command = "assay run"});
   const std::string again = "assay run " + place.file("suite.yaml") + " --seed 1 --filter ";
   EXPECT_THAT(all.broken, ElementsAre("hasty: wrong: " + again + "suite/wrong",
@@ -49,8 +47,7 @@ TEST(BrokenClaims, AreToldWithTheirCommandWhenTheyAreDecided) {
   EXPECT_EQ(reports::tally(all.record).failed, 2);
 }
 
-TEST(BrokenClaims, EndARunEarlyIfAsked) {
-  const Workplace place;
+TEST_F(BrokenClaims, EndARunEarlyIfAsked) {
   const Heard all = heard(place, suite, {.fail_fast = true});
   EXPECT_EQ(all.broken.size(), 1U);  // the cheaper of the two
   for (const char* name : {"dear", "wrong", "dear too"}) {
@@ -64,8 +61,7 @@ TEST(BrokenClaims, EndARunEarlyIfAsked) {
 }
 
 // But for what the whole family says of a test.
-TEST(BrokenClaims, HaveTheNumbersOfAWholeRun) {
-  const Workplace place;
+TEST_F(BrokenClaims, HaveTheNumbersOfAWholeRun) {
   const reports::Record whole = heard(place, suite, {.threads = 1}).record;
   const reports::Record early = heard(place, suite, {.threads = 1, .fail_fast = true}).record;
   const auto bare = [](reports::Test test) {
@@ -83,16 +79,14 @@ TEST(BrokenClaims, HaveTheNumbersOfAWholeRun) {
             numbers_of(early));
 }
 
-TEST(BrokenClaims, EndNoRunWithoutOne) {
-  const Workplace place;
+TEST_F(BrokenClaims, EndNoRunWithoutOne) {
   const std::string sound =
       std::string(suite).substr(0, std::string(suite).find("  - {name: wrong"));
   EXPECT_EQ(numbers_of(heard(place, sound, {.threads = 1, .fail_fast = true}).record),
             numbers_of(heard(place, sound, {.threads = 1}).record));
 }
 
-TEST(BrokenClaims, EndARunBeforeItDrawsIfAnEstimatorCannotBePrepared) {
-  const Workplace place;
+TEST_F(BrokenClaims, EndARunBeforeItDrawsIfAnEstimatorCannotBePrepared) {
   const std::string broken = std::string(suite) + "  - {name: gone, claim: mean(gone) == 1}\n";
   std::string text = broken;
   text.insert(text.find("tests:"), "  gone: {plugin: process, command: [sh, -c, exit 3]}\n");
@@ -102,18 +96,12 @@ TEST(BrokenClaims, EndARunBeforeItDrawsIfAnEstimatorCannotBePrepared) {
   EXPECT_TRUE(all.record.suites[0].estimators.empty());
 }
 
-TEST(BrokenClaims, EndNoShardAndNoNight) {
-  const Workplace place;
+TEST_F(BrokenClaims, EndNoShardAndNoNight) {
   const std::string why = "--fail-fast ends a run early: leave --ledger and --shard out";
   for (const RunOptions& options :
        {RunOptions{.shard = {{1, 2}}, .fail_fast = true},
         RunOptions{.fail_fast = true, .ledger = place.file("n.ledger")}}) {
-    try {
-      heard(place, suite, options);
-      ADD_FAILURE() << "it ran";
-    } catch (const InputError& error) {
-      EXPECT_EQ(error.what(), why);
-    }
+    EXPECT_EQ(thrown<InputError>([&] { heard(place, suite, options); }), why);
   }
 }
 

@@ -1,13 +1,10 @@
 #include "harness/command/commands.h"
 
-#include <gtest/gtest.h>
-
-#include <sstream>
-
 #include "harness/base/record_file.h"
 #include "harness/record/replay.h"
 #include "reports/formats/json.h"
 #include "tests/harness/running.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
@@ -20,86 +17,59 @@ tests:
   - {claim: mean(normal) <= 3, secondaries: 100}
 )";
 
-struct Said {
-  int code;
-  std::string out;
-  std::string err;
-};
-
-template <class Act>
-Said said(Act act) {
-  testing::internal::CaptureStdout();
-  testing::internal::CaptureStderr();
-  const int code = act();
-  std::fflush(stdout);
-  std::fflush(stderr);
-  Said result{.code = code, .out = {}, .err = {}};
-  result.out = testing::internal::GetCapturedStdout();
-  result.err = testing::internal::GetCapturedStderr();
-  return result;
-}
-
 Said ran(const Workplace& place, const std::vector<ReportRequest>& reports) {
   const Suite loaded = load_suite(place.write("suite.yaml", suite));
-  return said([&] {
+  return said_by([&] {
     return run_suites({loaded}, {}, {.reports = reports, .colour = Colour::never, .quiet = true});
   });
 }
 
-TEST(Commands, RunNothingWhenAFilterMatchesNone) {
-  const Workplace place;
+using Commands = Placed;
+
+TEST_F(Commands, RunNothingWhenAFilterMatchesNone) {
   const Suite loaded = load_suite(place.write("suite.yaml", suite));
-  const Said run = said([&] {
+  const Said run = said_by([&] {
     return run_suites({loaded}, {.selection = {.filters = {"zzz"}}},
                       {.reports = {{"json", place.file("run.json")}}, .quiet = true});
   });
   EXPECT_EQ(run.code, 4);
-  EXPECT_EQ(run.out, "");
-  EXPECT_TRUE(run.err.starts_with("assay: --filter zzz matches no test\n")) << run.err;
+  EXPECT_EQ(run.text, "");
+  EXPECT_TRUE(run.errors.starts_with("assay: --filter zzz matches no test\n")) << run.errors;
   EXPECT_FALSE(std::filesystem::exists(place.file("run.json")));
 }
 
 constexpr const char* verdict = " s. False alarms: at most 1 run in\n100.\n";
 
-TEST(Commands, ConsoleIsALineASuiteAndTheVerdict) {
-  const Workplace place;
+TEST_F(Commands, ConsoleIsALineASuiteAndTheVerdict) {
   const Said run = ran(place, {});
   EXPECT_EQ(run.code, 0);
-  EXPECT_TRUE(run.out.starts_with("commands    2 hold  ")) << run.out;
-  EXPECT_NE(run.out.find(" s CPU\n\n✓ All 2 claims are as they should be in "), std::string::npos)
-      << run.out;
-  EXPECT_TRUE(run.out.ends_with(verdict)) << run.out;
-  EXPECT_EQ(run.err, "");
+  EXPECT_TRUE(run.text.starts_with("commands    2 hold  ")) << run.text;
+  EXPECT_NE(run.text.find(" s CPU\n\n✓ All 2 claims are as they should be in "), std::string::npos)
+      << run.text;
+  EXPECT_TRUE(run.text.ends_with(verdict)) << run.text;
+  EXPECT_EQ(run.errors, "");
 }
 
-TEST(Commands, ReportOnStandardOutputSendsTheConsoleToStandardError) {
-  const Workplace place;
+TEST_F(Commands, ReportOnStandardOutputSendsTheConsoleToStandardError) {
   const Said run = ran(place, {{"json", "-"}});
-  EXPECT_TRUE(run.out.starts_with("{")) << run.out;
-  EXPECT_TRUE(run.err.ends_with(verdict)) << run.err;
+  EXPECT_TRUE(run.text.starts_with("{")) << run.text;
+  EXPECT_TRUE(run.errors.ends_with(verdict)) << run.errors;
 }
 
-TEST(Commands, SavedRunGivesTheReportsOfTheRun) {
-  const Workplace place;
+TEST_F(Commands, SavedRunGivesTheReportsOfTheRun) {
   const std::string json = place.file("run.json");
   const std::string junit = place.file("run.xml");
   ASSERT_EQ(ran(place, {{"json", json}, {"junit", junit}}).code, 0);
   const std::string later = place.file("later.xml");
-  const Said report = said([&] {
+  const Said report = said_by([&] {
     return report_saved_run(json, {.reports = {{"junit", later}}, .colour = Colour::never});
   });
   EXPECT_EQ(report.code, 0);
-  const auto text = [](const std::string& file) {
-    std::ostringstream all;
-    all << std::ifstream(file).rdbuf();
-    return all.str();
-  };
-  EXPECT_FALSE(text(junit).empty());
-  EXPECT_EQ(text(later), text(junit));
+  EXPECT_FALSE(bytes_in(junit).empty());
+  EXPECT_EQ(bytes_in(later), bytes_in(junit));
 }
 
-TEST(Commands, RecordSurvivesItsFile) {
-  const Workplace place;
+TEST_F(Commands, RecordSurvivesItsFile) {
   const std::string json = place.file("run.json");
   ASSERT_EQ(ran(place, {{"json", json}}).code, 0);
   const reports::Record record = read_record(json);
@@ -107,8 +77,7 @@ TEST(Commands, RecordSurvivesItsFile) {
             reports::json(record));
 }
 
-TEST(Commands, EveryTestHasALineThatReplaysIt) {
-  const Workplace place;
+TEST_F(Commands, EveryTestHasALineThatReplaysIt) {
   const std::string file = place.write("suite.yaml", suite);
   const std::string other = place.write("other.yaml", suite);
   const auto replayed = [&](bool assigns) {

@@ -1,22 +1,13 @@
 #include "harness/command/describe.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <sstream>
-
 #include "estimators/catalogue.h"
 #include "harness/command/commands.h"
 #include "harness/draws/sampler_setup.h"
 #include "tests/harness/refusal.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
-
-using testing::AnyOf;
-using testing::HasSubstr;
-using testing::Not;
 
 std::string manual_of(const std::string& plugin) {
   return manual(find_plugin(plugin, {}), catalogue());

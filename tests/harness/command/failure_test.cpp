@@ -1,12 +1,8 @@
 #include "harness/command/failure.h"
 
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <fstream>
-
 #include "estimators/core/line_error.h"
 #include "harness/suite/suite.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
@@ -64,12 +60,11 @@ TEST(Failure, IsOneLineWithoutAPlace) {
 }
 
 TEST(Failure, PointsAtNothingInAnEmptyFile) {
-  const std::string file = testing::TempDir() + "empty-of-failure-test.yaml";
+  const Folder folder;
   for (const char* text : {"", "\n \n"}) {
-    std::ofstream(file, std::ios::trunc) << text;
+    const std::string file = folder.write("empty.yaml", text);
     EXPECT_EQ(failure_of(file), in_lines(file + ":1:1: the file is empty"));
   }
-  std::filesystem::remove(file);
 }
 
 }  // namespace

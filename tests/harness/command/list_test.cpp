@@ -1,55 +1,47 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "estimators/catalogue.h"
 #include "harness/command/commands.h"
 #include "harness/command/tables.h"
+#include "tests/harness/running.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
 
+/// What a command that ends well prints.
+std::string printed(const std::function<int()>& command) {
+  const Said said = said_by(command);
+  EXPECT_EQ(said.code, 0);
+  return said.text;
+}
+
+std::vector<Suite> suites_of(const std::vector<std::vector<std::string>>& ids) {
+  std::vector<Suite> suites;
+  for (const auto& of_suite : ids) {
+    suites.emplace_back();
+    for (const std::string& id : of_suite) suites.back().tests.emplace_back().id = id;
+  }
+  return suites;
+}
+
 TEST(List, PrintsEveryPluginOnALine) {
-  testing::internal::CaptureStdout();
-  EXPECT_EQ(list_plugins(), 0);
-  std::fflush(stdout);
   std::string expected;
   for (const Entry& entry : catalogue()) expected += entry.information.name + "\n";
-  EXPECT_EQ(testing::internal::GetCapturedStdout(), expected);
+  EXPECT_EQ(printed(list_plugins), expected);
 }
 
 TEST(List, PrintsEveryTestOnALineInTheOrderOfTheSuites) {
-  std::vector<Suite> suites(2);
-  suites[0].tests.resize(2);
-  suites[0].tests[0].id = "a/mean(x) == 1";
-  suites[0].tests[1].id = "a/named";
-  suites[1].tests.resize(1);
-  suites[1].tests[0].id = "b/other";
-  testing::internal::CaptureStdout();
-  EXPECT_EQ(list_tests(suites, {}), 0);
-  std::fflush(stdout);
-  EXPECT_EQ(testing::internal::GetCapturedStdout(), "a/mean(x) == 1\na/named\nb/other\n");
-  testing::internal::CaptureStdout();
-  EXPECT_EQ(list_tests(suites, {.filters = {"-*/named"}}), 0);
-  std::fflush(stdout);
-  EXPECT_EQ(testing::internal::GetCapturedStdout(), "a/mean(x) == 1\nb/other\n");
+  const std::vector<Suite> suites = suites_of({{"a/mean(x) == 1", "a/named"}, {"b/other"}});
+  EXPECT_EQ(printed([&] { return list_tests(suites, {}); }), "a/mean(x) == 1\na/named\nb/other\n");
+  EXPECT_EQ(printed([&] { return list_tests(suites, {.filters = {"-*/named"}}); }),
+            "a/mean(x) == 1\nb/other\n");
 }
 
 TEST(List, SaysSoWhereNoTestIsSelected) {
-  std::vector<Suite> suites(1);
-  suites[0].tests.resize(1);
-  suites[0].tests[0].id = "a/named";
-  testing::internal::CaptureStderr();
-  EXPECT_EQ(list_tests(suites, {.tags = {"slow"}}), 4);
-  std::fflush(stderr);
-  EXPECT_TRUE(testing::internal::GetCapturedStderr().starts_with("assay: --tag slow: "));
-}
-
-/// What `assay list` or `assay describe` prints.
-std::string printed(const std::function<int()>& command) {
-  testing::internal::CaptureStdout();
-  EXPECT_EQ(command(), 0);
-  std::fflush(stdout);
-  return testing::internal::GetCapturedStdout();
+  const Said said =
+      said_by([] { return list_tests(suites_of({{"a/named"}}), {.tags = {"slow"}}); });
+  EXPECT_EQ(said.code, 4);
+  EXPECT_TRUE(said.errors.starts_with("assay: --tag slow: "));
 }
 
 TEST(List, PrintsEveryRowOfATableIn80Columns) {

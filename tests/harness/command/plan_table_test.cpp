@@ -1,22 +1,14 @@
 #include "harness/command/plan_table.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <sstream>
-
 #include "harness/command/run.h"
 #include "harness/plan/forecast.h"
 #include "harness/run/looks.h"
 #include "reports/words/columns.h"
 #include "tests/harness/running.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
-
-using testing::HasSubstr;
 
 constexpr const char* suite = R"(suite: planned
 estimators:
@@ -33,10 +25,6 @@ tests:
   - {claim: distribution(area.point.v) == density, detect: 0.05}
 )";
 
-std::vector<Suite> suites_of(const Workplace& place) {
-  return {load_suite(place.write("planned.yaml", suite))};
-}
-
 PlannedRun planned_of(const std::vector<Suite>& suites, const RunOptions& options = {}) {
   Silence silence;
   return plan_run(suites, options, silence);
@@ -44,12 +32,19 @@ PlannedRun planned_of(const std::vector<Suite>& suites, const RunOptions& option
 
 UnitCosts costs_of(const PlannedRun& planned) {
   Silence silence;
-  return measure_costs(planned, 1, silence);
+  return measure_costs(planned, threads(1), silence);
 }
 
-TEST(PlanTable, PlansWhatARunThenDoes) {
-  const Workplace place;
-  const std::vector<Suite> suites = suites_of(place);
+class PlanTable : public Placed {
+ protected:
+  std::vector<Suite> suites_of(const std::string& text) const {
+    return {load_suite(place.write("planned.yaml", text))};
+  }
+};
+using Forecasts = PlanTable;
+
+TEST_F(PlanTable, PlansWhatARunThenDoes) {
+  const std::vector<Suite> suites = suites_of(suite);
   const PlannedRun planned = planned_of(suites);
   Silence silence;
   const reports::Record record = run(suites, {}, silence);
@@ -69,9 +64,8 @@ TEST(PlanTable, PlansWhatARunThenDoes) {
   }
 }
 
-TEST(PlanTable, DrawsNoObservationOfATest) {
-  const Workplace place;
-  const std::vector<Suite> suites = suites_of(place);
+TEST_F(PlanTable, DrawsNoObservationOfATest) {
+  const std::vector<Suite> suites = suites_of(suite);
   const PlannedRun planned = planned_of(suites);
   const UnitCosts costs = costs_of(planned);
   EXPECT_FALSE(plan_text(planned, costs).empty());
@@ -82,9 +76,8 @@ TEST(PlanTable, DrawsNoObservationOfATest) {
 }
 
 // Counted rays do not depend on the machine: one shadow ray a primary.
-TEST(PlanTable, MeasuresRaysAndSecondsAtThePlannedPrimaries) {
-  const Workplace place;
-  const std::vector<Suite> suites = suites_of(place);
+TEST_F(PlanTable, MeasuresRaysAndSecondsAtThePlannedPrimaries) {
+  const std::vector<Suite> suites = suites_of(suite);
   const PlannedRun planned = planned_of(suites);
   const Pool& area = *planned.suites[0]->tests[0].pools[0];
   const UnitCost cost = std::get<UnitCost>(costs_of(planned).at(&area));
@@ -96,8 +89,7 @@ TEST(PlanTable, MeasuresRaysAndSecondsAtThePlannedPrimaries) {
 // A plan foretells the effect that a fixed number of observations finds, and the run finds it in
 // its data. Pilots of 8192 primaries give the spreads of logarithms, so both agree to a tenth. A
 // forgotten second source would make them differ by the square root of two.
-TEST(PlanTable, ForetellsTheEffectThatRatiosFind) {
-  const Workplace place;
+TEST_F(PlanTable, ForetellsTheEffectThatRatiosFind) {
   const std::string text =
       "suite: ratios\nestimators:\n  a: {plugin: luminaire/area, scene: triangle}\n"
       "  h: {plugin: luminaire/hemisphere, scene: triangle}\ntests:\n"
@@ -106,7 +98,7 @@ TEST(PlanTable, ForetellsTheEffectThatRatiosFind) {
       "  - {claim: total_variance(a) <= total_variance(h), secondaries: 4000}\n"
       "  - {claim: variance(a) <= variance(h), secondaries: 4000}\n"
       "  - {claim: cost(a) == cost(h), secondaries: 4000}\n";
-  const std::vector<Suite> suites = {load_suite(place.write("ratios.yaml", text))};
+  const std::vector<Suite> suites = suites_of(text);
   const PlannedRun planned = planned_of(suites);
   Silence silence;
   const reports::Record record = run(suites, {}, silence);
@@ -122,8 +114,7 @@ TEST(PlanTable, ForetellsTheEffectThatRatiosFind) {
 
 // 500 means of four normal values of deviation 1, with alpha and beta .05. Both one-sided tests
 // reject where the margin is (1.645 + 1.960) .5 / sqrt 500. A pilot of 2048 gives the deviation.
-TEST(PlanTable, OfAMarginForetellsTheOneThatABudgetShows) {
-  const Workplace place;
+TEST_F(PlanTable, OfAMarginForetellsTheOneThatABudgetShows) {
   const std::string text =
       "suite: margins\nalpha: 0.05\nbeta: 0.05\nestimators:\n"
       "  normal: {plugin: analytic/normal, mean: 2, primaries: 4}\n"
@@ -131,7 +122,7 @@ TEST(PlanTable, OfAMarginForetellsTheOneThatABudgetShows) {
       "  - {claim: mean(normal) within 0.001 of 2, secondaries: 500}\n"
       "  - {claim: mean(normal) within 50% of 2, name: beyond, secondaries: 500}\n"
       "  - {claim: mean(wide) within 1% of analytic, test: betting, secondaries: 500}\n";
-  const PlannedRun planned = planned_of({load_suite(place.write("margins.yaml", text))});
+  const PlannedRun planned = planned_of(suites_of(text));
   const auto shown = [&](std::size_t i) {
     return forecast(planned.suites[0]->tests[i].outcome, planned.suites[0]->pilots).detectable;
   };
@@ -142,12 +133,10 @@ TEST(PlanTable, OfAMarginForetellsTheOneThatABudgetShows) {
 
 // Three observations in [0, 4] find no difference that the range allows: `detect` is no answer to
 // what the last look finds.
-TEST(PlanTable, ShowsNoEffectThatTheBudgetDoesNotFind) {
-  const Workplace place;
-  const std::vector<Suite> suites = {load_suite(place.write(
-      "poor.yaml",
+TEST_F(PlanTable, ShowsNoEffectThatTheBudgetDoesNotFind) {
+  const std::vector<Suite> suites = suites_of(
       "suite: poor\nestimators:\n  d: {plugin: analytic/dart_throwing}\n"
-      "tests:\n  - {claim: mean(d) == analytic, test: betting, detect: 1%, budget: 3}\n"))};
+      "tests:\n  - {claim: mean(d) == analytic, test: betting, detect: 1%, budget: 3}\n");
   const PlannedRun planned = planned_of(suites);
   const std::string text = plan_text(planned, costs_of(planned));
   const std::size_t row = text.find("betting");
@@ -156,12 +145,11 @@ TEST(PlanTable, ShowsNoEffectThatTheBudgetDoesNotFind) {
 }
 
 // One may take minutes: no more are drawn.
-TEST(PlanTable, OfWhatDoesNotAverageKnowsTheCostFromThePilot) {
-  const Workplace place;
+TEST_F(PlanTable, OfWhatDoesNotAverageKnowsTheCostFromThePilot) {
   const std::string text =
       "suite: ratio\nestimators:\n  ratio: {plugin: analytic/ratio, primaries: 8}\n"
       "tests:\n  - {claim: mean(ratio) == analytic, secondaries: 2000}\n";
-  const PlannedRun planned = planned_of({load_suite(place.write("ratio.yaml", text))});
+  const PlannedRun planned = planned_of(suites_of(text));
   const SuiteRun& run = *planned.suites[0];
   ASSERT_FALSE(run.estimators.at("ratio").nature().averages);
   const Summary& pilot = *run.pilots.at("ratio").sums;
@@ -169,9 +157,8 @@ TEST(PlanTable, OfWhatDoesNotAverageKnowsTheCostFromThePilot) {
   EXPECT_EQ(cost.seconds, pilot.seconds / static_cast<double>(pilot.count));
 }
 
-TEST(PlanTable, ShowsEveryTestInEightyColumns) {
-  const Workplace place;
-  const std::vector<Suite> suites = suites_of(place);
+TEST_F(PlanTable, ShowsEveryTestInEightyColumns) {
+  const std::vector<Suite> suites = suites_of(suite);
   const PlannedRun planned = planned_of(suites);
   const std::string text = plan_text(planned, costs_of(planned));
   for (const TestEntry& test : suites[0].tests) EXPECT_THAT(text, HasSubstr("\n  " + test.name));
@@ -187,9 +174,8 @@ TEST(PlanTable, ShowsEveryTestInEightyColumns) {
   EXPECT_EQ(plan_exit_code(planned, costs_of(planned)), 0);
 }
 
-TEST(PlanTable, AFilterPlansTheSameTestTheSameWay) {
-  const Workplace place;
-  const std::vector<Suite> suites = suites_of(place);
+TEST_F(PlanTable, AFilterPlansTheSameTestTheSameWay) {
+  const std::vector<Suite> suites = suites_of(suite);
   const PlannedRun whole = planned_of(suites);
   const PlannedRun alone = planned_of(suites, {.selection = {.filters = {"*/coarser"}}});
   ASSERT_EQ(alone.suites[0]->tests.size(), 1U);
@@ -197,39 +183,36 @@ TEST(PlanTable, AFilterPlansTheSameTestTheSameWay) {
             whole.suites[0]->tests[1].outcome.plan.looks.sizes);
 }
 
-TEST(PlanTable, APlanWithoutAValidMethodIsNotOk) {
-  const Workplace place;
+TEST_F(PlanTable, APlanWithoutAValidMethodIsNotOk) {
   place.write("rows.txt", "1\n3\n2\n5\n4\n");
-  const std::vector<Suite> suites = {load_suite(place.write("few.yaml", R"(suite: few
+  const std::vector<Suite> suites = suites_of(R"(suite: few
 estimators:
   rows: {plugin: recorded, file: rows.txt}
 tests:
   - {claim: mean(rows) <= 1, detect: 50%}
-)"))};
+)");
   const PlannedRun planned = planned_of(suites);
   EXPECT_EQ(plan_exit_code(planned, costs_of(planned)), 1);
   EXPECT_THAT(plan_text(planned, costs_of(planned)), HasSubstr("invalid: "));
 }
 
-TEST(PlanTable, NothingSelectedIsNothingPlanned) {
-  const Workplace place;
-  const std::vector<Suite> suites = suites_of(place);
+TEST_F(PlanTable, NothingSelectedIsNothingPlanned) {
+  const std::vector<Suite> suites = suites_of(suite);
   const PlannedRun planned = planned_of(suites, {.selection = {.filters = {"planned/none"}}});
   EXPECT_EQ(plan_exit_code(planned, costs_of(planned)), 4);
 }
 
 // Data are normal, and theta is 0 or `detect`. A part drawn lies in (0, 1], so the mean of 40 seeds
 // has a standard error below 0.05, and is off by four of them with probability 6e-5.
-TEST(Forecast, TellsTheErrorsAndWhatIsDrawn) {
-  const Workplace place;
-  const std::vector<Suite> suites = {load_suite(place.write("share.yaml", R"(suite: share
+TEST_F(Forecasts, TellsTheErrorsAndWhatIsDrawn) {
+  const std::vector<Suite> suites = suites_of(R"(suite: share
 alpha: 0.02
 estimators:
   normal: {plugin: analytic/normal, mean: 2, primaries: 1}
 tests:
   - {name: true, claim: mean(normal) == 2, detect: 0.3%}
   - {name: off, claim: mean(normal) == 2.006, detect: 0.006}
-)"))};
+)");
   std::array<double, 2> foretold{};
   std::array<double, 2> drawn{};
   constexpr int seeds = 40;
@@ -249,7 +232,7 @@ tests:
       works.push_back(&work);
     }
     Silence silence;
-    sample_in_looks(works, planned.pools.all(), {.threads = 1}, silence);
+    sample_in_looks(works, planned.pools.all(), {.executor = threads(1)}, silence);
     for (std::size_t i = 0; i < works.size(); ++i) {
       drawn[i] += static_cast<double>(works[i]->outcome.secondaries()) /
                   static_cast<double>(works[i]->outcome.plan.most_secondaries()) / seeds;
@@ -258,15 +241,14 @@ tests:
   for (std::size_t i = 0; i < drawn.size(); ++i) EXPECT_NEAR(drawn[i], foretold[i], 0.2);
 }
 
-TEST(Forecast, OfProofsHoldsByTheAdvantageOrStandsAtTheBorder) {
-  const Workplace place;
-  const std::vector<Suite> suites = {load_suite(place.write("proofs.yaml", R"(suite: proofs
+TEST_F(Forecasts, OfProofsHoldsByTheAdvantageOrStandsAtTheBorder) {
+  const std::vector<Suite> suites = suites_of(R"(suite: proofs
 estimators:
   normal: {plugin: analytic/normal, mean: 2, primaries: 1}
 tests:
   - {name: less, claim: mean(normal) < 3, detect: 0.01}
   - {name: within, claim: mean(normal) within 0.01 of 2}
-)"))};
+)");
   const PlannedRun planned = planned_of(suites);
   for (const TestWork& work : planned.suites[0]->tests) {
     const Forecast found = forecast(work.outcome, planned.suites[0]->pilots);
@@ -276,27 +258,25 @@ tests:
   }
 }
 
-TEST(PlanTable, BoundsTheProbabilityThatASuiteIsNotOk) {
-  const Workplace place;
-  const std::vector<Suite> suites = {load_suite(place.write("two.yaml", R"(suite: two
+TEST_F(PlanTable, BoundsTheProbabilityThatASuiteIsNotOk) {
+  const std::vector<Suite> suites = suites_of(R"(suite: two
 estimators:
   normal: {plugin: analytic/normal, mean: 2, primaries: 1}
 tests:
   - {name: a, claim: mean(normal) == 2, detect: 0.01}
   - {name: b, claim: mean(normal) <= 2, detect: 0.01}
-)"))};
+)");
   const PlannedRun planned = planned_of(suites);
   EXPECT_THAT(plan_text(planned, costs_of(planned)),
               HasSubstr("Not ok with probability about 0.9"));
 }
 
-TEST(PlanTable, SaysWhereTheDetectOfALawIsTheDefault) {
-  const Workplace place;
-  const std::vector<Suite> suites{load_suite(place.write("law.yaml", R"(suite: law
+TEST_F(PlanTable, SaysWhereTheDetectOfALawIsTheDefault) {
+  const std::vector<Suite> suites = suites_of(R"(suite: law
 estimators: {normal: {plugin: analytic/normal, mean: 2}}
 tests:
   - {claim: 'distribution(normal) == normal(2, 1)'}
-)"))};
+)");
   const auto text = [&](const RunOptions& options) {
     const PlannedRun planned = planned_of(suites, options);
     return plan_text(planned, costs_of(planned));
@@ -306,13 +286,12 @@ tests:
 }
 
 // Coarsened, a margin may be larger than its reference: nobody wrote it so.
-TEST(PlanTable, TakesACoarsenedMarginBeyondItsReference) {
-  const Workplace place;
-  const std::vector<Suite> suites{load_suite(place.write("coarse.yaml", R"(suite: coarse
+TEST_F(PlanTable, TakesACoarsenedMarginBeyondItsReference) {
+  const std::vector<Suite> suites = suites_of(R"(suite: coarse
 estimators: {normal: {plugin: analytic/normal, mean: 2}}
 tests:
   - {claim: mean(normal) == 2, detect: 1.5}
-)"))};
+)");
   EXPECT_EQ(planned_of(suites, {.coarsen = 4}).suites[0]->tests[0].outcome.plan.regions[0].detect,
             6);
 }

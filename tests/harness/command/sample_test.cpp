@@ -1,24 +1,16 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <sstream>
 
 #include "harness/command/commands.h"
 #include "tests/harness/refusal.h"
 #include "tests/harness/running.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
 
-using testing::HasSubstr;
-
 std::string sampled(const SampleArguments& arguments) {
-  testing::internal::CaptureStdout();
-  const int code = sample(arguments);
-  std::fflush(stdout);
-  const std::string text = testing::internal::GetCapturedStdout();
-  EXPECT_EQ(code, 0);
-  return text;
+  const Said said = said_by([&] { return sample(arguments); });
+  EXPECT_EQ(said.code, 0);
+  return said.text;
 }
 
 std::vector<std::string> rows(const std::string& text) {
@@ -30,53 +22,53 @@ std::vector<std::string> rows(const std::string& text) {
   return found;
 }
 
-TEST(Sample, PrintsOneObservationALine) {
+using Samples = Placed;
+
+TEST_F(Samples, PrintsOneObservationALine) {
   EXPECT_EQ(rows(sampled({.source = "analytic/normal", .secondaries = 7})).size(), 7);
 }
 
-TEST(Sample, IsAPrefixOfALongerOne) {
+TEST_F(Samples, IsAPrefixOfALongerOne) {
   const std::vector<std::string> few = rows(sampled({.source = "analytic/normal"}));
   const std::vector<std::string> many =
       rows(sampled({.source = "analytic/normal", .secondaries = 50}));
   EXPECT_TRUE(std::equal(few.begin(), few.end(), many.begin()));
 }
 
-TEST(Sample, DependsOnTheSeed) {
+TEST_F(Samples, DependsOnTheSeed) {
   EXPECT_NE(sampled({.source = "analytic/normal", .seed = 1}),
             sampled({.source = "analytic/normal", .seed = 2}));
 }
 
-TEST(Sample, OfASamplerHasItsMarginals) {
+TEST_F(Samples, OfASamplerHasItsMarginals) {
   const std::string text = sampled({.source = "luminaire/hemisphere.direction"});
   EXPECT_THAT(text, HasSubstr("# columns: theta phi\n"));
 }
 
-TEST(Sample, OfTheOnlySamplerNeedsAMarginalsNameAlone) {
+TEST_F(Samples, OfTheOnlySamplerNeedsAMarginalsNameAlone) {
   const std::string named = sampled({.source = "luminaire/hemisphere.direction.theta"});
   EXPECT_THAT(named, HasSubstr("# columns: theta\n"));
   EXPECT_EQ(sampled({.source = "luminaire/hemisphere.theta"}), named);
 }
 
-TEST(Sample, RefusesAMisspeltMarginalOfASamplerWithoutATest) {
+TEST_F(Samples, RefusesAMisspeltMarginalOfASamplerWithoutATest) {
   const std::string text = refusal([] { sample({.source = "luminaire/area.w"}); });
   EXPECT_THAT(text, HasSubstr("no part `w`"));
 }
 
-TEST(Sample, RefusesAPartThatIsNotThere) {
+TEST_F(Samples, RefusesAPartThatIsNotThere) {
   const std::string text = refusal([] { sample({.source = "luminaire/hemisphere.directions"}); });
   EXPECT_THAT(text, HasSubstr("no part `directions`"));
 }
 
-TEST(Sample, RefusesMoreRowsThanThereAre) {
-  const Workplace place;
+TEST_F(Samples, RefusesMoreRowsThanThereAre) {
   const std::string option = "data=recorded,file=" + place.write("data.txt", "1\n2\n3\n");
   const std::string text =
       refusal([&] { sample({.source = "data", .estimators = {option}, .secondaries = 4}); });
   EXPECT_THAT(text, HasSubstr("has 3 rows"));
 }
 
-TEST(Sample, QuotesNamesThatWouldBeSeveral) {
-  const Workplace place;
+TEST_F(Samples, QuotesNamesThatWouldBeSeveral) {
   const auto again = [&](const std::string& file, const std::string& text) {
     return sampled(
         {.source = "data", .estimators = {"data=recorded,file=" + place.write(file, text)}});
@@ -88,8 +80,7 @@ TEST(Sample, QuotesNamesThatWouldBeSeveral) {
 }
 
 // The file says which stream it was drawn from, and the estimator steps aside.
-TEST(Sample, IsComparedWithItsOwnEstimatorOnAnotherCopyOfTheStream) {
-  const Workplace place;
+TEST_F(Samples, IsComparedWithItsOwnEstimatorOnAnotherCopyOfTheStream) {
   place.write("data.txt", sampled({.source = "analytic/normal", .secondaries = 300}));
   const reports::Record record = run_files({place.write("suite.yaml", R"(suite: copies
 estimators:
@@ -109,8 +100,7 @@ tests:
   EXPECT_NE(test_named(record, "laws").channels[0].statistic, 0);
 }
 
-TEST(Sample, TwiceOfOneStreamIsNotIndependent) {
-  const Workplace place;
+TEST_F(Samples, TwiceOfOneStreamIsNotIndependent) {
   place.write("few.txt", sampled({.source = "analytic/normal", .secondaries = 30}));
   place.write("many.txt", sampled({.source = "analytic/normal", .secondaries = 50}));
   place.write("seed2.txt", sampled({.source = "analytic/normal", .secondaries = 50, .seed = 2}));
@@ -130,8 +120,7 @@ tests:
 }
 
 // `recorded` reads the output of `sample`; its moments are those of the estimator.
-TEST(Sample, IsWhatRecordedReads) {
-  const Workplace place;
+TEST_F(Samples, IsWhatRecordedReads) {
   place.write("data.txt",
               sampled({.source = "analytic/normal", .secondaries = 300, .primaries = 4}));
   const reports::Record record = run_files({place.write("suite.yaml", R"(suite: round trip

@@ -1,17 +1,12 @@
 #include "harness/command/shard_environment.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <map>
-
 #include "tests/harness/refusal.h"
 #include "tests/harness/running.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
 
-using testing::HasSubstr;
 using Variables = std::map<std::string, std::string>;
 using Shard = std::optional<std::pair<unsigned, unsigned>>;
 

@@ -1,9 +1,6 @@
 #include "harness/draws/domain_chart.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {

@@ -1,12 +1,8 @@
 #include "harness/draws/draw_text.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdio>
-
 #include "tests/harness/questions.h"
 #include "tests/harness/running.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {

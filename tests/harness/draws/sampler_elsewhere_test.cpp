@@ -1,14 +1,8 @@
 // Samplers that answer for a few at a time, as those in another process do, and not for every
 // point.
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <stdexcept>
-
 #include "harness/draws/consistency_setup.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {

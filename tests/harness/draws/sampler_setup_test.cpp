@@ -1,16 +1,8 @@
 #include "harness/draws/sampler_setup.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <numbers>
-#include <numeric>
-#include <vector>
-
 #include "tests/harness/questions.h"
 #include "tests/harness/refusal.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {

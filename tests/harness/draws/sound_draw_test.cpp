@@ -1,17 +1,15 @@
 #include "harness/draws/sound_draw.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-
 #include "harness/draws/consistency_setup.h"
 #include "harness/theta/ask.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+const std::string none = thrown([] {});
 
 /// A sampler of this domain whose draws are all the same.
 class Always final : public Sampler {
@@ -45,12 +43,7 @@ Point settled(const Always::Terms& terms, const Point& point) {
 }
 
 std::string refused(const Always::Terms& terms, const SamplerDraw& draw) {
-  try {
-    sound(always(terms), draw);
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "";
+  return thrown<std::runtime_error>([&] { sound(always(terms), draw); });
 }
 
 std::string refused(const Always::Terms& terms, const Point& point) {
@@ -61,13 +54,13 @@ TEST(SoundDraw, ADirectionMustHaveLengthOne) {
   for (const Domain domain : {Domain::hemisphere, Domain::sphere}) {
     EXPECT_EQ(refused({domain}, Point{0, 0, 2}),
               "sampler `s` drew (0, 0, 2), whose length is 2: a direction must have length 1");
-    EXPECT_NE(refused({domain}, Point{.6, 0, .7}), "");
-    EXPECT_NE(refused({domain}, Point{0, 0, 0}), "");
-    EXPECT_NE(refused({domain}, Point{0, 0, 1.0002}), "");
-    EXPECT_NE(refused({domain}, Point{0, nan, 1}), "");
-    EXPECT_EQ(refused({domain}, Point{0, 0, 1.00005}), "");
-    EXPECT_EQ(refused({domain}, Point{0.6F, 0, 0.8F}), "");
-    EXPECT_EQ(refused({.domain = domain, .rounding = 1e-3}, Point{0, 0, 1.0005}), "");
+    EXPECT_NE(refused({domain}, Point{.6, 0, .7}), none);
+    EXPECT_NE(refused({domain}, Point{0, 0, 0}), none);
+    EXPECT_NE(refused({domain}, Point{0, 0, 1.0002}), none);
+    EXPECT_NE(refused({domain}, Point{0, nan, 1}), none);
+    EXPECT_EQ(refused({domain}, Point{0, 0, 1.00005}), none);
+    EXPECT_EQ(refused({domain}, Point{0.6F, 0, 0.8F}), none);
+    EXPECT_EQ(refused({.domain = domain, .rounding = 1e-3}, Point{0, 0, 1.0005}), none);
   }
 }
 
@@ -81,11 +74,11 @@ TEST(SoundDraw, APointOutsideItsDomainIsNamedInItsWords) {
   EXPECT_EQ(refused({.domain = Domain::interval, .bounds = {-1, 2}}, Point{2.25, 0, 0}),
             "sampler `s` drew 2.25, outside its interval [-1, 2]");
   for (const Domain domain : {Domain::interval, Domain::square, Domain::triangle}) {
-    EXPECT_NE(refused({domain}, Point{nan, .5, 0}), "");
-    EXPECT_NE(refused({domain}, Point{-.001, .5, 0}), "");
+    EXPECT_NE(refused({domain}, Point{nan, .5, 0}), none);
+    EXPECT_NE(refused({domain}, Point{-.001, .5, 0}), none);
   }
-  EXPECT_NE(refused({Domain::square}, Point{.5, nan, 0}), "");
-  EXPECT_NE(refused({Domain::triangle}, Point{.5, -.001, 0}), "");
+  EXPECT_NE(refused({Domain::square}, Point{.5, nan, 0}), none);
+  EXPECT_NE(refused({Domain::triangle}, Point{.5, -.001, 0}), none);
 }
 
 TEST(SoundDraw, RoundingIsTakenToTheBorder) {
@@ -99,9 +92,9 @@ TEST(SoundDraw, RoundingIsTakenToTheBorder) {
   EXPECT_EQ(settled({Domain::triangle}, {-1e-7, .5, 0}), (Point{0, .5, 0}));
   // Rounding counts as far as the sampler declares it, and no further.
   EXPECT_EQ(settled({.domain = Domain::square, .rounding = 1e-3}, {1.0005, 0, 0})[0], 1);
-  EXPECT_NE(refused({.domain = Domain::square, .rounding = 1e-3}, Point{1.002, 0, 0}), "");
-  EXPECT_NE(refused({Domain::square}, Point{1.00001, 0, 0}), "");
-  EXPECT_NE(refused({.domain = Domain::interval, .bounds = {.1, .2}}, Point{.20001, 0, 0}), "");
+  EXPECT_NE(refused({.domain = Domain::square, .rounding = 1e-3}, Point{1.002, 0, 0}), none);
+  EXPECT_NE(refused({Domain::square}, Point{1.00001, 0, 0}), none);
+  EXPECT_NE(refused({.domain = Domain::interval, .bounds = {.1, .2}}, Point{.20001, 0, 0}), none);
 }
 
 // To the last bit: what is drawn and counted is no other than without a look at it.
@@ -138,7 +131,7 @@ TEST(SoundDraw, ADensityBelowZeroAndALobeThatIsNoneAreNamed) {
             "sampler `s` drew (0.5, 0.25) with density -0.125: a density must be >= 0");
   EXPECT_EQ(refused({Domain::square}, {.density = 1, .lobe = 3}),
             "sampler `s` drew from lobe 3, and declares 1");
-  EXPECT_EQ(refused({Domain::square}, {.point = {9, 9, 9}, .density = -1, .valid = false}), "");
+  EXPECT_EQ(refused({Domain::square}, {.point = {9, 9, 9}, .density = -1, .valid = false}), none);
 }
 
 /// Why the first observation of a set-up cannot be had.
@@ -146,12 +139,7 @@ std::string trouble(const Setup& setup) {
   std::vector<double> out(setup.channels().size());
   Stream random({}, 0);
   Cost cost;
-  try {
-    setup.make()->secondary(random, 1, out, cost);
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "";
+  return thrown([&] { setup.make()->secondary(random, 1, out, cost); });
 }
 
 // Also where every draw agrees with what is declared, and where draws are fetched ahead.
@@ -176,17 +164,9 @@ TEST(SoundDraw, ADeclaredDensityBelowZeroIsNamedWithItsPoint) {
             "finite");
   for (const Domain domain : {Domain::interval, Domain::hemisphere}) {
     const SamplerSetup setup(always({.domain = domain, .density = -1}));
-    const auto said = [](auto ask) -> std::string {
-      try {
-        ask();
-      } catch (const std::domain_error& error) {
-        return error.what();
-      }
-      return "";
-    };
-    const std::string cells = said([&] { setup.density_cells(); });
-    const std::string law =
-        said([&] { setup.marginal_law(domain == Domain::interval ? "x" : "theta"); });
+    const std::string cells = thrown<std::domain_error>([&] { setup.density_cells(); });
+    const std::string law = thrown<std::domain_error>(
+        [&] { setup.marginal_law(domain == Domain::interval ? "x" : "theta"); });
     EXPECT_TRUE(cells.starts_with("sampler `s` declares the density -1 at ")) << cells;
     EXPECT_TRUE(law.starts_with("sampler `s` declares the density -1 at ")) << law;
   }

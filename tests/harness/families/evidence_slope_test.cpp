@@ -1,7 +1,3 @@
-#include <gmock/gmock.h>
-
-#include <array>
-#include <cmath>
 
 #include "harness/families/slope.h"
 #include "harness/plan/looks.h"
@@ -11,11 +7,10 @@
 #include "harness/theta/methods.h"
 #include "harness/theta/theta.h"
 #include "tests/harness/questions.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
-
-using testing::HasSubstr;
 
 constexpr double beta = 0.01;
 

@@ -1,6 +1,3 @@
-#include <gtest/gtest.h>
-
-#include <algorithm>
 
 #include "harness/plan/looks.h"
 #include "harness/plan/outcome.h"
@@ -8,6 +5,7 @@
 #include "harness/theta/methods.h"
 #include "harness/theta/theta.h"
 #include "tests/harness/questions.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {

@@ -1,14 +1,13 @@
 #include <fmt/format.h>
-#include <gmock/gmock.h>
 
 #include "tests/harness/running.h"
 #include "tests/philox.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
 
 using reports::Verdict;
-using testing::HasSubstr;
 
 /// A true claim: a fail has probability 1e-6.
 reports::Test at_offset(const std::string& mean, const std::string& test) {

@@ -1,18 +1,12 @@
 #include "harness/googletest/claims.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest-spi.h>
 
-#include <cmath>
-#include <map>
-#include <stdexcept>
-
 #include "harness/googletest/matchers.h"
+#include "tests/prelude.h"
 
 namespace assay::googletest {
 namespace {
-
-using testing::HasSubstr;
 
 // The claims that are judged below are fewer; ASSAY_SEED is not set. Each has its false-alarm rate
 // from the binary: 1e-5 / 40.

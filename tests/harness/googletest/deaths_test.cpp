@@ -1,23 +1,13 @@
 // Callables that die: each way, in each phase, of each kind of source. A program of its own: what
 // is thrown into it must not end it.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <atomic>
-#include <cmath>
-#include <limits>
 #include <new>
-#include <stdexcept>
-#include <string>
-#include <tuple>
 
 #include "harness/googletest/claims.h"
+#include "tests/prelude.h"
 
 namespace assay::googletest {
 namespace {
-
-using testing::HasSubstr;
 
 enum class Way { standard, wordless, no_memory, number, text, nan, infinite };
 enum class Phase { pilot, first, later, last };

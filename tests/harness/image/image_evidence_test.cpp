@@ -2,20 +2,13 @@
 
 #include "harness/image/image_evidence.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-#include <vector>
-
 #include "tests/harness/questions.h"
 #include "tests/philox.h"
+#include "tests/prelude.h"
 #include "tests/stats/calibration.h"
 
 namespace assay::harness {
 namespace {
-
-using tests::Philox;
 
 constexpr std::size_t width = 16;
 constexpr std::size_t replicates = 64;

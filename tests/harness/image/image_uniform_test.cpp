@@ -1,8 +1,6 @@
 #include "harness/image/image_uniform.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {

@@ -7,6 +7,7 @@
 #include "estimators/stream.h"
 #include "harness/language/claim.h"
 #include "harness/language/laws.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {

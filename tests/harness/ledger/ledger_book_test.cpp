@@ -1,17 +1,12 @@
 #include "harness/ledger/ledger_book.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <rapidcheck.h>
 
-#include <limits>
-
 #include "estimators/core/value.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
-
-using testing::HasSubstr;
 
 const LedgerSeries score{.hash = "00ff",
                          .reference_error = 1e-9,
@@ -49,12 +44,7 @@ std::string joined(const std::vector<std::string>& lines) {
 }
 
 std::string refused(const std::string& text) {
-  try {
-    LedgerBook::parse(text, "n.ledger");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "(nothing was refused)";
+  return thrown<InputError>([&] { LedgerBook::parse(text, "n.ledger"); });
 }
 
 TEST(LedgerBook, ReadsBackWhatItWrote) {

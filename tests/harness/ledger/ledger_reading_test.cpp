@@ -1,10 +1,6 @@
 #include "harness/ledger/ledger_reading.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <variant>
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {

@@ -1,14 +1,10 @@
 #include "harness/ledger/night_evidence.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <variant>
-
 #include "harness/run/looks.h"
 #include "harness/run/planned_run.h"
 #include "tests/harness/running.h"
 #include "tests/philox.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
@@ -47,7 +43,7 @@ tests:
   ran.planned = plan_run(ran.suites, {.seed = seed}, silence);
   std::vector<TestWork*> works;
   for (TestWork& work : ran.planned.suites[0]->tests) works.push_back(&work);
-  sample_in_looks(works, ran.planned.pools.all(), {.threads = 1}, silence);
+  sample_in_looks(works, ran.planned.pools.all(), {.executor = threads(1)}, silence);
   return ran;
 }
 
@@ -58,8 +54,9 @@ void write_data(const Workplace& place) {
   place.write("mine.txt", rows);
 }
 
-TEST(NightEvidence, OfAMeanIsItsEstimateAndError) {
-  const Workplace place;
+using EvidenceOfNights = Placed;
+
+TEST_F(EvidenceOfNights, OfAMeanIsItsEstimateAndError) {
   write_data(place);
   const Ran ran = run_nights(place, "  - {claim: mean(normal) == 2, detect: 0.1}\n");
   const stats::Moments x = ran.moments(0);
@@ -70,8 +67,7 @@ TEST(NightEvidence, OfAMeanIsItsEstimateAndError) {
   EXPECT_EQ(ran.night(0).reference_error, 0);
 }
 
-TEST(NightEvidence, OfARelativeMeanIsInUnitsOfTheReference) {
-  const Workplace place;
+TEST_F(EvidenceOfNights, OfARelativeMeanIsInUnitsOfTheReference) {
   write_data(place);
   const Ran ran = run_nights(place, "  - {claim: mean(normal) == 2 +- 0.1}\n");
   const stats::Moments x = ran.moments(0);
@@ -80,8 +76,7 @@ TEST(NightEvidence, OfARelativeMeanIsInUnitsOfTheReference) {
   EXPECT_NEAR(ran.night(0).reference_error, 0.05, 1e-15);
 }
 
-TEST(NightEvidence, OfTwoMeansAndVariancesHasTheDeltaMethodsError) {
-  const Workplace place;
+TEST_F(EvidenceOfNights, OfTwoMeansAndVariancesHasTheDeltaMethodsError) {
   write_data(place);
   const Ran ran = run_nights(place,
                              "  - {claim: mean(normal) == mean(other), detect: 0.1}\n"
@@ -98,8 +93,7 @@ TEST(NightEvidence, OfTwoMeansAndVariancesHasTheDeltaMethodsError) {
 
 // Three families that tell no error of theirs. Half their interval of 68.3 % is near the error of
 // the normal limit, which for the median of a normal law is sqrt(pi / 2n).
-TEST(NightEvidence, WithoutAnErrorIsHalfTheIntervalOfOneStandardDeviation) {
-  const Workplace place;
+TEST_F(EvidenceOfNights, WithoutAnErrorIsHalfTheIntervalOfOneStandardDeviation) {
   write_data(place);
   const Ran ran = run_nights(place,
                              "  - {claim: 'quantile(normal, 0.5) == 2', secondaries: 1000}\n"
@@ -111,8 +105,7 @@ TEST(NightEvidence, WithoutAnErrorIsHalfTheIntervalOfOneStandardDeviation) {
 }
 
 // Rare values are missing from most nights, which must not be left out for it.
-TEST(NightEvidence, ValuesWithoutSpreadHaveAnEstimate) {
-  const Workplace place;
+TEST_F(EvidenceOfNights, ValuesWithoutSpreadHaveAnEstimate) {
   write_data(place);
   const Ran ran =
       run_nights(place, "  - {claim: mean(rare) == 0.0001, detect: 50%, secondaries: 100}\n");
@@ -120,8 +113,7 @@ TEST(NightEvidence, ValuesWithoutSpreadHaveAnEstimate) {
   EXPECT_EQ(ran.estimate(0).standard_error, 0);
 }
 
-TEST(NightEvidence, RecordedDataAreTheSameInEveryRun) {
-  const Workplace place;
+TEST_F(EvidenceOfNights, RecordedDataAreTheSameInEveryRun) {
   write_data(place);
   const Ran ran = run_nights(place,
                              "  - {claim: mean(mine) == 2}\n"
@@ -133,16 +125,14 @@ TEST(NightEvidence, RecordedDataAreTheSameInEveryRun) {
   EXPECT_NEAR(ran.estimate(1).standard_error, ran.moments(1).standard_error(), 1e-12);
 }
 
-TEST(NightEvidence, OfADistanceIsItsPValue) {
-  const Workplace place;
+TEST_F(EvidenceOfNights, OfADistanceIsItsPValue) {
   write_data(place);
   const Ran ran = run_nights(place, "  - {claim: 'distribution(normal) == normal(2, 1)'}\n");
   EXPECT_EQ(std::get<NightPValue>(ran.night(0).value).log_p,
             ran.test(0).outcome.channels[0].decision.log_p_claimed);
 }
 
-TEST(NightEvidence, TheHashFollowsClaimMarginsAndParametersAlone) {
-  const Workplace place;
+TEST_F(EvidenceOfNights, TheHashFollowsClaimMarginsAndParametersAlone) {
   write_data(place);
   const Ran one = run_nights(place,
                              "  - {claim: mean(normal) == 2, detect: 1%}\n"

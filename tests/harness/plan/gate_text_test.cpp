@@ -1,16 +1,11 @@
 #include "harness/plan/gate_text.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "harness/plan/looks.h"
 #include "tests/harness/questions.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
-
-using testing::HasSubstr;
-using testing::Not;
 
 /// The advice for a mean of 1000 observations whose gate of this name is red.
 std::string help_for(const std::string& kind, const std::string& where = "") {

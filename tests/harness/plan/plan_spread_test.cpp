@@ -1,12 +1,9 @@
 // Plans of variances and costs: methods, floors and sizes.
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "harness/plan/sizes.h"
 #include "stats/planning/power.h"
 #include "tests/harness/planned.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
@@ -14,7 +11,7 @@ namespace {
 // A ratio of sums over 4096 is near normal, which a pilot of 512 leaves in doubt. Means of 64
 // normal values are normal by any pilot.
 TEST(Plan, TakesTheExactTestOnlyWhereThePilotLeavesNoDoubt) {
-  const Planned planned = plan_text(
+  const Prepared planned = plan_text(
       "  - {name: few, claim: variance(ratio) <= 1}\n"
       "  - {name: averaged, claim: variance(normal) <= 100}\n"
       "  - {name: one of two, claim: variance(normal) < variance(ratio)}\n"
@@ -28,7 +25,7 @@ TEST(Plan, TakesTheExactTestOnlyWhereThePilotLeavesNoDoubt) {
 
 // No first look lies below the floor, in primaries and in observations.
 TEST(Plan, OfInfluenceValuesTakesTheFloorOfEvidence) {
-  const Planned planned = plan_text(
+  const Prepared planned = plan_text(
       "  - {name: single, claim: variance(heavier-single) <= 100, detect: 50%}\n"
       "  - {name: many primaries, claim: variance(ratio) <= 1, detect: 50%}\n"
       "  - {name: cost, claim: cost(multi) <= 2, detect: 50%}\n"
@@ -42,7 +39,7 @@ TEST(Plan, OfInfluenceValuesTakesTheFloorOfEvidence) {
 
 // Given `secondaries` are a floor of their own.
 TEST(Plan, GivenSecondariesAreTaken) {
-  const Planned planned =
+  const Prepared planned =
       plan_text("  - {claim: variance(heavier-single) <= 100, secondaries: 2000}\n");
   EXPECT_EQ(planned.plans[0].looks.sizes, std::vector<std::uint64_t>{2000});
 }
@@ -50,7 +47,7 @@ TEST(Plan, GivenSecondariesAreTaken) {
 // Normal values, by their relative influence values of variance 2. Looks take some 8 % more than
 // one, and a pilot of 8192 knows the kurtosis to 11 % of n, 1e-4.
 TEST(Plan, OfVariancesHasTheSizeOfTheirInfluenceValues) {
-  const Planned planned = plan_text(
+  const Prepared planned = plan_text(
       "  - {name: one, claim: variance(single) <= 1, detect: 1%}\n"
       "  - {name: two, claim: variance(single) <= variance(single), detect: 1%}\n");
   const auto size = [&](std::size_t test, double variance) {

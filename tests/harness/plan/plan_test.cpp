@@ -1,11 +1,5 @@
 #include "harness/plan/plan.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
-
 #include "harness/plan/sizes.h"
 #include "harness/run/planned_run.h"
 #include "stats/planning/power.h"
@@ -13,12 +7,13 @@
 #include "tests/harness/planned.h"
 #include "tests/harness/refusal.h"
 #include "tests/harness/running.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
 
 TEST(Plan, WithoutDetectIsClassical) {
-  const Planned planned = plan_text("  - {claim: mean(normal) == 2}\n");
+  const Prepared planned = plan_text("  - {claim: mean(normal) == 2}\n");
   EXPECT_EQ(planned.plans[0].most_secondaries(), 1000);
   EXPECT_EQ(planned.plans[0].method.name, "t");
 }
@@ -27,21 +22,21 @@ TEST(Plan, WithoutDetectIsClassical) {
 // "the mean is 0.5 too large". So 152 values turn a bet into ln(100 x 23), and one of them is a
 // spike once in 10,000.
 TEST(Plan, AMarginIsPlannedByTheMethodThatDecides) {
-  const Planned planned = plan_text("  - {claim: mean(spike) within 0.5 of analytic}\n");
+  const Prepared planned = plan_text("  - {claim: mean(spike) within 0.5 of analytic}\n");
   EXPECT_EQ(planned.plans[0].method.name, "betting");
   EXPECT_GE(planned.plans[0].most_secondaries(), 152);
   EXPECT_LT(planned.plans[0].most_secondaries(), 1520);
 }
 
 TEST(Plan, ObeysFixedSecondaries) {
-  const Planned planned = plan_text("  - {claim: mean(normal) == 2, secondaries: 123}\n");
+  const Prepared planned = plan_text("  - {claim: mean(normal) == 2, secondaries: 123}\n");
   EXPECT_EQ(planned.plans[0].most_secondaries(), 123);
 }
 
 // A pilot of 8192 knows the variance 1 up to exp(3.09 sqrt(2 / 8192)) - 1 = 4.9 %. Its own error
 // is as much. So n lies between that of variance 1 and that of 1.12.
 TEST(Plan, FindsDetectWithTheSuitesErrorRates) {
-  const Planned planned = plan_text("  - {claim: mean(single) == 2, detect: 0.3%}\n");
+  const Prepared planned = plan_text("  - {claim: mean(single) == 2, detect: 0.3%}\n");
   const stats::LookSchedule& looks = planned.plans[0].looks;
   EXPECT_EQ(looks.law, stats::LookLaw::independent_increments);
   const stats::ErrorRates rates{
@@ -66,7 +61,7 @@ TEST(Plan, FindsDetectWithTheSuitesErrorRates) {
 // z_b/2). The variance of ln s2 is (kurtosis - 1) / n. A pilot of 8192 has a kurtosis of 3 +- .054;
 // four of these are 11 % of n, 1e-4.
 TEST(Plan, OfWithinGivesBothMarginsTheirShareOfBeta) {
-  const Planned planned = plan_text("  - {claim: variance(single) within 2% of 1}\n");
+  const Prepared planned = plan_text("  - {claim: variance(single) within 2% of 1}\n");
   const double share = planned.plans[0].looks.beta.back();
   const auto z = [](double p) { return stats::normal_quantile({stats::Tail::upper, std::log(p)}); };
   const double wanted = std::log(1.02) / (z(share) + z(share / 2));
@@ -78,7 +73,7 @@ TEST(Plan, OfWithinGivesBothMarginsTheirShareOfBeta) {
 // density is 1 on the unit interval; a normal law of that deviation has 1.38. The pilot counts 410
 // within .05, less two errors: 11 %, and 1.23 of n.
 TEST(Plan, OfAQuantileCountsThePilotsValues) {
-  const Planned planned = plan_text("  - {claim: \"quantile(flat, 0.5) == 0.5\", detect: 0.05}\n");
+  const Prepared planned = plan_text("  - {claim: \"quantile(flat, 0.5) == 0.5\", detect: 0.05}\n");
   const stats::LookSchedule& looks = planned.plans[0].looks;
   const auto z = [](double p) { return stats::normal_quantile({stats::Tail::upper, std::log(p)}); };
   const double wanted = 0.05 / (z(looks.alpha.back() / 2) + z(looks.beta.back()));
@@ -90,7 +85,7 @@ TEST(Plan, OfAQuantileCountsThePilotsValues) {
 // The reference's error leaves the samples less of the margin: SE^2 = (margin / z)^2 - u^2.
 TEST(Plan, OfWithinLeavesRoomForTheReferencesError) {
   const auto secondaries = [](const std::string& reference) {
-    const Planned planned =
+    const Prepared planned =
         plan_text("  - {claim: mean(single) within 0.02 of " + reference + "}\n");
     const double share = planned.plans[0].looks.beta.back();
     const auto z = [](double p) {
@@ -111,15 +106,15 @@ TEST(Plan, OfWithinLeavesRoomForTheReferencesError) {
 }
 
 TEST(Plan, AsksForMoreAtASmallerShare) {
-  const Planned alone = plan_text("  - {claim: mean(single) == 2, detect: 0.3%}\n");
-  const Planned among = plan_text(
+  const Prepared alone = plan_text("  - {claim: mean(single) == 2, detect: 0.3%}\n");
+  const Prepared among = plan_text(
       "  - {claim: mean(single) == 2, detect: 0.3%, weight: 1}\n"
       "  - {name: heavier, claim: mean(single) <= 3, weight: 99}\n");
   EXPECT_GT(among.plans[0].most_secondaries(), alone.plans[0].most_secondaries());
 }
 
 TEST(Plan, ChoosesPrimariesAsAPowerOfTwoThatTamesTheTail) {
-  const Planned planned = plan_text(
+  const Prepared planned = plan_text(
       "  - {name: a, claim: variance(uniform) <= 100}\n"
       "  - {name: b, claim: variance(normal) <= 100}\n");
   const std::uint64_t skewed = planned.plans[0].primaries[0];
@@ -129,12 +124,12 @@ TEST(Plan, ChoosesPrimariesAsAPowerOfTwoThatTamesTheTail) {
 }
 
 TEST(Plan, ObeysFixedPrimaries) {
-  const Planned planned = plan_text("  - {claim: mean(single) == 2}\n");
+  const Prepared planned = plan_text("  - {claim: mean(single) == 2}\n");
   EXPECT_EQ(planned.plans[0].primaries[0], 1);
 }
 
 TEST(Plan, OfADistributionTakesSinglePrimaries) {
-  const Planned planned = plan_text(
+  const Prepared planned = plan_text(
       "  - {name: a, claim: \"distribution(normal) == normal(2, 1)\"}\n"
       "  - {name: b, claim: mean(normal) == 2}\n");
   EXPECT_EQ(planned.plans[0].primaries[0], 1);
@@ -142,9 +137,9 @@ TEST(Plan, OfADistributionTakesSinglePrimaries) {
 }
 
 TEST(Plan, MovesToInfluenceValuesWhereSecondariesAreNotNormal) {
-  const Planned planned = plan_text("  - {claim: variance(uniform) <= 100}\n");
+  const Prepared planned = plan_text("  - {claim: variance(uniform) <= 100}\n");
   EXPECT_EQ(planned.plans[0].method.name, "chi-square") << "primaries are chosen so";
-  const Planned skewed = plan_text("  - {claim: variance(heavier-single) <= 100}\n");
+  const Prepared skewed = plan_text("  - {claim: variance(heavier-single) <= 100}\n");
   EXPECT_EQ(skewed.plans[0].method.name, "influence-t");
   EXPECT_EQ(skewed.plans[0].invalid, "") << "what no pilot knows the test's own data gate";
 }
@@ -152,7 +147,7 @@ TEST(Plan, MovesToInfluenceValuesWhereSecondariesAreNotNormal) {
 // 8192 primaries miss a spike of probability 1e-9. The plan takes as many as bound its
 // contribution, a million at most.
 TEST(Plan, OfAConstantInADeclaredRangeBoundsWhatWasNotSeen) {
-  const Planned planned = plan_text(
+  const Prepared planned = plan_text(
       "  - {claim: mean(unseen) == 0.5, detect: 1%}\n"
       "  - {name: classical, claim: mean(unseen) == 0.5}\n"
       "  - {claim: mean(far) == 0.5, detect: 1%}\n");
@@ -167,22 +162,22 @@ TEST(Plan, OfAConstantInADeclaredRangeBoundsWhatWasNotSeen) {
 // A Pareto law of index 3 has a skewness of some 5 in its pilot. The t test is right within a
 // quarter from some 10,000 values on, the corrected test from some 1000.
 TEST(Plan, CorrectsForSkewnessWhereTheTTestWouldNeedMore) {
-  const Planned heavy = plan_text("  - {claim: mean(heavy-single) == 1.5, secondaries: 3000}\n");
+  const Prepared heavy = plan_text("  - {claim: mean(heavy-single) == 1.5, secondaries: 3000}\n");
   EXPECT_EQ(heavy.plans[0].method.name, "skewness-corrected-t");
-  const Planned normal = plan_text("  - {claim: mean(normal) == 2, secondaries: 300}\n");
+  const Prepared normal = plan_text("  - {claim: mean(normal) == 2, secondaries: 300}\n");
   EXPECT_EQ(normal.plans[0].method.name, "t");
 }
 
 // One look decides at z = 4.9 errors of the reference, sixteen looks would take 5.1 of them.
 TEST(Plan, TakesFewerLooksWhereTheReferencesErrorAllowsNoMore) {
-  const Planned planned = plan_text("  - {claim: mean(single) == 2 +- 0.001, detect: 0.005}\n");
+  const Prepared planned = plan_text("  - {claim: mean(single) == 2 +- 0.001, detect: 0.005}\n");
   EXPECT_LT(planned.plans[0].most_secondaries(), 1e8);
   EXPECT_LT(planned.plans[0].looks.count(), most_looks);
 }
 
 // 2^14 primaries, in observations of one or of 64. Rows of a file and bets have no floor.
 TEST(Plan, OfAMeanWithoutARangeBeginsAtTheFloor) {
-  const Planned planned = plan_text(
+  const Prepared planned = plan_text(
       "  - {claim: mean(single) == 2, detect: 50%}\n"
       "  - {claim: mean(normal) == 2, detect: 50%}\n"
       "  - {claim: mean(spike) == analytic, detect: 50%}\n"
@@ -194,12 +189,12 @@ TEST(Plan, OfAMeanWithoutARangeBeginsAtTheFloor) {
 }
 
 TEST(Plan, CountsValuesOfWhichThereAreTwo) {
-  const Planned planned = plan_text("  - {claim: mean(dart) == 3.14159, secondaries: 300}\n");
+  const Prepared planned = plan_text("  - {claim: mean(dart) == 3.14159, secondaries: 300}\n");
   EXPECT_EQ(planned.plans[0].method.name, "binomial");
 }
 
 TEST(Plan, ForcedMethodStandsWithItsGatesShown) {
-  const Planned planned =
+  const Prepared planned =
       plan_text("  - {claim: variance(heavy-single) <= 100, test: chi-square}\n");
   EXPECT_EQ(planned.plans[0].method.name, "chi-square");
   EXPECT_TRUE(planned.plans[0].invalid.empty());
@@ -230,15 +225,16 @@ tests:
 }
 
 TEST(Plan, StaysWithinABudgetOfPrimaries) {
-  const Planned planned = plan_text("  - {claim: mean(single) == 2, detect: 0.1%, budget: 5000}\n");
+  const Prepared planned =
+      plan_text("  - {claim: mean(single) == 2, detect: 0.1%, budget: 5000}\n");
   EXPECT_EQ(planned.plans[0].most_secondaries(), 5000);
 }
 
 TEST(Plan, DoesNotDependOnWhichOtherTestsAreThere) {
-  const Planned one = plan_text(
+  const Prepared one = plan_text(
       "  - {claim: mean(single) == 2, detect: 2%, weight: 1}\n"
       "  - {name: b, claim: mean(uniform) <= 7}\n");
-  const Planned other = plan_text(
+  const Prepared other = plan_text(
       "  - {claim: mean(single) == 2, detect: 2%, weight: 1}\n"
       "  - {name: b, claim: variance(hemisphere) <= 7}\n");
   EXPECT_EQ(one.plans[0].most_secondaries(), other.plans[0].most_secondaries());

@@ -1,17 +1,8 @@
 #include "harness/record/cell_record.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <numbers>
-#include <numeric>
-#include <set>
-
 #include "tests/harness/questions.h"
 #include "tests/harness/running.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
@@ -215,7 +206,7 @@ TEST(CellRecord, OfAnIntervalOrAMarginalThereIsNone) {
 TEST(CellRecord, TheNumberOfACellHasNoMoments) {
   const reports::Test test = tested("distribution(ward.direction) == density");
   ASSERT_EQ(test.samples.size(), 1u);
-  EXPECT_FALSE(test.samples[0].mean || test.samples[0].variance || test.samples[0].maximum);
+  EXPECT_FALSE(test.samples[0].mean || test.samples[0].variance || test.samples[0].max);
   EXPECT_TRUE(test.samples[0].histogram.counts.empty());
   EXPECT_EQ(test.samples[0].cost.samples, 20000u);
 }

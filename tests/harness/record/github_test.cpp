@@ -1,19 +1,11 @@
 #include "harness/record/github.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <sstream>
-
 #include "reports/formats/markdown.h"
 #include "tests/harness/running.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
-
-using testing::EndsWith;
-using testing::HasSubstr;
-using testing::StartsWith;
 
 std::string contents(const std::string& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -43,23 +35,22 @@ reports::Record failing() {
   return record;
 }
 
-TEST(Github, IsToldNothingElsewhere) {
-  const Workplace place;
+using Github = Placed;
+
+TEST_F(Github, IsToldNothingElsewhere) {
   EXPECT_EQ(tell_github(failing(), of("", place.file("summary"))), "");
   EXPECT_EQ(tell_github(failing(), of("false", place.file("summary"))), "");
   EXPECT_FALSE(std::filesystem::exists(place.file("summary")));
 }
 
-TEST(Github, AppendsToTheSummaryOfTheStep) {
-  const Workplace place;
+TEST_F(Github, AppendsToTheSummaryOfTheStep) {
   const std::string file = place.write("summary", "written before\n");
   const std::string annotations = tell_github(failing(), of("true", file));
   EXPECT_THAT(annotations, StartsWith("::error file=suites/suite.yaml,line=7,"));
   EXPECT_EQ(contents(file), "written before\n" + reports::markdown(failing()) + "\n");
 }
 
-TEST(Github, KeepsTheWholeSummaryBelowTheLimit) {
-  const Workplace place;
+TEST_F(Github, KeepsTheWholeSummaryBelowTheLimit) {
   reports::Record record = failing();
   record.suites[0].tests.resize(2000, record.suites[0].tests[0]);
   const std::string file = place.write("summary", std::string(reports::markdown_limit - 9000, 'x'));
@@ -68,8 +59,7 @@ TEST(Github, KeepsTheWholeSummaryBelowTheLimit) {
   EXPECT_THAT(contents(file), EndsWith("the JSON record has them all.\n\n"));
 }
 
-TEST(Github, LeavesAFullSummaryAndSaysSo) {
-  const Workplace place;
+TEST_F(Github, LeavesAFullSummaryAndSaysSo) {
   const std::string full(reports::markdown_limit - 100, 'x');
   const std::string file = place.write("summary", full);
   EXPECT_THAT(tell_github(failing(), of("true", file)), HasSubstr("summary is full"));

@@ -1,16 +1,12 @@
 // `needs:` of a suite: without a program its tests are skipped, and nothing of it is prepared.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <regex>
-
 #include "harness/record/merge.h"
 #include "harness/suite/run_options.h"
 #include "reports/formats/json.h"
 #include "reports/formats/read_json.h"
 #include "tests/harness/refusal.h"
 #include "tests/harness/running.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
@@ -37,7 +33,9 @@ tests:
   - {claim: mean(normal) == 0}
 )";
 
-TEST(Needs, SkipTheTestsOfASuiteThatLacksAProgram) {
+using Needs = Placed;
+
+TEST_F(Needs, SkipTheTestsOfASuiteThatLacksAProgram) {
   const reports::Record record = run_text(renderer);
   ASSERT_EQ(record.suites[0].tests.size(), 2u);
   for (const reports::Test& test : record.suites[0].tests) {
@@ -49,8 +47,7 @@ TEST(Needs, SkipTheTestsOfASuiteThatLacksAProgram) {
   EXPECT_EQ(exit_code(record, InconclusivePolicy::report), 77);
 }
 
-TEST(Needs, LeaveOtherSuitesAsTheyAre) {
-  const Workplace place;
+TEST_F(Needs, LeaveOtherSuitesAsTheyAre) {
   const std::vector<std::string> files{place.write("renderer.yaml", renderer),
                                        place.write("normal.yaml", normal)};
   const reports::Record record = run_files(files);
@@ -60,8 +57,7 @@ TEST(Needs, LeaveOtherSuitesAsTheyAre) {
   EXPECT_EQ(reports::read_json(reports::json(record), "record"), record);
 }
 
-TEST(Needs, MergeToTheRecordOfOneRun) {
-  const Workplace place;
+TEST_F(Needs, MergeToTheRecordOfOneRun) {
   const std::vector<std::string> files{place.write("renderer.yaml", renderer),
                                        place.write("normal.yaml", normal)};
   std::vector<ShardFile> shards;
@@ -73,8 +69,7 @@ TEST(Needs, MergeToTheRecordOfOneRun) {
   EXPECT_EQ(numbers_of(merge(shards)), numbers_of(run_files(files)));
 }
 
-TEST(Needs, IsAListOfPrograms) {
-  const Workplace place;
+TEST_F(Needs, IsAListOfPrograms) {
   const std::string without = std::regex_replace(normal, std::regex("needs.*\n"), "");
   for (const char* wrong : {"needs: blender", "needs: []", "needs: {blender: 3}"}) {
     const std::string file = place.write("suite.yaml", std::string(wrong) + "\n" + without);

@@ -1,8 +1,6 @@
 #include "harness/record/replay.h"
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "harness/base/record_file.h"
 #include "harness/command/commands.h"
@@ -11,28 +9,20 @@
 #include "reports/formats/json.h"
 #include "tests/harness/refusal.h"
 #include "tests/harness/running.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
 
-using testing::HasSubstr;
-
-struct Said {
-  int code;
-  std::string text;
-};
-
 Said said(const ReplayArguments& arguments) {
-  testing::internal::CaptureStdout();
-  int code = 2;
   std::string trouble;
-  try {
-    code = replay(arguments);
-  } catch (const std::exception& error) {
-    trouble = error.what();
-  }
-  std::fflush(stdout);
-  return {code, testing::internal::GetCapturedStdout() + trouble};
+  Said said = said_by([&] {
+    int code = 2;
+    trouble = thrown([&] { code = replay(arguments); });
+    return code;
+  });
+  if (said.code == 2) said.text += trouble;
+  return said;
 }
 
 constexpr const char* suite = R"(suite: replayed
@@ -77,16 +67,39 @@ void expect_same_numbers(const std::string& file, const std::string& test) {
   EXPECT_THAT(now.text, HasSubstr("the same numbers as recorded"));
 }
 
-TEST(Replay, GivesTheSameNumbersForEveryKindOfClaim) {
-  const Workplace place;
+using Replays = Placed;
+
+TEST_F(Replays, GivesTheSameNumbersForEveryKindOfClaim) {
   const std::string file = recorded(place, {.seed = 5});
   const reports::Record record = read_record(file);
   for (const reports::Test& test : record.suites[0].tests) expect_same_numbers(file, test.id);
 }
 
+// Pairs share random numbers, also through others, and other claims on them draw these.
+TEST_F(Replays, OfPairsDrawsTheNumbersThatTheyShare) {
+  const std::string size = "width: 6, height: 4, primaries: 2}";
+  const reports::Record record = run_files({place.write("suite.yaml", R"(suite: pairs
+estimators:
+  a: {plugin: path_tracing/image, integrator: multiple, )" + size + R"(
+  b: {plugin: path_tracing/image, integrator: bsdf, )" + size + R"(
+  c: {plugin: path_tracing/image, integrator: light, )" + size + R"(
+tests:
+  - {name: first, claim: mean(a) == mean(b), paired: true, secondaries: 16}
+  - {name: second, claim: mean(b) == mean(c), paired: true, secondaries: 16}
+  - {name: law, claim: distribution(b) == distribution(c), secondaries: 16}
+  - {name: alone, claim: mean(c) == 0.5, secondaries: 16}
+)")});
+  const std::string file = place.write("run.json", reports::json(record));
+  const reports::Record read = read_record(file);
+  for (const reports::Test& test : read.suites[0].tests) {
+    EXPECT_EQ(test.paired, test.name == "first" || test.name == "second");
+    expect_same_numbers(file, test.id);
+    EXPECT_EQ(said({.record = file, .test = test.id, .observation = 15}).code, 0);
+  }
+}
+
 // Its own data's gate makes every look count for nothing, in the run as in the replay.
-TEST(Replay, OfASlopeThatLiesOnNoPowerLawIsTheSame) {
-  const Workplace place;
+TEST_F(Replays, OfASlopeThatLiesOnNoPowerLawIsTheSame) {
   const reports::Record record = run_files({place.write("suite.yaml", R"(suite: bent
 estimators:
   ratio: {plugin: analytic/ratio}
@@ -101,8 +114,7 @@ tests:
   for (const char* test : {"bent", "forced"}) expect_same_numbers(file, test);
 }
 
-TEST(Replay, OfSecondsComparesWhatRepeats) {
-  const Workplace place;
+TEST_F(Replays, OfSecondsComparesWhatRepeats) {
   const reports::Record record = run_files({place.write("suite.yaml", R"(suite: timed
 estimators:
   one: {plugin: analytic/exponential_uniform}
@@ -115,21 +127,18 @@ tests:
   EXPECT_THAT(now.text, HasSubstr("seconds do not repeat"));
 }
 
-TEST(Replay, FindsATestByItsName) {
-  const Workplace place;
+TEST_F(Replays, FindsATestByItsName) {
   EXPECT_EQ(said({.record = recorded(place), .test = "mean"}).code, 0);
 }
 
-TEST(Replay, UsesTheSeedOfTheTestsOwnSuite) {
-  const Workplace place;
+TEST_F(Replays, UsesTheSeedOfTheTestsOwnSuite) {
   const std::string one = place.write("one.yaml", "seed: 3\n" + std::string(suite));
   const std::string two = place.write("two.yaml", "seed: 4\n" + std::string(suite));
   const std::string file = place.write("run.json", reports::json(run_files({one, two})));
   EXPECT_EQ(said({.record = file, .test = "two/mean"}).code, 0);
 }
 
-TEST(Replay, PrintsTheValueThatWasDrawn) {
-  const Workplace place;
+TEST_F(Replays, PrintsTheValueThatWasDrawn) {
   const std::string file = recorded(place);
   const PreparedEstimator uniform =
       prepare({.name = "uniform", .plugin = "analytic/exponential_uniform"}, ".");
@@ -140,15 +149,13 @@ TEST(Replay, PrintsTheValueThatWasDrawn) {
   EXPECT_THAT(now.text, HasSubstr(fmt::format("observation 17: {}\n", value[0])));
 }
 
-TEST(Replay, OfADrawShowsItsPoint) {
-  const Workplace place;
+TEST_F(Replays, OfADrawShowsItsPoint) {
   const Said now = said({.record = recorded(place), .test = "cells", .observation = 5});
   EXPECT_THAT(now.text, HasSubstr("\n  draw of `direction`: point ("));
   EXPECT_EQ(now.code, 0) << now.text;
 }
 
-TEST(Replay, DrawsTheVeryObservationThatIsNotANumber) {
-  const Workplace place;
+TEST_F(Replays, DrawsTheVeryObservationThatIsNotANumber) {
   const std::string file = recorded(place);
   const std::string message = test_named(read_record(file), "spoilt").message;
   const std::string before = "the first is observation ";
@@ -161,8 +168,7 @@ TEST(Replay, DrawsTheVeryObservationThatIsNotANumber) {
   EXPECT_EQ(now.code, 0);
 }
 
-TEST(Replay, SaysHowManyObservationsAreNotFinite) {
-  const Workplace place;
+TEST_F(Replays, SaysHowManyObservationsAreNotFinite) {
   reports::Record record = read_record(recorded(place));
   const reports::Test test = test_named(record, "spoilt");
   const std::string line = fmt::format("{:<27} {};", "not finite", test.samples[0].nonfinite);
@@ -180,23 +186,21 @@ TEST(Replay, SaysHowManyObservationsAreNotFinite) {
   EXPECT_THAT(then.text, HasSubstr("(recorded: 1)"));
 }
 
-TEST(Replay, HoldsOneObservationAgainstTheRecordedRange) {
-  const Workplace place;
+TEST_F(Replays, HoldsOneObservationAgainstTheRecordedRange) {
   reports::Record record = read_record(recorded(place));
   const std::string file = place.write("run.json", reports::json(record));
   const Said now = said({.record = file, .test = "mean", .observation = 17});
   EXPECT_EQ(now.code, 0);
   EXPECT_THAT(now.text, HasSubstr("  lies in ["));
-  record.suites[0].tests[0].samples[0].minimum = 1e6;
-  record.suites[0].tests[0].samples[0].maximum = 2e6;
+  record.suites[0].tests[0].samples[0].min = 1e6;
+  record.suites[0].tests[0].samples[0].max = 2e6;
   const std::string tampered = place.write("tampered.json", reports::json(record));
   const Said then = said({.record = tampered, .test = "mean", .observation = 17});
   EXPECT_EQ(then.code, 1);
   EXPECT_THAT(then.text, HasSubstr("NOT as recorded: lies outside [1"));
 }
 
-TEST(Replay, OfOneObservationKnowsTheTwoSidesOfOneEstimatorApart) {
-  const Workplace place;
+TEST_F(Replays, OfOneObservationKnowsTheTwoSidesOfOneEstimatorApart) {
   const std::string twice = place.write("twice.yaml", R"(suite: twice
 estimators:
   one: {plugin: analytic/normal, primaries: 1}
@@ -210,8 +214,7 @@ tests:
   }
 }
 
-TEST(Replay, NoticesARecordThatWasTamperedWith) {
-  const Workplace place;
+TEST_F(Replays, NoticesARecordThatWasTamperedWith) {
   reports::Record record = read_record(recorded(place));
   record.suites[0].tests[0].samples[0].mean = 6.5;
   const std::string file = place.write("tampered.json", reports::json(record));
@@ -220,20 +223,18 @@ TEST(Replay, NoticesARecordThatWasTamperedWith) {
   EXPECT_THAT(now.text, HasSubstr("(recorded: 6.5)"));
 }
 
-TEST(Replay, SuggestsTheTestThatWasMeant) {
-  const Workplace place;
+TEST_F(Replays, SuggestsTheTestThatWasMeant) {
   const std::string file = recorded(place);
   const std::string text = refusal([&] { replay({.record = file, .test = "suite/meen"}); });
   EXPECT_THAT(text, HasSubstr("did you mean `suite/mean`?"));
 }
 
-TEST(Replay, SaysThatARunIsNotThere) {
+TEST_F(Replays, SaysThatARunIsNotThere) {
   EXPECT_EQ(refusal([] { replay({.record = "none.json", .test = "suite/mean"}); }),
             "there is no such file; `--report json=FILE` saves a run that can be read");
 }
 
-TEST(Replay, NamesTestsWhereNoneIsNear) {
-  const Workplace place;
+TEST_F(Replays, NamesTestsWhereNoneIsNear) {
   const std::string file = recorded(place);
   const auto refused = [&](const std::string& test) {
     return refusal([&] { replay({.record = file, .test = test}); });
@@ -246,8 +247,7 @@ TEST(Replay, NamesTestsWhereNoneIsNear) {
             "`suite/means`, `suite/one stream`, …");
 }
 
-TEST(Replay, AsksWhichOfTwoTestsOfOneNameIsMeant) {
-  const Workplace place;
+TEST_F(Replays, AsksWhichOfTwoTestsOfOneNameIsMeant) {
   const std::string one = place.write("one.yaml", suite);
   const std::string two = place.write("two.yaml", suite);
   const std::string file = place.write("run.json", reports::json(run_files({one, two})));
@@ -255,16 +255,14 @@ TEST(Replay, AsksWhichOfTwoTestsOfOneNameIsMeant) {
             "2 tests have the name `mean`; give the id of one: `one/mean`, `two/mean`");
 }
 
-TEST(Replay, RefusesAnObservationThatWasNotDrawn) {
-  const Workplace place;
+TEST_F(Replays, RefusesAnObservationThatWasNotDrawn) {
   const std::string file = recorded(place);
   const std::string text =
       refusal([&] { replay({.record = file, .test = "zero", .observation = 16384}); });
   EXPECT_THAT(text, HasSubstr("the test used 0 to 16383"));
 }
 
-TEST(Replay, FindsRecordedDataFromTheSuitesFolder) {
-  const Workplace place;
+TEST_F(Replays, FindsRecordedDataFromTheSuitesFolder) {
   place.write("data.txt", "# columns: a b\n1 2\n3 4\n5 7\n");
   const std::string file =
       place.write("run.json", reports::json(run_files({place.write("data.yaml", R"(suite: data
@@ -286,8 +284,7 @@ tests:
   }
 }
 
-TEST(Replay, SaysThatTheNumbersOfAnInvalidTestDecideNothing) {
-  const Workplace place;
+TEST_F(Replays, SaysThatTheNumbersOfAnInvalidTestDecideNothing) {
   std::string rows;
   for (int i = 0; i < 50; ++i) rows += fmt::format("{}\n", (i * 37 % 101) * (i * 53 % 103) % 211);
   place.write("rows.txt", rows);

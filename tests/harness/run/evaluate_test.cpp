@@ -1,24 +1,18 @@
 #include "harness/run/evaluate.h"
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
 
 #include "harness/families/families.h"
 #include "harness/plan/looks.h"
 #include "harness/run/holm.h"
 #include "tests/harness/normal_evidence.h"
 #include "tests/harness/running.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
 
 using reports::Verdict;
-using testing::DoubleNear;
-using testing::HasSubstr;
-using testing::Pointwise;
 
 constexpr double alpha = 0.05;
 

@@ -3,19 +3,16 @@
 #include "harness/run/image_memory.h"
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "harness/suite/suite.h"
 #include "harness/theta/ask.h"
 #include "tests/estimators/exr.h"
 #include "tests/harness/refusal.h"
 #include "tests/harness/running.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
-
-using ::testing::HasSubstr;
 
 constexpr int pictures = 20;
 constexpr double elements = 8 * 6 * 3;

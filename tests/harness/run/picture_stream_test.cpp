@@ -3,22 +3,18 @@
 #include "harness/run/picture_stream.h"
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <limits>
 
 #include "harness/run/planned_run.h"
 #include "harness/theta/ask.h"
 #include "tests/estimators/exr.h"
 #include "tests/harness/running.h"
 #include "tests/philox.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
 
 using reports::Verdict;
-using ::testing::HasSubstr;
 
 // So wide that 64 of them are taken in three windows.
 constexpr int width = 172;
@@ -46,8 +42,8 @@ void expect_same_findings(const reports::Test& one, const reports::Test& other) 
   for (std::size_t i = 0; i < one.samples.size(); ++i) {
     EXPECT_EQ(one.samples[i].mean, other.samples[i].mean);
     EXPECT_EQ(one.samples[i].variance, other.samples[i].variance);
-    EXPECT_EQ(one.samples[i].minimum, other.samples[i].minimum);
-    EXPECT_EQ(one.samples[i].maximum, other.samples[i].maximum);
+    EXPECT_EQ(one.samples[i].min, other.samples[i].min);
+    EXPECT_EQ(one.samples[i].max, other.samples[i].max);
     EXPECT_EQ(one.samples[i].nonzero, other.samples[i].nonzero);
     EXPECT_EQ(one.samples[i].cost.samples, other.samples[i].cost.samples);
   }

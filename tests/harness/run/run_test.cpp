@@ -1,21 +1,16 @@
 #include "harness/command/run.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "estimators/core/text_pattern.h"
 #include "harness/record/output.h"
 #include "reports/formats/json.h"
 #include "tests/harness/refusal.h"
 #include "tests/harness/running.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
 
 using reports::Verdict;
-using testing::HasSubstr;
 
 constexpr const char* estimators = R"(suite: good
 estimators:
@@ -40,9 +35,10 @@ constexpr const char* tests = R"(  - {claim: mean(uniform) == analytic, detect: 
   - {name: no cosine, claim: mean(no_cosine) == analytic, detect: 5%, expect: fail}
 )";
 
+using Runs = Placed;
+
 // A row of a file by its line, a file of a command by its name.
-TEST(Run, ANumberThatIsNotFiniteIsNamedWithItsFile) {
-  const Workplace place;
+TEST_F(Runs, ANumberThatIsNotFiniteIsNamedWithItsFile) {
   place.write("rows.txt", "# columns: a\n1\n\nnan\n2\n");
   place.write("render.sh", "echo nan >$3\n");
   const std::string suite =
@@ -87,7 +83,7 @@ void expect_same_sample(const reports::Test& one, const reports::Test& other) {
   }
 }
 
-TEST(Run, OfAGoodSuiteIsGood) {
+TEST_F(Runs, OfAGoodSuiteIsGood) {
   const reports::Record record = run_text(good());
   for (const reports::Test& test : record.suites[0].tests) {
     EXPECT_TRUE(test.ok) << test.name << ": " << test.message;
@@ -96,16 +92,14 @@ TEST(Run, OfAGoodSuiteIsGood) {
   EXPECT_EQ(exit_code(record, InconclusivePolicy::report), 0);
 }
 
-TEST(Run, HasTheSameBitsOnEveryNumberOfThreads) {
-  const Workplace place;
+TEST_F(Runs, HasTheSameBitsOnEveryNumberOfThreads) {
   const std::string file = place.write("suite.yaml", good());
   const std::string one = numbers_of(run_files({file}, {.threads = 1}));
   EXPECT_EQ(numbers_of(run_files({file}, {.threads = 2})), one);
   EXPECT_EQ(numbers_of(run_files({file}, {.threads = 5})), one);
 }
 
-TEST(Run, UnderAFilterKeepsEveryRemainingTestsNumbers) {
-  const Workplace place;
+TEST_F(Runs, UnderAFilterKeepsEveryRemainingTestsNumbers) {
   const std::string file = place.write("suite.yaml", good());
   const reports::Record whole = run_files({file});
   for (const char* filter : {"*mean(area)*", "*distribution*", "*/no cosine", "*variance*"}) {
@@ -120,8 +114,7 @@ TEST(Run, UnderAFilterKeepsEveryRemainingTestsNumbers) {
   }
 }
 
-TEST(Run, InShardsIsTheWholeInParts) {
-  const Workplace place;
+TEST_F(Runs, InShardsIsTheWholeInParts) {
   const std::string file = place.write("suite.yaml", good());
   const reports::Record whole = run_files({file});
   std::size_t seen = 0;
@@ -135,8 +128,24 @@ TEST(Run, InShardsIsTheWholeInParts) {
   EXPECT_EQ(seen, whole.suites[0].tests.size());
 }
 
+// A mutant has the stream of its original, and draws it by itself.
+TEST_F(Runs, InShardsDealsAMutantApartFromItsOriginal) {
+  const std::string file = place.write("suite.yaml", R"(suite: two
+estimators:
+  sound: {plugin: luminaire/area, scene: triangle, primaries: 64}
+  broken: {plugin: mutants/no_cosine, scene: triangle, primaries: 64}
+tests:
+  - {claim: mean(sound) == analytic, secondaries: 1000}
+  - {claim: mean(broken) == analytic, secondaries: 1000, expect: fail}
+)");
+  for (unsigned shard = 1; shard <= 2; ++shard) {
+    const reports::Record part = run_files({file}, {.shard = std::pair(shard, 2U)});
+    EXPECT_EQ(part.suites[0].tests.size(), 1U);
+  }
+}
+
 // Without margins n does not depend on the share of alpha either.
-TEST(Run, KeepsATestsNumbersWhenOthersAreAdded) {
+TEST_F(Runs, KeepsATestsNumbersWhenOthersAreAdded) {
   const std::string few =
       "  - {claim: mean(uniform) == analytic}\n"
       "  - {claim: variance(normal) == analytic}\n";
@@ -151,8 +160,7 @@ TEST(Run, KeepsATestsNumbersWhenOthersAreAdded) {
   }
 }
 
-TEST(Run, KeepsATestsNumbersWhenASuiteIsRunBesideIt) {
-  const Workplace place;
+TEST_F(Runs, KeepsATestsNumbersWhenASuiteIsRunBesideIt) {
   const std::string one = place.write("one.yaml", good());
   const std::string two = place.write("two.yaml", good() + "  - {claim: mean(uniform) <= 7}\n");
   const reports::Record alone = run_files({one});
@@ -163,8 +171,7 @@ TEST(Run, KeepsATestsNumbersWhenASuiteIsRunBesideIt) {
 }
 
 // Both name `data.txt`, each beside itself: the numbers of one are not those of the other.
-TEST(Run, KeepsFilesOfOneNameInTwoFoldersApart) {
-  const Workplace place;
+TEST_F(Runs, KeepsFilesOfOneNameInTwoFoldersApart) {
   const std::string text =
       "suite: data\nestimators:\n  data: {plugin: recorded, file: data.txt}\n"
       "tests:\n  - {claim: mean(data) == 2}\n";
@@ -182,7 +189,7 @@ std::string refused(const std::string& test, const RunOptions& options = {}) {
   return refusal([&] { run_text(estimators + test, options); });
 }
 
-TEST(Run, RefusesToCoarsenDetectBelowWhatIsAllowed) {
+TEST_F(Runs, RefusesToCoarsenDetectBelowWhatIsAllowed) {
   const std::string test = "  - {claim: mean(normal) == 2, allow: 1%, detect: 4%}\n";
   const char* const words = "brings `detect` down to `allow`";
   EXPECT_THAT(refused(test, {.coarsen = 0.2}), HasSubstr(words));
@@ -190,7 +197,7 @@ TEST(Run, RefusesToCoarsenDetectBelowWhatIsAllowed) {
   EXPECT_EQ(refused(test, {.coarsen = 0.75}), "(nothing was refused)");
 }
 
-TEST(Run, RefusesADetectThatWouldTakeDaysAndSaysHowMuch) {
+TEST_F(Runs, RefusesADetectThatWouldTakeDaysAndSaysHowMuch) {
   const std::string text = refused("  - {claim: mean(normal) == 2, detect: 1e-7}\n");
   const std::string words = "this claim would take about ";
   ASSERT_NE(text.find(words), std::string::npos) << text;
@@ -204,7 +211,7 @@ TEST(Run, RefusesADetectThatWouldTakeDaysAndSaysHowMuch) {
 }
 
 // A quarter and three quarters of 40000 primaries, whichever tests run.
-TEST(Run, SplitsTheSuitesBudgetByWeight) {
+TEST_F(Runs, SplitsTheSuitesBudgetByWeight) {
   const std::string text =
       "suite: budget\nbudget: 40000\nestimators:\n"
       "  normal: {plugin: analytic/normal, primaries: 1}\ntests:\n"
@@ -218,7 +225,7 @@ TEST(Run, SplitsTheSuitesBudgetByWeight) {
   EXPECT_FALSE(both.suites[0].timed);
 }
 
-TEST(Run, StopsWhereTheSuitesSecondsAreSpent) {
+TEST_F(Runs, StopsWhereTheSuitesSecondsAreSpent) {
   const reports::Record record = run_text(
       "suite: budget\nbudget: 0.001s\nestimators:\n  normal: {plugin: analytic/normal, primaries: "
       "1}\ntests:\n  - {name: one, claim: mean(normal) == 0, detect: 0.001}\n");
@@ -228,7 +235,7 @@ TEST(Run, StopsWhereTheSuitesSecondsAreSpent) {
   EXPECT_TRUE(record.suites[0].timed);
 }
 
-TEST(Run, SeedsChangeTheNumbers) {
+TEST_F(Runs, SeedsChangeTheNumbers) {
   const reports::Record one = run_text(good(), {.seed = 1});
   const reports::Record two = run_text(good(), {.seed = 2});
   EXPECT_EQ(one.seed, 1);
@@ -239,27 +246,26 @@ TEST(Run, SeedsChangeTheNumbers) {
   }
 }
 
-TEST(Run, TakesTheSuitesSeedUnlessGivenAnother) {
+TEST_F(Runs, TakesTheSuitesSeedUnlessGivenAnother) {
   const std::string seeded = "seed: 7\n" + good();
   EXPECT_EQ(run_text(seeded).suites[0].seed, 7);
   EXPECT_EQ(run_text(seeded, {.seed = 3}).suites[0].seed, 3);
   EXPECT_EQ(run_text(good()).suites[0].seed, 1);
 }
 
-TEST(Run, AlphaAndCoarsenReplaceTheSuites) {
+TEST_F(Runs, AlphaAndCoarsenReplaceTheSuites) {
   const reports::Record record = run_text(good(), {.alpha = 0.05, .coarsen = 2});
   EXPECT_EQ(record.suites[0].alpha, 0.05);
   EXPECT_DOUBLE_EQ(*test_named(record, "mean(uniform) == analytic").detect, 0.04);
 }
 
-TEST(Run, RefusesBeforeAnythingIsSampled) {
+TEST_F(Runs, RefusesBeforeAnythingIsSampled) {
   struct Counter final : Progress {
     int phases = 0;
     void begin(const Phase&) override { ++phases; }
     void advance(std::uint64_t) override {}
     void end() override {}
   } counter;
-  const Workplace place;
   const Suite suite = load_suite(place.write(
       "suite.yaml", good() + "  - {claim: variance(normal) == 1, name: bad, test: welch}\n"));
   EXPECT_THROW(run({suite}, {}, counter), InputError);
@@ -282,7 +288,7 @@ int code(std::vector<reports::Test> all, InconclusivePolicy policy = Inconclusiv
   return exit_code(record, policy);
 }
 
-TEST(Run, ExitCodesMeanWhatTheyMean) {
+TEST_F(Runs, ExitCodesMeanWhatTheyMean) {
   const reports::Test pass = outcome_of(Verdict::pass);
   EXPECT_EQ(code({pass, outcome_of(Verdict::fail, Verdict::fail)}), 0);
   for (const Verdict bad : {Verdict::fail, Verdict::invalid, Verdict::error}) {
@@ -296,14 +302,14 @@ TEST(Run, ExitCodesMeanWhatTheyMean) {
   EXPECT_EQ(code({outcome_of(Verdict::skipped), outcome_of(Verdict::skipped)}), 77);
 }
 
-TEST(Run, InconclusiveIsJudgedAsAsked) {
+TEST_F(Runs, InconclusiveIsJudgedAsAsked) {
   const reports::Test undecided = outcome_of(Verdict::inconclusive);
   EXPECT_EQ(code({undecided}, InconclusivePolicy::fail), 1);
   EXPECT_EQ(code({undecided}, InconclusivePolicy::pass), 0);
 }
 
 // The p-value of such variances is no double any more.
-TEST(Run, ComparesEstimatorsByLogarithmsThatDoNotUnderflow) {
+TEST_F(Runs, ComparesEstimatorsByLogarithmsThatDoNotUnderflow) {
   const reports::Record record = run_text(R"(suite: s
 estimators:
   narrow: {plugin: analytic/normal, primaries: 1}
@@ -317,7 +323,7 @@ tests:
   EXPECT_NEAR(*pair.log10_mean_p, std::log10(*pair.mean_p), 1e-9);
 }
 
-TEST(Run, GlobsMatchTheWholeId) {
+TEST_F(Runs, GlobsMatchTheWholeId) {
   EXPECT_TRUE(matches("*", "suite/test"));
   EXPECT_TRUE(matches("suite/*", "suite/a test"));
   EXPECT_TRUE(matches("s?ite/*test", "suite/a test"));

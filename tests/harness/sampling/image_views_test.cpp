@@ -2,13 +2,10 @@
 
 #include "harness/sampling/image_views.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
-
-using ::testing::ElementsAre;
 
 const std::vector<std::vector<double>> observations{{1, 2, 3, 4}, {5, 6, 7, 8}};
 const std::vector<float> one{1, 2, 3};

@@ -1,13 +1,9 @@
 #include "harness/sampling/kept_sums.h"
 
-#include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
-#include <cmath>
-#include <limits>
-#include <vector>
-
 #include "tests/philox.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {

@@ -1,16 +1,10 @@
 #include "harness/sampling/pool.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <stdexcept>
-
 #include "harness/base/progress.h"
 #include "harness/pilot/pilot.h"
-#include "harness/sampling/scheduler.h"
+#include "harness/sampling/executor.h"
 #include "stats/basics/for_each.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
@@ -72,7 +66,7 @@ std::shared_ptr<Pool> drawn(const Wanted& wanted) {
   pool->plan({{.histogram_low = 0, .histogram_high = 1, .keep = 700}, {.keep = 20}});
   for (const std::uint64_t count : wanted.prefixes) pool->request(count);
   Silence silence;
-  draw_all({pool}, {.threads = wanted.threads}, silence);
+  draw_all({pool}, {.executor = threads(wanted.threads)}, silence);
   return pool;
 }
 
@@ -133,7 +127,7 @@ TEST(Pool, OfWhichSecondsAreComparedAreDrawnSideBySide) {
     pools.back()->request(name == 'a' ? 200000 : 50000);
   }
   Silence silence;
-  draw_all(pools, {.threads = 1}, silence);
+  draw_all(pools, {.executor = threads(1)}, silence);
   ASSERT_EQ(order.size(), 250000U);
   double drawn_a = 0;
   double drawn_b = 0;
@@ -172,7 +166,7 @@ std::shared_ptr<Pool> marked(std::uint64_t count) {
 void draw_up_to(std::uint64_t count, const std::shared_ptr<Pool>& pool, unsigned threads) {
   Silence silence;
   pool->request(count);
-  draw_all({pool}, {.threads = threads}, silence);
+  draw_all({pool}, {.executor = harness::threads(threads)}, silence);
 }
 
 // Blocks hold 2048 observations of 5 primaries: prefixes inside, at and beyond their ends.
@@ -296,7 +290,7 @@ TEST(Pool, TakesWhatIsKnownWithoutDrawingIt) {
   const auto drawn_from = [](const std::shared_ptr<Pool>& pool) {
     pool->request(30);
     Silence silence;
-    draw_all({pool}, {.threads = 1}, silence);
+    draw_all({pool}, {.executor = threads(1)}, silence);
     return pool;
   };
   const auto pool_of = [](Behaviour behaviour) {
@@ -323,7 +317,7 @@ TEST(Pool, PicturesOfFilesHaveTheSumsOfOneByOne) {
   const auto drawn_from = [](const std::shared_ptr<Pool>& pool, unsigned threads) {
     for (const std::uint64_t count : {20U, 30U}) pool->request(count);
     Silence silence;
-    draw_all({pool}, {.threads = threads}, silence);
+    draw_all({pool}, {.executor = harness::threads(threads)}, silence);
     return pool;
   };
   const auto pool_of = [](Behaviour behaviour) {

@@ -1,22 +1,17 @@
 #include "harness/sampling/recorded_run.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "harness/command/commands.h"
 #include "harness/record/replay.h"
 #include "reports/formats/json.h"
 #include "reports/record/file.h"
 #include "tests/harness/refusal.h"
 #include "tests/harness/running.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
 
 using reports::Verdict;
-using testing::HasSubstr;
 
 // Drawn once: moments of primaries, of means of 64, of two channels, of an image, and rows.
 constexpr const char* baseline = R"(suite: baseline
@@ -82,7 +77,7 @@ TEST_F(RecordedRunTest, HasTheMomentsOfItsLargestTest) {
   EXPECT_NEAR(*now.variance, *then.variance, 1e-14);
   EXPECT_NEAR(*now.skewness, *then.skewness, 1e-12);
   EXPECT_NEAR(*now.kurtosis, *then.kurtosis, 1e-12);
-  EXPECT_EQ(now.minimum, then.minimum);
+  EXPECT_EQ(now.min, then.min);
   EXPECT_EQ(test.samples[0].secondaries, 20000);
 }
 

@@ -1,16 +1,11 @@
 #include "harness/suite/selection.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "harness/command/commands.h"
 #include "tests/harness/running.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
-
-using testing::ElementsAre;
-using testing::IsEmpty;
 
 const char* const text = R"(suite: selection
 estimators: {normal: {plugin: analytic/normal, mean: 2, primaries: 1}}

@@ -1,7 +1,7 @@
-#include <gtest/gtest.h>
 
 #include "harness/suite/suite.h"
 #include "tests/harness/refusal.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {

@@ -3,15 +3,7 @@
 #include "harness/suite/suite_images.h"
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <png.h>
-
-#include <algorithm>
-#include <cmath>
-#include <fstream>
-#include <functional>
-#include <limits>
 
 #include "harness/command/cli.h"
 #include "harness/command/run.h"
@@ -19,12 +11,12 @@
 #include "tests/harness/refusal.h"
 #include "tests/harness/running.h"
 #include "tests/philox.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
 
 using reports::Verdict;
-using ::testing::HasSubstr;
 
 // Pictures of 6 x 5 pixels of one normal law.
 void write_pictures(const Workplace& place, const std::string& name, int count) {
@@ -58,9 +50,10 @@ reports::Test tested(const ImagesArguments& given) {
 
 std::string parameters_of(const Suite& suite) { return suite.estimators[1].parameters.canonical(); }
 
+using SuiteImages = Placed;
+
 // False alarm 0.01: the files are the same whatever the seed.
-TEST(SuiteImages, TwoStacksAreHeldAgainstEachOther) {
-  const Workplace place;
+TEST_F(SuiteImages, TwoStacksAreHeldAgainstEachOther) {
   write_pictures(place, "a", 20);
   write_pictures(place, "b", 24);
   const reports::Test test = tested(arguments(place));
@@ -71,8 +64,7 @@ TEST(SuiteImages, TwoStacksAreHeldAgainstEachOther) {
 }
 
 // False alarm 0.01 each.
-TEST(SuiteImages, OnePictureIsExactOrHasTheErrorThatItsChannelsTell) {
-  const Workplace place;
+TEST_F(SuiteImages, OnePictureIsExactOrHasTheErrorThatItsChannelsTell) {
   write_pictures(place, "a", 20);
   ImagesArguments given = arguments(place);
   given.reference = place.file("ref.exr");
@@ -87,8 +79,7 @@ TEST(SuiteImages, OnePictureIsExactOrHasTheErrorThatItsChannelsTell) {
   EXPECT_EQ(tested(given).verdict, Verdict::pass);
 }
 
-TEST(SuiteImages, AMarginMakesAProof) {
-  const Workplace place;
+TEST_F(SuiteImages, AMarginMakesAProof) {
   write_pictures(place, "a", 20);
   write_pictures(place, "b", 20);
   ImagesArguments given = arguments(place);
@@ -100,8 +91,7 @@ TEST(SuiteImages, AMarginMakesAProof) {
   EXPECT_THAT(refusal([&] { suite_of_images(given); }), HasSubstr("--within says itself"));
 }
 
-TEST(SuiteImages, WhatCannotBeTestedIsRefusedWithTheMend) {
-  const Workplace place;
+TEST_F(SuiteImages, WhatCannotBeTestedIsRefusedWithTheMend) {
   write_pictures(place, "a", 15);
   ImagesArguments given = arguments(place);
   EXPECT_THAT(refusal([&] { suite_of_images(given); }),
@@ -114,7 +104,7 @@ TEST(SuiteImages, WhatCannotBeTestedIsRefusedWithTheMend) {
   EXPECT_THAT(refusal([&] { suite_of_images(given); }), HasSubstr("is of a reference that is one"));
 }
 
-TEST(SuiteImages, TheCommandLineSaysHowToRunItAgain) {
+TEST_F(SuiteImages, TheCommandLineSaysHowToRunItAgain) {
   const Command command =
       parse_command_line({"images", "--candidate", "a*.exr", "--reference", "r.exr", "--channels",
                           "L.Debug Sample Count.X", "--pixels", "independent", "--alpha", "0.05"});
@@ -235,9 +225,10 @@ float noisy(int, int, const std::string&, double noise) {
   return static_cast<float>(0.3 + 0.05 * noise);
 }
 
+using PictureFiles = Placed;
+
 // A background without noise, and renders of the same seeds: rounding alone tells them apart.
-TEST(PictureFiles, HalvesAgainstFloatsOfTheSameLawPass) {
-  const Workplace place;
+TEST_F(PictureFiles, HalvesAgainstFloatsOfTheSameLawPass) {
   const Texel half_constant = [](int x, int, const std::string&, double noise) {
     return x < 3 ? 0.3F : static_cast<float>(0.3 + 0.05 * noise);
   };
@@ -245,15 +236,38 @@ TEST(PictureFiles, HalvesAgainstFloatsOfTheSameLawPass) {
   write_stack(place, "b", {}, half_constant);
   EXPECT_EQ(answer(place).verdict, Verdict::pass);
   write_stack(place, "b", {.seed = 'a'}, half_constant);
-  EXPECT_EQ(answer(place).verdict, Verdict::pass);
+  EXPECT_THAT(answer(place).message, HasSubstr("or test their differences with `--paired`"));
+  EXPECT_EQ(answer(place, {"--paired"}).verdict, Verdict::pass);
   write_stack(place, "b", {}, [&](int x, int y, const std::string& channel, double noise) {
     return 1.1F * half_constant(x, y, channel, noise);
   });
   EXPECT_EQ(answer(place).verdict, Verdict::fail);
 }
 
-TEST(PictureFiles, AnAlphaThatDiffersIsFound) {
-  const Workplace place;
+// Renders differ in other channels.
+TEST_F(PictureFiles, OfALayerWithoutNoiseAreComparedExactly) {
+  const auto depth_with = [](float dent) {
+    return [=](int x, int y, const std::string& channel, double noise) {
+      const float depth = static_cast<float>(5 + x) + (x == 4 && y == 3 ? dent : 0);
+      return channel == "Z" ? depth : noisy(x, y, channel, noise);
+    };
+  };
+  const Kind kind{.channels = {"B", "G", "R", "Z"}};
+  write_stack(place, "a", kind, depth_with(0));
+  write_stack(place, "b", kind, depth_with(0));
+  for (const char* how : {"--means", "--paired", "--law"}) {
+    EXPECT_EQ(answer(place, {"--channels", "Z", how}).verdict, Verdict::pass) << how;
+  }
+  write_stack(place, "b", kind, depth_with(.1F));
+  const reports::Test test = answer(place, {"--channels", "Z"});
+  EXPECT_EQ(test.verdict, Verdict::fail);
+  EXPECT_THAT(test.message, HasSubstr("pixel x 4, y 3"));
+  EXPECT_THAT(test.message, HasSubstr("without noise; if it should vary"));
+  EXPECT_EQ(answer(place, {"--channels", "Z", "--paired"}).verdict, Verdict::fail);
+  EXPECT_EQ(answer(place, {"--channels", "Z", "--law"}).verdict, Verdict::fail);
+}
+
+TEST_F(PictureFiles, AnAlphaThatDiffersIsFound) {
   const Kind rgba{.channels = {"A", "B", "G", "R"}};
   const auto with_alpha = [](double alpha, double spread) {
     return [=](int x, int y, const std::string& channel, double noise) {
@@ -277,8 +291,7 @@ TEST(PictureFiles, AnAlphaThatDiffersIsFound) {
   EXPECT_EQ(opaque.image->components, (std::vector<std::string>{"R", "G", "B"}));
 }
 
-TEST(PictureFiles, InfiniteDepthOnBothSidesIsEqualAndOnOneAFinding) {
-  const Workplace place;
+TEST_F(PictureFiles, InfiniteDepthOnBothSidesIsEqualAndOnOneAFinding) {
   const Kind depth{.channels = {"Z"}};
   const auto background_from = [](int column) {
     return [=](int x, int, const std::string&, double noise) {
@@ -294,8 +307,7 @@ TEST(PictureFiles, InfiniteDepthOnBothSidesIsEqualAndOnOneAFinding) {
   EXPECT_EQ(differs.image->winner.x, 4u) << differs.message;
 }
 
-TEST(PictureFiles, CropsAreComparedWhereBothHavePixelsInColumnsOfTheWhole) {
-  const Workplace place;
+TEST_F(PictureFiles, CropsAreComparedWhereBothHavePixelsInColumnsOfTheWhole) {
   const auto spot_of = [](float more) {
     return [=](int x, int y, const std::string& channel, double noise) {
       return noisy(x, y, channel, noise) + (x == 4 && y == 3 ? more : 0);
@@ -310,29 +322,29 @@ TEST(PictureFiles, CropsAreComparedWhereBothHavePixelsInColumnsOfTheWhole) {
   write_stack(place, "b", {}, spot_of(1));
   EXPECT_EQ(answer(place).verdict, Verdict::pass);
   write_stack(place, "b", {.right = 5}, spot_of(1));
-  EXPECT_THAT(refusal([&] { answer(place); }), HasSubstr("render both at one size"));
+  EXPECT_THAT(refusal([&] { answer(place); }),
+              HasSubstr("render the same part on both, at one size"));
 }
 
-TEST(PictureFiles, PfmAndPngAreHeldAgainstOpenExr) {
+TEST_F(PictureFiles, PfmAndPngAreHeldAgainstOpenExr) {
   for (const char* const ending : {"pfm", "png"}) {
-    const Workplace place;
+    const Workplace folder;
     const auto ramp = [](float factor) {
       return [=](int x, int y, const std::string& channel, double noise) {
         return factor * (noisy(x, y, channel, noise) + 0.02F * static_cast<float>(x + 2 * y));
       };
     };
-    write_stack(place, "a", {.ending = ending}, ramp(1));
-    write_stack(place, "b", {}, ramp(1));
-    EXPECT_EQ(answer(place).verdict, Verdict::pass) << ending;
-    write_stack(place, "b", {}, ramp(1.1F));
-    const reports::Test differs = answer(place);
+    write_stack(folder, "a", {.ending = ending}, ramp(1));
+    write_stack(folder, "b", {}, ramp(1));
+    EXPECT_EQ(answer(folder).verdict, Verdict::pass) << ending;
+    write_stack(folder, "b", {}, ramp(1.1F));
+    const reports::Test differs = answer(folder);
     EXPECT_EQ(differs.verdict, Verdict::fail) << ending;
     EXPECT_NEAR(differs.samples[0].mean.value(), 0.3 + 0.02 * (2.5 + 4), 0.01) << ending;
   }
 }
 
-TEST(PictureFiles, PixelsThatAreNoNumberOrMaskedAreLeftOut) {
-  const Workplace place;
+TEST_F(PictureFiles, PixelsThatAreNoNumberOrMaskedAreLeftOut) {
   const auto broken = [](float corner) {
     return [=](int x, int y, const std::string& channel, double noise) {
       const float value = noisy(x, y, channel, noise);
@@ -351,8 +363,7 @@ TEST(PictureFiles, PixelsThatAreNoNumberOrMaskedAreLeftOut) {
   EXPECT_EQ(answer(place, {"--mask", place.file("mask00.exr")}).verdict, Verdict::pass);
 }
 
-TEST(PictureFiles, EachLayerHasAClaimOfItsOwn) {
-  const Workplace place;
+TEST_F(PictureFiles, EachLayerHasAClaimOfItsOwn) {
   const Kind layered{.channels = {"B", "G", "R", "direct.B", "direct.G", "direct.R"}};
   write_stack(place, "a", layered, noisy);
   write_stack(place, "b", layered, [](int x, int y, const std::string& channel, double noise) {

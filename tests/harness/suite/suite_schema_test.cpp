@@ -1,10 +1,5 @@
 // The editors' schema and the manual offer what this version takes, no more and no less.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <regex>
-
 #include "harness/base/text_file.h"
 #include "harness/question/question.h"
 #include "harness/sampling/prepare.h"
@@ -12,11 +7,10 @@
 #include "harness/suite/yaml.h"
 #include "harness/theta/ask.h"
 #include "tests/harness/refusal.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
-
-using testing::ElementsAreArray;
 
 const std::string suites = std::string(ASSAY_SOURCE_DIR) + "/suites/";
 

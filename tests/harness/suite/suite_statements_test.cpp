@@ -1,8 +1,8 @@
-#include <gtest/gtest.h>
 
 #include "harness/suite/suite_entries.h"
 #include "reports/record/statements.h"
 #include "tests/harness/running.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {

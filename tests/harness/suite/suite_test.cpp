@@ -1,14 +1,7 @@
 #include "harness/suite/suite.h"
 
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <filesystem>
-#include <fstream>
-
 #include "tests/harness/refusal.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
@@ -16,29 +9,6 @@ namespace {
 namespace fs = std::filesystem;
 
 const fs::path bad_suites = fs::path(ASSAY_SOURCE_DIR) / "tests/suites";
-
-/// A folder of this test alone, removed at its end.
-class Folder {
- public:
-  Folder() {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    path_ = fs::temp_directory_path() /
-            fmt::format("assay_{}_{}_{}", info->test_suite_name(), info->name(), getpid());
-    fs::create_directories(path_);
-  }
-  ~Folder() { fs::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-
-  std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(path_ / name) << text;
-    return (path_ / name).string();
-  }
-  std::string path() const { return path_.string(); }
-
- private:
-  fs::path path_;
-};
 
 constexpr const char* small = R"(suite: small
 estimators:
@@ -84,7 +54,7 @@ tests:
   EXPECT_EQ(suite.name, "every key");
   EXPECT_EQ(suite.about, "Two lines\nof text.\n");
   EXPECT_EQ(suite.stem, "every");
-  EXPECT_EQ(suite.folder, folder.path());
+  EXPECT_EQ(suite.folder, folder.path().string());
   EXPECT_EQ(suite.alpha, 0.02);
   EXPECT_EQ(suite.beta, 0.03);
   EXPECT_EQ(suite.seed, 1000U);
@@ -156,8 +126,8 @@ TEST(Suite, RefusesWhatIsNotAFile) {
   EXPECT_EQ(refusal([] { load_suite("/nowhere/at/all.yaml"); }),
             "cannot read `/nowhere/at/all.yaml`: there is no such file");
   const Folder folder;
-  EXPECT_EQ(refusal([&] { load_suite(folder.path()); }),
-            "cannot read `" + folder.path() + "`: it is a folder; name the files in it");
+  EXPECT_EQ(refusal([&] { load_suite(folder.path().string()); }),
+            "cannot read `" + folder.path().string() + "`: it is a folder; name the files in it");
   EXPECT_EQ(refusal([&] { load_suite(folder.write("raw.yaml", "suite: \xff\xfe\n")); }),
             "1:8: the byte 0xff is not UTF-8; save the file as UTF-8 text");
 }

@@ -1,10 +1,9 @@
 #include "harness/suite/yaml.h"
 
-#include <gtest/gtest.h>
-
 #include "estimators/stream.h"
 #include "harness/base/text_file.h"
 #include "tests/harness/refusal.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {

@@ -1,13 +1,10 @@
 #include "harness/theta/constant.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "harness/theta/decision.h"
 #include "harness/theta/methods.h"
 #include "tests/harness/questions.h"
 #include "tests/harness/running.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {

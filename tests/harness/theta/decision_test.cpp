@@ -1,15 +1,9 @@
 #include "harness/theta/decision.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <vector>
-
 #include "stats/means/binomial.h"
 #include "tests/harness/normal_evidence.h"
 #include "tests/philox.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {

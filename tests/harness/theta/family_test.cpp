@@ -1,8 +1,7 @@
 #include "harness/theta/family.h"
 
-#include <gtest/gtest.h>
-
 #include "tests/harness/questions.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {

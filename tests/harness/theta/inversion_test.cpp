@@ -1,10 +1,7 @@
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
 
 #include "harness/theta/evidence.h"
 #include "stats/means/student_t.h"
+#include "tests/prelude.h"
 #include "tests/stats/samples.h"
 
 namespace assay::harness {

@@ -1,10 +1,5 @@
 #include "harness/theta/method.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "harness/theta/ask.h"
 #include "harness/theta/methods.h"
 #include "stats/tails/tails.h"
@@ -12,6 +7,7 @@
 #include "tests/harness/refusal.h"
 #include "tests/harness/running.h"
 #include "tests/philox.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {

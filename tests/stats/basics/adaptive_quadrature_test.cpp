@@ -1,19 +1,12 @@
 #include "stats/basics/adaptive_quadrature.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <stdexcept>
-
 #include "stats/cells/plane_cells.h"
+#include "tests/prelude.h"
 #include "tests/stats/point_by_point.h"
 
 namespace assay::stats {
 namespace {
 
-using tests::point_by_point;
 using Line = AdaptiveQuadrature::Line;
 
 // Jumps along a circle and has a ridge.

@@ -1,16 +1,10 @@
 #include "stats/basics/joint_moments.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
-
 #include "tests/philox.h"
+#include "tests/prelude.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::Philox;
 
 struct Pairs {
   std::vector<double> x;

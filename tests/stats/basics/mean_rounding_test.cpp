@@ -1,10 +1,7 @@
 #include "stats/basics/mean_rounding.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "tests/philox.h"
+#include "tests/prelude.h"
 
 namespace assay::stats {
 namespace {

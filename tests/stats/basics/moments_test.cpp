@@ -3,18 +3,12 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include <cmath>
-#include <vector>
-
 #include "stats/basics/errors.h"
+#include "tests/prelude.h"
 #include "tests/stats/samples.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::golden_x;
-using tests::golden_y;
-using tests::moments_of;
 
 // Relative to the natural size of a sum of k-th powers, so that cancelling odd sums are judged
 // fairly.

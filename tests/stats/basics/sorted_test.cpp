@@ -1,17 +1,10 @@
 #include "stats/basics/sorted.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
+#include "tests/prelude.h"
 #include "tests/stats/calibration.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::Philox;
 
 void expect_sorted(const std::vector<double>& values) {
   std::vector<double> expected = values;

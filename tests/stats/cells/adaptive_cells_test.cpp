@@ -1,25 +1,12 @@
 #include "stats/cells/adaptive_cells.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <iostream>
-#include <numbers>
-#include <vector>
-
 #include "stats/cells/chi_square_fit.h"
+#include "tests/prelude.h"
 #include "tests/stats/calibration.h"
 #include "tests/stats/point_by_point.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::calibrate;
-using tests::Experiment;
-using tests::Philox;
-using tests::point_by_point;
 
 std::vector<double> even(std::size_t cells) {
   std::vector<double> borders;

@@ -1,19 +1,11 @@
 #include "stats/cells/cell_effect.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "stats/cells/chi_square_fit.h"
+#include "tests/prelude.h"
 #include "tests/stats/multinomial.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::multinomial;
-using tests::Philox;
 
 /// Cells of equal probability, or one of `rare` among equal ones. The first or the rare one comes
 /// `factor` times as often.

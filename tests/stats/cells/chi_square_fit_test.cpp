@@ -1,12 +1,7 @@
 #include "stats/cells/chi_square_fit.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numeric>
-#include <stdexcept>
-
 #include "stats/tails/tails.h"
+#include "tests/prelude.h"
 #include "tests/stats/multinomial.h"
 
 namespace assay::stats {

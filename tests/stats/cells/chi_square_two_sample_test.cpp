@@ -1,20 +1,11 @@
 #include "stats/cells/chi_square_two_sample.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <stdexcept>
-
 #include "stats/cells/sampled_cells.h"
+#include "tests/prelude.h"
 #include "tests/stats/expect_calibrated.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::expect_calibrated;
-using tests::expect_caught;
-using tests::Philox;
-using tests::Shape;
 
 // scipy.stats.chi2_contingency([x, y], correction=False); ncx2.sf(X2, 4, w^2 m n / (m + n)) and cdf
 // at w = .1 and .2, scipy 1.10.
@@ -110,14 +101,13 @@ TEST(ChiSquareTwoSample, InCellsOfAPilotIsCalibrated) {
 }
 
 // Cells from the values of both together. Neither side is told from the other.
-TEST(ChiSquareTwoSample, InCellsOfBothSamplesTogetherIsCalibrated) {
-  expect_calibrated({384, 4000, Shape::at_most_uniform}, [&](Philox& random) {
-    const auto x = square(random, 500);
-    const auto y = square(random, 500);
-    auto both = x;
-    both.insert(both.end(), y.begin(), y.end());
-    return compared(sampled_cells(both, {.bands = 4, .cuts = 4}), x, y);
-  });
+CALIBRATED(ChiSquareTwoSample, InCellsOfBothSamplesTogetherIsCalibrated, 384, 4000,
+           Shape::at_most_uniform) {
+  const auto x = square(random, 500);
+  const auto y = square(random, 500);
+  auto both = x;
+  both.insert(both.end(), y.begin(), y.end());
+  return compared(sampled_cells(both, {.bands = 4, .cuts = 4}), x, y);
 }
 
 // The mutant takes one sample for exact: variance 1/m instead of 1/m + 1/n.

@@ -1,19 +1,11 @@
 #include "stats/cells/plane_cells.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <stdexcept>
-
 #include "stats/cells/adaptive_cells.h"
+#include "tests/prelude.h"
 #include "tests/stats/point_by_point.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::point_by_point;
 
 /// The grid's own cells.
 CellProbabilities cell_probabilities(const PlaneGrid& grid, const PlaneDensity& density,

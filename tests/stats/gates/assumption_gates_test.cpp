@@ -1,23 +1,13 @@
 #include "stats/gates/assumption_gates.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-#include <iostream>
-#include <stdexcept>
-
 #include "stats/basics/errors.h"
+#include "tests/prelude.h"
 #include "tests/stats/calibration.h"
 #include "tests/stats/samples.h"
 #include "tests/stats/table.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::draw_moments;
-using tests::moments_of;
-using tests::Philox;
 
 TEST(AssumptionGates, ThePilotChoosesPrimariesForVariances) {
   // Exponential: excess kurtosis 6, so 30 primaries a secondary.

@@ -1,21 +1,12 @@
 #include "stats/gates/averages_gate.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <numeric>
-#include <vector>
-
 #include "stats/tails/tails.h"
+#include "tests/prelude.h"
 #include "tests/stats/expect_calibrated.h"
 #include "tests/stats/samples.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::Philox;
 
 using Law = std::function<double(Philox&)>;
 

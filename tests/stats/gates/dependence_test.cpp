@@ -1,13 +1,9 @@
 #include "stats/gates/dependence.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdio>
-
 #include "stats/basics/errors.h"
 #include "stats/means/student_t.h"
 #include "stats/tails/tails.h"
+#include "tests/prelude.h"
 #include "tests/stats/calibration.h"
 #include "tests/stats/laws.h"
 #include "tests/stats/samples.h"
@@ -16,11 +12,6 @@
 namespace assay::stats {
 namespace {
 
-using tests::autoregressive;
-using tests::draw_values;
-using tests::Law;
-using tests::Philox;
-using tests::Row;
 namespace laws = tests::laws;
 
 // make_dependence.R, sequence.

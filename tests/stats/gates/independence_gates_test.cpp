@@ -1,25 +1,14 @@
 #include "stats/gates/independence_gates.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-#include <numeric>
-#include <stdexcept>
-#include <vector>
-
 #include "stats/basics/errors.h"
 #include "stats/gates/dependence.h"
 #include "stats/means/welch_t.h"
 #include "tests/philox.h"
+#include "tests/prelude.h"
 #include "tests/stats/samples.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::autoregressive;
-using tests::Philox;
-using tests::sample_of;
 
 // Each is red with probability 5e-5 on independent normal values. Of 20000 more than 8 have
 // probability 1.2e-6 (Poisson, mean 1).

@@ -1,19 +1,11 @@
 #include "stats/gates/quantisation_gate.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <stdexcept>
-
 #include "tests/philox.h"
+#include "tests/prelude.h"
 #include "tests/stats/samples.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::Philox;
-using tests::sample_of;
-using tests::sorted;
 
 std::vector<double> rounded(double steps, std::size_t n, std::uint32_t stream) {
   Philox random(stream);

@@ -1,21 +1,11 @@
 #include "stats/gates/recurring_values.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <string>
-#include <vector>
-
 #include "tests/philox.h"
+#include "tests/prelude.h"
 #include "tests/stats/samples.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::Philox;
-using tests::sample_of;
 
 std::vector<double> uniform_values(std::size_t n, Philox& random) {
   return sample_of(n, [&] { return random.uniform(); });

@@ -1,18 +1,11 @@
 #include "stats/gates/repeated_run.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
-
 #include "tests/philox.h"
+#include "tests/prelude.h"
 #include "tests/stats/samples.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::Philox;
-using tests::sample_of;
 
 std::vector<double> uniform_values(std::size_t n, std::uint32_t stream) {
   Philox random(stream);

@@ -1,16 +1,11 @@
 #include "stats/images/image_covariance.h"
 
-#include <gtest/gtest.h>
-
 #include "stats/basics/moments.h"
+#include "tests/prelude.h"
 #include "tests/stats/image_samples.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::draw_stack;
-using tests::OwnedStack;
-using tests::Philox;
 
 // x = mean + a u + b v e with u, v normal: C = a a' + diag(b^2).
 struct Law {

@@ -1,17 +1,10 @@
 #include "stats/images/image_dependence.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
+#include "tests/prelude.h"
 #include "tests/stats/image_samples.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::draw_stack;
-using tests::OwnedStack;
-using tests::Philox;
 
 constexpr ImageExtent extent{40, 24, 3};
 
@@ -114,19 +107,62 @@ TEST(ImageDependence, SeesOneSeedOnBothSides) {
   }
 }
 
+// The four levels of a picture of two bits.
+double levels(Philox& random) { return std::floor(4 * random.uniform()); }
+
+TEST(ImageDependence, FollowsTheFrequenciesOfValues) {
+  Philox random(7307);
+  OwnedStack a = independent(random, levels);
+  const OwnedStack b = independent(random, levels);
+  EXPECT_FALSE(found(a, b).repeated);
+  copy_tile(a.images[0], a.images[9]);
+  EXPECT_TRUE(found(a, b).repeated);
+  // Two pixels of four levels agree by chance.
+  OwnedStack narrow = draw_stack({2, 1, 1}, 64, [&](std::size_t) { return levels(random); });
+  EXPECT_FALSE(found(narrow, narrow).repeated);
+}
+
+// A lamp that is off leaves many pixels black together, and others of a tile as they are.
+TEST(ImageDependence, LeavesShadowsAlone) {
+  Philox random(7308);
+  const auto lit = [&](std::size_t replicates) {
+    OwnedStack stack = draw_stack(extent, replicates, [&](std::size_t) { return noise(random); });
+    for (std::size_t r = 0; r < replicates; ++r) {
+      for (std::size_t e = 0; e < extent.elements(); ++e) {
+        float& value = stack.images[r][e];
+        value = e % extent.row() < 36 ? 15 : r % 2 == 0 ? 0 : value;
+      }
+    }
+    return stack;
+  };
+  EXPECT_FALSE(found(lit(16), lit(16)).repeated);
+}
+
 TEST(ImageDependence, IsTheSameRowByRow) {
   Philox random(7306);
-  OwnedStack a = independent(random, noise);
-  const OwnedStack b = independent(random, noise);
-  copy_tile(a.images[0], a.images[1]);
-  const ImageStack<float> first = a.view();
-  const ImageStack<float> second = b.view();
-  RowDependence<float> rows;
-  for (std::size_t y = 0; y < extent.height; y += 8) {
-    rows.take(pair_of(first, second), {y, y + 8});
+  const OwnedStack sound = independent(random, noise);
+  OwnedStack repeats = independent(random, noise);
+  copy_tile(repeats.images[0], repeats.images[1]);
+  OwnedStack neighbours = independent(random, noise);
+  for (std::size_t r = 1; r < neighbours.images.size(); ++r) {
+    for (std::size_t e = 0; e < extent.elements(); ++e) {
+      neighbours.images[r - 1][e] += neighbours.images[r][e];
+    }
   }
-  ASSERT_TRUE(rows.found().repeated);
-  EXPECT_EQ(rows.found().repeated->tile, found(a, b).repeated->tile);
+  OwnedStack same_seed = sound;
+  for (float& value : same_seed.images[0]) value *= 2;
+  for (const OwnedStack* other : {&repeats, &neighbours, &same_seed}) {
+    const ImageStack<float> first = sound.view();
+    const ImageStack<float> second = other->view();
+    RowDependence<float> rows;
+    for (std::size_t y = 0; y < extent.height; y += 8) {
+      rows.take(pair_of(first, second), {y, y + 8});
+    }
+    const ImageDependence by_rows = rows.found();
+    const ImageDependence whole = found(sound, *other);
+    EXPECT_TRUE(whole.repeated || whole.alike);
+    EXPECT_EQ(by_rows, whole);
+  }
 }
 
 }  // namespace

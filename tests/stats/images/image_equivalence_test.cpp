@@ -1,27 +1,14 @@
 #include "stats/images/image_equivalence.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <functional>
-#include <stdexcept>
-
 #include "stats/basics/errors.h"
 #include "stats/tails/tails.h"
+#include "tests/prelude.h"
 #include "tests/stats/calibration.h"
 #include "tests/stats/image_samples.h"
 #include "tests/stats/last_first.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::below_half;
-using tests::calibrate;
-using tests::Calibration;
-using tests::draw_stack;
-using tests::OwnedStack;
-using tests::Philox;
-using tests::Shape;
 
 constexpr ImageExtent extent{12, 12, 1};
 constexpr double margin = 0.1;

@@ -1,24 +1,12 @@
 #include "stats/images/image_law.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
-#include <numeric>
-
 #include "stats/tails/tails.h"
+#include "tests/prelude.h"
 #include "tests/stats/expect_calibrated.h"
 #include "tests/stats/image_samples.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::draw_stack;
-using tests::OwnedStack;
-using tests::Philox;
-using tests::Shape;
 
 std::vector<std::uint32_t> shuffled(Philox& random, std::size_t count) {
   std::vector<std::uint32_t> all(count);

@@ -1,22 +1,11 @@
 #include "stats/images/image_moments.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <stdexcept>
-#include <vector>
-
+#include "tests/prelude.h"
 #include "tests/stats/image_samples.h"
 #include "tests/stats/samples.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::draw_stack;
-using tests::one_element;
-using tests::OwnedStack;
-using tests::Philox;
 
 constexpr ImageExtent extent = tests::uneven;
 

@@ -1,23 +1,11 @@
 #include "stats/images/image_reference_error.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
-
+#include "tests/prelude.h"
 #include "tests/stats/calibration.h"
 #include "tests/stats/image_samples.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::below_half;
-using tests::calibrate;
-using tests::Calibration;
-using tests::draw_stack;
-using tests::OwnedStack;
-using tests::Philox;
-using tests::Shape;
 
 constexpr ImageExtent extent{12, 12, 1};
 constexpr double margin = 0.1;

@@ -1,20 +1,15 @@
 // Functions that take images rows after rows give the bits of those that take them whole.
 
-#include <gtest/gtest.h>
-
-#include <limits>
-
 #include "stats/images/image_halves.h"
 #include "stats/images/image_row_distance.h"
 #include "stats/images/image_sums.h"
 #include "stats/pyramids/image_row_pyramid.h"
+#include "tests/prelude.h"
 #include "tests/stats/image_samples.h"
 #include "tests/stats/last_first.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::OwnedStack;
 
 // Rows of 150, which is no multiple of what a thread takes; the last window has no whole tile.
 constexpr ImageExtent extent{50, 150, 3};

@@ -1,7 +1,6 @@
 #include "stats/images/image_sums.h"
 
-#include <gtest/gtest.h>
-
+#include "tests/prelude.h"
 #include "tests/stats/image_samples.h"
 
 namespace assay::stats {

@@ -1,20 +1,13 @@
 // The methods on images against numpy and scipy: tests/tables/make_images.py.
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "stats/images/image_equivalence.h"
 #include "stats/tails/t_to_z.h"
 #include "stats/tails/tails.h"
+#include "tests/prelude.h"
 #include "tests/stats/table.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::Row;
 
 constexpr ImageExtent extent{13, 9, 2};
 

@@ -1,23 +1,13 @@
 #include "stats/laws/distribution_band.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "stats/means/binomial.h"
+#include "tests/prelude.h"
 #include "tests/stats/expect_calibrated.h"
 #include "tests/stats/samples.h"
 #include "tests/stats/table.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::Philox;
-using tests::Row;
-using tests::sample_of;
-using tests::sorted;
 
 TEST(DistributionBand, AgreesWithTransitionMatricesAtEveryStepOfGamma) {
   for (const Row& row : tests::read_table("band")) {

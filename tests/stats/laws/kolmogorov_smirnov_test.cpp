@@ -1,19 +1,10 @@
 #include "stats/laws/kolmogorov_smirnov.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <vector>
-
+#include "tests/prelude.h"
 #include "tests/stats/samples.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::golden_x;
-using tests::golden_y;
-using tests::sorted;
 
 const ContinuousLaw exponential{[](double x) { return -std::expm1(-x); }};
 

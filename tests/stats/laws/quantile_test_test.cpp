@@ -1,28 +1,13 @@
 #include "stats/laws/quantile_test.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <iostream>
-#include <numbers>
-#include <vector>
-
 #include "stats/tails/tails.h"
+#include "tests/prelude.h"
 #include "tests/stats/expect_calibrated.h"
 #include "tests/stats/samples.h"
 #include "tests/stats/table.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::expect_calibrated;
-using tests::expect_caught;
-using tests::Experiment;
-using tests::Philox;
-using tests::Row;
-using tests::sample_of;
-using tests::Shape;
-using tests::sorted;
 
 // The data sets of make_ratios.py.
 std::vector<double> sample(int k, double size) {
@@ -142,26 +127,21 @@ std::vector<double> clamped(Philox& random, std::size_t n) {
   return sorted(sample_of(n, [&] { return std::min(1.0, 2 * random.uniform()); }));
 }
 
-TEST(QuantileTest, AnAtomAtTheQuantileKeepsTheLevel) {
-  expect_calibrated({333, 20000, Shape::at_most_uniform}, [](Philox& random) {
-    return log_p_two_sided(quantile_test(count_around(clamped(random, 60), 1), .5));
-  });
+CALIBRATED(QuantileTest, AnAtomAtTheQuantileKeepsTheLevel, 333, 20000, Shape::at_most_uniform) {
+  return log_p_two_sided(quantile_test(count_around(clamped(random, 60), 1), .5));
 }
 
-TEST(QuantileTest, CountingTiesBelowIsCaught) {
-  expect_caught({334, 20000, Shape::at_most_uniform}, [](Philox& random) {
-    QuantileCounts counts = count_around(clamped(random, 60), 1);
-    counts.below = counts.at_most;
-    return quantile_test(counts, .5).log_p_lower;
-  });
+CAUGHT(QuantileTest, CountingTiesBelowIsCaught, 334, 20000, Shape::at_most_uniform) {
+  QuantileCounts counts = count_around(clamped(random, 60), 1);
+  counts.below = counts.at_most;
+  return quantile_test(counts, .5).log_p_lower;
 }
 
-TEST(QuantileTest, ATailThatLeavesOutTheObservedCountIsCaught) {
-  expect_caught({335, 20000, Shape::at_most_uniform}, [](Philox& random) {
-    const auto x = sorted(sample_of(30, [&] { return random.uniform(); }));
-    const auto counts = count_around(x, .5);
-    return counts.below == 30 ? -690.0 : binomial_tails(counts.below + 1, {30, .5}).upper;
-  });
+CAUGHT(QuantileTest, ATailThatLeavesOutTheObservedCountIsCaught, 335, 20000,
+       Shape::at_most_uniform) {
+  const auto x = sorted(sample_of(30, [&] { return random.uniform(); }));
+  const auto counts = count_around(x, .5);
+  return counts.below == 30 ? -690.0 : binomial_tails(counts.below + 1, {30, .5}).upper;
 }
 
 TEST(QuantileTest, ComparisonIsAtMostUniformForUnequalShapes) {

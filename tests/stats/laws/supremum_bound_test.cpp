@@ -1,7 +1,6 @@
 #include "stats/laws/supremum_bound.h"
 
-#include <gtest/gtest.h>
-
+#include "tests/prelude.h"
 #include "tests/stats/table.h"
 
 namespace assay::stats {

@@ -1,25 +1,12 @@
 #include "stats/laws/two_part_ks.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <iostream>
-#include <vector>
-
 #include "stats/tails/tails.h"
+#include "tests/prelude.h"
 #include "tests/stats/expect_calibrated.h"
 #include "tests/stats/samples.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::expect_calibrated;
-using tests::expect_caught;
-using tests::Experiment;
-using tests::Philox;
-using tests::sample_of;
-using tests::Shape;
-using tests::sorted;
 
 // Zero with this probability, uniform otherwise.
 std::vector<double> pixels(Philox& random, std::size_t n, double black) {
@@ -67,43 +54,36 @@ TEST(TwoPartKs, OneValueAloneSaysNothing) {
   EXPECT_EQ(of(x, x).result.log_p_upper, 0);
 }
 
-TEST(TwoPartKs, IsAtMostUniform) {
-  expect_calibrated({372, 20000, Shape::at_most_uniform}, [](Philox& random) {
-    const auto x = pixels(random, 50, .3);
-    return of(x, pixels(random, 70, .3)).result.log_p_upper;
-  });
+CALIBRATED(TwoPartKs, IsAtMostUniform, 372, 20000, Shape::at_most_uniform) {
+  const auto x = pixels(random, 50, .3);
+  return of(x, pixels(random, 70, .3)).result.log_p_upper;
 }
 
 // Every value comes again and again, and the most frequent is not known beforehand.
-TEST(TwoPartKs, IsAtMostUniformForRoundedValues) {
-  expect_calibrated({376, 20000, Shape::at_most_uniform}, [](Philox& random) {
-    const auto draw = [&](std::size_t n) {
-      return sorted(sample_of(n, [&] { return std::round(2 * random.normal()); }));
-    };
-    const auto x = draw(60);
-    return of(x, draw(45)).result.log_p_upper;
-  });
+CALIBRATED(TwoPartKs, IsAtMostUniformForRoundedValues, 376, 20000, Shape::at_most_uniform) {
+  const auto draw = [&](std::size_t n) {
+    return sorted(sample_of(n, [&] { return std::round(2 * random.normal()); }));
+  };
+  const auto x = draw(60);
+  return of(x, draw(45)).result.log_p_upper;
 }
 
-TEST(TwoPartKs, TakingTheSmallerOfTwoPValuesForOneIsCaught) {
-  expect_caught({373, 8000, Shape::at_most_uniform}, [](Philox& random) {
-    const auto x = pixels(random, 250, .5);
-    const TwoLawsTest result = of(x, pixels(random, 270, .5));
-    return result.result.log_p_upper - std::log(2);
-  });
+CAUGHT(TwoPartKs, TakingTheSmallerOfTwoPValuesForOneIsCaught, 373, 8000, Shape::at_most_uniform) {
+  const auto x = pixels(random, 250, .5);
+  const TwoLawsTest result = of(x, pixels(random, 270, .5));
+  return result.result.log_p_upper - std::log(2);
 }
 
 // A path that is looked at inside runs of equal values too, as if these came in an order.
-TEST(TwoPartKs, AStatisticThatSeesTheOrderOfEqualValuesIsCaught) {
-  expect_caught({377, 8000, Shape::at_most_uniform}, [](Philox& random) {
-    const auto x = pixels(random, 100, .5);
-    const auto y = pixels(random, 100, .5);
-    TwoSampleDistance distance = ks_distance(x, y);
-    auto broken = y;
-    for (double& value : broken) value = value == 0 ? -1e-9 : value;
-    distance.lattice = ks_distance(x, sorted(broken)).lattice;
-    return kolmogorov_smirnov(distance).log_p_upper;
-  });
+CAUGHT(TwoPartKs, AStatisticThatSeesTheOrderOfEqualValuesIsCaught, 377, 8000,
+       Shape::at_most_uniform) {
+  const auto x = pixels(random, 100, .5);
+  const auto y = pixels(random, 100, .5);
+  TwoSampleDistance distance = ks_distance(x, y);
+  auto broken = y;
+  for (double& value : broken) value = value == 0 ? -1e-9 : value;
+  distance.lattice = ks_distance(x, sorted(broken)).lattice;
+  return kolmogorov_smirnov(distance).log_p_upper;
 }
 
 struct Found {

@@ -1,13 +1,6 @@
 #include "stats/means/betting_mean.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdio>
-#include <limits>
-
+#include "tests/prelude.h"
 #include "tests/stats/calibration.h"
 #include "tests/stats/expect_calibrated.h"
 #include "tests/stats/laws.h"
@@ -16,13 +9,6 @@
 namespace assay::stats {
 namespace {
 
-using tests::draw_values;
-using tests::expect_calibrated;
-using tests::expect_caught;
-using tests::Law;
-using tests::Philox;
-using tests::Row;
-using tests::Shape;
 namespace laws = tests::laws;
 
 constexpr Range unit{0, 1};
@@ -226,21 +212,17 @@ TEST(BettingContrast, OfAScaleOfZeroIsOneMean) {
   EXPECT_THROW(betting_contrast(x, unit, y, {0, .5}, {1, .3}), std::domain_error);
 }
 
-TEST(BettingContrast, KeepsItsLevel) {
-  expect_calibrated({331, tests::repetitions(2000), Shape::at_most_uniform}, [](Philox& random) {
-    const ValueCells x(draw_values(laws::uniform, 60, random));
-    const ValueCells y(draw_values(laws::zero_inflated_uniform, 60, random));
-    return log_p_two_sided(betting_contrast(x, unit, y, unit, {5, 0}));
-  });
+CALIBRATED(BettingContrast, KeepsItsLevel, 331, tests::repetitions(2000), Shape::at_most_uniform) {
+  const ValueCells x(draw_values(laws::uniform, 60, random));
+  const ValueCells y(draw_values(laws::zero_inflated_uniform, 60, random));
+  return log_p_two_sided(betting_contrast(x, unit, y, unit, {5, 0}));
 }
 
 // Without a number between them: each sample against the other's mean.
-TEST(BettingContrast, AnEstimateTakenForExactIsNoticed) {
-  expect_caught({332, 4000, Shape::at_most_uniform}, [](Philox& random) {
-    const ValueCells x(draw_values(laws::uniform, 3000, random));
-    const ValueCells y(draw_values(laws::uniform, 20, random));
-    return log_p_two_sided(betting_mean(x, unit, y.mean()));
-  });
+CAUGHT(BettingContrast, AnEstimateTakenForExactIsNoticed, 332, 4000, Shape::at_most_uniform) {
+  const ValueCells x(draw_values(laws::uniform, 3000, random));
+  const ValueCells y(draw_values(laws::uniform, 20, random));
+  return log_p_two_sided(betting_mean(x, unit, y.mean()));
 }
 
 // ---- Under the null, P(p <= a) <= a at the smallest p of ten looks. False alarms 1e-5 each.
@@ -275,28 +257,24 @@ TEST(BettingMean, KeepsItsLevelUnderOptionalStoppingOnEveryLaw) {
 // ---- Mutants
 
 // Values below the declared end count as the end: half of the room below the mean is missing.
-TEST(BettingMean, ARangeOfHalfTheTrueOneIsNoticed) {
-  expect_caught({321, 1000, Shape::at_most_uniform}, [](Philox& random) {
-    std::vector<double> values = draw_values(laws::uniform, 1000, random);
-    for (double& value : values) value = std::max(value, .25);
-    return betting(values, {.25, 1}, laws::uniform.mean).log_p_upper;
-  });
+CAUGHT(BettingMean, ARangeOfHalfTheTrueOneIsNoticed, 321, 1000, Shape::at_most_uniform) {
+  std::vector<double> values = draw_values(laws::uniform, 1000, random);
+  for (double& value : values) value = std::max(value, .25);
+  return betting(values, {.25, 1}, laws::uniform.mean).log_p_upper;
 }
 
 // Each bet is the best of the values so far, with the one that it is placed on.
-TEST(BettingMean, ABetThatKnowsTheMeanOfTheDataIsNoticed) {
-  expect_caught({322, 4000, Shape::at_most_uniform}, [](Philox& random) {
-    double excess = 0;
-    double squares = 0;
-    double log_wealth = 0;
-    for (int i = 0; i < 100; ++i) {
-      const double gain = random.uniform() / laws::uniform.mean - 1;
-      excess += gain;
-      squares += gain * gain;
-      log_wealth += std::log1p(std::clamp(excess / squares, 0.0, .9) * gain);
-    }
-    return std::min(0.0, -log_wealth);
-  });
+CAUGHT(BettingMean, ABetThatKnowsTheMeanOfTheDataIsNoticed, 322, 4000, Shape::at_most_uniform) {
+  double excess = 0;
+  double squares = 0;
+  double log_wealth = 0;
+  for (int i = 0; i < 100; ++i) {
+    const double gain = random.uniform() / laws::uniform.mean - 1;
+    excess += gain;
+    squares += gain * gain;
+    log_wealth += std::log1p(std::clamp(excess / squares, 0.0, .9) * gain);
+  }
+  return std::min(0.0, -log_wealth);
 }
 
 // ---- Power

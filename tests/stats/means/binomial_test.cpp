@@ -1,11 +1,7 @@
 #include "stats/means/binomial.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <stdexcept>
-
 #include "stats/tails/tails.h"
+#include "tests/prelude.h"
 
 namespace assay::stats {
 namespace {

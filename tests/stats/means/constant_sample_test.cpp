@@ -1,11 +1,7 @@
 #include "stats/means/constant_sample.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-
 #include "stats/tails/tails.h"
+#include "tests/prelude.h"
 
 namespace assay::stats {
 namespace {

@@ -1,19 +1,12 @@
 #include "stats/means/equivalence.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-
 #include "stats/means/student_t.h"
 #include "stats/means/welch_t.h"
+#include "tests/prelude.h"
 #include "tests/stats/samples.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::golden_x;
-using tests::golden_y;
-using tests::moments_of;
 
 const Moments x = moments_of(golden_x);
 const Moments y = moments_of(golden_y);

@@ -1,20 +1,12 @@
 #include "stats/means/power_exact.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdio>
-#include <limits>
-#include <stdexcept>
-
 #include "stats/means/two_valued.h"
 #include "tests/philox.h"
+#include "tests/prelude.h"
 #include "tests/stats/laws.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::Philox;
 
 const ExactMeanPlan coin{
     .range = {0, 1}, .null_mean = 0.5, .rates = {.alpha = 0.05, .beta = 0.1, .two_sided = true}};

@@ -1,13 +1,8 @@
 #include "stats/means/skewness_corrected_t.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdio>
-#include <limits>
-
 #include "stats/basics/errors.h"
 #include "stats/tails/tails.h"
+#include "tests/prelude.h"
 #include "tests/stats/calibration.h"
 #include "tests/stats/laws.h"
 #include "tests/stats/samples.h"
@@ -16,13 +11,6 @@
 namespace assay::stats {
 namespace {
 
-using tests::draw_moments;
-using tests::golden_x;
-using tests::golden_y;
-using tests::Law;
-using tests::moments_of;
-using tests::Philox;
-using tests::Row;
 namespace laws = tests::laws;
 
 // make_means.py, skewed.

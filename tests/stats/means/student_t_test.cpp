@@ -1,18 +1,11 @@
 #include "stats/means/student_t.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-
 #include "stats/basics/errors.h"
+#include "tests/prelude.h"
 #include "tests/stats/samples.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::golden_x;
-using tests::moments_of;
 
 TEST(StudentT, GoldenValuesToThePrintedDigits) {
   const TestResult result = student_t(moments_of(golden_x), {1});

@@ -1,21 +1,13 @@
 #include "stats/means/two_valued.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <cstdio>
-#include <limits>
-
 #include "stats/tails/special.h"
 #include "stats/tails/tails.h"
+#include "tests/prelude.h"
 #include "tests/stats/samples.h"
 #include "tests/stats/table.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::moments_of;
-using tests::Row;
 
 constexpr Range unit{0, 1};
 

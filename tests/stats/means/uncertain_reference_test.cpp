@@ -1,21 +1,13 @@
 #include "stats/means/uncertain_reference.h"
 
-#include <gtest/gtest.h>
-
-#include <array>
-#include <cmath>
-#include <numbers>
-
 #include "stats/tails/tails.h"
 #include "stats/variances/influence.h"
-#include "tests/stats/calibration.h"
+#include "tests/prelude.h"
+#include "tests/stats/expect_calibrated.h"
 #include "tests/stats/samples.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::Philox;
-using tests::Shape;
 
 // Z test of a mean, one-sided: ln P(Z >= (10 - t) / 1).
 double log_p_of_mean(std::span<const double> truth) { return normal_tails(10 - truth[0]).upper; }
@@ -88,19 +80,15 @@ TEST(UncertainReference, OfAMeanSquaredErrorKeepsItsLevelWhateverItsSize) {
   std::uint32_t test_case = 361;
   for (const Case of : {Case{0, .003}, {0, .3}, {0, 10}, {.3, .03}, {1, .03}, {1, 1}, {10, 3}}) {
     const auto calibration =
-        tests::calibrate({test_case++, 2000, Shape::at_most_uniform},
+        tests::calibrate({test_case++, tests::repetitions(2000), Shape::at_most_uniform},
                          [&](Philox& random) { return log_p_of_truth(random, of, of.error); });
     std::printf("  bias %g, error %g: %s\n", of.bias, of.error, calibration.text().c_str());
     EXPECT_TRUE(calibration.ok) << of.bias << " " << of.error;
   }
 }
 
-TEST(UncertainReference, HalfTheErrorIsNoticed) {
-  const auto calibration =
-      tests::calibrate({368, 2000, Shape::at_most_uniform}, [&](Philox& random) {
-        return log_p_of_truth(random, {1, .3}, .15);
-      });
-  EXPECT_FALSE(calibration.ok) << calibration.text();
+CAUGHT(UncertainReference, HalfTheErrorIsNoticed, 368, 2000, Shape::at_most_uniform) {
+  return log_p_of_truth(random, {1, .3}, .15);
 }
 
 }  // namespace

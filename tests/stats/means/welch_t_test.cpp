@@ -1,19 +1,11 @@
 #include "stats/means/welch_t.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-
 #include "stats/basics/errors.h"
+#include "tests/prelude.h"
 #include "tests/stats/samples.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::golden_x;
-using tests::golden_y;
-using tests::moments_of;
 
 TEST(WelchT, GoldenValuesToThePrintedDigits) {
   const TestResult result = welch_t(moments_of(golden_x), moments_of(golden_y), {});

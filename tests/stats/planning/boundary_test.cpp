@@ -1,21 +1,12 @@
 #include "stats/planning/boundary.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <numbers>
-#include <string>
-#include <vector>
-
 #include "stats/tails/tails.h"
 #include "tests/philox.h"
+#include "tests/prelude.h"
 #include "tests/stats/table.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::Philox;
 
 std::vector<double> times_of(std::size_t looks, const std::string& growth) {
   if (growth == "close") return {0.2, 0.21, 0.95, 1};

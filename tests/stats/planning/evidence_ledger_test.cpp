@@ -1,28 +1,13 @@
 #include "stats/planning/evidence_ledger.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <iostream>
-#include <numeric>
-#include <vector>
-
 #include "stats/basics/moments.h"
 #include "stats/tails/tails.h"
+#include "tests/prelude.h"
 #include "tests/stats/expect_calibrated.h"
 #include "tests/stats/table.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::expect_calibrated;
-using tests::expect_caught;
-using tests::Experiment;
-using tests::Philox;
-using tests::Row;
-using tests::Shape;
 
 // The nights of make_ratios.py: differences, standard errors and observations.
 std::vector<NightEstimate> known_nights(int k, int count) {
@@ -206,25 +191,20 @@ std::vector<NightEstimate> rare_hits(Philox& random, int nights) {
   return all;
 }
 
-TEST(EvidenceLedger, KeepsItsBudgetForRareHits) {
-  expect_calibrated({352, 4000, Shape::at_most_uniform},
-                    [](Philox& random) { return log_p_of(log_e_of(rare_hits(random, 200))); });
+CALIBRATED(EvidenceLedger, KeepsItsBudgetForRareHits, 352, 4000, Shape::at_most_uniform) {
+  return log_p_of(log_e_of(rare_hits(random, 200)));
 }
 
-TEST(EvidenceLedger, NightsOfFewHitsThatSpeakAtOnceAreCaught) {
-  expect_caught({363, 4000, Shape::at_most_uniform}, [](Philox& random) {
-    auto nights = rare_hits(random, 200);
-    for (NightEstimate& night : nights) night.effective = 50;
-    return log_p_of(log_e_of(nights));
-  });
+CAUGHT(EvidenceLedger, NightsOfFewHitsThatSpeakAtOnceAreCaught, 363, 4000, Shape::at_most_uniform) {
+  auto nights = rare_hits(random, 200);
+  for (NightEstimate& night : nights) night.effective = 50;
+  return log_p_of(log_e_of(nights));
 }
 
-TEST(EvidenceLedger, LeavingOutNightsWithoutAHitIsCaught) {
-  expect_caught({353, 1000, Shape::at_most_uniform}, [](Philox& random) {
-    auto nights = rare_hits(random, 200);
-    std::erase_if(nights, [](const NightEstimate& night) { return night.standard_error == 0; });
-    return log_p_of(log_e_of(nights));
-  });
+CAUGHT(EvidenceLedger, LeavingOutNightsWithoutAHitIsCaught, 353, 1000, Shape::at_most_uniform) {
+  auto nights = rare_hits(random, 200);
+  std::erase_if(nights, [](const NightEstimate& night) { return night.standard_error == 0; });
+  return log_p_of(log_e_of(nights));
 }
 
 // Values of exponential law.
@@ -238,44 +218,39 @@ std::vector<NightEstimate> skewed(Philox& random, int nights) {
   return all;
 }
 
-TEST(EvidenceLedger, KeepsItsBudgetForSkewedValues) {
-  expect_calibrated({354, tests::repetitions(4000), Shape::at_most_uniform},
-                    [](Philox& random) { return log_p_of(log_e_of(skewed(random, 200))); });
+CALIBRATED(EvidenceLedger, KeepsItsBudgetForSkewedValues, 354, tests::repetitions(4000),
+           Shape::at_most_uniform) {
+  return log_p_of(log_e_of(skewed(random, 200)));
 }
 
-TEST(EvidenceLedger, WeightsByTheNightsOwnErrorsAreCaught) {
-  expect_caught({355, 2000, Shape::at_most_uniform}, [](Philox& random) {
-    auto nights = skewed(random, 200);
-    for (NightEstimate& night : nights) {
-      night.observations = 1 / (night.standard_error * night.standard_error);
-    }
-    return log_p_of(log_e_of(nights));
-  });
+CAUGHT(EvidenceLedger, WeightsByTheNightsOwnErrorsAreCaught, 355, 2000, Shape::at_most_uniform) {
+  auto nights = skewed(random, 200);
+  for (NightEstimate& night : nights) {
+    night.observations = 1 / (night.standard_error * night.standard_error);
+  }
+  return log_p_of(log_e_of(nights));
 }
 
-TEST(EvidenceLedger, ForgettingTheErrorOfTheReferenceIsCaught) {
-  expect_caught({344, 4000, Shape::at_most_uniform},
-                [](Philox& random) { return log_p_of(log_e_of(draw(random, {.reference = .2}))); });
+CAUGHT(EvidenceLedger, ForgettingTheErrorOfTheReferenceIsCaught, 344, 4000,
+       Shape::at_most_uniform) {
+  return log_p_of(log_e_of(draw(random, {.reference = .2})));
 }
 
-TEST(EvidenceLedger, AReferenceErrorTakenForIndependentOnEveryNightIsCaught) {
-  expect_caught({345, 4000, Shape::at_most_uniform}, [](Philox& random) {
-    auto nights = draw(random, {.reference = .2});
-    for (NightEstimate& night : nights) night.standard_error = std::sqrt(1.04);
-    return log_p_of(log_e_of(nights));
-  });
+CAUGHT(EvidenceLedger, AReferenceErrorTakenForIndependentOnEveryNightIsCaught, 345, 4000,
+       Shape::at_most_uniform) {
+  auto nights = draw(random, {.reference = .2});
+  for (NightEstimate& night : nights) night.standard_error = std::sqrt(1.04);
+  return log_p_of(log_e_of(nights));
 }
 
-TEST(EvidenceLedger, AnEffectFittedToTheDataIsCaught) {
-  expect_caught({346, 4000, Shape::at_most_uniform}, [](Philox& random) {
-    std::vector<double> log_e;
-    PooledNights pooled;
-    for (const NightEstimate& night : draw(random, {})) {
-      pooled.add(night);
-      log_e.push_back(pooled.difference() * pooled.difference() / pooled.variance() / 2);
-    }
-    return log_p_of(log_e);
-  });
+CAUGHT(EvidenceLedger, AnEffectFittedToTheDataIsCaught, 346, 4000, Shape::at_most_uniform) {
+  std::vector<double> log_e;
+  PooledNights pooled;
+  for (const NightEstimate& night : draw(random, {})) {
+    pooled.add(night);
+    log_e.push_back(pooled.difference() * pooled.difference() / pooled.variance() / 2);
+  }
+  return log_p_of(log_e);
 }
 
 std::vector<double> log_p_values(Philox& random, int nights) {
@@ -284,31 +259,26 @@ std::vector<double> log_p_values(Philox& random, int nights) {
   return log_p;
 }
 
-TEST(EvidenceLedger, PValuesKeepTheirBudgetOverAThousandNights) {
-  expect_calibrated({356, tests::repetitions(10000), Shape::at_most_uniform}, [](Philox& random) {
-    return log_p_of(log_e_of_p_values(log_p_values(random, 1000)));
-  });
+CALIBRATED(EvidenceLedger, PValuesKeepTheirBudgetOverAThousandNights, 356,
+           tests::repetitions(10000), Shape::at_most_uniform) {
+  return log_p_of(log_e_of_p_values(log_p_values(random, 1000)));
 }
 
 // One-sided p-values that are half as large as they should be.
-TEST(EvidenceLedger, PValuesOfTheWrongTailAreCaught) {
-  expect_caught({357, 2000, Shape::at_most_uniform}, [](Philox& random) {
-    auto log_p = log_p_values(random, 200);
-    for (double& each : log_p) each -= std::log(2);
-    return log_p_of(log_e_of_p_values(log_p));
-  });
+CAUGHT(EvidenceLedger, PValuesOfTheWrongTailAreCaught, 357, 2000, Shape::at_most_uniform) {
+  auto log_p = log_p_values(random, 200);
+  for (double& each : log_p) each -= std::log(2);
+  return log_p_of(log_e_of_p_values(log_p));
 }
 
-TEST(EvidenceLedger, AnExponentFittedToEveryNightIsCaught) {
-  expect_caught({358, 2000, Shape::at_most_uniform}, [](Philox& random) {
-    std::vector<double> log_e;
-    double sum = 0;
-    for (const double log_p : log_p_values(random, 20)) {
-      const double kappa = std::min(1.0, -1 / log_p);
-      log_e.push_back(sum += std::log(kappa) - (1 - kappa) * log_p);
-    }
-    return log_p_of(log_e);
-  });
+CAUGHT(EvidenceLedger, AnExponentFittedToEveryNightIsCaught, 358, 2000, Shape::at_most_uniform) {
+  std::vector<double> log_e;
+  double sum = 0;
+  for (const double log_p : log_p_values(random, 20)) {
+    const double kappa = std::min(1.0, -1 / log_p);
+    log_e.push_back(sum += std::log(kappa) - (1 - kappa) * log_p);
+  }
+  return log_p_of(log_e);
 }
 
 // The share of 4000 series that alarm at this budget. |rate - truth| <= sqrt(ln(2e5) / (2 R)) =

@@ -3,9 +3,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <stdexcept>
+#include "tests/prelude.h"
 
 namespace assay::stats {
 namespace {

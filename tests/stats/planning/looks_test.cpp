@@ -1,25 +1,13 @@
 #include "stats/planning/looks.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <numbers>
-#include <vector>
-
 #include "stats/means/student_t.h"
 #include "stats/tails/tails.h"
+#include "tests/prelude.h"
 #include "tests/stats/expect_calibrated.h"
 #include "tests/stats/samples.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::expect_calibrated;
-using tests::expect_caught;
-using tests::Experiment;
-using tests::Philox;
-using tests::Shape;
 
 constexpr ErrorRates usual{.alpha = .01, .beta = .02, .two_sided = true};
 

@@ -1,13 +1,7 @@
 #include "stats/planning/power.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <stdexcept>
-#include <utility>
-
 #include "stats/planning/planning.h"
+#include "tests/prelude.h"
 #include "tests/stats/table.h"
 
 namespace assay::stats {

@@ -2,23 +2,15 @@
 // by itself.
 #include "stats/pyramids/image_fine_cells.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <vector>
-
 #include "stats/basics/moments.h"
 #include "stats/images/image_family.h"
 #include "stats/pyramids/image_coarse_cells.h"
+#include "tests/prelude.h"
 #include "tests/stats/image_samples.h"
 #include "tests/stats/samples.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::draw_stack;
-using tests::OwnedStack;
-using tests::Philox;
 
 using Groups = std::vector<WindowGroup>;
 
@@ -60,16 +52,26 @@ CellNoise noise_of(const ImagePair<float>& pair, const std::array<Half, halves>&
   double reciprocal_degrees = 0;
   for (std::size_t h = 0; h < halves; ++h) {
     for (std::size_t s = 0; s < sides_of_pair; ++s) {
-      const Moments moments =
-          cell_moments(s == 0 ? pair.a : *pair.b, h, half[1 - h].weight, cell);
+      const Moments moments = cell_moments(s == 0 ? pair.a : *pair.b, h, half[1 - h].weight, cell);
       const double part = std::pow(moments.standard_error() / 2, 2);
       noise.effect += (s == 0 ? 0.5 : -0.5) * moments.mean;
-      noise.level[s] += moments.mean / 2;
       noise.variance[s] += part;
       reciprocal_degrees += part * part / static_cast<double>(moments.count - 1);
     }
   }
   noise.degrees = std::pow(noise.variance[0] + noise.variance[1], 2) / reciprocal_degrees;
+  const Rectangle& window = cell.group.windows[cell.index];
+  double weights = 0;
+  double squares = 0;
+  for (std::size_t y = window.y; y < window.y + window.height; ++y) {
+    for (std::size_t x = window.x; x < window.x + window.width; ++x) {
+      const std::size_t e = (y * pair.a.extent.width + x) * pair.a.extent.channels + cell.channel;
+      const double weight = (half[0].weight[e] + half[1].weight[e]) / 2;
+      weights += weight;
+      squares += weight * weight;
+    }
+  }
+  noise.weight = squares / weights;
   return noise;
 }
 
@@ -137,9 +139,9 @@ void expect_cells_of(const ImageExtent& extent, std::uint32_t test_case) {
     EXPECT_EQ(best[g].finding.window, expected.finding.window);
     EXPECT_NEAR(best[g].noise.effect, expected.noise.effect, 1e-9);
     for (const std::size_t s : {0U, 1U}) {
-      EXPECT_NEAR(best[g].noise.level[s], expected.noise.level[s], 1e-8);
       EXPECT_NEAR(best[g].noise.variance[s], expected.noise.variance[s], 1e-9);
     }
+    EXPECT_NEAR(best[g].noise.weight, expected.noise.weight, 1e-9);
     EXPECT_NEAR(best[g].noise.degrees, expected.noise.degrees, 1e-7);
   }
 }

@@ -1,73 +1,28 @@
 #include "stats/pyramids/image_noise.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <vector>
-
 #include "tests/philox.h"
+#include "tests/prelude.h"
 
 namespace assay::stats {
 namespace {
 
 using tests::Philox;
 
-PooledNoise pooled(const std::vector<double>& values) {
+constexpr double least_rare = 2;
+
+PooledNoise pooled(const std::vector<double>& values, double unit = 1) {
   PooledNoise noise;
-  double squares = 0;
-  for (const double x : values) {
-    squares += x * x;
-    if (std::abs(x) > PooledNoise::least_rare) noise.add_rare(static_cast<float>(x));
+  PooledNoise::Powers powers{.count = static_cast<double>(values.size())};
+  for (const double value : values) {
+    const double x = unit * value;
+    powers.squares += x * x;
+    powers.cubes += x * x * x;
+    powers.sixths += std::pow(x, 6);
+    if (std::abs(value) > least_rare) noise.add_rare(x);
   }
-  const auto count = static_cast<double>(values.size());
-  noise.add_element({.replicates = count, .sum_of_squares = squares * (count - 1) / count});
+  noise.add(powers);
   return noise;
 }
-
-// (x - c)+ and min(x, c)^2 value by value; c at the ends of bins, where nothing is interpolated.
-TEST(PooledNoise, HasTheMeansOfTheValuesThatItTook) {
-  Philox random(850);
-  std::vector<double> values;
-  for (int i = 0; i < 2000; ++i) values.push_back(random.normal() * (i % 50 == 0 ? 20 : 1));
-  const PooledNoise noise = pooled(values);
-  for (const double c : {2.0, 3.0, 4.0, 6.0, 16.0}) {
-    for (const std::size_t direction : {upward, downward}) {
-      double excess = 0;
-      double squares = 0;
-      for (const double x : values) {
-        const double y = direction == upward ? x : -x;
-        excess += std::max(0.0, y - c);
-        squares += std::pow(std::min(y, c), 2);
-      }
-      const PooledNoise::Tail tail = noise.beyond(direction, c);
-      EXPECT_NEAR(tail.excess, excess / 2000, 1e-6) << c;
-      // The squares of a bin are those of its mean: half an octave has at most 3 % more.
-      EXPECT_NEAR(tail.square / (squares / 2000), 1, 0.03) << c;
-    }
-  }
-}
-
-TEST(PooledNoise, IsTheSameInOnePieceOrTwo) {
-  Philox random(851);
-  std::vector<double> values;
-  for (int i = 0; i < 1000; ++i) values.push_back(3 * random.normal());
-  PooledNoise first = pooled({values.begin(), values.begin() + 500});
-  first.merge(pooled({values.begin() + 500, values.end()}));
-  const PooledNoise::Tail two = first.beyond(upward, 5);
-  const PooledNoise::Tail one = pooled(values).beyond(upward, 5);
-  EXPECT_NEAR(two.excess, one.excess, 1e-6);
-  EXPECT_NEAR(two.square, one.square, 1e-5);
-}
-
-NoisePyramid pyramid_of(const std::array<std::vector<double>, sides_of_pair>& values) {
-  NoisePyramid noise({8, 8, 1}, {16, 16});
-  for (std::size_t s = 0; s < sides_of_pair; ++s) noise.at(s, 0, 0, 0).merge(pooled(values[s]));
-  noise.build();
-  return noise;
-}
-
-constexpr Rectangle pixel{3, 3, 1, 1};
 
 std::vector<double> normal_values(Philox& random) {
   std::vector<double> values(1024);
@@ -75,77 +30,120 @@ std::vector<double> normal_values(Philox& random) {
   return values;
 }
 
+// Value by value. An octave's values count as its mean. By Jensen that is too little, for values at
+// the ends of the octave by a factor (1 + p)^2 / (1 + 3 p) at least 8/9, or (1 + p)^3 / (1 + 7 p)
+// at least .72.
+TEST(PooledNoise, HasTheMomentsOfTheValuesCutOff) {
+  Philox random(850);
+  std::vector<double> values;
+  for (int i = 0; i < 2000; ++i) values.push_back(random.normal() * (i % 50 == 0 ? 20 : 1));
+  for (const double unit : {1.0, 1e-9, 1e9}) {
+    const PooledNoise noise = pooled(values, unit);
+    for (int octave = noise.top(); octave > noise.top() - 4; --octave) {
+      double squares = 0;
+      double cubes = 0;
+      for (const double value : values) {
+        const double c = std::ldexp(1, octave);
+        const double x = std::clamp(unit * value, -c, c);
+        squares += x * x;
+        cubes += std::abs(x * x * x);
+      }
+      const PooledNoise::Moments moments = noise.cut_off(octave);
+      EXPECT_LE(moments.second, squares / 2000 * (1 + 1e-6)) << octave;
+      EXPECT_GE(moments.second, squares / 2000 * 8 / 9) << octave;
+      // All upward: the third moment of |x|.
+      std::vector<double> sizes = values;
+      for (double& x : sizes) x = std::abs(x);
+      const double third = pooled(sizes, unit).cut_off(octave).third;
+      EXPECT_LE(third, cubes / 2000 * (1 + 1e-6)) << octave;
+      EXPECT_GE(third, cubes / 2000 * 0.72) << octave;
+    }
+  }
+}
+
+// Octaves fall off the end as larger values come, whether within a piece or by merging.
+TEST(PooledNoise, IsTheSameInOnePieceOrTwo) {
+  Philox random(851);
+  std::vector<double> values;
+  for (int i = 0; i < 1000; ++i) values.push_back(std::exp(6 * random.normal()));
+  PooledNoise first = pooled({values.begin(), values.begin() + 500});
+  first.merge(pooled({values.begin() + 500, values.end()}));
+  const PooledNoise whole = pooled(values);
+  ASSERT_EQ(first.top(), whole.top());
+  for (int octave = whole.top(); octave > whole.top() - PooledNoise::octaves; --octave) {
+    EXPECT_NEAR(first.cut_off(octave).third / whole.cut_off(octave).third, 1, 1e-5);
+    EXPECT_NEAR(first.cut_off(octave).second / whole.cut_off(octave).second, 1, 1e-5);
+  }
+}
+
+// Elements of which the first `noisier` have more noise than the other side.
+NoisePyramid pyramid_of(const std::array<std::vector<double>, sides_of_pair>& values,
+                        int noisier = 32) {
+  NoisePyramid noise({8, 8, 1}, {16, 16});
+  for (std::size_t s = 0; s < sides_of_pair; ++s) {
+    PooledNoise& here = noise.at(s, 0, 0, 0);
+    here.merge(pooled(values[s]));
+    for (int i = 0; i < 64; ++i) here.add_element((s == 0) == (i < noisier));
+  }
+  noise.build();
+  return noise;
+}
+
+constexpr Rectangle pixel{3, 3, 1, 1};
+const CellNoise dark{.effect = -3, .variance = {1.0 / 16, 1.0 / 16}, .degrees = 30, .weight = 1};
+
 // A darker cell that showed none of the bright values which its neighbours on the same side showed.
-TEST(NoisePyramid, TakesOffWhatOneSideAloneMayHaveMissed) {
+TEST(NoisePyramid, HasTheVarianceOfEqualMeans) {
   Philox random(852);
-  std::vector<double> rare = normal_values(random);
+  const std::vector<double> clean = normal_values(random);
+  std::vector<double> rare = clean;
   for (std::size_t i = 0; i < 40; ++i) rare[i] = 50;
-  const CellNoise cell{.effect = -3,
-                       .level = {7, 10},
-                       .variance = {1.0 / 16, 1.0 / 16},
-                       .degrees = 30,
-                       .elements = 1,
-                       .largest = {{{2, 2}, {2, 2}}}};
-  const double alone = -3 / std::sqrt(std::pow(10.0 / 7, 2) / 16 + 1.0 / 16);
-  const NoisePyramid clean = pyramid_of({normal_values(random), normal_values(random)});
-  EXPECT_NEAR(clean.kept(cell, pixel, 0).t, alone, 0.15);
-  // 40 of 1024 values are 48 beyond 2: they carry 1.9 of the mean, less an error of .3.
-  const NoisePyramid::Kept one = pyramid_of({rare, normal_values(random)}).kept(cell, pixel, 0);
-  EXPECT_NEAR(one.margin, 3 * (40 * 48.0 - std::sqrt(40) * 48) / 1024, 0.05);
-  EXPECT_EQ(one.t, 0);
+  const double alone = -3 / std::sqrt(2.0 / 16);
+  EXPECT_NEAR(pyramid_of({clean, normal_values(random)}).kept(dark, pixel, 0).t, alone, 0.3);
+  // k3 = 40 / 1024 50^3 less its error, k2 = 40 / 1024 50^2 + 1 + 1; both in means of 16.
+  const double carried = 40.0 / 1024;
+  const double k2 = carried * 2500 + 2 - carried;
+  const auto t = [&](double k3) { return -3 / std::sqrt(2.0 / 16 + 3 * k3 / (16 * k2)); };
+  const double k3 = carried * 125000;
+  EXPECT_NEAR(pyramid_of({rare, clean}).kept(dark, pixel, 0).t, t(k3 * (1 - 1 / std::sqrt(40))),
+              0.02);
+  // Sides of different laws: 60 of 64 elements have more noise on one side.
+  EXPECT_NEAR(pyramid_of({rare, clean}, 60).kept(dark, pixel, 0).t, t(k3), 0.02);
+  EXPECT_NEAR(pyramid_of({rare, clean}, 4).kept(dark, pixel, 0).t, t(k3), 0.02);
   // The brighter side misses the same.
-  const NoisePyramid::Kept both = pyramid_of({rare, rare}).kept(cell, pixel, 0);
-  EXPECT_EQ(both.margin, 0);
-  EXPECT_NEAR(both.t, alone, 0.15);
+  EXPECT_NEAR(pyramid_of({rare, rare}).kept(dark, pixel, 0).t, alone, 0.3);
   // A brighter cell misses no bright values.
-  CellNoise brighter = cell;
-  brighter.effect = 3;
-  brighter.level = {13, 10};
-  EXPECT_NEAR(pyramid_of({rare, normal_values(random)}).kept(brighter, pixel, 0).margin, 0, 0.01);
+  CellNoise bright = dark;
+  bright.effect = 3;
+  EXPECT_NEAR(pyramid_of({rare, clean}).kept(bright, pixel, 0).t, -alone, 0.3);
+  // A single value that drowns the others changes nothing: it is cut off.
+  std::vector<double> giant = rare;
+  giant[999] = 1e5;
+  EXPECT_LE(std::abs(pyramid_of({giant, clean}).kept(dark, pixel, 0).t), std::abs(t(k3)) * 1.25);
 }
 
-TEST(NoisePyramid, ScalesTheNoiseOfTheDarkerSide) {
+TEST(NoisePyramid, TakesACellsOwnThirdCumulant) {
   const NoisePyramid none({8, 8, 1}, {16, 16});
-  const CellNoise cell{
-      .effect = -8, .level = {2, 10}, .variance = {0.04, 0.5}, .degrees = 20, .elements = 4};
-  EXPECT_NEAR(none.kept(cell, pixel, 0).t, -8 / std::sqrt(0.04 * 25 + 0.5), 1e-12);
-  CellNoise by_elements = cell;
-  by_elements.more = 3;
-  EXPECT_NEAR(none.kept(by_elements, pixel, 0).t, -8 / std::sqrt(0.54 + 3), 1e-12);
-  CellNoise without_light = cell;
-  without_light.level = {-2, 6};
-  EXPECT_NEAR(none.kept(without_light, pixel, 0).t, -8 / std::sqrt(0.54), 1e-12);
-}
-
-TEST(NoisePyramid, ADarkElementHasTheErrorThatItWouldHaveIfLit) {
-  const CellNoise element{
-      .effect = -9, .level = {1, 10}, .variance = {0.25, 1}, .degrees = 20, .elements = 1};
-  // One error beyond either: 9 against 1.5.
-  EXPECT_NEAR(variance_of_missing_light(element), 0.25 * (36 - 1), 1e-12);
-  CellNoise black = element;
-  black.level = {0, 10};
-  EXPECT_NEAR(variance_of_missing_light(black), 81, 1e-12);
-  CellNoise alike = element;
-  alike.level = {9, 10};
-  EXPECT_EQ(variance_of_missing_light(alike), 0);
-}
-
-// Hall's correction: with skewness g of the numerator, a t that is too low shrinks.
-TEST(NoisePyramid, ShrinksSkewedSumsWhereTheyAreTooLow) {
-  const NoisePyramid none({8, 8, 1}, {16, 16});
-  CellNoise cell{.effect = -4,
-                 .level = {-4, 0},
-                 .variance = {0.5, 0.5},
-                 .degrees = 30,
-                 .third = 0.3,
-                 .elements = 64};
+  CellNoise cell{.effect = -4, .variance = {0.5, 0.5}, .degrees = 30, .third = 0.3, .weight = 1};
   const Rectangle whole{0, 0, 8, 8};
-  const double shrunk = 4 - 0.3 * 16 / 3 + 0.09 * 64 / 27 - 0.05;
-  EXPECT_NEAR(none.kept(cell, whole, 0).t, -shrunk, 1e-12);
+  EXPECT_NEAR(none.kept(cell, whole, 0).t, -4 / std::sqrt(1 + 4 * 0.3), 1e-12);
   cell.third = -0.3;
   EXPECT_NEAR(none.kept(cell, whole, 0).t, -4, 1e-12);
-  cell.third = 1;  // beyond 3 / g: cut off at 1 / g - g / 6
-  EXPECT_NEAR(none.kept(cell, whole, 0).t, -(1 - 1.0 / 6), 1e-12);
+}
+
+// Values of 0 and 10 at probability .05: an element lacks .5 if 16 replicates missed all.
+TEST(NoisePyramid, HidesWhatAnElementMissed) {
+  std::vector<double> values(1000, -0.5);
+  for (std::size_t i = 0; i < 50; ++i) values[i] = 9.5;
+  PooledNoise noise = pooled(values);
+  for (int i = 0; i < 10; ++i) noise.add_element(false);
+  const double variance = 0.05 * 0.95 * 100;
+  const double size = 10 * (1 - 2 * 0.05);
+  const double probability = variance / (size * size);
+  EXPECT_NEAR(noise.hidden_squares(16),
+              10 * std::pow(size * probability * std::exp(-16 * probability), 2), 1e-5);
+  for (double& x : values) x = -x;
+  EXPECT_EQ(pooled(values).hidden_squares(16), 0);
 }
 
 }  // namespace

@@ -1,10 +1,6 @@
 #include "stats/tails/kolmogorov.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <stdexcept>
-
+#include "tests/prelude.h"
 #include "tests/stats/table.h"
 
 namespace assay::stats {

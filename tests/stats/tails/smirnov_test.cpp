@@ -1,13 +1,6 @@
 #include "stats/tails/smirnov.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <bit>
-#include <cmath>
-#include <stdexcept>
-#include <vector>
-
+#include "tests/prelude.h"
 #include "tests/stats/table.h"
 
 namespace assay::stats {

@@ -1,19 +1,11 @@
 #include "stats/tails/tabulated_law.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <stdexcept>
-
 #include "stats/cells/plane_cells.h"
+#include "tests/prelude.h"
 #include "tests/stats/point_by_point.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::point_by_point;
 
 /// The largest distance of a table to its law, at 20001 places.
 template <class Law>

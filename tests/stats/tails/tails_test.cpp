@@ -1,19 +1,10 @@
 #include "stats/tails/tails.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <stdexcept>
-
+#include "tests/prelude.h"
 #include "tests/stats/table.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::log_p_error;
-using tests::read_table;
-using tests::Row;
 
 template <class Tails>
 void expect_table(const std::string& name, double tolerance, const Tails& tails) {

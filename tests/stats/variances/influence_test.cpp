@@ -1,16 +1,11 @@
 #include "stats/variances/influence.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <numbers>
-#include <vector>
-
 #include "stats/basics/errors.h"
 #include "stats/gates/assumption_gates.h"
 #include "stats/means/skewness_corrected_t.h"
 #include "stats/planning/power.h"
 #include "stats/tails/tails.h"
+#include "tests/prelude.h"
 #include "tests/stats/expect_calibrated.h"
 #include "tests/stats/laws.h"
 #include "tests/stats/samples.h"
@@ -18,12 +13,6 @@
 
 namespace assay::stats {
 namespace {
-
-using tests::expect_calibrated;
-using tests::expect_caught;
-using tests::moments_of;
-using tests::Philox;
-using tests::Row;
 
 // The data sets of make_ratios.py.
 struct Pairs {
@@ -204,39 +193,31 @@ TEST(Influence, OfAVarianceIsCalibrated) {
   });
 }
 
-TEST(Influence, OfVariancesIsCalibratedBetweenDifferentShapes) {
-  expect_calibrated({913, 2000}, [](Philox& random) {
-    const auto x = influence_of_variance(draw(tests::laws::exponential, 16384, random));
-    const auto y = influence_of_variance(draw(tests::laws::uniform, 4000, random));
-    return log_p_two_sided(influence_t(x, y, std::log(12)));
-  });
+CALIBRATED(Influence, OfVariancesIsCalibratedBetweenDifferentShapes, 913, 2000) {
+  const auto x = influence_of_variance(draw(tests::laws::exponential, 16384, random));
+  const auto y = influence_of_variance(draw(tests::laws::uniform, 4000, random));
+  return log_p_two_sided(influence_t(x, y, std::log(12)));
 }
 
 // The mean of the exponential law is 1: squares about 0 have twice the mean.
-TEST(Influence, WithTheMeanNotSubtractedIsCaught) {
-  expect_caught({914, 1000}, [](Philox& random) {
-    const auto x = draw(tests::laws::exponential, 4000, random);
-    const double square = x.sum(2, 0) / static_cast<double>(x.count);
-    Influence wrong = influence_of_variance(x);
-    wrong.log_value = std::log(square + x.of_x.mean * x.of_x.mean);
-    return log_p_two_sided(influence_t(wrong, 0));
-  });
+CAUGHT(Influence, WithTheMeanNotSubtractedIsCaught, 914, 1000) {
+  const auto x = draw(tests::laws::exponential, 4000, random);
+  const double square = x.sum(2, 0) / static_cast<double>(x.count);
+  Influence wrong = influence_of_variance(x);
+  wrong.log_value = std::log(square + x.of_x.mean * x.of_x.mean);
+  return log_p_two_sided(influence_t(wrong, 0));
 }
 
-TEST(Influence, WithTheSkewnessOfTheWrongSignIsCaught) {
-  expect_caught({915, 3000}, [](Philox& random) {
-    Influence wrong = influence_of_variance(draw(tests::laws::exponential, 4000, random));
-    wrong.relative.m3 = -wrong.relative.m3;
-    return log_p_two_sided(influence_t(wrong, 0));
-  });
+CAUGHT(Influence, WithTheSkewnessOfTheWrongSignIsCaught, 915, 3000) {
+  Influence wrong = influence_of_variance(draw(tests::laws::exponential, 4000, random));
+  wrong.relative.m3 = -wrong.relative.m3;
+  return log_p_two_sided(influence_t(wrong, 0));
 }
 
-TEST(Influence, WithTheKurtosisOfTheNormalLawIsCaught) {
-  expect_caught({916, 3000}, [](Philox& random) {
-    Influence wrong = influence_of_variance(draw(tests::laws::exponential, 4000, random));
-    wrong.relative.m2 = 2 * 4000.0;
-    return log_p_two_sided(influence_t(wrong, 0));
-  });
+CAUGHT(Influence, WithTheKurtosisOfTheNormalLawIsCaught, 916, 3000) {
+  Influence wrong = influence_of_variance(draw(tests::laws::exponential, 4000, random));
+  wrong.relative.m2 = 2 * 4000.0;
+  return log_p_two_sided(influence_t(wrong, 0));
 }
 
 // x normal, cost 1 + x^2: variance times mean cost 2, relative spread 2 + 2/4 + 2 * 2/2 = 4.5.
@@ -249,49 +230,39 @@ JointMoments quadratic_cost(Philox& random, int n) {
   return sample.moments();
 }
 
-TEST(Influence, OfAnEfficiencyIsCalibratedWhenCostFollowsTheSquare) {
-  expect_calibrated({917, 3000}, [](Philox& random) {
-    const Influence x = influence_of_variance_and_cost(quadratic_cost(random, 4000));
-    return log_p_two_sided(influence_t(x, std::log(2)));
-  });
+CALIBRATED(Influence, OfAnEfficiencyIsCalibratedWhenCostFollowsTheSquare, 917, 3000) {
+  const Influence x = influence_of_variance_and_cost(quadratic_cost(random, 4000));
+  return log_p_two_sided(influence_t(x, std::log(2)));
 }
 
 // Exponential at cost 3 against normal at cost 1 + x^2: 3 over 2.
-TEST(Influence, OfEfficienciesIsCalibratedBetweenDifferentShapes) {
-  expect_calibrated({918, 1500}, [](Philox& random) {
-    JointSums x;
-    for (int i = 0; i < 16384; ++i) x.add(random.exponential(), 3);
-    const Influence y = influence_of_variance_and_cost(quadratic_cost(random, 4000));
-    return log_p_two_sided(
-        influence_t(influence_of_variance_and_cost(x.moments()), y, std::log(1.5)));
-  });
+CALIBRATED(Influence, OfEfficienciesIsCalibratedBetweenDifferentShapes, 918, 1500) {
+  JointSums x;
+  for (int i = 0; i < 16384; ++i) x.add(random.exponential(), 3);
+  const Influence y = influence_of_variance_and_cost(quadratic_cost(random, 4000));
+  return log_p_two_sided(
+      influence_t(influence_of_variance_and_cost(x.moments()), y, std::log(1.5)));
 }
 
 // Bias 1, variance 1, cost 2: mean squared error 2, product 4.
-TEST(Influence, OfABiasedEstimatorIsCalibrated) {
-  expect_calibrated({919, 4000}, [](Philox& random) {
-    JointSums x;
-    for (int i = 0; i < 2000; ++i) x.add(random.normal(), 2);
-    return log_p_two_sided(influence_t(influence_of_error_and_cost(x.moments(), -1), std::log(4)));
-  });
+CALIBRATED(Influence, OfABiasedEstimatorIsCalibrated, 919, 4000) {
+  JointSums x;
+  for (int i = 0; i < 2000; ++i) x.add(random.normal(), 2);
+  return log_p_two_sided(influence_t(influence_of_error_and_cost(x.moments(), -1), std::log(4)));
 }
 
-TEST(Influence, WithoutTheCovarianceOfSquareAndCostIsCaught) {
-  expect_caught({920, 3000}, [](Philox& random) {
-    const JointMoments sample = quadratic_cost(random, 2000);
-    Influence wrong = influence_of_variance_and_cost(sample);
-    wrong.relative.m2 -= 2 * sample.sum(2, 1) / (sample.sum(2, 0) / 2000) / sample.of_cost.mean;
-    return log_p_two_sided(influence_t(wrong, std::log(2)));
-  });
+CAUGHT(Influence, WithoutTheCovarianceOfSquareAndCostIsCaught, 920, 3000) {
+  const JointMoments sample = quadratic_cost(random, 2000);
+  Influence wrong = influence_of_variance_and_cost(sample);
+  wrong.relative.m2 -= 2 * sample.sum(2, 1) / (sample.sum(2, 0) / 2000) / sample.of_cost.mean;
+  return log_p_two_sided(influence_t(wrong, std::log(2)));
 }
 
-TEST(Influence, OfCostsIsCalibrated) {
-  expect_calibrated({921, 4000}, [](Philox& random) {
-    const Moments x = tests::draw_moments(2000, [&] { return random.exponential(); });
-    const Moments y = tests::draw_moments(2000, [&] { return 1 + random.uniform(); });
-    return log_p_two_sided(
-        influence_t(influence_of_mean(x), influence_of_mean(y), std::log(2 / 3.0)));
-  });
+CALIBRATED(Influence, OfCostsIsCalibrated, 921, 4000) {
+  const Moments x = tests::draw_moments(2000, [&] { return random.exponential(); });
+  const Moments y = tests::draw_moments(2000, [&] { return 1 + random.uniform(); });
+  return log_p_two_sided(
+      influence_t(influence_of_mean(x), influence_of_mean(y), std::log(2 / 3.0)));
 }
 
 // |rate - power| <= sqrt(ln(2e5) / (2 R)): .0553 at R = 2000, false alarm 1e-5.

@@ -1,25 +1,13 @@
 #include "stats/variances/slope.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <iostream>
-#include <vector>
-
 #include "stats/basics/errors.h"
 #include "stats/tails/tails.h"
+#include "tests/prelude.h"
 #include "tests/stats/expect_calibrated.h"
 #include "tests/stats/table.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::expect_calibrated;
-using tests::expect_caught;
-using tests::Experiment;
-using tests::Philox;
-using tests::Row;
-using tests::Shape;
 
 // The cases of make_ratios.py.
 SlopeData known(int index) {
@@ -179,9 +167,8 @@ SlopeData inverse_bias(Philox& random) {
   return data;
 }
 
-TEST(Slope, OfAnInverseBiasIsCalibratedWhereTheLastBiasIsTwoStandardErrors) {
-  expect_calibrated({321, 10000},
-                    [](Philox& random) { return log_p_of(inverse_bias(random), -1); });
+CALIBRATED(Slope, OfAnInverseBiasIsCalibratedWhereTheLastBiasIsTwoStandardErrors, 321, 10000) {
+  return log_p_of(inverse_bias(random), -1);
 }
 
 TEST(Slope, OneSidedPValuesAreAtMostUniformAtTheTruth) {
@@ -208,44 +195,36 @@ TEST(Slope, SetsCoverAsOftenAsTheySay) {
   std::cout << "  missed " << missed << " of 6000 at .99, unbounded " << unbounded << "\n";
 }
 
-TEST(Slope, OfLogarithmsIsCalibrated) {
-  expect_calibrated({325, 20000}, [](Philox& random) {
-    SlopeData data{.points = {}, .scale = SlopeScale::logarithms};
-    for (const double size : {1.0, 2.0, 4.0, 8.0, 16.0}) {
-      data.points.push_back({size, 3 - .5 * std::log(size) + .1 * random.normal(), .1});
-    }
-    return log_p_of(data, -.5);
-  });
+CALIBRATED(Slope, OfLogarithmsIsCalibrated, 325, 20000) {
+  SlopeData data{.points = {}, .scale = SlopeScale::logarithms};
+  for (const double size : {1.0, 2.0, 4.0, 8.0, 16.0}) {
+    data.points.push_back({size, 3 - .5 * std::log(size) + .1 * random.normal(), .1});
+  }
+  return log_p_of(data, -.5);
 }
 
-TEST(Slope, AStraightLineThroughLogarithmsOfNoisyBiasesIsCaught) {
-  expect_caught({326, 20000}, [](Philox& random) {
-    SlopeData data = inverse_bias(random);
-    for (SlopePoint& point : data.points) {
-      const double error = std::hypot(point.standard_error, data.reference_error);
-      point.standard_error = error / std::abs(point.estimate);
-      point.estimate = std::log(std::abs(point.estimate));
-    }
-    data.scale = SlopeScale::logarithms;
-    return log_p_of(data, -1);
-  });
+CAUGHT(Slope, AStraightLineThroughLogarithmsOfNoisyBiasesIsCaught, 326, 20000) {
+  SlopeData data = inverse_bias(random);
+  for (SlopePoint& point : data.points) {
+    const double error = std::hypot(point.standard_error, data.reference_error);
+    point.standard_error = error / std::abs(point.estimate);
+    point.estimate = std::log(std::abs(point.estimate));
+  }
+  data.scale = SlopeScale::logarithms;
+  return log_p_of(data, -1);
 }
 
-TEST(Slope, ACommonErrorOfTheReferenceTakenForIndependentErrorsIsCaught) {
-  expect_caught({327, 20000}, [](Philox& random) {
-    SlopeData data = inverse_bias(random);
-    for (SlopePoint& point : data.points) {
-      point.standard_error = std::hypot(point.standard_error, data.reference_error);
-    }
-    data.reference_error = 0;
-    return log_p_of(data, -1);
-  });
+CAUGHT(Slope, ACommonErrorOfTheReferenceTakenForIndependentErrorsIsCaught, 327, 20000) {
+  SlopeData data = inverse_bias(random);
+  for (SlopePoint& point : data.points) {
+    point.standard_error = std::hypot(point.standard_error, data.reference_error);
+  }
+  data.reference_error = 0;
+  return log_p_of(data, -1);
 }
 
-TEST(Slope, OneDegreeOfFreedomTooManyIsCaught) {
-  expect_caught({328, 10000}, [](Philox& random) {
-    return chi_square_tails(slope_test(inverse_bias(random), -1).test.statistic, 4).upper;
-  });
+CAUGHT(Slope, OneDegreeOfFreedomTooManyIsCaught, 328, 10000) {
+  return chi_square_tails(slope_test(inverse_bias(random), -1).test.statistic, 4).upper;
 }
 
 // |rate - power| <= sqrt(ln(2e5) / (2 R)): .0247 at R = 10000, false alarm 1e-5.

@@ -1,24 +1,15 @@
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <limits>
 
 #include "stats/basics/errors.h"
 #include "stats/gates/assumption_gates.h"
 #include "stats/tails/tails.h"
 #include "stats/variances/chi_square_variance.h"
 #include "stats/variances/f_ratio.h"
+#include "tests/prelude.h"
 #include "tests/stats/calibration.h"
 #include "tests/stats/samples.h"
 
 namespace assay::stats {
 namespace {
-
-using tests::draw_moments;
-using tests::golden_x;
-using tests::golden_y;
-using tests::moments_of;
-using tests::Philox;
 
 const Moments x = moments_of(golden_x);
 const Moments y = moments_of(golden_y);

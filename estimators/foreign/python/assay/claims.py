@@ -14,7 +14,7 @@ from pathlib import Path
 
 from assay.declaration import Function, declaration_of
 
-_SOURCE = re.compile(r"(?<=\()\s*([^\W\d]\w*)\s*(?=[.,)])")  # the name in `mean(name)`
+_SOURCE = re.compile(r"(?<=[(,])(\s*)([^\W\d]\w*)\s*(?=[.,)])")  # the names in `quantity(name, other)`
 
 
 @dataclass(frozen=True)
@@ -61,9 +61,9 @@ def write_suite(module: types.ModuleType, file: Path) -> None:
     estimators: dict[str, dict[str, typing.Any]] = {}
     tests = []
     for function, name, each in tests_of(module):
-        text = _SOURCE.sub(lambda found: function if found[1] == "it" else found[1], each.text)
+        text = _SOURCE.sub(lambda found: found[1] + (function if found[2] == "it" else found[2]), each.text)
         tests.append({**each.keys, "name": name, "claim": text})
-        for source in [*_SOURCE.findall(text), str(each.keys.get("reference"))]:
+        for source in [*(name for _, name in _SOURCE.findall(text)), str(each.keys.get("reference"))]:
             value = getattr(module, source, None)
             if callable(value):
                 estimators[source] = {"plugin": "process", "command": ["sh", f"{file.stem}.sh", source],

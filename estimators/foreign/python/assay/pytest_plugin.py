@@ -35,6 +35,7 @@ class _Settings:
         self.path = shutil.which(self._wanted)
         seed = config.getoption("--assay-seed")
         self.seed = str(random.SystemRandom().getrandbits(32)) if seed == "random" else seed
+        config.option.assay_seed = self.seed  # for the workers of xdist
         self._config = config
         self._folder: Path | None = None
 
@@ -55,6 +56,11 @@ class _Settings:
             cache = getattr(self._config, "cache", None)
             self._folder = Path(cache.mkdir("assay") if cache else tempfile.mkdtemp(prefix="assay-"))
         return (self._folder / nodeid.replace("..", "_")).with_suffix(ending)
+
+    def record(self, nodeid: str) -> Path:
+        """A run's record, of each worker of xdist its own."""
+        worker = os.environ.get("PYTEST_XDIST_WORKER")
+        return self.file(nodeid, f".{worker}.json" if worker else ".json")
 
     def run(self, *words: str) -> subprocess.CompletedProcess[str]:
         environment = {name: value for name, value in os.environ.items() if name not in _SHARDS}
@@ -96,7 +102,7 @@ def pytest_pycollect_makeitem(collector: pytest.Collector, name: str, obj: objec
         settings = collector.config.stash[_SETTINGS]
         suite = settings.file(collector.nodeid, ".yaml")
         names = [test for _, test, _ in tests_of(collector.obj)]
-        collector.stash[_RUN] = _Run(settings, suite, settings.file(collector.nodeid, ".json"), len(names),
+        collector.stash[_RUN] = _Run(settings, suite, settings.record(collector.nodeid), len(names),
                                      lambda: write_suite(collector.obj, suite))
     stem = collector.stash[_RUN].suite.stem
     return [ClaimItem.from_parent(collector, name=test, run=collector.stash[_RUN], id=f"{stem}/{test}",
@@ -116,7 +122,7 @@ class SuiteFile(pytest.File):
         if listed.returncode != 0:
             raise self.CollectError(listed.stderr.strip())
         ids = listed.stdout.splitlines()
-        run = _Run(settings, self.path, settings.file(self.nodeid, ".json"), len(ids))
+        run = _Run(settings, self.path, settings.record(self.nodeid), len(ids))
         for each in ids:
             yield ClaimItem.from_parent(self, name=each.split("/", 1)[1], run=run, id=each)
 

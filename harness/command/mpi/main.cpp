@@ -1,0 +1,128 @@
+// assay-mpi: the program `assay` whose runs are drawn by all ranks of an MPI job.
+
+#include <fmt/format.h>
+#include <mpi.h>
+
+#include <cstdio>
+#include <list>
+#include <map>
+
+#include "estimators/library_host.h"
+#include "harness/command/launcher.h"
+#include "harness/command/program.h"
+#include "harness/ranks/ranks.h"
+
+namespace assay::harness {
+namespace {
+
+class MpiMessages final : public Messages {
+ public:
+  MpiMessages() {
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
+    MPI_Comm_size(MPI_COMM_WORLD, &size_);
+  }
+
+  int rank() const override { return rank_; }
+  int size() const override { return size_; }
+
+  void send(int to, std::string bytes) override {
+    forget_sent();
+    sending_.push_back({std::move(bytes), {}});
+    Sending& all = sending_.back();
+    // MPI counts in int.
+    for (std::size_t first = 0; first < all.bytes.size(); first += most) {
+      const std::size_t size = std::min(most, all.bytes.size() - first);
+      const bool last = first + size == all.bytes.size();
+      MPI_Isend(all.bytes.data() + first, static_cast<int>(size), MPI_BYTE, to,
+                last ? last_part : a_part, MPI_COMM_WORLD, &all.requests.emplace_back());
+    }
+  }
+
+  std::optional<Message> receive() override {
+    forget_sent();
+    int there = 0;
+    MPI_Message message{};
+    MPI_Status status{};
+    const auto probe = [&] {
+      MPI_Improbe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &there, &message, &status);
+    };
+    probe();
+    // A large message moves on only while MPI is called.
+    for (int i = 0; i < 1000 && there == 0 && !sending_.empty(); ++i) {
+      forget_sent();
+      probe();
+    }
+    if (there == 0) return std::nullopt;
+    int size = 0;
+    MPI_Get_count(&status, MPI_BYTE, &size);
+    std::string& bytes = parts_[status.MPI_SOURCE];
+    const std::size_t before = bytes.size();
+    bytes.resize(before + static_cast<std::size_t>(size));
+    MPI_Mrecv(bytes.data() + before, size, MPI_BYTE, &message, &status);
+    if (status.MPI_TAG != last_part) return std::nullopt;
+    return Message{status.MPI_SOURCE, std::exchange(bytes, {})};
+  }
+
+  void wait_until_sent() {
+    for (Sending& each : sending_) {
+      MPI_Waitall(static_cast<int>(each.requests.size()), each.requests.data(),
+                  MPI_STATUSES_IGNORE);
+    }
+  }
+
+ private:
+  static constexpr std::size_t most = std::size_t{1} << 30;
+  static constexpr int last_part = 0;
+  static constexpr int a_part = 1;
+
+  struct Sending {
+    std::string bytes;
+    std::vector<MPI_Request> requests;
+  };
+
+  void forget_sent() {
+    std::erase_if(sending_, [](Sending& each) {
+      int done = 0;
+      MPI_Testall(static_cast<int>(each.requests.size()), each.requests.data(), &done,
+                  MPI_STATUSES_IGNORE);
+      return done != 0;
+    });
+  }
+
+  int rank_ = 0;
+  int size_ = 1;
+  std::list<Sending> sending_;
+  std::map<int, std::string> parts_;
+};
+
+int joined_program(const std::vector<std::string>& arguments) {
+  int granted = 0;
+  MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &granted);
+  MpiMessages messages;
+  int code = 2;
+  const unsigned tasks = launched_tasks(system_environment);
+  if (messages.size() == 1 && tasks > 1) {
+    fmt::print(stderr,
+               "assay: a launcher started {} tasks that MPI does not connect; start them by the "
+               "mpirun of the MPI that Assay was built with, or by `srun --mpi=pmix`\n",
+               tasks);
+  } else {
+    code = messages.rank() > 0 ? program_of_rank(arguments, messages)
+                               : program(arguments, messages.size() > 1 ? &messages : nullptr);
+  }
+  std::fflush(nullptr);
+  if (messages.rank() == 0 && !dismiss(messages)) MPI_Abort(MPI_COMM_WORLD, code);
+  messages.wait_until_sent();
+  MPI_Finalize();
+  return code;
+}
+
+}  // namespace
+}  // namespace assay::harness
+
+int main(int argc, char** argv) {
+  const std::vector<std::string> arguments(argv + 1, argv + argc);
+  // A host of a library is no rank.
+  const bool hosts = !arguments.empty() && arguments.front() == assay::library_host_word;
+  return hosts ? assay::harness::program(arguments) : assay::harness::joined_program(arguments);
+}

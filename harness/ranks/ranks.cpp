@@ -1,0 +1,535 @@
+#include "harness/ranks/ranks.h"
+
+#include <fmt/format.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <thread>
+
+#include "estimators/core/value.h"
+#include "harness/base/interrupt.h"
+#include "harness/base/parallel.h"
+#include "harness/draws/consistency_setup.h"
+#include "harness/sampling/packed_block.h"
+
+namespace assay::harness {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+enum class Kind : std::uint8_t { begin, batch, forget, end, hello, reply, failed, goodbye };
+
+// A rank has one batch to draw and one that waits.
+constexpr std::size_t most_batches = 2;
+constexpr double seconds_of_batch = .005;
+constexpr double most_blocks = 64;
+// Blocks that are handed out and not yet folded, for each worker, and their bytes at most.
+constexpr std::size_t window_of_worker = 32;
+constexpr double window_bytes = 512e6;
+constexpr double bytes_of_channel = 96;
+// Limits in seconds, and how many times the usual time a rank may take.
+constexpr double patience = 60;
+constexpr double least_wait = 1;
+constexpr double unknown_wait = 10;
+constexpr double usual_waits = 4;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Waiting in a receive would take a whole core.
+class Pause {
+ public:
+  void reset() { next_ = shortest; }
+  void wait() {
+    std::this_thread::sleep_for(next_);
+    next_ = std::min(2 * next_, longest);
+  }
+
+ private:
+  static constexpr std::chrono::microseconds shortest{50};
+  static constexpr std::chrono::microseconds longest{2000};
+  std::chrono::microseconds next_ = shortest;
+};
+
+std::string host_name() {
+  std::string name(256, '\0');
+  if (gethostname(name.data(), name.size() - 1) != 0) return "an unknown host";
+  return name.c_str();
+}
+
+struct Order {
+  std::uint64_t pool;
+  std::uint64_t first;
+  std::uint64_t last;
+};
+
+struct NamedRecipe {
+  std::uint64_t pool = 0;
+  std::string setup = "";
+  Recipe recipe = {};
+};
+
+template <class Archive, maybe_const<Order> T>
+void parts(Archive& a, T& order) {
+  a(order.pool, order.first, order.last);
+}
+
+template <class Archive, maybe_const<NamedRecipe> T>
+void parts(Archive& a, T& named) {
+  a(named.pool, named.setup, named.recipe);
+}
+
+}  // namespace
+
+/// The blocks of a round that are handed out and not yet folded.
+class Ranks::Window {
+ public:
+  struct Slot {
+    Task task;
+    std::optional<Pool::Block> block = {};
+    Clock::time_point given = {};
+  };
+
+  Window(Round& round, const std::map<const Setup*, std::string>& names)
+      : round_(round), workers_(round.pools()), usual_(round.pools().size()) {
+    for (const auto& pool : round.pools()) {
+      elsewhere_.push_back(pool->can_be_drawn_elsewhere() && names.contains(pool->setup().get()));
+      widest_ = std::max(widest_, bytes_of_channel * static_cast<double>(pool->channels()));
+    }
+  }
+
+  bool empty() const { return slots_.empty(); }
+  const Slot& at(std::uint64_t number) const { return slots_[number - front_]; }
+  const Pool& pool(const Slot& slot) const { return *round_.pools()[slot.task.pool]; }
+
+  void fill(unsigned workers) {
+    const auto fitting = static_cast<std::size_t>(window_bytes / widest_);
+    const std::size_t most =
+        std::clamp<std::size_t>(fitting, workers + 1, window_of_worker * workers);
+    while (slots_.size() < most) {
+      const std::optional<Task> task = round_.next();
+      if (!task) break;
+      (elsewhere_[task->pool] ? open_ : own_).push_back(front_ + slots_.size());
+      slots_.push_back({*task});
+    }
+  }
+
+  /// Takes slots for a rank with so many threads, of `workers` in all.
+  std::vector<std::uint64_t> some_for(unsigned threads, unsigned workers) {
+    std::vector<std::uint64_t> some;
+    std::size_t most = 1;
+    while (some.size() < most && skip_failed(open_)) {
+      if (some.empty()) {
+        const double seconds = usual_[at(open_.front()).task.pool].block;
+        const double blocks =
+            seconds > 0 ? std::clamp(seconds_of_batch / seconds, 1.0, most_blocks) : 1;
+        most = std::max<std::size_t>(threads, std::min(static_cast<std::size_t>(threads * blocks),
+                                                       open_.size() / (2 * workers)));
+      }
+      some.push_back(taken(open_));
+    }
+    return some;
+  }
+
+  /// Takes a reply's block, unless it was drawn again meanwhile.
+  void put(std::uint64_t number, std::string_view frame, double block_seconds, double waited) {
+    if (number < front_) return;
+    Slot& slot = slots_[number - front_];
+    if (slot.block) return;
+    Usual& usual = usual_[slot.task.pool];
+    usual = {block_seconds, std::max(usual.wait, waited)};
+    widest_ = std::max(widest_, static_cast<double>(frame.size()));
+    slot.block = unpacked_block(frame, pool(slot), slot.task.first);
+    Unpacker::require(
+        slot.block->fault || slot.block->whole.count == slot.task.last - slot.task.first,
+        "a block of another length");
+  }
+
+  /// Draws blocks on this rank's threads; false if there are none to draw.
+  bool draw_some(unsigned threads) {
+    std::vector<std::uint64_t> some;
+    while (some.size() < threads && skip_failed(own_)) some.push_back(taken(own_));
+    while (some.size() < threads && skip_failed(open_)) some.push_back(taken(open_));
+    if (some.empty()) some = overdue();
+    const Clock::time_point start = Clock::now();
+    tbb::parallel_for(std::size_t{0}, some.size(), [&](std::size_t i) {
+      Slot& slot = slots_[some[i] - front_];
+      slot.block = workers_.draw(slot.task);
+    });
+    const double seconds = seconds_since(start);
+    for (const std::uint64_t number : some) {
+      Usual& usual = usual_[at(number).task.pool];
+      usual = {seconds, std::max(usual.wait, seconds)};
+    }
+    return !some.empty();
+  }
+
+  bool fold() {
+    bool folded = false;
+    for (; !slots_.empty() && slots_.front().block; slots_.pop_front(), ++front_) {
+      round_.fold(slots_.front().task, std::move(*slots_.front().block));
+      folded = true;
+    }
+    return folded;
+  }
+
+ private:
+  /// Seconds that a block of a pool took last, and the most that a rank took to answer.
+  struct Usual {
+    double block = 0;
+    double wait = 0;
+  };
+
+  std::uint64_t taken(std::deque<std::uint64_t>& queue) {
+    const std::uint64_t number = queue.front();
+    queue.pop_front();
+    slots_[number - front_].given = Clock::now();
+    return number;
+  }
+
+  /// Drops the next blocks of pools that failed; false if no block remains.
+  bool skip_failed(std::deque<std::uint64_t>& queue) {
+    for (; !queue.empty() && pool(at(queue.front())).fault(); queue.pop_front()) {
+      slots_[queue.front() - front_].block.emplace();
+    }
+    return !queue.empty();
+  }
+
+  /// The first block, if a rank has had it for much longer than usual.
+  std::vector<std::uint64_t> overdue() const {
+    if (slots_.empty() || slots_.front().block) return {};
+    const double usual = usual_[slots_.front().task.pool].wait;
+    const double limit = usual > 0 ? std::max(least_wait, usual_waits * usual) : unknown_wait;
+    if (seconds_since(slots_.front().given) < limit) return {};
+    return {front_};
+  }
+
+  Round& round_;
+  Workers workers_;
+  std::vector<bool> elsewhere_;
+  std::vector<Usual> usual_;
+  std::deque<Slot> slots_;
+  std::uint64_t front_ = 0;         ///< number of the first slot
+  std::deque<std::uint64_t> open_;  ///< not yet given to anybody
+  std::deque<std::uint64_t> own_;   ///< the same of pools that this rank alone can draw
+  double widest_ = 1;               ///< bytes of a block
+};
+
+Ranks::Ranks(Messages& messages, std::optional<std::uint64_t> seed, Identity identity,
+             unsigned threads)
+    : messages_(messages),
+      identity_(std::move(identity)),
+      threads_(threads),
+      ranks_(static_cast<std::size_t>(messages.size())) {
+  for (int rank = 1; rank < messages.size(); ++rank) messages.send(rank, packed(Kind::begin, seed));
+}
+
+std::string Ranks::name_of(int rank) const {
+  const std::string& host = ranks_[static_cast<std::size_t>(rank)].host;
+  return fmt::format("rank {}{}", rank, host.empty() ? "" : " on " + host);
+}
+
+unsigned Ranks::workers() const {
+  unsigned workers = threads_;
+  for (const Rank& rank : ranks_) workers += rank.threads;
+  return workers;
+}
+
+void Ranks::greet(const Messages::Message& message, const std::set<std::string>& names) {
+  Rank& rank = ranks_[static_cast<std::size_t>(message.from)];
+  Unpacker unpack(unframed(message.bytes));
+  Kind kind{};
+  Identity identity;
+  std::string fault;
+  std::vector<std::string> prepared;
+  unpack(kind, rank.host, fault, identity, prepared, rank.threads);
+  unpack.end();
+  if (const auto other = difference(identity_, identity); other && fault.empty()) {
+    fault = fmt::format("is of another run: {} is {} there and {} here", other->name, other->theirs,
+                        other->ours);
+  }
+  for (const std::string& name : prepared) {
+    if (!names.contains(name)) fault = fmt::format("has `{}`, which rank 0 lacks", name);
+  }
+  if (fault.empty() && prepared.size() != names.size()) {
+    fault = "could not prepare all estimators that rank 0 has";
+  }
+  if (!fault.empty()) throw InputError({}, name_of(message.from) + " " + fault);
+}
+
+void Ranks::introduce(const NamedSetups& setups) {
+  std::set<std::string> names;
+  for (const auto& [name, setup] : setups) {
+    names_.emplace(setup.get(), name);
+    names.insert(name);
+  }
+  const double limit = std::max(patience, 10 * seconds_since(begun_));
+  Pause pause;
+  for (std::size_t missing = ranks_.size() - 1; missing > 0;) {
+    stop_if_interrupted();
+    if (const auto message = messages_.receive()) {
+      try {
+        greet(*message, names);
+      } catch (const Unpackable& refusal) {
+        throw InputError(
+            {}, fmt::format("{} sent no greeting: {}", name_of(message->from), refusal.what()));
+      }
+      --missing;
+      continue;
+    }
+    if (seconds_since(begun_) > limit) {
+      throw std::runtime_error(
+          fmt::format("{} of {} ranks did not answer in {:.0f} s", missing, ranks_.size(), limit));
+    }
+    pause.wait();
+  }
+}
+
+void Ranks::take_reply(const Messages::Message& message, Window& window) {
+  Unpacker unpack(unframed(message.bytes));
+  Kind kind{};
+  unpack(kind);
+  if (kind == Kind::failed) {
+    std::string words;
+    unpack(words);
+    throw std::runtime_error(name_of(message.from) + " " + words);
+  }
+  std::uint64_t number = 0;
+  double seconds = 0;
+  std::vector<std::string> blocks;
+  unpack(number, seconds, blocks);
+  unpack.end();
+  const auto found = batches_.find(number);
+  Unpacker::require(kind == Kind::reply && found != batches_.end() &&
+                        found->second.rank == message.from &&
+                        found->second.slots.size() == blocks.size(),
+                    "an answer to nothing");
+  const Batch batch = std::move(found->second);
+  batches_.erase(found);
+  --ranks_[static_cast<std::size_t>(message.from)].batches;
+  if (batch.round != round_) return;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    window.put(batch.slots[i], blocks[i], seconds / static_cast<double>(blocks.size()),
+               seconds_since(batch.sent));
+  }
+}
+
+bool Ranks::take_replies(Window& window) {
+  bool taken = false;
+  while (const auto message = messages_.receive()) {
+    taken = true;
+    try {
+      take_reply(*message, window);
+    } catch (const Unpackable& refusal) {
+      throw std::runtime_error(
+          fmt::format("{} sent what cannot be read: {}", name_of(message->from), refusal.what()));
+    }
+  }
+  return taken;
+}
+
+void Ranks::send_batch(int rank, std::vector<std::uint64_t> slots, const Window& window) {
+  Rank& to = ranks_[static_cast<std::size_t>(rank)];
+  std::vector<NamedRecipe> recipes;
+  std::vector<Order> orders;
+  for (const std::uint64_t number : slots) {
+    const Window::Slot& slot = window.at(number);
+    const Pool& pool = window.pool(slot);
+    orders.push_back({slot.task.pool, slot.task.first, slot.task.last});
+    if (!to.recipes.insert(slot.task.pool).second) continue;
+    recipes.push_back({slot.task.pool, names_.at(pool.setup().get()), pool.recipe()});
+  }
+  messages_.send(rank, packed(Kind::batch, next_batch_, recipes, orders));
+  batches_[next_batch_++] = {rank, round_, std::move(slots), Clock::now()};
+  ++to.batches;
+}
+
+void Ranks::give(Window& window) {
+  for (std::size_t room = 1; room <= most_batches; ++room) {  // first those that have nothing
+    for (int rank = 1; rank < messages_.size(); ++rank) {
+      const Rank& to = ranks_[static_cast<std::size_t>(rank)];
+      if (to.threads == 0 || to.batches >= room) continue;
+      std::vector<std::uint64_t> slots = window.some_for(to.threads, workers());
+      if (slots.empty()) return;
+      send_batch(rank, std::move(slots), window);
+    }
+  }
+}
+
+void Ranks::draw(Round& round) {
+  ++round_;
+  with_threads(threads_, [&] {
+    Window window(round, names_);
+    Pause pause;
+    for (;;) {
+      const bool taken = take_replies(window);
+      const bool folded = window.fold();
+      if (interrupted()) break;
+      window.fill(workers());
+      if (window.empty()) break;
+      give(window);
+      if (window.draw_some(threads_) || taken || folded) {
+        pause.reset();
+      } else {
+        pause.wait();
+      }
+    }
+    for (const auto& pool : round.pools()) pool->end_drawing();
+  });
+  for (int rank = 1; rank < messages_.size(); ++rank) {
+    Rank& each = ranks_[static_cast<std::size_t>(rank)];
+    if (!each.recipes.empty()) messages_.send(rank, packed(Kind::forget));
+    each.recipes.clear();
+  }
+}
+
+bool dismiss(Messages& messages) {
+  for (int rank = 1; rank < messages.size(); ++rank) messages.send(rank, packed(Kind::end));
+  const Clock::time_point start = Clock::now();
+  Pause pause;
+  for (int present = messages.size() - 1; present > 0;) {
+    if (const auto message = messages.receive()) {  // late answers go unread
+      Unpacker unpack(unframed(message->bytes));
+      Kind kind{};
+      unpack(kind);
+      if (kind == Kind::goodbye) --present;
+    } else if (seconds_since(start) > unknown_wait) {
+      return false;
+    } else {
+      pause.wait();
+    }
+  }
+  return true;
+}
+
+namespace {
+
+/// Pools of a round by rank 0's recipes, and who draws their blocks.
+class Drawers {
+ public:
+  explicit Drawers(const PreparedRank& prepared) : prepared_(prepared) {}
+
+  void add(const NamedRecipe& named) {
+    const auto setup =
+        std::ranges::find(prepared_.setups, named.setup, &NamedSetups::value_type::first);
+    Unpacker::require(setup != prepared_.setups.end() && named.pool < most_pools,
+                      "a recipe for no set-up");
+    // Workers count in cells that are there when they are made (run/pools.cpp).
+    const auto* const draws = dynamic_cast<const SamplerSetup*>(setup->second.get());
+    const bool counts =
+        std::ranges::any_of(named.recipe.plan, [](const auto& each) { return each.cells > 0; });
+    if (draws != nullptr && counts && dynamic_cast<const ConsistencySetup*>(draws) == nullptr) {
+      draws->density_cells();
+    }
+    pools_.resize(std::max<std::size_t>(pools_.size(), named.pool + 1));
+    pools_[named.pool] = std::make_shared<Pool>(pool_of(named.recipe, setup->second));
+  }
+
+  std::vector<std::string> draw(const std::vector<Order>& orders) {
+    for (const Order& order : orders) {
+      Unpacker::require(
+          order.pool < pools_.size() && pools_[order.pool] && order.first < order.last,
+          "an order for no pool");
+    }
+    std::vector<std::string> blocks(orders.size());
+    with_threads(prepared_.threads, [&] {
+      tbb::parallel_for(std::size_t{0}, orders.size(), [&](std::size_t i) {
+        blocks[i] = packed_block(
+            Pool::parts_of(workers_.draw({orders[i].pool, orders[i].first, orders[i].last})));
+      });
+    });
+    return blocks;
+  }
+
+ private:
+  static constexpr std::uint64_t most_pools = std::uint64_t{1} << 20;
+
+  const PreparedRank& prepared_;
+  SomePools pools_;
+  Workers workers_{pools_};
+};
+
+/// A rank's answers to rank 0.
+class Servant {
+ public:
+  Servant(Messages& messages,
+          const std::function<PreparedRank(std::optional<std::uint64_t>)>& prepare)
+      : messages_(messages), prepare_(prepare) {}
+
+  /// False when it is dismissed.
+  bool obey(const std::string& bytes) {
+    Unpacker unpack(unframed(bytes));
+    Kind kind{};
+    unpack(kind);
+    if (kind == Kind::begin) begin(unpack);
+    if (kind == Kind::batch) draw(unpack);
+    if (kind == Kind::forget) drawers_.reset();
+    if (kind == Kind::end) messages_.send(0, packed(Kind::goodbye));
+    return kind != Kind::end;
+  }
+
+ private:
+  void begin(Unpacker& unpack) {
+    std::optional<std::uint64_t> seed;
+    unpack(seed);
+    std::string fault;
+    try {
+      prepared_ = prepare_(seed);
+    } catch (const std::exception&) {
+      fault = "cannot prepare the run: " + words_of(std::current_exception());
+    }
+    std::vector<std::string> names;
+    for (const auto& [name, setup] : prepared_.setups) names.push_back(name);
+    std::ranges::sort(names);
+    const auto [first, last] = std::ranges::unique(names);
+    names.erase(first, last);
+    messages_.send(
+        0, packed(Kind::hello, host_name(), fault, prepared_.identity, names, prepared_.threads));
+  }
+
+  void draw(Unpacker& unpack) {
+    std::uint64_t number = 0;
+    std::vector<NamedRecipe> recipes;
+    std::vector<Order> orders;
+    unpack(number, recipes, orders);
+    unpack.end();
+    const Clock::time_point start = Clock::now();
+    if (!drawers_) drawers_.emplace(prepared_);
+    for (const NamedRecipe& each : recipes) drawers_->add(each);
+    const std::vector<std::string> blocks = drawers_->draw(orders);
+    // Programs may have stopped for the same signal.
+    if (!interrupted())
+      messages_.send(0, packed(Kind::reply, number, seconds_since(start), blocks));
+  }
+
+  Messages& messages_;
+  const std::function<PreparedRank(std::optional<std::uint64_t>)>& prepare_;
+  PreparedRank prepared_ = {};
+  std::optional<Drawers> drawers_;
+};
+
+}  // namespace
+
+void serve(Messages& messages,
+           const std::function<PreparedRank(std::optional<std::uint64_t> seed)>& prepare) {
+  Servant servant(messages, prepare);
+  Pause pause;
+  for (bool present = true; present;) {
+    const auto message = messages.receive();
+    if (!message) {
+      pause.wait();
+      continue;
+    }
+    pause.reset();
+    try {
+      present = servant.obey(message->bytes);
+    } catch (const std::exception&) {
+      messages.send(0, packed(Kind::failed, "stopped: " + words_of(std::current_exception())));
+    }
+  }
+}
+
+}  // namespace assay::harness

@@ -1,0 +1,85 @@
+#pragma once
+
+// Ranks draw blocks for rank 0. It alone plans, folds, judges and reports, so that a record does
+// not depend on how many there are.
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "harness/base/identity.h"
+#include "harness/ranks/messages.h"
+#include "harness/sampling/executor.h"
+
+namespace assay::harness {
+
+/// Every rank makes this of the suites by itself.
+struct PreparedRank {
+  Identity identity = {};
+  NamedSetups setups = {};
+  unsigned threads = 1;
+  std::shared_ptr<const void> owner = {};  ///< of what the set-ups refer to
+};
+
+/// Rank 0: gives blocks to ranks that have room, draws too, and folds all in order. Blocks that a
+/// rank keeps for too long are drawn again here.
+class Ranks final : public Executor {
+ public:
+  /// Other ranks begin to prepare, with this seed.
+  Ranks(Messages& messages, std::optional<std::uint64_t> seed, Identity identity, unsigned threads);
+
+  /// Waits for the ranks. Refuses by name one of another run, and one that could not prepare.
+  void introduce(const NamedSetups& setups) override;
+  void draw(Round& round) override;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  class Window;
+  struct Rank {
+    std::string host = "";
+    unsigned threads = 0;  ///< 0: it has not answered yet
+    std::size_t batches = 0;
+    std::set<std::size_t> recipes = {};
+  };
+  struct Batch {
+    int rank;
+    std::uint64_t round;
+    std::vector<std::uint64_t> slots;
+    Clock::time_point sent;
+  };
+
+  std::string name_of(int rank) const;
+  unsigned workers() const;
+  void greet(const Messages::Message& message, const std::set<std::string>& names);
+  bool take_replies(Window& window);
+  void take_reply(const Messages::Message& message, Window& window);
+  void give(Window& window);
+  void send_batch(int rank, std::vector<std::uint64_t> slots, const Window& window);
+
+  Messages& messages_;
+  Identity identity_;
+  unsigned threads_;
+  Clock::time_point begun_ = Clock::now();
+  std::vector<Rank> ranks_;
+  std::map<const Setup*, std::string> names_;
+  std::map<std::uint64_t, Batch> batches_;  ///< by number; may be of earlier rounds
+  std::uint64_t next_batch_ = 0;
+  std::uint64_t round_ = 0;
+};
+
+/// Rank 0 says that nothing more is to be drawn. False if a rank does not answer.
+bool dismiss(Messages& messages);
+
+/// Another rank: prepares by rank 0's seed, and draws blocks until it is dismissed. After an
+/// interruption it draws nothing: rank 0, which is interrupted too or draws again, decides.
+void serve(Messages& messages,
+           const std::function<PreparedRank(std::optional<std::uint64_t> seed)>& prepare);
+
+}  // namespace assay::harness

@@ -1,0 +1,182 @@
+#pragma once
+
+// Plain data between processes of one version of Assay. Numbers go by their bits, lists after their
+// lengths. A frame around the data tells their format and byte order, and ends with a checksum.
+
+#include <concepts>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace assay::harness {
+
+/// The data are not what this program packs; says why.
+class Unpackable : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A struct that is packed (const) or unpacked.
+template <class T, class Struct>
+concept maybe_const = std::same_as<std::remove_const_t<T>, Struct>;
+
+template <class T>
+concept PlainNumber = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+
+/// Appends values to bytes. A type of its own has a function parts(archive, value), which calls the
+/// archive with its members; Unpacker takes the same function.
+class Packer {
+ public:
+  template <class... T>
+  void operator()(const T&... values) {
+    (put(values), ...);
+  }
+  /// A list whose length the reader knows.
+  template <class List>
+  void fixed(const List& list) {
+    put(static_cast<std::uint64_t>(list.size()));
+    if constexpr (PlainNumber<typename List::value_type>) {
+      bytes_.append(reinterpret_cast<const char*>(list.data()), list.size() * sizeof list[0]);
+    } else {
+      for (const auto& each : list) put(each);
+    }
+  }
+  const std::string& bytes() const { return bytes_; }
+
+ private:
+  template <PlainNumber T>
+  void put(const T& number) {
+    bytes_.append(reinterpret_cast<const char*>(&number), sizeof number);
+  }
+  void put(const std::string& text) {
+    put(static_cast<std::uint64_t>(text.size()));
+    bytes_ += text;
+  }
+  template <class T>
+  void put(const std::vector<T>& list) {
+    fixed(list);
+  }
+  template <class T>
+  void put(const std::optional<T>& value) {
+    put(value.has_value());
+    if (value) put(*value);
+  }
+  template <class A, class B>
+  void put(const std::pair<A, B>& pair) {
+    put(pair.first);
+    put(pair.second);
+  }
+  template <class T>
+  void put(const T& value) {
+    parts(*this, value);
+  }
+
+  std::string bytes_;
+};
+
+/// Reads what a Packer wrote. Throws Unpackable; allocates no more than the bytes can fill.
+class Unpacker {
+ public:
+  explicit Unpacker(std::string_view bytes) : rest_(bytes) {}
+
+  template <class... T>
+  void operator()(T&... values) {
+    (get(values), ...);
+  }
+  template <class List>
+  void fixed(List& list) {
+    require(length(0) == list.size(), "a list has another length than its plan says");
+    get_each(list);
+  }
+  /// Call it after the last value.
+  void end() const { require(rest_.empty(), "there is more in it than expected"); }
+
+  static void require(bool holds, const char* why) {
+    if (!holds) throw Unpackable(why);
+  }
+
+ private:
+  std::string_view taken(std::uint64_t count) {
+    require(count <= rest_.size(), "it is cut short");
+    const std::string_view taken = rest_.substr(0, count);
+    rest_.remove_prefix(count);
+    return taken;
+  }
+  /// A length of elements that take at least so many bytes each.
+  std::uint64_t length(std::uint64_t least) {
+    std::uint64_t count = 0;
+    get(count);
+    require(least == 0 || count <= rest_.size() / least, "a list is longer than the data");
+    return count;
+  }
+  template <class List>
+  void get_each(List& list) {
+    if constexpr (PlainNumber<typename List::value_type>) {
+      const std::string_view bytes = taken(list.size() * sizeof list[0]);
+      if (!bytes.empty()) std::memcpy(list.data(), bytes.data(), bytes.size());
+    } else {
+      for (auto& each : list) get(each);
+    }
+  }
+  template <PlainNumber T>
+  void get(T& number) {
+    std::memcpy(&number, taken(sizeof number).data(), sizeof number);
+  }
+  void get(bool& value) {
+    std::uint8_t byte = 0;
+    get(byte);
+    require(byte <= 1, "a yes or no is neither");
+    value = byte == 1;
+  }
+  void get(std::string& text) { text = taken(length(1)); }
+  template <class T>
+  void get(std::vector<T>& list) {
+    list.resize(length(PlainNumber<T> ? sizeof(T) : sizeof(std::uint64_t)));
+    get_each(list);
+  }
+  template <class T>
+  void get(std::optional<T>& value) {
+    bool there = false;
+    get(there);
+    value.reset();
+    if (there) get(value.emplace());
+  }
+  template <class A, class B>
+  void get(std::pair<A, B>& pair) {
+    get(pair.first);
+    get(pair.second);
+  }
+  template <class T>
+  void get(T& value) {
+    parts(*this, value);
+  }
+
+  std::string_view rest_;
+};
+
+std::string framed(std::string_view bytes);
+/// The bytes in a frame. Throws Unpackable for another format or byte order, and for data that are
+/// cut short or damaged.
+std::string_view unframed(std::string_view frame);
+
+template <class... T>
+std::string packed(const T&... values) {
+  Packer pack;
+  pack(values...);
+  return framed(pack.bytes());
+}
+
+template <class... T>
+void unpack(std::string_view frame, T&... values) {
+  Unpacker unpacker(unframed(frame));
+  unpacker(values...);
+  unpacker.end();
+}
+
+}  // namespace assay::harness

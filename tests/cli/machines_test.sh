@@ -1,0 +1,143 @@
+#!/usr/bin/env bash
+# Runs on many machines, and runs that are killed: each gives the record of one thread.
+#   machines_test.sh ASSAY SOURCE_FOLDER TEST
+set -uo pipefail
+
+source "$(dirname "$0")/program.sh"
+mkdir one other
+
+of_one_thread() {
+  "$assay" run "$1" --quiet --threads 1 "${@:2}" --report json=one/run.json --report console=/dev/null \
+    2>err </dev/null
+  [ $? -le 3 ] || fail "assay run $1 failed"
+}
+same_as_of_one_thread() { diff <(timeless one/run.json) <(timeless other/run.json) >out || fail "$1: another record"; }
+
+test_killed_runs_go_on_to_the_same_record() {
+  local suite=$source_folder/suites/luminaire.yaml kills=0 most=.4
+  of_one_thread "$suite" --coarsen 4
+  for _ in 1 2; do
+    while :; do
+      timeout --signal=KILL "$(/usr/bin/python3 -c "import random; print(random.uniform(.02, $most))")" \
+        "$assay" run "$suite" --coarsen 4 --quiet --checkpoint kept --checkpoint-every .01 \
+        --report json=other/run.json --report console=/dev/null >/dev/null 2>err </dev/null
+      [ $? -le 3 ] && break
+      kills=$((kills + 1))
+      most=$(/usr/bin/python3 -c "print($most * 1.4)")
+    done
+    same_as_of_one_thread "after $kills kills"
+    [ ! -e kept ] || fail 'the checkpoint of a run that ended stays'
+  done
+  [ "$kills" -gt 1 ] || fail "only $kills kills"
+}
+
+test_interrupted_run_goes_on() {
+  local suite=$source_folder/suites/luminaire.yaml
+  of_one_thread "$suite"
+  "$assay" run "$suite" --quiet --checkpoint kept >/dev/null 2>err </dev/null &
+  sleep .4
+  kill -TERM $!
+  wait $!
+  [ $? -eq 130 ] || fail 'not interrupted'
+  contains err 'what was drawn is kept in kept; the same command goes on'
+  expect 2 run "$suite" --seed 7 --checkpoint kept
+  contains err "kept: is the checkpoint of another run: the seed was the suite's and is 7; remove it, or name another file"
+  "$assay" run "$suite" --quiet --checkpoint kept --report json=other/run.json >/dev/null 2>err
+  same_as_of_one_thread resumed
+}
+
+test_checkpoint_cannot_be_a_report_or_a_suite() {
+  expect 2 run "$source_folder/suites/luminaire.yaml" --checkpoint a --report json=a
+  contains err 'a report would replace it'
+  expect 2 run "$source_folder/suites/luminaire.yaml" --checkpoint "$source_folder/suites/luminaire.yaml"
+  contains err 'it is nothing that Assay packed'
+}
+
+# test_ranks_… skip where MPI is missing: ranks N ARGUMENT…
+ranks() {
+  timeout 100 mpirun --allow-run-as-root --oversubscribe -n "$1" "$assay" "${@:2}" >out 2>err </dev/null
+}
+descendants() {
+  local child
+  for child in $(pgrep -P "$1"); do
+    echo "$child"
+    descendants "$child"
+  done
+}
+# signal_rank SIGNAL RANK JOB: to one rank of a job of this shell's.
+signal_rank() {
+  local process
+  for process in $(descendants "$3"); do
+    [ "$(readlink "/proc/$process/exe")" = "$(dirname "$(realpath "$assay")")/assay-mpi" ] || continue
+    grep -qzx "OMPI_COMM_WORLD_RANK=$2" "/proc/$process/environ" || continue
+    kill "-$1" "$process" && return
+  done
+  return 1
+}
+require_mpi() {
+  [ -x "$(dirname "$assay")/assay-mpi" ] && command -v mpirun >/dev/null && return
+  echo 'skipped: MPI is missing (libopenmpi-dev, openmpi-bin) or was when Assay was built'
+  exit 77
+}
+
+test_ranks_give_the_record_of_one_process() {
+  require_mpi
+  local suite n
+  for suite in luminaire images analytic; do
+    of_one_thread "$source_folder/suites/$suite.yaml" --coarsen 4
+    for n in 1 2 3; do
+      ranks $n run "$source_folder/suites/$suite.yaml" --coarsen 4 --quiet --report json=other/run.json
+      [ $? -le 3 ] || fail "$n ranks of $suite"
+      same_as_of_one_thread "$n ranks of $suite"
+    done
+  done
+}
+
+# A rank that stops for ever, and one that is asked to end.
+test_ranks_that_stall_are_done_without() {
+  require_mpi
+  local suite=$source_folder/suites/luminaire.yaml signal
+  of_one_thread "$suite"
+  for signal in STOP TERM; do
+    ranks 3 run "$suite" --quiet --report json=other/run.json &
+    sleep .7
+    signal_rank $signal 2 $! || fail 'no rank'
+    wait $!
+    same_as_of_one_thread "SIG$signal"
+  done
+}
+
+test_ranks_that_are_killed_go_on_from_a_checkpoint() {
+  require_mpi
+  local suite=$source_folder/suites/luminaire.yaml kills=0 rank
+  of_one_thread "$suite"
+  for rank in 2 1 0 none; do
+    ranks 3 run "$suite" --quiet --checkpoint kept --checkpoint-every .05 --report json=other/run.json &
+    sleep "$(/usr/bin/python3 -c 'import random; print(random.uniform(.4, 1))')"
+    [ $rank = none ] || ! signal_rank KILL $rank $! || kills=$((kills + 1))
+    wait $!
+  done
+  same_as_of_one_thread "after $kills kills"
+  [ $kills -gt 0 ] || fail 'nothing was killed'
+}
+
+test_ranks_refuse_shards_and_end_with_one_message() {
+  require_mpi
+  ranks 2 run "$source_folder/suites/luminaire.yaml" --shard 1/2
+  [ $? -eq 2 ] || fail 'a shard of ranks'
+  contains err 'ranks draw one run together, and --shard makes several: leave one out'
+  ranks 2 run no-such-suite.yaml
+  [ $? -eq 2 ] || fail 'no suite'
+  [ "$(grep -c 'no-such-suite' err)" -eq 1 ] || fail 'more than one message'
+}
+
+test_tasks_of_a_launcher_need_the_program_that_joins_them() {
+  cp "$assay" assay
+  OMPI_COMM_WORLD_SIZE=3 ./assay run "$source_folder/suites/luminaire.yaml" >out 2>err
+  [ $? -eq 2 ] || fail 'three whole runs'
+  contains err 'a launcher started 3 tasks'
+  contains err 'libopenmpi-dev'
+  OMPI_COMM_WORLD_SIZE=3 ./assay list plugins >out 2>err || fail 'a list is no run'
+}
+
+"$3"

@@ -1,0 +1,160 @@
+#include "harness/ranks/ranks.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <deque>
+#include <mutex>
+#include <thread>
+
+#include "harness/run/planned_run.h"
+#include "tests/harness/refusal.h"
+#include "tests/harness/running.h"
+
+namespace assay::harness {
+namespace {
+
+using testing::HasSubstr;
+
+/// Letter boxes of ranks that are threads of this process.
+class Post {
+ public:
+  explicit Post(int size) : boxes_(static_cast<std::size_t>(size)) {}
+  int size() const { return static_cast<int>(boxes_.size()); }
+  void send(int to, Messages::Message message) {
+    const std::scoped_lock lock(mutex_);
+    boxes_[static_cast<std::size_t>(to)].push_back(std::move(message));
+  }
+  std::optional<Messages::Message> receive(int rank) {
+    const std::scoped_lock lock(mutex_);
+    auto& box = boxes_[static_cast<std::size_t>(rank)];
+    if (box.empty()) return std::nullopt;
+    Messages::Message first = std::move(box.front());
+    box.pop_front();
+    return first;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::deque<Messages::Message>> boxes_;
+};
+
+/// What becomes of the k-th message of a rank, from 0; none: it is lost.
+using Fate = std::function<std::optional<std::string>(int rank, std::size_t k, std::string bytes)>;
+
+class Posted final : public Messages {
+ public:
+  Posted(Post& post, int rank, Fate fate = {}) : post_(post), rank_(rank), fate_(std::move(fate)) {}
+  int rank() const override { return rank_; }
+  int size() const override { return post_.size(); }
+  void send(int to, std::string bytes) override {
+    std::optional<std::string> arrives(std::move(bytes));
+    if (fate_) arrives = fate_(rank_, sent_++, std::move(*arrives));
+    if (arrives) post_.send(to, {rank_, std::move(*arrives)});
+  }
+  std::optional<Message> receive() override { return post_.receive(rank_); }
+
+ private:
+  Post& post_;
+  int rank_;
+  Fate fate_;
+  std::size_t sent_ = 0;
+};
+
+struct Job {
+  int ranks = 3;
+  unsigned threads = 1;
+  Fate fate = {};
+  Identity identity_there = {};
+  std::string suite_there = "";  ///< "": the same
+};
+
+PreparedRank prepared(const std::string& suite, const Job& job) {
+  const RunOptions options{.threads = 1, .coarsen = 8};
+  const auto run = std::make_shared<const PlannedRun>(prepare_run({load_suite(suite)}, options));
+  return {job.identity_there, setups_of(*run), job.threads, run};
+}
+
+/// The record of rank 0.
+reports::Record run_in_ranks(const std::string& suite, const Job& job) {
+  Post post(job.ranks);
+  std::vector<std::jthread> others;
+  for (int rank = 1; rank < job.ranks; ++rank) {
+    others.emplace_back([&, rank] {
+      Posted messages(post, rank, job.fate);
+      serve(messages, [&](std::optional<std::uint64_t>) {
+        return prepared(job.suite_there.empty() ? suite : job.suite_there, job);
+      });
+    });
+  }
+  Posted messages(post, 0);
+  struct AtEnd {
+    Messages& messages;
+    ~AtEnd() { EXPECT_TRUE(dismiss(messages)); }
+  } const at_end{messages};
+  return run_files({suite},
+                   {.threads = 1,
+                    .executor = std::make_shared<Ranks>(messages, std::nullopt, Identity{}, 1U),
+                    .coarsen = 8});
+}
+
+std::string of_suites(const char* name) { return std::string(ASSAY_SOURCE_DIR "/suites/") + name; }
+
+std::string alone(const std::string& suite) {
+  return numbers_of(run_files({suite}, {.threads = 1, .coarsen = 8}));
+}
+
+class OfSuites : public testing::TestWithParam<const char*> {};
+
+TEST_P(OfSuites, RanksGiveTheRecordOfOneProcess) {
+  const std::string suite = of_suites(GetParam());
+  const std::string one = alone(suite);
+  EXPECT_EQ(numbers_of(run_in_ranks(suite, {.ranks = 1})), one);
+  EXPECT_EQ(numbers_of(run_in_ranks(suite, {.ranks = 3})), one);
+  EXPECT_EQ(numbers_of(run_in_ranks(suite, {.ranks = 2, .threads = 2})), one);
+}
+
+INSTANTIATE_TEST_SUITE_P(Suites, OfSuites,
+                         testing::Values("luminaire.yaml", "images.yaml", "process.yaml"));
+
+// The greeting and four answers arrive, and what the rank says at the end.
+TEST(Ranks, ThatNoLongerAnswerAreDoneWithout) {
+  const std::string suite = of_suites("luminaire.yaml");
+  const auto falls_silent = [](int rank, std::size_t k,
+                               std::string bytes) -> std::optional<std::string> {
+    const bool silent = rank == 1 && k > 4 && bytes.size() > 40;
+    if (silent) return std::nullopt;
+    return bytes;
+  };
+  EXPECT_EQ(numbers_of(run_in_ranks(suite, {.ranks = 3, .fate = falls_silent})), alone(suite));
+}
+
+TEST(Ranks, ThatSendDamagedAnswersAreNamed) {
+  const auto damages = [](int, std::size_t k, std::string bytes) -> std::optional<std::string> {
+    if (k == 1) bytes.back() = static_cast<char>(bytes.back() ^ 1);
+    return bytes;
+  };
+  try {
+    run_in_ranks(of_suites("luminaire.yaml"), {.ranks = 2, .fate = damages});
+    FAIL() << "nothing was refused";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("rank 1 on "));
+    EXPECT_THAT(error.what(), HasSubstr("sent what cannot be read: it is damaged"));
+  }
+}
+
+TEST(Ranks, OfAnotherRunAreRefusedByName) {
+  const std::string suite = of_suites("luminaire.yaml");
+  EXPECT_THAT(refusal([&] {
+                run_in_ranks(suite, {.ranks = 2, .identity_there = {{"the version", "0.0.1"}}});
+              }),
+              HasSubstr(" is of another run: the version is 0.0.1 there and none here"));
+  EXPECT_THAT(
+      refusal([&] { run_in_ranks(suite, {.ranks = 2, .suite_there = of_suites("images.yaml")}); }),
+      HasSubstr(", which rank 0 lacks"));
+  EXPECT_THAT(refusal([&] { run_in_ranks(suite, {.ranks = 2, .suite_there = "none.yaml"}); }),
+              HasSubstr("cannot prepare the run: cannot read `none.yaml`"));
+}
+
+}  // namespace
+}  // namespace assay::harness

@@ -1,0 +1,216 @@
+#include "harness/sampling/packing.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "harness/sampling/executor.h"
+#include "harness/sampling/packed_block.h"
+
+namespace assay::harness {
+namespace {
+
+constexpr std::size_t channels = 3;
+
+/// Two sums and the number of a cell; one observation may be no number, and one may throw.
+class OddSetup final : public Setup {
+ public:
+  explicit OddSetup(std::optional<std::uint64_t> throws = {}) : throws_(throws) {}
+  std::vector<Channel> channels() const override {
+    return {{.name = "sum"}, {.name = "odd"}, {.name = "cell"}};
+  }
+  std::unique_ptr<Estimator> make() const override {
+    class Odd final : public Estimator {
+     public:
+      explicit Odd(std::optional<std::uint64_t> throws) : throws_(throws) {}
+      void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
+                     Cost& cost) override {
+        if (random.observation() == throws_) throw std::runtime_error("the lamp burnt out");
+        out[0] = random.uniform() + static_cast<double>(primaries);
+        out[1] = random.observation() == 3 ? std::numeric_limits<double>::infinity() : -out[0];
+        out[2] = static_cast<double>(random() % 5);
+        cost.samples += primaries;
+        cost.shadow_rays += random() % 3;
+      }
+      std::optional<std::uint64_t> throws_;
+    };
+    return std::make_unique<Odd>(throws_);
+  }
+
+ private:
+  std::optional<std::uint64_t> throws_;
+};
+
+Recipe some_recipe() {
+  Recipe recipe{.key = {*rc::gen::arbitrary<std::uint64_t>()},
+                .primaries = *rc::gen::inRange<std::uint64_t>(1, 5000)};
+  if (*rc::gen::arbitrary<bool>()) {
+    for (std::size_t c = 0; c < channels; ++c) {
+      recipe.plan.push_back(
+          {.histogram_low = 0,
+           .histogram_high = *rc::gen::element(0.0, 2.0, 9.0),
+           .keep = *rc::gen::element<std::uint64_t>(0, 1, 20, 100000),
+           .powers = *rc::gen::element(Powers::none, Powers::of_values, Powers::with_costs)});
+    }
+    recipe.plan[2].cells = *rc::gen::element<std::size_t>(0, 5);
+  }
+  if (*rc::gen::arbitrary<bool>()) recipe.grouped_channels = {0, 1};
+  recipe.kept_observations = *rc::gen::element<std::uint64_t>(0, 1, 50);
+  recipe.marks =
+      *rc::gen::unique<std::vector<std::uint64_t>>(rc::gen::inRange<std::uint64_t>(1, 200));
+  recipe.marks.push_back(200);
+  std::ranges::sort(recipe.marks);
+  return recipe;
+}
+
+std::shared_ptr<Pool> fresh(const Recipe& recipe, const OddSetup& setup) {
+  return std::make_shared<Pool>(pool_of(recipe, std::make_shared<OddSetup>(setup)));
+}
+
+void draw_all_of(const std::shared_ptr<Pool>& pool) {
+  Silence silence;
+  pool->request(200);
+  draw_all({pool}, {.executor = threads(1)}, silence);
+}
+
+/// What is drawn, without the seconds.
+std::string contents_of(const Pool& pool) {
+  std::string bytes = packed_block(pool.drawn_parts());
+  Pool::Block block = unpacked_block(bytes, pool, 0);
+  block.whole.seconds = 0;
+  for (auto& [count, sums] : block.partial) sums.seconds = 0;
+  return packed_block(Pool::parts_of(block));
+}
+
+/// Draws the blocks in another process's way: by an unpacked recipe, and packed.
+std::vector<std::string> blocks_elsewhere(const Recipe& recipe, const OddSetup& setup) {
+  Recipe there;
+  unpack(packed(recipe), there);
+  const std::shared_ptr<Pool> pool = fresh(there, setup);
+  const SomePools pools{pool};
+  Workers workers(pools);
+  std::vector<std::string> blocks;
+  for (std::uint64_t first = 0; first < 200; first = pool->block_end(first)) {
+    blocks.push_back(packed_block(
+        Pool::parts_of(workers.draw({.pool = 0, .first = first, .last = pool->block_end(first)}))));
+  }
+  return blocks;
+}
+
+RC_GTEST_PROP(Packing, GivesThePoolThatIsDrawnHere, ()) {
+  const OddSetup setup(*rc::gen::element<std::optional<std::uint64_t>>({}, 0, 10, 150));
+  const Recipe recipe = some_recipe();
+  const std::shared_ptr<Pool> here = fresh(recipe, setup);
+  draw_all_of(here);
+  const std::shared_ptr<Pool> folded = fresh(recipe, setup);
+  for (const std::string& block : blocks_elsewhere(recipe, setup)) {
+    if (folded->fault()) break;
+    folded->fold(unpacked_block(block, *folded, folded->drawn()));
+  }
+  RC_ASSERT(contents_of(*folded) == contents_of(*here));
+  RC_ASSERT(folded->fault().has_value() == here->fault().has_value());
+  // All that is drawn is one block, too.
+  const std::shared_ptr<Pool> again = fresh(recipe, setup);
+  again->fold(unpacked_block(packed_block(here->drawn_parts()), *again, 0));
+  RC_ASSERT(packed_block(again->drawn_parts()) == packed_block(here->drawn_parts()));
+}
+
+/// Nothing but Unpackable may come of bytes that are not a block.
+bool folds_or_is_refused(const std::string& frame, const Recipe& recipe) {
+  const std::shared_ptr<Pool> pool = fresh(recipe, OddSetup());
+  try {
+    pool->fold(unpacked_block(frame, *pool, 0));
+    packed_block(pool->drawn_parts());
+    return true;
+  } catch (const Unpackable& refusal) {
+    return std::string(refusal.what()).size() > 5;
+  }
+}
+
+bool is_refused(const std::string& frame, const Pool& pool) {
+  try {
+    unpacked_block(frame, pool, 0);
+    return false;
+  } catch (const Unpackable&) {
+    return true;
+  }
+}
+
+RC_GTEST_PROP(Packing, RefusesWhatIsCutShortOrDamaged, ()) {
+  const Recipe recipe = some_recipe();
+  const std::string frame = blocks_elsewhere(recipe, OddSetup()).front();
+  const std::shared_ptr<Pool> pool = fresh(recipe, OddSetup());
+  RC_ASSERT(!is_refused(frame, *pool));
+  RC_ASSERT(is_refused(frame.substr(0, *rc::gen::inRange<std::size_t>(0, frame.size())), *pool));
+  std::string flipped = frame;
+  char& byte = flipped[*rc::gen::inRange<std::size_t>(0, frame.size())];
+  byte = static_cast<char>(byte ^ (1 << *rc::gen::inRange(0, 8)));
+  RC_ASSERT(is_refused(flipped, *pool));
+  RC_ASSERT(is_refused(frame + "x", *pool));
+}
+
+// A damage that the checksum does not show: each list is still bounded.
+RC_GTEST_PROP(Packing, OfDamagedBytesUnderARightChecksumDoesNotCrash, ()) {
+  const Recipe recipe = some_recipe();
+  std::string bytes(unframed(blocks_elsewhere(recipe, OddSetup()).front()));
+  const std::size_t at = *rc::gen::inRange<std::size_t>(0, bytes.size());
+  for (std::size_t i = at; i < std::min(at + 8, bytes.size()); ++i) {
+    bytes[i] = *rc::gen::arbitrary<char>();
+  }
+  RC_ASSERT(folds_or_is_refused(framed(bytes), recipe));
+  RC_ASSERT(folds_or_is_refused(framed(bytes.substr(0, at)), recipe));
+}
+
+RC_GTEST_PROP(Packing, OfADamagedRecipeDoesNotCrash, ()) {
+  std::string bytes(unframed(packed(some_recipe())));
+  const std::size_t at = *rc::gen::inRange<std::size_t>(0, bytes.size());
+  for (std::size_t i = at; i < std::min(at + 8, bytes.size()); ++i) {
+    bytes[i] = *rc::gen::arbitrary<char>();
+  }
+  try {
+    Recipe recipe;
+    unpack(framed(bytes), recipe);
+    pool_of(recipe, std::make_shared<OddSetup>());
+  } catch (const Unpackable&) {
+  }
+}
+
+std::string refusal_of(std::string frame, std::size_t at, char byte) {
+  frame[at] = byte;
+  try {
+    unframed(frame);
+  } catch (const Unpackable& refusal) {
+    return refusal.what();
+  }
+  return "";
+}
+
+TEST(Packing, NamesAnotherVersionAndAnotherOrderOfBytes) {
+  const std::string frame = packed(std::uint64_t{7});
+  EXPECT_EQ(refusal_of(frame, 0, 'a'), "");
+  EXPECT_EQ(refusal_of(frame, 0, 'b'), "it is nothing that Assay packed");
+  EXPECT_EQ(refusal_of(frame, 6, '0'), "it is of another version of Assay");
+  EXPECT_EQ(refusal_of(frame, 8, 1), "it is of a machine with another order of bytes");
+  EXPECT_EQ(refusal_of(frame, 24, 8), "it is damaged: its checksum differs");
+}
+
+TEST(Packing, KeepsTheBitsOfEachDouble) {
+  const std::vector<double> odd{-0.0, std::numeric_limits<double>::quiet_NaN(),
+                                std::numeric_limits<double>::denorm_min(), 0.1};
+  std::vector<double> again;
+  unpack(packed(odd), again);
+  ASSERT_EQ(again.size(), odd.size());
+  EXPECT_EQ(std::memcmp(again.data(), odd.data(), odd.size() * sizeof(double)), 0);
+}
+
+// 2^60 numbers in 16 bytes.
+TEST(Packing, AllocatesNothingForALengthThatIsNotThere) {
+  std::vector<double> list;
+  EXPECT_THROW(unpack(packed(std::uint64_t{1} << 60, 1.0), list), Unpackable);
+}
+
+}  // namespace
+}  // namespace assay::harness
