@@ -10,7 +10,7 @@
 namespace assay::path_tracing {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double none = std::numeric_limits<double>::infinity();
 
 double distance_to(const Shape& shape, const Ray& ray, double least) {

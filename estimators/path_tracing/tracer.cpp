@@ -9,7 +9,7 @@
 namespace assay::path_tracing {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 double largest(const Colour& c) { return std::max({c.x, c.y, c.z}); }
 

@@ -67,8 +67,8 @@ class HeaderReader {
 
   /// The next character that is no blank; '\0' at the end.
   char next() {
-    const std::size_t blanks = text_.find_first_not_of(" \t\n");
-    text_.remove_prefix(std::min(blanks, text_.size()));
+    const std::size_t first = text_.find_first_not_of(" \t\n");
+    text_.remove_prefix(std::min(first, text_.size()));
     return text_.empty() ? '\0' : text_.front();
   }
   bool accept(char c) {
@@ -211,7 +211,7 @@ double number_of(const Type& type, const char* bytes) {
   }
 }
 
-std::string shown(const std::vector<std::size_t>& shape) {
+std::string extents_of(const std::vector<std::size_t>& shape) {
   std::string text;
   for (std::size_t i = 0; i < std::min<std::size_t>(shape.size(), 4); ++i) {
     text += (i > 0 ? " x " : "") + std::to_string(shape[i]);
@@ -260,14 +260,15 @@ Matrix read_npy(ByteSource& source, std::size_t most) {
     refuse(source, header.shape.empty()
                        ? "it holds one number; save an array, an observation an element"
                        : "its array has " + std::to_string(header.shape.size()) + " dimensions (" +
-                             shown(header.shape) + "), and an observation is a row;" +
+                             extents_of(header.shape) + "), and an observation is a row;" +
                              save_it("a.reshape(len(a), -1)"));
   }
   const std::size_t rows = header.shape[0];
   const std::size_t columns = header.shape.size() == 2 ? header.shape[1] : 1;
   if (rows == 0 || columns == 0) refuse(source, "its array is empty: it has no observation");
   if (columns > most / rows) {
-    refuse(source, "its array of " + shown(header.shape) + " numbers does not fit into memory");
+    refuse(source,
+           "its array of " + extents_of(header.shape) + " numbers does not fit into memory");
   }
   Matrix matrix{.columns = columns, .values = read_numbers(source, type, rows * columns)};
   if (header.fortran && rows > 1 && columns > 1) matrix.values = transposed(matrix.values, rows);
