@@ -39,8 +39,8 @@ std::size_t each(auto in, auto out, auto number) {
 
 }  // namespace
 
-std::size_t Sampler::samples(std::span<Stream> random, std::span<SamplerDraw> draws) const {
-  return each(random, draws, [this](Stream& stream) { return sample(stream); });
+std::size_t Sampler::samples(std::span<const Stream> random, std::span<SamplerDraw> draws) const {
+  return each(random, draws, [this](Stream stream) { return sample(stream); });
 }
 
 std::size_t Sampler::densities(std::span<const Point> points, std::span<double> out) const {

@@ -88,8 +88,9 @@ class Sampler {
 
   /// The same of many streams or points at a time, for a sampler in another process: each question
   /// takes some microseconds, of any length. They write the numbers of the first few, at least one,
-  /// and return how many. Ask again for the others. An exception concerns the first.
-  virtual std::size_t samples(std::span<Stream> random, std::span<SamplerDraw> draws) const;
+  /// and return how many. Ask again for the others. An exception concerns the first. The streams
+  /// stay as they are: who asks again gets the draws of a single question.
+  virtual std::size_t samples(std::span<const Stream> random, std::span<SamplerDraw> draws) const;
   virtual std::size_t densities(std::span<const Point> points, std::span<double> out) const;
   virtual std::size_t lobe_densities(int lobe, std::span<const Point> points,
                                      std::span<double> out) const;

@@ -85,6 +85,7 @@ double IsolatedSampler::rounding() const {
 SamplerDraw IsolatedSampler::sample(Stream& random) const {
   SamplerDraw draw;
   samples({&random, 1}, {&draw, 1});
+  for (std::size_t i = 0; i < item_words(Asked::draws); ++i) random();
   return draw;
 }
 
@@ -100,17 +101,18 @@ double IsolatedSampler::evaluate(const Point& point) const {
   return value;
 }
 
-std::size_t IsolatedSampler::samples(std::span<Stream> random, std::span<SamplerDraw> draws) const {
+std::size_t IsolatedSampler::samples(std::span<const Stream> random,
+                                     std::span<SamplerDraw> draws) const {
   const Question first = draw_of(random.front());
   children_->refuse_after_failure(first);
   std::vector<std::uint64_t> words;
-  for (Stream& stream : random) {
-    words.push_back(stream());
-    words.push_back(stream());
+  for (Stream stream : random) {
+    for (std::size_t i = 0; i < item_words(Asked::draws); ++i) words.push_back(stream());
   }
   try {
     const std::vector<double> numbers =
-        ask({Asked::draws, {reinterpret_cast<const char*>(words.data()), 8 * words.size()}});
+        ask({Asked::draws,
+             {reinterpret_cast<const char*>(words.data()), sizeof words[0] * words.size()}});
     const std::size_t count = numbers.size() / numbers_of(Asked::draws);
     for (std::size_t i = 0; i < count; ++i) {
       draws[i] = draw_from(numbers.data() + i * numbers_of(Asked::draws));

@@ -29,7 +29,7 @@ class IsolatedSampler final : public Sampler {
   double evaluate(const Point& point) const override;
   double rounding() const override;
 
-  std::size_t samples(std::span<Stream> random, std::span<SamplerDraw> draws) const override;
+  std::size_t samples(std::span<const Stream> random, std::span<SamplerDraw> draws) const override;
   std::size_t densities(std::span<const Point> points, std::span<double> out) const override;
   std::size_t lobe_densities(int lobe, std::span<const Point> points,
                              std::span<double> out) const override;

@@ -40,7 +40,7 @@ struct JudgedDraw {
   double density = 0;  ///< declared at its point, if asked for
 };
 
-std::vector<JudgedDraw> judged(const NamedSampler& named, std::span<Stream> streams) {
+std::vector<JudgedDraw> judged(const NamedSampler& named, std::span<const Stream> streams) {
   const Sampler& sampler = *named.sampler;
   std::vector<JudgedDraw> all;
   std::vector<std::size_t> places;

@@ -53,7 +53,7 @@ struct CheckedDraw {
   bool impossible = false;
 };
 
-std::vector<CheckedDraw> checked_draws(const NamedSampler& named, std::span<Stream> streams) {
+std::vector<CheckedDraw> checked_draws(const NamedSampler& named, std::span<const Stream> streams) {
   const Sampler& sampler = *named.sampler;
   std::vector<CheckedDraw> all;
   std::vector<std::size_t> places;
@@ -118,13 +118,13 @@ class SamplerEstimator final : public Estimator {
 
 }  // namespace
 
-std::vector<SamplerDraw> draws_of(const Sampler& sampler, std::span<Stream> streams) {
+std::vector<SamplerDraw> draws_of(const Sampler& sampler, std::span<const Stream> streams) {
   std::vector<SamplerDraw> draws(streams.size());
   draws.resize(sampler.samples(streams, draws));
   return draws;
 }
 
-std::vector<SamplerDraw> sound_draws(const NamedSampler& named, std::span<Stream> streams) {
+std::vector<SamplerDraw> sound_draws(const NamedSampler& named, std::span<const Stream> streams) {
   std::vector<SamplerDraw> draws = draws_of(*named.sampler, streams);
   for (std::size_t i = 0; i < draws.size(); ++i) {
     try {
@@ -215,7 +215,7 @@ const std::vector<Point>& SamplerSetup::drawn() const {
   for (std::uint64_t i = 1; i <= count; ++i) streams.emplace_back(key_, i);
   const FlushDenormals flush;
   try {
-    for (std::span<Stream> rest = streams; !rest.empty();) {
+    for (std::span<const Stream> rest = streams; !rest.empty();) {
       const std::vector<SamplerDraw> draws = draws_of(sampler(), rest);
       for (const SamplerDraw& draw : draws) {
         if (has_density(sampler(), draw)) drawn_->push_back(sound(named_, draw).point);

@@ -36,9 +36,9 @@ class NoDensity : public std::runtime_error {
 };
 
 /// Draws of the first few streams.
-std::vector<SamplerDraw> draws_of(const Sampler& sampler, std::span<Stream> streams);
+std::vector<SamplerDraw> draws_of(const Sampler& sampler, std::span<const Stream> streams);
 /// The same before the first unsound draw. Throws if the first is unsound.
-std::vector<SamplerDraw> sound_draws(const NamedSampler& named, std::span<Stream> streams);
+std::vector<SamplerDraw> sound_draws(const NamedSampler& named, std::span<const Stream> streams);
 /// Writes numbers at the first points, as many as can be had, and returns how many. Throws if the
 /// first has none. `numbers` writes some and returns how many.
 std::size_t write_some(std::span<const Point> points, std::span<double> out,

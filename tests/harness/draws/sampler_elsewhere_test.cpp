@@ -39,12 +39,13 @@ class Elsewhere final : public Ramp {
     require(p[0] < limits_.density_below, "density");
     return Ramp::density(p);
   }
-  std::size_t samples(std::span<Stream> random, std::span<SamplerDraw> draws) const override {
+  std::size_t samples(std::span<const Stream> random, std::span<SamplerDraw> draws) const override {
     ++asked;
     ++asked_for_draws;
     return some(random.size(), [&](std::size_t i) {
       require(limits_.draws_before == 0 || random[i].observation() != limits_.draws_before, "draw");
-      draws[i] = sample(random[i]);
+      Stream stream = random[i];
+      draws[i] = sample(stream);
     });
   }
   std::size_t densities(std::span<const Point> points, std::span<double> out) const override {
