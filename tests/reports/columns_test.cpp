@@ -25,36 +25,6 @@ TEST(Columns, NeverCountsFewerThanTheCLibrary) {
   std::setlocale(LC_CTYPE, "C");
 }
 
-TEST(Columns, CountsWhatATerminalShows) {
-  EXPECT_EQ(columns("pass"), 4);
-  EXPECT_EQ(columns("größe"), 5);
-  EXPECT_EQ(columns("光線"), 4);
-  EXPECT_EQ(columns("e\u0301"), 1);
-  EXPECT_EQ(columns("✓✗…"), 3);
-}
-
-TEST(Columns, ShorteningEndsInAnEllipsis) {
-  EXPECT_EQ(shorten("estimator", 9), "estimator");
-  EXPECT_EQ(shorten("estimator", 6), "estim…");
-  EXPECT_EQ(shorten("光線追跡", 4), "光…");
-  EXPECT_EQ(shorten("abc", 0), "");
-}
-
-TEST(Columns, WrapsAtSpacesAndKeepsLineFeeds) {
-  EXPECT_EQ(wrap("one two three", 7), (std::vector<std::string>{"one two", "three"}));
-  EXPECT_EQ(wrap("a\n\nb", 7), (std::vector<std::string>{"a", "", "b"}));
-  EXPECT_EQ(wrap("abcdefghij", 4), (std::vector<std::string>{"abcd", "efgh", "ij"}));
-  EXPECT_EQ(wrap("", 4), (std::vector<std::string>{""}));
-}
-
-TEST(Columns, CommandsCanBePastedFromSeveralLines) {
-  EXPECT_EQ(wrap_command("assay check 'a b c' --seed 1", 16),
-            (std::vector<std::string>{"assay check \\", "'a b c' --seed \\", "1"}));
-  EXPECT_EQ(wrap_command("assay run", 80), (std::vector<std::string>{"assay run"}));
-  EXPECT_EQ(wrap_command("a --filter 'it'\\''s so'", 12),
-            (std::vector<std::string>{"a --filter \\", "'it'\\''s so'"}));
-}
-
 RC_GTEST_PROP(Columns, WrappedLinesFit, ()) {
   const int width = *rc::gen::inRange(2, 40);
   const std::string text = clean(*any_text());
@@ -78,14 +48,6 @@ RC_GTEST_PROP(Columns, WrappedCommandsAreWholeAndTheirLinesFit, ()) {
     joined += (joined.empty() ? "" : " ") + words_of;
   }
   RC_ASSERT(joined == command);
-}
-
-TEST(Columns, ALongWordIsPartedWhereAClaimMayBe) {
-  EXPECT_EQ(wrap("distribution(triangle_hemisphere.direction)", 40),
-            (std::vector<std::string>{"distribution(triangle_hemisphere.", "direction)"}));
-  // A decimal point is no such place.
-  EXPECT_EQ(wrap("mean==0.48104690731593186", 20),
-            (std::vector<std::string>{"mean==0.481046907315", "93186"}));
 }
 
 }  // namespace

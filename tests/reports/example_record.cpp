@@ -44,6 +44,21 @@ Test surviving_mutant() { return test_at(4); }
 Test undecided() { return test_at(5); }
 Test not_run() { return test_at(8); }
 
+Test judged(Verdict verdict, Verdict expected) {
+  Test test;
+  test.id = "suite/name";
+  test.verdict = verdict;
+  test.expected = expected;
+  test.ok = verdict == expected;
+  return test;
+}
+
+Record record_of(const std::vector<Test>& tests) {
+  Record record;
+  record.suites.push_back({.name = "suite", .tests = tests});
+  return record;
+}
+
 Test base(const std::string& claim) {
   Test test = passing();
   test.name = test.claim = claim;

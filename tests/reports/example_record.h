@@ -5,6 +5,7 @@
 // value there by hand.
 
 #include <string>
+#include <vector>
 
 #include "reports/record/record.h"
 
@@ -21,6 +22,12 @@ Test caught_mutant();
 Test surviving_mutant();
 Test undecided();
 Test not_run();
+
+/// A test with nothing but its verdict. It is ok if the verdict is the expected one.
+Test judged(Verdict verdict, Verdict expected = Verdict::pass);
+
+/// A suite of these tests alone.
+Record record_of(const std::vector<Test>& tests);
 
 /// A test of this claim, which is also its name, without samples and channels.
 Test base(const std::string& claim);

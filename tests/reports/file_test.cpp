@@ -10,30 +10,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class WriteWhole : public testing::Test {
+class WriteWhole : public InFolder {
  protected:
-  void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "assay-file-XXXXXX").string();
-    ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  std::string contents(const fs::path& path) const {
-    std::ifstream in(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
   long entries() const { return std::distance(fs::directory_iterator(folder_), {}); }
   std::string refusal(const fs::path& path) const {
-    try {
-      write_whole(path, "text");
-    } catch (const std::runtime_error& error) {
-      return error.what();
-    }
-    return "was written";
+    return thrown<std::runtime_error>([&] { write_whole(path, "text"); });
   }
-
-  fs::path folder_;
 };
 
 TEST_F(WriteWhole, WritesAndReplaces) {
@@ -41,7 +23,7 @@ TEST_F(WriteWhole, WritesAndReplaces) {
   write_whole(path, "first");
   const std::string second(3 << 20, 'x');
   write_whole(path, second);
-  EXPECT_EQ(contents(path), second);
+  EXPECT_EQ(bytes_in(path), second);
   EXPECT_EQ(entries(), 1);
 }
 
@@ -50,14 +32,14 @@ TEST_F(WriteWhole, FollowsALinkInsteadOfReplacingIt) {
   fs::create_symlink(folder_ / "real", folder_ / "link");
   write_whole(folder_ / "link", "new");
   EXPECT_TRUE(fs::is_symlink(folder_ / "link"));
-  EXPECT_EQ(contents(folder_ / "real"), "new");
+  EXPECT_EQ(bytes_in(folder_ / "real"), "new");
 }
 
 TEST_F(WriteWhole, WritesToAPipeWithoutReplacingIt) {
   const fs::path pipe = folder_ / "pipe";
   ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
   std::string read;
-  std::thread reader([&] { read = contents(pipe); });
+  std::thread reader([&] { read = bytes_in(pipe); });
   write_whole(pipe, "through the pipe");
   reader.join();
   EXPECT_EQ(read, "through the pipe");
@@ -94,10 +76,10 @@ TEST_F(WriteWhole, LeavesTheOldFileWhenTheFolderIsReadOnly) {
   fs::permissions(folder_, fs::perms::owner_all);
   // The superuser is not held back by permissions.
   if (::geteuid() == 0) {
-    EXPECT_EQ(result, "was written");
+    EXPECT_EQ(result, thrown([] {}));
   } else {
     EXPECT_EQ(result, "cannot write " + path.string() + ": Permission denied");
-    EXPECT_EQ(contents(path), "old");
+    EXPECT_EQ(bytes_in(path), "old");
   }
   EXPECT_EQ(entries(), 1);
 }

@@ -1,42 +1,20 @@
 #include "reports/record/record.h"
 
 #include "reports/words/describe.h"
-#include "reports/words/summary.h"
 #include "tests/prelude.h"
 #include "tests/reports/example_record.h"
 
 namespace assay::reports {
 namespace {
 
-reports::Test with(Verdict verdict, Verdict expected, bool ok) {
-  reports::Test test;
-  test.verdict = verdict;
-  test.expected = expected;
-  test.ok = ok;
-  return test;
-}
-
 TEST(Outcome, FollowsVerdictAndExpectation) {
-  EXPECT_EQ(outcome(with(Verdict::pass, Verdict::pass, true)), Outcome::passed);
-  EXPECT_EQ(outcome(with(Verdict::fail, Verdict::fail, true)), Outcome::passed);
-  EXPECT_EQ(outcome(with(Verdict::pass, Verdict::fail, false)), Outcome::failed);
-  EXPECT_EQ(outcome(with(Verdict::invalid, Verdict::pass, false)), Outcome::failed);
-  EXPECT_EQ(outcome(with(Verdict::error, Verdict::pass, false)), Outcome::failed);
-  EXPECT_EQ(outcome(with(Verdict::inconclusive, Verdict::fail, false)), Outcome::inconclusive);
-  EXPECT_EQ(outcome(with(Verdict::skipped, Verdict::pass, false)), Outcome::skipped);
-}
-
-TEST(Tally, CountsEveryTestOnce) {
-  const Tally counts = tally(example_record());
-  EXPECT_EQ(counts.passed, 5);
-  EXPECT_EQ(counts.failed, 5);
-  EXPECT_EQ(counts.inconclusive, 2);
-  EXPECT_EQ(counts.skipped, 1);
-  EXPECT_EQ(tally_sentence(counts), "5 of 13\u00A0claims broken");
-  EXPECT_EQ(tally_sentence({}), "No claim was tested");
-  EXPECT_EQ(tally_sentence({.passed = 3}), "All 3 claims are as they should be");
-  EXPECT_EQ(tally_sentence({.passed = 3, .inconclusive = 1}),
-            "1 of 4\u00A0claims undecided, none broken");
+  EXPECT_EQ(outcome(judged(Verdict::pass)), Outcome::passed);
+  EXPECT_EQ(outcome(judged(Verdict::fail, Verdict::fail)), Outcome::passed);
+  EXPECT_EQ(outcome(judged(Verdict::pass, Verdict::fail)), Outcome::failed);
+  EXPECT_EQ(outcome(judged(Verdict::invalid)), Outcome::failed);
+  EXPECT_EQ(outcome(judged(Verdict::error)), Outcome::failed);
+  EXPECT_EQ(outcome(judged(Verdict::inconclusive, Verdict::fail)), Outcome::inconclusive);
+  EXPECT_EQ(outcome(judged(Verdict::skipped)), Outcome::skipped);
 }
 
 Sample drawn(const std::string& stream, std::uint64_t primaries, std::uint64_t secondaries) {

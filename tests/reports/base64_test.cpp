@@ -1,0 +1,22 @@
+#include "reports/formats/base64.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include "tests/prelude.h"
+
+namespace assay::reports {
+namespace {
+
+RC_GTEST_PROP(Base64, ReadsBack, (const std::vector<std::uint8_t>& bytes)) {
+  RC_ASSERT(from_base64(base64(bytes)) == bytes);
+}
+
+TEST(Base64, FloatsAreLittleEndian) {
+  EXPECT_EQ(bytes_of(std::vector<float>{1.0f}), (std::vector<std::uint8_t>{0, 0, 0x80, 0x3f}));
+  const std::vector<float> values = {-0.0f, 1e-45f, std::numeric_limits<float>::infinity(), 3.25f};
+  EXPECT_EQ(floats_of(bytes_of(values)), values);
+}
+
+}  // namespace
+}  // namespace assay::reports
