@@ -218,9 +218,14 @@ def exists(cell):
     return True
 
 
+# Every way and every phase come in the short form too, though not each in each.
+EVERY = 1 if "ASSAY_LONG" in os.environ else 3
+
+
 def all_cells():
-    return [cell for kind in KINDS for phase in KINDS[kind].phases for way in KINDS[kind].ways
-            if exists(cell := Cell(kind, way, phase))]
+    return [cell for kind in KINDS
+            for i, phase in enumerate(KINDS[kind].phases) for k, way in enumerate(KINDS[kind].ways)
+            if (i + k) % EVERY == 0 and exists(cell := Cell(kind, way, phase))]
 
 
 # ---- Running Assay ------------------------------------------------------------------------------

@@ -11,12 +11,14 @@ of_one_thread() {
     2>err </dev/null
   [ $? -le 3 ] || fail "assay run $1 failed"
 }
+# Kills at more times and of more ranks.
+long=${ASSAY_LONG-}
 same_as_of_one_thread() { diff <(timeless one/run.json) <(timeless other/run.json) >out || fail "$1: another record"; }
 
 test_killed_runs_go_on_to_the_same_record() {
   local suite=$source_folder/suites/luminaire.yaml kills=0 most=.4
   of_one_thread "$suite" --coarsen 4
-  for _ in 1 2; do
+  for _ in 1 ${long:+2 3}; do
     while :; do
       timeout --signal=KILL "$(/usr/bin/python3 -c "import random; print(random.uniform(.02, $most))")" \
         "$assay" run "$suite" --coarsen 4 --quiet --checkpoint kept --checkpoint-every .01 \
@@ -33,16 +35,16 @@ test_killed_runs_go_on_to_the_same_record() {
 
 test_interrupted_run_goes_on() {
   local suite=$source_folder/suites/luminaire.yaml
-  of_one_thread "$suite"
-  "$assay" run "$suite" --quiet --checkpoint kept >/dev/null 2>err </dev/null &
+  of_one_thread "$suite" --coarsen 2
+  "$assay" run "$suite" --coarsen 2 --quiet --checkpoint kept >/dev/null 2>err </dev/null &
   sleep .4
   kill -TERM $!
   wait $!
   [ $? -eq 130 ] || fail 'not interrupted'
   contains err 'what was drawn is kept in kept; the same command goes on'
-  expect 2 run "$suite" --seed 7 --checkpoint kept
+  expect 2 run "$suite" --coarsen 2 --seed 7 --checkpoint kept
   contains err "kept: is the checkpoint of another run: the seed was the suite's and is 7; remove it, or name another file"
-  "$assay" run "$suite" --quiet --checkpoint kept --report json=other/run.json >/dev/null 2>err
+  "$assay" run "$suite" --coarsen 2 --quiet --checkpoint kept --report json=other/run.json >/dev/null 2>err
   same_as_of_one_thread resumed
 }
 
@@ -84,9 +86,9 @@ test_ranks_give_the_record_of_one_process() {
   require_mpi
   local suite n
   for suite in luminaire images analytic; do
-    of_one_thread "$source_folder/suites/$suite.yaml" --coarsen 4
+    of_one_thread "$source_folder/suites/$suite.yaml" --coarsen 8
     for n in 1 2 3; do
-      ranks $n run "$source_folder/suites/$suite.yaml" --coarsen 4 --quiet --report json=other/run.json
+      ranks $n run "$source_folder/suites/$suite.yaml" --coarsen 8 --quiet --report json=other/run.json
       [ $? -le 3 ] || fail "$n ranks of $suite"
       same_as_of_one_thread "$n ranks of $suite"
     done
@@ -97,9 +99,9 @@ test_ranks_give_the_record_of_one_process() {
 test_ranks_that_stall_are_done_without() {
   require_mpi
   local suite=$source_folder/suites/luminaire.yaml signal
-  of_one_thread "$suite"
+  of_one_thread "$suite" --coarsen 2
   for signal in STOP TERM; do
-    ranks 3 run "$suite" --quiet --report json=other/run.json &
+    ranks 3 run "$suite" --coarsen 2 --quiet --report json=other/run.json &
     sleep .7
     signal_rank $signal 2 $! || fail 'no rank'
     wait $!
@@ -110,9 +112,9 @@ test_ranks_that_stall_are_done_without() {
 test_ranks_that_are_killed_go_on_from_a_checkpoint() {
   require_mpi
   local suite=$source_folder/suites/luminaire.yaml kills=0 rank
-  of_one_thread "$suite"
-  for rank in 2 1 0 none; do
-    ranks 3 run "$suite" --quiet --checkpoint kept --checkpoint-every .05 --report json=other/run.json &
+  of_one_thread "$suite" --coarsen 2
+  for rank in 2 ${long:+1 0} none; do
+    ranks 3 run "$suite" --coarsen 2 --quiet --checkpoint kept --checkpoint-every .05 --report json=other/run.json &
     sleep "$(/usr/bin/python3 -c 'import random; print(random.uniform(.4, 1))')"
     [ $rank = none ] || ! signal_rank KILL $rank $! || kills=$((kills + 1))
     wait $!
