@@ -77,16 +77,28 @@ bool is_one(const PictureFile& file, const std::string& name) {
   return std::ranges::all_of(texels, [](float x) { return x == 1; });
 }
 
-/// The patterns of the usual channels, with alpha if it tells anything.
-std::string usual_with_alpha(const FirstPictures& first) {
+/// The patterns of the usual channels, with alpha if it tells anything: if it is not 1 throughout.
+std::string usual_with_alpha(const ImagesArguments& arguments, const FirstPictures& first) {
   const recorded::PictureChannels usual = recorded::choose_channels(*first.candidate, "usual");
   if (recorded::choose_channels(*first.reference, "usual").names != usual.names) return "usual";
   const std::string layer = recorded::layer_of(usual.names[0]);
   const std::string alpha = layer.empty() ? "A" : layer + ".A";
-  if (!has(*first.candidate, alpha) || !has(*first.reference, alpha)) return "usual";
-  if (is_one(*first.candidate, alpha) && is_one(*first.reference, alpha)) return "usual";
+  const auto tells = [&](const PictureFile& file) {
+    return has(file, alpha) && !is_one(file, alpha);
+  };
+  if (!tells(*first.candidate) && !tells(*first.reference)) return "usual";
   if (recorded::usual_moments(*first.reference, usual).any()) return "usual";
-  return fmt::format("{},{}", fmt::join(usual.names, ","), alpha);
+  const std::string names = fmt::format("{}", fmt::join(usual.names, ","));
+  const auto require_alpha = [&](const PictureFile& file, const Location& where) {
+    if (has(file, alpha)) return;
+    throw InputError(where,
+                     "its pictures have no alpha, and that of the other side is not 1 "
+                     "everywhere; --channels '" +
+                         names + "' compares without it");
+  };
+  require_alpha(*first.candidate, place("--candidate", arguments.candidate));
+  require_alpha(*first.reference, place("--reference", arguments.reference));
+  return names + "," + alpha;
 }
 
 std::string as_name(const std::string& layer) {
@@ -102,7 +114,7 @@ std::vector<Layer> layers_of(const ImagesArguments& arguments, const FirstPictur
     return Layer{suffix, channels, recorded::choose_channels(*first.candidate, channels),
                  recorded::choose_channels(*first.reference, channels)};
   };
-  if (arguments.channels == "usual") return {layer("", usual_with_alpha(first))};
+  if (arguments.channels == "usual") return {layer("", usual_with_alpha(arguments, first))};
   std::vector<std::pair<std::string, std::string>> found;  // layers and their channels
   for (const std::string& name :
        recorded::choose_channels(*first.candidate, arguments.channels).names) {

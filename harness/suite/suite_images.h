@@ -29,11 +29,11 @@ struct ImagesArguments {
 
 /// The suite of the claim `mean(candidate) == mean(reference)`, or `within` a margin of it. Several
 /// layers have a claim each, on `candidate_LAYER` and `reference_LAYER`. The usual channels include
-/// alpha unless it is 1 throughout the first picture of each side. Files of unequal windows on one
-/// canvas are compared where both have pixels. Both sides are rounded as the coarser one is. A
-/// single reference file is a mean whose error its channels tell (pbrt's `Variance.*`, Mitsuba's
-/// `m2_*`), else exact. InputError if a pattern matches no file, there are too few pictures for a
-/// pixel's variance, or options contradict each other.
+/// alpha unless it is 1, or missing, throughout the first picture of each side. Files of unequal
+/// windows on one canvas are compared where both have pixels. Both sides are rounded as the coarser
+/// one is. A single reference file is a mean whose error its channels tell (pbrt's `Variance.*`,
+/// Mitsuba's `m2_*`), else exact. InputError if a pattern matches no file, there are too few
+/// pictures for a pixel's variance, or options contradict each other.
 Suite suite_of_images(const ImagesArguments&);
 
 }  // namespace assay::harness

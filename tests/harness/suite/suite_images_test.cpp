@@ -7,10 +7,9 @@
 
 #include "harness/command/cli.h"
 #include "harness/command/run.h"
-#include "tests/estimators/exr.h"
+#include "tests/harness/pictures.h"
 #include "tests/harness/refusal.h"
 #include "tests/harness/running.h"
-#include "tests/philox.h"
 #include "tests/prelude.h"
 
 namespace assay::harness {
@@ -18,90 +17,58 @@ namespace {
 
 using reports::Verdict;
 
-// Pictures of 6 x 5 pixels of one normal law.
-void write_pictures(const Workplace& place, const std::string& name, int count) {
-  tests::Philox random(static_cast<std::uint32_t>(name[0]));
-  for (int i = 0; i < count; ++i) {
-    draws::Picture picture{6, 5, {"Y"}, {}};
-    for (int k = 0; k < 30; ++k) {
-      picture.values.push_back(static_cast<float>(3 + random.normal()));
-    }
-    draws::write_exr(place.file(fmt::format("{}{:02}.exr", name, i)), picture);
-  }
-}
-
-void write_reference(const Workplace& place, std::vector<std::string> channels) {
-  draws::Picture picture{6, 5, std::move(channels), {}};
-  for (std::size_t i = 0; i < 30; ++i) {
-    picture.values.push_back(3);
-    for (std::size_t c = 1; c < picture.channels.size(); ++c) picture.values.push_back(1);
-  }
-  draws::write_exr(place.file("ref.exr"), picture);
+float noisy(int, int, const std::string&, double noise) {
+  return static_cast<float>(0.3 + 0.05 * noise);
 }
 
 ImagesArguments arguments(const Workplace& place) {
   return {.candidate = place.file("a*.exr"), .reference = place.file("b*.exr")};
 }
 
-reports::Test tested(const ImagesArguments& given) {
-  Silence silence;
-  return run({suite_of_images(given)}, {.threads = 1}, silence).suites[0].tests[0];
+std::string refused(const ImagesArguments& given) {
+  return refusal([&] { suite_of_images(given); });
 }
-
-std::string parameters_of(const Suite& suite) { return suite.estimators[1].parameters.canonical(); }
 
 using SuiteImages = Placed;
 
-// False alarm 0.01: the files are the same whatever the seed.
-TEST_F(SuiteImages, TwoStacksAreHeldAgainstEachOther) {
-  write_pictures(place, "a", 20);
-  write_pictures(place, "b", 24);
-  const reports::Test test = tested(arguments(place));
-  EXPECT_EQ(test.verdict, Verdict::pass) << test.message;
-  EXPECT_EQ(test.claim, "mean(candidate) == mean(reference)");
-  ASSERT_TRUE(test.image);
-  EXPECT_EQ(test.image->width, 6U);
-}
-
-// False alarm 0.01 each.
 TEST_F(SuiteImages, OnePictureIsExactOrHasTheErrorThatItsChannelsTell) {
-  write_pictures(place, "a", 20);
+  write_stack(place, "a", {.channels = {"Y"}}, noisy);
   ImagesArguments given = arguments(place);
-  given.reference = place.file("ref.exr");
-  write_reference(place, {"Y"});
-  EXPECT_THAT(parameters_of(suite_of_images(given)), HasSubstr("exact"));
-  EXPECT_EQ(tested(given).verdict, Verdict::pass);
-  write_reference(place, {"Y", "Variance.Y"});
+  given.reference = place.file("ref00.exr");
+  const auto parameters = [&] {
+    return suite_of_images(given).estimators[1].parameters.canonical();
+  };
+  write_stack(place, "ref", {.channels = {"Y"}, .count = 1}, flat(3));
+  EXPECT_THAT(parameters(), HasSubstr("exact"));
+  write_stack(place, "ref", {.channels = {"Y", "Variance.Y"}, .count = 1}, flat(3));
   given.channels = "Y";
-  EXPECT_THAT(refusal([&] { suite_of_images(given); }), HasSubstr("give --samples"));
+  EXPECT_THAT(refused(given), HasSubstr("give --samples"));
   given.samples = "100";
-  EXPECT_THAT(parameters_of(suite_of_images(given)), HasSubstr("Variance.*"));
-  EXPECT_EQ(tested(given).verdict, Verdict::pass);
+  EXPECT_THAT(parameters(), HasSubstr("Variance.*"));
 }
 
 TEST_F(SuiteImages, AMarginMakesAProof) {
-  write_pictures(place, "a", 20);
-  write_pictures(place, "b", 20);
+  write_stack(place, "a", {}, noisy);
+  write_stack(place, "b", {}, noisy);
   ImagesArguments given = arguments(place);
+  EXPECT_EQ(suite_of_images(given).tests[0].claim.text, "mean(candidate) == mean(reference)");
   given.within = "50%";
-  const reports::Test test = tested(given);
-  EXPECT_EQ(test.claim, "mean(candidate) within 50% of mean(reference)");
-  EXPECT_EQ(test.verdict, Verdict::pass) << test.message;
+  EXPECT_EQ(suite_of_images(given).tests[0].claim.text,
+            "mean(candidate) within 50% of mean(reference)");
   given.detect = "1%";
-  EXPECT_THAT(refusal([&] { suite_of_images(given); }), HasSubstr("--within says itself"));
+  EXPECT_THAT(refused(given), HasSubstr("--within says itself"));
 }
 
 TEST_F(SuiteImages, WhatCannotBeTestedIsRefusedWithTheMend) {
-  write_pictures(place, "a", 15);
+  write_stack(place, "a", {.count = 15}, noisy);
   ImagesArguments given = arguments(place);
-  EXPECT_THAT(refusal([&] { suite_of_images(given); }),
-              HasSubstr("15 pictures match, and the test takes 16 or more"));
-  write_pictures(place, "a", 16);
-  EXPECT_THAT(refusal([&] { suite_of_images(given); }), HasSubstr("no file matches"));
-  write_pictures(place, "b", 2);
-  EXPECT_THAT(refusal([&] { suite_of_images(given); }), HasSubstr("2 pictures match"));
+  EXPECT_THAT(refused(given), HasSubstr("15 pictures match, and the test takes 16 or more"));
+  write_stack(place, "a", {.count = 16}, noisy);
+  EXPECT_THAT(refused(given), HasSubstr("no file matches"));
+  write_stack(place, "b", {.count = 2}, noisy);
+  EXPECT_THAT(refused(given), HasSubstr("2 pictures match"));
   given.samples = "4";
-  EXPECT_THAT(refusal([&] { suite_of_images(given); }), HasSubstr("is of a reference that is one"));
+  EXPECT_THAT(refused(given), HasSubstr("is of a reference that is one"));
 }
 
 TEST_F(SuiteImages, TheCommandLineSaysHowToRunItAgain) {
@@ -114,51 +81,12 @@ TEST_F(SuiteImages, TheCommandLineSaysHowToRunItAgain) {
   EXPECT_EQ(images.options.command,
             "assay images --candidate 'a*.exr' --reference r.exr --channels 'L.Debug Sample "
             "Count.X' --pixels independent --alpha 0.05");
-  EXPECT_THAT(refusal([] {
-                parse_command_line({"images", "--candidate", "a"});
-              }),
-              HasSubstr("`assay images` needs --reference"));
 }
 
 // Pictures of 6 x 5 pixels as renderers write them, each through the command line. Equal ones are
 // of one law, so that each of these has a false alarm of 0.01, whatever the seed.
 
-constexpr int width = 6;
-constexpr int height = 5;
 constexpr float infinity = std::numeric_limits<float>::infinity();
-
-using Texel = std::function<float(int x, int y, const std::string& channel, double noise)>;
-
-struct Kind {
-  std::vector<std::string> channels = {"R", "G", "B"};
-  Imf::PixelType type = Imf::FLOAT;
-  int left = 0;
-  int top = 0;
-  int right = width;
-  int bottom = height;
-  const char* ending = "exr";
-  std::uint32_t seed = 0;  ///< of the noise; by default the name's
-};
-
-draws::Picture picture_of(const Kind& kind, const Texel& texel, tests::Philox& random) {
-  draws::Picture picture{.width = kind.right - kind.left,
-                         .height = kind.bottom - kind.top,
-                         .channels = kind.channels,
-                         .values = {},
-                         .type = kind.type,
-                         .left = kind.left,
-                         .top = kind.top};
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      for (const std::string& channel : kind.channels) {
-        const float value = texel(x, y, channel, random.normal());
-        const bool inside = x >= kind.left && x < kind.right && y >= kind.top && y < kind.bottom;
-        if (inside) picture.values.push_back(value);
-      }
-    }
-  }
-  return picture;
-}
 
 void write_pfm(const std::string& file, const draws::Picture& picture) {
   std::ofstream out(file, std::ios::binary);
@@ -187,23 +115,6 @@ void write_png(const std::string& file, const draws::Picture& picture) {
   ASSERT_NE(png_image_write_to_file(&image, file.c_str(), 0, bytes.data(), 0, nullptr), 0);
 }
 
-void write_stack(const Workplace& place, const std::string& name, const Kind& kind,
-                 const Texel& texel, int count = 24) {
-  tests::Philox random(kind.seed != 0 ? kind.seed : static_cast<std::uint32_t>(name[0]));
-  for (int i = 0; i < count; ++i) {
-    const draws::Picture picture = picture_of(kind, texel, random);
-    const std::string file = place.file(fmt::format("{}{:02}.{}", name, i, kind.ending));
-    const std::string ending = kind.ending;
-    if (ending == "pfm") {
-      write_pfm(file, picture);
-    } else if (ending == "png") {
-      write_png(file, picture);
-    } else {
-      draws::write_exr(file, picture);
-    }
-  }
-}
-
 std::vector<reports::Test> answers(const Workplace& place,
                                    const std::vector<std::string>& more = {}) {
   std::vector<std::string> line{"images",         "--candidate", place.file("a*"), "--reference",
@@ -219,10 +130,6 @@ reports::Test answer(const Workplace& place, const std::vector<std::string>& mor
   const std::vector<reports::Test> tests = answers(place, more);
   EXPECT_EQ(tests.size(), 1u);
   return tests.at(0);
-}
-
-float noisy(int, int, const std::string&, double noise) {
-  return static_cast<float>(0.3 + 0.05 * noise);
 }
 
 using PictureFiles = Placed;
@@ -260,9 +167,7 @@ TEST_F(PictureFiles, OfALayerWithoutNoiseAreComparedExactly) {
   }
   write_stack(place, "b", kind, depth_with(.1F));
   const reports::Test test = answer(place, {"--channels", "Z"});
-  EXPECT_EQ(test.verdict, Verdict::fail);
-  EXPECT_THAT(test.message, HasSubstr("pixel x 4, y 3"));
-  EXPECT_THAT(test.message, HasSubstr("without noise; if it should vary"));
+  expect_said(test, Verdict::fail, {"pixel x 4, y 3", "without noise; if it should vary"});
   EXPECT_EQ(answer(place, {"--channels", "Z", "--paired"}).verdict, Verdict::fail);
   EXPECT_EQ(answer(place, {"--channels", "Z", "--law"}).verdict, Verdict::fail);
 }
@@ -289,6 +194,14 @@ TEST_F(PictureFiles, AnAlphaThatDiffersIsFound) {
   const reports::Test opaque = answer(place);
   EXPECT_EQ(opaque.verdict, Verdict::pass);
   EXPECT_EQ(opaque.image->components, (std::vector<std::string>{"R", "G", "B"}));
+  // So does a missing one, which is refused beside one that tells something.
+  write_stack(place, "b", {.channels = {"B", "G", "R"}}, noisy);
+  EXPECT_EQ(answer(place).verdict, Verdict::pass);
+  write_stack(place, "a", rgba, with_alpha(0.5, 0.1));
+  EXPECT_THAT(tests::thrown([&] { answer(place); }),
+              testing::HasSubstr("its pictures have no alpha, and that of the other side is not 1 "
+                                 "everywhere; --channels 'R,G,B' compares without it"));
+  EXPECT_EQ(answer(place, {"--channels", "R,G,B"}).verdict, Verdict::pass);
 }
 
 TEST_F(PictureFiles, InfiniteDepthOnBothSidesIsEqualAndOnOneAFinding) {
@@ -316,8 +229,7 @@ TEST_F(PictureFiles, CropsAreComparedWhereBothHavePixelsInColumnsOfTheWhole) {
   write_stack(place, "a", {.left = 2, .top = 1}, spot_of(1));
   write_stack(place, "b", {}, spot_of(0));
   const reports::Test found = answer(place);
-  EXPECT_EQ(found.verdict, Verdict::fail);
-  EXPECT_THAT(found.message, HasSubstr("pixel x 4, y 3"));
+  expect_said(found, Verdict::fail, {"pixel x 4, y 3"});
   EXPECT_EQ(found.image->width, 4u);
   write_stack(place, "b", {}, spot_of(1));
   EXPECT_EQ(answer(place).verdict, Verdict::pass);
@@ -327,14 +239,14 @@ TEST_F(PictureFiles, CropsAreComparedWhereBothHavePixelsInColumnsOfTheWhole) {
 }
 
 TEST_F(PictureFiles, PfmAndPngAreHeldAgainstOpenExr) {
-  for (const char* const ending : {"pfm", "png"}) {
+  for (const std::string ending : {"pfm", "png"}) {
     const Workplace folder;
     const auto ramp = [](float factor) {
       return [=](int x, int y, const std::string& channel, double noise) {
         return factor * (noisy(x, y, channel, noise) + 0.02F * static_cast<float>(x + 2 * y));
       };
     };
-    write_stack(folder, "a", {.ending = ending}, ramp(1));
+    write_stack(folder, "a", {}, ramp(1), ending, ending == "pfm" ? write_pfm : write_png);
     write_stack(folder, "b", {}, ramp(1));
     EXPECT_EQ(answer(folder).verdict, Verdict::pass) << ending;
     write_stack(folder, "b", {}, ramp(1.1F));
@@ -357,9 +269,9 @@ TEST_F(PictureFiles, PixelsThatAreNoNumberOrMaskedAreLeftOut) {
   EXPECT_EQ(answer(place, {"--ignore", "nonfinite"}).verdict, Verdict::pass);
   write_stack(place, "a", {}, broken(9));
   EXPECT_EQ(answer(place).verdict, Verdict::fail);
-  write_stack(
-      place, "mask", {},
-      [](int x, int y, const std::string&, double) { return x == 1 && y == 2 ? 0.F : 1.F; }, 1);
+  write_stack(place, "mask", {.count = 1}, [](int x, int y, const std::string&, double) {
+    return x == 1 && y == 2 ? 0.F : 1.F;
+  });
   EXPECT_EQ(answer(place, {"--mask", place.file("mask00.exr")}).verdict, Verdict::pass);
 }
 
