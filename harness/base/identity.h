@@ -7,7 +7,7 @@
 
 namespace assay::harness {
 
-/// What two processes must have in common to share blocks: names and values.
+/// Two processes that share blocks have these names and values in common.
 using Identity = std::vector<std::pair<std::string, std::string>>;
 
 struct Difference {

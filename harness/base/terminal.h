@@ -36,7 +36,7 @@ class ProgressBar final : public Progress {
   std::function<int()> width_;
   Phase phase_ = {};
   std::uint64_t done_ = 0;
-  std::chrono::steady_clock::time_point first_;  ///< Of all phases.
+  std::chrono::steady_clock::time_point first_;  ///< start of all phases
   std::chrono::steady_clock::time_point drawn_;
 };
 

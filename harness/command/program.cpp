@@ -44,7 +44,7 @@ std::vector<Suite> load(const std::vector<std::string>& files,
   return suites;
 }
 
-/// What a command that ranks can share runs.
+/// A command that ranks can share runs these.
 struct Loaded {
   std::vector<Suite> suites;
   RunOptions options;

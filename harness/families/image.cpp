@@ -135,7 +135,7 @@ std::string without_leading_zeros(const std::string& text) {
   return out;
 }
 
-/// What tells a side's pictures apart: their names without the beginning and the end that all have
+/// Keys tell a side's pictures apart: their names without the beginning and the end that all have
 /// in common.
 std::vector<std::string> keys_of(const Setup& side) {
   std::vector<std::string> names;

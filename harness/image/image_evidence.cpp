@@ -121,9 +121,9 @@ double wanted_replicates(const stats::ImageDistance& distance, double margin, co
   return replicates * std::max({1.1, needed, estimate > 0 ? needed * needed : 0.0});
 }
 
-/// Tests of theta = margin. `hidden` is the norm of the bias that values can hide which no element
-/// showed: it may be part of theta, or make up theta. An estimate below 0 counts as 0, since no
-/// bias is smaller.
+/// Tests of theta = margin. Values that no element showed can hide a bias of norm `hidden`. It may
+/// be part of theta, or make up theta. An estimate below 0 counts as 0, since no bias is
+/// smaller.
 stats::TestResult at_margin(const stats::ImageDistance& distance, double hidden, double margin) {
   stats::ImageDistance at_least_zero = distance;
   at_least_zero.squared_bias = std::max(0.0, distance.squared_bias);

@@ -71,7 +71,8 @@ std::string name_of(const DrawnTest& test, const stats::WhichImage& which) {
   return has_partner ? name + " less " + name_of(test, {1, which.index}) : name;
 }
 
-/// What to do where images depend on each other: those of equal number on both sides, or others.
+/// Says what to do where images depend on each other: those of equal number on both sides, or
+/// others.
 std::string mend_of(const DrawnTest& test, bool across) {
   const Question& question = test.outcome.question;
   if (!across) {

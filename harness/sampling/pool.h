@@ -133,7 +133,7 @@ class Pool {
     std::optional<Fault> fault = {};
     std::uint64_t size = 0;  ///< observations when complete
   };
-  /// What a block consists of.
+  /// A block consists of these.
   struct BlockParts {
     const Summary& whole;
     const std::vector<std::vector<double>>& values;

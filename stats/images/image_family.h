@@ -44,7 +44,7 @@ struct ImageFamily {
   std::size_t tested = 0;            // Elements that vary, all channels.
   std::size_t equal_constants = 0;
   std::size_t different_constants = 0;
-  std::vector<float> weights;  // Of the elements in sums.
+  std::vector<float> weights;  // The elements' in sums.
   // The squared norm of the bias that values can hide which their elements never showed
   // (image_noise.h), in units of the images.
   double hidden_squares = 0;

@@ -43,7 +43,7 @@ struct BestCell {
 bool beats(const ImageFinding& finding, const BestCell& best);
 void offer(BestCell& best, const Candidate& candidate, const NoisePyramid& noise);
 
-// What a cell's own noise says.
+// The value that a cell's own noise gives.
 StudentValue own_value(const CellNoise& noise);
 
 }  // namespace assay::stats

@@ -68,8 +68,8 @@ struct FineFindings {
   NoisePyramid noise;
   std::vector<std::vector<Candidates>> tiles;  // A group's candidates, in every tile.
   ElementCounts counts;
-  std::vector<float> weights;  // Of every element, averaged over the halves.
-  std::span<double> z;         // Of every element alone, by its own noise.
+  std::vector<float> weights;  // Every element's, averaged over the halves.
+  std::span<double> z;         // Every element's alone, by its own noise.
 };
 
 // Nothing found yet; z has room for every element.

@@ -12,9 +12,9 @@ namespace assay::stats {
 // Internal to image_pyramid: what neighbours tell of the noise of a cell.
 //
 // A mean and its variance move together where noise is skewed. A cell that missed the rare bright
-// values that carry part of its mean is too dark, and its variance says that it is exact. Were its
-// mean larger by d, its variance would be larger by d k3 / k2, where k2 and k3 are the second and
-// third cumulants of its noise. Its neighbours saw such values, and tell k3 / k2.
+// values that carry part of its mean is too dark, and its variance says that it is exact. Let k2
+// and k3 be the second and third cumulants of its noise. Were its mean larger by d, its variance
+// would be larger by d k3 / k2. Its neighbours saw such values, and tell k3 / k2.
 
 inline constexpr std::size_t sides_of_pair = 2;
 
@@ -97,9 +97,9 @@ class NoisePyramid {
 
   // The statistic of a cell: Student's t, with the variance that it had if the means were equal.
   // For an effect of size d that is v + d k3 / k2, where k3 counts in the direction that makes the
-  // effect smaller. The largest k3 / k2 is taken: of the cell itself, and of every block of four
-  // times its side up to the whole image, its deviations cut off at every octave. Cutting off keeps
-  // the rarest values from drowning the others.
+  // effect smaller. The largest k3 / k2 counts, of the cell itself and of every block of four times
+  // its side up to the whole image. A block's deviations are cut off at every octave, so that the
+  // rarest do not drown the others.
   //
   // Two sides of one law have k3 = 0, and a block's k3 counts beyond its error. It counts whole
   // where the sides have different laws: one is noisier for its mean in too many elements (sign

@@ -8,9 +8,9 @@
 
 namespace assay::stats {
 
-// Are two images equal? Their difference is looked at on every scale at once, by sums over cells
-// from one element to the whole image (image_windows.h), and by the whole image with alternating
-// signs. One family p-value covers all of it (image_family.h).
+// Are two images equal? Their difference is looked at on every scale at once. Cells have one
+// element to the whole image (image_windows.h); one more sum has alternating signs. A family
+// p-value covers all of it (image_family.h).
 //
 // Replicates of two images, or of one against a reference. Null hypothesis: E a = E b at every
 // element. Asymptotic (Welch's law).
