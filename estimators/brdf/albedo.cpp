@@ -166,9 +166,4 @@ ParameterInformation sampler_parameter() {
           .choices = {"published", "density_rejection", "brdf_rejection", "brdf_cosine_rejection"}};
 }
 
-render::Angles incident_angles(Parameters& parameters) {
-  const double theta = parameters.number("theta_i");
-  return {.theta = theta, .phi = parameters.number("phi_i")};
-}
-
 }  // namespace assay::brdf

@@ -30,6 +30,5 @@ Channel published_channel(const render::HalfVectorBrdf&);
 std::vector<ParameterInformation> incident_parameters();
 /// sampler.
 ParameterInformation sampler_parameter();
-render::Angles incident_angles(Parameters&);
 
 }  // namespace assay::brdf

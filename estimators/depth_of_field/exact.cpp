@@ -156,8 +156,4 @@ Moments exact_moments(const SceneDescription& scene, const PlanePoint& pixel) {
   return view.of_one_surface() ? view.of_its_surface() : quadrature(view);
 }
 
-Moments quadrature_moments(const SceneDescription& scene, const PlanePoint& pixel) {
-  return quadrature(View(scene, pixel));
-}
-
 }  // namespace assay::depth_of_field

@@ -31,14 +31,11 @@ inline constexpr double first_zero_of_disc_response = 3.8317059702075125;
 ///   second moment  m^2 + 2 m a cos(k x + p) j(k r) + a^2 / 2 (1 + cos(2 (k x + p)) j(2 k r))
 Moments sinusoid_moments(const Texture& texture, const Footprint& seen);
 
-/// The moments of a pixel: closed form where one surface fills the whole lens, else
-/// quadrature_moments().
+/// The moments of a pixel, in closed form where one surface fills the whole lens. Else they are
+/// in closed form along u between the edges, and by quadrature along v (render/quadrature.h). It is
+/// refined at most nine times, until it changes by 1e-12 of the value or less; `error` has the last
+/// change. An edge before a wave of a thousand radians in the radius of the lens leaves an error of
+/// 3e-6.
 Moments exact_moments(const SceneDescription& scene, const PlanePoint& pixel);
-
-/// Moments over the lens: in closed form along u between the edges, by quadrature along v
-/// (render/quadrature.h). It is refined at most nine times, until it changes by 1e-12 of the value
-/// or less; `error` has the last change. An edge before a wave of a thousand radians in the radius
-/// of the lens leaves an error of 3e-6.
-Moments quadrature_moments(const SceneDescription& scene, const PlanePoint& pixel);
 
 }  // namespace assay::depth_of_field

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 #include <string_view>
 #include <tuple>
@@ -141,16 +140,6 @@ std::vector<const Sample*> worst_samples(const Test& test) {
     }
   }
   return samples;
-}
-
-std::uint64_t observations(const Test& test) {
-  std::uint64_t sum = 0;
-  std::map<std::string, std::string> counted;  // the channel of an estimator
-  for (const Sample* sample : worst_samples(test)) {
-    const auto& [estimator, channel] = *counted.emplace(sample->estimator, sample->channel).first;
-    if (channel == sample->channel) sum += sample->secondaries;
-  }
-  return sum;
 }
 
 bool is_evidence(const Test& test) {

@@ -13,10 +13,6 @@ namespace assay::reports {
 /// The samples of the worst channel, and those of estimators that have none of its name.
 std::vector<const Sample*> worst_samples(const Test&);
 
-/// Observations of all sources together, those of one that has a sample for each of several
-/// channels counted once.
-std::uint64_t observations(const Test&);
-
 /// True unless an assumption of the test's numbers is violated.
 bool is_evidence(const Test&);
 

@@ -75,10 +75,6 @@ double f_quantile(LogTail tail, FDegrees degrees);
 double beta_quantile(LogTail tail, BetaShape shape);
 double noncentral_chi_square_quantile(LogTail tail, Noncentral parameters);
 
-// The tails of any law that a TestResult names, except "bound" and "image-family"
-// (std::domain_error).
-LogTails log_tails(const Distribution& distribution, double statistic);
-
 // ln(1 - e^x) for x <= 0 and ln(e^a + e^b), without cancellation or overflow.
 double log_complement(double log_probability);
 struct LogPair {

@@ -33,20 +33,6 @@ TEST(DepthOfField, MomentsAreThoseOfAnIndependentQuadrature) {
   }
 }
 
-TEST(DepthOfField, QuadratureAgreesWithTheClosedForms) {
-  for (const double x : {-.19, -.1, 0., .03, .15}) {
-    const Moments edge = quadrature_moments(scene_of("edge"), {x, 0});
-    EXPECT_NEAR(edge.mean, half_plane_coverage(-x / .2), 1e-12);
-    EXPECT_NEAR(edge.variance(), edge.mean * (1 - edge.mean), 1e-12);
-    const SceneDescription wave = scene_of("sinusoid");
-    const Moments closed =
-        sinusoid_moments(wave.planes[0].texture, footprint(wave.lens, {x, 0}, 4));
-    const Moments integral = quadrature_moments(wave, {x, 0});
-    EXPECT_NEAR(integral.mean, closed.mean, 1e-12);
-    EXPECT_NEAR(integral.square, closed.square, 1e-12);
-  }
-}
-
 /// An edge before a wave of this length.
 std::string cut_wave(const char* wavelength) {
   return std::string(
@@ -58,10 +44,10 @@ std::string cut_wave(const char* wavelength) {
 
 // Waves of 126 and of 1257 radians in the radius: quadrature resolves the one, not the other.
 TEST(DepthOfField, AVarianceIsStatedOnlyWhereItsErrorIsSmall) {
-  const Channel coarse = prepare("depth_of_field/pixel", cut_wave("1e-2")).setup->channels()[0];
+  const Channel coarse = channel("depth_of_field/pixel", cut_wave("1e-2"));
   EXPECT_LT(coarse.mean_error, 1e-13);
   EXPECT_TRUE(coarse.variance);
-  const Channel fine = prepare("depth_of_field/pixel", cut_wave("1e-3")).setup->channels()[0];
+  const Channel fine = channel("depth_of_field/pixel", cut_wave("1e-3"));
   EXPECT_GT(fine.mean_error, 1e-8);
   EXPECT_FALSE(fine.variance);
 }
@@ -69,8 +55,7 @@ TEST(DepthOfField, AVarianceIsStatedOnlyWhereItsErrorIsSmall) {
 // At 1e-7 from the rim V is 2e-10 of the square, and rounding may take 4e-15 of that.
 TEST(DepthOfField, AVarianceThatRoundingLeftIsNotStated) {
   const auto variance = [](const char* x) {
-    return prepare("depth_of_field/pixel", std::string("{scene: edge, pixel: [") + x + ", 0]}")
-        .setup->channels()[0]
+    return channel("depth_of_field/pixel", std::string("{scene: edge, pixel: [") + x + ", 0]}")
         .variance;
   };
   EXPECT_TRUE(variance("-.199"));

@@ -1,7 +1,6 @@
 #include "stats/tails/tails.h"
 
-#include "tests/prelude.h"
-#include "tests/stats/table.h"
+#include "tests/stats/prelude.h"
 
 namespace assay::stats {
 namespace {
@@ -19,36 +18,18 @@ void expect_table(const std::string& name, double tolerance, const Tails& tails)
   }
 }
 
-TEST(Tails, NormalAgreesWithTwentyFiveDigits) {
+TEST(Tails, AgreeWithTwentyFiveDigitsOrQuadrature) {
+  const auto whole = [](double value) { return static_cast<std::uint64_t>(value); };
   expect_table("normal", 1e-12, [](const Row& r) { return normal_tails(r["x"]); });
-}
-
-TEST(Tails, StudentTAgreesWithTwentyFiveDigits) {
   expect_table("student_t", 1e-10, [](const Row& r) { return student_t_tails(r["t"], r["nu"]); });
-}
-
-TEST(Tails, ChiSquareAgreesWithTwentyFiveDigits) {
   expect_table("chi_square", 1e-10, [](const Row& r) { return chi_square_tails(r["x"], r["nu"]); });
-}
-
-TEST(Tails, FAgreesWithTwentyFiveDigits) {
   expect_table("f", 1e-10, [](const Row& r) { return f_tails(r["f"], {r["nu1"], r["nu2"]}); });
-}
-
-TEST(Tails, BinomialAgreesWithTwentyFiveDigits) {
-  expect_table("binomial", 1e-10, [](const Row& r) {
-    return binomial_tails(static_cast<std::uint64_t>(r["k"]),
-                          {static_cast<std::uint64_t>(r["n"]), r["p"]});
+  expect_table("binomial", 1e-10, [&](const Row& r) {
+    return binomial_tails(whole(r["k"]), {whole(r["n"]), r["p"]});
   });
-}
-
-TEST(Tails, NoncentralChiSquareAgreesWithTwentyFiveDigits) {
   expect_table("noncentral_chi_square", 1e-10, [](const Row& r) {
     return noncentral_chi_square_tails(r["x"], {r["nu"], r["ncp"]});
   });
-}
-
-TEST(Tails, NoncentralTAgreesWithHighPrecisionQuadrature) {
   expect_table("noncentral_t", 1e-10, [](const Row& r) {
     return noncentral_t_tails(r["t"], {r["nu"], r["ncp"]});
   });
@@ -124,73 +105,28 @@ TEST(Tails, NoncentralTOfManyDegreesJoinsTheNormalLawOnBothSidesOfTheNoncentrali
 TEST(Tails, QuantilesInvertTheTails) {
   for (const double log_p : {-1e-12, -0.1, -0.6931, -0.7, -3.0, -40.0, -690.0, -5000.0}) {
     for (const Tail tail : {Tail::lower, Tail::upper}) {
-      const auto of = [&](LogTails tails) {
-        return tail == Tail::lower ? tails.lower : tails.upper;
-      };
-      const double tolerance = 1e-9;
       const LogTail target{tail, log_p};
-      EXPECT_LE(log_p_error(of(normal_tails(normal_quantile(target))), log_p), tolerance) << log_p;
-      EXPECT_LE(log_p_error(of(student_t_tails(student_t_quantile(target, 25.5), 25.5)), log_p),
-                tolerance)
-          << log_p;
-      if (log_p > -1000) {  // with 12 degrees below, the quantile overflows from -4000 on
-        EXPECT_LE(log_p_error(of(f_tails(f_quantile(target, {30, 12}), {30, 12})), log_p),
-                  tolerance)
-            << log_p;
-      }
-      EXPECT_LE(log_p_error(of(chi_square_tails(chi_square_quantile(target, 40), 40)), log_p),
-                tolerance)
-          << log_p;
-      EXPECT_LE(log_p_error(of(noncentral_chi_square_tails(
-                                noncentral_chi_square_quantile(target, {40, 9}), {40, 9})),
-                            log_p),
-                tolerance)
-          << log_p;
+      const auto expect_target = [&](const LogTails& at) {
+        const double found = tail == Tail::lower ? at.lower : at.upper;
+        EXPECT_LE(log_p_error(found, log_p), 1e-9) << log_p;
+      };
+      const Noncentral law{40, 9};
+      expect_target(normal_tails(normal_quantile(target)));
+      expect_target(student_t_tails(student_t_quantile(target, 25.5), 25.5));
+      expect_target(chi_square_tails(chi_square_quantile(target, 40), 40));
+      expect_target(noncentral_chi_square_tails(noncentral_chi_square_quantile(target, law), law));
+      // With 12 degrees below, the quantile overflows from -4000 on.
+      if (log_p > -1000) expect_target(f_tails(f_quantile(target, {30, 12}), {30, 12}));
+      // Its argument has no more digits near one.
+      const bool is_resolved = log_p <= -0.1 && log_p >= -40 && tail == Tail::lower;
+      if (is_resolved) expect_target(beta_tails(beta_quantile(target, {3, 40}), {3, 40}));
     }
-  }
-}
-
-TEST(Tails, BetaQuantileInvertsWithinTheResolutionOfItsArgument) {
-  for (const double log_p : {-0.1, -3.0, -40.0}) {
-    const double x = beta_quantile({Tail::lower, log_p}, {3, 40});
-    EXPECT_LE(log_p_error(beta_tails(x, {3, 40}).lower, log_p), 1e-9);
   }
 }
 
 TEST(Tails, ImpossibleQuantilesAreInfinite) {
   EXPECT_TRUE(std::isinf(student_t_quantile({Tail::upper, -5000}, 1)));
   EXPECT_LT(student_t_quantile({Tail::lower, -5000}, 1), 0);
-}
-
-TEST(Tails, MeaninglessArgumentsThrow) {
-  for (const double bad :
-       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
-        -std::numeric_limits<double>::infinity()}) {
-    EXPECT_THROW(normal_tails(bad), std::domain_error);
-    EXPECT_THROW(student_t_tails(bad, 3), std::domain_error);
-    EXPECT_THROW(student_t_tails(1, bad), std::domain_error);
-    EXPECT_THROW(chi_square_tails(bad, 3), std::domain_error);
-    EXPECT_THROW(f_tails(1, {bad, 3}), std::domain_error);
-    EXPECT_THROW(noncentral_t_tails(1, {3, bad}), std::domain_error);
-    EXPECT_THROW(noncentral_chi_square_tails(1, {3, bad}), std::domain_error);
-    EXPECT_THROW(normal_quantile({Tail::lower, bad}), std::domain_error);
-    EXPECT_THROW(beta_tails(bad, {1, 1}), std::domain_error);
-  }
-  EXPECT_THROW(student_t_tails(1, 0), std::domain_error);
-  EXPECT_THROW(normal_quantile({Tail::lower, 0}), std::domain_error);
-  EXPECT_THROW(binomial_tails(3, {2, 0.5}), std::domain_error);
-  EXPECT_THROW(log_tails({"cauchy", {}}, 1), std::domain_error);
-  EXPECT_THROW(log_tails({"F", {3}}, 1), std::domain_error);
-}
-
-TEST(Tails, LawsAreFoundByName) {
-  EXPECT_EQ(log_tails({"normal", {}}, 1.5).upper, normal_tails(1.5).upper);
-  EXPECT_EQ(log_tails({"student-t", {7}}, 1.5).upper, student_t_tails(1.5, 7).upper);
-  EXPECT_EQ(log_tails({"chi-square", {7}}, 1.5).lower, chi_square_tails(1.5, 7).lower);
-  EXPECT_EQ(log_tails({"F", {7, 8}}, 1.5).lower, f_tails(1.5, {7, 8}).lower);
-  EXPECT_EQ(log_tails({"binomial", {7, .5}}, 3).lower, binomial_tails(3, {7, .5}).lower);
-  EXPECT_NEAR(std::exp(log_tails({"kolmogorov", {10}}, .3).upper), .2705355748, 1e-10);
-  EXPECT_NEAR(std::exp(log_tails({"smirnov", {50, 60}}, .5).upper), 1.0065070832e-6, 1e-15);
 }
 
 }  // namespace
