@@ -1,9 +1,6 @@
 #include "reports/formats/base64.h"
 
-#include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
-
-#include "tests/prelude.h"
+#include "tests/reports/prelude.h"
 
 namespace assay::reports {
 namespace {

@@ -1,9 +1,8 @@
 #include "reports/record/calibration.h"
 
 #include "reports/words/columns.h"
-#include "tests/prelude.h"
 #include "tests/reports/approved.h"
-#include "tests/reports/lines.h"
+#include "tests/reports/prelude.h"
 
 namespace assay::reports {
 namespace {

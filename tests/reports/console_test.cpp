@@ -1,14 +1,8 @@
 #include "reports/formats/console.h"
 
-#include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
-
 #include "reports/words/columns.h"
 #include "reports/words/text.h"
-#include "tests/prelude.h"
-#include "tests/reports/example_record.h"
-#include "tests/reports/lines.h"
-#include "tests/reports/random_record.h"
+#include "tests/reports/prelude.h"
 
 namespace assay::reports {
 namespace {

@@ -1,7 +1,6 @@
 #include "reports/words/describe.h"
 
-#include "tests/prelude.h"
-#include "tests/reports/example_record.h"
+#include "tests/reports/prelude.h"
 
 namespace assay::reports {
 namespace {
@@ -27,29 +26,6 @@ TEST(Describe, ObservationsOfSeveralChannelsAreCountedOnce) {
   test.channels[0].name = "theta, phi";
   EXPECT_THAT(plain_text(test),
               HasSubstr("observations: 16.4\u00A0k of area with 64\u00A0primaries each\n"));
-}
-
-TEST(Describe, ObservationsOfAllSourcesTogetherCountEachSourceOnce) {
-  reports::Test test = passing();
-  const auto of = [](const char* estimator, const char* channel) {
-    reports::Sample other = sample(estimator);
-    other.channel = channel;
-    other.secondaries = 100;
-    return other;
-  };
-  const auto counted = [&](const char* channel, const std::vector<reports::Sample>& samples) {
-    test.channels[0].name = channel;
-    test.samples = samples;
-    return observations(test);
-  };
-  // Cells of two coordinates, of one source, of two, and of one against itself.
-  EXPECT_EQ(counted("cell", {of("a", "theta"), of("a", "phi")}), 100u);
-  EXPECT_EQ(counted("cell", {of("a", "theta"), of("b", "theta"), of("a", "phi"), of("b", "phi")}),
-            200u);
-  EXPECT_EQ(counted("cell", {of("a", "theta"), of("a", "theta"), of("a", "phi"), of("a", "phi")}),
-            200u);
-  EXPECT_EQ(counted("u", {of("a", "u"), of("b", "v")}), 200u);
-  EXPECT_EQ(counted("u", {of("a", "u"), of("b", "u"), of("a", "v"), of("b", "v")}), 200u);
 }
 
 TEST(Describe, ASideWhoseChannelHasAnotherNameIsCountedToo) {

@@ -1,11 +1,6 @@
 #include "reports/words/display.h"
 
-#include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
-
-#include "tests/prelude.h"
-#include "tests/reports/example_record.h"
-#include "tests/reports/random_record.h"
+#include "tests/reports/prelude.h"
 
 namespace assay::reports {
 namespace {

@@ -1,7 +1,6 @@
 #include "reports/words/evidence.h"
 
-#include "tests/prelude.h"
-#include "tests/reports/example_record.h"
+#include "tests/reports/prelude.h"
 
 namespace assay::reports {
 namespace {

@@ -3,7 +3,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "tests/prelude.h"
+#include "tests/reports/prelude.h"
 
 namespace assay::reports {
 namespace {

@@ -7,9 +7,8 @@
 #include "reports/formats/junit.h"
 #include "reports/formats/markdown.h"
 #include "reports/formats/metrics.h"
-#include "tests/prelude.h"
 #include "tests/reports/approved.h"
-#include "tests/reports/example_record.h"
+#include "tests/reports/prelude.h"
 
 namespace assay::reports {
 namespace {

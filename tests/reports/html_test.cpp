@@ -1,7 +1,5 @@
 #include "reports/viewer/html.h"
 
-#include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
 #include <zlib.h>
 
 #include <nlohmann/json.hpp>
@@ -10,10 +8,8 @@
 #include "reports/formats/read_json.h"
 #include "reports/viewer/pictures.h"
 #include "reports/words/text.h"
-#include "tests/prelude.h"
-#include "tests/reports/example_record.h"
 #include "tests/reports/large_records.h"
-#include "tests/reports/random_record.h"
+#include "tests/reports/prelude.h"
 
 // The tests in tests/viewer open the page in a browser.
 

@@ -1,16 +1,11 @@
 #include "reports/formats/json.h"
 
-#include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
-
 #include <nlohmann/json.hpp>
 
 #include "reports/formats/read_json.h"
 #include "reports/viewer/html.h"
 #include "reports/words/text.h"
-#include "tests/prelude.h"
-#include "tests/reports/example_record.h"
-#include "tests/reports/random_record.h"
+#include "tests/reports/prelude.h"
 #include "tests/reports/without_times.h"
 
 namespace assay::reports {

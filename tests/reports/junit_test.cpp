@@ -1,12 +1,7 @@
 #include "reports/formats/junit.h"
 
-#include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
-
 #include "reports/words/text.h"
-#include "tests/prelude.h"
-#include "tests/reports/example_record.h"
-#include "tests/reports/random_record.h"
+#include "tests/reports/prelude.h"
 
 namespace assay::reports {
 namespace {

@@ -3,7 +3,7 @@
 #include "reports/formats/console.h"
 #include "reports/formats/markdown.h"
 #include "reports/words/columns.h"
-#include "tests/prelude.h"
+#include "tests/reports/prelude.h"
 
 namespace assay::reports {
 namespace {

@@ -3,8 +3,7 @@
 #include "reports/formats/console.h"
 #include "reports/formats/junit.h"
 #include "reports/formats/markdown.h"
-#include "tests/prelude.h"
-#include "tests/reports/example_record.h"
+#include "tests/reports/prelude.h"
 
 namespace assay::reports {
 namespace {

@@ -1,14 +1,8 @@
 #include "reports/formats/metrics.h"
 
-#include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
-
 #include <charconv>
 
-#include "tests/prelude.h"
-#include "tests/reports/example_record.h"
-#include "tests/reports/lines.h"
-#include "tests/reports/random_record.h"
+#include "tests/reports/prelude.h"
 
 namespace assay::reports {
 namespace {

@@ -1,8 +1,7 @@
 #include "reports/record/record.h"
 
 #include "reports/words/describe.h"
-#include "tests/prelude.h"
-#include "tests/reports/example_record.h"
+#include "tests/reports/prelude.h"
 
 namespace assay::reports {
 namespace {

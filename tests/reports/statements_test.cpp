@@ -1,16 +1,12 @@
 #include "reports/record/statements.h"
 
-#include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
-
 #include "reports/formats/console.h"
 #include "reports/formats/json.h"
 #include "reports/formats/markdown.h"
 #include "reports/formats/read_json.h"
 #include "reports/words/columns.h"
 #include "reports/words/statement_text.h"
-#include "tests/prelude.h"
-#include "tests/reports/example_record.h"
+#include "tests/reports/prelude.h"
 
 namespace assay::reports {
 namespace {

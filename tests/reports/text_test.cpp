@@ -1,10 +1,6 @@
 #include "reports/words/text.h"
 
-#include <gtest/gtest.h>
-#include <rapidcheck/gtest.h>
-
-#include "tests/prelude.h"
-#include "tests/reports/random_record.h"
+#include "tests/reports/prelude.h"
 
 namespace assay::reports {
 namespace {

@@ -9,8 +9,7 @@
 #include "reports/words/number.h"
 #include "reports/words/summary.h"
 #include "reports/words/text.h"
-#include "tests/prelude.h"
-#include "tests/reports/example_record.h"
+#include "tests/reports/prelude.h"
 
 namespace assay::reports {
 namespace {

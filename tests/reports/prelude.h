@@ -1,8 +1,12 @@
 #pragma once
 
-#include <sstream>
-#include <string>
-#include <vector>
+// What every test of this folder includes: tests/prelude.h, property tests, and records.
+
+#include <rapidcheck/gtest.h>
+
+#include "tests/prelude.h"
+#include "tests/reports/example_record.h"
+#include "tests/reports/random_record.h"
 
 namespace assay::tests {
 
