@@ -23,26 +23,19 @@ double simpson(const F& g) {
   return sum / (3 * n);
 }
 
-Channel channel(const char* plugin, const char* parameters = "null") {
-  return prepare(plugin, parameters).setup->channels()[0];
-}
-
 TEST(Analytic, VariancesAreThoseOfQuadrature) {
-  const auto square = [&](auto g) { return simpson(g) - integral * integral; };
-  EXPECT_NEAR(*channel("analytic/exponential_uniform").variance,
-              square([](double x) { return f(x) * f(x); }), 1e-8);
-  EXPECT_NEAR(*channel("analytic/exponential_importance").variance,
-              square([](double x) { return f(x) * f(x) / q(x); }), 1e-8);
-  EXPECT_NEAR(*channel("analytic/antithetic").variance,
-              square([](double x) { return std::pow((f(x) + f(1 - x)) / 2, 2); }), 1e-8);
-  EXPECT_NEAR(*channel("analytic/control_variate").variance, square([](double x) {
-    return std::pow(f(x) - 2.3 * (1 + 3 * x + 4.5 * x * x - 4), 2);
-  }),
-              1e-8);
-  EXPECT_NEAR(*channel("analytic/control_variate", "{coefficient: 0}").variance,
-              *channel("analytic/exponential_uniform").variance, 1e-12);
-  EXPECT_NEAR(*channel("analytic/stratified", "{strata: 1}").variance,
-              *channel("analytic/exponential_uniform").variance, 1e-12);
+  const auto expect = [](const char* plugin, const auto& of_square) {
+    const double variance = simpson(of_square) - integral * integral;
+    EXPECT_NEAR(*channel(plugin).variance, variance, 1e-8) << plugin;
+  };
+  expect("analytic/exponential_uniform", [](double x) { return f(x) * f(x); });
+  expect("analytic/exponential_importance", [](double x) { return f(x) * f(x) / q(x); });
+  expect("analytic/antithetic", [](double x) { return std::pow((f(x) + f(1 - x)) / 2, 2); });
+  expect("analytic/control_variate",
+         [](double x) { return std::pow(f(x) - 2.3 * (1 + 3 * x + 4.5 * x * x - 4), 2); });
+  const double plain = *channel("analytic/exponential_uniform").variance;
+  EXPECT_NEAR(*channel("analytic/control_variate", "{coefficient: 0}").variance, plain, 1e-12);
+  EXPECT_NEAR(*channel("analytic/stratified", "{strata: 1}").variance, plain, 1e-12);
 }
 
 TEST(Analytic, StratifiedVarianceIsTheMeanOfTheStrata) {
@@ -58,7 +51,7 @@ TEST(Analytic, StratifiedVarianceIsTheMeanOfTheStrata) {
 TEST(Analytic, MeansAreClosedForms) {
   for (const char* plugin : {"exponential_uniform", "exponential_importance", "control_variate",
                              "stratified", "antithetic", "ratio", "zero_variance"}) {
-    EXPECT_DOUBLE_EQ(*channel((std::string("analytic/") + plugin).c_str()).mean, integral);
+    EXPECT_DOUBLE_EQ(*channel(std::string("analytic/") + plugin).mean, integral);
   }
   EXPECT_DOUBLE_EQ(*channel("analytic/heavy_tail", "{index: 3}").mean, 1.5);
   EXPECT_DOUBLE_EQ(*channel("analytic/heavy_tail", "{index: 3}").variance, 0.75);
@@ -75,7 +68,6 @@ TEST(Analytic, HeavyTailsDeclareOnlyWhatTheirStreamCanReach) {
   const auto missed = [](double s) {
     return -(1 - s) * std::exp2(-52 * (1 - s)) * (std::exp2(s) - 1) * std::riemann_zeta(s);
   };
-  EXPECT_THROW(channel("analytic/heavy_tail", "{index: 1.33}"), InputError);
   EXPECT_TRUE(channel("analytic/heavy_tail", "{index: 1.34}").mean.has_value());
   EXPECT_LT(missed(1 / 1.34), 1e-4);
   EXPECT_TRUE(channel("analytic/heavy_tail", "{index: 2.67}").variance.has_value());
@@ -84,11 +76,9 @@ TEST(Analytic, HeavyTailsDeclareOnlyWhatTheirStreamCanReach) {
 
 TEST(Analytic, ZeroVarianceIsConstantToRounding) {
   const auto plugin = prepare("analytic/zero_variance");
-  const Channel declared = plugin.setup->channels()[0];
-  for (const std::uint64_t primaries : {std::uint64_t{1}, std::uint64_t{100}}) {
-    const Sample sample = observe(plugin, 10000, primaries)[0];
-    EXPECT_GE(*std::ranges::min_element(sample.values), declared.low);
-    EXPECT_LE(*std::ranges::max_element(sample.values), declared.high);
+  for (const std::uint64_t primaries : {1U, 100U}) {
+    EXPECT_THAT(observe(plugin, 10000, primaries)[0].values,
+                Each(AllOf(Ge(plugin.channel().low), Le(plugin.channel().high))));
   }
   EXPECT_NE(observe(plugin, 100)[0].variance(), 0) << "rounding shows, which is the point";
 }
@@ -105,8 +95,7 @@ TEST(Analytic, RatioBiasFallsLikeOneOverPrimaries) {
   const double n = 16;
   const Sample sample = observe(plugin, 400000, 16)[0];
   EXPECT_NEAR(n * (sample.mean() - integral), limit, 0.05 + five * n * sample.mean_error());
-  EXPECT_GE(*std::ranges::min_element(sample.values), plugin.setup->channels()[0].low);
-  EXPECT_LE(*std::ranges::max_element(sample.values), plugin.setup->channels()[0].high);
+  EXPECT_THAT(sample.values, Each(AllOf(Ge(plugin.channel().low), Le(plugin.channel().high))));
 }
 
 TEST(Analytic, ARareSpikeDeclaresItsRangeOrNot) {
@@ -118,19 +107,15 @@ TEST(Analytic, ARareSpikeDeclaresItsRangeOrNot) {
 }
 
 TEST(Analytic, ARareSpikeStaysUnseenInAShortRun) {
-  const Sample sample = observe(prepare("analytic/rare_spike", "{probability: 0}"), 1000)[0];
-  EXPECT_EQ(sample.values, std::vector<double>(1000, 0.5));
+  EXPECT_THAT(observe(prepare("analytic/rare_spike", "{probability: 0}"), 1000)[0].values,
+              Each(0.5));
 }
 
 TEST(Analytic, ACostlyLawCostsWhatItsValuesSay) {
   const auto plugin = prepare("analytic/costly_law", "{law: student_t(5), rays: 10}");
-  const auto estimator = plugin.setup->make();
   for (std::uint64_t i = 0; i < 1000; ++i) {
-    Stream random(plugin.key, i);
-    std::array<double, 1> out{};
-    Cost cost;
-    estimator->secondary(random, 1, out, cost);
-    const auto rays = static_cast<std::uint64_t>(10 * std::abs(out[0]));
+    const auto [values, cost] = observe_one(plugin, 1, i);
+    const auto rays = static_cast<std::uint64_t>(10 * std::abs(values[0]));
     EXPECT_EQ(cost, (Cost{.shadow_rays = 1 + rays, .samples = 1}));
   }
 }
@@ -138,13 +123,12 @@ TEST(Analytic, ACostlyLawCostsWhatItsValuesSay) {
 // False alarm 1e-6.
 TEST(Analytic, ImportanceSamplerFollowsItsDensity) {
   const auto plugin = prepare("analytic/exponential_importance");
-  const auto named = plugin.setup->samplers().at(0);
-  EXPECT_EQ(named.name, "x");
+  const auto sampler = plugin.sampler("x");
   std::vector<double> counts(50);
   constexpr int draws = 100000;
   for (std::uint64_t i = 0; i < draws; ++i) {
     Stream random(plugin.key, i);
-    const SamplerDraw draw = named.sampler->sample(random);
+    const SamplerDraw draw = sampler->sample(random);
     EXPECT_DOUBLE_EQ(draw.weight * draw.density, f(draw.point[0]));
     counts[static_cast<std::size_t>(std::min(49.0, 50 * draw.point[0]))] += 1;
   }
@@ -157,81 +141,61 @@ TEST(Analytic, ImportanceSamplerFollowsItsDensity) {
   EXPECT_TRUE(pearson.passes()) << pearson.statistic;
 }
 
-Prepared prepare_law(const std::string& law, double shift = 0, double scale = 1) {
-  return prepare("analytic/law", Value::map({{"law", Value::scalar(law)},
-                                             {"shift", Value::scalar(std::to_string(shift))},
-                                             {"scale", Value::scalar(std::to_string(scale))}}));
-}
-
-Channel law_channel(const std::string& law, double shift = 0, double scale = 1) {
-  return prepare_law(law, shift, scale).setup->channels()[0];
+Prepared law(const std::string& law, const std::string& more = "") {
+  return prepare("analytic/law", "{law: " + law + more + "}");
 }
 
 // Cells of equal probability by these laws' own quantiles. False alarm 1e-6 each.
 TEST(AnalyticLaw, DrawsFollowTheLaw) {
-  struct Quantile {
-    const char* law;
-    double (*cdf)(double);
-  };
-  const auto normal_cdf = [](double z) { return std::erfc(-z / std::sqrt(2.0)) / 2; };
-  static const auto phi = normal_cdf;
-  for (const auto& [law, cdf] :
-       {Quantile{"exponential(2)", [](double x) { return -std::expm1(-2 * x); }},
-        Quantile{"lognormal(1, 0.5)", [](double x) { return phi((std::log(x) - 1) / 0.5); }},
-        Quantile{"normal(1, 2)", [](double x) { return phi((x - 1) / 2); }},
-        // Student's law with 2 and with 1 degrees of freedom has a plain distribution function.
-        Quantile{"student_t(2)", [](double x) { return (1 + x / std::sqrt(2 + x * x)) / 2; }},
-        Quantile{"student_t(1)", [](double x) { return 0.5 + std::atan(x) / 3.141592653589793; }},
-        Quantile{"uniform(-1, 3)", [](double x) { return (x + 1) / 4; }}}) {
-    const Sample sample = observe(prepare_law(law), 50000)[0];
+  using Cdf = double (*)(double);
+  static const auto phi = [](double z) { return std::erfc(-z / std::sqrt(2.0)) / 2; };
+  for (const auto& [name, cdf] : std::map<std::string, Cdf>{
+           {"exponential(2)", [](double x) { return -std::expm1(-2 * x); }},
+           {"lognormal(1, 0.5)", [](double x) { return phi((std::log(x) - 1) / 0.5); }},
+           {"normal(1, 2)", [](double x) { return phi((x - 1) / 2); }},
+           // Student's law with 2 and with 1 degrees of freedom has a plain distribution function.
+           {"student_t(2)", [](double x) { return (1 + x / std::sqrt(2 + x * x)) / 2; }},
+           {"student_t(1)", [](double x) { return 0.5 + std::atan(x) / std::numbers::pi; }},
+           {"uniform(-1, 3)", [](double x) { return (x + 1) / 4; }}}) {
     std::vector<double> counts(50);
+    const Sample sample = observe(law(name), 50000)[0];
     for (const double x : sample.values) {
       counts[static_cast<std::size_t>(std::min(49.0, 50 * cdf(x)))] += 1;
     }
-    Pearson pearson;
-    for (const double count : counts) pearson.add(count, 1000);
-    EXPECT_TRUE(pearson.passes()) << law << ": " << pearson.statistic;
+    EXPECT_TRUE(Pearson::of_equal(counts).passes()) << name;
   }
 }
 
 TEST(AnalyticLaw, DeclaresMomentsWhereTheyExistAlone) {
-  EXPECT_FALSE(law_channel("student_t(1)").mean);
-  EXPECT_EQ(law_channel("student_t(1.5)").mean, 0);
-  EXPECT_FALSE(law_channel("student_t(2)").variance);
-  EXPECT_EQ(law_channel("student_t(4)").variance, 2);
-  EXPECT_EQ(law_channel("exponential(1)").low, 0);
-  EXPECT_EQ(law_channel("uniform(1, 2)", -1, 2).high, 3);
+  EXPECT_FALSE(law("student_t(1)").channel().mean);
+  EXPECT_EQ(law("student_t(1.5)").channel().mean, 0);
+  EXPECT_FALSE(law("student_t(2)").channel().variance);
+  EXPECT_EQ(law("student_t(4)").channel().variance, 2);
+  EXPECT_EQ(law("exponential(1)").channel().low, 0);
+  EXPECT_EQ(law("uniform(1, 2)", ", shift: -1, scale: 2").channel().high, 3);
 }
 
 // The draws of its sampler have the density it declares, mass outside included: Simpson's rule.
 TEST(AnalyticLaw, SamplersDeclareDensitiesThatIntegrateToTheirMass) {
-  for (const char* law :
+  for (const char* name :
        {"exponential(1)", "lognormal(0, 0.5)", "normal(0, 1)", "student_t(5)", "uniform(0, 1)"}) {
-    const auto plugin = prepare_law(law, 0, 2);
-    const Sampler& sampler = *plugin.setup->samplers().at(0).sampler;
-    const auto [low, high] = sampler.bounds();
-    const double width = high - low;
+    const auto plugin = law(name, ", scale: 2");
+    const auto sampler = plugin.sampler();
+    const double low = sampler->bounds()[0];
+    const double width = sampler->bounds()[1] - low;
     const double mass =
-        width * simpson([&](double u) { return sampler.density({low + width * u}); });
+        width * simpson([&](double u) { return sampler->density({low + width * u}); });
     int inside = 0;
     constexpr int draws = 20000;
     for (std::uint64_t i = 0; i < draws; ++i) {
       Stream random(plugin.key, i);
-      inside += sampler.sample(random).valid ? 1 : 0;
+      inside += sampler->sample(random).valid ? 1 : 0;
     }
-    EXPECT_LE(mass, 1 + 1e-9) << law;
+    EXPECT_LE(mass, 1 + 1e-9) << name;
     // False alarm 1e-6 for masses of .99 and more.
-    EXPECT_NEAR(inside / double{draws}, mass, five * std::sqrt(0.01 / draws)) << law;
+    EXPECT_NEAR(inside / double{draws}, mass, five * std::sqrt(0.01 / draws)) << name;
   }
-  EXPECT_TRUE(prepare_law("bernoulli(0.5)").setup->samplers().empty());
-}
-
-TEST(AnalyticLaw, WhatIsNoLawIsRefusedWithTheLawsThereAre) {
-  for (const char* law : {"cauchy(0, 1)", "normal", "normal(0)", "normal(0, 0)", "bernoulli(1)",
-                          "uniform(1, 1)", "exponential(a)", "exponential()", "normal(0,)", ""}) {
-    EXPECT_THAT(thrown<InputError>([&] { prepare_law(law); }), HasSubstr("student_t(freedom)"))
-        << law;
-  }
+  EXPECT_TRUE(law("bernoulli(0.5)").setup->samplers().empty());
 }
 
 TEST(AnalyticMutants, ScaledIsItsOriginalTimesTheFactor) {

@@ -74,13 +74,15 @@ double sum(const Cell& cell, int n, const std::function<double(double, double, d
 }
 const Cell hemisphere{{0, 1}, {0, 2 * pi}};
 
-const Sampler& sampler_of(const Prepared& plugin) { return *plugin.setup->samplers()[0].sampler; }
+// The golden incidence and parameters.
+constexpr render::Angles incident{.theta = 0.8, .phi = 0.5};
+const Ward golden_ward({.x = 0.15, .y = 0.4}, incident);
+const AshikhminShirley golden_ashikhmin_shirley({.exponents = {.u = 10, .v = 100},
+                                                 .reflectance = 0.5},
+                                                incident);
 
 TEST(Brdf, QuadratureAgreesWithBruteForceSums) {
-  const render::Angles incident{.theta = 0.8, .phi = 0.5};
-  const Ward w({.x = 0.15, .y = 0.4}, incident);
-  const AshikhminShirley a({.exponents = {.u = 10, .v = 100}, .reflectance = 0.5}, incident);
-  const std::array<const render::HalfVectorBrdf*, 2> brdfs{&w, &a};
+  const std::array<const render::HalfVectorBrdf*, 2> brdfs{&golden_ward, &golden_ashikhmin_shirley};
   for (std::size_t k = 0; k < 2; ++k) {
     const Formula& at = cases[k].formula;
     const auto exact = integrate(*brdfs[k]);
@@ -100,12 +102,10 @@ TEST(Brdf, QuadratureAgreesWithBruteForceSums) {
 }
 
 TEST(Brdf, IntegralsOfTheDefaultParametersAreThePublishedOnes) {
-  const render::Angles incident{.theta = 0.8, .phi = 0.5};
-  const auto w = integrate(Ward({.x = 0.15, .y = 0.4}, incident));
+  const auto w = integrate(golden_ward);
   EXPECT_NEAR(w.mass, 0.98018, 5e-6);
   EXPECT_NEAR(w.albedo, 0.56419, 5e-6);
-  const auto a =
-      integrate(AshikhminShirley({.exponents = {.u = 10, .v = 100}, .reflectance = 0.5}, incident));
+  const auto a = integrate(golden_ashikhmin_shirley);
   EXPECT_NEAR(a.mass, 0.91637, 5e-6);
   EXPECT_NEAR(a.albedo, 0.37322, 5e-6);
 }
@@ -118,21 +118,14 @@ TEST(Brdf, IsotropicLobesDoNotDependOnTheAzimuth) {
   EXPECT_NEAR(one.brdf, other.brdf, 1e-10);
 }
 
-TEST(Brdf, SamplingFromTheIntegrandLeavesNoVariance) {
-  for (const Case& brdf : cases) {
-    const auto plugin = prepare(brdf.plugin, "{sampler: brdf_cosine_rejection}");
-    EXPECT_EQ(*plugin.setup->channels()[0].variance, 0);
-  }
-}
-
 TEST(Brdf, SamplersDeclareTheDensityOfTheirFormula) {
   for (const Case& brdf : cases) {
     const auto plugin = prepare(brdf.plugin);
-    const Sampler& sampler = sampler_of(plugin);
-    EXPECT_EQ(sampler.domain(), Domain::hemisphere);
+    const auto sampler = plugin.sampler();
+    EXPECT_EQ(sampler->domain(), Domain::hemisphere);
     for (std::uint64_t i = 0; i < 1000; ++i) {
       Stream random(plugin.key, i);
-      const SamplerDraw draw = sampler.sample(random);
+      const SamplerDraw draw = sampler->sample(random);
       if (!draw.valid) {
         EXPECT_EQ(draw.weight, 0);
         continue;
@@ -141,9 +134,9 @@ TEST(Brdf, SamplersDeclareTheDensityOfTheirFormula) {
       const Values expected = brdf.formula(x, y, z);
       EXPECT_NEAR(x * x + y * y + z * z, 1, 1e-12);
       EXPECT_NEAR(draw.density / expected.p, 1, 1e-9);
-      EXPECT_EQ(draw.density, sampler.density(draw.point));
+      EXPECT_EQ(draw.density, sampler->density(draw.point));
       EXPECT_NEAR(draw.weight / (expected.f * z / expected.p), 1, 1e-9);
-      EXPECT_NEAR(sampler.evaluate(draw.point) / (expected.f * z), 1, 1e-9);
+      EXPECT_NEAR(sampler->evaluate(draw.point) / (expected.f * z), 1, 1e-9);
     }
   }
 }
@@ -151,11 +144,12 @@ TEST(Brdf, SamplersDeclareTheDensityOfTheirFormula) {
 // Counts of a sampler in 24 x 32 cells of (xi, phi) against `density`, with the missing mass.
 bool follows(const Prepared& plugin, const std::function<double(double, double, double)>& density) {
   constexpr int rows = 24, columns = 32, draws = 100000;
+  const auto sampler = plugin.sampler();
   std::vector<double> counts(rows * columns);
   double missing = 0, inside = 0;
   for (std::uint64_t i = 0; i < draws; ++i) {
     Stream random(plugin.key, i);
-    const SamplerDraw draw = sampler_of(plugin).sample(random);
+    const SamplerDraw draw = sampler->sample(random);
     if (!draw.valid) {
       missing += 1;
       continue;
@@ -182,39 +176,26 @@ bool follows(const Prepared& plugin, const std::function<double(double, double, 
 // False alarm: 2 x 4 comparisons at 1e-6 each.
 TEST(Brdf, DirectionsFollowTheirDeclaredDensity) {
   for (const Case& brdf : cases) {
-    const Formula& at = brdf.formula;
-    const auto p = [&](double x, double y, double z) { return at(x, y, z).p; };
-    const auto f = [&](double x, double y, double z) { return at(x, y, z).f; };
-    const auto integrand = [&](double x, double y, double z) { return at(x, y, z).f * z; };
-    EXPECT_TRUE(follows(prepare(brdf.plugin), p));
-    const auto normalised = [](const auto& g) {
+    const auto p = [&](double x, double y, double z) { return brdf.formula(x, y, z).p; };
+    const auto f = [&](double x, double y, double z) { return brdf.formula(x, y, z).f; };
+    const auto integrand = [&](double x, double y, double z) { return f(x, y, z) * z; };
+    const auto follow = [&](const char* sampler, const auto& g) {
       const double total = sum(hemisphere, 500, g);
-      return [=](double x, double y, double z) { return g(x, y, z) / total; };
+      return follows(prepare(brdf.plugin, std::string("{sampler: ") + sampler + "}"),
+                     [&](double x, double y, double z) { return g(x, y, z) / total; });
     };
-    EXPECT_TRUE(follows(prepare(brdf.plugin, "{sampler: density_rejection}"), normalised(p)));
-    EXPECT_TRUE(follows(prepare(brdf.plugin, "{sampler: brdf_rejection}"), normalised(f)));
-    EXPECT_TRUE(
-        follows(prepare(brdf.plugin, "{sampler: brdf_cosine_rejection}"), normalised(integrand)));
-  }
-}
-
-// Neither algorithm is wrong, but neither samples f or f cos.
-TEST(Brdf, PublishedDirectionsDoNotFollowTheReflectance) {
-  for (const Case& brdf : cases) {
-    for (const bool cosine : {false, true}) {
-      const auto g = [&](double x, double y, double z) {
-        return brdf.formula(x, y, z).f * (cosine ? z : 1);
-      };
-      const double total = sum(hemisphere, 500, g);
-      EXPECT_FALSE(follows(prepare(brdf.plugin, "{sampler: density_rejection}"),
-                           [&](double x, double y, double z) { return g(x, y, z) / total; }));
-    }
+    EXPECT_TRUE(follows(prepare(brdf.plugin), p));
+    EXPECT_TRUE(follow("density_rejection", p));
+    EXPECT_TRUE(follow("brdf_rejection", f));
+    EXPECT_TRUE(follow("brdf_cosine_rejection", integrand));
+    // The density is right, but neither that of f nor of f cos.
+    EXPECT_FALSE(follow("density_rejection", f));
+    EXPECT_FALSE(follow("density_rejection", integrand));
   }
 }
 
 // Largest target / (bound q) on a grid that is dense at grazing directions and at the mirror one.
 double fullness(const render::HalfVectorBrdf& brdf, Target target) {
-  const Vector3& i = brdf.incident();
   double most = 0;
   const auto visit = [&](double z, double phi) {
     const double radius = std::sqrt(1 - z * z);
@@ -227,7 +208,7 @@ double fullness(const render::HalfVectorBrdf& brdf, Target target) {
       visit(a / 120.0, 2 * pi * b / 120);
     }
   }
-  visit(i.z, std::atan2(-i.y, -i.x));
+  visit(brdf.incident().z, std::atan2(-brdf.incident().y, -brdf.incident().x));
   return most / brdf.rejection_bound(target);
 }
 
@@ -264,6 +245,28 @@ TEST(Brdf, RejectionRefusesABoundThatIsExceeded) {
     for (int i = 0; i < 100000; ++i) sample_by_rejection(brdf, Target::density, random);
   };
   EXPECT_THROW(draw_many(), std::logic_error);
+}
+
+// Each draws other numbers than its original. The subtlest, the exponent without + 1, lies 0.8 %
+// off, 7 standard errors. Two misreport sound draws, which claims of consistency see.
+TEST(BrdfMutants, AreBiasedAndActivated) {
+  int count = 0;
+  for (const Entry& entry : catalogue()) {
+    const Information& mutant = entry.information;
+    if (!mutant.original.starts_with("brdf/") || mutant.name == "mutants/ward_density_sector" ||
+        mutant.name == "mutants/ward_weight_mirrored") {
+      continue;
+    }
+    ++count;
+    const auto prepared = prepare(mutant.name);
+    const auto original = prepare(mutant.original);
+    EXPECT_EQ(prepared.key, original.key) << mutant.name;
+    EXPECT_EQ(prepared.channel().mean, original.channel().mean) << mutant.name;
+    const Sample sample = observe(prepared, 200000)[0];
+    EXPECT_NE(observe(prepared, 2000)[0].values, observe(original, 2000)[0].values) << mutant.name;
+    EXPECT_THAT(sample, Not(HasMean(*prepared.channel().mean))) << mutant.name;
+  }
+  EXPECT_EQ(count, 13);
 }
 
 }  // namespace

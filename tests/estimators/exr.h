@@ -24,33 +24,34 @@ struct Picture {
   int top = 0;
 };
 
-template <class Real>
-void write_exr_as(const std::string& file, const Picture& picture, std::vector<Real> values) {
-  const Imath::Box2i window({picture.left, picture.top},
-                            {picture.left + picture.width - 1, picture.top + picture.height - 1});
-  Imf::Header header(Imath::Box2i({0, 0}, window.max), window);
-  header.compression() = picture.compression;
-  const std::size_t texel = picture.channels.size() * sizeof(Real);
-  Imf::FrameBuffer buffer;
-  for (std::size_t c = 0; c < picture.channels.size(); ++c) {
-    header.channels().insert(picture.channels[c], Imf::Channel(picture.type));
-    buffer.insert(picture.channels[c],
-                  Imf::Slice::Make(picture.type, values.data() + c, window, texel,
-                                   texel * static_cast<std::size_t>(picture.width)));
+/// Channels of a type whose texels stand one behind another, their values in order.
+inline void insert_channels(const std::vector<std::string>& channels, Imf::PixelType type,
+                            const Imath::Box2i& window, Imf::Header& header,
+                            Imf::FrameBuffer& buffer, void* values) {
+  const std::size_t size = type == Imf::HALF ? 2 : 4;
+  const std::size_t texel = channels.size() * size;
+  const auto width = static_cast<std::size_t>(window.max.x - window.min.x + 1);
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    header.channels().insert(channels[c], Imf::Channel(type));
+    buffer.insert(channels[c], Imf::Slice::Make(type, static_cast<char*>(values) + c * size, window,
+                                                texel, texel * width));
   }
-  Imf::OutputFile output(file.c_str(), header);
-  output.setFrameBuffer(buffer);
-  output.writePixels(picture.height);
 }
 
 /// Writes 32-bit floats, losslessly compressed, or what `picture` says.
 inline void write_exr(const std::string& file, const Picture& picture) {
-  if (picture.type == Imf::HALF) {
-    write_exr_as(file, picture,
-                 std::vector<Imath::half>(picture.values.begin(), picture.values.end()));
-  } else {
-    write_exr_as(file, picture, picture.values);
-  }
+  const Imath::Box2i window({picture.left, picture.top},
+                            {picture.left + picture.width - 1, picture.top + picture.height - 1});
+  Imf::Header header(Imath::Box2i({0, 0}, window.max), window);
+  header.compression() = picture.compression;
+  std::vector<float> floats = picture.values;
+  std::vector<Imath::half> halves(floats.begin(), floats.end());
+  Imf::FrameBuffer buffer;
+  insert_channels(picture.channels, picture.type, window, header, buffer,
+                  picture.type == Imf::HALF ? static_cast<void*>(halves.data()) : floats.data());
+  Imf::OutputFile output(file.c_str(), header);
+  output.setFrameBuffer(buffer);
+  output.writePixels(picture.height);
 }
 
 /// One channel, row after row.

@@ -2,22 +2,16 @@
 
 // OpenEXR files of every kind that other programs write.
 
-#include <ImfChannelList.h>
 #include <ImfDeepFrameBuffer.h>
 #include <ImfDeepScanLineOutputFile.h>
-#include <ImfFrameBuffer.h>
-#include <ImfHeader.h>
 #include <ImfIntAttribute.h>
 #include <ImfMultiPartOutputFile.h>
-#include <ImfOutputFile.h>
 #include <ImfOutputPart.h>
 #include <ImfPartType.h>
 #include <ImfTiledOutputFile.h>
 
-#include <fstream>
-#include <iterator>
-#include <string>
-#include <vector>
+#include "tests/estimators/exr.h"
+#include "tests/prelude.h"
 
 namespace assay::draws {
 
@@ -40,8 +34,8 @@ inline float expected_texel(int x, int y, std::size_t channel) {
 /// A header and the texels behind its frame buffer.
 struct Contents {
   Imf::Header header;
-  std::vector<std::vector<float>> floats;
-  std::vector<std::vector<Imath::half>> halves;
+  std::vector<float> floats;
+  std::vector<Imath::half> halves;
   Imf::FrameBuffer buffer;
 };
 
@@ -54,24 +48,17 @@ inline Contents contents_of(const Part& part) {
   if (part.samples != 0) {
     contents.header.insert("samplesPerPixel", Imf::IntAttribute(part.samples));
   }
-  const auto texels = static_cast<std::size_t>(part.width) * static_cast<std::size_t>(part.height);
-  for (std::size_t c = 0; c < part.channels.size(); ++c) {
-    std::vector<float>& values = contents.floats.emplace_back(texels);
-    for (std::size_t i = 0; i < texels; ++i) {
-      const auto width = static_cast<std::size_t>(part.width);
-      values[i] = expected_texel(static_cast<int>(i % width), static_cast<int>(i / width), c);
+  for (int y = 0; y < part.height; ++y) {
+    for (int x = 0; x < part.width; ++x) {
+      for (std::size_t c = 0; c < part.channels.size(); ++c) {
+        contents.floats.push_back(expected_texel(x, y, c));
+      }
     }
-    contents.halves.emplace_back(values.begin(), values.end());
   }
-  for (std::size_t c = 0; c < part.channels.size(); ++c) {
-    contents.header.channels().insert(part.channels[c], Imf::Channel(part.type));
-    const auto width = static_cast<std::size_t>(part.width);
-    contents.buffer.insert(
-        part.channels[c],
-        part.type == Imf::HALF
-            ? Imf::Slice::Make(Imf::HALF, contents.halves[c].data(), box, 2, 2 * width)
-            : Imf::Slice::Make(Imf::FLOAT, contents.floats[c].data(), box, 4, 4 * width));
-  }
+  contents.halves.assign(contents.floats.begin(), contents.floats.end());
+  insert_channels(
+      part.channels, part.type, box, contents.header, contents.buffer,
+      part.type == Imf::HALF ? static_cast<void*>(contents.halves.data()) : contents.floats.data());
   return contents;
 }
 
@@ -123,11 +110,6 @@ inline void write_deep(const std::string& file) {
   Imf::DeepScanLineOutputFile output(file.c_str(), header);
   output.setFrameBuffer(buffer);
   output.writePixels(2);
-}
-
-inline std::string bytes_of(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
 }
 
 inline void write_bytes(const std::string& file, const std::string& bytes) {

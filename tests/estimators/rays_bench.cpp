@@ -80,25 +80,28 @@ double nanoseconds(std::uint64_t count, const std::function<void()>& work) {
   return best;
 }
 
-double primary_time(const char* plugin, const Value& scene) {
-  constexpr std::uint64_t observations = 4000;
-  constexpr std::uint64_t primaries = 256;
+/// Nanoseconds of an observation of 256 primaries, and the rays that it counts.
+struct Observed {
+  double time;
+  double rays;
+};
+Observed observed(const char* plugin, const Value& scene, std::uint64_t observations) {
   const Entry& entry = find_plugin(plugin, {});
   Parameters parameters(plugin, entry.information.parameters, Value::map({{"scene", scene}}), "");
-  const auto estimator = entry.prepare(parameters)->make();
+  const auto setup = entry.prepare(parameters);
+  const auto estimator = setup->make();
   const StreamKey key = stream_key(1, plugin, parameters.canonical(), 0);
-  double sum = 0;
-  const double time = nanoseconds(observations * primaries, [&] {
+  std::vector<double> out(setup->channels().size());
+  Cost cost;
+  const double time = nanoseconds(observations, [&] {
+    cost = {};
     for (std::uint64_t i = 0; i < observations; ++i) {
       Stream random(key, i);
-      double value = 0;
-      Cost cost;
-      estimator->secondary(random, primaries, {&value, 1}, cost);
-      sum += value;
+      estimator->secondary(random, 256, out, cost);
     }
   });
-  if (!std::isfinite(sum)) std::puts("not finite");
-  return time;
+  if (!std::isfinite(out[0])) std::puts("not finite");
+  return {time, static_cast<double>(cost.rays()) / static_cast<double>(observations)};
 }
 
 // Embree called directly, with the device and scene settings of render/scene.cpp.
@@ -120,41 +123,41 @@ class Bare {
   Bare& operator=(const Bare&) = delete;
 
   double occluded_time(const std::vector<RTCRay>& rays) const {
-    constexpr std::uint64_t count = 1'000'000;
-    unsigned hits = 0;
-    const double time = nanoseconds(count, [&] {
-      for (std::uint64_t i = 0; i < count; ++i) {
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        RTCRay ray = rays[i % rays.size()];
-        rtcOccluded1(scene_, &context, &ray);
-        hits += ray.tfar < 0;
-      }
+    return ray_time([&](std::uint64_t i, RTCIntersectContext& context) {
+      RTCRay ray = rays[i % rays.size()];
+      rtcOccluded1(scene_, &context, &ray);
+      return ray.tfar < 0;
     });
-    if (hits == 0) std::puts("nothing hit");
-    return time;
   }
 
   double intersect_time(const std::vector<RTCRay>& rays) const {
+    return ray_time([&](std::uint64_t i, RTCIntersectContext& context) {
+      RTCRayHit query;
+      query.ray = rays[i % rays.size()];
+      query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+      query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+      rtcIntersect1(scene_, &context, &query);
+      return query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+    });
+  }
+
+ private:
+  /// Whether ray `i` hits.
+  template <class Hits>
+  static double ray_time(const Hits& hits) {
     constexpr std::uint64_t count = 1'000'000;
-    unsigned hits = 0;
+    unsigned hit = 0;
     const double time = nanoseconds(count, [&] {
       for (std::uint64_t i = 0; i < count; ++i) {
         RTCIntersectContext context;
         rtcInitIntersectContext(&context);
-        RTCRayHit query;
-        query.ray = rays[i % rays.size()];
-        query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-        query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-        rtcIntersect1(scene_, &context, &query);
-        hits += query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+        hit += hits(i, context);
       }
     });
-    if (hits == 0) std::puts("nothing hit");
+    if (hit == 0) std::puts("nothing hit");
     return time;
   }
 
- private:
   void attach(const render::TriangleMesh& mesh) {
     const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* v = static_cast<float*>(rtcSetNewGeometryBuffer(
@@ -196,30 +199,10 @@ std::vector<RTCRay> rays_by(const std::function<RTCRay(double, double)>& make) {
   return rays;
 }
 
-void print(const char* plugin, double primary, double bare) {
+void print(const char* plugin, const Value& scene, double bare) {
+  const double primary = observed(plugin, scene, 4000).time / 256;
   std::printf("%-24s %6.1f ns a primary  %6.1f ns a bare ray  ratio %.2f\n", plugin, primary, bare,
               bare / primary);
-}
-
-// The time of a path tracer by the rays that it counts.
-double ray_time(const char* plugin, const Value& scene) {
-  const Entry& entry = find_plugin(plugin, {});
-  Parameters parameters(plugin, entry.information.parameters, Value::map({{"scene", scene}}), "");
-  const auto setup = entry.prepare(parameters);
-  const auto estimator = setup->make();
-  const StreamKey key = stream_key(1, plugin, parameters.canonical(), 0);
-  constexpr std::uint64_t observations = 1000;
-  Cost cost;
-  std::vector<double> out(setup->channels().size());
-  const auto work = [&] {
-    cost = {};
-    for (std::uint64_t i = 0; i < observations; ++i) {
-      Stream random(key, i);
-      estimator->secondary(random, 256, out, cost);
-    }
-  };
-  const double time = nanoseconds(observations, work);
-  return time * static_cast<double>(observations) / static_cast<double>(cost.rays());
 }
 
 // The rays of one endless path in a scene that needs no scaling.
@@ -263,7 +246,8 @@ void bench_paths(const std::filesystem::path& mesh) {
   const render::TriangleMesh triangles = render::read_obj(mesh);
   const double bare = Bare({triangles}).intersect_time(path_rays(scene));
   for (const char* plugin : {"paths/plain", "paths/roulette"}) {
-    const double time = ray_time(plugin, scene);
+    const Observed path = observed(plugin, scene, 1000);
+    const double time = path.time / path.rays;
     std::printf("%-15s%5zu    %6.1f ns a ray      %6.1f ns a bare ray  ratio %.2f\n", plugin,
                 triangles.triangles.size(), time, bare, bare / time);
   }
@@ -289,17 +273,16 @@ int main() {
     return bare_ray(normalised(y), length(y) * 0.9998);
   });
   const double shadow = Bare({occluder}).occluded_time(to_light);
-  print("luminaire/area", primary_time("luminaire/area", scene), shadow);
-  print("luminaire/solid_angle", primary_time("luminaire/solid_angle", scene), shadow);
+  print("luminaire/area", scene, shadow);
+  print("luminaire/solid_angle", scene, shadow);
 
   const Bare both({light, occluder});
   const auto cosine = rays_by(
       [](double u, double v) { return bare_ray(render::cosine_hemisphere(u, v), INFINITY); });
-  print("luminaire/cosine", primary_time("luminaire/cosine", scene), both.intersect_time(cosine));
+  print("luminaire/cosine", scene, both.intersect_time(cosine));
   const auto uniform = rays_by(
       [](double u, double v) { return bare_ray(render::uniform_hemisphere(u, v), INFINITY); });
-  print("luminaire/hemisphere", primary_time("luminaire/hemisphere", scene),
-        both.intersect_time(uniform));
+  print("luminaire/hemisphere", scene, both.intersect_time(uniform));
   std::filesystem::remove(sphere);
   bench_paths(write_cube());
   bench_paths(write_sphere({{0, 0, 0}, 0.5}));

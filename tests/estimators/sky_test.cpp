@@ -2,8 +2,6 @@
 #include "render/polygon.h"
 #include "sky/harmonics.h"
 #include "sky/octahedron.h"
-#include "sky/radiance.h"
-#include "sky/setting.h"
 #include "tests/estimators/draws.h"
 #include "tests/prelude.h"
 
@@ -15,16 +13,10 @@ using render::normalised;
 using render::Vector3;
 using std::numbers::pi;
 
-const std::string data = ASSAY_SOURCE_DIR "/suites/data";
 const std::string smooth = "{harmonics: [3, .4, -.3, .5, .2, -.35, .3, .25, -.2]}";
 
-sky::SharedSetting setting(const std::string& parameters) {
-  Parameters given("sky/cosine", sky::parameters(), parse_flow(parameters), data);
-  return sky::read_setting(given);
-}
-
 double irradiance(const std::string& sky, const std::string& normal = "[0, 0, 1]") {
-  return *irradiance_channels(*setting("{sky: " + sky + ", normal: " + normal + "}"))[0].mean;
+  return *channel("sky/cosine", "{sky: " + sky + ", normal: " + normal + "}").mean;
 }
 
 // Constants of Ramamoorthi and Hanrahan (2001), equation 3.
@@ -111,11 +103,9 @@ TEST(Skies, AreHiddenByOccluders) {
   const auto disc = prepare("sky/cosine",
                             "{sky: {uniform: 1}, occluders: [{disc: {center: [0, 0, 1], normal: "
                             "[0, 0, 1], radius: 0.5773502691896258}}]}");
-  const Sample behind_wall = observe(walled, 400000)[0];
-  const Sample behind_disc = observe(disc, 400000)[0];
-  EXPECT_NEAR(behind_wall.mean(), pi / 2 + 1. / 3 + .1 * pi, five * behind_wall.mean_error());
-  EXPECT_NEAR(behind_disc.mean(), .75 * pi, five * behind_disc.mean_error());
-  EXPECT_FALSE(walled.setup->channels()[0].mean) << "no closed form past occluders";
+  EXPECT_THAT(observe(walled, 400000)[0], HasMean(pi / 2 + 1. / 3 + .1 * pi));
+  EXPECT_THAT(observe(disc, 400000)[0], HasMean(.75 * pi));
+  EXPECT_FALSE(walled.channel().mean) << "no closed form past occluders";
 }
 
 }  // namespace

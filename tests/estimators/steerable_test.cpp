@@ -15,7 +15,6 @@ using render::normalised;
 using render::Vector3;
 using std::numbers::pi;
 
-const std::string data = ASSAY_SOURCE_DIR "/suites/data";
 const std::string smooth =
     "sky: {harmonics: [3, .4, -.3, .5, .2, -.35, .3, .25, -.2]}, normal: [.3, -.5, .8]";
 const std::string peaked =
@@ -53,16 +52,19 @@ TEST(SteerableLobe, TurnsWithTheNormal) {
   }
 }
 
+// On the outline of the square too, to rounding, though it has no inverse.
 TEST(LinearTriangle, InvertsItsOwnMap) {
   for (const VertexWeights& w :
-       {VertexWeights{1, 2, 5}, VertexWeights{5, 1, 0}, VertexWeights{0, 0, 1},
-        VertexWeights{1, 1, 1}, VertexWeights{1e-9, 1, 1e9}}) {
-    for (double x = .01; x < 1; x += .07) {
-      for (double y = .01; y < 1; y += .07) {
+       {VertexWeights{1, 2, 5}, VertexWeights{5, 1, 0}, VertexWeights{0, 1, 0},
+        VertexWeights{0, 0, 1}, VertexWeights{1, 1, 1}, VertexWeights{1e-9, 1, 1e9}}) {
+    for (int i = 0; i <= 16; ++i) {
+      for (int j = 0; j <= 16; ++j) {
+        const double x = i / 16.0, y = j / 16.0;
         const TrianglePoint p = LinearTriangle{}(w, x, y);
-        EXPECT_GE(p.u, 0);
-        EXPECT_GE(p.v, 0);
-        EXPECT_LE(p.u + p.v, 1);
+        const bool inside = i % 16 != 0 && j % 16 != 0;
+        EXPECT_GE(std::min(p.u, p.v), inside ? 0 : -1e-15);
+        EXPECT_LE(p.u + p.v, inside ? 1 : 1 + 1e-15);
+        if (!inside) continue;
         const SquarePoint back = square_of(w, p);
         EXPECT_NEAR(back.x, x, 1e-12);
         EXPECT_NEAR(back.y, y, 1e-9);
@@ -71,28 +73,14 @@ TEST(LinearTriangle, InvertsItsOwnMap) {
   }
 }
 
-TEST(LinearTriangle, ReachesCornersWithoutFault) {
-  for (const double x : {0.0, 1.0}) {
-    for (const double y : {0.0, 1.0}) {
-      for (const VertexWeights& w :
-           {VertexWeights{1, 2, 5}, VertexWeights{0, 1, 0}, VertexWeights{0, 0, 1}}) {
-        const TrianglePoint p = LinearTriangle{}(w, x, y);
-        EXPECT_TRUE(std::isfinite(p.u) && std::isfinite(p.v));
-        EXPECT_LE(p.u + p.v, 1 + 1e-15);
-      }
-    }
-  }
-}
-
 // E[l_i] = (W + w_i) / (4 W).
 TEST(LinearTriangle, DeclaresTheMomentsOfItsDensity) {
-  const auto triangle = prepare("steerable/triangle", "{weights: [1, 2, 5]}");
-  EXPECT_DOUBLE_EQ(*triangle.setup->channels()[0].mean, 9.0 / 32);
+  EXPECT_DOUBLE_EQ(*channel("steerable/triangle", "{weights: [1, 2, 5]}").mean, 9.0 / 32);
 }
 
 std::shared_ptr<const SteeredDirections<>> steered(const std::string& parameters,
                                                    const Lobe& lobe = {}, std::size_t level = 3) {
-  Parameters given("steerable/sky", sky::parameters(), parse_flow("{" + parameters + "}"), data);
+  Parameters given("steerable/sky", sky::parameters(), parse_flow("{" + parameters + "}"), "");
   const auto setting = sky::read_setting(given);
   return std::make_shared<const SteeredDirections<>>(
       std::make_shared<const SkyTree>(

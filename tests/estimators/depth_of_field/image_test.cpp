@@ -14,23 +14,13 @@ using namespace assay::draws;
 
 const std::string row = "scene: edge, width: 12, height: 1, size: 0.5, samples: 6";
 
-std::uint64_t total(const std::vector<std::uint64_t>& counts) {
-  std::uint64_t sum = 0;
-  for (const std::uint64_t n : counts) sum += n;
-  return sum;
-}
-
 TEST(LensImagePlan, AllotsByTheExponentOfItsName) {
-  struct Case {
-    const char* allocation;
-    double exponent;
-  };
   std::vector<double> variances;
   for (const Moments& m : image_plan("{" + row + "}").exact)
     variances.push_back(m.mean * (1 - m.mean));
   std::vector<std::vector<std::uint64_t>> seen;
-  for (const auto& [allocation, exponent] : {Case{"uniform", 0}, Case{"deviation", .5},
-                                             Case{"two_thirds", 2. / 3}, Case{"variance", 1}}) {
+  for (const auto& [allocation, exponent] :
+       {std::pair{"uniform", 0.}, {"deviation", .5}, {"two_thirds", 2. / 3}, {"variance", 1.}}) {
     const ImagePlan plan =
         image_plan("{" + row + ", prediction: exact, allocation: " + allocation + "}");
     EXPECT_EQ(plan.counts, lens_counts(variances, {6, exponent})) << allocation;
@@ -101,11 +91,8 @@ TEST(LensImage, ItsDiagnosticChannelsRepeatPixels) {
 TEST(LensImage, APrimaryIsAnImageAndItsPass) {
   const ImagePlan plan = image_plan("{" + row + "}");
   const Prepared image = prepare("depth_of_field/image", "{" + row + "}");
-  std::vector<double> out(14);
-  Cost cost;
-  Stream random(image.key, 0);
-  image.setup->make()->secondary(random, 4, out, cost);
-  EXPECT_EQ(cost.camera_rays, 4 * (total(plan.counts) + 22));
+  const auto [out, cost] = observe_one(image, 4);
+  EXPECT_EQ(cost.camera_rays, 4 * (std::reduce(plan.counts.begin(), plan.counts.end()) + 12 + 10));
   EXPECT_EQ(cost.samples, 4u);
   for (std::size_t i = 0; i < 12; ++i) {
     const double lit = out[i] * 4 * static_cast<double>(plan.counts[i]);

@@ -12,15 +12,14 @@ using namespace depth_of_field;
 using namespace assay::draws;
 
 Channel stated(const std::string& parameters) {
-  return prepare("depth_of_field/mirror", parameters).setup->channels()[0];
+  return channel("depth_of_field/mirror", parameters);
 }
 
 // Three in front of a flat mirror and one behind it are four away.
 TEST(LensMirror, AFlatOneShowsWhatStandsBehindIt) {
   for (const char* pixel : {"0", ".05"}) {
-    const Channel seen =
-        prepare("depth_of_field/pixel", std::string("{scene: sinusoid, pixel: [") + pixel + ", 0]}")
-            .setup->channels()[0];
+    const Channel seen = channel("depth_of_field/pixel",
+                                 std::string("{scene: sinusoid, pixel: [") + pixel + ", 0]}");
     const Channel mirrored = stated(std::string("{pixel: ") + pixel + "}");
     EXPECT_NEAR(*mirrored.mean, *seen.mean, 1e-14);
     EXPECT_NEAR(*mirrored.variance, *seen.variance, 1e-14);

@@ -30,28 +30,28 @@ std::string edge_before_wave(const std::string& depth) {
 }
 constexpr double wave_behind = 2 * std::numbers::pi / 1.5;
 
-// Bisection finds the edge to half a thousandth of a pixel, and |dV / dt| is below 0.64.
-TEST(LensPrediction, OfAnEdgeIsTheVarianceOfWhatIsHidden) {
-  const Grid grid{60, 2, 2};
-  const Prediction found = predicted("edge", grid);
+/// Variances at the pixels, against coverages c (1 - c) of an edge. Bisection finds the edge to
+/// half a thousandth of a pixel, and |dV / dt| is below 0.64.
+void expect_edge(const Prediction& found, const Grid& grid,
+                 const std::function<double(PlanePoint)>& distance) {
   for (std::size_t i = 0; i < grid.pixels(); ++i) {
-    const double c = half_plane_coverage(-grid.pixel(i).x / .2);
+    const double c = half_plane_coverage(distance(grid.pixel(i)));
     EXPECT_NEAR(found.variance[i], c * (1 - c), .64 * grid.pitch() / 2048 / .2 + 1e-6) << i;
   }
-  // A ray a pixel and ten an edge, one edge a row.
-  EXPECT_EQ(found.cost.camera_rays, 120u + 2 * 10);
 }
 
-TEST(LensPrediction, SeesEdgesAlongColumns) {
-  const Grid grid{2, 41, .1};
-  const Prediction found = predicted(
-      behind_lens("{depth: 1, x: [-100, 100], y: [-100, .013], radiance: 2}, {depth: 3, x: [-100, "
-                  "100], y: [-100, 100], radiance: 1}"),
-      grid);
-  for (std::size_t i = 0; i < grid.pixels(); ++i) {
-    const double c = half_plane_coverage((.013 - grid.pixel(i).y / 2) / .1);
-    EXPECT_NEAR(found.variance[i], c * (1 - c), .64 * grid.pitch() / 2048 / .2 + 1e-6) << i;
-  }
+TEST(LensPrediction, OfAnEdgeIsTheVarianceOfWhatIsHidden) {
+  const Grid rows{60, 2, 2};
+  const Prediction found = predicted("edge", rows);
+  expect_edge(found, rows, [](PlanePoint pixel) { return -pixel.x / .2; });
+  // A ray a pixel and ten an edge, one edge a row.
+  EXPECT_EQ(found.cost.camera_rays, 120u + 2 * 10);
+  const Grid columns{2, 41, .1};
+  const std::string across = behind_lens(
+      "{depth: 1, x: [-100, 100], y: [-100, .013], radiance: 2}, {depth: 3, x: [-100, "
+      "100], y: [-100, 100], radiance: 1}");
+  expect_edge(predicted(across, columns), columns,
+              [](PlanePoint pixel) { return (.013 - pixel.y / 2) / .1; });
 }
 
 // The claim of the suite: counts by prediction leave noise equal to 3 %.

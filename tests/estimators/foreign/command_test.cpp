@@ -44,12 +44,7 @@ class Commands : public InFolder {
     std::vector<Value> items;
     for (const std::string& word : words) items.push_back(Value::scalar(word));
     more.emplace_back("command", Value::list(std::move(items)));
-    const Entry& entry = find_plugin("command", {});
-    Parameters given("command", entry.information.parameters, Value::map(std::move(more)),
-                     folder_.string());
-    auto setup = entry.prepare(given);
-    given.require_all_read();
-    return {std::move(setup), stream_key(1, "command", given.canonical(), 0), entry.information};
+    return draws::prepare("command", Value::map(std::move(more)), folder_.string());
   }
   // Two programs at a time that write text, where no other parameters are given.
   draws::Prepared prepare(std::vector<Value::Member> more = {as_text}) const {
@@ -60,7 +55,30 @@ class Commands : public InFolder {
   }
   std::size_t starts() const {
     const std::string log = bytes_in(file("log"));
-    return static_cast<std::size_t>(std::count(log.begin(), log.end(), '\n'));
+    return static_cast<std::size_t>(std::ranges::count(log, '\n'));
+  }
+  /// Why the plugin is refused, with the place; of other faults it is said that they are no mistake
+  /// of the suite.
+  std::string refusal(std::vector<Value::Member> more) const {
+    try {
+      prepare(std::move(more));
+    } catch (const InputError& error) {
+      return error.what();
+    } catch (const std::exception& error) {
+      return std::string("no mistake of the suite: ") + error.what();
+    }
+    return "nothing was refused";
+  }
+  static double observe_by(Estimator& worker, StreamKey key, std::uint64_t index) {
+    Stream random(key, index);
+    Cost cost;
+    double out = 0;
+    worker.secondary(random, 1, {&out, 1}, cost);
+    return out;
+  }
+  /// Observation `index` is the seed of its program.
+  static void expect_seed(const draws::Prepared& plugin, Estimator& worker, std::uint64_t index) {
+    EXPECT_EQ(observe_by(worker, plugin.key, index), foreign::render_seed(plugin.key, index));
   }
 
   inline static const Value::Member as_text{"output", Value::scalar("text")};
@@ -115,10 +133,7 @@ TEST_F(Commands, CountTheSecondsOfTheirPrograms) {
   const draws::Prepared plugin = prepare();
   const auto worker = plugin.setup->make();
   const auto draw = [&](std::uint64_t observation) {
-    Stream random(plugin.key, observation);
-    Cost cost;
-    double out = 0;
-    worker->secondary(random, 1, {&out, 1}, cost);
+    observe_by(*worker, plugin.key, observation);
     return worker->seconds_elsewhere();
   };
   const double one = draw(0);
@@ -140,11 +155,7 @@ TEST_F(Commands, MayMakeSeveralFilesAtATime) {
   const draws::Prepared plugin = prepare();
   const auto worker = plugin.setup->make();
   worker->announce({.key = plugin.key, .first = 0, .last = 8});
-  Stream random(plugin.key, 0);
-  Cost cost;
-  double out = 0;
-  worker->secondary(random, 1, {&out, 1}, cost);
-  EXPECT_EQ(out, foreign::render_seed(plugin.key, 0));
+  expect_seed(plugin, *worker, 0);
   EXPECT_EQ(draws::observe(plugin, 8)[0].values[7], foreign::render_seed(plugin.key, 7));
   EXPECT_EQ(starts(), 2U);
 }
@@ -173,76 +184,33 @@ TEST_F(Commands, WritePictures) {
 
 TEST_F(Commands, ThatFailSayHowAndWhatTheySaidLast) {
   write_program("echo what a pity >&2; exit 3");
-  const std::string text = thrown([&] { prepare(); });
-  EXPECT_THAT(text, HasSubstr("ended with exit status 3"));
-  EXPECT_THAT(text, HasSubstr("what a pity"));
+  EXPECT_THAT(refusal({as_text}), Says("ended with exit status 3", "what a pity"));
+  EXPECT_THAT(refusal({as_text, {"retries", Value::scalar("2")}}),
+              Says("exit status 3", "what a pity; it has failed 3 times (`retries: 2`)"));
+  EXPECT_EQ(starts(), 1U + 3);
   write_program("true");
-  EXPECT_THAT(thrown([&] { prepare(); }), HasSubstr("wrote no file"));
+  EXPECT_THAT(refusal({as_text}), HasSubstr("wrote no file"));
   write_program("sleep 60");
-  EXPECT_THAT(thrown([&] {
-                prepare({as_text, {"timeout", Value::scalar("0.2")}});
-              }),
-              HasSubstr("took more than"));
-}
-
-/// What is said of a mistake of the suite, with its place.
-template <class Act>
-std::string refusal(const Act& act) {
-  try {
-    return thrown<InputError>(act);
-  } catch (const std::exception& error) {
-    return std::string("no mistake of the suite: ") + error.what();
-  }
-}
-
-TEST_F(Commands, RefuseAFileOfDependsThatIsNotThere) {
-  write_program("echo 1 >$3");
-  EXPECT_EQ(
-      refusal([&] {
-        prepare({as_text, {"depends", Value::list({Value::scalar("none.txt")}, {"s.yaml", 4, 7})}});
-      }),
-      "s.yaml:4:7: command: parameter `depends` cannot be used: there is no file "
-      "`none.txt`; it is sought from the suite's folder");
-}
-
-TEST_F(Commands, RefuseACacheThatCannotBeMade) {
-  write_program("echo 1 >$3");
-  EXPECT_THAT(refusal([&] {
-                prepare({as_text, {"cache", Value::scalar("render.sh", {"s.yaml", 4, 7})}});
-              }),
-              AllOf(HasSubstr("s.yaml:4:7: command: parameter `cache` cannot be used: the folder "
-                              "`" +
-                              file("render.sh") + "/"),
-                    HasSubstr("cannot be made: Not a directory")));
+  EXPECT_THAT(refusal({as_text, {"timeout", Value::scalar("0.2")}}), HasSubstr("took more than"));
 }
 
 TEST_F(Commands, RefuseChannelsThatThePictureDoesNotHave) {
   draws::write_scan_lines(file("made.exr"),
                           {.width = 4, .height = 3, .channels = {"one.R", "one.G", "two.R"}});
   write_program("cp made.exr $3");
-  EXPECT_THAT(refusal([&] {
-                prepare({{"channels", Value::scalar("oen.*", {"s.yaml", 4, 7})}});
-              }),
-              AllOf(HasSubstr("s.yaml:4:7: command: parameter `channels` does not fit the picture "
-                              "`" +
-                              file(".assay-cache")),
-                    HasSubstr("no channel matches `oen.*`"), Not(HasSubstr("mend the program"))));
-  EXPECT_THAT(refusal([&] {
-                prepare({{"pixels", Value::scalar("dependent")}});
-              }),
+  EXPECT_THAT(
+      refusal({{"channels", Value::scalar("oen.*", {"s.yaml", 4, 7})}}),
+      AllOf(HasSubstr("s.yaml:4:7: command: parameter `channels` does not fit the picture `" +
+                      file(".assay-cache")),
+            HasSubstr("no channel matches `oen.*`"), Not(HasSubstr("mend the program"))));
+  EXPECT_THAT(refusal({{"pixels", Value::scalar("dependent")}}),
               AllOf(HasSubstr("command: parameter `channels` must choose from the picture"),
                     HasSubstr("it is not plain which channels are meant"),
                     Not(HasSubstr("mend the program"))));
-}
-
-TEST_F(Commands, SayToMendAProgramWhosePictureCannotBeRead) {
-  draws::write_scan_lines(file("made.exr"), {.width = 4, .height = 3, .channels = {"R"}});
   write_program("head -c 40 made.exr >$3");
-  EXPECT_THAT(refusal([&] {
-                prepare({{"channels", Value::scalar("R")}});
-              }),
-              AllOf(HasSubstr("no mistake of the suite: what the program wrote is of no use"),
-                    HasSubstr("mend the program and delete the file")));
+  EXPECT_THAT(refusal({{"channels", Value::scalar("R")}}),
+              Says("no mistake of the suite: what the program wrote is of no use",
+                   "mend the program and delete the file"));
 }
 
 // The observation fails, the others stand, and what was half written is not taken the next time.
@@ -289,14 +257,6 @@ TEST_F(Commands, ThatFailAreStartedAgain) {
   EXPECT_THAT(thrown([&] { draws::observe(prepare(), 1, 8); }), HasSubstr("exit status 3"));
 }
 
-TEST_F(Commands, ThatFailAtEachRetrySayHowOften) {
-  write_program("echo what a pity >&2; exit 3");
-  const std::string text = thrown([&] { prepare({as_text, {"retries", Value::scalar("2")}}); });
-  EXPECT_THAT(text, HasSubstr("exit status 3"));
-  EXPECT_THAT(text, HasSubstr("what a pity; it has failed 3 times (`retries: 2`)"));
-  EXPECT_EQ(starts(), 3U);
-}
-
 TEST_F(Commands, ThatMakeSomeFilesAreStartedAgainForTheOthers) {
   several_ = true;
   write_program("echo $1 >>asked; echo ${1%%,*} >$3/${1%%,*}.txt");
@@ -305,11 +265,7 @@ TEST_F(Commands, ThatMakeSomeFilesAreStartedAgainForTheOthers) {
   worker->announce({.key = plugin.key, .first = 0, .last = 3});
   std::string wanted = bytes_in(file("asked"));
   for (std::uint64_t i = 0; i < 3; ++i) {
-    Stream random(plugin.key, i);
-    Cost cost;
-    double out = 0;
-    worker->secondary(random, 1, {&out, 1}, cost);
-    EXPECT_EQ(out, foreign::render_seed(plugin.key, i));
+    expect_seed(plugin, *worker, i);
     for (std::uint64_t j = i; j < 3; ++j) {
       wanted += std::to_string(foreign::render_seed(plugin.key, j)) + (j < 2 ? "," : "\n");
     }
@@ -323,13 +279,7 @@ TEST_F(Commands, HaveTheirTimeFromTheirStart) {
   const draws::Prepared plugin = prepare({as_text, {"timeout", Value::scalar("1.5")}});
   const auto worker = plugin.setup->make();
   worker->announce({.key = plugin.key, .first = 0, .last = 8});
-  for (std::uint64_t i = 0; i < 8; ++i) {
-    Stream random(plugin.key, i);
-    Cost cost;
-    double out = 0;
-    worker->secondary(random, 1, {&out, 1}, cost);
-    EXPECT_EQ(out, foreign::render_seed(plugin.key, i));
-  }
+  for (std::uint64_t i = 0; i < 8; ++i) expect_seed(plugin, *worker, i);
   EXPECT_EQ(starts(), 1U + 8);  // the first to learn the size
 }
 
@@ -341,17 +291,14 @@ TEST_F(Commands, NeedAPlaceForSamplesToTakeOtherThanOne) {
 }
 
 TEST_F(Commands, NeedPlacesForSeedAndFile) {
-  const auto refused = [&](const std::vector<std::string>& words) {
-    return thrown([&] { prepare_command(words, {}); });
-  };
-  EXPECT_THAT(refused({"render", "{out}"}), HasSubstr("has no place `{seed}`"));
-  EXPECT_THAT(refused({"render", "{seed}"}), HasSubstr("has no place `{out}`"));
-  EXPECT_THAT(refused({"render", "{seed}", "{seeds}", "{out}"}),
-              HasSubstr("one picture a program"));
-  EXPECT_THAT(refused({"render", "{seed}", "{sample}", "{out}"}),
-              HasSubstr("did you mean `{samples}`?"));
-  EXPECT_THAT(refused({"no_such_program_anywhere", "{seed}", "{out}"}),
-              HasSubstr("cannot be started"));
+  for (const auto& [words, why] : std::map<std::vector<std::string>, const char*>{
+           {{"render", "{out}"}, "has no place `{seed}`"},
+           {{"render", "{seed}"}, "has no place `{out}`"},
+           {{"render", "{seed}", "{seeds}", "{out}"}, "one picture a program"},
+           {{"render", "{seed}", "{sample}", "{out}"}, "did you mean `{samples}`?"},
+           {{"no_such_program_anywhere", "{seed}", "{out}"}, "cannot be started"}}) {
+    EXPECT_THAT(thrown([&] { prepare_command(words, {}); }), HasSubstr(why));
+  }
 }
 
 }  // namespace

@@ -14,15 +14,8 @@ using Examination = Library;
 
 /// Why observation 3 of a set-up cannot be had.
 std::string trouble(const Setup& setup, std::uint64_t primaries = 1) {
-  double out = 0;
   Cost cost;
-  Stream random({1}, 3);
-  try {
-    setup.make()->secondary(random, primaries, {&out, 1}, cost);
-  } catch (const std::exception& error) {
-    return error.what();
-  }
-  return "";
+  return thrown([&] { draw_one(*setup.make(), 3, primaries, cost); });
 }
 
 std::string averaging(std::string source) {
@@ -64,10 +57,8 @@ TEST_F(Examination, IsAskedAgainOnceForAllWorkersAndNothingMore) {
   for (int worker = 0; worker < 2; ++worker) {
     const auto estimator = setup->make();
     for (std::uint64_t i = 0; i < 100; ++i) {
-      double out = 0;
-      Stream random({1}, i);
       cost = {};
-      estimator->secondary(random, 1, {&out, 1}, cost);
+      draw_one(*estimator, i, 1, cost);
     }
   }
   // 32 observations twice, and one of another key.
@@ -91,10 +82,7 @@ TEST_F(Examination, IsNotTheEstimatorsTime) {
   const auto seconds_of = [&](std::uint64_t index) {
     const auto seconds = [&] { return thread_seconds() + estimator->seconds_elsewhere(); };
     const double before = seconds();
-    double out = 0;
-    Cost cost;
-    Stream random({1}, index);
-    estimator->secondary(random, 1, {&out, 1}, cost);
+    draw_one(*estimator, index);
     return seconds() - before;
   };
   const double first = seconds_of(0);
@@ -146,21 +134,13 @@ TEST_F(Examination, WhoseSamplersDriftIsRefused) {
     source.replace(source.find(sound), sound.size(), drift);
     return load_as(name, source)->samplers()[0].sampler;
   };
-  const auto refused = [](auto ask) -> std::string {
-    try {
-      ask();
-    } catch (const std::runtime_error& error) {
-      return error.what();
-    }
-    return "";
-  };
   const auto expect_refusal = [&](const std::string& what, auto ask) {
     for (int again = 0; again < 2; ++again) {
-      EXPECT_THAT(refused(ask),
-                  AllOf(HasSubstr("sampler `ramp`: `"),
-                        HasSubstr(what + ".so` gave other numbers when it was asked for 1 " + what +
-                                  " again: a draw must be a function of its stream alone, a "
-                                  "density and an evaluation of their point")));
+      EXPECT_THAT(thrown<std::runtime_error>(ask),
+                  Says("sampler `ramp`: `",
+                       what + ".so` gave other numbers when it was asked for 1 " + what +
+                           " again: a draw must be a function of its stream alone, a "
+                           "density and an evaluation of their point"));
     }
   };
   const Point point{.25, 0, 0};

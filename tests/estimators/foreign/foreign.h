@@ -6,8 +6,7 @@
 
 #include <cerrno>
 
-#include "estimators/catalogue.h"
-#include "tests/prelude.h"
+#include "tests/estimators/draws.h"
 
 namespace assay::foreign {
 
@@ -15,6 +14,15 @@ namespace assay::foreign {
 using SharedSetup = std::shared_ptr<const Setup>;
 
 inline const std::string examples = std::string(ASSAY_SOURCE_DIR) + "/estimators/foreign/examples";
+
+/// Lines of a shell program that do this for each observation `i`.
+inline std::string for_each(const std::string& observation) {
+  return "while read -r high low first count primaries; do i=$first\n"
+         "  while [ $i -lt $((first + count)) ]; do " +
+         observation +
+         "; i=$((i + 1)); done\n"
+         "  echo \"$high $low $first $count $primaries\"; done\n";
+}
 
 /// At the end no program that it started may be left.
 class Programs : public InFolder {
@@ -26,13 +34,8 @@ class Programs : public InFolder {
   }
 
   /// A plugin with parameters as a map.
-  SharedSetup prepare(const std::string& plugin, Value given) {
-    const Entry& entry = find_plugin(plugin, {});
-    Parameters parameters(plugin, entry.information.parameters, given, folder_.string());
-    auto setup = entry.prepare(parameters);
-    parameters.require_all_read();
-    setups_.push_back(setup);
-    return setup;
+  SharedSetup prepare(const std::string& plugin, const Value& given) {
+    return setups_.emplace_back(draws::prepare(plugin, given, folder_.string()).setup);
   }
 
   /// `process` with these words as its command.
@@ -43,11 +46,11 @@ class Programs : public InFolder {
                                           {"timeout", Value::scalar(std::to_string(timeout))}}));
   }
 
-  /// A shell program of these lines after the hello of one channel.
-  SharedSetup run_shell(const std::string& lines, double timeout = 20) {
-    return run(
-        {"sh", write("program.sh", "printf 'assay 1 text\\nchannel x\\nready\\n'\n" + lines)},
-        timeout);
+  /// A shell program of these lines after a hello, whose channels are `said`.
+  SharedSetup run_shell(const std::string& lines, double timeout = 20,
+                        const std::string& said = "channel x") {
+    const std::string hello = "printf 'assay 1 text\\n" + said + "\\nready\\n'\n";
+    return run({"sh", write("program.sh", hello + lines)}, timeout);
   }
 
   std::string refusal(const std::vector<std::string>& command, double timeout = 20) {
@@ -85,6 +88,19 @@ inline std::vector<double> draw(const Setup& setup, std::uint64_t count, std::ui
     estimator->secondary(random, primaries, std::span(all).subspan(i * width, width), cost);
   }
   return all;
+}
+
+/// The same by streams that are not announced, at the cost that is added to.
+inline double draw_one(Estimator& estimator, std::uint64_t index, std::uint64_t primaries,
+                       Cost& cost, std::uint64_t key = 1) {
+  double out = 0;
+  Stream random({key}, index);
+  estimator.secondary(random, primaries, {&out, 1}, cost);
+  return out;
+}
+inline double draw_one(Estimator& estimator, std::uint64_t index, std::uint64_t key = 1) {
+  Cost cost;
+  return draw_one(estimator, index, 1, cost, key);
 }
 
 /// Why observations could not be drawn.

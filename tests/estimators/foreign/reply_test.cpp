@@ -1,5 +1,6 @@
 #include "estimators/foreign/reply.h"
 
+#include "tests/estimators/table.h"
 #include "tests/prelude.h"
 
 namespace assay::foreign {
@@ -58,49 +59,27 @@ TEST(Reply, IsTheSameInPiecesOfAnySize) {
   }
 }
 
-TEST(Reply, KeepsValuesThatAreNotFinite) {
-  const auto numbers = numbers_of("nan inf\n-inf 1\n" + text_question, Numbers::text, 1000);
+// Values that are not finite are kept; lines may end as Windows ends them.
+TEST(Reply, IsReadLineByLine) {
+  const auto numbers =
+      numbers_of("nan inf\r\n-inf 1\r\n305419896 2596069104 5 2 64\r\n", Numbers::text, 1000);
   EXPECT_TRUE(std::isnan(numbers[0]));
   EXPECT_TRUE(std::isinf(numbers[1]));
   EXPECT_LT(numbers[2], 0);
 }
 
-TEST(Reply, TakesLinesThatEndAsWindowsEndsThem) {
-  const std::string text = "1 2\r\n3 4\r\n305419896 2596069104 5 2 64\r\n";
-  EXPECT_THAT(numbers_of(text, Numbers::text, 1000), ElementsAre(1, 2, 3, 4));
-}
-
-TEST(Reply, RefusesAShortOne) {
-  EXPECT_THAT(refusal("1 2\n" + text_question, Numbers::text),
-              HasSubstr("2 numbers of 4 came: the reply ended with observation 6 missing"));
-  EXPECT_THAT(refusal(bytes_of({1, 2, 3}) + to_bytes(question, Numbers::binary), Numbers::binary),
+TEST(Reply, RefusesWhatIsNoReply) {
+  for (const auto& [text, said] : refused_texts("replies")) {
+    EXPECT_THAT(refusal(text, Numbers::text), HasSubstr(said)) << text;
+  }
+  const auto binary = [](const std::string& bytes) {
+    return refusal(bytes + to_bytes(question, Numbers::binary), Numbers::binary);
+  };
+  EXPECT_THAT(binary(bytes_of({1, 2, 3})),
               HasSubstr("incomplete: 3 numbers of 4 came: the reply ended with observation 6"));
-}
-
-TEST(Reply, RefusesALongOne) {
-  EXPECT_THAT(refusal("1 2\n3 4\n5 6\n" + text_question, Numbers::text),
-              HasSubstr("after 2 observations its reply should end with the question"));
-  EXPECT_THAT(
-      refusal(bytes_of({1, 2, 3, 4, 5, 6}) + to_bytes(question, Numbers::binary), Numbers::binary),
-      HasSubstr("does not end with the question"));
-  EXPECT_THAT(refusal("1 2\n3 4\n" + text_question + "more\n", Numbers::text),
-              HasSubstr("wrote more: `more`"));
-}
-
-TEST(Reply, RefusesWhatIsNoObservation) {
-  EXPECT_THAT(refusal("1 2\nDone: 50%\n" + text_question, Numbers::text),
-              HasSubstr("observation 6 has `Done:`"));
-  EXPECT_THAT(refusal("1 2\n3\n" + text_question, Numbers::text),
-              HasSubstr("observation 6 should be a line of 2 numbers, but it is `3`"));
-  EXPECT_THAT(refusal("1 2\n\n3 4\n" + text_question, Numbers::text), HasSubstr("observation 6"));
-  EXPECT_THAT(refusal("1 0x10\n", Numbers::text), HasSubstr("`0x10`, which is not a number"));
-}
-
-TEST(Reply, NoticesWordsBetweenTheNumbers) {
-  const std::string end = to_bytes(question, Numbers::binary);
-  const std::string said = refusal("hello" + bytes_of({1, 2, 3, 4}) + end, Numbers::binary);
-  EXPECT_THAT(said, HasSubstr("does not end with the question"));
-  EXPECT_THAT(said, HasSubstr("begins with `hello"));
+  EXPECT_THAT(binary(bytes_of({1, 2, 3, 4, 5, 6})), HasSubstr("does not end with the question"));
+  EXPECT_THAT(binary("hello" + bytes_of({1, 2, 3, 4})),
+              AllOf(HasSubstr("does not end with the question"), HasSubstr("begins with `hello")));
 }
 
 TEST(Reply, RefusesALineWithoutEnd) {

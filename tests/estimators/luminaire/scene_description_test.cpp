@@ -15,18 +15,12 @@ SceneDescription read(const std::string& text) { return read_scene(parse_flow(te
 std::string with_light(const std::string& text) {
   return "{" + receiver + ", light: " + text + "}";
 }
-std::string with_receiver(const std::string& text) {
-  return "{receiver: " + text + ", " + light + "}";
-}
-std::string with_occluders(const std::string& text) {
-  return "{" + receiver + ", " + light + ", occluders: " + text + "}";
-}
 
 TEST(SceneDescription, ReadsASceneInPlace) {
   const SceneDescription scene =
-      read(with_occluders("[{polygon: [[0, 0, .5], [1, 0, .5], [0, 1, .5]]}, {disc: {center: [0, "
-                          "0, .5], normal: [0, 0, "
-                          "2], radius: .3}}]"));
+      read("{" + receiver + ", " + light +
+           ", occluders: [{polygon: [[0, 0, .5], [1, 0, .5], [0, 1, .5]]}, {disc: {center: [0, 0, "
+           ".5], normal: [0, 0, 2], radius: .3}}]}");
   EXPECT_EQ(scene.receiver.normal, (render::Vector3{0, 0, 1}));
   EXPECT_EQ(std::get<render::Polygon>(scene.light.shape).size(), 3u);
   EXPECT_EQ(scene.light.radiance, 2);
@@ -36,8 +30,8 @@ TEST(SceneDescription, ReadsASceneInPlace) {
 
 TEST(SceneDescription, NormalsAreMadeUnitVectorsWhateverTheirLength) {
   for (const char* normal : {"[0, 0, 1e-200]", "[0, 0, 1e200]", "[0, 0, 7]"}) {
-    const SceneDescription scene =
-        read(with_receiver("{position: [0, 0, 0], normal: " + std::string(normal) + "}"));
+    const SceneDescription scene = read(std::string("{receiver: {position: [0, 0, 0], normal: ") +
+                                        normal + "}, " + light + "}");
     EXPECT_EQ(scene.receiver.normal, (render::Vector3{0, 0, 1})) << normal;
   }
 }
@@ -55,15 +49,12 @@ TEST(SceneDescription, EveryBuiltInSceneIsThere) {
 }
 
 TEST(SceneDescription, MistakesAreShownWhereTheyStand) {
-  const Value radius = Value::scalar("wide", {"suite.yaml", 12, 20});
   const Value disc = Value::map({{"center", parse_flow("[0, 0, 1]")},
                                  {"normal", parse_flow("[0, 0, 1]")},
-                                 {"radius", radius}});
-  const Value scene =
-      Value::map({{"receiver", parse_flow("{position: [0, 0, 0], normal: [0, 0, 1]}")},
-                  {"light", parse_flow("{" + light.substr(light.find("polygon")))},
-                  {"occluders", Value::list({Value::map({{"disc", disc}})})}});
-  EXPECT_THAT(thrown<InputError>([&] { read_scene(scene, ""); }),
+                                 {"radius", Value::scalar("wide", {"suite.yaml", 12, 20})}});
+  auto scene = parse_flow("{" + receiver + ", " + light + "}").members();
+  scene.emplace_back("occluders", Value::list({Value::map({{"disc", disc}})}));
+  EXPECT_THAT(thrown<InputError>([&] { read_scene(Value::map(scene), ""); }),
               StartsWith("suite.yaml:12:20: a disc's radius"));
 }
 

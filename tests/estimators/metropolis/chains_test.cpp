@@ -14,7 +14,7 @@ using namespace assay::metropolis;
 std::vector<double> means(const Prepared& plugin) {
   std::vector<double> all;
   const std::size_t elements = plugin.setup->image()->elements();
-  for (std::size_t i = 0; i < elements; ++i) all.push_back(*plugin.setup->channels()[i].mean);
+  for (std::size_t i = 0; i < elements; ++i) all.push_back(*plugin.channel(i).mean);
   return all;
 }
 
@@ -76,13 +76,11 @@ TEST(MetropolisTargets, AMixtureInPlaceIsTheBuiltInOne) {
 TEST(MetropolisChains, OfAConstantAcceptEverythingAndKnowTheMean) {
   for (const char* plugin : {"metropolis/mean_value", "metropolis/multiple_importance"}) {
     const auto samples = observe(prepare(plugin, "{target: constant}"), 50, 40);
-    for (std::size_t i = 0; i < 50; ++i) {
-      EXPECT_NEAR(samples[9].values[i], 1, 1e-15);   // normaliser
-      EXPECT_NEAR(samples[10].values[i], 1, 1e-15);  // acceptance
-    }
+    EXPECT_THAT(samples[9].values, Each(DoubleNear(1, 1e-15)));   // normaliser
+    EXPECT_THAT(samples[10].values, Each(DoubleNear(1, 1e-15)));  // acceptance
   }
   const auto samples = observe(prepare("metropolis/mean_value", "{target: constant}"), 50, 40);
-  for (const double x : samples[8].values) EXPECT_NEAR(x, 1, 1e-14);
+  EXPECT_THAT(samples[8].values, Each(DoubleNear(1, 1e-14)));
 }
 
 // Both weightings with large steps alone and b known are of independent points: false alarm 1e-6.
@@ -92,37 +90,24 @@ TEST(MetropolisChains, StepsOfMultipleImportanceNeedNoAcceptanceWhereAllAreLarge
   const std::vector<double> exact = means(plugin);
   const auto samples = observe(plugin, 400, 200);
   for (std::size_t i = 0; i < exact.size(); ++i) {
-    EXPECT_NEAR(samples[i].mean(), exact[i], five * samples[i].mean_error() + 1e-3 * exact[i]) << i;
+    EXPECT_THAT(samples[i], HasMean(exact[i], 1e-3 * exact[i])) << i;
   }
 }
 
 TEST(MetropolisChains, CostIsThatOfAllPaths) {
-  const auto plugin = prepare("metropolis/mean_value", "{bootstrap: 70}");
-  std::vector<double> out(plugin.setup->channels().size());
-  Cost cost;
-  Stream random(plugin.key, 0);
-  plugin.setup->make()->secondary(random, 30, out, cost);
+  const Cost cost = observe_one(prepare("metropolis/mean_value", "{bootstrap: 70}"), 30).cost;
   EXPECT_EQ(cost.samples, 100u);
   EXPECT_EQ(cost.rays(), 0u);
   const auto sphere = prepare("metropolis/mean_value", "{target: sphere, bootstrap: 70}");
-  Stream other(sphere.key, 0);
-  sphere.setup->make()->secondary(other, 30, out, cost);
-  EXPECT_GT(cost.closest_hit_rays, 100u);
+  EXPECT_GT(observe_one(sphere, 30).cost.closest_hit_rays, 100u);
 }
 
+// After two others, and alone.
 TEST(MetropolisChains, AnObservationIsAFunctionOfItsStreamAlone) {
   const auto plugin = prepare("metropolis/mean_value", "{target: sphere, bootstrap: 16}");
-  const auto estimator = plugin.setup->make();
-  std::vector<double> first(plugin.setup->channels().size());
-  std::vector<double> again = first;
-  Cost cost;
-  Stream zero(plugin.key, 0);
-  estimator->secondary(zero, 50, first, cost);
-  Stream one(plugin.key, 1);
-  estimator->secondary(one, 50, again, cost);
-  Stream zero_again(plugin.key, 0);
-  estimator->secondary(zero_again, 50, again, cost);
-  EXPECT_EQ(first, again);
+  const auto samples = observe(plugin, 3, 50);
+  const auto again = observe_one(plugin, 50, 2).values;
+  for (std::size_t c = 0; c < again.size(); ++c) EXPECT_EQ(samples[c].values[2], again[c]) << c;
 }
 
 // From a black point every step inside is accepted. Both chains have the same stream, so that their
@@ -135,10 +120,7 @@ TEST(MetropolisChains, EvenFromABlackPointNothingOutsideIsAccepted) {
                           ".5, width: .001}]}}, p_large: .00001, boundary: " +
                               boundary + "}");
     plugin.key = prepare("metropolis/uniform_start").key;
-    double sum = 0;
-    const Sample acceptance = observe(plugin, 20000, 1)[10];
-    for (const double a : acceptance.values) sum += a;
-    return sum;
+    return 20000 * observe(plugin, 20000, 1)[10].mean();
   };
   EXPECT_NEAR(accepted("wrap") - accepted("reject"), 105.6, 51);
 }

@@ -20,8 +20,8 @@ TEST(LensMutants, MeansAtAPixelAreThoseOfTheDefect) {
     const Prepared mutant = prepare("mutants/" + row[0], parameters);
     const Sample sample = observe(mutant, 60000)[0];
     const double sound = std::stod(row[3]);
-    EXPECT_NEAR(sample.mean(), std::stod(row[2]), five * sample.mean_error()) << row[0];
-    EXPECT_NEAR(*mutant.setup->channels()[0].mean, sound, 1e-11) << row[0];
+    EXPECT_THAT(sample, HasMean(std::stod(row[2]))) << row[0];
+    EXPECT_NEAR(*mutant.channel().mean, sound, 1e-11) << row[0];
     EXPECT_GT(std::abs(std::stod(row[2]) - sound), 10 * sample.mean_error()) << row[0];
   }
 }
@@ -31,7 +31,7 @@ TEST(LensMutants, CrowdedPointsAreInTheSamplerToo) {
   for (const auto& [plugin, inside] :
        {std::pair<const char*, double>{"depth_of_field/pixel", .25},
         std::pair<const char*, double>{"mutants/lens_crowded", .5}}) {
-    const auto sampler = prepare(plugin).setup->samplers()[0].sampler;
+    const auto sampler = prepare(plugin).sampler();
     Stream random(stream_key(1, plugin, "", 0), 0);
     const int count = 20000;
     int found = 0;
@@ -53,8 +53,7 @@ TEST(LensMutants, DividedByTheMeanNumberPixelsAreOffByTheirShareOfSamples) {
   double most = 0;
   for (std::size_t i = 0; i < 96; ++i) {
     const double factor = static_cast<double>(plan.counts[i]) / mean;
-    const double bound = five * samples[i].mean_error() + 1e-9;
-    EXPECT_NEAR(samples[i].mean(), plan.exact[i].mean * factor, bound) << i;
+    EXPECT_THAT(samples[i], HasMean(plan.exact[i].mean * factor, 1e-9)) << i;
     most = std::max(most, factor);
   }
   EXPECT_GT(most, 2);
@@ -73,8 +72,7 @@ TEST(LensMutants, ASharpBackgroundHasNothingOfTheBoardBeforeIt) {
   for (std::size_t i = 0; i < 24; ++i) {
     const double x = plan.grid.pixel(i).x / 2;
     const bool board = x > -.15 && x < .2;
-    const double expected = board ? plan.exact[i].mean : .2;
-    EXPECT_NEAR(samples[i].mean(), expected, five * samples[i].mean_error() + 1e-12) << i;
+    EXPECT_THAT(samples[i], HasMean(board ? plan.exact[i].mean : .2, 1e-12)) << i;
     cut += !board && plan.exact[i].mean > .21;
   }
   EXPECT_GT(cut, 2u);
@@ -92,11 +90,7 @@ TEST(LensMutants, WithFrontsIgnoredEveryPixelOfAnEdgeHasOneSample) {
     EXPECT_DOUBLE_EQ(*channels[i].variance, plan.exact[i].variance());
   }
   EXPECT_GT(*channels[60].variance, .24);
-  std::vector<double> out(62);
-  Cost cost;
-  Stream random(mutant.key, 0);
-  mutant.setup->make()->secondary(random, 1, out, cost);
-  EXPECT_EQ(cost.camera_rays, 60u + 70);
+  EXPECT_EQ(observe_one(mutant, 1).cost.camera_rays, 60u + 70);
 }
 
 // Edges behind the focal plane it sees.
@@ -104,9 +98,8 @@ TEST(LensMutants, WithFrontsIgnoredEdgesBehindAreSeen) {
   const std::string parameters =
       "{scene: {lens: {radius: .2, focus: 2}, planes: [{depth: 3, x: [0, 100], y: [-100, 100], "
       "radiance: 1}]}, width: 40, height: 1}";
-  const auto mutant = prepare("mutants/lens_fronts_ignored", parameters).setup->channels();
-  const auto sound = prepare("depth_of_field/image", parameters).setup->channels();
-  EXPECT_EQ(mutant[40].variance, sound[40].variance);
+  EXPECT_EQ(prepare("mutants/lens_fronts_ignored", parameters).channel(40).variance,
+            prepare("depth_of_field/image", parameters).channel(40).variance);
 }
 
 // Its image is that of samples eight pixels apart. A sound one takes them at every fourth pixel of
@@ -120,7 +113,7 @@ TEST(LensMutants, ASignedMaximumSamplesWavesEightPixelsApart) {
   const auto samples = observe(prepare("mutants/bandwidth_signed", "{" + common + "}"), 10000);
   double most = 0;
   for (std::size_t i = 0; i < 57; ++i) {
-    EXPECT_NEAR(samples[i].mean(), plan.exact[i].mean + bias[i], five * samples[i].mean_error());
+    EXPECT_THAT(samples[i], HasMean(plan.exact[i].mean + bias[i]));
     most = std::max(most, std::abs(bias[i]));
   }
   EXPECT_GT(most, .1);
@@ -137,8 +130,7 @@ TEST(LensMutants, UnnormalisedSplatsFadeBeyondTheLastSample) {
   const auto samples = observe(prepare("mutants/splats_unnormalised", parameters), 10000);
   for (std::size_t i = 0; i < 64; ++i) {
     const double left = i < 56 ? 1 : 1 - static_cast<double>(i - 56) / 8;
-    const double expected = left * (plan.exact[i].mean + bias[i]);
-    EXPECT_NEAR(samples[i].mean(), expected, five * samples[i].mean_error()) << i;
+    EXPECT_THAT(samples[i], HasMean(left * (plan.exact[i].mean + bias[i]))) << i;
   }
 }
 

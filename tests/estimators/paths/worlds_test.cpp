@@ -25,15 +25,6 @@ TEST(ClosedMesh, TheFurnaceIsClosedAndWindsOnceAboutItsInside) {
   EXPECT_EQ(winding_number(mesh, {1.01, 0.5, 0.5}), 0);
 }
 
-TEST(ClosedMesh, OpenAndTurnedTrianglesAreNamed) {
-  const SceneDescription scene = read_scene(Value::scalar("furnace"), "");
-  render::TriangleMesh mesh = std::get<MeshScene>(scene.form).mesh;
-  std::swap(mesh.triangles[3][0], mesh.triangles[3][1]);
-  EXPECT_THAT(why_not_closed(mesh), testing::HasSubstr("same way"));
-  mesh.triangles.erase(mesh.triangles.begin() + 3);
-  EXPECT_THAT(why_not_closed(mesh), testing::HasSubstr("one triangle only"));
-}
-
 // Two million rays from hits all over a cube: none slips out, none hits the triangle it starts on.
 TEST(MeshWorld, NoRayLeavesAClosedMeshNorHitsWhereItStands) {
   const MeshWorld world = mesh_world("furnace");

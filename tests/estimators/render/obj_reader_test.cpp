@@ -1,6 +1,7 @@
 
 #include "estimators/core/value.h"
 #include "render/triangle_mesh.h"
+#include "tests/estimators/table.h"
 #include "tests/prelude.h"
 
 namespace assay::render {
@@ -50,26 +51,9 @@ TEST_F(ObjReader, TakesCarriageReturnsAndTabs) {
 }
 
 TEST_F(ObjReader, RefusesWhatIsWrongAtItsLine) {
-  EXPECT_THAT(refusal(corners + "l 1 2\n"), StartsWith("5: the statement `l`"));
-  EXPECT_THAT(refusal("v 0 0\n"), StartsWith("1: a vertex needs three finite numbers"));
-  EXPECT_THAT(refusal("v 0 0 0 1\n"), StartsWith("1: a vertex has exactly three"));
-  EXPECT_THAT(refusal("v 0 nan 0\n"), StartsWith("1: a vertex needs three finite numbers"));
-  EXPECT_THAT(refusal("v 0 inf 0\n"), StartsWith("1: a vertex needs three finite numbers"));
-  EXPECT_THAT(refusal("v 0 1e999 0\n"), StartsWith("1: a vertex needs three finite numbers"));
-  EXPECT_THAT(refusal("v 0 1x 0\n"), StartsWith("1: a vertex needs three finite numbers"));
-  EXPECT_THAT(refusal(corners + "f 1 2\n"), StartsWith("5: a face needs three corners"));
-  EXPECT_THAT(refusal(corners + "f 1 2 5\n"), StartsWith("5: there is no vertex 5 yet"));
-  EXPECT_THAT(refusal(corners + "f 1 2 -5\n"), StartsWith("5: there is no vertex -5 yet"));
-  EXPECT_THAT(refusal(corners + "f 0 1 2\n"), StartsWith("5: there is no vertex 0 yet"));
-  EXPECT_THAT(refusal(corners + "f 1 2 2\n"), StartsWith("5: a face has no area"));
-  for (const char* corner : {"3x", "3/", "3/1/", "3/x/1", "3/1/1/1", "/1", "3.0", "+3", "3//"}) {
-    EXPECT_THAT(refusal(corners + "f 1 2 " + corner + "\n"), StartsWith("5: a corner must be"))
-        << corner;
+  for (const auto& [text, said] : refused_texts("meshes")) {
+    EXPECT_THAT(refusal(text), StartsWith(said)) << text;
   }
-}
-
-TEST_F(ObjReader, RefusesAFileWithoutFacesOrThatIsNotThere) {
-  EXPECT_EQ(refusal(corners), "0: the OBJ file holds no face");
   EXPECT_THROW(read_obj("/nowhere/lamp.obj"), InputError);
   EXPECT_THROW(read_obj(folder_.string()), InputError);
 }

@@ -64,15 +64,33 @@ TEST(Enclosure, WallsAreToldApartInAnyUnit) {
   }
 }
 
-TEST(Enclosure, AMissingTriangleOpensIt) {
-  TriangleMesh mesh = cube();
-  mesh.triangles.pop_back();
-  EXPECT_THAT(enclosure(mesh, middle).why_open, testing::HasSubstr("belongs to one triangle only"));
-  EXPECT_NE(enclosure(mesh, middle).why_not_convex, "");
+// Sides of other lengths, turned about (1, 2, 3). Seen from the middle and from next to the floor.
+TEST(Enclosure, ABoxIsClosedWhereverItStandsAndHoweverItIsTurned) {
+  const Vector3 axis = render::normalised({1, 2, 3});
+  for (int i = 0; i < 40; ++i) {
+    for (const double angle : {0., 0.37 * i}) {
+      const auto placed = [&](const Vector3& v) {  // Rodrigues
+        const Vector3 side = {1.1 * v.x, (0.7 + 0.1 * i) * v.y, 0.9 * v.z};
+        return Vector3{0.1 * i, 7.3 - 0.7 * i, 0.3} + std::cos(angle) * side +
+               std::sin(angle) * cross(axis, side) + (1 - std::cos(angle)) * dot(axis, side) * axis;
+      };
+      TriangleMesh box = cube();
+      for (Vector3& corner : box.vertices) corner = placed(corner);
+      for (const double height : {0.5, 1e-4}) {
+        const Enclosure room = enclosure(box, placed({0.4, 0.5, height}));
+        EXPECT_EQ(room.why_open + room.why_not_convex, "") << i << " " << angle;
+        EXPECT_EQ(std::set(room.wall_of.begin(), room.wall_of.end()).size(), 6u);
+      }
+    }
+  }
 }
 
-TEST(Enclosure, APointOutsideIsNotEnclosed) {
-  EXPECT_THAT(enclosure(cube(), {2, 0.5, 0.5}).why_open, testing::HasSubstr("not inside"));
+TEST(Enclosure, IsOpenWithoutATriangleOrFromOutside) {
+  TriangleMesh mesh = cube();
+  mesh.triangles.pop_back();
+  EXPECT_THAT(enclosure(mesh, middle).why_open, HasSubstr("belongs to one triangle only"));
+  EXPECT_NE(enclosure(mesh, middle).why_not_convex, "");
+  EXPECT_THAT(enclosure(cube(), {2, 0.5, 0.5}).why_open, HasSubstr("not inside"));
 }
 
 TEST(Enclosure, ABoxInTheRoomLeavesItClosedButNotConvex) {
