@@ -13,7 +13,6 @@
 #include <stdlib.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -26,6 +25,7 @@
 #include "estimators/catalogue.h"
 #include "estimators/core/thread_seconds.h"
 #include "estimators/library_host.h"
+#include "tests/bench/paired.h"
 
 namespace {
 
@@ -88,16 +88,16 @@ for index in range(int(sys.argv[1])):
 print(time.perf_counter() - start, time.process_time() - cpu)
 )";
 
-double seconds_of(const auto& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+double best_of(const auto& work) {
+  double best = bench::seconds(work);
+  for (int i = 1; i < repetitions; ++i) best = std::min(best, bench::seconds(work));
+  return best;
 }
 
-double best_of(const auto& work) {
-  double best = seconds_of(work);
-  for (int i = 1; i < repetitions; ++i) best = std::min(best, seconds_of(work));
-  return best;
+/// Prints how many millions a second a work of so many makes.
+void report(const std::string& what, double count, const auto& work) {
+  work();  // to warm up, and to find how much to ask for
+  std::printf("%-52s %7.2f million numbers a second\n", what.c_str(), 1e-6 * count / best_of(work));
 }
 
 class Workshop {
@@ -156,16 +156,11 @@ void draw_once(Estimator& worker, const Drawn& what, std::size_t channels) {
   }
 }
 
-double seconds_to_draw(const Setup& setup, const Drawn& what) {
+void report_numbers(const std::string& what, const Setup& setup, const Drawn& drawn) {
   const std::unique_ptr<Estimator> worker = setup.make();
   const std::size_t channels = setup.channels().size();
-  return best_of([&] { draw_once(*worker, what, channels); });
-}
-
-void report(const char* what, const Setup& setup, const Drawn& drawn) {
-  const double numbers = static_cast<double>(drawn.observations * setup.channels().size());
-  std::printf("%-52s %7.1f million numbers a second\n", what,
-              1e-6 * numbers / seconds_to_draw(setup, drawn));
+  report(what, static_cast<double>(drawn.observations * channels),
+         [&] { draw_once(*worker, drawn, channels); });
 }
 
 std::shared_ptr<const Setup> library(const Workshop& workshop, const std::string& channels,
@@ -198,11 +193,6 @@ void ask_draws(const Sampler& sampler, std::uint64_t count) {
 }
 
 void samplers(const Workshop& workshop) {
-  const auto report = [](const std::string& what, std::size_t count, const auto& ask) {
-    ask();  // to find how much to ask for
-    std::printf("%-52s %7.2f million a second\n", what.c_str(),
-                1e-6 * static_cast<double>(count) / best_of(ask));
-  };
   for (const bool isolated : {true, false}) {
     const auto setup = library(workshop, "1", isolated ? "true" : "false");
     const Sampler& sampler = *setup->samplers()[0].sampler;
@@ -210,8 +200,8 @@ void samplers(const Workshop& workshop) {
     report(where + "draws, 4096 at a time", 1 << 20, [&] { ask_draws(sampler, 1 << 20); });
     for (const std::size_t at_once : {648u, 36u, 1u}) {
       const std::size_t count = 10000 * std::min<std::size_t>(at_once, 100);
-      report(where + "densities, " + std::to_string(at_once) + " at a time", count,
-             [&] { ask_densities(sampler, count, at_once); });
+      report(where + "densities, " + std::to_string(at_once) + " at a time",
+             static_cast<double>(count), [&] { ask_densities(sampler, count, at_once); });
     }
   }
 }
@@ -219,8 +209,8 @@ void samplers(const Workshop& workshop) {
 void libraries(const Workshop& workshop) {
   for (const char* channels : {"1", "4", "16"}) {
     const auto setup = library(workshop, channels, "false");
-    const std::string what = std::string("library in process, channels: ") + channels;
-    report(what.c_str(), *setup, {.observations = 2'000'000, .block = 4096});
+    report_numbers(std::string("library in process, channels: ") + channels, *setup,
+                   {.observations = 2'000'000, .block = 4096});
   }
 }
 
@@ -229,10 +219,10 @@ void programs(const Workshop& workshop) {
     return process({workshop.compile(name, program_source,
                                      std::string("-DSHAPE='\"") + shape + "\"' -DWIDTH=" + width)});
   };
-  report("process, binary, one channel, blocks of 4096", *compiled("one", "channel x", "1"),
-         {.observations = 1'000'000, .block = 4096});
-  report("process, binary, image of 64 x 64, blocks of 8",
-         *compiled("image", "image 64 64", "4096"), {.observations = 4000, .block = 8});
+  report_numbers("process, binary, one channel, blocks of 4096", *compiled("one", "channel x", "1"),
+                 {.observations = 1'000'000, .block = 4096});
+  report_numbers("process, binary, image of 64 x 64, blocks of 8",
+                 *compiled("image", "image 64 64", "4096"), {.observations = 4000, .block = 8});
 }
 
 /// By the clock, and of processors.
@@ -257,13 +247,8 @@ Seconds of_the_bare_loop(const std::string& script, const Drawn& drawn) {
 Seconds of_the_program(Estimator& worker, const Drawn& drawn) {
   const auto processors = [&] { return thread_seconds() + worker.seconds_elsewhere(); };
   const double before = processors();
-  const double wall = seconds_of([&] { draw_once(worker, drawn, 1); });
+  const double wall = bench::seconds([&] { draw_once(worker, drawn, 1); });
   return {.wall = wall, .processor = processors() - before};
-}
-
-double median(std::vector<double> values) {
-  std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
-  return values[values.size() / 2];
 }
 
 void python(const Workshop& workshop, const std::string& examples) {
@@ -286,8 +271,8 @@ void python(const Workshop& workshop, const std::string& examples) {
                    static_cast<double>(drawn.observations * drawn.primaries));
   }
   std::printf("%-52s %7.3f (processor time; by the clock %.3f; %.0f ns a primary)\n",
-              "process, darts.py: rate against its own loop", median(processor), median(wall),
-              median(cost));
+              "process, darts.py: rate against its own loop", bench::median(processor),
+              bench::median(wall), bench::median(cost));
 }
 
 }  // namespace

@@ -10,12 +10,13 @@
 // .25 % of the elements' are, by the normal law; `whole` by Welch's test of the pictures' means.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
-#include <future>
 #include <map>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -53,51 +54,50 @@ Stack pictures(const Picture& picture, const std::string& stream, std::uint64_t 
   return stack;
 }
 
+// The rules, and what each of them says.
+constexpr std::array rules{"assay", "welch", "part", "whole"};
 struct Found {
-  bool assay = false;
-  bool welch = false;
-  bool part = false;
-  bool whole = false;
+  std::array<bool, 4> by = {};
   std::uint32_t size = 0;
 };
 
+double mean(const std::vector<double>& image) {
+  return std::accumulate(image.begin(), image.end(), 0.0) / static_cast<double>(image.size());
+}
+
 Found look(const Stack& a, const Stack& b) {
-  const stats::ImageExtent extent{width, height, channels};
   const auto view = [&](const Stack& stack) {
-    stats::ImageStack<double> views{extent, {}};
+    stats::ImageStack<double> views{{width, height, channels}, {}};
     for (const auto& image : stack) views.images.emplace_back(image);
     return views;
   };
-  Found found;
+  // Moments of a number of each picture.
+  const auto moments = [](const Stack& stack, const auto& number) {
+    stats::Moments all;
+    for (const auto& image : stack) all.add(number(image));
+    return all;
+  };
   const stats::ImageFamily family = stats::image_pyramid(view(a), view(b));
-  found.assay = family.log_p <= std::log(alpha);
-  found.size = family.groups.empty() ? 0 : family.winner.size;
+  Found found{.size = family.groups.empty() ? 0 : family.winner.size};
+  auto& [assay, welch, part, whole] = found.by;
+  assay = family.log_p <= std::log(alpha);
   const double share = -std::expm1(std::log1p(-alpha) / static_cast<double>(elements));
   std::size_t beyond = 0;
   for (std::size_t e = 0; e < elements; ++e) {
-    stats::Moments x;
-    stats::Moments y;
-    for (const auto& image : a) x.add(image[e]);
-    for (const auto& image : b) y.add(image[e]);
+    const auto element = [e](const std::vector<double>& image) { return image[e]; };
+    const stats::Moments x = moments(a, element);
+    const stats::Moments y = moments(b, element);
     if (x.m2 + y.m2 == 0) {
-      if (x.mean != y.mean) found.welch = true;
+      welch |= x.mean != y.mean;
       continue;
     }
     const stats::TestResult test = stats::welch_t(x, y, {});
-    found.welch |= stats::log_p_two_sided(test) <= std::log(share);
+    welch |= stats::log_p_two_sided(test) <= std::log(share);
     beyond += 2 * std::exp(stats::normal_tails(std::abs(test.statistic)).upper) <= share;
   }
-  found.part = static_cast<double>(beyond) > 0.0025 * static_cast<double>(elements);
-  stats::Moments x;
-  stats::Moments y;
-  const auto mean = [](const std::vector<double>& image) {
-    double sum = 0;
-    for (const double value : image) sum += value;
-    return sum / static_cast<double>(image.size());
-  };
-  for (const auto& image : a) x.add(mean(image));
-  for (const auto& image : b) y.add(mean(image));
-  found.whole = stats::log_p_two_sided(stats::welch_t(x, y, {})) <= std::log(alpha);
+  part = static_cast<double>(beyond) > 0.0025 * static_cast<double>(elements);
+  whole = stats::log_p_two_sided(stats::welch_t(moments(a, mean), moments(b, mean), {})) <=
+          std::log(alpha);
   return found;
 }
 
@@ -108,21 +108,19 @@ Picture picture_of(const std::string& scene, const std::string& integrator) {
           .height = height};
 }
 
-void level(const std::string& scene, const std::string& a, const std::string& b,
-           std::size_t count, std::size_t runs, std::uint64_t seed) {
+void level(const std::string& scene, const std::string& a, const std::string& b, std::size_t count,
+           std::size_t runs, std::uint64_t seed) {
   std::map<std::uint32_t, std::size_t> sizes;
-  std::size_t found[4] = {};
+  std::array<std::size_t, 4> found = {};
   for (std::size_t run = 0; run < runs; ++run) {
     const Found one = look(pictures(picture_of(scene, a), a + "/a", seed, run * count, count),
                            pictures(picture_of(scene, b), b + "/b", seed, run * count, count));
-    found[0] += one.assay;
-    found[1] += one.welch;
-    found[2] += one.part;
-    found[3] += one.whole;
-    if (one.assay) ++sizes[one.size];
+    for (std::size_t rule = 0; rule < 4; ++rule) found[rule] += one.by[rule];
+    if (one.by[0]) ++sizes[one.size];
   }
-  std::printf("level %s %s %s %zu of %zu: assay %zu welch %zu part %zu whole %zu; sizes", scene.c_str(),
-              a.c_str(), b.c_str(), count, runs, found[0], found[1], found[2], found[3]);
+  std::printf("level %s %s %s %zu of %zu: assay %zu welch %zu part %zu whole %zu; sizes",
+              scene.c_str(), a.c_str(), b.c_str(), count, runs, found[0], found[1], found[2],
+              found[3]);
   for (const auto& [size, times] : sizes) std::printf(" %u:%zu", size, times);
   std::printf("\n");
   std::fflush(stdout);
@@ -132,7 +130,6 @@ using Put = std::function<void(Picture&, double)>;
 struct Defect {
   Put put;
   double most;
-  bool falls = false;  // A smaller amount is the larger defect.
 };
 const std::map<std::string, Defect>& defects() {
   static const std::map<std::string, Defect> all{
@@ -152,7 +149,7 @@ void power(const std::string& scene, const std::string& name, std::size_t count,
            std::uint64_t seed) {
   const Defect& defect = defects().at(name);
   constexpr int steps = 40;  // From the largest amount down, by a factor of 1.15.
-  std::vector<std::vector<int>> least(4, std::vector<int>(runs, -1));
+  std::vector<std::vector<int>> least(rules.size(), std::vector<int>(runs, -1));
   for (std::size_t run = 0; run < runs; ++run) {
     const Stack sound =
         pictures(picture_of(scene, "multiple"), "multiple/b", seed, run * count, count);
@@ -162,32 +159,24 @@ void power(const std::string& scene, const std::string& name, std::size_t count,
       if (known != tried.end()) return known->second;
       Picture picture = picture_of(scene, "multiple");
       defect.put(picture, defect.most * std::pow(1.15, -step));
-      return tried[step] =
-                 look(pictures(picture, "multiple/a", seed, run * count, count), sound);
+      return tried[step] = look(pictures(picture, "multiple/a", seed, run * count, count), sound);
     };
-    for (int rule = 0; rule < 4; ++rule) {
-      const auto finds = [&](int step) {
-        const Found found = at(step);
-        const bool by_rule[] = {found.assay, found.welch, found.part, found.whole};
-        return by_rule[rule];
-      };
-      int low = -1;
+    for (std::size_t rule = 0; rule < rules.size(); ++rule) {
+      if (!at(0).by[rule]) continue;
+      int low = 0;
       int high = steps;
-      if (!finds(0)) continue;
-      low = 0;
       while (high - low > 1) {
         const int middle = (low + high) / 2;
-        (finds(middle) ? low : high) = middle;
+        (at(middle).by[rule] ? low : high) = middle;
       }
-      least[static_cast<std::size_t>(rule)][run] = low;
+      least[rule][run] = low;
     }
   }
   std::printf("power %s %s %zu of %zu:", scene.c_str(), name.c_str(), count, runs);
-  constexpr const char* rules[] = {"assay", "welch", "part", "whole"};
-  for (int rule = 0; rule < 4; ++rule) {
-    std::vector<int>& found = least[static_cast<std::size_t>(rule)];
-    std::ranges::sort(found);
-    const int step = found[runs - static_cast<std::size_t>(std::ceil(0.9 * static_cast<double>(runs)))];
+  for (std::size_t rule = 0; rule < rules.size(); ++rule) {
+    std::ranges::sort(least[rule]);
+    const int step =
+        least[rule][runs - static_cast<std::size_t>(std::ceil(0.9 * static_cast<double>(runs)))];
     if (step < 0) {
       std::printf(" %s -", rules[rule]);
     } else {
@@ -211,7 +200,8 @@ int main(int argc, char** argv) {
     power(words[1], words[2], number(3), number(4), words.size() > 5 ? number(5) : 1);
     return 0;
   }
-  std::fprintf(stderr, "picture_study level SCENE A B PICTURES RUNS [SEED]\n"
-                       "picture_study power SCENE DEFECT PICTURES RUNS [SEED]\n");
+  std::fprintf(stderr,
+               "picture_study level SCENE A B PICTURES RUNS [SEED]\n"
+               "picture_study power SCENE DEFECT PICTURES RUNS [SEED]\n");
   return 2;
 }

@@ -9,7 +9,6 @@
 #include <sys/resource.h>
 
 #include <atomic>
-#include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -45,11 +44,8 @@ struct Times {
   template <class Work>
   void take(int who, const Work& work) {
     const double before = cpu_seconds(who);
-    const auto start = std::chrono::steady_clock::now();
-    work();
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    elapsed.push_back(bench::seconds(work));
     cpu.push_back(cpu_seconds(who) - before);
-    elapsed.push_back(seconds.count());
   }
 };
 

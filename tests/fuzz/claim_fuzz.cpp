@@ -7,10 +7,6 @@
 // sources: harness/base/text_file.cpp estimators/core/value.cpp estimators/core/value_checks.cpp
 // libraries: -lfmt -lyaml-cpp
 
-#include <cstddef>
-#include <cstdint>
-#include <string_view>
-
 #include "estimators/core/value.h"
 #include "harness/language/claim.h"
 #include "tests/fuzz/case.h"
@@ -19,7 +15,7 @@ using namespace assay;
 using fuzz::require;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  const std::string_view text = fuzz::text_of(data, size);
   const Location place{.file = "suite.yaml", .line = 7, .column = 3};
   try {
     const std::string written = to_string(harness::parse_claim(text, place));

@@ -9,10 +9,6 @@
 // libraries: -isystem /usr/include/OpenEXR -isystem /usr/include/Imath
 // libraries: -lOpenEXR -lOpenEXRCore -lIex -lIlmThread -lImath -lpng
 
-#include <cstddef>
-#include <cstdint>
-#include <cstdlib>
-#include <string>
 #include <vector>
 
 #include "estimators/core/value.h"

@@ -5,11 +5,8 @@
 // sources: estimators/image.cpp estimators/core/quoting.cpp
 
 #include <algorithm>
-#include <cstdint>
 #include <cstring>
 #include <optional>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "estimators/foreign/reply.h"
@@ -77,7 +74,7 @@ void reply(std::string_view bytes, assay::foreign::Numbers kind) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
-  const std::string_view bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
+  const std::string_view bytes = assay::fuzz::text_of(data + 1, size - 1);
   switch (data[0] % 3) {
     case 0:
       hello(bytes);

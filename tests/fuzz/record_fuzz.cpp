@@ -6,11 +6,6 @@
 // sources: reports/*.cpp reports/*/*.cpp build/reports/page.cpp
 // libraries: -lfmt -lz
 
-#include <cstddef>
-#include <cstdint>
-#include <string>
-#include <string_view>
-
 #include "reports/formats/annotations.h"
 #include "reports/formats/console.h"
 #include "reports/formats/json.h"
@@ -38,7 +33,7 @@ void report(const Record& record) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  const std::string_view text = assay::fuzz::text_of(data, size);
   try {
     const Record record = read_json(text, "run.json");
     const std::string written = json(record);

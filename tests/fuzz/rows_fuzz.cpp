@@ -8,10 +8,6 @@
 // sources: estimators/core/value.cpp
 // libraries: -lz
 
-#include <cstddef>
-#include <cstdint>
-#include <string>
-
 #include "estimators/core/value.h"
 #include "recorded/table.h"
 #include "tests/fuzz/case.h"

@@ -11,10 +11,6 @@
 // libraries: -lfmt -lyaml-cpp
 
 #include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <cstdlib>
-#include <string>
 
 #include "estimators/estimator.h"
 #include "harness/suite/suite.h"
