@@ -10,10 +10,7 @@
 #include "stats/planning/holm.h"
 #include "stats/variances/chi_square_variance.h"
 #include "stats/variances/f_ratio.h"
-#include "tests/prelude.h"
-#include "tests/stats/expect_calibrated.h"
-#include "tests/stats/multinomial.h"
-#include "tests/stats/samples.h"
+#include "tests/stats/prelude.h"
 
 namespace assay::stats {
 namespace {
@@ -26,9 +23,8 @@ CALIBRATED(Calibration, StudentTOnThreeNormalValuesIsUniform, 1, 40000) {
   return log_p_two_sided(student_t(normals(random, 3), {0}));
 }
 
-TEST(Calibration, BothTailsOfStudentTAreUniform) {
-  expect_calibrated({2}, [](Philox& r) { return student_t(normals(r, 7), {0}).log_p_lower; });
-  expect_calibrated({3}, [](Philox& r) { return student_t(normals(r, 7), {0}).log_p_upper; });
+TAILS_CALIBRATED(Calibration, BothTailsOfStudentTAreUniform, 2) {
+  return student_t(normals(random, 7), {0});
 }
 
 CALIBRATED(Calibration, StudentTAgainstANoisyReferenceIsUniform, 4) {
@@ -88,21 +84,16 @@ TEST(Calibration, OneSampleKolmogorovSmirnovOnAtomsIsConservative) {
 }
 
 TEST(Calibration, TwoSampleKolmogorovSmirnovIsAtMostUniformWithAndWithoutTies) {
-  expect_calibrated({19, 20000, Shape::at_most_uniform}, [&](Philox& random) {
-    const auto x = sorted(sample_of(13, [&] { return random.normal(); }));
-    const auto y = sorted(sample_of(20, [&] { return random.normal(); }));
-    return kolmogorov_smirnov(ks_distance(x, y)).log_p_upper;
-  });
-  expect_calibrated({20, 20000, Shape::at_most_uniform}, [&](Philox& random) {
-    const auto x = sorted(sample_of(50, [&] { return random.normal(); }));
-    const auto y = sorted(sample_of(50, [&] { return random.normal(); }));
-    return kolmogorov_smirnov(ks_distance(x, y)).log_p_upper;
-  });
-  expect_calibrated({21, 20000, Shape::at_most_uniform}, [&](Philox& random) {
-    const auto x = sorted(sample_of(30, [&] { return std::max(0.0, random.normal()); }));
-    const auto y = sorted(sample_of(40, [&] { return std::max(0.0, random.normal()); }));
-    return kolmogorov_smirnov(ks_distance(x, y)).log_p_upper;
-  });
+  const auto calibrated = [](std::uint32_t test_case, std::size_t m, std::size_t n, double least) {
+    expect_calibrated({test_case, 20000, Shape::at_most_uniform}, [&](Philox& random) {
+      const auto draw = [&] { return std::max(least, random.normal()); };
+      const auto x = sorted(sample_of(m, draw));
+      return kolmogorov_smirnov(ks_distance(x, sorted(sample_of(n, draw)))).log_p_upper;
+    });
+  };
+  calibrated(19, 13, 20, -100);
+  calibrated(20, 50, 50, -100);
+  calibrated(21, 30, 40, 0);
 }
 
 TEST(Calibration, KolmogorovSmirnovMarginsHoldAtTheirOwnNull) {
@@ -110,21 +101,17 @@ TEST(Calibration, KolmogorovSmirnovMarginsHoldAtTheirOwnNull) {
   const double at = std::pow(1.4, -1 / .4);
   const double distance = at - std::pow(at, 1.4);
   const ContinuousLaw uniform{[](double u) { return u; }};
-  const auto powers = [](Philox& random) { return std::pow(random.uniform(), 1 / 1.4); };
-  const auto flat = [](Philox& random) { return random.uniform(); };
-  for (const bool lower : {true, false}) {
-    expect_calibrated({lower ? 22U : 23U, 4000, Shape::at_most_uniform}, [&](Philox& random) {
-      const auto x = sorted(sample_of(200, [&] { return powers(random); }));
-      const TestResult result = ks_margin(ks_distance(x, uniform), distance);
-      return lower ? result.log_p_lower : result.log_p_upper;
-    });
-    expect_calibrated({lower ? 24U : 25U, 2000, Shape::at_most_uniform}, [&](Philox& random) {
-      const auto x = sorted(sample_of(200, [&] { return powers(random); }));
-      const auto y = sorted(sample_of(300, [&] { return flat(random); }));
-      const TestResult result = ks_margin(ks_distance(x, y), distance);
-      return lower ? result.log_p_lower : result.log_p_upper;
-    });
-  }
+  const auto powers = [](Philox& random) {
+    return sorted(sample_of(200, [&] { return std::pow(random.uniform(), 1 / 1.4); }));
+  };
+  expect_tails_calibrated({22, 4000, Shape::at_most_uniform}, [&](Philox& random) {
+    return ks_margin(ks_distance(powers(random), uniform), distance);
+  });
+  expect_tails_calibrated({24, 2000, Shape::at_most_uniform}, [&](Philox& random) {
+    const auto x = powers(random);
+    const auto y = sorted(sample_of(300, [&] { return random.uniform(); }));
+    return ks_margin(ks_distance(x, y), distance);
+  });
 }
 
 // Counts of n draws from a discrete law by its cumulative probabilities.
@@ -145,15 +132,10 @@ TEST(Calibration, ChiSquareFitEffectIsUniformAtItsOwnNull) {
   });
 }
 
-TEST(Calibration, BinomialTailsAreAtMostUniform) {
-  for (const bool lower : {true, false}) {
-    expect_calibrated({lower ? 28U : 29U, 20000, Shape::at_most_uniform}, [&](Philox& random) {
-      std::uint64_t hits = 0;
-      for (int i = 0; i < 50; ++i) hits += random.uniform() < .07;
-      const TestResult result = binomial({hits, 50}, .07);
-      return lower ? result.log_p_lower : result.log_p_upper;
-    });
-  }
+TAILS_CALIBRATED(Calibration, BinomialTailsAreAtMostUniform, 28, 20000, Shape::at_most_uniform) {
+  std::uint64_t hits = 0;
+  for (int i = 0; i < 50; ++i) hits += random.uniform() < .07;
+  return binomial({hits, 50}, .07);
 }
 
 TEST(Calibration, EquivalenceAtItsMarginIsAtMostUniform) {
@@ -181,25 +163,6 @@ TEST(Calibration, TheSmallestHolmAdjustedValueOfAFamilyIsAtMostUniform) {
     const auto adjusted = weighted_holm(entries);
     return *std::min_element(adjusted.begin(), adjusted.end());
   });
-}
-
-TEST(Calibration, IntervalsCoverAsOftenAsTheySay) {
-  // An interval just covers the truth at confidence 1 - p. It is judged through coverage at .9.
-  Philox random(34);
-  int missed = 0;
-  int missed_ratio = 0;
-  constexpr int repetitions = 5000;
-  for (int i = 0; i < repetitions; ++i) {
-    const Moments x = draw_moments(12, [&] { return 3 + random.normal(); });
-    const Moments y = draw_moments(15, [&] { return 2 + .5 * random.normal(); });
-    const Interval t = student_t_interval(x, {3}, .9);
-    missed += t.low > 0 || t.high < 0;
-    const Interval ratio = welch_ratio_interval(x, y, .9);
-    missed_ratio += ratio.low > .5 || ratio.high < .5;
-  }
-  // Normal limit of the binomial at 1e-5, two-sided: 4.42 sd = .0188.
-  EXPECT_NEAR(missed / static_cast<double>(repetitions), .1, .0188);
-  EXPECT_NEAR(missed_ratio / static_cast<double>(repetitions), .1, .0188);
 }
 
 }  // namespace

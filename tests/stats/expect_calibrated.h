@@ -5,6 +5,7 @@
 #include <functional>
 #include <iostream>
 
+#include "stats/tails/test_result.h"
 #include "tests/stats/calibration.h"
 
 namespace assay::tests {
@@ -16,6 +17,16 @@ inline void expect_calibrated(Experiment experiment, const std::function<double(
   const Calibration calibration = calibrate(experiment, draw);
   EXPECT_TRUE(calibration.ok) << calibration.text();
   std::cout << "  " << experiment.repetitions << " repetitions: " << calibration.text() << "\n";
+}
+
+// The same of both tails of a result.
+inline void expect_tails_calibrated(Experiment experiment,
+                                    const std::function<stats::TestResult(Philox&)>& draw) {
+  const auto tail = [&](double stats::TestResult::*log_p) {
+    expect_calibrated(experiment, [&](Philox& random) { return draw(random).*log_p; });
+  };
+  tail(&stats::TestResult::log_p_lower);
+  tail(&stats::TestResult::log_p_upper);
 }
 
 // The calibration must see that this p-value is wrong, by all repetitions at the latest: mostly an
@@ -36,11 +47,14 @@ inline void expect_caught(const Experiment& experiment,
 
 }  // namespace assay::tests
 
-// A test of ln p of one experiment: its body draws `random` and returns ln p. What follows the name
-// is the experiment: test case, repetitions, shape.
-#define CALIBRATED(suite, name, ...) ASSAY_EXPERIMENT(expect_calibrated, suite, name, __VA_ARGS__)
-#define CAUGHT(suite, name, ...) ASSAY_EXPERIMENT(expect_caught, suite, name, __VA_ARGS__)
-#define ASSAY_EXPERIMENT(expect, suite, name, ...)                    \
-  double suite##_##name(tests::Philox& random);                       \
+// A test of ln p of one experiment: its body draws `random` and returns ln p, or for both tails the
+// result. What follows the name is the experiment: test case, repetitions, shape.
+#define CALIBRATED(suite, name, ...) \
+  ASSAY_EXPERIMENT(expect_calibrated, double, suite, name, __VA_ARGS__)
+#define TAILS_CALIBRATED(suite, name, ...) \
+  ASSAY_EXPERIMENT(expect_tails_calibrated, TestResult, suite, name, __VA_ARGS__)
+#define CAUGHT(suite, name, ...) ASSAY_EXPERIMENT(expect_caught, double, suite, name, __VA_ARGS__)
+#define ASSAY_EXPERIMENT(expect, result, suite, name, ...)            \
+  result suite##_##name(tests::Philox& random);                       \
   TEST(suite, name) { tests::expect({__VA_ARGS__}, suite##_##name); } \
-  double suite##_##name(tests::Philox& random)
+  result suite##_##name(tests::Philox& random)

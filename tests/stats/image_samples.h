@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -13,16 +14,14 @@
 namespace assay::tests {
 
 // Replicates of an image that own their values.
-struct OwnedStack {
+template <class Value>
+struct StackOf {
   stats::ImageExtent extent;
-  std::vector<std::vector<float>> images;
+  std::vector<std::vector<Value>> images;
 
-  stats::ImageStack<float> view() const {
-    stats::ImageStack<float> stack{extent, {}};
-    for (const auto& image : images) stack.images.emplace_back(image);
-    return stack;
-  }
+  stats::ImageStack<Value> view() const { return {extent, {images.begin(), images.end()}}; }
 };
+using OwnedStack = StackOf<float>;
 
 // More than one block of elements and no multiple of anything.
 inline constexpr stats::ImageExtent uneven{37, 31, 3};
@@ -52,6 +51,11 @@ OwnedStack draw_stack(const stats::ImageExtent& extent, std::size_t replicates, 
     for (std::size_t e = 0; e < image.size(); ++e) image[e] = static_cast<float>(draw(e));
   }
   return stack;
+}
+
+// A stats::ForEach in another order than one_by_one.
+inline void last_first(std::size_t count, const std::function<void(std::size_t)>& work) {
+  for (std::size_t i = count; i > 0; --i) work(i - 1);
 }
 
 inline std::vector<double> normals(Philox& random, std::size_t size) {
@@ -132,5 +136,11 @@ inline void add_defect(std::span<double> z, const stats::ImageExtent& extent, co
 // variance is up to twice too large (Efron & Stein). Then p-values crowd around one half, and only
 // levels below it are judged.
 inline double below_half(double log_p) { return log_p < std::log(0.5) ? log_p : 0; }
+
+inline stats::TestResult below_half(stats::TestResult result) {
+  result.log_p_lower = below_half(result.log_p_lower);
+  result.log_p_upper = below_half(result.log_p_upper);
+  return result;
+}
 
 }  // namespace assay::tests

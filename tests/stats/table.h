@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
@@ -60,6 +62,11 @@ inline double log_p_error(double computed, double expected) {
   const double size = std::abs(expected);
   if (size > 690 || size < 1) return difference / size;
   return difference;
+}
+
+inline void expect_near_or_infinite(double value, double expected, double tolerance) {
+  EXPECT_TRUE(value == expected || std::abs(value - expected) <= tolerance)
+      << value << ", expected " << expected;
 }
 
 }  // namespace assay::tests

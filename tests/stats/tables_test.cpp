@@ -1,39 +1,65 @@
-
 #include "stats/cells/chi_square_two_sample.h"
 #include "stats/laws/kolmogorov_smirnov.h"
-#include "stats/means/student_t.h"
-#include "stats/means/welch_t.h"
+#include "stats/means/equivalence.h"
+#include "stats/means/skewness_corrected_t.h"
 #include "stats/tails/tails.h"
 #include "stats/variances/chi_square_variance.h"
 #include "stats/variances/f_ratio.h"
 #include "tests/lehmer.h"
-#include "tests/prelude.h"
-#include "tests/stats/samples.h"
-#include "tests/stats/table.h"
+#include "tests/stats/prelude.h"
 
 namespace assay::stats {
 namespace {
 
-// The data sets of make_tables.py, tests_rows.
-std::vector<double> sample(int k, int size) {
-  std::vector<double> values;
-  for (int i = 1; i <= size; ++i) {
-    const double tooth = 1 + std::fmod(0.05 * k * i, 3);
-    values.push_back(std::cos(i * (0.7 + 0.1 * k)) * tooth + 0.01 * k * i + 0.3 * k);
-  }
-  return values;
-}
-
 void expect_p(double log_p, double expected, double tolerance) {
   EXPECT_NEAR(std::exp(log_p) / expected, 1, tolerance);
+}
+
+TEST(Tables, TheWorkedExampleHasItsPrintedDigits) {
+  const Moments x = moments_of(golden_x);
+  const Moments y = moments_of(golden_y);
+  const ContinuousLaw exponential{[](double v) { return -std::expm1(-v); }};
+  const TestResult t = student_t(x, {1});
+  const TestResult welch = welch_t(x, y, {});
+  const TestResult chi = chi_square_variance(x, .3);
+  const TestResult f = f_ratio(x, y, 1);
+  const OneSampleDistance ks1 = ks_distance(sorted(golden_x), exponential);
+  const TwoSampleDistance ks2 = ks_distance(sorted(golden_x), sorted(golden_y));
+  const Equivalence tost = equivalence(welch_t(x, y, {1, -.6}), welch_t(x, y, {1, .6}));
+  // At this null value T from s equals the worked example's T from the deviation with denominator
+  // n.
+  const double null_value = x.mean + .742126210128256 * x.standard_error();
+  const struct {
+    double found, printed;
+  } values[] = {{t.statistic, -.7040427405942026},
+                {std::exp(log_p_two_sided(t)), .49921572992616514},
+                {t.distribution.parameters.at(0), 9},
+                {welch.statistic, -.9297996148556845},
+                {std::exp(log_p_two_sided(welch)), .3725950590942638},
+                {welch.distribution.parameters.at(0), 10.9076975261363},
+                {chi.statistic, 16.8793666666667},
+                {std::exp(chi.log_p_upper), .0506389375042817},
+                {f.statistic, .612040106637935},
+                {std::exp(log_p_two_sided(f)), .487284693225179},
+                {ks1.distance, .12303325642225293},
+                {std::exp(kolmogorov_smirnov(ks1).log_p_upper), .993117303692647},
+                {ks2.distance(), .4},
+                {std::exp(kolmogorov_smirnov(ks2).log_p_upper), .433412176059232},
+                {std::exp(tost.at_low.log_p_upper), .328841750041338},
+                {std::exp(tost.at_high.log_p_lower), .0205575060229084},
+                {skewness_corrected_t(x, {null_value}).statistic, -.638855547353991}};
+  for (const auto& [found, printed] : values) EXPECT_NEAR(found / printed, 1, 1e-12) << printed;
+  EXPECT_EQ(t.distribution.family, "student-t");
+  EXPECT_EQ(t.exactness, Exactness::exact);
+  EXPECT_EQ(tost.log_p, tost.at_low.log_p_upper);
 }
 
 TEST(Tables, EveryMethodAgreesWithScipyOnWholeDataSets) {
   for (const Row& row : tests::read_table("tests")) {
     const int k = static_cast<int>(row["k"]);
     SCOPED_TRACE(k);
-    const auto xs = sample(k, static_cast<int>(row["n"]));
-    const auto ys = sample(k + 3, static_cast<int>(row["m"]));
+    const auto xs = tests::table_sample(k, row["n"]);
+    const auto ys = tests::table_sample(k + 3, row["m"]);
     const Moments x = moments_of(xs);
     const Moments y = moments_of(ys);
     const TestResult t = student_t(x, {0.2 * k});

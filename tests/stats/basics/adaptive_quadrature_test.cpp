@@ -1,8 +1,8 @@
 #include "stats/basics/adaptive_quadrature.h"
 
 #include "stats/cells/plane_cells.h"
-#include "tests/prelude.h"
 #include "tests/stats/point_by_point.h"
+#include "tests/stats/prelude.h"
 
 namespace assay::stats {
 namespace {
@@ -43,27 +43,10 @@ void expect_the_same(QuadratureLimits limits) {
 
 TEST(AdaptiveQuadrature, LinesSideBySideAreThoseOneByOneBitByBit) {
   for (const double tolerance : {1e-3, 1e-7, 1e-12}) expect_the_same({.tolerance = tolerance});
-}
-
-TEST(AdaptiveQuadrature, SoTheyAreWhereverTheEvaluationsRunOut) {
+  // Wherever the evaluations run out.
   for (const std::uint64_t most : {0u, 1u, 700u, 5000u, 9000u, 14000u, 18000u, 30000u}) {
     expect_the_same({.tolerance = 1e-9, .evaluations = most});
   }
-}
-
-TEST(AdaptiveQuadrature, AsksForALevelOfAllLinesAtOnce) {
-  AdaptiveQuadrature rule({.tolerance = 1e-9});
-  std::size_t questions = 0;
-  std::size_t places = 0;
-  rule.along(
-      [&](auto x, auto y, auto values) {
-        ++questions;
-        places += values.size();
-        for (std::size_t i = 0; i < values.size(); ++i) values[i] = density(x[i], y[i]);
-      },
-      lines());
-  EXPECT_LE(questions, 26u) << "the whole, and 25 halvings at most";
-  EXPECT_GT(places, 100 * questions);
 }
 
 // A density that is rough everywhere would be halved 2^24 times.
@@ -85,20 +68,6 @@ TEST(AdaptiveQuadrature, NoMoreIsAskedForThanTheEvaluationsAndALevelOfThem) {
   EXPECT_LE(largest, most);
   // Places are used side by side up to the limit, then line by line. A line under way is ended.
   EXPECT_LE(places, 3 * most);
-}
-
-// On the way down half of 2000 places lie beyond the outermost nodes of some part.
-TEST(AdaptiveQuadrature, AJumpAnywhereIsFoundWithinItsError) {
-  for (int k = 1; k < 2000; ++k) {
-    const double place = std::fmod(.6180339887498949 * k, 1);
-    for (const double above : {0.0, 1.01, 50.0}) {
-      AdaptiveQuadrature rule({.tolerance = 1e-8});
-      const auto density = [&](double x) { return x < place ? 1 : above; };
-      const Integral found = rule.over(rule.of(density), {0, 1});
-      EXPECT_NEAR(found.value, place + above * (1 - place), found.error + 1e-14) << place;
-      EXPECT_LT(found.error, 1e-7 + 1e-8 * above);
-    }
-  }
 }
 
 TEST(AdaptiveQuadrature, APoleIsFoundWithinAnErrorThatIsNoMultipleOfItsHeight) {
@@ -124,16 +93,6 @@ TEST(AdaptiveQuadrature, ErrorsOfTheValuesThemselvesAreNotHalved) {
   const Integral found = rule.over(smooth, {0, 1});
   EXPECT_NEAR(found.error, 1e-3, 1e-9);
   EXPECT_EQ(calls, 3);
-}
-
-TEST(AdaptiveQuadrature, ADensityIsAskedForOnePlaceOrMany) {
-  AdaptiveQuadrature rule({.tolerance = 1e-9});
-  const auto one = rule.over(rule.of([](double x) { return x; }), {0, 1});
-  const auto many = rule.over(
-      rule.of([](auto at, auto values) { std::ranges::copy(at, values.begin()); }), {0, 1});
-  EXPECT_EQ(one.value, many.value);
-  EXPECT_THROW(rule.along(point_by_point([](double, double) { return -1; }), lines()),
-               std::domain_error);
 }
 
 }  // namespace

@@ -1,21 +1,9 @@
 #include "stats/basics/joint_moments.h"
 
-#include "tests/philox.h"
-#include "tests/prelude.h"
+#include "tests/stats/prelude.h"
 
 namespace assay::stats {
 namespace {
-
-struct Pairs {
-  std::vector<double> x;
-  std::vector<double> cost;
-};
-
-JointMoments joint(const Pairs& pairs) {
-  JointSums sums;
-  for (std::size_t i = 0; i < pairs.x.size(); ++i) sums.add(pairs.x[i], pairs.cost[i]);
-  return sums.moments();
-}
 
 /// Deviations from the mean in 64-bit mantissas, of values less the first, which is exact.
 std::vector<long double> deviations(const std::vector<double>& values) {
@@ -121,10 +109,8 @@ TEST(JointMoments, AConstantCostLeavesExactZeros) {
 
 TEST(JointMoments, HoldTheMomentsOfEachCoordinate) {
   const Pairs pairs = drawn(1000, 7);
-  Moments x;
-  Moments cost;
-  for (const double value : pairs.x) x.add(value);
-  for (const double value : pairs.cost) cost.add(value);
+  const Moments x = moments_of(pairs.x);
+  const Moments cost = moments_of(pairs.cost);
   const JointMoments both = joint(pairs);
   EXPECT_NEAR(both.x().mean, x.mean, 1e-14);
   EXPECT_NEAR(both.x().kurtosis() / x.kurtosis(), 1, 1e-12);
@@ -134,8 +120,7 @@ TEST(JointMoments, HoldTheMomentsOfEachCoordinate) {
 }
 
 TEST(JointMoments, OfFourMomentsAreTheLowestSums) {
-  Moments x;
-  for (const double value : drawn(50, 0).x) x.add(value);
+  const Moments x = moments_of(drawn(50, 0).x);
   const JointMoments four = joint_of_four(x, 2);
   EXPECT_EQ(four.known, 4U);
   EXPECT_EQ(four.x().m3, x.m3);

@@ -1,7 +1,6 @@
 #include "stats/basics/mean_rounding.h"
 
-#include "tests/philox.h"
-#include "tests/prelude.h"
+#include "tests/stats/prelude.h"
 
 namespace assay::stats {
 namespace {

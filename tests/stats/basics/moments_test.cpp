@@ -1,11 +1,8 @@
 #include "stats/basics/moments.h"
 
-#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "stats/basics/errors.h"
-#include "tests/prelude.h"
-#include "tests/stats/samples.h"
+#include "tests/stats/prelude.h"
 
 namespace assay::stats {
 namespace {
@@ -51,11 +48,6 @@ TEST(Moments, ZeroesAreCountedApart) {
   EXPECT_EQ(moments_of(std::vector<double>{0, 1, 0, -0.0, 2}).nonzero, 2U);
 }
 
-TEST(Moments, ALargeOffsetDoesNotCancel) {
-  const Moments x = moments_of(std::vector<double>{1e9, 1e9 + 1, 1e9 + 2});
-  EXPECT_DOUBLE_EQ(x.variance(), 1);
-}
-
 // Steps of the mean are far below the spacing of doubles at 1e13. If they are dropped m2 is off by
 // 6e-4 and m4 by 1.4e-3.
 TEST(Moments, ALargeOffsetOfManyValuesLosesNoStep) {
@@ -77,13 +69,8 @@ TEST(Moments, ALargeOffsetOfManyValuesLosesNoStep) {
   EXPECT_NEAR(offset.m4 / distances.m4, 1, 1e-12);
 }
 
-TEST(Moments, TooFewOrConstantValuesThrow) {
-  EXPECT_THROW(moments_of(std::vector<double>{1}).variance(), std::domain_error);
-  EXPECT_THROW(moments_of(std::vector<double>{1}).standard_error(), std::domain_error);
-  const Moments constant = moments_of(std::vector<double>{2, 2, 2});
-  EXPECT_EQ(constant.variance(), 0);
-  EXPECT_THROW(constant.skewness(), ZeroVariance);
-  EXPECT_THROW(constant.kurtosis(), ZeroVariance);
+TEST(Moments, OfAConstantHaveNoVariance) {
+  EXPECT_EQ(moments_of(std::vector<double>{2, 2, 2}).variance(), 0);
 }
 
 RC_GTEST_PROP(Moments, MergeEqualsOnePass, (const std::vector<int>& a, const std::vector<int>& b)) {
@@ -93,29 +80,6 @@ RC_GTEST_PROP(Moments, MergeEqualsOnePass, (const std::vector<int>& a, const std
   const std::vector<double> rest = values_of(b);
   all.insert(all.end(), rest.begin(), rest.end());
   RC_ASSERT(close(moments_of(all), merged));
-}
-
-RC_GTEST_PROP(Moments, MergeIsCommutative, (const std::vector<int>& a, const std::vector<int>& b)) {
-  Moments ab = moments_of(values_of(a));
-  ab.merge(moments_of(values_of(b)));
-  Moments ba = moments_of(values_of(b));
-  ba.merge(moments_of(values_of(a)));
-  RC_ASSERT(close(ab, ba));
-}
-
-RC_GTEST_PROP(Moments, MergeIsAssociative,
-              (const std::vector<int>& a, const std::vector<int>& b, const std::vector<int>& c)) {
-  const Moments ma = moments_of(values_of(a));
-  const Moments mb = moments_of(values_of(b));
-  const Moments mc = moments_of(values_of(c));
-  Moments left = ma;
-  left.merge(mb);
-  left.merge(mc);
-  Moments tail = mb;
-  tail.merge(mc);
-  Moments right = ma;
-  right.merge(tail);
-  RC_ASSERT(close(left, right));
 }
 
 }  // namespace

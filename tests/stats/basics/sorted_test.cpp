@@ -1,7 +1,6 @@
 #include "stats/basics/sorted.h"
 
-#include "tests/prelude.h"
-#include "tests/stats/calibration.h"
+#include "tests/stats/prelude.h"
 
 namespace assay::stats {
 namespace {

@@ -1,26 +1,11 @@
 #include "stats/cells/adaptive_cells.h"
 
 #include "stats/cells/chi_square_fit.h"
-#include "tests/prelude.h"
-#include "tests/stats/calibration.h"
 #include "tests/stats/point_by_point.h"
+#include "tests/stats/prelude.h"
 
 namespace assay::stats {
 namespace {
-
-std::vector<double> even(std::size_t cells) {
-  std::vector<double> borders;
-  for (std::size_t k = 0; k <= cells; ++k) {
-    borders.push_back(static_cast<double>(k) / static_cast<double>(cells));
-  }
-  return borders;
-}
-
-PlaneGrid unit_grid(std::size_t rows, std::size_t columns) { return {even(rows), even(columns)}; }
-
-PlaneDensity on_unit_square(auto density) {
-  return {.x = {0, 1}, .y = {0, 1}, .values = point_by_point(density)};
-}
 
 void expect_a_partition(const HalvedCells& cells) {
   double area = 0;
@@ -89,14 +74,8 @@ double normal_mass(Span span, double mean, double deviation) {
 
 constexpr Peak narrow{.x = .4, .y = .7, .deviation = .004};
 
-PlaneDensity density_of(const Peak& peak) {
-  PlaneDensity density = on_unit_square(peak);
-  density.x_panels = density.y_panels = {100};
-  return density;
-}
-
 TEST(AdaptiveCells, ANarrowPeakIsCountedInManyCells) {
-  const auto found = adaptive_cells(unit_grid(16, 32), density_of(narrow), 1.0 / 256);
+  const auto found = adaptive_cells(unit_grid(16, 32), on_unit_square(narrow, {100}), 1.0 / 256);
   std::size_t held = 0;
   for (std::size_t i = 0; i < found.cells.size(); ++i) {
     const PlaneCell& cell = found.cells.cells[i];
@@ -129,7 +108,7 @@ CellCounts counts_of(Philox& random, const AdaptiveCells& found, double deviatio
 // it, so the grid can test nothing. False alarm 1e-5 (tests/stats/calibration.h).
 TEST(AdaptiveCells, TheirFitIsCalibratedAndFindsAWrongWidthThatTheGridCannot) {
   const auto cells = [](double share) {
-    return adaptive_cells(unit_grid(16, 32), density_of(narrow), share);
+    return adaptive_cells(unit_grid(16, 32), on_unit_square(narrow, {100}), share);
   };
   const AdaptiveCells fine = cells(1.0 / 256);
   const AdaptiveCells coarse = cells(1);
@@ -139,12 +118,8 @@ TEST(AdaptiveCells, TheirFitIsCalibratedAndFindsAWrongWidthThatTheGridCannot) {
       return chi_square_fit(counts, {.probability_tolerance = 1e-6}).test.log_p_upper;
     };
   };
-  const auto right = calibrate(Experiment{381, tests::repetitions(3000)}, fit(fine, 1));
-  EXPECT_TRUE(right.ok) << right.text();
-  std::cout << "  " << tests::repetitions(3000) << " repetitions: " << right.text() << "\n";
-  const auto wrong = calibrate(Experiment{382, tests::repetitions(1000)}, fit(fine, 1.2));
-  EXPECT_FALSE(wrong.ok) << wrong.text();
-  std::cout << "  a fifth too wide: " << wrong.text() << "\n";
+  expect_calibrated({381, tests::repetitions(3000)}, fit(fine, 1));
+  expect_caught({382, 1000}, fit(fine, 1.2));
   Philox random(383);
   EXPECT_THROW(fit(coarse, 1)(random), std::domain_error) << "one pool";
 }
@@ -175,26 +150,11 @@ TEST(AdaptiveCells, ACellIsNotHalvedIntoNothing) {
       values[i] = 1 / (std::abs(x[i] - spike) + 1e-18) / 80;
     }
   };
-  const auto found = adaptive_cells(even(4), {.values = at}, 1.0 / 64, {.tolerance = 1e-3});
+  const auto found = adaptive_cells(even_borders(4), {.values = at}, 1.0 / 64, {.tolerance = 1e-3});
   for (const PlaneCell& cell : found.cells.cells) EXPECT_LT(cell.x.low, cell.x.high);
   const auto tiny = adaptive_cells({1e9, std::nextafter(1e9, 2e9)}, {.values = at}, 1.0 / 64,
                                    {.tolerance = 1e-3});
   EXPECT_EQ(tiny.cells.size(), 1U) << "nothing lies between two neighbours";
-}
-
-// A disc within a few cells of the grid: it jumps along a curve.
-TEST(AdaptiveCells, AJumpAlongACurveStaysWithinItsErrors) {
-  constexpr double r = .03;
-  const auto disc = [&](double x, double y) {
-    return std::hypot(x - .43, y - .57) < r ? 1 / (std::numbers::pi * r * r) : 0.0;
-  };
-  PlaneDensity density = on_unit_square(disc);
-  density.x_panels = density.y_panels = {32};
-  const auto found = adaptive_cells(unit_grid(16, 16), density, 1.0 / 64, {.tolerance = 1e-6});
-  EXPECT_NEAR(found.mass.total, 1, found.mass.total_error);
-  EXPECT_LT(found.mass.total_error, 1e-3);
-  EXPECT_LE(*std::ranges::max_element(found.mass.probability), 1.0 / 64);
-  expect_a_partition(found.cells);
 }
 
 // A peak of 2e-5 by 3e-5 lies between the nodes of every cell, and between its looks for the side.
@@ -227,8 +187,7 @@ TEST(AdaptiveCells, WithoutEvaluationsACellStaysWhole) {
     ++evaluations;
     return narrow(x, y);
   };
-  PlaneDensity density = on_unit_square(counted);
-  density.x_panels = density.y_panels = {100};
+  const PlaneDensity density = on_unit_square(counted, {100});
   const QuadratureLimits enough{.tolerance = 1e-8};
   adaptive_cells(unit_grid(4, 4), density, 1, enough);
   const QuadratureLimits limits{.tolerance = 1e-8, .evaluations = evaluations + 20000};
@@ -243,7 +202,7 @@ TEST(AdaptiveCells, PartsOfAnIntervalHaveTheirMass) {
   const LineDensity density{.values = [](std::span<const double> x, std::span<double> values) {
     for (std::size_t i = 0; i < x.size(); ++i) values[i] = 50 * std::exp(-50 * x[i]);
   }};
-  const auto found = adaptive_cells(even(64), density, 1.0 / 32);
+  const auto found = adaptive_cells(even_borders(64), density, 1.0 / 32);
   for (std::size_t i = 0; i < found.cells.size(); ++i) {
     const Span& part = found.cells.cells[i].x;
     EXPECT_NEAR(found.mass.probability[i], std::exp(-50 * part.low) - std::exp(-50 * part.high),
@@ -252,18 +211,6 @@ TEST(AdaptiveCells, PartsOfAnIntervalHaveTheirMass) {
   }
   EXPECT_GT(found.cells.size(), 64U + 30);
   expect_a_partition(found.cells);
-}
-
-TEST(AdaptiveCells, RefusesWhatIsNoDensityAndNoShare) {
-  const PlaneGrid grid = unit_grid(2, 2);
-  const auto flat = on_unit_square([](double, double) { return 1.0; });
-  EXPECT_THROW(adaptive_cells(grid, on_unit_square([](double, double) { return -1.0; }), 1),
-               std::domain_error);
-  EXPECT_THROW(adaptive_cells(grid, flat, 0), std::domain_error);
-  EXPECT_THROW(adaptive_cells(grid, flat, 1.5), std::domain_error);
-  EXPECT_THROW(adaptive_cells({{0, 1}, {1, 0}}, flat, 1), std::domain_error);
-  EXPECT_THROW(whole_cells({{0, 1}, {1, 0}}), std::domain_error);
-  EXPECT_THROW(whole_cells(grid).index(1.5, 0), std::domain_error);
 }
 
 }  // namespace

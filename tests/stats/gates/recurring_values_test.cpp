@@ -1,8 +1,6 @@
 #include "stats/gates/recurring_values.h"
 
-#include "tests/philox.h"
-#include "tests/prelude.h"
-#include "tests/stats/samples.h"
+#include "tests/stats/prelude.h"
 
 namespace assay::stats {
 namespace {
@@ -82,10 +80,11 @@ std::vector<Law> laws_of_atoms() {
   laws.push_back(
       {"geometric", [](Philox& random) { return std::floor(random.exponential() * 5); }});
   laws.push_back({"Pareto", [](Philox& random) { return std::floor(1 / random.uniform()); }});
-  laws.push_back({"half of 40 atoms", [](Philox& random) {
-                    const double u = random.uniform();
-                    return random.uniform() < 0.5 ? u : std::floor(40 * u);
-                  }});
+  const auto half_atoms = [](Philox& random) {
+    const double u = random.uniform();
+    return random.uniform() < 0.5 ? u : std::floor(40 * u);
+  };
+  laws.push_back({"half of 40 atoms", half_atoms});
   return laws;
 }
 

@@ -1,8 +1,6 @@
 #include "stats/gates/repeated_run.h"
 
-#include "tests/philox.h"
-#include "tests/prelude.h"
-#include "tests/stats/samples.h"
+#include "tests/stats/prelude.h"
 
 namespace assay::stats {
 namespace {
@@ -17,26 +15,26 @@ std::vector<double> joined(std::vector<double> values, const std::vector<double>
   return values;
 }
 
+void expect_run(const std::optional<RepeatedRun>& run, std::size_t first, std::size_t second,
+                std::size_t length) {
+  ASSERT_TRUE(run);
+  EXPECT_EQ(run->first, first);
+  EXPECT_EQ(run->second, second);
+  EXPECT_EQ(run->length, length);
+}
+
 TEST(RepeatedRun, FindsBlocksThatOccurAgainWholly) {
   const std::vector<double> block = uniform_values(100, 1);
   std::vector<double> values = block;
   for (int i = 1; i < 10; ++i) values = joined(values, block);
-  const auto run = repeated_run(values);
-  ASSERT_TRUE(run);
-  EXPECT_EQ(run->first, 0u);
-  EXPECT_EQ(run->second, 100u);
-  EXPECT_EQ(run->length, 900u);
+  expect_run(repeated_run(values), 0, 100, 900);
 }
 
 TEST(RepeatedRun, FindsTheSecondOfTwoFarApart) {
   const std::vector<double> block = uniform_values(60, 2);
   const auto values = joined(joined(joined(uniform_values(37, 3), block), uniform_values(500, 4)),
                              joined(block, uniform_values(11, 5)));
-  const auto run = repeated_run(values);
-  ASSERT_TRUE(run);
-  EXPECT_EQ(run->first, 37u);
-  EXPECT_EQ(run->second, 597u);
-  EXPECT_EQ(run->length, 60u);
+  expect_run(repeated_run(values), 37, 597, 60);
 }
 
 // 4 values over and over, which 60 draws from four values would not give.
@@ -45,8 +43,7 @@ TEST(RepeatedRun, FindsAShortPatternThatGoesOn) {
   for (int i = 0; i < 60; ++i) values.push_back(std::sqrt(1 + i % 4));
   const auto run = repeated_run(values);
   ASSERT_TRUE(run);
-  EXPECT_EQ(run->second - run->first, 4u);
-  EXPECT_EQ(run->length, 56u);
+  expect_run(run, run->first, run->first + 4, 56);
 }
 
 TEST(RepeatedRun, NeedsAsManyChangesAsChanceDoesNotMake) {
@@ -61,12 +58,8 @@ TEST(RepeatedRun, NeedsAsManyChangesAsChanceDoesNotMake) {
 
 TEST(RepeatedRun, OfTwoSamplesSaysWhereInEach) {
   const auto block = uniform_values(50, 9);
-  const auto run =
-      common_run(joined(block, uniform_values(20, 10)), joined(uniform_values(30, 11), block));
-  ASSERT_TRUE(run);
-  EXPECT_EQ(run->first, 0u);
-  EXPECT_EQ(run->second, 30u);
-  EXPECT_EQ(run->length, 50u);
+  const auto one = joined(block, uniform_values(20, 10));
+  expect_run(common_run(one, joined(uniform_values(30, 11), block)), 0, 30, 50);
   EXPECT_FALSE(common_run(uniform_values(1000, 12), uniform_values(1000, 13)));
 }
 
@@ -87,8 +80,7 @@ TEST(RepeatedRun, IsNotFoundInIndependentValues) {
   }
 }
 
-// Stays count by their length. Runs of the common value have many lengths, between two rare values
-// that have few.
+// Runs of the common value have many lengths, between two rare values that have few.
 TEST(RepeatedRun, StaysOfDifferentLengthsDiffer) {
   Philox random(16);
   const auto rare = [&] {
@@ -98,25 +90,20 @@ TEST(RepeatedRun, StaysOfDifferentLengthsDiffer) {
   for (int i = 0; i < 20; ++i) EXPECT_FALSE(repeated_run(sample_of(20000, rare)));
 }
 
-// Its stays are short and alike. Only its having two values tells it.
-TEST(RepeatedRun, IsNotFoundInTwoStatesThatHardlyStay) {
-  Philox random(17);
-  double state = 0;
-  const auto restless = [&] { return state = random.uniform() < 0.97 ? 1 - state : state; };
-  EXPECT_FALSE(repeated_run(sample_of(4000, restless)));
-}
-
-// Dependent values are not repeated.
+// The stays of two states that change at nearly every step are short and alike.
 TEST(RepeatedRun, IsNotFoundInChains) {
   Philox random(15);
   double place = 0;
   const auto walk = [&] { return place += random.uniform() < 0.5 ? -1 : 1; };
   const auto lazy = [&] { return random.uniform() < 0.9 ? place : walk(); };
-  const auto two_states = [&] { return place = random.uniform() < 0.05 ? 1 - place : place; };
+  const auto two_states = [&](double change) {
+    return [&, change] { return place = random.uniform() < change ? 1 - place : place; };
+  };
   EXPECT_FALSE(repeated_run(sample_of(20000, walk)));
   EXPECT_FALSE(repeated_run(sample_of(20000, lazy)));
   place = 0;
-  EXPECT_FALSE(repeated_run(sample_of(20000, two_states)));
+  EXPECT_FALSE(repeated_run(sample_of(20000, two_states(0.05))));
+  EXPECT_FALSE(repeated_run(sample_of(4000, two_states(0.97))));
   EXPECT_FALSE(repeated_run(std::vector<double>(1000, 0.25)));
   EXPECT_FALSE(repeated_run({}));
 }

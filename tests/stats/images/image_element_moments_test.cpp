@@ -63,12 +63,5 @@ TEST(ElementMoments, WhatIsNotFiniteShowsInItsElementAlone) {
   }
 }
 
-TEST(ElementMoments, TakeAnImageAndElementsThatAreThere) {
-  std::vector<Moments> out(3);
-  EXPECT_THROW(element_moments(ImageStack<double>{{3, 1, 1}, {}}, 0, out), std::domain_error);
-  const std::vector<double> image(3);
-  EXPECT_THROW(element_moments(ImageStack<double>{{3, 1, 1}, {image}}, 1, out), std::domain_error);
-}
-
 }  // namespace
 }  // namespace assay::stats

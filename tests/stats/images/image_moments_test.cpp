@@ -48,17 +48,15 @@ TEST(ImageMoments, EveryOtherImageIsAHalf) {
 }
 
 TEST(ImageMoments, ADistantFirstValueCostsNoAccuracy) {
-  std::vector<std::vector<double>> images;
+  tests::StackOf<double> stack{{1, 1, 1}, {}};
   Moments expected;
   for (int r = 0; r < 64; ++r) {
-    images.push_back({r == 0 ? 1e12 : 1 + 1e-3 * r});
-    expected.add(images.back()[0]);
+    stack.images.push_back({r == 0 ? 1e12 : 1 + 1e-3 * r});
+    expected.add(stack.images.back()[0]);
   }
-  ImageStack<double> stack{{1, 1, 1}, {}};
-  for (const auto& image : images) stack.images.emplace_back(image);
   double mean = 0;
   double m2 = 0;
-  moments_of_range(stack, 0, {{&mean, 1}, {&m2, 1}});
+  moments_of_range(stack.view(), 0, {{&mean, 1}, {&m2, 1}});
   EXPECT_NEAR(mean / expected.mean, 1, 1e-14);
   EXPECT_NEAR(m2 / expected.m2, 1, 1e-13);
 }

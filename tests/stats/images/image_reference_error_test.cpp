@@ -1,7 +1,7 @@
 #include "stats/images/image_reference_error.h"
 
 #include "tests/prelude.h"
-#include "tests/stats/calibration.h"
+#include "tests/stats/expect_calibrated.h"
 #include "tests/stats/image_samples.h"
 
 namespace assay::stats {
@@ -16,65 +16,49 @@ struct Case {
   double sd = 1;
   // One error of all elements of the reference.
   bool common = false;
-  // The side of the test.
-  bool lower = true;
+  // How its error is taken into account, if it is.
+  std::optional<ElementErrors> taken = ElementErrors::independent;
 };
 
 // The margin's p-values with the bias at the margin and the reference as uncertain as the images.
-// `judge` makes the distance.
-template <class Judge>
-Calibration at_margin(std::uint32_t test_case, const Case& given, const Judge& judge) {
-  return calibrate({test_case, 2000, Shape::at_most_uniform}, [&](Philox& random) {
-    const OwnedStack a = draw_stack(extent, images, [&](std::size_t) {
-      return 10 * (1 + margin) + given.sd * random.normal();
-    });
-    const double error = given.sd / std::sqrt(static_cast<double>(images));
-    const double common = random.normal();
-    std::vector<double> value(extent.elements());
-    for (double& v : value) v = 10 + error * (given.common ? common : random.normal());
-    const std::vector<double> errors(extent.elements(), error);
-    const ImageDistance distance = judge(a.view(), ImageReference{extent, value, errors});
-    const TestResult result = squared_margin_test(distance, margin * margin);
-    return below_half(given.lower ? result.log_p_lower : result.log_p_upper);
-  });
+TestResult at_margin(Philox& random, const Case& given) {
+  const OwnedStack stack = draw_stack(
+      extent, images, [&](std::size_t) { return 10 * (1 + margin) + given.sd * random.normal(); });
+  const double error = given.sd / std::sqrt(static_cast<double>(images));
+  const double common = random.normal();
+  std::vector<double> value(extent.elements());
+  for (double& v : value) v = 10 + error * (given.common ? common : random.normal());
+  const std::vector<double> errors(extent.elements(), error);
+  const ImageReference reference{extent, value, errors};
+  const ImageStack<float> a = stack.view();
+  ImageDistance distance = image_distance(a, reference);
+  if (given.taken) distance = with_reference_error(distance, a, reference, *given.taken);
+  return below_half(squared_margin_test(distance, margin * margin));
 }
 
-const auto independent = [](const auto& a, const ImageReference& b) {
-  return with_reference_error(image_distance(a, b), a, b, ElementErrors::independent);
-};
-const auto unknown = [](const auto& a, const ImageReference& b) {
-  return with_reference_error(image_distance(a, b), a, b, ElementErrors::unknown);
-};
-const auto left_out = [](const auto& a, const ImageReference& b) { return image_distance(a, b); };
-
-// Every calibration raises a false alarm with probability 1e-5.
 TEST(ImageReferenceError, KeepsTheLevelAtTheMargin) {
-  std::uint32_t test_case = 1200;
   for (const double sd : {1.0, 8.0}) {
-    for (const bool lower : {true, false}) {
-      const Calibration calibration =
-          at_margin(test_case++, {.sd = sd, .lower = lower}, independent);
-      EXPECT_TRUE(calibration.ok) << sd << lower << ": " << calibration.text();
-    }
+    expect_tails_calibrated({1200, 2000, Shape::at_most_uniform},
+                            [&](Philox& random) { return at_margin(random, {.sd = sd}); });
   }
 }
 
-TEST(ImageReferenceError, KeepsTheLevelWhateverTheDependence) {
-  for (const bool lower : {true, false}) {
-    const Case given{.sd = 1, .common = true, .lower = lower};
-    const Calibration calibration = at_margin(lower ? 1210 : 1211, given, unknown);
-    EXPECT_TRUE(calibration.ok) << lower << ": " << calibration.text();
-  }
+TAILS_CALIBRATED(ImageReferenceError, KeepsTheLevelWhateverTheDependence, 1210, 2000,
+                 Shape::at_most_uniform) {
+  return at_margin(random, {.common = true, .taken = ElementErrors::unknown});
 }
 
-TEST(ImageReferenceError, LeftOutIsCaught) {
-  for (const bool lower : {true, false}) {
-    EXPECT_FALSE(at_margin(lower ? 1220 : 1221, {.sd = 1, .lower = lower}, left_out).ok) << lower;
-  }
+CAUGHT(ImageReferenceError, LeftOutIsCaught, 1220, 2000, Shape::at_most_uniform) {
+  return at_margin(random, {.taken = {}}).log_p_lower;
 }
 
-TEST(ImageReferenceError, TakenForIndependentWhereItIsCommonIsCaught) {
-  EXPECT_FALSE(at_margin(1230, {.sd = 1, .common = true}, independent).ok);
+CAUGHT(ImageReferenceError, LeftOutIsCaughtOnTheOtherSide, 1221, 2000, Shape::at_most_uniform) {
+  return at_margin(random, {.taken = {}}).log_p_upper;
+}
+
+CAUGHT(ImageReferenceError, TakenForIndependentWhereItIsCommonIsCaught, 1230, 2000,
+       Shape::at_most_uniform) {
+  return at_margin(random, {.common = true}).log_p_lower;
 }
 
 TEST(ImageReferenceError, OfAnExactReferenceIsNothing) {

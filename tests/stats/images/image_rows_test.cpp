@@ -6,7 +6,6 @@
 #include "stats/pyramids/image_row_pyramid.h"
 #include "tests/prelude.h"
 #include "tests/stats/image_samples.h"
-#include "tests/stats/last_first.h"
 
 namespace assay::stats {
 namespace {

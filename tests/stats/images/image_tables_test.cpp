@@ -4,6 +4,7 @@
 #include "stats/tails/t_to_z.h"
 #include "stats/tails/tails.h"
 #include "tests/prelude.h"
+#include "tests/stats/image_samples.h"
 #include "tests/stats/table.h"
 
 namespace assay::stats {
@@ -11,18 +12,9 @@ namespace {
 
 constexpr ImageExtent extent{13, 9, 2};
 
-struct Owned {
-  std::vector<std::vector<double>> images;
-  ImageStack<double> view() const {
-    ImageStack<double> stack{extent, {}};
-    for (const auto& image : images) stack.images.emplace_back(image);
-    return stack;
-  }
-};
-
 // images(k, replicates) of make_images.py, plus a shift.
-Owned images_of(int k, int replicates, double shift = 0) {
-  Owned stack;
+StackOf<double> images_of(int k, int replicates, double shift = 0) {
+  StackOf<double> stack{extent, {}};
   for (int r = 0; r < replicates; ++r) {
     std::vector<double>& image = stack.images.emplace_back();
     for (int e = 0; e < static_cast<int>(extent.elements()); ++e) {
@@ -50,8 +42,8 @@ TEST(ImageTables, TheNormalValueOfStudentsTIsWithinItsStatedError) {
 }
 
 TEST(ImageTables, TheJackknifeAgreesWithLeavingReplicatesOutOneByOne) {
-  const Owned a = images_of(1, 16);
-  const Owned b = images_of(2, 19);
+  const auto a = images_of(1, 16);
+  const auto b = images_of(2, 19);
   const std::vector<Row> rows = tests::read_table("image_equivalence");
   const ImageDistance distance = image_distance(a.view(), b.view());
   EXPECT_NEAR(distance.squared_bias, rows[0]["estimate"], 1e-9);

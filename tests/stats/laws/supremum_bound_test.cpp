@@ -1,7 +1,6 @@
 #include "stats/laws/supremum_bound.h"
 
-#include "tests/prelude.h"
-#include "tests/stats/table.h"
+#include "tests/stats/prelude.h"
 
 namespace assay::stats {
 namespace {

@@ -1,9 +1,7 @@
 #include "stats/means/power_exact.h"
 
 #include "stats/means/two_valued.h"
-#include "tests/philox.h"
-#include "tests/prelude.h"
-#include "tests/stats/laws.h"
+#include "tests/stats/prelude.h"
 
 namespace assay::stats {
 namespace {
@@ -67,8 +65,8 @@ TEST(PowerExact, BetsFindAMeanAtThePlannedSize) {
         found += (effect > 0 ? result.log_p_upper : result.log_p_lower) <= std::log(0.005);
       }
       EXPECT_GE(found, 960) << each.law.name << effect << " at " << n;
-      std::printf("  %s, effect %g: %d of 1000 at n = %d\n", each.law.name, effect, found,
-                  static_cast<int>(n));
+      std::cout << "  " << each.law.name << ", effect " << effect << ": " << found << " at " << n
+                << "\n";
     }
   }
 }
@@ -84,12 +82,6 @@ TEST(PowerExact, BetsFindNothingBeyondAnInfiniteEnd) {
   EXPECT_FALSE(exact_detectable(betting_planning, plan, 1000000, -1).has_value());
   const double found = exact_detectable(betting_planning, plan, 10000, 1).value();
   EXPECT_NEAR(betting_planning.power(plan, 10000, found), .99, 1e-6);
-}
-
-TEST(PowerExact, RefusesWhatIsNoPlan) {
-  EXPECT_THROW(binomial_planning.power(coin, 0, 0.1), std::domain_error);
-  EXPECT_THROW(binomial_planning.power(coin, 10, 0), std::domain_error);
-  EXPECT_THROW(betting_planning.power(coin, 0, 0.1), std::domain_error);
 }
 
 }  // namespace

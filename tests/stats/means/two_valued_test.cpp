@@ -2,9 +2,7 @@
 
 #include "stats/tails/special.h"
 #include "stats/tails/tails.h"
-#include "tests/prelude.h"
-#include "tests/stats/samples.h"
-#include "tests/stats/table.h"
+#include "tests/stats/prelude.h"
 
 namespace assay::stats {
 namespace {
@@ -22,9 +20,6 @@ TEST(TwoValued, TheCountIsRecoveredFromMoments) {
   EXPECT_EQ(x.high.successes, 41U);
   EXPECT_EQ(x.high.trials, 997U);
   EXPECT_EQ(two_valued(moments_of(std::vector<double>(9, 7.1)), {-2.5, 7.1}).high.successes, 9U);
-  EXPECT_THROW(two_valued(moments_of(values), {-2.5, 7}), std::domain_error);
-  values[0] = 2.3;
-  EXPECT_THROW(two_valued(moments_of(values), {-2.5, 7.1}), std::domain_error);
 }
 
 TEST(TwoValuedMean, IsTheExactBinomialTest) {
@@ -32,13 +27,6 @@ TEST(TwoValuedMean, IsTheExactBinomialTest) {
   const TestResult direct = binomial({3, 50}, .07);
   EXPECT_NEAR(result.log_p_lower, direct.log_p_lower, 1e-12);
   EXPECT_NEAR(result.log_p_upper, direct.log_p_upper, 1e-12);
-}
-
-TEST(TwoValuedMean, AnImpossibleMeanIsRejectedOutright) {
-  EXPECT_EQ(two_valued_mean(hits(3, 50), 1.2).log_p_lower, special::lowest_log());
-  EXPECT_EQ(two_valued_mean(hits(3, 50), 1.2).log_p_upper, 0);
-  EXPECT_EQ(two_valued_mean(hits(3, 50), -.2).log_p_upper, special::lowest_log());
-  EXPECT_EQ(two_valued_mean(hits(3, 50), -.2).log_p_lower, 0);
 }
 
 // P(a method's p <= level) at one point of the null, by summing over every pair of counts.
@@ -51,14 +39,8 @@ double exact_level(Trials x, Trials y, double level, const LogP& log_p) {
                 hits(static_cast<double>(j), static_cast<double>(y.trials))) > std::log(level)) {
         continue;
       }
-      const auto mass = [](std::uint64_t k, Trials trials) {
-        const double n = static_cast<double>(trials.trials);
-        const double s = static_cast<double>(k);
-        return std::exp(std::lgamma(n + 1) - std::lgamma(s + 1) - std::lgamma(n - s + 1) +
-                        s * std::log(trials.probability) +
-                        (n - s) * std::log1p(-trials.probability));
-      };
-      total += mass(i, x) * mass(j, y);
+      total +=
+          binomial_mass(i, x.trials, x.probability) * binomial_mass(j, y.trials, y.probability);
     }
   }
   return total;
@@ -93,7 +75,6 @@ TEST(TwoValuedContrast, TheLevelIsKeptAtEveryPointOfTheNull) {
       }
     }
   }
-  std::printf("  largest level over nominal: %.3f\n", largest);
   EXPECT_GT(largest, .2);  // conservative, but a test
 }
 
@@ -125,8 +106,6 @@ TEST(TwoValuedContrast, CostsLittleWhereTheNormalApproximationHolds) {
   const double z = .0283 / std::sqrt(2 * .48585 * .51415 / 10000);
   const double log_p = two_valued_contrast(x, y, {}).log_p_lower;
   EXPECT_NEAR(log_p, normal_tails(-z).lower, std::log(3));
-  std::printf("  z = %.3f: normal %.3e, here %.3e\n", z, std::exp(normal_tails(-z).lower),
-              std::exp(log_p));
 }
 
 // E x + E y = 1 is E x - E (1 - y) = 0.
@@ -143,18 +122,16 @@ TEST(TwoValuedContrast, OfScaleZeroIsTheExactTestOfOneMean) {
   EXPECT_EQ(one.log_p_lower, two_valued_mean(hits(30, 100), .4).log_p_lower);
 }
 
-TEST(TwoValuedContrast, ImpossibleNullsAndBadArgumentsAreNamed) {
+TEST(TwoValued, AnImpossibleNullIsRejectedOutright) {
   const TwoValued x = hits(3, 10);
-  EXPECT_EQ(two_valued_contrast(x, x, {1, 1.5}).log_p_lower, special::lowest_log());
-  EXPECT_EQ(two_valued_contrast(x, x, {1, 1.5}).log_p_upper, 0);
-  EXPECT_EQ(two_valued_contrast(x, x, {1, -1.5}).log_p_upper, special::lowest_log());
-  EXPECT_EQ(two_valued_contrast(x, x, {1, -1.5}).log_p_lower, 0);
-  EXPECT_THROW(two_valued_contrast(x, x, {INFINITY, 0}), std::domain_error);
-  EXPECT_THROW(two_valued_contrast(x, x, {1, NAN}), std::domain_error);
-  EXPECT_THROW(two_valued_contrast(x, hits(4, 3), {}), std::domain_error);
-  EXPECT_THROW(two_valued_mean(hits(0, 0), .5), std::domain_error);
-  EXPECT_THROW(two_valued_mean(hits(0, 1, {1, 1}), 1), std::domain_error);
-  EXPECT_THROW(two_valued_difference_interval(x, x, 0), std::domain_error);
+  for (const TestResult& high : {two_valued_mean(x, 1.2), two_valued_contrast(x, x, {1, 1.5})}) {
+    EXPECT_EQ(high.log_p_lower, special::lowest_log());
+    EXPECT_EQ(high.log_p_upper, 0);
+  }
+  for (const TestResult& low : {two_valued_mean(x, -.2), two_valued_contrast(x, x, {1, -1.5})}) {
+    EXPECT_EQ(low.log_p_upper, special::lowest_log());
+    EXPECT_EQ(low.log_p_lower, 0);
+  }
 }
 
 }  // namespace

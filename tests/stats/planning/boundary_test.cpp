@@ -1,9 +1,7 @@
 #include "stats/planning/boundary.h"
 
 #include "stats/tails/tails.h"
-#include "tests/philox.h"
-#include "tests/prelude.h"
-#include "tests/stats/table.h"
+#include "tests/stats/prelude.h"
 
 namespace assay::stats {
 namespace {
@@ -28,29 +26,14 @@ TEST(Boundary, AgreesWithAWalkOnEvenPoints) {
   }
 }
 
-// Both tails counted, as in tables 2.1 and 2.3 of Jennison & Turnbull (2000).
+// Both tails are counted.
 TEST(Boundary, AgreesWithTheTablesOfTwoSidedTests) {
-  struct Printed {
-    std::size_t looks;
-    double delta, level, constant;
-  };
-  for (const Printed& printed : {Printed{2, .5, .05, 2.178},
-                                 {5, .5, .05, 2.413},
-                                 {10, .5, .05, 2.555},
-                                 {2, .5, .01, 2.772},
-                                 {5, .5, .01, 2.986},
-                                 {10, .5, .01, 3.117},
-                                 {2, 0, .05, 1.977},
-                                 {5, 0, .05, 2.040},
-                                 {10, 0, .05, 2.087},
-                                 {2, 0, .01, 2.580},
-                                 {5, 0, .01, 2.621},
-                                 {10, 0, .01, 2.660}}) {
-    const std::vector<double> times = times_of(printed.looks, "even");
+  for (const tests::Row& row : tests::read_table("two_sided_boundary")) {
+    const std::vector<double> times = times_of(static_cast<std::size_t>(row["looks"]), "even");
     const auto crossed = [&](double constant) {
       std::vector<StoppingLook> looks;
       for (const double time : times) {
-        const double z = constant * std::pow(time, printed.delta - .5);
+        const double z = constant * std::pow(time, row["delta"] - .5);
         looks.push_back({.time = time, .below = -z, .above = z});
       }
       double sum = 0;
@@ -58,8 +41,8 @@ TEST(Boundary, AgreesWithTheTablesOfTwoSidedTests) {
         sum += stop.below + stop.above;
       return sum;
     };
-    EXPECT_GT(crossed(printed.constant - .0006), printed.level) << printed.constant;
-    EXPECT_LT(crossed(printed.constant + .0006), printed.level) << printed.constant;
+    EXPECT_GT(crossed(row["constant"] - .0006), row["level"]) << row["constant"];
+    EXPECT_LT(crossed(row["constant"] + .0006), row["level"]) << row["constant"];
   }
 }
 
@@ -130,31 +113,6 @@ TEST(Boundary, StopsAsOftenAsSimulatedScores) {
       near(seen[k].above, expected[k].above);
     }
   }
-}
-
-TEST(Boundary, AllPathsStopOrGoOn) {
-  std::vector<StoppingLook> looks;
-  for (const double time : times_of(16, "root")) looks.push_back({.time = time, .above = 3});
-  looks.back().above = -std::numeric_limits<double>::infinity();
-  looks.back().below = -std::numeric_limits<double>::infinity();
-  double sum = 0;
-  for (const StopProbabilities& stop : stop_probabilities(looks, 1)) sum += stop.above;
-  EXPECT_NEAR(sum, 1, 1e-7);
-}
-
-TEST(Boundary, RefusesWhatIsNoDesign) {
-  EXPECT_THROW(WangTsiatis({}), std::domain_error);
-  EXPECT_THROW(WangTsiatis(std::vector<double>{0, 1}), std::domain_error);
-  EXPECT_THROW(WangTsiatis(std::vector<double>{1, 1}), std::domain_error);
-  EXPECT_THROW(WangTsiatis(std::vector<double>{1}, .6), std::domain_error);
-  const WangTsiatis boundary(std::vector<double>{1, 2});
-  EXPECT_THROW(boundary.constant(0), std::domain_error);
-  EXPECT_THROW(boundary.constant(1), std::domain_error);
-  EXPECT_THROW(boundary.log_crossing(std::nan("")), std::domain_error);
-  EXPECT_THROW(stop_probabilities({}), std::domain_error);
-  const std::vector<StoppingLook> crossed{{.below = 1, .above = 0}};
-  EXPECT_THROW(stop_probabilities(crossed), std::domain_error);
-  EXPECT_THROW(stop_probabilities(std::vector<StoppingLook>{{}}, std::nan("")), std::domain_error);
 }
 
 }  // namespace

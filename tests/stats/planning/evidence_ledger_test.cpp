@@ -2,9 +2,7 @@
 
 #include "stats/basics/moments.h"
 #include "stats/tails/tails.h"
-#include "tests/prelude.h"
-#include "tests/stats/expect_calibrated.h"
-#include "tests/stats/table.h"
+#include "tests/stats/prelude.h"
 
 namespace assay::stats {
 namespace {
@@ -91,11 +89,6 @@ TEST(EvidenceLedger, ANightWithoutSpreadCountsByItsObservations) {
   EXPECT_DOUBLE_EQ(pooled.variance(), .25);
 }
 
-TEST(EvidenceLedger, PValuesOfOneLeaveAPolynomial) {
-  const std::vector<double> quiet(999, 0.0);
-  EXPECT_NEAR(log_e_of_p_values(quiet).back(), -std::log(1000), 1e-12);
-}
-
 TEST(EvidenceLedger, AlarmsOnTheFirstNightThatReachesOneOverAlpha) {
   const std::vector<double> log_e{0, 2, 5, 4, 6};
   EXPECT_EQ(first_alarm(log_e, std::exp(-4.5)), 2U);
@@ -105,32 +98,6 @@ TEST(EvidenceLedger, AlarmsOnTheFirstNightThatReachesOneOverAlpha) {
 
 TEST(EvidenceLedger, AHugeReferenceErrorMakesEveryNightWorthless) {
   EXPECT_NEAR(log_e_of(known_nights(2, 60), 1e6).back(), 0, 1e-9);
-}
-
-// E of one night is integrated over its uniform p-value, refined towards 0 by p = t^8.
-TEST(EvidenceLedger, TheEValueOfAUniformPValueHasMeanOne) {
-  double sum = 0;
-  constexpr int steps = 200000;
-  for (int i = 0; i < steps; ++i) {
-    const double t = (i + .5) / steps;
-    const PooledPValues night{.nights = 1, .minus_log_p = -8 * std::log(t)};
-    sum += 8 * std::pow(t, 7) * std::exp(log_e_value(night)) / steps;
-  }
-  // Below the first step, -ln p > 8 ln(4e5), an integral of 1 / T is left out.
-  EXPECT_NEAR(sum, 1, 1 / (8 * std::log(4e5)));
-  EXPECT_GT(sum, 1 - 2 / (8 * std::log(4e5)));
-}
-
-TEST(EvidenceLedger, RefusesMalformedEvidence) {
-  PooledNights nights;
-  EXPECT_THROW(nights.add({1, -1, 1}), std::domain_error);
-  EXPECT_THROW(nights.add({std::nan(""), 1, 1}), std::domain_error);
-  EXPECT_THROW(nights.add({1, 1, 0}), std::domain_error);
-  EXPECT_THROW(nights.add({1, 1, 1, .9}), std::domain_error);
-  EXPECT_THROW(PooledPValues().add(.1), std::domain_error);
-  EXPECT_THROW(log_e_value(nights, {.reference_error = -1}), std::domain_error);
-  EXPECT_THROW(change_point(std::vector<NightEstimate>(), {}), std::domain_error);
-  EXPECT_THROW(first_alarm({}, 0), std::domain_error);
 }
 
 // Nights in units of a night's standard error. `reference` is the error of the common reference.
@@ -151,27 +118,24 @@ std::vector<NightEstimate> draw(Philox& random, const Series& series) {
   return nights;
 }
 
-TEST(EvidenceLedger, KeepsItsBudgetOverAThousandNights) {
-  expect_calibrated({341, tests::repetitions(10000), Shape::at_most_uniform}, [](Philox& random) {
-    return log_p_of(log_e_of(draw(random, {.nights = 1000})));
-  });
-  expect_calibrated({342, tests::repetitions(10000), Shape::at_most_uniform}, [](Philox& random) {
-    return log_p_of(log_e_of(draw(random, {.nights = 1000, .reference = .2}), .2));
-  });
+CALIBRATED(EvidenceLedger, KeepsItsBudgetOverAThousandNights, 341, 10000, Shape::at_most_uniform) {
+  return log_p_of(log_e_of(draw(random, {.nights = 1000})));
 }
 
-TEST(EvidenceLedger, KeepsItsBudgetWhenNightsStopEarly) {
-  // Each night stops at its first half when that already looks bad.
-  expect_calibrated({343, 10000, Shape::at_most_uniform}, [](Philox& random) {
-    std::vector<NightEstimate> nights;
-    for (int i = 0; i < 100; ++i) {
-      const double half = random.normal() * std::sqrt(2);
-      const double whole = half / 2 + random.normal() / std::sqrt(2);
-      nights.push_back(std::abs(half) > 1 ? NightEstimate{half, std::sqrt(2), 50, 16}
-                                          : NightEstimate{whole, 1, 100, 33});
-    }
-    return log_p_of(log_e_of(nights));
-  });
+CALIBRATED(EvidenceLedger, KeepsItsBudgetBesideAReference, 342, 10000, Shape::at_most_uniform) {
+  return log_p_of(log_e_of(draw(random, {.nights = 1000, .reference = .2}), .2));
+}
+
+// Each night stops at its first half when that already looks bad.
+CALIBRATED(EvidenceLedger, KeepsItsBudgetWhenNightsStopEarly, 343, 10000, Shape::at_most_uniform) {
+  std::vector<NightEstimate> nights;
+  for (int i = 0; i < 100; ++i) {
+    const double half = random.normal() * std::sqrt(2);
+    const double whole = half / 2 + random.normal() / std::sqrt(2);
+    nights.push_back(std::abs(half) > 1 ? NightEstimate{half, std::sqrt(2), 50, 16}
+                                        : NightEstimate{whole, 1, 100, 33});
+  }
+  return log_p_of(log_e_of(nights));
 }
 
 // Observations are 1 with this probability, else 0, and the night is what its sample says.
@@ -231,26 +195,11 @@ CAUGHT(EvidenceLedger, WeightsByTheNightsOwnErrorsAreCaught, 355, 2000, Shape::a
   return log_p_of(log_e_of(nights));
 }
 
-CAUGHT(EvidenceLedger, ForgettingTheErrorOfTheReferenceIsCaught, 344, 4000,
-       Shape::at_most_uniform) {
-  return log_p_of(log_e_of(draw(random, {.reference = .2})));
-}
-
 CAUGHT(EvidenceLedger, AReferenceErrorTakenForIndependentOnEveryNightIsCaught, 345, 4000,
        Shape::at_most_uniform) {
   auto nights = draw(random, {.reference = .2});
   for (NightEstimate& night : nights) night.standard_error = std::sqrt(1.04);
   return log_p_of(log_e_of(nights));
-}
-
-CAUGHT(EvidenceLedger, AnEffectFittedToTheDataIsCaught, 346, 4000, Shape::at_most_uniform) {
-  std::vector<double> log_e;
-  PooledNights pooled;
-  for (const NightEstimate& night : draw(random, {})) {
-    pooled.add(night);
-    log_e.push_back(pooled.difference() * pooled.difference() / pooled.variance() / 2);
-  }
-  return log_p_of(log_e);
 }
 
 std::vector<double> log_p_values(Philox& random, int nights) {
@@ -259,8 +208,8 @@ std::vector<double> log_p_values(Philox& random, int nights) {
   return log_p;
 }
 
-CALIBRATED(EvidenceLedger, PValuesKeepTheirBudgetOverAThousandNights, 356,
-           tests::repetitions(10000), Shape::at_most_uniform) {
+CALIBRATED(EvidenceLedger, PValuesKeepTheirBudgetOverAThousandNights, 356, 10000,
+           Shape::at_most_uniform) {
   return log_p_of(log_e_of_p_values(log_p_values(random, 1000)));
 }
 
@@ -271,16 +220,6 @@ CAUGHT(EvidenceLedger, PValuesOfTheWrongTailAreCaught, 357, 2000, Shape::at_most
   return log_p_of(log_e_of_p_values(log_p));
 }
 
-CAUGHT(EvidenceLedger, AnExponentFittedToEveryNightIsCaught, 358, 2000, Shape::at_most_uniform) {
-  std::vector<double> log_e;
-  double sum = 0;
-  for (const double log_p : log_p_values(random, 20)) {
-    const double kappa = std::min(1.0, -1 / log_p);
-    log_e.push_back(sum += std::log(kappa) - (1 - kappa) * log_p);
-  }
-  return log_p_of(log_e);
-}
-
 // The share of 4000 series that alarm at this budget. |rate - truth| <= sqrt(ln(2e5) / (2 R)) =
 // .0391 at R = 4000, false alarm 1e-5.
 double alarmed(std::uint32_t test_case, double alpha,
@@ -288,7 +227,6 @@ double alarmed(std::uint32_t test_case, double alpha,
   Philox random(test_case);
   int count = 0;
   for (int i = 0; i < 4000; ++i) count += first_alarm(log_e(random), alpha).has_value();
-  std::cout << "  alarmed: " << count / 4000.0 << "\n";
   return count / 4000.0;
 }
 
@@ -339,7 +277,6 @@ TEST(EvidenceLedger, ElevenStandardErrorsOverFiftyFiveNightsAreFound) {
 TEST(EvidenceLedger, CredibleNightsHoldTheNightOfTheChange) {
   Philox random(351);
   int held = 0;
-  double size = 0;
   for (int i = 0; i < 4000; ++i) {
     const int first = static_cast<int>(20 * random.uniform());
     const double bias = std::sqrt(.2) * random.normal();
@@ -347,9 +284,7 @@ TEST(EvidenceLedger, CredibleNightsHoldTheNightOfTheChange) {
         draw(random, {.nights = 20, .bias = bias, .reference = .2, .first_biased = first});
     const auto credible = credible_nights(change_point(nights, {.reference_error = .2}), .9);
     held += std::binary_search(credible.begin(), credible.end(), static_cast<std::size_t>(first));
-    size += static_cast<double>(credible.size());
   }
-  std::cout << "  held " << held / 4000.0 << ", mean size " << size / 4000 << "\n";
   EXPECT_GE(held / 4000.0, .9 - .0391);
 }
 

@@ -1,9 +1,8 @@
 #include "stats/planning/holm.h"
 
-#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include "tests/prelude.h"
+#include "tests/stats/prelude.h"
 
 namespace assay::stats {
 namespace {
@@ -28,18 +27,8 @@ TEST(Holm, WeightsMoveTheShares) {
   const std::vector<double> adjusted = weighted_holm(entries);
   EXPECT_NEAR(std::exp(adjusted[0]), .01 / .9, 1e-14);
   EXPECT_NEAR(std::exp(adjusted[1]), std::max(.01 / .9, .01), 1e-14);
-}
-
-TEST(Holm, UnspentWeightStaysUnspent) {
-  const std::vector<WeightedLogP> entries{{std::log(.01), .5}};
-  EXPECT_NEAR(std::exp(weighted_holm(entries)[0]), .02, 1e-14);
-}
-
-TEST(Holm, BadEntriesThrow) {
-  EXPECT_THROW(holm(std::vector<double>{.1}), std::domain_error);
-  EXPECT_THROW(holm(std::vector<double>{std::nan("")}), std::domain_error);
-  EXPECT_THROW(weighted_holm(std::vector<WeightedLogP>{{-1, 0}}), std::domain_error);
-  EXPECT_THROW(weighted_holm(std::vector<WeightedLogP>{{-1, .6}, {-1, .5}}), std::domain_error);
+  const std::vector<WeightedLogP> half{{std::log(.01), .5}};
+  EXPECT_NEAR(std::exp(weighted_holm(half)[0]), .02, 1e-14) << "unspent weight stays unspent";
   EXPECT_TRUE(holm(std::vector<double>{}).empty());
 }
 

@@ -2,57 +2,46 @@
 
 #include "stats/means/student_t.h"
 #include "stats/tails/tails.h"
-#include "tests/prelude.h"
-#include "tests/stats/expect_calibrated.h"
-#include "tests/stats/samples.h"
+#include "tests/stats/prelude.h"
 
 namespace assay::stats {
 namespace {
 
 constexpr ErrorRates usual{.alpha = .01, .beta = .02, .two_sided = true};
 
-TEST(Looks, TenDoublingsAreElevenLooks) {
-  const std::vector<std::uint64_t> sizes = geometric_sizes({100, 102400}, 2);
-  ASSERT_EQ(sizes.size(), 11U);
-  for (std::size_t k = 0; k < 11; ++k) EXPECT_EQ(sizes[k], 100U << k);
+using Sizes = std::vector<std::uint64_t>;
+
+// The ratio is evened out, the last look is the largest sample, and equal sizes are one look.
+TEST(Looks, GrowByTheRatioToTheLargestSample) {
+  EXPECT_EQ(geometric_sizes({100, 1600}, 2), (Sizes{100, 200, 400, 800, 1600}));
+  EXPECT_EQ(geometric_sizes({1000, 30000}, 4), (Sizes{1000, 3107, 9655, 30000}));
+  EXPECT_EQ(geometric_sizes({1, 4}, 1.1), (Sizes{1, 2, 3, 4}));
+  EXPECT_EQ(geometric_sizes({7, 7}, 2), (Sizes{7}));
 }
 
-TEST(Looks, TheRatioIsEvenedOutAndTheLastLookIsTheLargestSample) {
-  EXPECT_EQ(geometric_sizes({1000, 30000}, 4),
-            (std::vector<std::uint64_t>{1000, 3107, 9655, 30000}));
-}
-
-TEST(Looks, SmallSizesThatRoundTogetherAreOneLook) {
-  EXPECT_EQ(geometric_sizes({1, 4}, 1.1), (std::vector<std::uint64_t>{1, 2, 3, 4}));
-  EXPECT_EQ(geometric_sizes({7, 7}, 2), (std::vector<std::uint64_t>{7}));
-}
+constexpr LookLaw all_laws[] = {LookLaw::unknown, LookLaw::independent_increments,
+                                LookLaw::anytime_valid};
 
 TEST(Looks, OneLookHasAllOfTheErrors) {
-  for (const LookLaw law :
-       {LookLaw::unknown, LookLaw::independent_increments, LookLaw::anytime_valid}) {
+  for (const LookLaw law : all_laws) {
     const LookSchedule one = schedule_looks({50}, law, usual);
     EXPECT_EQ(one.alpha, std::vector<double>{.01});
     EXPECT_EQ(one.beta, std::vector<double>{.02});
-    const std::vector<double> log_p{-3.25};
-    EXPECT_EQ(log_p_over_looks(one, log_p, true), -3.25);
+    EXPECT_EQ(log_p_over_looks(one, std::vector<double>{-3.25}, true), -3.25);
   }
 }
 
-TEST(Looks, WithoutALawTheErrorsAreSplitEvenly) {
+TEST(Looks, ShareTheErrorsEvenlyWithoutALawAndNotAtAllIfValidAtAnyTime) {
   const LookSchedule looks = schedule_looks({1, 2, 4, 8}, LookLaw::unknown, usual);
   EXPECT_EQ(looks.alpha, std::vector<double>(4, .0025));
   EXPECT_EQ(looks.beta, std::vector<double>(4, .005));
-  const std::vector<double> log_p{std::log(.02), std::log(.005)};
+  const std::vector<double> log_p{std::log(.02), std::log(.005), 0};
   EXPECT_NEAR(std::exp(log_p_over_looks(looks, log_p, true)), .02, 1e-15);
   EXPECT_EQ(log_p_over_looks(looks, std::vector<double>{0, std::log(.5)}, false), 0);
-}
-
-TEST(Looks, AnytimeValidLooksHaveAllOfTheErrorsEach) {
-  const LookSchedule looks = schedule_looks({1, 2, 4}, LookLaw::anytime_valid, usual);
-  EXPECT_EQ(looks.alpha, std::vector<double>(3, .01));
-  EXPECT_EQ(looks.beta, std::vector<double>(3, .02));
-  const std::vector<double> log_p{std::log(.02), std::log(.005), 0};
-  EXPECT_EQ(log_p_over_looks(looks, log_p, true), std::log(.005));
+  const LookSchedule anytime = schedule_looks({1, 2, 4}, LookLaw::anytime_valid, usual);
+  EXPECT_EQ(anytime.alpha, std::vector<double>(3, .01));
+  EXPECT_EQ(anytime.beta, std::vector<double>(3, .02));
+  EXPECT_EQ(log_p_over_looks(anytime, log_p, true), std::log(.005));
 }
 
 // The constants of tests/tables/boundary.csv.
@@ -70,8 +59,7 @@ TEST(Looks, OfIndependentIncrementsHaveWangAndTsiatissBoundary) {
 
 // At a look's nominal level the p-value is the error over all looks.
 TEST(Looks, APValueIsBelowTheErrorExactlyWhereALookRejects) {
-  for (const LookLaw law :
-       {LookLaw::unknown, LookLaw::independent_increments, LookLaw::anytime_valid}) {
+  for (const LookLaw law : all_laws) {
     const LookSchedule looks = schedule_looks({40, 60, 100, 131}, law, usual);
     for (std::size_t k = 0; k < looks.count(); ++k) {
       std::vector<double> log_p(k, std::log(.9));
@@ -85,8 +73,7 @@ TEST(Looks, APValueIsBelowTheErrorExactlyWhereALookRejects) {
 
 TEST(Looks, AProbabilityOfZeroStaysFinite) {
   const double lowest = std::numeric_limits<double>::lowest();
-  for (const LookLaw law :
-       {LookLaw::unknown, LookLaw::independent_increments, LookLaw::anytime_valid}) {
+  for (const LookLaw law : all_laws) {
     const LookSchedule looks = schedule_looks({1, 2, 4}, law, usual);
     const double log_p = log_p_over_looks(looks, std::vector<double>{lowest}, true);
     EXPECT_TRUE(std::isfinite(log_p));
@@ -94,73 +81,45 @@ TEST(Looks, AProbabilityOfZeroStaysFinite) {
   }
 }
 
-TEST(Looks, RefuseWhatCannotKeepTheLevel) {
-  EXPECT_THROW(geometric_sizes({0, 4}, 2), std::domain_error);
-  EXPECT_THROW(geometric_sizes({5, 4}, 2), std::domain_error);
-  EXPECT_THROW(geometric_sizes({1, 4}, 1), std::domain_error);
-  EXPECT_THROW(geometric_sizes({1, 4}, std::nan("")), std::domain_error);
-  EXPECT_THROW(schedule_looks({}, LookLaw::unknown, usual), std::domain_error);
-  EXPECT_THROW(schedule_looks({2, 1}, LookLaw::unknown, usual), std::domain_error);
-  EXPECT_THROW(schedule_looks({1}, LookLaw::unknown, {.alpha = 0}), std::domain_error);
-  const LookSchedule one = schedule_looks({1}, LookLaw::unknown, usual);
-  EXPECT_THROW(log_p_over_looks(one, {}, true), std::domain_error);
-  EXPECT_THROW(log_p_over_looks(one, std::vector<double>{-1, -1}, true), std::domain_error);
-  EXPECT_THROW(log_p_over_looks(one, std::vector<double>{.1}, true), std::domain_error);
-  EXPECT_THROW(log_p_over_looks(one, std::vector<double>{std::nan("")}, true), std::domain_error);
-}
-
-// ln p of a normal sample's t tests at each look.
-std::vector<double> looked_at(Philox& random, const std::vector<std::uint64_t>& sizes) {
+// ln p over the looks of a normal sample's t tests.
+double looked_at(Philox& random, const LookSchedule& looks, bool two_sided) {
   Moments x;
   std::vector<double> log_p;
-  for (const auto size : sizes) {
+  for (const auto size : looks.sizes) {
     while (x.count < size) x.add(random.normal());
-    log_p.push_back(log_p_two_sided(student_t(x, {0})));
+    const TestResult test = student_t(x, {0});
+    log_p.push_back(two_sided ? log_p_two_sided(test) : test.log_p_upper);
   }
-  return log_p;
+  return log_p_over_looks(looks, log_p, two_sided);
 }
 
-TEST(Looks, KeepTheLevelOverTenDoublings) {
-  const LookSchedule looks = schedule_looks(geometric_sizes({4, 1024}, 2), LookLaw::unknown, usual);
-  expect_calibrated(Experiment{301, 10000, Shape::at_most_uniform}, [&](Philox& random) {
-    return log_p_over_looks(looks, looked_at(random, looks.sizes), true);
-  });
+CALIBRATED(Looks, KeepTheLevelOverTenDoublings, 301, 10000, Shape::at_most_uniform) {
+  static const auto looks = schedule_looks(geometric_sizes({4, 1024}, 2), LookLaw::unknown, usual);
+  return looked_at(random, looks, true);
+}
+
+CAUGHT(Looks, TheSmallestOfTheLooksIsCaught, 302, 10000, Shape::at_most_uniform) {
+  static const auto looks =
+      schedule_looks(geometric_sizes({4, 1024}, 2), LookLaw::anytime_valid, usual);
+  return looked_at(random, looks, true);
+}
+
+const LookSchedule& with_increments() {
+  static const auto looks = schedule_looks(geometric_sizes({50, 800}, std::numbers::sqrt2),
+                                           LookLaw::independent_increments, {.two_sided = false});
+  return looks;
 }
 
 // The smallest of correlated p-values is uniform by their joint law, not only at most so.
-TEST(Looks, OfIndependentIncrementsAreUniform) {
-  const LookSchedule looks = schedule_looks(geometric_sizes({50, 800}, std::numbers::sqrt2),
-                                            LookLaw::independent_increments, {.two_sided = false});
-  expect_calibrated(Experiment{303, 5000, Shape::uniform}, [&](Philox& random) {
-    Moments x;
-    std::vector<double> log_p;
-    for (const auto size : looks.sizes) {
-      while (x.count < size) x.add(random.normal());
-      log_p.push_back(student_t(x, {0}).log_p_upper);
-    }
-    return log_p_over_looks(looks, log_p, false);
-  });
-}
-
-TEST(Looks, TheSmallestOfTheLooksIsCaught) {
-  const LookSchedule looks =
-      schedule_looks(geometric_sizes({4, 1024}, 2), LookLaw::anytime_valid, usual);
-  expect_caught(Experiment{302, 10000, Shape::at_most_uniform}, [&](Philox& random) {
-    return log_p_over_looks(looks, looked_at(random, looks.sizes), true);
-  });
+CALIBRATED(Looks, OfIndependentIncrementsAreUniform, 303, 5000) {
+  return looked_at(random, with_increments(), false);
 }
 
 // Independent samples at each look have no such boundary.
-TEST(Looks, IncrementsThatDoNotAddUpAreCaught) {
-  const LookSchedule looks = schedule_looks(geometric_sizes({50, 800}, std::numbers::sqrt2),
-                                            LookLaw::independent_increments, {.two_sided = false});
-  expect_caught(Experiment{304, 5000, Shape::at_most_uniform}, [&](Philox& random) {
-    std::vector<double> log_p;
-    for (std::size_t k = 0; k < looks.count(); ++k) {
-      log_p.push_back(normal_upper(random.normal()));
-    }
-    return log_p_over_looks(looks, log_p, false);
-  });
+CAUGHT(Looks, IncrementsThatDoNotAddUpAreCaught, 304, 5000, Shape::at_most_uniform) {
+  std::vector<double> log_p(with_increments().count());
+  for (double& each : log_p) each = normal_upper(random.normal());
+  return log_p_over_looks(with_increments(), log_p, false);
 }
 
 }  // namespace

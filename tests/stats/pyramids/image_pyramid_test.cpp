@@ -4,7 +4,6 @@
 #include "tests/prelude.h"
 #include "tests/stats/expect_calibrated.h"
 #include "tests/stats/image_samples.h"
-#include "tests/stats/last_first.h"
 
 namespace assay::stats {
 namespace {
@@ -373,18 +372,6 @@ TEST(ImagePyramid, IsTheSameInAnyOrder) {
     EXPECT_EQ(family.groups[g].window.x, other.groups[g].window.x);
     EXPECT_EQ(family.groups[g].window.y, other.groups[g].window.y);
   }
-}
-
-TEST(ImagePyramid, BadArgumentsAreRefused) {
-  Philox random(842);
-  const OwnedStack a = normal_stack(random, 16);
-  const OwnedStack few = normal_stack(random, 15);
-  EXPECT_THROW(image_pyramid(a.view(), few.view()), std::domain_error);
-  std::vector<double> short_of_one(small.elements() - 1);
-  EXPECT_THROW(image_pyramid(a.view(), a.view(), {.z = short_of_one}), std::domain_error);
-  OwnedStack wrong = normal_stack(random, 16);
-  wrong.images[3][5] = std::numeric_limits<float>::infinity();
-  EXPECT_THROW(image_pyramid(wrong.view(), a.view()), std::domain_error);
 }
 
 }  // namespace

@@ -1,16 +1,9 @@
 #include "stats/tails/smirnov.h"
 
-#include "tests/prelude.h"
-#include "tests/stats/table.h"
+#include "tests/stats/prelude.h"
 
 namespace assay::stats {
 namespace {
-
-TEST(Smirnov, GoldenValuesToThePrintedDigits) {
-  // lcm(50, 60) = 300
-  EXPECT_NEAR(std::exp(smirnov_upper_tail({150, 50, 60}).log_p) / 1.0065070832e-6, 1, 1e-10);
-  EXPECT_NEAR(std::exp(smirnov_upper_tail({60, 200, 200}).log_p) / 2.41254989774e-8, 1, 1e-10);
-}
 
 TEST(Smirnov, AgreesWithExactCountsOfLatticePaths) {
   for (const tests::Row& row : tests::read_table("smirnov")) {
@@ -84,12 +77,6 @@ TEST(Smirnov, BeyondTheExactCountTiesAreBoundedFromAbove) {
   EXPECT_LT(exact.log_p, smirnov_upper_tail({100, n / 4, n / 4}).log_p);
 }
 
-TEST(Smirnov, RefusesRunsOutOfOrderOrBeyondTheValues) {
-  EXPECT_THROW(smirnov_upper_tail({1, 3, 4}, std::vector<TiedRun>{{5, 3}}), std::domain_error);
-  EXPECT_THROW(smirnov_upper_tail({1, 3, 4}, std::vector<TiedRun>{{2, 3}, {4, 2}}),
-               std::domain_error);
-}
-
 TEST(Smirnov, LargeUnequalSizesSayTheyAreAsymptotic) {
   const SmirnovTail exact = smirnov_upper_tail({10000000, 20000, 30001});
   EXPECT_EQ(exact.exactness, Exactness::exact);
@@ -101,8 +88,6 @@ TEST(Smirnov, LargeUnequalSizesSayTheyAreAsymptotic) {
 TEST(Smirnov, ImpossibleAndEmptyDistances) {
   EXPECT_EQ(smirnov_upper_tail({0, 3, 4}).log_p, 0);
   EXPECT_TRUE(std::isfinite(smirnov_upper_tail({13, 3, 4}).log_p));
-  EXPECT_THROW(smirnov_upper_tail({1, 0, 4}), std::domain_error);
-  EXPECT_THROW(smirnov_upper_tail({1, 1ULL << 40, (1ULL << 40) - 1}), std::domain_error);
 }
 
 }  // namespace

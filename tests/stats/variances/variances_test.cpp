@@ -1,12 +1,9 @@
 
-#include "stats/basics/errors.h"
 #include "stats/gates/assumption_gates.h"
 #include "stats/tails/tails.h"
 #include "stats/variances/chi_square_variance.h"
 #include "stats/variances/f_ratio.h"
-#include "tests/prelude.h"
-#include "tests/stats/calibration.h"
-#include "tests/stats/samples.h"
+#include "tests/stats/prelude.h"
 
 namespace assay::stats {
 namespace {
@@ -15,22 +12,10 @@ const Moments x = moments_of(golden_x);
 const Moments y = moments_of(golden_y);
 const Moments constant = moments_of(std::vector<double>{1, 1, 1, 1});
 
-TEST(ChiSquareVariance, GoldenValuesToThePrintedDigits) {
-  const TestResult result = chi_square_variance(x, .3);
-  EXPECT_NEAR(result.statistic, 16.8793666666667, 1e-12);
-  EXPECT_NEAR(std::exp(result.log_p_upper), .0506389375042817, 1e-14);
-}
-
 TEST(ChiSquareVariance, IntervalEndsAreJustRejected) {
   const Interval interval = chi_square_variance_interval(x, .98);
   EXPECT_NEAR(std::exp(chi_square_variance(x, interval.low).log_p_upper), .01, 1e-12);
   EXPECT_NEAR(std::exp(chi_square_variance(x, interval.high).log_p_lower), .01, 1e-12);
-}
-
-TEST(FRatio, GoldenValuesToThePrintedDigits) {
-  const TestResult result = f_ratio(x, y, 1);
-  EXPECT_NEAR(result.statistic, .612040106637935, 1e-14);
-  EXPECT_NEAR(std::exp(log_p_two_sided(result)), .487284693225179, 1e-13);
 }
 
 TEST(FRatio, IntervalEndsAreJustRejected) {
@@ -65,18 +50,6 @@ TEST(Variances, TheUpperLimitOfAKurtosisHoldsIt) {
   EXPECT_FALSE(tests::too_many(normal_missed / runs, .07, runs)) << normal_missed;
   EXPECT_FALSE(tests::too_many(gamma_missed / runs, .2, runs)) << gamma_missed;
   EXPECT_FALSE(tests::too_many(beyond / runs, .05, runs)) << beyond;
-}
-
-TEST(Variances, ConstantSamplesAndBadNullValuesThrow) {
-  EXPECT_THROW(chi_square_variance(constant, 1), ZeroVariance);
-  EXPECT_THROW(f_ratio(x, constant, 1), ZeroVariance);
-  EXPECT_THROW(f_ratio(constant, x, 1), ZeroVariance);
-  for (const double bad : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(),
-                           std::numeric_limits<double>::infinity()}) {
-    EXPECT_THROW(chi_square_variance(x, bad), std::domain_error);
-    EXPECT_THROW(f_ratio(x, y, bad), std::domain_error);
-    EXPECT_THROW(chi_square_variance_interval(x, bad), std::domain_error);
-  }
 }
 
 }  // namespace
