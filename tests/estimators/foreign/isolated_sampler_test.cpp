@@ -156,14 +156,6 @@ TEST_F(IsolatedSampler, NamesThePointAtWhichItsProgramEnds) {
   EXPECT_EQ(densities(*sampler, points(3)).size(), 3u);
 }
 
-TEST_F(IsolatedSampler, NamesThePointAtWhichItsProgramHangs) {
-  const auto sampler = ramp_that("if what == 2: import time; time.sleep(765432)", 0.3);
-  EXPECT_EQ(densities(*sampler, points(3)).size(), 3u);
-  const Point point{.25, 0, 0};
-  EXPECT_THAT(thrown<NoAnswer>([&] { sampler->evaluate(point); }),
-              Says("sampler `ramp` at (0.25): ", "for 1 evaluation within 0.3 seconds"));
-}
-
 TEST_F(IsolatedSampler, TellsTheFailureOfAllWhereEachCanBeHad) {
   const auto sampler = ramp_that("if count > 100: sys.exit('too many')");
   EXPECT_THAT(failure_at(*sampler, points(1000)),

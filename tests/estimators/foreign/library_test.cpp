@@ -82,15 +82,6 @@ const AssayLibrary *assay_library(void) { return &library; }
   EXPECT_THAT(refusal(file, given("rate", "11")), HasSubstr("refuses: no (status 5 of prepare())"));
 }
 
-TEST_F(Library, ReportsItsErrors) {
-  const auto setup = load(compile_text(with_body(
-      "if (call->primaries == 2) { call->message[0] = '!'; call->message[1] = 0; return 9; "
-      "} call->out[0] = 1; return 0; ")));
-  EXPECT_THAT(draw(*setup, 1, 0, 1), ElementsAre(1));
-  EXPECT_THAT(thrown([&] { draw(*setup, 1, 0, 2); }),
-              HasSubstr("estimator `mine`: ! (status 9 of secondary())"));
-}
-
 TEST_F(Library, OfAnOlderInterfaceStillLoads) {
   // Its structs end where the first version's had to: all that came after is not there.
   const std::string older = R"(
@@ -170,31 +161,12 @@ TEST_F(Library, OffersItsSamplers) {
   EXPECT_EQ(ramp.domain(), Domain::interval);
   EXPECT_EQ(ramp.density({0.25, 0, 0}), 0.5);
   EXPECT_EQ(ramp.evaluate({0.25, 0, 0}), 1);
-  // The largest of two uniform numbers has mean 2/3 and variance 1/18: one false alarm in 1e6.
-  double sum = 0;
-  for (std::uint64_t i = 0; i < 10000; ++i) {
-    Stream random({1}, i);
-    const SamplerDraw draw = ramp.sample(random);
-    EXPECT_TRUE(draw.valid);
-    EXPECT_EQ(draw.density, 2 * draw.point[0]);
-    sum += draw.point[0];
-  }
-  EXPECT_NEAR(sum / 10000, 2. / 3, 4.892 * std::sqrt(1. / 18 / 10000));
+  Stream random({1}, 0);
+  const SamplerDraw draw = ramp.sample(random);
+  EXPECT_TRUE(draw.valid);
+  EXPECT_EQ(draw.density, 2 * draw.point[0]);
   // The same each time, so that their tables are made once.
   EXPECT_EQ(setup->samplers()[0].sampler, samplers[0].sampler);
-}
-
-TEST_F(Library, ReportsNumbersOfItsSamplersThatAreNone) {
-  std::string source = ramp_sampler;
-  const std::string sound = "return 2 * p[0];";
-  source.replace(source.find(sound), sound.size(), "return p[0] > 0.5 ? 0.0 / (p[1] - p[1]) : 1;");
-  const auto setup = load(compile_text(source));
-  const Sampler& ramp = *setup->samplers()[0].sampler;
-  EXPECT_EQ(ramp.density({0.25, 0, 0}), 1);
-  EXPECT_THAT(thrown([&] {
-                ramp.density({0.75, 0, 0});
-              }),
-              Says("sampler `ramp`: density() is ", "nan at (0.75)"));
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 
 #include "tests/estimators/depth_of_field/plans.h"
 #include "tests/estimators/draws.h"
-#include "tests/estimators/table.h"
 #include "tests/prelude.h"
 
 namespace assay {
@@ -11,20 +10,6 @@ namespace {
 
 using namespace depth_of_field;
 using namespace assay::draws;
-
-// False alarm 1e-6 each of 6. Every defect is at least 8 % of the mean, ten times the bound.
-TEST(LensMutants, MeansAtAPixelAreThoseOfTheDefect) {
-  for (const auto& row : tests::table("lens_mutants.csv")) {
-    std::string parameters = row[1];
-    std::ranges::replace(parameters, ';', ',');
-    const Prepared mutant = prepare("mutants/" + row[0], parameters);
-    const Sample sample = observe(mutant, 60000)[0];
-    const double sound = std::stod(row[3]);
-    EXPECT_THAT(sample, HasMean(std::stod(row[2]))) << row[0];
-    EXPECT_NEAR(*mutant.channel().mean, sound, 1e-11) << row[0];
-    EXPECT_GT(std::abs(std::stod(row[2]) - sound), 10 * sample.mean_error()) << row[0];
-  }
-}
 
 // Radius xi: the part of the lens within 1/2 gets half of the points, not a fourth.
 TEST(LensMutants, CrowdedPointsAreInTheSamplerToo) {

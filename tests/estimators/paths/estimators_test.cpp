@@ -117,37 +117,5 @@ TEST(Cost, LocalEstimatesAreCostOfTheSetUp) {
   EXPECT_EQ(prepare("paths/improved_roulette").setup->cost().rays(), 0u);
 }
 
-struct Caught {
-  const char* mutant;
-  std::string parameters;
-};
-void PrintTo(const Caught& caught, std::ostream* out) { *out << caught.mutant; }
-
-class CaughtMutants : public testing::TestWithParam<Caught> {};
-
-// Their bias has no closed form. Each channel is off by more than a standard normal would be with
-// probability 1e-6, and by a tenth. Means of 16 primaries are near normal.
-TEST_P(CaughtMutants, MissEveryChannel) {
-  const Prepared plugin = prepare(GetParam().mutant, GetParam().parameters);
-  const auto samples = observe(plugin, 1u << 14, 16);
-  for (std::size_t c = 0; c < samples.size(); ++c) {
-    const Channel channel = plugin.channel(c);
-    if (channel.diagnostic) continue;
-    EXPECT_THAT(samples[c], Not(HasMean(*channel.mean))) << channel.name;
-    EXPECT_THAT(samples[c].mean(), Not(DoubleNear(*channel.mean, 0.1 * *channel.mean)));
-  }
-}
-
-const std::string by_throughput = "{scene: coloured_sphere, rule: throughput}";
-
-INSTANTIATE_TEST_SUITE_P(Table, CaughtMutants,
-                         testing::Values(Caught{"mutants/clamped_survival", by_throughput},
-                                         Caught{"mutants/luminance_throughput", by_throughput},
-                                         Caught{"mutants/survival_after_update", by_throughput},
-                                         Caught{"mutants/drawn_number", "{scene: sphere}"},
-                                         Caught{"mutants/split_while_bright", "{scene: sphere}"},
-                                         Caught{"mutants/number_from_first_child",
-                                                "{scene: sphere}"}));
-
 }  // namespace
 }  // namespace assay
