@@ -70,19 +70,11 @@ inline Calibration calibrate(std::vector<double> log_p, Shape shape) {
   return result;
 }
 
-// `draw` makes one data set from the stream and returns the log p-value of a true null hypothesis.
+// Log p-values of a true null hypothesis, each of one data set from the stream of the test case.
 struct Experiment {
   std::uint32_t test_case = 0;
   std::size_t repetitions = 20000;
   Shape shape = Shape::uniform;
 };
-
-inline Calibration calibrate(const Experiment& experiment,
-                             const std::function<double(Philox&)>& draw) {
-  Philox random(experiment.test_case);
-  std::vector<double> log_p(experiment.repetitions);
-  for (double& value : log_p) value = draw(random);
-  return calibrate(std::move(log_p), experiment.shape);
-}
 
 }  // namespace assay::tests

@@ -15,26 +15,22 @@
 namespace assay::stats {
 namespace {
 
-Moments normals(Philox& random, std::size_t n, double sd = 1) {
-  return draw_moments(n, [&] { return sd * random.normal(); });
-}
-
 CALIBRATED(Calibration, StudentTOnThreeNormalValuesIsUniform, 1, 40000) {
-  return log_p_two_sided(student_t(normals(random, 3), {0}));
+  return log_p_two_sided(student_t(normal_moments(random, 3), {0}));
 }
 
 TAILS_CALIBRATED(Calibration, BothTailsOfStudentTAreUniform, 2) {
-  return student_t(normals(random, 7), {0});
+  return student_t(normal_moments(random, 7), {0});
 }
 
 CALIBRATED(Calibration, StudentTAgainstANoisyReferenceIsUniform, 4) {
-  const Moments x = normals(random, 30);
+  const Moments x = normal_moments(random, 30);
   return log_p_two_sided(student_t(x, {.2 * random.normal(), .2}));
 }
 
 CALIBRATED(Calibration, WelchWithUnequalSizesAndVariancesIsUniform, 5, 40000) {
-  const Moments x = normals(random, 10, 1.8);
-  return log_p_two_sided(welch_t(x, normals(random, 100), {}));
+  const Moments x = normal_moments(random, 10, 1.8);
+  return log_p_two_sided(welch_t(x, normal_moments(random, 100), {}));
 }
 
 CALIBRATED(Calibration, AWelchContrastIsUniformAtItsOwnNull, 6) {
@@ -45,21 +41,21 @@ CALIBRATED(Calibration, AWelchContrastIsUniformAtItsOwnNull, 6) {
 
 TEST(Calibration, ChiSquareVarianceOnThreeNormalValuesIsUniform) {
   expect_calibrated({7, 40000}, [](Philox& random) {
-    return chi_square_variance(normals(random, 3, 2), 4).log_p_upper;
+    return chi_square_variance(normal_moments(random, 3, 2), 4).log_p_upper;
   });
   expect_calibrated({8}, [](Philox& random) {
-    return log_p_two_sided(chi_square_variance(normals(random, 12), 1));
+    return log_p_two_sided(chi_square_variance(normal_moments(random, 12), 1));
   });
 }
 
 TEST(Calibration, FRatioOnNormalValuesIsUniform) {
   expect_calibrated({9, 40000}, [](Philox& random) {
-    const Moments x = normals(random, 4, 3);
-    return log_p_two_sided(f_ratio(x, normals(random, 9), 9));
+    const Moments x = normal_moments(random, 4, 3);
+    return log_p_two_sided(f_ratio(x, normal_moments(random, 9), 9));
   });
   expect_calibrated({10}, [](Philox& random) {
-    const Moments x = normals(random, 20);
-    return f_ratio(x, normals(random, 5), 1).log_p_upper;
+    const Moments x = normal_moments(random, 20);
+    return f_ratio(x, normal_moments(random, 5), 1).log_p_upper;
   });
 }
 

@@ -10,23 +10,35 @@
 
 namespace assay::tests {
 
-// A false alarm has probability 1e-5 (calibration.h). Without ASSAY_LONG a quarter of 8000 and more
-// repetitions.
-inline void expect_calibrated(Experiment experiment, const std::function<double(Philox&)>& draw) {
-  if (experiment.repetitions >= 8000) experiment.repetitions = repetitions(experiment.repetitions);
-  const Calibration calibration = calibrate(experiment, draw);
+inline void expect_calibrated(const std::vector<double>& log_p, Shape shape) {
+  const Calibration calibration = calibrate(log_p, shape);
   EXPECT_TRUE(calibration.ok) << calibration.text();
-  std::cout << "  " << experiment.repetitions << " repetitions: " << calibration.text() << "\n";
+  std::cout << "  " << log_p.size() << " repetitions: " << calibration.text() << "\n";
 }
 
-// The same of both tails of a result.
-inline void expect_tails_calibrated(Experiment experiment,
+// Both tails of a result. A false alarm of each has probability 1e-5 (calibration.h). Without
+// ASSAY_LONG a quarter of 8000 and more repetitions.
+inline void expect_tails_calibrated(const Experiment& experiment,
                                     const std::function<stats::TestResult(Philox&)>& draw) {
-  const auto tail = [&](double stats::TestResult::*log_p) {
-    expect_calibrated(experiment, [&](Philox& random) { return draw(random).*log_p; });
-  };
-  tail(&stats::TestResult::log_p_lower);
-  tail(&stats::TestResult::log_p_upper);
+  const std::size_t all = experiment.repetitions;
+  Philox random(experiment.test_case);
+  std::vector<double> lower, upper;
+  while (lower.size() < (all >= 8000 ? repetitions(all) : all)) {
+    const stats::TestResult result = draw(random);
+    lower.push_back(result.log_p_lower);
+    upper.push_back(result.log_p_upper);
+  }
+  expect_calibrated(lower, experiment.shape);
+  expect_calibrated(upper, experiment.shape);
+}
+
+inline void expect_calibrated(const Experiment& experiment,
+                              const std::function<double(Philox&)>& draw) {
+  const std::size_t all = experiment.repetitions;
+  Philox random(experiment.test_case);
+  std::vector<double> log_p(all >= 8000 ? repetitions(all) : all);
+  for (double& value : log_p) value = draw(random);
+  expect_calibrated(log_p, experiment.shape);
 }
 
 // The calibration must see that this p-value is wrong, by all repetitions at the latest: mostly an

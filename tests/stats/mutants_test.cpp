@@ -15,33 +15,25 @@
 namespace assay::stats {
 namespace {
 
-Moments normals(Philox& random, std::size_t n, double sd = 1) {
-  return draw_moments(n, [&] { return sd * random.normal(); });
-}
-
-double two_sided(LogTails tails) {
-  return std::min(0.0, std::numbers::ln2 + std::min(tails.lower, tails.upper));
-}
-
 CAUGHT(Mutants, StudentTFromTheNormalLawIsCaught, 103, 20000) {
-  const Moments x = normals(random, 7);
-  return two_sided(normal_tails(x.mean / x.standard_error()));
+  const Moments x = normal_moments(random, 7);
+  return log_p_two_sided(normal_tails(x.mean / x.standard_error()));
 }
 
 CAUGHT(Mutants, AOneSidedTailDoubledIsCaught, 104) {
-  return std::min(0.0, std::numbers::ln2 + student_t(normals(random, 7), {0}).log_p_upper);
+  return std::min(0.0, std::numbers::ln2 + student_t(normal_moments(random, 7), {0}).log_p_upper);
 }
 
 CAUGHT(Mutants, AReferenceErrorIgnoredIsCaught, 106) {
-  const Moments x = normals(random, 30);
+  const Moments x = normal_moments(random, 30);
   return log_p_two_sided(student_t(x, {.2 * random.normal()}));
 }
 
 CAUGHT(Mutants, PooledVarianceOfUnequalSamplesIsCaught, 107) {
-  const Moments x = normals(random, 10, 1.8);
-  const Moments y = normals(random, 100);
+  const Moments x = normal_moments(random, 10, 1.8);
+  const Moments y = normal_moments(random, 100);
   const double pooled = (x.m2 + y.m2) / 108;
-  return two_sided(
+  return log_p_two_sided(
       student_t_tails((x.mean - y.mean) / std::sqrt(pooled * (1 / 10.0 + 1 / 100.0)), 108));
 }
 
@@ -49,16 +41,16 @@ CAUGHT(Mutants, AContrastWhoseScaleIsNotSquaredIsCaught, 108) {
   const Moments x = draw_moments(40, [&] { return 10 + random.normal(); });
   const Moments y = draw_moments(20, [&] { return 5 + random.normal(); });
   const double se = std::sqrt(x.variance() / 40 + 2 * y.variance() / 20);
-  return two_sided(student_t_tails((x.mean - 2 * y.mean) / se, 35));
+  return log_p_two_sided(student_t_tails((x.mean - 2 * y.mean) / se, 35));
 }
 
 CAUGHT(Mutants, ChiSquareWithNDegreesOfFreedomIsCaught, 109, 20000) {
-  return chi_square_tails(normals(random, 6).m2, 6).upper;
+  return chi_square_tails(normal_moments(random, 6).m2, 6).upper;
 }
 
 CAUGHT(Mutants, FWithExchangedDegreesOfFreedomIsCaught, 111, 20000) {
-  const Moments x = normals(random, 4);
-  const Moments y = normals(random, 20);
+  const Moments x = normal_moments(random, 4);
+  const Moments y = normal_moments(random, 20);
   return f_tails(x.variance() / y.variance(), {19, 3}).upper;
 }
 
@@ -98,9 +90,8 @@ CAUGHT(Mutants, TiesWalkedOneAtATimeAreCaught, 118, 20000, Shape::at_most_unifor
 }
 
 CAUGHT(Mutants, AChiSquareFitThatCountsEveryCellAsADegreeOfFreedomIsCaught, 119, 20000) {
-  std::vector<std::uint64_t> counts(5);
-  for (int i = 0; i < 200; ++i) ++counts[static_cast<std::size_t>(5 * random.uniform())];
-  const ChiSquareFit fit = chi_square_fit({counts, std::vector<double>(5, .2)});
+  const std::vector<double> flat(5, .2);
+  const ChiSquareFit fit = chi_square_fit({multinomial(random, 200, flat), flat});
   return chi_square_tails(fit.test.statistic, 5).upper;
 }
 

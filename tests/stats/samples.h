@@ -45,6 +45,10 @@ stats::Moments draw_moments(std::size_t n, Draw&& draw) {
   return moments;
 }
 
+inline stats::Moments normal_moments(Philox& random, std::size_t n, double sd = 1) {
+  return draw_moments(n, [&] { return sd * random.normal(); });
+}
+
 /// A stationary AR(1) chain of unit variance; of its n values (1 - phi) / (1 + phi) are effective.
 inline std::vector<double> autoregressive(double phi, std::size_t n, Philox& random) {
   std::vector<double> values;

@@ -38,7 +38,7 @@ TEST(AveragesGate, IsCalibratedAtAnyLaw) {
   std::uint32_t number = 0;
   for (const auto& [name, law] : laws) {
     SCOPED_TRACE(name);
-    expect_calibrated({7100 + number++, 4000, Shape::at_most_uniform},
+    expect_calibrated({7100 + number++, tests::repetitions(4000), Shape::at_most_uniform},
                       [&](Philox& random) { return log_p(law, random, each); });
   }
 }

@@ -96,6 +96,19 @@ TEST(IndependenceGates, OfDrawsKeepTheirLevelAtAnyLaw) {
   EXPECT_LE(amber, 128);
 }
 
+// The tail that decides: P(H / B > its limit) by a random order, which chi-square bounds. .01 of
+// 20,000 is 200; more than 270 have probability 1e-6.
+TEST(IndependenceGates, BatchRanksKeepTheLevelOfChiSquare) {
+  Philox random(18);
+  int red = 0;
+  for (int k = 0; k < 20000; ++k) {
+    const std::vector<double> values = sample_of(128, [&] { return random.uniform(); });
+    red += drawn_order_gates(values)[1].state == GateState::amber;
+  }
+  EXPECT_LE(red, 270);
+  EXPECT_GE(red, 40);
+}
+
 TEST(IndependenceGates, OfDrawsSeeMovingAveragesChainsAndSharedOffsets) {
   Philox random(9);
   for (int k = 0; k < 100; ++k) {
