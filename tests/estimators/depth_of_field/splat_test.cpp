@@ -80,14 +80,6 @@ TEST(Splats, TentsOfOneSpacingAreBilinearInterpolation) {
   }
 }
 
-TEST(Splats, BeyondTheLastSampleATentFallsOff) {
-  const Grid grid{16, 1, 1};
-  const Splats splats = tents(grid, regular_samples(grid, 8));
-  for (std::size_t x = 8; x < 16; ++x) {
-    EXPECT_NEAR(sum(splats[x]), 1 - static_cast<double>(x - 8) / 8, 1e-15);
-  }
-}
-
 // A tile of every pixel beside one of every eighth: their tents overlap.
 TEST(Splats, NormalisedSharesKeepWhatIsConstant) {
   const Grid grid{24, 8, 1};

@@ -20,6 +20,8 @@ TEST(Roulette, FurnaceStatesTheTextbookVariance) {
   EXPECT_DOUBLE_EQ(stated_variance("paths/improved_roulette", "{scale: .5}"), 0.5);
   EXPECT_DOUBLE_EQ(stated_variance("paths/improved_roulette", "{scale: 2}"), 2);
   EXPECT_DOUBLE_EQ(stated_variance("paths/improved_roulette", "{scale: 0}"), 2);
+  // With one child expected at most and one colour, winners and roulette are the same estimator.
+  EXPECT_DOUBLE_EQ(stated_variance("paths/winners", "{scene: furnace, splitting: 1}"), 2);
 }
 
 TEST(Roulette, ExactTerminalValueLeavesNoVariance) {
@@ -30,11 +32,6 @@ TEST(Roulette, ExactTerminalValueLeavesNoVariance) {
     EXPECT_THAT(observe(plugin, 10'000)[0].values, Each(DoubleNear(*stated.mean, stated.rounding)))
         << parameters;
   }
-}
-
-// With one child expected at most and one colour, winners and roulette are the same estimator.
-TEST(Winners, OneChildIsTheClassicalRoulette) {
-  EXPECT_DOUBLE_EQ(stated_variance("paths/winners", "{scene: furnace, splitting: 1}"), 2);
 }
 
 // A furnace of diffuse albedo .3 and mirror .4: L = 1 / (1 - .7), whether emission is hit or known.
