@@ -18,11 +18,6 @@ std::string trouble(const Setup& setup, std::uint64_t primaries = 1) {
   return thrown([&] { draw_one(*setup.make(), 3, primaries, cost); });
 }
 
-std::string averaging(std::string source) {
-  const std::string name = ".name = \"mine\",";
-  return source.insert(source.find(name), ".flags = ASSAY_AVERAGES, ");
-}
-
 // In the words of a library in a process of its own, each estimator and all workers alike.
 TEST_F(Examination, WhoseObservationsAreNoFunctionOfKeyAndIndexIsRefused) {
   const std::string counts = "static int calls; call->out[0] = ++calls; return 0; ";
@@ -44,7 +39,7 @@ TEST_F(Examination, WhoseObservationsAreNoFunctionOfKeyAndIndexIsRefused) {
       "for (uint64_t i = 0; i < call->primaries; ++i) sum += assay_uniform(&mine); "
       "call->out[0] = sum / (double)call->primaries; return 0; ";
   EXPECT_THAT(
-      trouble(*load_as("by_key", averaging(with_body(by_key))), 8),
+      trouble(*load_as("by_key", with_body(by_key, ", .flags = ASSAY_AVERAGES")), 8),
       HasSubstr("by_key.so` ignores the index: observations 0 to 31 all have the same numbers"));
 }
 
@@ -130,7 +125,7 @@ TEST(Coins, OfTheIndexAloneAreRefused) {
 TEST_F(Examination, WhoseSamplersDriftIsRefused) {
   const auto drifting = [&](const std::string& name, const std::string& sound,
                             const std::string& drift) {
-    std::string source = std::string("static double turn;\n") + ramp_sampler;
+    std::string source = "static double turn;\n" + ramp_sampler;
     source.replace(source.find(sound), sound.size(), drift);
     return load_as(name, source)->samplers()[0].sampler;
   };

@@ -40,19 +40,21 @@ class Library : public Programs {
   }
 };
 
-/// A library around the body of secondary().
-inline std::string with_body(const std::string& body) {
+/// A library around the body of secondary(), and more fields of its estimator.
+inline std::string with_body(const std::string& body, const std::string& fields = "") {
   return "static int secondary(AssayCall *call) { " + body + R"(}
 static const AssayChannel x = {.size = sizeof x, .name = "x"};
 static const AssayEstimator mine = {.size = sizeof mine, .name = "mine", .channels = &x,
-                                    .channel_count = 1, .secondary = secondary};
+                                    .channel_count = 1, .secondary = secondary)" +
+         fields + R"(};
 static const AssayLibrary library = {sizeof library, ASSAY_ABI_VERSION, &mine, 1};
 const AssayLibrary *assay_library(void) { return &library; }
 )";
 }
 
 /// One that samples the unit interval with density 2 x.
-inline constexpr const char* ramp_sampler = R"(
+inline const std::string ramp_sampler =
+    R"(
 static int sample(const void *setup, AssayStream *random, AssayDraw *draw) {
   double a = assay_uniform(random), b = assay_uniform(random), x = a > b ? a : b;
   (void)setup;
@@ -63,12 +65,6 @@ static double density(const void *setup, const double *p) { (void)setup; return 
 static double evaluate(const void *setup, const double *p) { (void)setup; (void)p; return 1; }
 static const AssaySampler ramp = {.size = sizeof ramp, .name = "ramp", .domain = ASSAY_INTERVAL,
     .low = 0, .high = 1, .sample = sample, .density = density, .evaluate = evaluate};
-static int secondary(AssayCall *call) { call->out[0] = 1; return 0; }
-static const AssayChannel x = {.size = sizeof x, .name = "x"};
-static const AssayEstimator mine = {.size = sizeof mine, .name = "mine", .channels = &x,
-    .channel_count = 1, .secondary = secondary, .samplers = &ramp, .sampler_count = 1};
-static const AssayLibrary library = {sizeof library, ASSAY_ABI_VERSION, &mine, 1};
-const AssayLibrary *assay_library(void) { return &library; }
-)";
+)" + with_body("call->out[0] = 1; return 0; ", ", .samplers = &ramp, .sampler_count = 1");
 
 }  // namespace assay::foreign
