@@ -2,7 +2,8 @@
 
 // Entries of suites whose effects have closed forms, for claims at the edge of a margin.
 
-#include <cmath>
+#include <fmt/format.h>
+
 #include <cstdint>
 #include <map>
 #include <string>
@@ -10,29 +11,32 @@
 
 #include "harness/draws/sampler_setup.h"
 #include "stats/cells/chi_square_fit.h"
+#include "tests/harness/many_seeds.h"
 #include "tests/harness/questions.h"
+#include "tests/harness/table.h"
 
 namespace assay::harness {
 
-/// Paths that are absorbed with probability .4 at every bounce: their rays are as random as their
-/// values. So many in a secondary that methods whose data must be near normal are valid of
-/// hundreds.
-inline const std::string absorbed_path =
-    "plugin: paths/roulette, scene: {zones: [{top: 1, emission: 1, albedo: 0.6}], "
-    "camera: {position: [0, 0, 0], direction: [1, 0, 0]}}, primaries: 4";
+/// The estimators of tests/tables/levels.txt that tests name: what is not drawn costs nothing.
+inline std::string estimators_of(const std::string& tests) {
+  std::istringstream entries(sections_of("levels.txt").at(0).head);
+  std::string text = "estimators:\n";
+  for (std::string entry; std::getline(entries, entry);) {
+    const std::string name = entry.substr(2, entry.find(':') - 2);
+    if (std::regex_search(tests, std::regex("(\\(|reference: )" + name + "\\b")))
+      text += entry + "\n";
+  }
+  return text;
+}
 
-inline const std::map<std::string, std::string> known_effects{
-    {"path", absorbed_path},
-    {"path_again", absorbed_path},
-    {"three_in_ten", "plugin: analytic/law, law: bernoulli(0.3), primaries: 1"},
-    {"half", "plugin: analytic/law, law: bernoulli(0.5), primaries: 1"},
-    {"triangle", "plugin: mutants/nonuniform_triangle"},
-};
-
-inline std::map<std::string, std::string> with_known_effects(
-    std::map<std::string, std::string> entries) {
-  entries.insert(known_effects.begin(), known_effects.end());
-  return entries;
+/// A suite of these claims, with what a test says beside; their names are 0, 1, ….
+inline std::string suite_of(const std::vector<std::string>& claims, double alpha, double beta) {
+  std::string tests;
+  for (std::size_t i = 0; i < claims.size(); ++i) {
+    tests += fmt::format("  - {{name: '{}', claim: {}}}\n", i, claims[i]);
+  }
+  return fmt::format("suite: effects\nalpha: {}\nbeta: {}\n{}tests:\n{}", alpha, beta,
+                     estimators_of(tests), tests);
 }
 
 /// The effect w of the triangle's draws over its cells, pooled as for so many draws. Counts of many
@@ -58,7 +62,12 @@ inline double effect_of_triangle(std::uint64_t draws) {
       .effect;
 }
 
-/// w of three in ten against a half, over 0 and 1: sqrt(sum (p - q)^2 / ((p + q) / 2)).
-inline double effect_of_halves() { return std::sqrt(0.04 / 0.4 + 0.04 / 0.6); }
+/// The claim with the triangle's effect, as for its secondaries, in place of EFFECT.
+inline std::string with_effect(std::string claim) {
+  const std::size_t at = claim.find("EFFECT");
+  if (at == claim.npos) return claim;
+  const std::uint64_t draws = std::stoul(claim.substr(claim.find("secondaries: ") + 13));
+  return claim.replace(at, 6, fmt::format("{:.17g}", effect_of_triangle(draws)));
+}
 
 }  // namespace assay::harness

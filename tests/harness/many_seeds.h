@@ -105,19 +105,6 @@ inline void expect_as_in_runs(const std::string& text) {
   }
 }
 
-/// The entries that a suite's tests name, of these by name: what is not drawn costs nothing.
-inline std::string estimators_of(const std::map<std::string, std::string>& entries,
-                                 const std::string& tests) {
-  std::string text = "estimators:\n";
-  for (const auto& [name, entry] : entries) {
-    const bool named = tests.find("(" + name) != std::string::npos ||
-                       tests.find("reference: " + name) != std::string::npos;
-    if (!named) continue;
-    text += "  " + name + ": {" + entry + "}\n";
-  }
-  return text;
-}
-
 /// How often a logarithm of a p-value is at most that of `level`.
 inline double rate_at(const std::vector<double>& log_p, double level) {
   const auto below = std::count_if(log_p.begin(), log_p.end(),

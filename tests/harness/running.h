@@ -27,6 +27,12 @@ inline reports::Record run_files(const std::vector<std::string>& files,
   return run(suites, options, silence);
 }
 
+/// tests/suites/good.yaml with more tests.
+inline std::string good_suite(const std::string& more = "") {
+  std::string text = tests::bytes_in(ASSAY_SOURCE_DIR "/tests/suites/good.yaml");
+  return text.insert(text.find("statements:"), more);
+}
+
 /// What a command prints, and its exit code.
 struct Said {
   int code = 0;
@@ -51,21 +57,40 @@ inline reports::Record run_text(const std::string& text, const RunOptions& optio
   return run_files({place.write("suite.yaml", text)}, options);
 }
 
+/// The suite of this text, beside the files of the place, run.
+inline reports::Suite run_in(const Workplace& place, const std::string& text,
+                             const RunOptions& options = {}) {
+  return run_files({place.write("suite.yaml", text)}, options).suites[0];
+}
+
 /// All that a run says but when and how long: equal runs have equal texts.
 inline std::string numbers_of(const reports::Record& record) {
   return reports::json(reports::without_times(record));
 }
 
-/// The only test of a suite given as text, run on one thread.
-inline reports::Test run_test(const std::string& text) {
-  return run_text(text, {.threads = 1}).suites[0].tests[0];
+/// The first test of a suite given as text.
+inline reports::Test run_test(const std::string& text, const RunOptions& options = {.threads = 1}) {
+  return run_text(text, options).suites[0].tests[0];
 }
 
-/// Its verdict; the message is kept for when the verdict is not the one expected.
-inline reports::Verdict run_verdict(const std::string& text) {
-  const reports::Test result = run_test(text);
-  testing::Test::RecordProperty("message", result.message);
-  return result.verdict;
+/// A test alone, without what belongs to the run (Holm, times, the file it stood in).
+inline reports::Test raw(reports::Test test) {
+  test.file.clear();
+  test.replay.clear();
+  test.line = 0;
+  for (reports::Sample& sample : test.samples) sample.cost.seconds = 0;
+  for (reports::Channel& channel : test.channels) {
+    channel.p_adjusted.reset();
+    channel.log10_p_adjusted.reset();
+  }
+  return test;
+}
+
+/// The verdict, and words of the message.
+inline void expect_said(const reports::Test& test, reports::Verdict verdict,
+                        const std::vector<std::string>& all = {}) {
+  EXPECT_EQ(test.verdict, verdict) << test.message;
+  for (const std::string& words : all) EXPECT_THAT(test.message, HasSubstr(words));
 }
 
 inline const reports::Test& test_named(const reports::Record& record, const std::string& name) {

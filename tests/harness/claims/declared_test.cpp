@@ -30,8 +30,7 @@ TEST(Declared, AveragesThatIsUntrueIsAnError) {
   for (const char* observation :
        {"draws[0]", "sum(draws)", "(draws[0] + sum(draws)) / primaries"}) {
     const reports::Test test = judged("stream.gauss(0, 1)", observation, 1);
-    EXPECT_EQ(test.verdict, Verdict::error) << observation << ": " << test.message;
-    EXPECT_THAT(test.message, HasSubstr("`mine` declares `averages`, but its observations of 32"));
+    expect_said(test, Verdict::error, {"`mine` declares `averages`, but its observations of 32"});
   }
 }
 

@@ -24,16 +24,8 @@ struct Rows {
   std::vector<double> b;
 };
 
-/// A suite on two files; `tests` are the suite's, one a line.
 reports::Suite judged(const Workplace& place, const Rows& rows, const std::string& tests) {
-  place.write("a.txt", file_of(rows.a));
-  place.write("b.txt", file_of(rows.b));
-  const std::string text =
-      "suite: s\nestimators:\n  a: {plugin: recorded, file: a.txt}\n"
-      "  b: {plugin: recorded, file: b.txt}\n  drawn: {plugin: analytic/law, law: 'normal(0, 1)'}\n"
-      "tests:\n" +
-      tests;
-  return run_files({place.write("suite.yaml", text)}).suites[0];
+  return compared(place, rows.a, rows.b, tests);
 }
 
 std::vector<std::uint64_t> sizes_of(const reports::Test& test) {
@@ -114,31 +106,12 @@ TEST_F(UnequalRows, OfVariancesAreEachWeighedByTheirNumber) {
   EXPECT_NEAR(*suite.tests[0].channels.at(0).statistic, expected.statistic, 1e-9);
 }
 
-// 600 of one law and 1200 of another that needs 1000: the file with fewer rows decides.
-TEST_F(UnequalRows, AreTooFewForAVarianceWhereOneFileHasTooFew) {
-  const reports::Suite suite =
-      judged(place, lehmer_rows(8, 1200, 600), "  - {claim: variance(a) == variance(b)}\n");
-  EXPECT_EQ(suite.tests[0].verdict, Verdict::inconclusive);
-  EXPECT_THAT(suite.tests[0].message,
-              AllOf(HasSubstr("600 observations are too few"), HasSubstr("it takes 1000"),
-                    HasSubstr("if the values are near normal, add `test: F`")));
-}
-
 TEST_F(UnequalRows, OfDependentChainsAreAllAveragedInBatches) {
   const reports::Suite suite = judged(place, {chain(0.9, 9000, 5), chain(0.9, 6000, 6)},
                                       "  - {claim: mean(a) == mean(b)}\n");
   EXPECT_EQ(suite.tests[0].method, "batch-means");
   EXPECT_EQ(suite.tests[0].verdict, Verdict::pass) << suite.tests[0].message;
   EXPECT_EQ(sizes_of(suite.tests[0]), (Sizes{9000, 6000}));
-}
-
-// A chain among the rows that an equal number would have left out.
-TEST_F(UnequalRows, AreJudgedForIndependenceToTheirEnd) {
-  Rows rows = lehmer_rows(3, 400, 250);
-  for (std::size_t i = 250; i < 400; ++i) rows.a[i] = rows.a[i - 150];
-  const reports::Suite suite = judged(place, rows, "  - {claim: mean(a) == mean(b)}\n");
-  EXPECT_EQ(suite.tests[0].verdict, Verdict::invalid);
-  EXPECT_THAT(suite.tests[0].message, HasSubstr("those from 251 to 400 are those from 101 to 250"));
 }
 
 TEST_F(UnequalRows, AreCappedByNumberAndBudget) {

@@ -1,72 +1,60 @@
 // Claims of every kind, from YAML to verdict and message: the rows of tests/tables/verdicts.txt.
 
+#include "tests/harness/recorded_rows.h"
 #include "tests/harness/refusal.h"
 #include "tests/harness/running.h"
+#include "tests/harness/table.h"
 #include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
 
-/// Of one claim.
-struct Row {
+struct Expected {
   std::string verdict;  ///< or `refused`
+  bool ok;              ///< that the test is as expected
+  std::string method;   ///< "": any
   std::string claim;
-  std::vector<std::string> words;
 };
 
-struct Section {
-  std::string suite;
-  std::vector<Row> rows;
-};
-
-std::map<std::string, Section> sections() {
-  std::ifstream file(ASSAY_SOURCE_DIR "/tests/tables/verdicts.txt");
-  std::map<std::string, Section> all;
-  Section* section = nullptr;
-  bool in_suite = false;
-  for (std::string line; std::getline(file, line);) {
-    if (line.starts_with("=== ")) {
-      section = &all[line.substr(4)];
-      in_suite = true;
-    } else if (line == "---") {
-      in_suite = false;
-    } else if (in_suite) {
-      section->suite += line == "  -" ? "  - " : line + "\n";
-    } else if (line.starts_with("    ")) {
-      section->rows.back().words.push_back(line.substr(4));
-    } else if (!line.empty() && !line.starts_with('#')) {
-      const std::size_t space = line.find(' ');
-      section->rows.push_back({line.substr(0, space), line.substr(space + 1), {}});
-    }
-  }
-  return all;
+/// VERDICT [expected|unexpected] [by METHOD] CLAIM
+Expected expected_of(const std::string& text) {
+  std::smatch parts;
+  static const std::regex form(R"((\w+)( expected| unexpected)?(?: by (\S+))? (\{.*|claim:.*))");
+  if (!std::regex_match(text, parts, form)) throw std::invalid_argument(text);
+  const bool ok = parts[2].matched ? parts[2] == " expected" : parts[1] == "pass";
+  return {parts[1], ok, parts[3], parts[4]};
 }
 
-class Verdicts : public TestWithParam<const char*> {};
+class Verdicts : public TestWithParam<ClaimSection> {};
 
 TEST_P(Verdicts, AreThoseOfTheTable) {
-  const Section section = sections().at(GetParam());
-  EXPECT_GE(section.rows.size(), 7U);
-  for (const Row& row : section.rows) {
-    const std::string text = section.suite + row.claim + "\n";
+  EXPECT_GE(GetParam().rows.size(), 2U);
+  for (const ClaimRow& row : GetParam().rows) {
+    const Expected expected = expected_of(row.text);
+    const Workplace place;
+    for (const auto& [file, numbers] : row.files) place.write(file, file_of(numbers));
+    const std::string file = place.write("suite.yaml", suite_with(GetParam(), expected.claim));
     reports::Test test;
-    const std::string why = refusal([&] { test = run_test(text); });
+    const std::string why =
+        refusal([&] { test = run_files({file}, {.threads = 1}).suites[0].tests.at(0); });
     const bool refused = !why.starts_with("(nothing");
-    EXPECT_EQ(refused ? "refused" : to_string(test.verdict), row.verdict)
-        << row.claim << ": " << (refused ? why : test.message);
+    const std::string said = refused ? why : test.message;
+    EXPECT_EQ(refused ? "refused" : to_string(test.verdict), expected.verdict)
+        << row.text << ": " << said;
+    EXPECT_EQ(test.ok, expected.ok) << row.text;
+    if (!expected.method.empty()) {
+      EXPECT_EQ(test.method, expected.method) << row.text;
+    }
     for (const std::string& words : row.words) {
       const bool present = !words.starts_with("! ");
-      EXPECT_EQ((refused ? why : test.message).find(present ? words : words.substr(2)) !=
-                    std::string::npos,
-                present)
-          << row.claim << ": " << (refused ? why : test.message) << "\n  " << words;
+      EXPECT_EQ(said.find(present ? words : words.substr(2)) != said.npos, present)
+          << row.text << ": " << said << "\n  " << words;
     }
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(OfClaims, Verdicts,
-                         Values("claims", "laws", "words", "pictures", "questions"),
-                         [](const auto& test) { return std::string(test.param); });
+INSTANTIATE_TEST_SUITE_P(OfClaims, Verdicts, ValuesIn(sections_of("verdicts.txt")),
+                         name_of_section);
 
 }  // namespace
 }  // namespace assay::harness

@@ -13,8 +13,23 @@ Kind parsed(const std::vector<std::string>& arguments) {
   return std::get<Kind>(parse_command_line(arguments));
 }
 
+/// Why the command is refused, as it is read or by what it is made into.
 std::string refused(const std::vector<std::string>& arguments) {
-  return refusal([&] { parse_command_line(arguments); });
+  return refusal([&] {
+    const Command command = parse_command_line(arguments);
+    Silence silence;
+    if (const auto* run = std::get_if<RunCommand>(&command)) {
+      std::vector<Suite> suites(1);
+      suites[0].estimators = {parse_estimator_option("area=luminaire/area")};
+      for (const std::string& each : run->assignments) set_parameter(suites, each);
+    }
+    if (const auto* check = std::get_if<CheckCommand>(&command)) suite_of_claim(check->arguments);
+    if (const auto* sampled = std::get_if<SampleArguments>(&command)) sample(*sampled);
+    if (const auto* described = std::get_if<DescribeCommand>(&command)) describe(described->name);
+    if (const auto* calibrated = std::get_if<CalibrateCommand>(&command)) {
+      calibration(calibrated->arguments, silence);
+    }
+  });
 }
 
 /// The words of a line, of which those with blanks stand in quotes.
@@ -59,25 +74,14 @@ TEST(CommandLine, PlansSuitesAsTheyWouldRun) {
   EXPECT_THAT(command.suites, ElementsAre("a.yaml", "b.yaml"));
   EXPECT_THAT(command.assignments, ElementsAre("x.n=1"));
   EXPECT_THAT(command.options.selection.filters, ElementsAre("a/*"));
-  EXPECT_EQ(command.options.alpha, 0.05);
   EXPECT_EQ(command.options.coarsen, 2);
-  EXPECT_EQ(command.options.seed, 3U);
-  EXPECT_EQ(command.options.threads, 1U);
   EXPECT_TRUE(command.output.quiet);
-  EXPECT_THAT(refused({"plan"}), HasSubstr("`assay plan` needs a suite file"));
-  EXPECT_THAT(refused({"plan", "a.yaml", "--ledger", "f"}), HasSubstr("no option `--ledger`"));
 }
 
 TEST(CommandLine, ALedgerIsNoPartOfAReplay) {
   const auto command = parsed<RunCommand>({"run", "a.yaml", "--ledger", "n.ledger"});
   EXPECT_EQ(command.options.ledger, "n.ledger");
   EXPECT_EQ(command.options.command, "assay run");
-}
-
-TEST(CommandLine, RepeatedOptionsTakeOneValueEach) {
-  const auto command = parsed<RunCommand>({"run", "--set", "x.n=1", "a.yaml", "b.yaml"});
-  EXPECT_THAT(command.suites, ElementsAre("a.yaml", "b.yaml"));
-  EXPECT_THAT(command.assignments, ElementsAre("x.n=1"));
 }
 
 TEST(CommandLine, OneReportOptionTakesSeveralReports) {
@@ -99,9 +103,6 @@ TEST(CommandLine, OneReportOptionTakesSeveralReports) {
   EXPECT_EQ(paths({"run", "--report", "console", "html=b", "s.yaml"}), "console>- html>b s.yaml ");
   EXPECT_EQ(paths({"run", "s.yaml", "--report", "json=a", "--report", "html=b", "junit=c"}),
             "json>a html>b junit>c s.yaml ");
-  EXPECT_EQ(refused({"run", "s.yaml", "--report", "json=a", "htlm=b"}),
-            "the kind of --report cannot be `htlm`; did you mean `html`?");
-  EXPECT_THAT(refused({"run", "s.yaml", "--report"}), HasSubstr("--report"));
   // A word that follows no report is an argument.
   EXPECT_EQ(paths({"run", "json=a"}), "json=a ");
 }
@@ -117,8 +118,6 @@ TEST(CommandLine, SelectsByFiltersAndTags) {
   const auto list = parsed<ListCommand>({"list", "tests", "a.yaml", "--tag", "x", "--filter=-b"});
   EXPECT_THAT(list.selection.tags, ElementsAre("x"));
   EXPECT_THAT(list.selection.filters, ElementsAre("-b"));
-  EXPECT_THAT(refused({"list", "plugins", "--tag", "x"}), HasSubstr("they select tests"));
-  EXPECT_THAT(refused({"check", "mean(a) == 1", "--tag", "x"}), HasSubstr("no option `--tag`"));
 }
 
 TEST(CommandLine, ChecksAClaim) {
@@ -126,6 +125,9 @@ TEST(CommandLine, ChecksAClaim) {
       {"check", "mean(a) == analytic", "--estimator", "a=luminaire/area,scene={x: [1, 2]}",
        "--detect", "0.5%", "--allow", "1e-6", "--test", "t", "--primaries", "1e2", "--secondaries",
        "1000", "--alpha", "0.02", "--seed", "3"});
+  EXPECT_FALSE(command.arguments.paired);
+  const auto pairs = parsed<CheckCommand>({"check", "mean(a) == mean(b)", "--paired"});
+  EXPECT_TRUE(test_of_claim(pairs.arguments).paired);
   EXPECT_EQ(command.arguments.claim, "mean(a) == analytic");
   EXPECT_THAT(command.arguments.estimators, ElementsAre("a=luminaire/area,scene={x: [1, 2]}"));
   EXPECT_EQ(command.arguments.detect, "0.5%");
@@ -196,26 +198,15 @@ std::vector<std::string> offered(std::vector<std::string> words) {
 }
 
 TEST(CommandLine, CompletionOffersWhatMayFollow) {
-  using Words = std::vector<std::string>;
-  EXPECT_EQ(offered({"re"}), (Words{"replay", "report"}));
-  EXPECT_THAT(offered({}), testing::Contains("run"));
-  EXPECT_EQ(offered({"help", "al"}), Words{"all"});
-  EXPECT_EQ(offered({"run", "--sh"}), Words{"--shard"});
-  EXPECT_EQ(offered({"run", "--color", "a"}), (Words{"auto", "always"}));
-  EXPECT_EQ(offered({"run", "--color=n"}), Words{"--color=never"});
-  EXPECT_EQ(offered({"run", "a.yaml", "--report", "m"}), (Words{"markdown=", "metrics="}));
-  EXPECT_EQ(offered({"run", "a.yaml", "--report", "json=r"}), Words{"*"});
-  EXPECT_EQ(offered({"run", ""}), Words{"*.yaml"});
-  EXPECT_EQ(offered({"run", "--quiet", "--seed", "3", "a.yaml", ""}), Words{"*.yaml"});
-  EXPECT_EQ(offered({"replay", ""}), Words{"*.json"});
-  EXPECT_EQ(offered({"replay", "a.json", ""}), Words{});
-  EXPECT_EQ(offered({"check", "mean(a) == 1", "--test", "wel"}), Words{"welch"});
-  EXPECT_EQ(offered({"describe", "luminaire/a"}), Words{"luminaire/area"});
-  EXPECT_EQ(offered({"describe", "exponen"}), Words{"exponential"});
-  EXPECT_EQ(offered({"list", "tests", "a"}), Words{"*.yaml"});
-  EXPECT_EQ(offered({"run", "--detect", ""}), Words{"*.yaml"});  // no option of `run`
-  EXPECT_EQ(offered({"run", "--alpha", ""}), Words{});
-  EXPECT_EQ(offered({"no", "such"}), Words{});
+  std::ifstream file(ASSAY_SOURCE_DIR "/tests/tables/completions.txt");
+  int count = 0;
+  for (std::string line; std::getline(file, line); ++count) {
+    if (line.starts_with('#')) continue;
+    const std::size_t arrow = line.find(" =>");
+    EXPECT_EQ(offered(words_of(line.substr(0, arrow))), words_of(line.substr(arrow + 3))) << line;
+  }
+  EXPECT_GT(count, 15);
+  EXPECT_THAT(offered({}), Contains("run"));
 }
 
 TEST(CommandLine, TheManualPageHasEveryCommandAndOption) {
@@ -237,17 +228,8 @@ TEST(CommandLine, HelpIsACommandToo) {
   EXPECT_EQ(parsed<TextCommand>({"help"}).text, parsed<TextCommand>({"--help"}).text);
   EXPECT_EQ(parsed<TextCommand>({"help", "--help"}).text, parsed<TextCommand>({"--help"}).text);
   EXPECT_EQ(parsed<TextCommand>({"help", "run"}).text, parsed<TextCommand>({"run", "--help"}).text);
-  EXPECT_EQ(refused({"help", "rnu"}), "unknown command `rnu`; did you mean `run`?");
   // Not the first word: an argument as any other.
   EXPECT_EQ(parsed<ListCommand>({"list", "tests", "help"}).suites.at(0), "help");
-}
-
-TEST(CommandLine, HelpNamesTheMethodsAndHowToSilenceTheConsole) {
-  const std::string check = parsed<TextCommand>({"check", "--help"}).text;
-  EXPECT_THAT(check, HasSubstr("welch"));
-  EXPECT_THAT(check, HasSubstr("influence-t"));
-  EXPECT_THAT(check, HasSubstr("console=/dev/null"));
-  EXPECT_THAT(refused({"check", "mean(a) == 1", "--test"}), HasSubstr("one of t, welch, "));
 }
 
 TEST(CommandLine, TellsItsVersionAndCommit) {
@@ -265,8 +247,6 @@ TEST(CommandLine, MergesRecordsInAnyNumber) {
   EXPECT_FALSE(command.output.github);
   EXPECT_EQ(command.output.inconclusive, InconclusivePolicy::pass);
   EXPECT_TRUE(parsed<MergeCommand>({"merge", "1.json"}).output.github);
-  EXPECT_THAT(refused({"merge", "1.json", "--github", "always"}), HasSubstr("--github"));
-  EXPECT_THAT(refused({"merge", "1.json", "--shard", "1/2"}), HasSubstr("has no option `--shard`"));
 }
 
 TEST(CommandLine, IsRefusedInAnotherWayForEachMistake) {
@@ -285,32 +265,7 @@ TEST(CommandLine, IsRefusedInAnotherWayForEachMistake) {
     }
     ++count;
   }
-  EXPECT_GT(count, 40);
-}
-
-// GCC 12 destroys members of an aggregate in nested braces twice if a later member's initialiser
-// throws. Texts longer than a std::string's own buffer make that a double free.
-TEST(CommandLine, RefusesAWrongValueBesideLongTexts) {
-  const std::string claim = "mean(an_estimator_with_a_long_name) == 1";
-  const std::string estimator = "an_estimator_with_a_long_name=analytic/dart_throwing";
-  for (const char* option : {"--threads", "--seed", "--alpha", "--primaries", "--secondaries",
-                             "--report", "--color", "--inconclusive"}) {
-    EXPECT_THAT(refused({"check", claim, "--estimator", estimator, "--detect", "0.5%", option,
-                         "a value that no option takes"}),
-                HasSubstr(option));
-  }
-  for (const char* option :
-       {"--threads", "--seed", "--alpha", "--coarsen", "--shard", "--report"}) {
-    EXPECT_THAT(refused({"run", "a/suite/with/a/long/name.yaml", "--set", estimator, option,
-                         "a value that no option takes"}),
-                HasSubstr(option));
-  }
-}
-
-TEST(CommandLine, ChecksPairs) {
-  const char* const claim = "mean(a) == mean(b)";
-  EXPECT_FALSE(test_of_claim(parsed<CheckCommand>({"check", claim}).arguments).paired);
-  EXPECT_TRUE(test_of_claim(parsed<CheckCommand>({"check", claim, "--paired"}).arguments).paired);
+  EXPECT_GT(count, 80);
 }
 
 TEST(CommandLine, HelpTellsEveryDefaultInAHundredColumns) {

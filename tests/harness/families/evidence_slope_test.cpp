@@ -105,33 +105,5 @@ TEST(EvidenceOfSlope, PointsWithoutSpreadAreSaidToHaveNoError) {
   EXPECT_EQ(point_without_spread(asked->question("within"), 0, bent()), "");
 }
 
-// Nor does the plan take such a pilot for numbers to plan with.
-TEST(EvidenceOfSlope, PointsWithoutSpreadAreInvalidForThatReasonInARunToo) {
-  for (const char* claim : {"slope(mean(it)) == 1", "slope(mean(it)) within 0.1 of 1"}) {
-    const reports::Test test = run_test(
-        "suite: exact\nestimators: {it: {plugin: analytic/normal, deviation: 0}}\ntests:\n  - "
-        "{claim: " +
-        std::string(claim) + ", over: {mean: [1, 2, 4]}}\n");
-    EXPECT_EQ(test.verdict, reports::Verdict::invalid) << test.message;
-    EXPECT_THAT(test.message, HasSubstr("is 1 but for rounding: of a point without spread"));
-  }
-}
-
-// A forced method shows its gates only; if no slope fits, it is invalid all the same. With so few
-// observations, every slope is rejected at beta. The claimed slopes are rejected at alpha with
-// probability below .04. Misfits are near 12 and 19.5 beyond chance, with 3 degrees of freedom;
-// limits are 2.9 and 44.8 (scipy.stats.ncx2).
-TEST(EvidenceOfSlope, AForcedMethodShowsNothingByRejectingEverySlope) {
-  const reports::Test test = run_test(R"(suite: forced
-alpha: 1e-9
-beta: 0.4
-estimators: {ratio: {plugin: analytic/ratio}}
-tests:
-  - {claim: slope(bias(ratio)) within 0.1 of -1, test: slope, over: {primaries: [1, 2, 4, 8]}, secondaries: 6000}
-)");
-  EXPECT_EQ(test.verdict, reports::Verdict::invalid) << test.message;
-  EXPECT_THAT(test.message, HasSubstr("lie on no power law"));
-}
-
 }  // namespace
 }  // namespace assay::harness

@@ -7,23 +7,23 @@
 namespace assay::harness {
 namespace {
 
-/// The advice for a mean of 1000 observations whose gate of this name is red.
-std::string help_for(const std::string& kind, const std::string& where = "") {
-  const auto asked = ask_text(R"(suite: gates
-estimators:
-  it: {plugin: analytic/normal}
-tests:
-  - {name: test, claim: mean(it) == 0}
-)");
+/// The advice for a mean of 1000 observations with this red gate.
+std::string help_for(const reports::Gate& gate, const std::string& where = "") {
+  const auto asked = ask_text(
+      "suite: gates\nestimators: {it: {plugin: analytic/normal}}\n"
+      "tests: [{name: test, claim: mean(it) == 0}]\n");
   TestOutcome outcome{.question = asked->questions[0]};
   outcome.plan.looks = one_look(1000, outcome.place.share);
-  outcome.gates = {
-      gate_of(reports::Gate{.name = kind, .value = 4, .limit = 2, .state = "red"}, where)};
+  outcome.gates = {gate_of(gate, where)};
   return what_would_help(outcome);
 }
 
+reports::Gate red(const std::string& name, double value = 4, double limit = 2) {
+  return {.name = name, .value = value, .limit = limit, .state = "red"};
+}
+
 TEST(GateText, OfHeavyTailsAdvisesNoMoreObservations) {
-  const std::string help = help_for("excess kurtosis", " of it");
+  const std::string help = help_for(red("excess kurtosis"), " of it");
   EXPECT_THAT(help, HasSubstr("heavy-tailed"));
   EXPECT_THAT(help, HasSubstr("a quantile"));
   EXPECT_THAT(help, Not(HasSubstr("secondaries")));
@@ -31,7 +31,7 @@ TEST(GateText, OfHeavyTailsAdvisesNoMoreObservations) {
 
 // The logarithm of the factor falls like 1 / sqrt(n): (ln 4 / ln 1.25)^2 x 1000 = 38596.
 TEST(GateText, OfSkewnessSaysHowManyObservationsWouldHelp) {
-  const std::string help = help_for("level factor by skewness");
+  const std::string help = help_for(red("level factor by skewness"));
   EXPECT_THAT(
       help, HasSubstr("about 39000 `secondaries` would do: no test knows of a rare bright value"));
   EXPECT_THAT(help, Not(HasSubstr("heavy-tailed")));
@@ -39,22 +39,14 @@ TEST(GateText, OfSkewnessSaysHowManyObservationsWouldHelp) {
 
 // A share of .5: nine times as many others leave it a tenth.
 TEST(GateText, OfOneObservationSaysHowManyOthersWouldDo) {
-  const auto asked = ask_text(
-      "suite: gates\nestimators:\n  it: {plugin: analytic/normal}\ntests:\n"
-      "  - {name: test, claim: mean(it) == 0}\n");
-  TestOutcome outcome{.question = asked->questions[0]};
-  outcome.plan.looks = one_look(1000, outcome.place.share);
-  outcome.gates = {gate_of(reports::Gate{
-      .name = "share of one observation", .value = 0.5, .limit = 0.5, .state = "red"})};
-  EXPECT_THAT(what_would_help(outcome), HasSubstr("about 9000 `secondaries` would do"));
+  EXPECT_THAT(help_for(red("share of one observation", 0.5, 0.5)),
+              HasSubstr("about 9000 `secondaries` would do"));
 }
 
 TEST(GateText, NamesFewOfManyRedGates) {
   std::vector<Gate> gates;
   for (int i = 0; i < 1000; ++i) {
-    gates.push_back(
-        gate_of(reports::Gate{.name = "excess kurtosis", .value = 4, .limit = 2, .state = "red"},
-                ", value" + std::to_string(i)));
+    gates.push_back(gate_of(red("excess kurtosis"), ", value" + std::to_string(i)));
   }
   const std::string all = red_gates(gates);
   EXPECT_THAT(all, HasSubstr("value3)"));

@@ -12,38 +12,7 @@ namespace {
 
 using reports::Verdict;
 
-// Statements have tests of several shards. The estimators include one without a test, two of one
-// plugin, a mutant, an image, one of several channels and a law. One estimator has only its draws
-// tested, so that a test's own observations do not show it.
-constexpr const char* suite = R"(suite: good
-estimators:
-  uniform: {plugin: analytic/exponential_uniform, primaries: 64}
-  idle: {plugin: analytic/exponential_uniform, primaries: 16}
-  again: {plugin: analytic/exponential_uniform, primaries: 64}
-  importance: {plugin: analytic/exponential_importance, primaries: 64}
-  normal: {plugin: analytic/normal, mean: 2, primaries: 1}
-  area: {plugin: luminaire/area, scene: triangle}
-  hemisphere: {plugin: luminaire/hemisphere, scene: triangle}
-  floor: {plugin: luminaire/floor, width: 8, height: 8, primaries: 4}
-  no_cosine: {plugin: mutants/no_cosine, scene: triangle}
-statements:
-  - {text: Areas are right., source: a talk, holds: ["mean(area) == *"]}
-  - {text: So is the last of all., source: a talk, holds: [no cosine]}
-  - {text: Importance has less variance., source: a talk, holds: ["variance(imp*"]}
-tests:
-  - {claim: mean(uniform) == analytic, detect: 2%}
-  - {claim: mean(uniform) == mean(importance), detect: 2%, weight: 3}
-  - {claim: variance(importance) < variance(uniform)}
-  - {claim: mean(again) == analytic}
-  - {claim: variance(normal) == analytic, detect: 30%}
-  - {claim: mean(area) == analytic, detect: 5%}
-  - {claim: mean(area) == mean(hemisphere), detect: 10%}
-  - {claim: mean(floor) == analytic}
-  - {name: off, claim: mean(hemisphere) == 0.1}
-  - {claim: 'distribution(normal) == normal(2, 1)', detect: 0.1}
-  - {claim: distribution(importance.x) == density}
-  - {name: no cosine, claim: mean(no_cosine) == analytic, detect: 5%, expect: fail}
-)";
+const std::string suite = good_suite("  - {name: off, claim: mean(hemisphere) == 0.1}\n");
 
 /// The record, written and read again.
 reports::Record saved(const reports::Record& record) {
@@ -66,7 +35,7 @@ using Merge = Placed;
 TEST_F(Merge, OfShardsInAnyOrderIsOneRunByteForByteApartFromTimes) {
   const std::vector<std::string> files{
       place.write("good.yaml", suite),
-      place.write("other.yaml", std::string(suite) + "  - {claim: mean(idle) <= 7}\n")};
+      place.write("other.yaml", good_suite("  - {claim: mean(idle) <= 7}\n"))};
   const std::string whole = numbers_of(run_files(files, {.seed = 3}));
   for (const unsigned count : {1U, 2U, 13U}) {
     std::vector<ShardFile> shards = shards_of(files, count, {.seed = 3});
@@ -220,7 +189,7 @@ TEST_F(Refusing, OtherOptionsOrSuitesAreAnotherRun) {
   const ShardFile other{"b.json", run_files({file_}, {.shard = std::pair(2U, 3U)})};
   EXPECT_THAT(refused({shards_[0], other}),
               HasSubstr("the number of shards is `3` here and `2` there"));
-  place_.write("good.yaml", std::string(suite) + "# a remark\n");
+  place_.write("good.yaml", suite + "# a remark\n");
   EXPECT_THAT(refused_with({}), HasSubstr("the digest of the suites"));
 }
 

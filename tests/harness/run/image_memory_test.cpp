@@ -2,11 +2,9 @@
 
 #include "harness/run/image_memory.h"
 
-#include <fmt/format.h>
-
 #include "harness/suite/suite.h"
 #include "harness/theta/ask.h"
-#include "tests/estimators/exr.h"
+#include "tests/harness/pictures.h"
 #include "tests/harness/refusal.h"
 #include "tests/harness/running.h"
 #include "tests/prelude.h"
@@ -20,10 +18,7 @@ constexpr double elements = 8 * 6 * 3;
 class ImageMemory : public ::testing::Test {
  protected:
   ImageMemory() {
-    for (int i = 0; i < pictures; ++i) {
-      const draws::Picture picture{8, 6, {"R", "G", "B"}, std::vector<float>(8 * 6 * 3, 1.0F)};
-      draws::write_exr(place_.file(fmt::format("a{:02}.exr", i)), picture);
-    }
+    write_stack(place_, "a", {.width = 8, .height = 6, .count = pictures}, flat(1));
     const Suite suite =
         load_suite(place_.write("s.yaml",
                                 "suite: s\nestimators:\n  a: {plugin: recorded, file: 'a*.exr'}\n"

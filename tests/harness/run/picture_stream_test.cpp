@@ -21,31 +21,17 @@ constexpr int width = 172;
 constexpr int height = 150;
 constexpr int pictures = 32;  // a side
 
-void expect_same_findings(const reports::Test& one, const reports::Test& other) {
+void expect_same_findings(const reports::Test& one, reports::Test other) {
   EXPECT_EQ(one.channels[0].log10_p, other.channels[0].log10_p);
   EXPECT_EQ(one.channels[0].effect.low, other.channels[0].effect.low);
   EXPECT_EQ(one.detectable, other.detectable);
-  ASSERT_EQ(one.image->groups.size(), other.image->groups.size());
-  for (std::size_t i = 0; i < one.image->groups.size(); ++i) {
-    EXPECT_EQ(one.image->groups[i].place, other.image->groups[i].place);
-    EXPECT_EQ(one.image->groups[i].log10_p, other.image->groups[i].log10_p);
-  }
-  ASSERT_EQ(one.gates.size(), other.gates.size());
-  for (std::size_t i = 0; i < one.gates.size(); ++i) {
-    EXPECT_EQ(one.gates[i].value, other.gates[i].value) << one.gates[i].name;
-    EXPECT_EQ(one.gates[i].limit, other.gates[i].limit) << one.gates[i].name;
-  }
-  ASSERT_EQ(one.maps.size(), other.maps.size());
-  for (std::size_t i = 0; i < one.maps.size(); ++i) {
-    EXPECT_EQ(one.maps[i].texels.values, other.maps[i].texels.values) << one.maps[i].name;
-  }
+  EXPECT_EQ(one.image->groups, other.image->groups);
+  EXPECT_EQ(one.gates, other.gates);
+  EXPECT_EQ(one.maps, other.maps);
+  ASSERT_EQ(one.samples.size(), other.samples.size());
   for (std::size_t i = 0; i < one.samples.size(); ++i) {
-    EXPECT_EQ(one.samples[i].mean, other.samples[i].mean);
-    EXPECT_EQ(one.samples[i].variance, other.samples[i].variance);
-    EXPECT_EQ(one.samples[i].min, other.samples[i].min);
-    EXPECT_EQ(one.samples[i].max, other.samples[i].max);
-    EXPECT_EQ(one.samples[i].nonzero, other.samples[i].nonzero);
-    EXPECT_EQ(one.samples[i].cost.samples, other.samples[i].cost.samples);
+    other.samples[i].cost.seconds = one.samples[i].cost.seconds;
+    EXPECT_EQ(one.samples[i], other.samples[i]);
   }
 }
 

@@ -8,6 +8,7 @@
 #include "tests/harness/questions.h"
 #include "tests/harness/recorded_rows.h"
 #include "tests/harness/running.h"
+#include "tests/harness/table.h"
 #include "tests/prelude.h"
 #include "tests/stats/samples.h"
 
@@ -17,48 +18,7 @@ namespace {
 using reports::Verdict;
 
 reports::Test told(const std::string& test) {
-  return test_named(run_text(R"(suite: told
-estimators:
-  normal: {plugin: analytic/normal, mean: 2, primaries: 1}
-  other: {plugin: analytic/normal, mean: 2.01, primaries: 1}
-  averaged: {plugin: analytic/normal, mean: 2, primaries: 16}
-  unit: {plugin: analytic/normal, mean: 2, deviation: 0.1, primaries: 1}
-tests:
-  - {name: test, )" + test + "}\n"),
-                    "test");
-}
-
-void expect_said(const reports::Test& test, Verdict verdict, const std::string& words) {
-  EXPECT_EQ(test.verdict, verdict) << test.message;
-  EXPECT_THAT(test.message, HasSubstr(words));
-}
-
-// Only the pilot knows the other mean, and another seed may change it. So this is no mistake for
-// certain.
-TEST(Narrate, PassByAMarginBeyondTheOtherMeanSaysSo) {
-  const auto beside_rows = [](double mean, const std::string& margin) {
-    const Workplace place;
-    place.write(
-        "rows.txt",
-        file_of(rows_of(400, 5, [mean](Philox& random) { return mean + random.normal(); })));
-    return run_files({place.write("suite.yaml",
-                                  "suite: s\nestimators:\n"
-                                  "  rows: {plugin: recorded, file: rows.txt}\n"
-                                  "  mine: {plugin: analytic/normal, mean: " +
-                                      fmt::format("{}", mean) + "}\ntests: [{claim: mean(mine) " +
-                                      margin + "}]\n")})
-        .suites[0]
-        .tests[0];
-  };
-  expect_said(beside_rows(2, "== mean(rows), detect: 5"), Verdict::pass,
-              "; the margin 5 is larger than");
-  expect_said(beside_rows(2, "within 5 of mean(rows)"), Verdict::pass,
-              ": for 5 per cent write `5%`");
-  for (const auto& [mean, margin] : {std::pair(2., "1"), std::pair(0., "5")}) {
-    const reports::Test test = beside_rows(mean, std::string("== mean(rows), detect: ") + margin);
-    EXPECT_EQ(test.verdict, Verdict::pass);
-    EXPECT_THAT(test.message, testing::Not(HasSubstr("the margin")));
-  }
+  return run_test(suite_with("words", "{" + test + "}"), {});
 }
 
 // An exponent of points of which one alone is not zero is infinite.
@@ -102,25 +62,13 @@ tests: [{name: t, claim: distribution(area.point) == density, detect: 0.05}]
             "closer to the claim than chance leads to expect, so that there is no 92 % interval");
 }
 
-// 2.9 standard errors off, which a share of .001 does not refute and an interval at 90 % leaves
+// 2.9 standard errors off, which a share of .001 does not refute and an interval at 98 % leaves
 // out.
 TEST(Narrate, APassWhoseIntervalLeavesTheClaimOutSaysThatEvidenceIsTooLittle) {
   std::vector<double> rows = rows_of(1000, 21, normal);
   const stats::Moments moments = tests::moments_of(rows);
-  std::string text;
-  for (double& row : rows) {
-    row += 2.9 * moments.standard_error() - moments.mean;
-    text += fmt::format("{:.17g}\n", row);
-  }
-  const Workplace place;
-  place.write("rows.txt", text);
-  const reports::Test test =
-      run_files({place.write("suite.yaml",
-                             "suite: s\nalpha: 0.001\nbeta: 0.05\nestimators:\n"
-                             "  rows: {plugin: recorded, file: rows.txt}\n"
-                             "tests: [{claim: mean(rows) == 0, detect: 1}]\n")})
-          .suites[0]
-          .tests[0];
+  for (double& row : rows) row += 2.9 * moments.standard_error() - moments.mean;
+  const reports::Test test = judged(rows, "claim: mean(rows) == 0, detect: 1", 0.001);
   EXPECT_EQ(test.verdict, Verdict::pass) << test.message;
   EXPECT_GT(*test.channels[0].effect.low, 0);
   EXPECT_THAT(test.message, testing::StartsWith(
@@ -130,7 +78,7 @@ TEST(Narrate, APassWhoseIntervalLeavesTheClaimOutSaysThatEvidenceIsTooLittle) {
 
 TEST(Narrate, InconclusiveSaysHowManyPrimariesThatWouldBe) {
   const reports::Test test = told("claim: mean(averaged) == 2, detect: 0.5%, secondaries: 1000");
-  expect_said(test, Verdict::inconclusive, " primaries) would decide");
+  expect_said(test, Verdict::inconclusive, {" primaries) would decide"});
   double secondaries = 0;
   double primaries = 0;
   const std::size_t at = test.message.find("about ");
@@ -148,13 +96,10 @@ TEST(Narrate, AdviceFromFewObservationsIsNotThatOfTheirWideInterval) {
   double sum = 0;
   int told = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    RunOptions options;
-    options.seed = seed;
-    const reports::Test test = test_named(
-        run_text("suite: few\nestimators:\n  normal: {plugin: analytic/normal, primaries: 1}\n"
-                 "tests:\n  - {claim: mean(normal) == 0, detect: 0.8, secondaries: 3}\n",
-                 options),
-        "mean(normal) == 0");
+    const reports::Test test = run_test(
+        "suite: few\nestimators:\n  normal: {plugin: analytic/normal, primaries: 1}\n"
+        "tests:\n  - {claim: mean(normal) == 0, detect: 0.8, secondaries: 3}\n",
+        {.seed = seed});
     double advice = 0;
     const std::size_t at = test.message.find("about ");
     if (at == std::string::npos) continue;
@@ -164,17 +109,6 @@ TEST(Narrate, AdviceFromFewObservationsIsNotThatOfTheirWideInterval) {
   }
   ASSERT_GE(told, 15);
   EXPECT_LT(sum / told, 2 * 37.5);
-}
-
-// The words "12.3 % or more is excluded by the 98 % interval" beside that interval.
-TEST(Narrate, TheIntervalOfAPassIsTheOneThatExcludes) {
-  const reports::Test test = told("claim: mean(normal) == 2, detect: 10%, secondaries: 10000");
-  const reports::Effect& effect = test.channels[0].effect;
-  EXPECT_EQ(test.verdict, Verdict::pass);
-  EXPECT_DOUBLE_EQ(effect.confidence, 1 - 2 * *test.beta);
-  EXPECT_LT(*effect.high, 0.1);
-  EXPECT_GT(*effect.low, -0.1);
-  expect_said(test, Verdict::pass, " % or more is excluded by the 98 % interval");
 }
 
 // The larger of the ends as they are shown: upwards a ratio has more per cent than downwards.
@@ -187,30 +121,29 @@ TEST(Narrate, WhatIsExcludedOfARatioIsAnEndOfItsInterval) {
     const double low = std::abs(std::expm1(*effect.low));
     const bool upper = std::string(side).starts_with("<") || high > low;
     expect_said(test, Verdict::pass,
-                fmt::format("{:.3g} % or more is excluded", 100 * (upper ? high : low)));
+                {fmt::format("{:.3g} % or more is excluded", 100 * (upper ? high : low))});
   }
 }
 
-TEST(Narrate, TheIntervalOfAFailIsTheOneThatRefutes) {
-  const reports::Test test = told("claim: mean(normal) == 2.5, detect: 10%, secondaries: 10000");
-  EXPECT_EQ(test.verdict, Verdict::fail);
-  EXPECT_DOUBLE_EQ(test.channels[0].effect.confidence, 1 - *test.alpha);
-  EXPECT_LT(*test.channels[0].effect.high, 0);
-}
-
-// A pass that excludes nothing rests on the test at alpha.
-TEST(Narrate, TheIntervalOfAClassicalPassIsAtAlpha) {
-  const reports::Test test = told("claim: mean(normal) == 2");
-  EXPECT_DOUBLE_EQ(test.channels[0].effect.confidence, 1 - *test.alpha);
-}
-
-TEST(Narrate, TheIntervalOfAProofLiesInsideItsMargin) {
-  const reports::Test test = told("claim: mean(normal) within 10% of 2, secondaries: 10000");
-  const reports::Effect& effect = test.channels[0].effect;
-  EXPECT_EQ(test.verdict, Verdict::pass) << test.message;
-  EXPECT_DOUBLE_EQ(effect.confidence, 1 - 2 * *test.beta);
-  EXPECT_LT(*effect.high, 0.1);
-  EXPECT_GT(*effect.low, -0.1);
+// A pass that excludes nothing rests on the test at alpha, as a fail does.
+TEST(Narrate, ShowsTheIntervalThatExcludesOrRefutes) {
+  struct Shown {
+    const char* claim;
+    Verdict verdict;
+    bool at_beta;
+  };
+  for (const Shown& each :
+       {Shown{"== 2, detect: 10%", Verdict::pass, true},
+        Shown{"within 10% of 2", Verdict::pass, true}, Shown{"== 2", Verdict::pass, false},
+        Shown{"== 2.5, detect: 10%", Verdict::fail, false}}) {
+    const reports::Test test =
+        told(std::string("claim: mean(normal) ") + each.claim + ", secondaries: 10000");
+    const reports::Effect& effect = test.channels[0].effect;
+    expect_said(test, each.verdict);
+    EXPECT_DOUBLE_EQ(effect.confidence, 1 - (each.at_beta ? 2 * *test.beta : *test.alpha));
+    EXPECT_LT(*effect.high, each.verdict == Verdict::fail ? 0 : 0.1) << each.claim;
+    EXPECT_GT(*effect.low, each.verdict == Verdict::fail ? -1 : -0.1) << each.claim;
+  }
 }
 
 // In words and in the columns of the reports.
@@ -219,7 +152,7 @@ TEST(Narrate, ShowsANumberInTheFormThatReportsShowItIn) {
   const std::string shown =
       reports::theta_text(*factor.channels[0].effect.estimate, factor.channels[0].effect);
   EXPECT_TRUE(shown.starts_with("×")) << shown;
-  expect_said(factor, Verdict::fail, "is " + shown + " [");
+  expect_said(factor, Verdict::fail, {"is " + shown + " ["});
 }
 
 }  // namespace

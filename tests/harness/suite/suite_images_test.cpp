@@ -159,7 +159,7 @@ TEST_F(PictureFiles, OfALayerWithoutNoiseAreComparedExactly) {
       return channel == "Z" ? depth : noisy(x, y, channel, noise);
     };
   };
-  const Kind kind{.channels = {"B", "G", "R", "Z"}};
+  const PictureKind kind{.channels = {"B", "G", "R", "Z"}};
   write_stack(place, "a", kind, depth_with(0));
   write_stack(place, "b", kind, depth_with(0));
   for (const char* how : {"--means", "--paired", "--law"}) {
@@ -173,7 +173,7 @@ TEST_F(PictureFiles, OfALayerWithoutNoiseAreComparedExactly) {
 }
 
 TEST_F(PictureFiles, AnAlphaThatDiffersIsFound) {
-  const Kind rgba{.channels = {"A", "B", "G", "R"}};
+  const PictureKind rgba{.channels = {"A", "B", "G", "R"}};
   const auto with_alpha = [](double alpha, double spread) {
     return [=](int x, int y, const std::string& channel, double noise) {
       return channel == "A" ? static_cast<float>(alpha + spread * noise)
@@ -205,7 +205,7 @@ TEST_F(PictureFiles, AnAlphaThatDiffersIsFound) {
 }
 
 TEST_F(PictureFiles, InfiniteDepthOnBothSidesIsEqualAndOnOneAFinding) {
-  const Kind depth{.channels = {"Z"}};
+  const PictureKind depth{.channels = {"Z"}};
   const auto background_from = [](int column) {
     return [=](int x, int, const std::string&, double noise) {
       return x >= column ? infinity : static_cast<float>(5 + 0.1 * noise);
@@ -276,7 +276,7 @@ TEST_F(PictureFiles, PixelsThatAreNoNumberOrMaskedAreLeftOut) {
 }
 
 TEST_F(PictureFiles, EachLayerHasAClaimOfItsOwn) {
-  const Kind layered{.channels = {"B", "G", "R", "direct.B", "direct.G", "direct.R"}};
+  const PictureKind layered{.channels = {"B", "G", "R", "direct.B", "direct.G", "direct.R"}};
   write_stack(place, "a", layered, noisy);
   write_stack(place, "b", layered, [](int x, int y, const std::string& channel, double noise) {
     return noisy(x, y, channel, noise) + (channel == "direct.G" ? 0.1F : 0);

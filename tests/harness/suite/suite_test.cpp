@@ -8,7 +8,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path bad_suites = fs::path(ASSAY_SOURCE_DIR) / "tests/suites";
+const fs::path suites = fs::path(ASSAY_SOURCE_DIR) / "tests/suites";
 
 constexpr const char* small = R"(suite: small
 estimators:
@@ -18,43 +18,11 @@ tests:
 )";
 
 TEST(Suite, ReadsEveryKeyItDocuments) {
-  const Folder folder;
-  const Suite suite = load_suite(folder.write("every.yaml", R"(suite: every key
-about: |
-  Two lines
-  of text.
-alpha: 0.02
-beta: 0.03
-seed: 1e3
-scenes:
-  lamp:
-    light: {polygon: [[0, 0, 1], [1, 0, 1], [0, 1, 1]]}
-estimators:
-  area: {plugin: luminaire/area, scene: lamp, primaries: 1e2}
-  hemi-2/x: {plugin: luminaire/hemisphere, scene: triangle, primaries: auto}
-tests:
-  - name: all of it
-    claim: mean(area) == 2 * mean(hemi-2/x)
-    detect: 0.5%
-    allow: 1e-3%
-    weight: 2.5
-    test: welch
-    secondaries: 1e4
-    budget: {primaries: 1e7, seconds: 2.5}
-    expect: fail
-    tags: [slow, lamp]
-  - claim: slope(bias(area)) within 0.1 of -1
-    over: {primaries: [8, 16, 32]}
-    reference: hemi-2/x.irradiance
-    budget: 30s
-  - claim: efficiency(area) > 1.1 * efficiency(hemi-2/x)
-    cost: seconds
-    budget: 1e6
-)"));
+  const Suite suite = load_suite((suites / "every_key.yaml").string());
   EXPECT_EQ(suite.name, "every key");
   EXPECT_EQ(suite.about, "Two lines\nof text.\n");
-  EXPECT_EQ(suite.stem, "every");
-  EXPECT_EQ(suite.folder, folder.path().string());
+  EXPECT_EQ(suite.stem, "every_key");
+  EXPECT_EQ(suite.folder, suites.string());
   EXPECT_EQ(suite.alpha, 0.02);
   EXPECT_EQ(suite.beta, 0.03);
   EXPECT_EQ(suite.seed, 1000U);
@@ -69,7 +37,7 @@ tests:
   EXPECT_EQ(suite.estimators[1].primaries, std::nullopt);
   ASSERT_EQ(suite.tests.size(), 3U);
   const TestEntry& first = suite.tests[0];
-  EXPECT_EQ(first.id, "every/all of it");
+  EXPECT_EQ(first.id, "every_key/all of it");
   EXPECT_EQ(to_string(*first.detect), "0.5%");
   EXPECT_EQ(first.allow->value, 1e-5);
   EXPECT_EQ(first.weight, 2.5);
@@ -146,7 +114,7 @@ TEST(Suite, LoadsWithoutANameOfItsFolder) {
 class BadSuite : public testing::TestWithParam<std::string> {};
 
 TEST_P(BadSuite, IsRefusedWhereItIsWrong) {
-  const std::string file = (bad_suites / ("bad_" + GetParam() + ".yaml")).string();
+  const std::string file = (suites / ("bad_" + GetParam() + ".yaml")).string();
   std::ifstream in(file);
   std::string expected;
   std::getline(in, expected);
@@ -155,7 +123,7 @@ TEST_P(BadSuite, IsRefusedWhereItIsWrong) {
 
 std::vector<std::string> names_of_bad_suites() {
   std::vector<std::string> names;
-  for (const fs::directory_entry& entry : fs::directory_iterator(bad_suites)) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(suites)) {
     const std::string stem = entry.path().stem().string();
     if (stem.starts_with("bad_")) names.push_back(stem.substr(4));
   }

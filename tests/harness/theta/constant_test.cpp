@@ -146,17 +146,5 @@ TEST(Constant, IsJudgedByBetsOnItsRange) {
   }
 }
 
-// Bets bound what was never seen, so that a run needs no spread to compare by.
-TEST(Constant, ComparesTwoByBetsInARun) {
-  const std::string text = R"(suite: constants
-estimators:
-  low: {plugin: analytic/rare_spike, height: 10, probability: 0}
-  high: {plugin: analytic/zero_variance}   # 6.36
-tests:
-  - {name: two constants, claim: mean(low) == mean(high), secondaries: 1000)";
-  EXPECT_EQ(run_verdict(text + "}\n"), Verdict::fail);
-  EXPECT_EQ(run_verdict(text + ", test: welch}\n"), Verdict::invalid);
-}
-
 }  // namespace
 }  // namespace assay::harness

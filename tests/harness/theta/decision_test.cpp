@@ -25,10 +25,28 @@ double p_forbidden(const Regions& regions) {
 }
 double at(double theta) { return (estimate - theta) / standard_error; }
 
-TEST(Decision, OfEqualityDoublesTheNearerTailAndExcludesBothSides) {
-  const Regions regions{.relation = Relation::equal, .allow = 0.3, .detect = 2.5};
-  EXPECT_NEAR(p_claimed(regions), 2 * above(at(0.3)), 1e-14);
-  EXPECT_NEAR(p_forbidden(regions), std::max(below(at(2.5)), above(at(-2.5))), 1e-14);
+// Equality doubles the nearer tail and excludes both sides, a bound uses one tail, and a proof
+// splits at zero or at its margin.
+TEST(Decision, TakesTheTailsOfItsRelation) {
+  struct Tails {
+    Regions regions;
+    double claimed;
+    double forbidden;
+  };
+  for (const Tails& each :
+       std::vector<Tails>{{{Relation::equal, .3, 2.5},
+                           2 * above(at(.3)),
+                           std::max(below(at(2.5)), above(at(-2.5)))},
+                          {{Relation::at_most, .3, 2.5}, above(at(.3)), below(at(2.5))},
+                          {{Relation::at_least, .3, 2.5}, below(at(-.3)), above(at(-2.5))},
+                          {{Relation::less, 0, 2.5}, above(at(0)), below(at(0))},
+                          {{Relation::greater, 0, 2.5}, below(at(0)), above(at(0))},
+                          {{Relation::within, 0, .9},
+                           std::min(1., 2 * above(at(.9))),
+                           std::max(below(at(.9)), above(at(-.9)))}}) {
+    EXPECT_NEAR(p_claimed(each.regions), each.claimed, 1e-14) << tail(each.regions);
+    EXPECT_NEAR(p_forbidden(each.regions), each.forbidden, 1e-14) << tail(each.regions);
+  }
 }
 
 TEST(Decision, OfEqualityIsTheSameSeenFromBelow) {
@@ -41,27 +59,6 @@ TEST(Decision, OfEqualityIsTheSameSeenFromBelow) {
 
 TEST(Decision, OfEqualityNeverExceedsOne) {
   EXPECT_EQ(log_p_claimed(normal_evidence(0, 1), {.relation = Relation::equal}), 0);
-}
-
-TEST(Decision, OfBoundsUsesOneTailEach) {
-  const Regions upper{.relation = Relation::at_most, .allow = 0.3, .detect = 2.5};
-  EXPECT_NEAR(p_claimed(upper), above(at(0.3)), 1e-14);
-  EXPECT_NEAR(p_forbidden(upper), below(at(2.5)), 1e-14);
-  const Regions lower{.relation = Relation::at_least, .allow = 0.3, .detect = 2.5};
-  EXPECT_NEAR(p_claimed(lower), below(at(-0.3)), 1e-14);
-  EXPECT_NEAR(p_forbidden(lower), above(at(-2.5)), 1e-14);
-}
-
-TEST(Decision, OfProofsSplitsAtZeroOrTheMargin) {
-  const Regions less{.relation = Relation::less, .detect = 2.5};
-  EXPECT_NEAR(p_claimed(less), above(at(0)), 1e-14);
-  EXPECT_NEAR(p_forbidden(less), below(at(0)), 1e-14);
-  const Regions greater{.relation = Relation::greater, .detect = 2.5};
-  EXPECT_NEAR(p_claimed(greater), below(at(0)), 1e-14);
-  EXPECT_NEAR(p_forbidden(greater), above(at(0)), 1e-14);
-  const Regions within{.relation = Relation::within, .detect = 0.9};
-  EXPECT_NEAR(p_claimed(within), std::min(1.0, 2 * above(at(0.9))), 1e-14);
-  EXPECT_NEAR(p_forbidden(within), std::max(below(at(0.9)), above(at(-0.9))), 1e-14);
 }
 
 TEST(Decision, OfADistanceHasOneDirection) {
@@ -125,26 +122,13 @@ struct Case {
 };
 
 std::vector<Case> cases() {
-  return {
-      {{.relation = Relation::equal, .detect = 6}, {0}, {6, -6, 7}, true, true},
-      {{.relation = Relation::equal, .allow = 0.5, .detect = 1},
-       {0.5, -0.5, 0},
-       {1, -1, 2},
-       false,
-       false},
-      {{.relation = Relation::at_most, .allow = 0.5, .detect = 1},
-       {0.5, 0, -3},
-       {1, 2},
-       true,
-       true},
-      {{.relation = Relation::at_least, .allow = 0.5, .detect = 1},
-       {-0.5, 0, 3},
-       {-1, -2},
-       true,
-       true},
-      {{.relation = Relation::less}, {0, -1}, {0, 1}, true, true},
-      {{.relation = Relation::greater}, {0, 1}, {0, -1}, true, true},
-      {{.relation = Relation::within, .detect = 6}, {5.999, -5.999, 0}, {6, -6, 7}, false, true}};
+  return {{{Relation::equal, 0, 6}, {0}, {6, -6, 7}, true, true},
+          {{Relation::equal, .5, 1}, {.5, -.5, 0}, {1, -1, 2}, false, false},
+          {{Relation::at_most, .5, 1}, {.5, 0, -3}, {1, 2}, true, true},
+          {{Relation::at_least, .5, 1}, {-.5, 0, 3}, {-1, -2}, true, true},
+          {{Relation::less}, {0, -1}, {0, 1}, true, true},
+          {{Relation::greater}, {0, 1}, {0, -1}, true, true},
+          {{Relation::within, 0, 6}, {5.999, -5.999, 0}, {6, -6, 7}, false, true}};
 }
 
 constexpr double level = 0.05;

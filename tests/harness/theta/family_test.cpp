@@ -6,17 +6,26 @@
 namespace assay::harness {
 namespace {
 
-TEST(Family, SharesAlphaByWeight) {
-  const auto asked = ask_text(R"(suite: shares
+std::unique_ptr<Asked> asked_of(const std::string& tests) {
+  return ask_text(R"(suite: shares
 alpha: 0.04
 beta: 0.02
 estimators:
   darts: {plugin: analytic/dart_throwing}
+  scaled: {plugin: mutants/scaled}
 tests:
-  - {claim: mean(darts) == analytic, weight: 3}
-  - {claim: mean(darts) <= 4}
-)");
-  const std::vector<FamilyPlace> all = places(asked->suite, asked->questions);
+)" + tests);
+}
+
+std::vector<FamilyPlace> places_of(const std::string& tests) {
+  const auto asked = asked_of(tests);
+  return places(asked->suite, asked->questions);
+}
+
+TEST(Family, SharesAlphaByWeight) {
+  const std::vector<FamilyPlace> all = places_of(
+      "  - {claim: mean(darts) == analytic, weight: 3}\n"
+      "  - {claim: mean(darts) <= 4}\n");
   EXPECT_TRUE(all[0].inside);
   EXPECT_DOUBLE_EQ(all[0].weight, 0.75);
   EXPECT_DOUBLE_EQ(all[0].share.alpha, 0.03);
@@ -42,22 +51,14 @@ tests:
   EXPECT_DOUBLE_EQ(all[0].weight + 2 * all[1].weight, 1);
 }
 
-constexpr const char* with_mutants = R"(suite: mutants
-alpha: 0.04
-beta: 0.02
-estimators:
-  darts: {plugin: analytic/dart_throwing}
-  scaled: {plugin: mutants/scaled}
-tests:
-  - {claim: mean(darts) == analytic, weight: 3}
+constexpr const char* with_mutants = R"(  - {claim: mean(darts) == analytic, weight: 3}
   - {claim: mean(darts) <= 4}
   - {name: expected, claim: mean(darts) == 3, expect: fail, weight: 7}
   - {name: mutant, claim: mean(scaled) == 6, expect: fail}
 )";
 
 TEST(Family, LeavesMutantsAndExpectedFailuresOutside) {
-  const auto asked = ask_text(with_mutants);
-  const std::vector<FamilyPlace> all = places(asked->suite, asked->questions);
+  const std::vector<FamilyPlace> all = places_of(with_mutants);
   EXPECT_DOUBLE_EQ(all[0].share.alpha, 0.03);
   EXPECT_DOUBLE_EQ(all[1].share.alpha, 0.01);
   for (const std::size_t i : {2U, 3U}) {
@@ -66,31 +67,16 @@ TEST(Family, LeavesMutantsAndExpectedFailuresOutside) {
     EXPECT_DOUBLE_EQ(all[i].share.alpha, 0.01) << "the smallest share in the suite";
     EXPECT_DOUBLE_EQ(all[i].share.beta, 0.01) << "beta over their number";
   }
-}
-
-TEST(Family, LeavesAMutantOutsideWhateverIsExpectedOfIt) {
-  const auto asked = ask_text(R"(suite: mutants
-estimators:
-  darts: {plugin: analytic/dart_throwing}
-  scaled: {plugin: mutants/scaled}
-tests:
-  - {claim: mean(darts) == analytic}
-  - {claim: mean(scaled) == 6.5}
-)");
-  EXPECT_FALSE(places(asked->suite, asked->questions)[1].inside);
+  EXPECT_FALSE(places_of("  - {claim: mean(darts) == analytic}\n"
+                         "  - {claim: mean(scaled) == 6.5}\n")[1]
+                   .inside)
+      << "whatever is expected of it";
 }
 
 TEST(Family, OfMutantsAloneSharesAlphaAmongThem) {
-  const auto asked = ask_text(R"(suite: mutants
-alpha: 0.04
-beta: 0.02
-estimators:
-  scaled: {plugin: mutants/scaled}
-tests:
-  - {name: one, claim: mean(scaled) == 6, expect: fail}
-  - {name: two, claim: mean(scaled) <= 6, expect: fail}
-)");
-  for (const FamilyPlace& place : places(asked->suite, asked->questions)) {
+  for (const FamilyPlace& place :
+       places_of("  - {name: one, claim: mean(scaled) == 6, expect: fail}\n"
+                 "  - {name: two, claim: mean(scaled) <= 6, expect: fail}\n")) {
     EXPECT_FALSE(place.inside);
     EXPECT_DOUBLE_EQ(place.share.alpha, 0.02);
     EXPECT_DOUBLE_EQ(place.share.beta, 0.01);
@@ -100,7 +86,7 @@ tests:
 // The numbers of those that can be tested are the same with and without the dead source.
 TEST(Family, KeepsThePartOfATestThatCannotBeAsked) {
   for (const std::string dead : {"analytic", "expected", "mutant"}) {
-    const auto asked = ask_text(with_mutants);
+    const auto asked = asked_of(with_mutants);
     const std::vector<FamilyPlace> sound = places(asked->suite, asked->questions);
     std::vector<FamilyPlace> known;
     std::vector<Question> questions;

@@ -67,17 +67,6 @@ Evidence evidence(const std::string& name, const std::vector<Side>& sides,
                      question, 0, data);
 }
 
-// Values 1, 2, 3, 4 have mean 2.5, variance 5/3 and standard error sqrt(5/12) = 0.645497. Against
-// 2, t = 0.774597 with 3 degrees of freedom; p = 0.495025 two-sided (R: t.test(1:4, mu = 2)).
-TEST(Method, TComparesAMeanWithItsReference) {
-  const Evidence mean = evidence("mean", {{.moments = moments_of({1, 2, 3, 4})}});
-  EXPECT_NEAR(mean.at(0).statistic, 0.774597, 1e-6);
-  EXPECT_NEAR(2 * std::exp(mean.at(0).log_p_upper), 0.495025, 1e-6);
-  EXPECT_DOUBLE_EQ(mean.estimate, 0.25) << "in units of the reference";
-  EXPECT_TRUE(mean.relative);
-  EXPECT_NEAR(mean.at(0.25).statistic, 0, 1e-12);
-}
-
 TEST(Method, MeasuresInTheEstimatorsUnitWhereMarginsAreAbsolute) {
   const std::vector<Side> data{{.moments = moments_of({1, 2, 3, 4})}};
   EXPECT_DOUBLE_EQ(evidence("absolute", data).estimate, 0.5);
@@ -151,37 +140,6 @@ TEST(Method, IntervalsEndWhereTheTestBeginsToReject) {
   check(evidence("variances", {{.moments = x}, {.moments = y}}), "F");
   check(evidence("variance", {{.moments = x}}, "influence-t"), "influence-t");
   check(evidence("variances", {{.moments = x}, {.moments = y}}, "influence-t"), "of two");
-}
-
-// Probabilities 0.1, 0.2, …, 0.9 of the claimed law have the distance 0.1.
-TEST(Method, KolmogorovSmirnovMeasuresTheLargestDistance) {
-  std::vector<double> values;
-  for (int i = 1; i <= 9; ++i) {
-    values.push_back(2 + stats::normal_quantile({stats::Tail::lower, std::log(i / 10.0)}));
-  }
-  const Evidence law = evidence("law", {{.moments = moments_of(values), .values = values}});
-  EXPECT_NEAR(law.estimate, 0.1, 1e-9);
-  EXPECT_TRUE(law.distance);
-}
-
-TEST(Method, NamesAreThoseOfTheDesign) {
-  const auto asked = ask_text(suite);
-  const auto first = [&](const char* name) {
-    return methods_for(asked->question(name)).front().name;
-  };
-  EXPECT_EQ(first("mean"), "t");
-  EXPECT_EQ(first("means"), "welch");
-  EXPECT_EQ(first("variance"), "chi-square");
-  EXPECT_EQ(first("variances"), "F");
-  EXPECT_EQ(first("tost"), "tost");
-  EXPECT_EQ(first("law"), "ks");
-  EXPECT_EQ(first("fit"), "chi-square-fit");
-}
-
-TEST(Method, ThatDoesNotAnswerTheClaimIsRefusedWithThoseThatDo) {
-  const auto asked = ask_text(suite);
-  const std::string text = refusal([&] { find_method(asked->question("variance"), "welch"); });
-  EXPECT_THAT(text, testing::HasSubstr("`chi-square`, `influence-t`"));
 }
 
 TEST(Method, NullHypothesisReadsAsAFormula) {
