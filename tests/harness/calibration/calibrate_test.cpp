@@ -1,7 +1,6 @@
 #include "harness/calibration/calibrate.h"
 
 #include "harness/calibration/calibration_runs.h"
-#include "tests/harness/refusal.h"
 #include "tests/prelude.h"
 
 namespace assay::harness {
@@ -75,6 +74,13 @@ TEST(Calibrate, FixedSamplesAreOneLookOfThatMany) {
   EXPECT_EQ(welch.alone.observations, 150);
 }
 
+void expect_same(const reports::CalibrationCell& one, const reports::CalibrationCell& other) {
+  EXPECT_EQ(one.holds.fail.count, other.holds.fail.count);
+  EXPECT_EQ(one.alone.fail.count, other.alone.fail.count);
+  EXPECT_EQ(one.holds.observations, other.holds.observations);
+  EXPECT_EQ(one.holds.by, other.holds.by);
+}
+
 TEST(Calibrate, ThreadsChangeNoCount) {
   const CalibrateArguments one{
       .methods = {"t"}, .laws = {"exponential"}, .alphas = {0.05, 0.01}, .runs = 30, .threads = 1};
@@ -83,12 +89,7 @@ TEST(Calibrate, ThreadsChangeNoCount) {
   const auto a = measured(one);
   const auto b = measured(three);
   ASSERT_EQ(a.cells.size(), b.cells.size());
-  for (std::size_t i = 0; i < a.cells.size(); ++i) {
-    EXPECT_EQ(a.cells[i].holds.fail.count, b.cells[i].holds.fail.count);
-    EXPECT_EQ(a.cells[i].alone.fail.count, b.cells[i].alone.fail.count);
-    EXPECT_EQ(a.cells[i].holds.observations, b.cells[i].holds.observations);
-    EXPECT_EQ(a.cells[i].holds.by, b.cells[i].holds.by);
-  }
+  for (std::size_t i = 0; i < a.cells.size(); ++i) expect_same(a.cells[i], b.cells[i]);
 }
 
 // Chi-square and F treat flat data as normal, so they need as many observations as with normal
@@ -117,9 +118,7 @@ TEST(Calibrate, AMethodCountsTheSameBesideOthers) {
   ASSERT_EQ(alone.cells.size(), 1U);
   ASSERT_EQ(both.cells.size(), 3U);
   EXPECT_EQ(both.cells[2].method, "F");
-  EXPECT_EQ(both.cells[2].holds.fail.count, alone.cells[0].holds.fail.count);
-  EXPECT_EQ(both.cells[2].alone.fail.count, alone.cells[0].alone.fail.count);
-  EXPECT_EQ(both.cells[2].holds.observations, alone.cells[0].holds.observations);
+  expect_same(both.cells[2], alone.cells[0]);
 }
 
 // Every question is asked once of each kind of law without an internal error.
@@ -143,18 +142,6 @@ TEST(Calibrate, EveryMethodHasCellsOnEveryLawThatSuitsIt) {
   EXPECT_FALSE(has("betting", "normal(0, 1)"));
   EXPECT_TRUE(has("ks", "zero_inflated(0.1)"));
   EXPECT_TRUE(has("chi-square-two-sample", "normal(0, 1)"));
-}
-
-TEST(Calibrate, UnknownMethodsAndLawsAreRefusedWithWhatThereIs) {
-  EXPECT_THAT(refusal([] { measured({.methods = {"welsh"}}); }),
-              testing::AllOf(HasSubstr("did you mean `welch`"), HasSubstr("chi-square-fit")));
-  EXPECT_THAT(refusal([] { measured({.laws = {"cauchy"}}); }),
-              testing::AllOf(HasSubstr("cauchy"), HasSubstr("student_t(5)")));
-  EXPECT_THAT(refusal([] { measured({.laws = {"cauchy(0, 1)"}}); }),
-              HasSubstr("lognormal(location, scale)"));
-  EXPECT_THAT(refusal([] { measured({.laws = {"student_t(2)"}}); }), HasSubstr("no variance"));
-  EXPECT_THAT(refusal([] { measured({.methods = {"binomial"}, .laws = {"normal"}}); }),
-              HasSubstr("no question suits"));
 }
 
 }  // namespace

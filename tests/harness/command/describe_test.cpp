@@ -2,8 +2,10 @@
 
 #include "estimators/catalogue.h"
 #include "harness/command/commands.h"
+#include "harness/command/tables.h"
 #include "harness/draws/sampler_setup.h"
 #include "tests/harness/refusal.h"
+#include "tests/harness/running.h"
 #include "tests/prelude.h"
 
 namespace assay::harness {
@@ -11,6 +13,13 @@ namespace {
 
 std::string manual_of(const std::string& plugin) {
   return manual(find_plugin(plugin, {}), catalogue());
+}
+
+/// What a command that ends well prints.
+std::string printed(const std::function<int()>& command) {
+  const Said said = said_by(command);
+  EXPECT_EQ(said.code, 0);
+  return said.text;
 }
 
 TEST(Describe, TellsWhatIsKnownExactly) {
@@ -33,28 +42,19 @@ TEST(Describe, ListsParametersSamplersAndMutants) {
   }
 }
 
-TEST(Describe, NamesTheOriginalAndTheDefectOfAMutant) {
-  const auto mutant = std::ranges::find_if(
-      catalogue(), [](const Entry& e) { return !e.information.original.empty(); });
-  ASSERT_NE(mutant, catalogue().end());
-  const std::string text = manual(*mutant, catalogue());
-  EXPECT_THAT(text, HasSubstr("mutant of   " + mutant->information.original + "\n"));
-  EXPECT_THAT(text, HasSubstr("defect      "));
-}
-
-TEST(Describe, CallsNoMutantUnbiased) {
+TEST(Describe, NamesTheOriginalAndTheDefectOfAMutantAndCallsNoneUnbiased) {
   for (const Entry& entry : catalogue()) {
     if (entry.information.original.empty()) continue;
-    EXPECT_THAT(manual(entry, catalogue()), HasSubstr("bias        that of its defect\n"));
+    EXPECT_THAT(manual(entry, catalogue()),
+                AllOf(HasSubstr("mutant of   " + entry.information.original + "\n"),
+                      HasSubstr("defect      "), HasSubstr("bias        that of its defect\n")));
   }
 }
 
-TEST(Describe, SaysOfRecordedRowsThatTheirBiasIsUnknown) {
-  EXPECT_THAT(manual_of("recorded"), HasSubstr("bias        unknown"));
-}
-
-TEST(Describe, SaysOfRecordedRowsThatTheyAreOne) {
-  EXPECT_THAT(manual_of("recorded"), HasSubstr("primaries   not averaged; 1 unless given\n"));
+TEST(Describe, SaysWhatIsKnownOfRecordedRows) {
+  EXPECT_THAT(manual_of("recorded"),
+              AllOf(HasSubstr("bias        unknown"),
+                    HasSubstr("primaries   not averaged; 1 unless given\n")));
 }
 
 // Every sampler and marginal that a manual offers can be named in a claim, and no other is offered.
@@ -116,14 +116,39 @@ TEST(Describe, KeepsEveryManualWithinAHundredColumns) {
   }
 }
 
-TEST(Describe, SuggestsTheNearestPlugin) {
-  EXPECT_EQ(refusal([] { describe("hemisphere"); }),
-            "there is no plugin `hemisphere`; did you mean `luminaire/hemisphere`?");
-}
-
 TEST(Wrapped, BreaksAtBlanksElseAtTheWidthAndKeepsLineEnds) {
   EXPECT_EQ(wrapped("one two three\nfour", 9, 1), " one two\n three\n four\n");
   EXPECT_EQ(wrapped("unbreakable", 5, 0), "unbre\nakabl\ne\n");
+}
+
+TEST(List, PrintsEveryPluginOnALine) {
+  std::string expected;
+  for (const Entry& entry : catalogue()) expected += entry.information.name + "\n";
+  EXPECT_EQ(printed(list_plugins), expected);
+}
+
+TEST(List, PrintsEveryRowOfATableIn80Columns) {
+  for (const Table& table : tables()) {
+    const std::string text = printed([&] { return list_table(table.plural); });
+    for (const TableRow& row : table.rows) {
+      EXPECT_THAT(text, HasSubstr(row.name + " ")) << table.plural;
+      EXPECT_FALSE(row.summary.empty()) << row.name;
+    }
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80U) << line;
+  }
+}
+
+TEST(Describe, PrintsTheRowsOfAName) {
+  const std::string t = printed([] { return describe("t"); });
+  EXPECT_THAT(t, HasSubstr("Student's t"));
+  EXPECT_THAT(t, HasSubstr("test: t"));
+  // A method and a quantity have this name.
+  const std::string quantile = printed([] { return describe("quantile"); });
+  EXPECT_THAT(quantile, HasSubstr("quantile, a method"));
+  EXPECT_THAT(quantile, HasSubstr("quantile, a quantity"));
+  EXPECT_THAT(printed([] { return describe("normal"); }), HasSubstr("normal(mean, sd)"));
+  EXPECT_THAT(printed([] { return describe("rounding"); }), HasSubstr("a gate"));
 }
 
 }  // namespace

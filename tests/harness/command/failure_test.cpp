@@ -12,10 +12,10 @@ const std::string bad_suite = std::string(ASSAY_SOURCE_DIR) + "/tests/suites/bad
 std::string failure_of(const std::string& file) {
   try {
     load_suite(file);
+    return "";
   } catch (const InputError& e) {
     return failure_text(e, "");
   }
-  return "";
 }
 
 TEST(Failure, ShowsPlaceLineAndCaretOfASuite) {

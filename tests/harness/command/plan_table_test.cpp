@@ -35,16 +35,27 @@ UnitCosts costs_of(const PlannedRun& planned) {
   return measure_costs(planned, threads(1), silence);
 }
 
+std::string text_of(const PlannedRun& planned) { return plan_text(planned, costs_of(planned)); }
+
 class PlanTable : public Placed {
  protected:
-  std::vector<Suite> suites_of(const std::string& text) const {
+  std::vector<Suite> suites_of(const std::string& text = suite) const {
     return {load_suite(place.write("planned.yaml", text))};
+  }
+  /// What is planned for these lines of tests of a normal law.
+  PlannedRun planned(const std::string& tests, const RunOptions& options = {}) const {
+    return planned_of(suites_of("suite: normal\nestimators:\n"
+                                "  normal: {plugin: analytic/normal, mean: 2, primaries: 1}\n"
+                                "  darts: {plugin: analytic/dart_throwing}\n"
+                                "tests:\n" +
+                                tests),
+                      options);
   }
 };
 using Forecasts = PlanTable;
 
 TEST_F(PlanTable, PlansWhatARunThenDoes) {
-  const std::vector<Suite> suites = suites_of(suite);
+  const std::vector<Suite> suites = suites_of();
   const PlannedRun planned = planned_of(suites);
   Silence silence;
   const reports::Record record = run(suites, {}, silence);
@@ -65,7 +76,7 @@ TEST_F(PlanTable, PlansWhatARunThenDoes) {
 }
 
 TEST_F(PlanTable, DrawsNoObservationOfATest) {
-  const std::vector<Suite> suites = suites_of(suite);
+  const std::vector<Suite> suites = suites_of();
   const PlannedRun planned = planned_of(suites);
   const UnitCosts costs = costs_of(planned);
   EXPECT_FALSE(plan_text(planned, costs).empty());
@@ -77,7 +88,7 @@ TEST_F(PlanTable, DrawsNoObservationOfATest) {
 
 // Counted rays do not depend on the machine: one shadow ray a primary.
 TEST_F(PlanTable, MeasuresRaysAndSecondsAtThePlannedPrimaries) {
-  const std::vector<Suite> suites = suites_of(suite);
+  const std::vector<Suite> suites = suites_of();
   const PlannedRun planned = planned_of(suites);
   const Pool& area = *planned.suites[0]->tests[0].pools[0];
   const UnitCost cost = std::get<UnitCost>(costs_of(planned).at(&area));
@@ -134,11 +145,8 @@ TEST_F(PlanTable, OfAMarginForetellsTheOneThatABudgetShows) {
 // Three observations in [0, 4] find no difference that the range allows: `detect` is no answer to
 // what the last look finds.
 TEST_F(PlanTable, ShowsNoEffectThatTheBudgetDoesNotFind) {
-  const std::vector<Suite> suites = suites_of(
-      "suite: poor\nestimators:\n  d: {plugin: analytic/dart_throwing}\n"
-      "tests:\n  - {claim: mean(d) == analytic, test: betting, detect: 1%, budget: 3}\n");
-  const PlannedRun planned = planned_of(suites);
-  const std::string text = plan_text(planned, costs_of(planned));
+  const std::string text = text_of(
+      planned("  - {claim: mean(darts) == analytic, test: betting, detect: 1%, budget: 3}\n"));
   const std::size_t row = text.find("betting");
   ASSERT_NE(row, std::string::npos) << text;
   EXPECT_THAT(text.substr(row, text.find('\n', row) - row), testing::Not(HasSubstr("%"))) << text;
@@ -158,9 +166,9 @@ TEST_F(PlanTable, OfWhatDoesNotAverageKnowsTheCostFromThePilot) {
 }
 
 TEST_F(PlanTable, ShowsEveryTestInEightyColumns) {
-  const std::vector<Suite> suites = suites_of(suite);
+  const std::vector<Suite> suites = suites_of();
   const PlannedRun planned = planned_of(suites);
-  const std::string text = plan_text(planned, costs_of(planned));
+  const std::string text = text_of(planned);
   for (const TestEntry& test : suites[0].tests) EXPECT_THAT(text, HasSubstr("\n  " + test.name));
   for (const char* heading :
        {"method", "primaries", "looks", "CPU time", "effect", "holds: pass", "is off: pass"}) {
@@ -174,15 +182,6 @@ TEST_F(PlanTable, ShowsEveryTestInEightyColumns) {
   EXPECT_EQ(plan_exit_code(planned, costs_of(planned)), 0);
 }
 
-TEST_F(PlanTable, AFilterPlansTheSameTestTheSameWay) {
-  const std::vector<Suite> suites = suites_of(suite);
-  const PlannedRun whole = planned_of(suites);
-  const PlannedRun alone = planned_of(suites, {.selection = {.filters = {"*/coarser"}}});
-  ASSERT_EQ(alone.suites[0]->tests.size(), 1U);
-  EXPECT_EQ(alone.suites[0]->tests[0].outcome.plan.looks.sizes,
-            whole.suites[0]->tests[1].outcome.plan.looks.sizes);
-}
-
 TEST_F(PlanTable, APlanWithoutAValidMethodIsNotOk) {
   place.write("rows.txt", "1\n3\n2\n5\n4\n");
   const std::vector<Suite> suites = suites_of(R"(suite: few
@@ -193,13 +192,7 @@ tests:
 )");
   const PlannedRun planned = planned_of(suites);
   EXPECT_EQ(plan_exit_code(planned, costs_of(planned)), 1);
-  EXPECT_THAT(plan_text(planned, costs_of(planned)), HasSubstr("invalid: "));
-}
-
-TEST_F(PlanTable, NothingSelectedIsNothingPlanned) {
-  const std::vector<Suite> suites = suites_of(suite);
-  const PlannedRun planned = planned_of(suites, {.selection = {.filters = {"planned/none"}}});
-  EXPECT_EQ(plan_exit_code(planned, costs_of(planned)), 4);
+  EXPECT_THAT(text_of(planned), HasSubstr("invalid: "));
 }
 
 // Data are normal, and theta is 0 or `detect`. A part drawn lies in (0, 1], so the mean of 40 seeds
@@ -242,16 +235,11 @@ tests:
 }
 
 TEST_F(Forecasts, OfProofsHoldsByTheAdvantageOrStandsAtTheBorder) {
-  const std::vector<Suite> suites = suites_of(R"(suite: proofs
-estimators:
-  normal: {plugin: analytic/normal, mean: 2, primaries: 1}
-tests:
-  - {name: less, claim: mean(normal) < 3, detect: 0.01}
-  - {name: within, claim: mean(normal) within 0.01 of 2}
-)");
-  const PlannedRun planned = planned_of(suites);
-  for (const TestWork& work : planned.suites[0]->tests) {
-    const Forecast found = forecast(work.outcome, planned.suites[0]->pilots);
+  const PlannedRun proofs = planned(
+      "  - {name: less, claim: mean(normal) < 3, detect: 0.01}\n"
+      "  - {name: within, claim: mean(normal) within 0.01 of 2}\n");
+  for (const TestWork& work : proofs.suites[0]->tests) {
+    const Forecast found = forecast(work.outcome, proofs.suites[0]->pilots);
     EXPECT_GE(found.if_true->pass, 0.99) << work.outcome.question.test->name;
     EXPECT_GE(found.if_off->pass, 0.008) << work.outcome.question.test->name;
     EXPECT_LE(found.if_off->pass, 0.01 + 1e-6) << work.outcome.question.test->name;
@@ -259,41 +247,23 @@ tests:
 }
 
 TEST_F(PlanTable, BoundsTheProbabilityThatASuiteIsNotOk) {
-  const std::vector<Suite> suites = suites_of(R"(suite: two
-estimators:
-  normal: {plugin: analytic/normal, mean: 2, primaries: 1}
-tests:
-  - {name: a, claim: mean(normal) == 2, detect: 0.01}
-  - {name: b, claim: mean(normal) <= 2, detect: 0.01}
-)");
-  const PlannedRun planned = planned_of(suites);
-  EXPECT_THAT(plan_text(planned, costs_of(planned)),
+  EXPECT_THAT(text_of(planned("  - {name: a, claim: mean(normal) == 2, detect: 0.01}\n"
+                              "  - {name: b, claim: mean(normal) <= 2, detect: 0.01}\n")),
               HasSubstr("Not ok with probability about 0.9"));
 }
 
 TEST_F(PlanTable, SaysWhereTheDetectOfALawIsTheDefault) {
-  const std::vector<Suite> suites = suites_of(R"(suite: law
-estimators: {normal: {plugin: analytic/normal, mean: 2}}
-tests:
-  - {claim: 'distribution(normal) == normal(2, 1)'}
-)");
-  const auto text = [&](const RunOptions& options) {
-    const PlannedRun planned = planned_of(suites, options);
-    return plan_text(planned, costs_of(planned));
-  };
-  EXPECT_THAT(text({}), HasSubstr("      `detect` is 0.05, the default of claims about laws\n"));
-  EXPECT_THAT(text({.coarsen = 2}), HasSubstr("`detect` is 0.1, the default"));
+  const std::string law = "  - {claim: 'distribution(normal) == normal(2, 1)'}\n";
+  EXPECT_THAT(text_of(planned(law)),
+              HasSubstr("      `detect` is 0.05, the default of claims about laws\n"));
+  EXPECT_THAT(text_of(planned(law, {.coarsen = 2})), HasSubstr("`detect` is 0.1, the default"));
 }
 
 // Coarsened, a margin may be larger than its reference: nobody wrote it so.
 TEST_F(PlanTable, TakesACoarsenedMarginBeyondItsReference) {
-  const std::vector<Suite> suites = suites_of(R"(suite: coarse
-estimators: {normal: {plugin: analytic/normal, mean: 2}}
-tests:
-  - {claim: mean(normal) == 2, detect: 1.5}
-)");
-  EXPECT_EQ(planned_of(suites, {.coarsen = 4}).suites[0]->tests[0].outcome.plan.regions[0].detect,
-            6);
+  const PlannedRun coarse =
+      planned("  - {claim: mean(normal) == 2, detect: 1.5}\n", {.coarsen = 4});
+  EXPECT_EQ(coarse.suites[0]->tests[0].outcome.plan.regions[0].detect, 6);
 }
 
 }  // namespace

@@ -25,12 +25,9 @@ Shard taken(const Variables& variables, const RunOptions& given = {}) {
 
 TEST(ShardEnvironment, CountsFromZeroWhereTheFlagCountsFromOne) {
   EXPECT_EQ(taken({}), Shard());
+  EXPECT_EQ(taken({{"GTEST_TOTAL_SHARDS", "1"}, {"GTEST_SHARD_INDEX", "0"}}), Shard());
   EXPECT_EQ(taken({{"GTEST_TOTAL_SHARDS", "4"}, {"GTEST_SHARD_INDEX", "0"}}), Shard({1, 4}));
   EXPECT_EQ(taken({{"TEST_TOTAL_SHARDS", "4"}, {"TEST_SHARD_INDEX", "3"}}), Shard({4, 4}));
-}
-
-TEST(ShardEnvironment, OfOneShardIsAWholeRun) {
-  EXPECT_EQ(taken({{"GTEST_TOTAL_SHARDS", "1"}, {"GTEST_SHARD_INDEX", "0"}}), Shard());
 }
 
 TEST(ShardEnvironment, GoogleTestsVariablesComeBeforeBazels) {

@@ -36,23 +36,15 @@ TEST(Claim, ReadsEveryRelation) {
   EXPECT_EQ(parsed("variance(a) > variance(b)").relation, Relation::greater);
 }
 
-TEST(Claim, ReadsAMarginInPerCentAndAbsolute) {
+TEST(Claim, ReadsMarginsFactorsSlopesArgumentsAndLaws) {
   const Claim relative = parsed("mean(path) within 0.5% of analytic");
   EXPECT_EQ(relative.relation, Relation::within);
   EXPECT_EQ(relative.margin.value, 0.005);
   EXPECT_TRUE(relative.margin.relative);
-  const Claim absolute = parsed("mean(path) within 2e-3 of 1");
-  EXPECT_EQ(absolute.margin.value, 0.002);
-  EXPECT_FALSE(absolute.margin.relative);
-}
-
-TEST(Claim, ReadsAFactorBeforeAQuantity) {
+  EXPECT_FALSE(parsed("mean(path) within 2e-3 of 1").margin.relative);
   const auto side = std::get<ScaledQuantity>(parsed("efficiency(w) > 1.1*efficiency(r)").right);
   EXPECT_EQ(side.factor, 1.1);
   EXPECT_EQ(side.quantity.source.estimator, "r");
-}
-
-TEST(Claim, ReadsSlopesQuantilesAndLaws) {
   const Claim slope = parsed("slope(bias(wis)) within 0.1 of -1");
   EXPECT_TRUE(slope.left.slope);
   EXPECT_EQ(slope.left.row->word, "bias");
@@ -61,9 +53,7 @@ TEST(Claim, ReadsSlopesQuantilesAndLaws) {
   EXPECT_EQ(law.name, "normal");
   EXPECT_EQ(law.arguments, (std::vector<double>{1, 2}));
   EXPECT_EQ(std::get<Law>(parsed("distribution(ward) == density").right).name, "density");
-}
-
-TEST(Claim, SplitsPartsAtTheFirstDot) {
+  // A part begins at the first dot.
   EXPECT_EQ(parsed("distribution(ward.direction.theta) == uniform(0, 1)").left.source,
             (Source{"ward", "direction.theta"}));
   EXPECT_EQ(parsed("mean(luminaire/area-2_x.0) == analytic").left.source,
@@ -102,15 +92,6 @@ TEST(Margin, IsAHundredthRoundedOnce) {
   EXPECT_EQ(parse_margin("7 %", {}, "x").value, 0.07);
   EXPECT_EQ(to_string(parse_margin("7%", {}, "x")), "7%");
   EXPECT_EQ(to_string(Margin{0.002, false}), "0.002");
-}
-
-TEST(Margin, NamesWhatIsWrong) {
-  EXPECT_EQ(refusal([] { parse_margin("5 %%", {}, "--detect"); }),
-            "--detect must be a margin such as `0.5%` or `0.002`, but it is `5 %%`: the margin is "
-            "over before `%`");
-  EXPECT_EQ(refusal([] { parse_margin("-1", {}, "--detect"); }),
-            "--detect must be a margin such as `0.5%` or `0.002`, but it is `-1`: a margin cannot "
-            "be negative");
 }
 
 TEST(Source, IsAnEstimatorWithPerhapsAPart) {

@@ -44,21 +44,6 @@ TEST(Yaml, KeepsScalarsAsWritten) {
   EXPECT_EQ(root.find("d")->text(), "2026-11-21");
 }
 
-TEST(Yaml, RefusesWhatTwoReadersCouldUnderstandDifferently) {
-  EXPECT_EQ(refused("n: 1\nm: 2\nn: 3\n"), "3:1: duplicate key `n`; it is already given at 1:1");
-  EXPECT_EQ(refused("\"n\": 1\nn: 3\n"), "2:1: duplicate key `n`; it is already given at 1:1");
-  EXPECT_EQ(refused("a:\n  <<: {b: 1}\n"), "2:3: merge keys `<<` are not read; write the keys out");
-  EXPECT_EQ(refused("a: !!int 3\n"),
-            "1:4: the tag `tag:yaml.org,2002:int` is not read; leave it out");
-  EXPECT_EQ(refused("a: &x 3\nb: *x\n").substr(0, 5), "1:4: ");
-  EXPECT_EQ(refused("a: 1\n---\nb: 2\n"), "2:1: a second document; put each in a file of its own");
-  EXPECT_EQ(refused("a:\n\tb: 1\n"), "2:1: indent with spaces, not with a tab");
-  EXPECT_EQ(refused("a:\nb: 1\n"), "1:1: `a` has no value");
-  EXPECT_EQ(refused("a: ~\n"), "1:1: `a` has no value");
-  EXPECT_EQ(refused(""), "1:1: the file is empty");
-  EXPECT_EQ(refused("# nothing\n"), "1:1: the file is empty");
-}
-
 TEST(Yaml, AQuotedMergeKeyIsAKey) { EXPECT_NE(read("'<<': 1").root().find("<<"), nullptr); }
 
 TEST(Yaml, ReadsAFileWithAByteOrderMarkAndWindowsLineEnds) {
