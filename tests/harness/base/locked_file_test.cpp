@@ -1,27 +1,11 @@
 #include "harness/base/locked_file.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <thread>
-
 #include "harness/base/text_file.h"
 #include "tests/harness/running.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
-
-TEST(LockedFile, MakesTheFileAndReplacesItWhole) {
-  const Workplace place;
-  const std::string path = place.file("n.ledger");
-  {
-    const LockedFile lock(path);
-    EXPECT_EQ(read_text_file(path), "");
-    lock.replace("one");
-    lock.replace("two");
-  }
-  EXPECT_EQ(read_text_file(path), "two");
-}
 
 TEST(LockedFile, NamesAPathThatCannotBeOpened) {
   const Workplace place;

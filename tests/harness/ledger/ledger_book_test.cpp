@@ -3,6 +3,7 @@
 #include <rapidcheck.h>
 
 #include "estimators/core/value.h"
+#include "harness/base/text_file.h"
 #include "tests/prelude.h"
 
 namespace assay::harness {
@@ -29,12 +30,8 @@ LedgerBook example() {
 }
 
 std::vector<std::string> lines_in(const std::string& text) {
-  std::vector<std::string> lines;
-  std::size_t start = 0;
-  for (std::size_t end; (end = text.find('\n', start)) != std::string::npos; start = end + 1) {
-    lines.push_back(text.substr(start, end - start));
-  }
-  return lines;
+  const std::vector<std::string_view> lines = lines_of(text);
+  return {lines.begin(), lines.end()};
 }
 
 std::string joined(const std::vector<std::string>& lines) {

@@ -1,10 +1,12 @@
 #include "harness/ledger/ledger.h"
 
-#include "estimators/stream.h"
+#include <fmt/format.h>
+
 #include "harness/base/text_file.h"
 #include "harness/ledger/ledger_book.h"
 #include "harness/record/output.h"
 #include "tests/harness/running.h"
+#include "tests/philox.h"
 #include "tests/prelude.h"
 
 namespace assay::harness {
@@ -165,17 +167,6 @@ TEST_F(Ledger, AnAlarmStaysUntilTheTestIsBegunAnew) {
   EXPECT_EQ(night(claim("4"), 99).ledger.series[0].nights.size(), 1U);
 }
 
-TEST_F(Ledger, IsReadBeforeAnythingIsSampled) {
-  night(two_tests, 11);
-  std::string text = read_text_file(file());
-  text[text.find("seed 11") + 5] = '2';
-  std::ofstream(file()) << text;
-  EXPECT_THROW(night(two_tests, 12), InputError);
-  EXPECT_EQ(read_text_file(file()), text);
-  const std::string suite = place_.write("nights.yaml", std::string(estimators) + two_tests);
-  EXPECT_THROW(run_files({suite}, {.ledger = place_.file("missing/n.ledger")}), InputError);
-}
-
 TEST_F(Ledger, TwoSuitesOfOneNameCannotShareALedger) {
   const std::string suite = place_.write("nights.yaml", std::string(estimators) + two_tests);
   EXPECT_THROW(run_files({suite, suite}, {.ledger = file()}), InputError);
@@ -190,13 +181,6 @@ TEST_F(Ledger, ConcurrentRunsLoseNoLine) {
   };
   { const std::jthread a(nights_from, 10), b(nights_from, 20), c(nights_from, 30); }
   EXPECT_EQ(book().nights().size(), 30U);
-}
-
-TEST_F(Ledger, IsNotTouchedByARunWithoutIt) {
-  const std::string suite = place_.write("nights.yaml", std::string(estimators) + two_tests);
-  const reports::Record record = run_files({suite});
-  EXPECT_TRUE(record.ledger.file.empty());
-  EXPECT_FALSE(std::filesystem::exists(file()));
 }
 
 /// Ledgers of one test each. Suites of estimators with different means have streams of their own.
@@ -216,15 +200,11 @@ std::uint64_t alarmed(const Series& series, std::uint64_t enough) {
   std::vector<std::string> files;
   for (std::uint64_t i = 0; i < series.count; ++i) {
     const double mean = 1 + 1e-6 * static_cast<double>(i);
-    Stream random(stream_key(1, "tests/ledger", "", 0), i);
-    const double u = std::sqrt(-2 * std::log(1 - random.uniform()));
-    const double error = u * std::cos(2 * std::acos(-1.0) * random.uniform());
-    const double reference = mean + 0.1 * (series.spread * error - series.shift);
-    char text[400];
-    std::snprintf(text, sizeof text,
-                  "suite: s\nestimators:\n  x: {plugin: analytic/normal, mean: %.17g, primaries: "
-                  "1}\ntests:\n  - {claim: mean(x) == %.17g +- %.17g, secondaries: 100}\n",
-                  mean, reference, 0.1 * series.spread);
+    const double error = tests::Philox(static_cast<std::uint32_t>(i)).normal();
+    const std::string text = fmt::format(
+        "suite: s\nestimators:\n  x: {{plugin: analytic/normal, mean: {:.17g}, primaries: 1}}\n"
+        "tests:\n  - {{claim: mean(x) == {:.17g} +- {:.17g}, secondaries: 100}}\n",
+        mean, mean + 0.1 * (series.spread * error - series.shift), 0.1 * series.spread);
     files.push_back(place.write("s" + std::to_string(i) + ".yaml", text));
   }
   std::uint64_t alarms = 0;

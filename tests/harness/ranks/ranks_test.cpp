@@ -1,20 +1,15 @@
 #include "harness/ranks/ranks.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <deque>
 #include <mutex>
-#include <thread>
 
 #include "harness/run/planned_run.h"
 #include "tests/harness/refusal.h"
 #include "tests/harness/running.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
-
-using testing::HasSubstr;
 
 /// Letter boxes of ranks that are threads of this process.
 class Post {
@@ -122,8 +117,7 @@ TEST(Ranks, ThatNoLongerAnswerAreDoneWithout) {
   const std::string suite = of_suites("luminaire.yaml");
   const auto falls_silent = [](int rank, std::size_t k,
                                std::string bytes) -> std::optional<std::string> {
-    const bool silent = rank == 1 && k > 4 && bytes.size() > 40;
-    if (silent) return std::nullopt;
+    if (rank == 1 && k > 4 && bytes.size() > 40) return std::nullopt;
     return bytes;
   };
   EXPECT_EQ(numbers_of(run_in_ranks(suite, {.ranks = 3, .fate = falls_silent})), alone(suite));
@@ -134,13 +128,9 @@ TEST(Ranks, ThatSendDamagedAnswersAreNamed) {
     if (k == 1) bytes.back() = static_cast<char>(bytes.back() ^ 1);
     return bytes;
   };
-  try {
-    run_in_ranks(of_suites("luminaire.yaml"), {.ranks = 2, .fate = damages});
-    FAIL() << "nothing was refused";
-  } catch (const std::runtime_error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("rank 1 on "));
-    EXPECT_THAT(error.what(), HasSubstr("sent what cannot be read: it is damaged"));
-  }
+  EXPECT_THAT(
+      thrown([&] { run_in_ranks(of_suites("luminaire.yaml"), {.ranks = 2, .fate = damages}); }),
+      AllOf(HasSubstr("rank 1 on "), HasSubstr("sent what cannot be read: it is damaged")));
 }
 
 TEST(Ranks, OfAnotherRunAreRefusedByName) {

@@ -83,6 +83,11 @@ TEST(CellRecord, HasAzimuthsFromLeftToRight) {
     EXPECT_NEAR(drawn, 20000 * share, 5.5 * std::sqrt(20000 * share)) << column;
   }
   EXPECT_GT(most, 5 * least);  // else a map turned round would pass
+  // The number of a cell has no moments.
+  ASSERT_EQ(test.samples.size(), 1u);
+  EXPECT_FALSE(test.samples[0].mean || test.samples[0].variance || test.samples[0].max);
+  EXPECT_TRUE(test.samples[0].histogram.counts.empty());
+  EXPECT_EQ(test.samples[0].cost.samples, 20000u);
 }
 
 // Half vectors of one quadrant are drawn, of all four declared.
@@ -102,6 +107,19 @@ TEST(CellRecord, NamesTheShareThatATrianglesCellsAreOf) {
             "u 0 to 1 from top to bottom, v / (1 - u) 0 to 1 from left to right");
 }
 
+/// Where the picture of a narrow lobe begins and ends.
+struct Window {
+  double theta[2];
+  double phi[2];
+};
+Window window_of(const reports::Map& map) {
+  Window w;
+  EXPECT_EQ(std::sscanf(map.source.c_str(), "theta %lf to %lf from top to bottom, phi %lf to %lf",
+                        &w.theta[0], &w.theta[1], &w.phi[0], &w.phi[1]),
+            4);
+  return w;
+}
+
 // The lobe is halved within few cells of the picture, whose sums show nothing of a wrong azimuth.
 TEST(CellRecord, ShowsThePartOfAHalvedCellThatIsFarthestOff) {
   const reports::Test test = tested("distribution(narrow.direction) == density");
@@ -118,21 +136,13 @@ TEST(CellRecord, ShowsThePartOfAHalvedCellThatIsFarthestOff) {
   }
   EXPECT_LT(of_sums, 5);
   EXPECT_GT(shown, of_sums + 3);
-}
-
-TEST(CellRecord, ShowsTheCellsOfANarrowLobeAsLargeAsTheyAre) {
-  const reports::Test test = tested("distribution(narrow.direction) == density");
-  ASSERT_EQ(test.maps.size(), 4u);
+  // The cells of a narrow lobe are shown as large as they are.
   const reports::Map& grid = test.maps[2];
   const reports::Map& close = test.maps[3];
   EXPECT_EQ(close.name, "cells_z_close");
   EXPECT_EQ(close.width, 64u);
   EXPECT_EQ(close.height, 64u);
-  double theta[2];
-  double phi[2];
-  ASSERT_EQ(std::sscanf(close.source.c_str(), "theta %lf to %lf from top to bottom, phi %lf to %lf",
-                        &theta[0], &theta[1], &phi[0], &phi[1]),
-            4);
+  const auto [theta, phi] = window_of(close);
   // The mirrored direction of theta .8 and phi .5, and three roughnesses of .03 to either side.
   EXPECT_LT(theta[0], .8);
   EXPECT_GT(theta[1], .8);
@@ -165,12 +175,7 @@ TEST(CellRecord, ShowsALobeAcrossTheStartOfTheAzimuthInOnePiece) {
   };
   const reports::Test across = close("3.141592653589793", "20000");
   ASSERT_EQ(across.maps.size(), 4u);
-  double theta[2];
-  double phi[2];
-  ASSERT_EQ(std::sscanf(across.maps[3].source.c_str(),
-                        "theta %lf to %lf from top to bottom, phi %lf to %lf", &theta[0], &theta[1],
-                        &phi[0], &phi[1]),
-            4);
+  const auto [theta, phi] = window_of(across.maps[3]);
   EXPECT_LT(phi[0], 2 * std::numbers::pi);
   EXPECT_GT(phi[1], 2 * std::numbers::pi);
   EXPECT_LT(phi[1] - phi[0], 1);
@@ -201,14 +206,6 @@ TEST(CellRecord, OfTwoSamplesTheFirstIsHeldAgainstBothTogether) {
 TEST(CellRecord, OfAnIntervalOrAMarginalThereIsNone) {
   EXPECT_TRUE(tested("distribution(normal.x) == density").maps.empty());
   EXPECT_TRUE(tested("distribution(ward.direction.theta) == density").maps.empty());
-}
-
-TEST(CellRecord, TheNumberOfACellHasNoMoments) {
-  const reports::Test test = tested("distribution(ward.direction) == density");
-  ASSERT_EQ(test.samples.size(), 1u);
-  EXPECT_FALSE(test.samples[0].mean || test.samples[0].variance || test.samples[0].max);
-  EXPECT_TRUE(test.samples[0].histogram.counts.empty());
-  EXPECT_EQ(test.samples[0].cost.samples, 20000u);
 }
 
 }  // namespace

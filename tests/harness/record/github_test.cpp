@@ -7,13 +7,6 @@
 namespace assay::harness {
 namespace {
 
-std::string contents(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
-
 Environment of(const std::string& actions, const std::string& summary) {
   return [=](const std::string& name) {
     if (name == "GITHUB_ACTIONS") return actions;
@@ -43,27 +36,20 @@ TEST_F(Github, IsToldNothingElsewhere) {
   EXPECT_FALSE(std::filesystem::exists(place.file("summary")));
 }
 
-TEST_F(Github, AppendsToTheSummaryOfTheStep) {
-  const std::string file = place.write("summary", "written before\n");
-  const std::string annotations = tell_github(failing(), of("true", file));
-  EXPECT_THAT(annotations, StartsWith("::error file=suites/suite.yaml,line=7,"));
-  EXPECT_EQ(contents(file), "written before\n" + reports::markdown(failing()) + "\n");
-}
-
 TEST_F(Github, KeepsTheWholeSummaryBelowTheLimit) {
   reports::Record record = failing();
   record.suites[0].tests.resize(2000, record.suites[0].tests[0]);
   const std::string file = place.write("summary", std::string(reports::markdown_limit - 9000, 'x'));
   tell_github(record, of("true", file));
   EXPECT_LE(std::filesystem::file_size(file), reports::markdown_limit);
-  EXPECT_THAT(contents(file), EndsWith("the JSON record has them all.\n\n"));
+  EXPECT_THAT(bytes_in(file), EndsWith("the JSON record has them all.\n\n"));
 }
 
 TEST_F(Github, LeavesAFullSummaryAndSaysSo) {
   const std::string full(reports::markdown_limit - 100, 'x');
   const std::string file = place.write("summary", full);
   EXPECT_THAT(tell_github(failing(), of("true", file)), HasSubstr("summary is full"));
-  EXPECT_EQ(contents(file), full);
+  EXPECT_EQ(bytes_in(file), full);
   EXPECT_THAT(tell_github(failing(), of("true", place.file("no/folder"))),
               HasSubstr("summary cannot be written"));
 }

@@ -33,7 +33,11 @@ tests:
   - {claim: mean(normal) == 0}
 )";
 
-using Needs = Placed;
+class Needs : public Placed {
+ protected:
+  const std::vector<std::string> files{place.write("renderer.yaml", renderer),
+                                       place.write("normal.yaml", normal)};
+};
 
 TEST_F(Needs, SkipTheTestsOfASuiteThatLacksAProgram) {
   const reports::Record record = run_text(renderer);
@@ -48,8 +52,6 @@ TEST_F(Needs, SkipTheTestsOfASuiteThatLacksAProgram) {
 }
 
 TEST_F(Needs, LeaveOtherSuitesAsTheyAre) {
-  const std::vector<std::string> files{place.write("renderer.yaml", renderer),
-                                       place.write("normal.yaml", normal)};
   const reports::Record record = run_files(files);
   EXPECT_EQ(record.suites[1].tests[0].verdict, Verdict::pass);
   EXPECT_EQ(record.note, "");
@@ -58,8 +60,6 @@ TEST_F(Needs, LeaveOtherSuitesAsTheyAre) {
 }
 
 TEST_F(Needs, MergeToTheRecordOfOneRun) {
-  const std::vector<std::string> files{place.write("renderer.yaml", renderer),
-                                       place.write("normal.yaml", normal)};
   std::vector<ShardFile> shards;
   for (const unsigned i : {1U, 2U}) {
     RunOptions options;

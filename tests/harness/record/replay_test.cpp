@@ -56,9 +56,10 @@ tests:
 )";
 
 /// The suite's record, as a file.
-std::string recorded(const Workplace& place, const RunOptions& options = {}) {
-  const reports::Record record = run_files({place.write("suite.yaml", suite)}, options);
-  return place.write("run.json", reports::json(record));
+std::string recorded(const Workplace& place, const std::string& text = suite,
+                     const RunOptions& options = {}) {
+  return place.write("run.json",
+                     reports::json(run_files({place.write("suite.yaml", text)}, options)));
 }
 
 void expect_same_numbers(const std::string& file, const std::string& test) {
@@ -70,7 +71,7 @@ void expect_same_numbers(const std::string& file, const std::string& test) {
 using Replays = Placed;
 
 TEST_F(Replays, GivesTheSameNumbersForEveryKindOfClaim) {
-  const std::string file = recorded(place, {.seed = 5});
+  const std::string file = recorded(place, suite, {.seed = 5});
   const reports::Record record = read_record(file);
   for (const reports::Test& test : record.suites[0].tests) expect_same_numbers(file, test.id);
 }
@@ -78,20 +79,22 @@ TEST_F(Replays, GivesTheSameNumbersForEveryKindOfClaim) {
 // Pairs share random numbers, also through others, and other claims on them draw these.
 TEST_F(Replays, OfPairsDrawsTheNumbersThatTheyShare) {
   const std::string size = "width: 6, height: 4, primaries: 2}";
-  const reports::Record record = run_files({place.write("suite.yaml", R"(suite: pairs
+  const std::string file = recorded(place, R"(suite: pairs
 estimators:
-  a: {plugin: path_tracing/image, integrator: multiple, )" + size + R"(
-  b: {plugin: path_tracing/image, integrator: bsdf, )" + size + R"(
-  c: {plugin: path_tracing/image, integrator: light, )" + size + R"(
+  a: {plugin: path_tracing/image, integrator: multiple, )" +
+                                               size + R"(
+  b: {plugin: path_tracing/image, integrator: bsdf, )" +
+                                               size + R"(
+  c: {plugin: path_tracing/image, integrator: light, )" +
+                                               size + R"(
 tests:
   - {name: first, claim: mean(a) == mean(b), paired: true, secondaries: 16}
   - {name: second, claim: mean(b) == mean(c), paired: true, secondaries: 16}
   - {name: law, claim: distribution(b) == distribution(c), secondaries: 16}
   - {name: alone, claim: mean(c) == 0.5, secondaries: 16}
-)")});
-  const std::string file = place.write("run.json", reports::json(record));
-  const reports::Record read = read_record(file);
-  for (const reports::Test& test : read.suites[0].tests) {
+)");
+  const reports::Record record = read_record(file);
+  for (const reports::Test& test : record.suites[0].tests) {
     EXPECT_EQ(test.paired, test.name == "first" || test.name == "second");
     expect_same_numbers(file, test.id);
     EXPECT_EQ(said({.record = file, .test = test.id, .observation = 15}).code, 0);
@@ -100,35 +103,29 @@ tests:
 
 // Its own data's gate makes every look count for nothing, in the run as in the replay.
 TEST_F(Replays, OfASlopeThatLiesOnNoPowerLawIsTheSame) {
-  const reports::Record record = run_files({place.write("suite.yaml", R"(suite: bent
+  const std::string file = recorded(place, R"(suite: bent
 estimators:
   ratio: {plugin: analytic/ratio}
 tests:
   - {name: bent, claim: slope(bias(ratio)) within 0.1 of -1, over: {primaries: [1, 2, 4, 8]}, secondaries: 20000}
   - {name: forced, claim: slope(bias(ratio)) == -1, test: slope, over: {primaries: [1, 2, 4, 8]}, secondaries: 20000}
-)")});
-  EXPECT_EQ(record.suites[0].tests[0].verdict, reports::Verdict::invalid);
-  EXPECT_THAT(record.suites[0].tests[0].message, HasSubstr("lie on no power law"));
-  EXPECT_EQ(record.suites[0].tests[1].verdict, reports::Verdict::fail);
-  const std::string file = place.write("run.json", reports::json(record));
+)");
+  const std::vector<reports::Test> tests = read_record(file).suites[0].tests;
+  expect_said(tests[0], reports::Verdict::invalid, {"lie on no power law"});
+  EXPECT_EQ(tests[1].verdict, reports::Verdict::fail);
   for (const char* test : {"bent", "forced"}) expect_same_numbers(file, test);
 }
 
 TEST_F(Replays, OfSecondsComparesWhatRepeats) {
-  const reports::Record record = run_files({place.write("suite.yaml", R"(suite: timed
+  const std::string file = recorded(place, R"(suite: timed
 estimators:
   one: {plugin: analytic/exponential_uniform}
 tests:
   - {name: cost, claim: cost(one) <= 1, cost: seconds}
-)")});
-  const std::string file = place.write("run.json", reports::json(record));
+)");
   const Said now = said({.record = file, .test = "cost"});
   EXPECT_EQ(now.code, 0) << now.text;
   EXPECT_THAT(now.text, HasSubstr("seconds do not repeat"));
-}
-
-TEST_F(Replays, FindsATestByItsName) {
-  EXPECT_EQ(said({.record = recorded(place), .test = "mean"}).code, 0);
 }
 
 TEST_F(Replays, UsesTheSeedOfTheTestsOwnSuite) {
@@ -136,6 +133,8 @@ TEST_F(Replays, UsesTheSeedOfTheTestsOwnSuite) {
   const std::string two = place.write("two.yaml", "seed: 4\n" + std::string(suite));
   const std::string file = place.write("run.json", reports::json(run_files({one, two})));
   EXPECT_EQ(said({.record = file, .test = "two/mean"}).code, 0);
+  EXPECT_EQ(refusal([&] { replay({.record = file, .test = "mean"}); }),
+            "2 tests have the name `mean`; give the id of one: `one/mean`, `two/mean`");
 }
 
 TEST_F(Replays, PrintsTheValueThatWasDrawn) {
@@ -194,47 +193,32 @@ TEST_F(Replays, HoldsOneObservationAgainstTheRecordedRange) {
   EXPECT_THAT(now.text, HasSubstr("  lies in ["));
   record.suites[0].tests[0].samples[0].min = 1e6;
   record.suites[0].tests[0].samples[0].max = 2e6;
+  record.suites[0].tests[0].samples[0].mean = 6.5;
   const std::string tampered = place.write("tampered.json", reports::json(record));
   const Said then = said({.record = tampered, .test = "mean", .observation = 17});
   EXPECT_EQ(then.code, 1);
   EXPECT_THAT(then.text, HasSubstr("NOT as recorded: lies outside [1"));
+  const Said whole = said({.record = tampered, .test = "mean"});
+  EXPECT_EQ(whole.code, 1);
+  EXPECT_THAT(whole.text, HasSubstr("(recorded: 6.5)"));
 }
 
 TEST_F(Replays, OfOneObservationKnowsTheTwoSidesOfOneEstimatorApart) {
-  const std::string twice = place.write("twice.yaml", R"(suite: twice
+  const std::string file = recorded(place, R"(suite: twice
 estimators:
   one: {plugin: analytic/normal, primaries: 1}
 tests:
   - {name: same, claim: mean(one) == mean(one), secondaries: 2}
 )");
-  const std::string file = place.write("run.json", reports::json(run_files({twice})));
   for (const std::uint64_t index : {0U, 1U}) {
     const Said now = said({.record = file, .test = "same", .observation = index});
     EXPECT_EQ(now.code, 0) << now.text;
   }
 }
 
-TEST_F(Replays, NoticesARecordThatWasTamperedWith) {
-  reports::Record record = read_record(recorded(place));
-  record.suites[0].tests[0].samples[0].mean = 6.5;
-  const std::string file = place.write("tampered.json", reports::json(record));
-  const Said now = said({.record = file, .test = "mean"});
-  EXPECT_EQ(now.code, 1);
-  EXPECT_THAT(now.text, HasSubstr("(recorded: 6.5)"));
-}
-
-TEST_F(Replays, SuggestsTheTestThatWasMeant) {
-  const std::string file = recorded(place);
-  const std::string text = refusal([&] { replay({.record = file, .test = "suite/meen"}); });
-  EXPECT_THAT(text, HasSubstr("did you mean `suite/mean`?"));
-}
-
-TEST_F(Replays, SaysThatARunIsNotThere) {
+TEST_F(Replays, NamesTestsWhereNoneIsNear) {
   EXPECT_EQ(refusal([] { replay({.record = "none.json", .test = "suite/mean"}); }),
             "there is no such file; `--report json=FILE` saves a run that can be read");
-}
-
-TEST_F(Replays, NamesTestsWhereNoneIsNear) {
   const std::string file = recorded(place);
   const auto refused = [&](const std::string& test) {
     return refusal([&] { replay({.record = file, .test = test}); });
@@ -247,32 +231,22 @@ TEST_F(Replays, NamesTestsWhereNoneIsNear) {
             "`suite/means`, `suite/one stream`, …");
 }
 
-TEST_F(Replays, AsksWhichOfTwoTestsOfOneNameIsMeant) {
-  const std::string one = place.write("one.yaml", suite);
-  const std::string two = place.write("two.yaml", suite);
-  const std::string file = place.write("run.json", reports::json(run_files({one, two})));
-  EXPECT_EQ(refusal([&] { replay({.record = file, .test = "mean"}); }),
-            "2 tests have the name `mean`; give the id of one: `one/mean`, `two/mean`");
-}
-
 TEST_F(Replays, RefusesAnObservationThatWasNotDrawn) {
   const std::string file = recorded(place);
-  const std::string text =
-      refusal([&] { replay({.record = file, .test = "zero", .observation = 16384}); });
-  EXPECT_THAT(text, HasSubstr("the test used 0 to 16383"));
+  EXPECT_THAT(refusal([&] { replay({.record = file, .test = "zero", .observation = 16384}); }),
+              HasSubstr("the test used 0 to 16383"));
 }
 
 TEST_F(Replays, FindsRecordedDataFromTheSuitesFolder) {
   place.write("data.txt", "# columns: a b\n1 2\n3 4\n5 7\n");
-  const std::string file =
-      place.write("run.json", reports::json(run_files({place.write("data.yaml", R"(suite: data
+  const std::string file = recorded(place, R"(suite: data
 estimators:
   all: {plugin: recorded, file: data.txt}
   one: {plugin: recorded, file: data.txt, column: b}
 tests:
   - {name: all, claim: mean(all) == 3, test: t}
   - {name: one, claim: mean(one) == 3, test: t}
-)")})));
+)");
   EXPECT_EQ(said({.record = file, .test = "all"}).code, 0);
   EXPECT_EQ(said({.record = file, .test = "one"}).code, 0);
   place.write("data.txt", "# columns: a b\n1 2\n3 4\n");
@@ -288,17 +262,15 @@ TEST_F(Replays, SaysThatTheNumbersOfAnInvalidTestDecideNothing) {
   std::string rows;
   for (int i = 0; i < 50; ++i) rows += fmt::format("{}\n", (i * 37 % 101) * (i * 53 % 103) % 211);
   place.write("rows.txt", rows);
-  const std::string file = place.write("few.yaml", R"(suite: few
+  const std::string file = recorded(place, R"(suite: few
 estimators:
   rows: {plugin: recorded, file: rows.txt}
 tests:
   - {name: few, claim: variance(rows) == 1, detect: 5%}
 )");
-  const reports::Record record = run_files({file}, {});
-  const reports::Test& test = record.suites[0].tests[0];
+  const reports::Test test = read_record(file).suites[0].tests[0];
   ASSERT_EQ(test.verdict, reports::Verdict::invalid) << test.message;
-  const Said now =
-      said({.record = place.write("run.json", reports::json(record)), .test = test.id});
+  const Said now = said({.record = file, .test = test.id});
   EXPECT_THAT(now.text, HasSubstr("invalid, so the numbers below decide nothing: " + test.message));
   EXPECT_THAT(now.text, HasSubstr("variance of an observation"));
 }

@@ -1,19 +1,16 @@
 #include "harness/sampling/packing.h"
 
-#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
-
-#include <cmath>
-#include <limits>
-#include <stdexcept>
 
 #include "harness/sampling/executor.h"
 #include "harness/sampling/packed_block.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
 
 constexpr std::size_t channels = 3;
+const std::string nothing = thrown([] {});
 
 /// Two sums and the number of a cell; one observation may be no number, and one may throw.
 class OddSetup final : public Setup {
@@ -121,22 +118,14 @@ RC_GTEST_PROP(Packing, GivesThePoolThatIsDrawnHere, ()) {
 /// Nothing but Unpackable may come of bytes that are not a block.
 bool folds_or_is_refused(const std::string& frame, const Recipe& recipe) {
   const std::shared_ptr<Pool> pool = fresh(recipe, OddSetup());
-  try {
-    pool->fold(unpacked_block(frame, *pool, 0));
-    packed_block(pool->drawn_parts());
-    return true;
-  } catch (const Unpackable& refusal) {
-    return std::string(refusal.what()).size() > 5;
-  }
+  return thrown<Unpackable>([&] {
+           pool->fold(unpacked_block(frame, *pool, 0));
+           packed_block(pool->drawn_parts());
+         }).size() > 5;
 }
 
 bool is_refused(const std::string& frame, const Pool& pool) {
-  try {
-    unpacked_block(frame, pool, 0);
-    return false;
-  } catch (const Unpackable&) {
-    return true;
-  }
+  return thrown<Unpackable>([&] { unpacked_block(frame, pool, 0); }) != nothing;
 }
 
 RC_GTEST_PROP(Packing, RefusesWhatIsCutShortOrDamaged, ()) {
@@ -170,27 +159,21 @@ RC_GTEST_PROP(Packing, OfADamagedRecipeDoesNotCrash, ()) {
   for (std::size_t i = at; i < std::min(at + 8, bytes.size()); ++i) {
     bytes[i] = *rc::gen::arbitrary<char>();
   }
-  try {
+  thrown<Unpackable>([&] {
     Recipe recipe;
     unpack(framed(bytes), recipe);
     pool_of(recipe, std::make_shared<OddSetup>());
-  } catch (const Unpackable&) {
-  }
+  });
 }
 
 std::string refusal_of(std::string frame, std::size_t at, char byte) {
   frame[at] = byte;
-  try {
-    unframed(frame);
-  } catch (const Unpackable& refusal) {
-    return refusal.what();
-  }
-  return "";
+  return thrown<Unpackable>([&] { unframed(frame); });
 }
 
 TEST(Packing, NamesAnotherVersionAndAnotherOrderOfBytes) {
   const std::string frame = packed(std::uint64_t{7});
-  EXPECT_EQ(refusal_of(frame, 0, 'a'), "");
+  EXPECT_EQ(refusal_of(frame, 0, 'a'), nothing);
   EXPECT_EQ(refusal_of(frame, 0, 'b'), "it is nothing that Assay packed");
   EXPECT_EQ(refusal_of(frame, 6, '0'), "it is of another version of Assay");
   EXPECT_EQ(refusal_of(frame, 8, 1), "it is of a machine with another order of bytes");

@@ -240,6 +240,9 @@ TEST(Pool, SaysAtWhichObservationItsEstimatorThrew) {
             "`lamp` stopped at observation 4321: the lamp burnt out");
   EXPECT_EQ(pool->sample(6000).drawn(), nullptr);
   EXPECT_EQ(pool->sample(6000).fault()->observation, 4321);
+  // What came before the trouble is still there.
+  expect_same(sample_of(*pool, 1000).summary(),
+              sample_of(*drawn({.prefixes = {1000}}), 1000).summary());
 }
 
 TEST(Pool, TakesWhateverIsThrown) {
@@ -250,6 +253,7 @@ TEST(Pool, TakesWhateverIsThrown) {
       return words_of(std::current_exception());
     }
   };
+  EXPECT_EQ(words(std::runtime_error("")), "it threw an exception without words");
   EXPECT_EQ(words(17), "it threw something that is no std::exception");
   EXPECT_EQ(words(std::bad_alloc()), "there is not enough memory (std::bad_alloc)");
   EXPECT_EQ(words(InputError({.file = "rows.txt", .line = 3, .column = 1}, "is short")),
@@ -262,12 +266,6 @@ TEST(Pool, DrawsNothingFromASourceThatFailedBefore) {
   draw_up_to(1000, pool, 2);
   EXPECT_EQ(pool->drawn(), 0);
   EXPECT_EQ(pool->sample(1000).fault()->words, "it ended in the pilot");
-}
-
-TEST(Pool, StillHasWhatCameBeforeTheTrouble) {
-  const auto pool = drawn({.prefixes = {1000, 6000}, .threads = 2, .behaviour = {.throws = 4321}});
-  expect_same(sample_of(*pool, 1000).summary(),
-              sample_of(*drawn({.prefixes = {1000}}), 1000).summary());
 }
 
 TEST(Pool, OfBoundedDataEndsWhereTheyEnd) {
@@ -285,24 +283,25 @@ TEST(Pool, HistogramHoldsEveryFiniteValue) {
   EXPECT_EQ(histogram.below + histogram.above, 0);
 }
 
+std::shared_ptr<Pool> pool_of(Behaviour behaviour) {
+  return std::make_shared<Pool>(std::make_shared<SumsSetup>(behaviour), StreamKey{7}, 5);
+}
+
+std::shared_ptr<Pool> drawn_from(const std::shared_ptr<Pool>& pool, unsigned threads) {
+  pool->request(20);
+  draw_up_to(30, pool, threads);
+  return pool;
+}
+
 // Rows of files are read once, for the pilot, and known to the test.
 TEST(Pool, TakesWhatIsKnownWithoutDrawingIt) {
-  const auto drawn_from = [](const std::shared_ptr<Pool>& pool) {
-    pool->request(30);
-    Silence silence;
-    draw_all({pool}, {.executor = threads(1)}, silence);
-    return pool;
-  };
-  const auto pool_of = [](Behaviour behaviour) {
-    return std::make_shared<Pool>(std::make_shared<SumsSetup>(behaviour), StreamKey{7}, 5);
-  };
   const auto first = pool_of({.rows = 30});
   first->keep_observations(30);
-  drawn_from(first);
+  draw_up_to(30, first, 1);
   ASSERT_EQ(first->kept()->values.size(), 30U);
   const auto second = pool_of({.throws = 11, .rows = 30});
   second->take_known(first->kept());
-  drawn_from(second);
+  draw_up_to(30, second, 1);
   EXPECT_FALSE(second->fault());
   EXPECT_EQ(sample_of(*second, 30).summary().channels[1].moments.m4,
             sample_of(*first, 30).summary().channels[1].moments.m4);
@@ -314,15 +313,6 @@ TEST(Pool, TakesWhatIsKnownWithoutDrawingIt) {
 
 // Pictures of files are summed when all are there, once for the pilot and the test.
 TEST(Pool, PicturesOfFilesHaveTheSumsOfOneByOne) {
-  const auto drawn_from = [](const std::shared_ptr<Pool>& pool, unsigned threads) {
-    for (const std::uint64_t count : {20U, 30U}) pool->request(count);
-    Silence silence;
-    draw_all({pool}, {.executor = harness::threads(threads)}, silence);
-    return pool;
-  };
-  const auto pool_of = [](Behaviour behaviour) {
-    return std::make_shared<Pool>(std::make_shared<SumsSetup>(behaviour), StreamKey{7}, 5);
-  };
   const Behaviour pictures{.not_a_number = 11, .rows = 30, .image = true};
   const auto one_by_one = drawn_from(pool_of(pictures), 1);
   const auto kept = pool_of(pictures);
@@ -362,12 +352,6 @@ TEST(Pilots, FaultOfAnEstimatorIsNotItsSamplers) {
   pilots.add("lamp.cells", Fault{.words = "no filament"});
   ASSERT_NE(pilots.fault("lamp", "cells"), nullptr);
   EXPECT_EQ(pilots.fault("lamp", "cells")->words, "no filament");
-}
-
-// An empty text would be taken for no fault.
-TEST(Fault, OfAnExceptionWithoutWordsHasSome) {
-  const auto thrown = std::make_exception_ptr(std::runtime_error(""));
-  EXPECT_EQ(words_of(thrown), "it threw an exception without words");
 }
 
 }  // namespace
