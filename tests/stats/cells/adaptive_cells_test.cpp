@@ -19,16 +19,21 @@ void expect_a_partition(const HalvedCells& cells) {
   EXPECT_NEAR(area, 1, 1e-12);
 }
 
+void expect_masses(const AdaptiveCells& found, const std::function<double(PlaneCell)>& mass,
+                   double tolerance, double most) {
+  for (std::size_t i = 0; i < found.cells.size(); ++i) {
+    EXPECT_NEAR(found.mass.probability[i], mass(found.cells.cells[i]), tolerance);
+    EXPECT_LE(found.mass.probability[i], most);
+  }
+}
+
 // The law 4 x y gives a cell the product of the differences of squares.
 TEST(AdaptiveCells, EveryCellHasItsMassAndNoMoreThanItsShare) {
   const auto found = adaptive_cells(
       unit_grid(4, 4), on_unit_square([](double x, double y) { return 4 * x * y; }), 1.0 / 64);
   const auto below = [](const Span& s) { return s.high * s.high - s.low * s.low; };
-  for (std::size_t i = 0; i < found.cells.size(); ++i) {
-    const PlaneCell& cell = found.cells.cells[i];
-    EXPECT_NEAR(found.mass.probability[i], below(cell.x) * below(cell.y), 1e-12);
-    EXPECT_LE(found.mass.probability[i], 1.0 / 64);
-  }
+  const auto mass = [&](const PlaneCell& cell) { return below(cell.x) * below(cell.y); };
+  expect_masses(found, mass, 1e-12, 1.0 / 64);
   EXPECT_NEAR(found.mass.total, 1, 1e-12);
   // One cell of the grid has (7/16)^2 of the mass and needs 16 parts; another has (1/16)^2.
   EXPECT_GT(found.cells.size(), 64U);
@@ -76,16 +81,13 @@ constexpr Peak narrow{.x = .4, .y = .7, .deviation = .004};
 
 TEST(AdaptiveCells, ANarrowPeakIsCountedInManyCells) {
   const auto found = adaptive_cells(unit_grid(16, 32), on_unit_square(narrow, {100}), 1.0 / 256);
-  std::size_t held = 0;
-  for (std::size_t i = 0; i < found.cells.size(); ++i) {
-    const PlaneCell& cell = found.cells.cells[i];
-    const double mass = normal_mass(cell.x, narrow.x, narrow.deviation) *
-                        normal_mass(cell.y, narrow.y, narrow.deviation);
-    EXPECT_NEAR(found.mass.probability[i], mass, 1e-7);
-    EXPECT_LE(found.mass.probability[i], 1.0 / 256);
-    held += mass > 1.0 / 2048 ? 1 : 0;
-  }
-  EXPECT_GT(held, 256U);
+  const auto mass = [](const PlaneCell& cell) {
+    return normal_mass(cell.x, narrow.x, narrow.deviation) *
+           normal_mass(cell.y, narrow.y, narrow.deviation);
+  };
+  expect_masses(found, mass, 1e-7, 1.0 / 256);
+  const auto holds = [](double probability) { return probability > 1.0 / 2048; };
+  EXPECT_GT(std::ranges::count_if(found.mass.probability, holds), 256);
   EXPECT_LT(found.cells.size(), 1600U);
   expect_a_partition(found.cells);
 }
@@ -203,12 +205,10 @@ TEST(AdaptiveCells, PartsOfAnIntervalHaveTheirMass) {
     for (std::size_t i = 0; i < x.size(); ++i) values[i] = 50 * std::exp(-50 * x[i]);
   }};
   const auto found = adaptive_cells(even_borders(64), density, 1.0 / 32);
-  for (std::size_t i = 0; i < found.cells.size(); ++i) {
-    const Span& part = found.cells.cells[i].x;
-    EXPECT_NEAR(found.mass.probability[i], std::exp(-50 * part.low) - std::exp(-50 * part.high),
-                1e-12);
-    EXPECT_LE(found.mass.probability[i], 1.0 / 32);
-  }
+  const auto mass = [](const PlaneCell& part) {
+    return std::exp(-50 * part.x.low) - std::exp(-50 * part.x.high);
+  };
+  expect_masses(found, mass, 1e-12, 1.0 / 32);
   EXPECT_GT(found.cells.size(), 64U + 30);
   expect_a_partition(found.cells);
 }

@@ -214,16 +214,17 @@ double best_of_looks(const Law& law, Range range, bool upper, Philox& random) {
 
 TEST(BettingMean, KeepsItsLevelUnderOptionalStoppingOnEveryLaw) {
   std::uint32_t test_case = 301;
+  const auto keeps = [&](const Law& law, Range range, bool upper) {
+    SCOPED_TRACE(law.name);
+    expect_calibrated({test_case++, tests::repetitions(2000), Shape::at_most_uniform},
+                      [&](Philox& random) { return best_of_looks(law, range, upper, random); });
+  };
   for (const Law& law : {laws::exponential, laws::lognormal_half, laws::lognormal_one,
                          laws::bernoulli, laws::uniform, laws::zero_inflated}) {
-    expect_calibrated({test_case++, tests::repetitions(2000), Shape::at_most_uniform},
-                      [&](Philox& random) {
-                        return best_of_looks(law, {0, infinity}, true, random);
-                      });
+    keeps(law, {0, infinity}, true);
   }
   for (const Law& law : {laws::bernoulli, laws::uniform, laws::zero_inflated_uniform}) {
-    expect_calibrated({test_case++, tests::repetitions(2000), Shape::at_most_uniform},
-                      [&](Philox& random) { return best_of_looks(law, unit, false, random); });
+    keeps(law, unit, false);
   }
 }
 
