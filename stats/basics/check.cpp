@@ -1,9 +1,25 @@
 #include "stats/basics/check.h"
 
+#include <array>
+#include <charconv>
 #include <cmath>
-#include <string>
+#include <stdexcept>
 
 namespace assay::stats::check {
+
+void refuse(Argument argument, std::string_view value, std::string_view requirement) {
+  std::string message(argument.function);
+  message.append(": ").append(argument.name).append(value);
+  throw std::domain_error(message.append(", must be ").append(requirement));
+}
+
+void fail(Argument argument, double value, std::string_view requirement) {
+  if (std::isnan(value)) refuse(argument, " is not a number", requirement);
+  if (std::isinf(value)) refuse(argument, " is infinite", requirement);
+  std::array<char, 32> text{};
+  std::to_chars(text.data(), text.data() + text.size(), value);
+  refuse(argument, std::string(" = ") + text.data(), requirement);
+}
 
 void finite(Argument argument, double value) {
   if (!std::isfinite(value)) fail(argument, value, "finite");

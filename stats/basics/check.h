@@ -1,26 +1,26 @@
 #pragma once
 
+#include <concepts>
 #include <cstdint>
-#include <sstream>
-#include <stdexcept>
+#include <string>
 #include <string_view>
 
 namespace assay::stats::check {
 
 // Internal: argument checks. They throw std::domain_error "function: argument = value, must be …".
+// The value has the fewest digits that read back as it. The text is "argument is not a number" or
+// "argument is infinite" where it is not finite.
 
 struct Argument {
   std::string_view function;
   std::string_view name;
 };
 
-template <class Value>
-[[noreturn]] void fail(Argument argument, Value value, std::string_view requirement) {
-  std::ostringstream message;
-  message.precision(17);
-  message << argument.function << ": " << argument.name << " = " << value << ", must be "
-          << requirement;
-  throw std::domain_error(message.str());
+[[noreturn]] void refuse(Argument argument, std::string_view value, std::string_view requirement);
+[[noreturn]] void fail(Argument argument, double value, std::string_view requirement);
+template <std::unsigned_integral Count>
+[[noreturn]] void fail(Argument argument, Count count, std::string_view requirement) {
+  refuse(argument, " = " + std::to_string(count), requirement);
 }
 
 void finite(Argument argument, double value);

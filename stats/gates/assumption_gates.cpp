@@ -163,6 +163,8 @@ Gate skewness_gate(const Moments& x, double critical_value) {
 
 Gate skewness_gate(const Moments& x, const Moments& y, double scale, double critical_value) {
   check::finite({"skewness_gate", "scale"}, scale);
+  check::at_least({"skewness_gate", "count of x"}, x.count, 2);
+  check::at_least({"skewness_gate", "count of y"}, y.count, 2);
   const double cube = checked_cube(critical_value);
   const double vx = x.variance() / static_cast<double>(x.count);
   const double vy = scale * scale * y.variance() / static_cast<double>(y.count);
@@ -189,6 +191,7 @@ Gate dominance_gate(const Moments& x) {
 
 Gate kurtosis_gate(const Moments& x) {
   check::at_least({"kurtosis_gate", "count"}, x.count, 4);
+  if (x.m2 == 0) throw ZeroVariance("kurtosis_gate: zero variance");
   const double value = x.kurtosis() - 3;
   const double allowance =
       normal_kurtosis_quantile(static_cast<double>(x.count)) * kurtosis_widening(kurtosis_limit);
@@ -200,6 +203,7 @@ Gate kurtosis_gate(const Moments& x) {
 
 double kurtosis_upper_limit(const Moments& x) {
   check::at_least({"kurtosis_upper_limit", "count"}, x.count, 4);
+  if (x.m2 == 0) throw ZeroVariance("kurtosis_upper_limit: zero variance");
   constexpr double z = 1.6448536269514722;  // The normal law's upper quantile at .05.
   const double excess = x.kurtosis() - 3;
   const double error = std::sqrt(24 / static_cast<double>(x.count));

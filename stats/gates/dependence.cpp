@@ -59,8 +59,8 @@ double autocorrelation(std::span<const double> values, std::size_t lag) {
   return Sequence("autocorrelation", values, std::max<std::size_t>(2, lag + 1)).correlation(lag);
 }
 
-TestResult lag_one_test(std::span<const double> values) {
-  const double r = Sequence("lag_one_test", values, 4).correlation(1);
+TestResult lag_one_test(std::span<const double> values, const char* caller) {
+  const double r = Sequence(caller, values, 4).correlation(1);
   const double n = static_cast<double>(values.size());
   const double variance = (n * n * n * n - 4 * n * n * n + 3 * n * n + 4 * n - 4) /
                           ((n + 1) * n * n * (n - 1) * (n - 1));

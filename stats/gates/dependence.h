@@ -20,7 +20,7 @@ double autocorrelation(std::span<const double> values, std::size_t lag);
 // The law of Z is taken for normal. Mean and variance of r_1 are exact for normal data (Dufour &
 // Roy 1985, J. Econometrics 29). They hold to first order for any law with a variance (Anderson &
 // Walker 1964). log_p_upper is the tail of positive correlation. Throws for n < 4; ZeroVariance.
-TestResult lag_one_test(std::span<const double> values);
+TestResult lag_one_test(std::span<const double> values, const char* caller = "lag_one_test");
 
 // Effective sample size n / tau, tau = -1 + 2 sum Gamma_m, Gamma_m = r_2m + r_(2m+1). The sum runs
 // while Gamma_m is positive, made monotone (Geyer 1992, Stat. Sci. 7, section 3.3). It is about n

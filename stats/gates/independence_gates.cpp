@@ -53,8 +53,8 @@ struct BatchRatio {
   double quantile(double p) const { return f_quantile({Tail::upper, std::log(p)}, degrees); }
 };
 
-BatchRatio batch_ratio(std::span<const double> values, std::size_t length) {
-  check::at_least({"batch_gate", "count"}, values.size(), 9);
+BatchRatio batch_ratio(const char* caller, std::span<const double> values, std::size_t length) {
+  check::at_least({caller, "count"}, values.size(), 9);
   const Moments means = batch_means(values, length);
   const std::size_t used = length * means.count;
   Moments all;
@@ -63,7 +63,7 @@ BatchRatio batch_ratio(std::span<const double> values, std::size_t length) {
   const double within = all.m2 - b * means.m2;
   const FDegrees degrees{.numerator = static_cast<double>(means.count - 1),
                          .denominator = static_cast<double>(used - means.count)};
-  if (all.m2 == 0) throw ZeroVariance("batch_gate: zero variance");
+  if (all.m2 == 0) throw ZeroVariance(std::string(caller) + ": zero variance");
   // Batches that are constant within themselves leave nothing to divide by. They are as dependent
   // as can be.
   const double ratio = within > 0 ? b * means.variance() / (within / degrees.denominator)
@@ -125,7 +125,7 @@ Gate gate_of_rank_batches(std::span<const double> values) {
 }  // namespace
 
 Gate lag_one_gate(std::span<const double> values) {
-  const double z = lag_one_test(values).statistic;
+  const double z = lag_one_test(values, "lag_one_gate").statistic;
   const double r = autocorrelation(values, 1);
   const double n = static_cast<double>(values.size());
   // z = (r + 1/n) / deviation. The limit is the r of the same sign that is as far out.
@@ -139,7 +139,7 @@ Gate lag_one_gate(std::span<const double> values) {
 }
 
 Gate batch_gate(std::span<const double> values) {
-  const BatchRatio batches = batch_ratio(values, default_batch(values.size()));
+  const BatchRatio batches = batch_ratio("batch_gate", values, default_batch(values.size()));
   Gate gate{.name = "variance of batch means", .value = batches.value, .low = batches.value};
   gate.limit = batches.quantile(false_red_of_dependence);
   gate.state = state_of(batches.value, batches.quantile(false_amber), gate.limit);
@@ -179,11 +179,12 @@ double autocorrelation_time(std::span<const double> values) {
 
 double allowance_for_dependence(std::span<const double> values) {
   const std::size_t n = values.size();
-  bool doubtful = lag_one_test(values).statistic > upper_normal_quantile(false_allowance);
+  bool doubtful = lag_one_test(values, "allowance_for_dependence").statistic >
+                  upper_normal_quantile(false_allowance);
   double factor = 1;
   for (const std::size_t length : {default_batch(n), n / 10}) {
     if (length < default_batch(n)) continue;
-    const BatchRatio batches = batch_ratio(values, length);
+    const BatchRatio batches = batch_ratio("allowance_for_dependence", values, length);
     if (batches.value <= batches.quantile(false_allowance)) continue;
     doubtful = true;
     factor = std::max(factor, batches.value);

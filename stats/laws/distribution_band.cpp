@@ -11,7 +11,6 @@ namespace assay::stats {
 namespace {
 
 std::vector<double> equal_steps(std::size_t points) {
-  check::at_least({"distribution_band", "points"}, points, 2);
   std::vector<double> z;
   for (std::size_t i = 1; i < points; ++i) {
     z.push_back(static_cast<double>(i) / static_cast<double>(points));
@@ -48,23 +47,30 @@ DistributionBand widest(const BandWalk& walk, double confidence) {
   return band;
 }
 
-}  // namespace
-
-DistributionBand ecdf_band(std::uint64_t n, std::size_t points, double confidence) {
-  check::at_least({"ecdf_band", "n"}, n, 1);
-  check::inside_unit({"ecdf_band", "confidence"}, confidence);
+DistributionBand band_of(const char* caller, std::uint64_t n, std::size_t points,
+                         double confidence) {
+  check::at_least({caller, "n"}, n, 1);
+  check::at_least({caller, "points"}, points, 2);
+  check::inside_unit({caller, "confidence"}, confidence);
   const std::vector<double> z = equal_steps(points);
   DistributionBand band = widest(BandWalk::one_sample(n, z), confidence);
   for (std::size_t i = 0; i < z.size(); ++i) band.points[i].z = z[i];
   return band;
 }
 
+}  // namespace
+
+DistributionBand ecdf_band(std::uint64_t n, std::size_t points, double confidence) {
+  return band_of("ecdf_band", n, points, confidence);
+}
+
 double simultaneous_error(std::uint64_t n, std::size_t points, double confidence) {
+  const auto gamma = [&](std::uint64_t values) {
+    return band_of("simultaneous_error", values, points, confidence).gamma;
+  };
   constexpr std::uint64_t most = 1000;
-  if (n <= most) return ecdf_band(n, points, confidence).gamma;
   // 1 / sqrt(most) is twice 1 / sqrt(4 most).
-  return 2 * ecdf_band(4 * most, points, confidence).gamma -
-         ecdf_band(most, points, confidence).gamma;
+  return n <= most ? gamma(n) : 2 * gamma(4 * most) - gamma(most);
 }
 
 }  // namespace assay::stats

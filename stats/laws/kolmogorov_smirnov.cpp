@@ -4,6 +4,7 @@
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <numeric>
+#include <stdexcept>
 
 #include "stats/basics/check.h"
 #include "stats/laws/supremum_bound.h"
@@ -154,8 +155,7 @@ TwoSampleDistance ks_distance(std::span<const double> sorted_x, std::span<const 
   const auto up = static_cast<std::int64_t>(n / common);
   const auto down = static_cast<std::int64_t>(m / common);
   if (static_cast<double>(up) * static_cast<double>(m) > 0x1p62) {
-    check::fail({"ks_distance", "lcm of the sample sizes"},
-                static_cast<double>(up) * static_cast<double>(m), "at most 2^62");
+    check::fail({"ks_distance", "size of y"}, n, "so small that the sizes' lcm is <= 2^62");
   }
   std::size_t i = 0;
   std::size_t j = 0;

@@ -66,8 +66,7 @@ double log_p_upper(const ValueCells& x, double sign, double null, double room) {
   return special::clamp_log(-log_wealth(x, sign, null, room));
 }
 
-void check_arguments(const ValueCells& x, Range range, double null_mean) {
-  constexpr const char* function = "betting_mean";
+void check_arguments(const char* function, const ValueCells& x, Range range, double null_mean) {
   check::finite({function, "null_mean"}, null_mean);
   if (!(range.low < range.high)) check::fail({function, "high"}, range.high, "above low");
   const double least = x.cells().front().least;
@@ -144,7 +143,7 @@ void ValueCells::add(double value, double weight) {
 }
 
 TestResult betting_mean(const ValueCells& x, Range range, double null_mean) {
-  check_arguments(x, range, null_mean);
+  check_arguments("betting_mean", x, range, null_mean);
   return {x.mean() - null_mean,
           {"bound", {}},
           log_p_upper(x, -1, null_mean, range.high - null_mean),
@@ -155,9 +154,9 @@ TestResult betting_mean(const ValueCells& x, Range range, double null_mean) {
 TestResult betting_contrast(const ValueCells& x, Range of_x, const ValueCells& y, Range of_y,
                             Contrast null_value) {
   check::finite({"betting_contrast", "scale"}, null_value.scale);
+  check_arguments("betting_contrast", x, of_x, null_value.offset);
   if (null_value.scale == 0) return betting_mean(x, of_x, null_value.offset);
-  check_arguments(x, of_x, null_value.offset);
-  check_arguments(y, of_y, null_value.offset);
+  check_arguments("betting_contrast", y, of_y, null_value.offset);
   const Bettor first{x, of_x};
   const Bettor second{y, of_y};
   return {x.mean() - null_value.scale * y.mean() - null_value.offset,

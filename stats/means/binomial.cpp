@@ -19,6 +19,7 @@ void check_counts(const char* function, Successes observed) {
 
 TestResult binomial(Successes observed, double null_probability) {
   check_counts("binomial", observed);
+  check::unit({"binomial", "null_probability"}, null_probability);
   const LogTails tails = binomial_tails(observed.successes, {observed.trials, null_probability});
   return {static_cast<double>(observed.successes),
           {"binomial", {static_cast<double>(observed.trials), null_probability}},

@@ -21,9 +21,9 @@ struct Law {
   double a = 0;
 };
 
-Law law_of(const Moments& x, Reference reference) {
+Law law_of(const char* caller, const Moments& x, Reference reference) {
   // Checks its arguments.
-  const TestResult plain = student_t(x, reference);
+  const TestResult plain = student_t(x, reference, caller);
   const double n = static_cast<double>(x.count);
   const double error = reference.standard_error;
   const double influence = x.m2 / n / n + error * error;
@@ -40,9 +40,9 @@ double influence_variance(const Moments& x, double factor) {
 
 double skewness_or_zero(const Moments& x) { return x.m2 > 0 ? x.skewness() : 0; }
 
-Law law_of(const Moments& x, const Moments& y, double scale) {
+Law law_of(const char* caller, const Moments& x, const Moments& y, double scale) {
   // Checks its arguments.
-  const TestResult plain = welch_t(x, y, {scale, 0});
+  const TestResult plain = welch_t(x, y, {scale, 0}, caller);
   const double nx = static_cast<double>(x.count);
   const double ny = static_cast<double>(y.count);
   const double of_x = influence_variance(x, 1);
@@ -55,11 +55,9 @@ Law law_of(const Moments& x, const Moments& y, double scale) {
   return {std::sqrt(variance), plain.distribution.parameters[0], skewness / 6};
 }
 
-TestResult result_of(double difference, const Law& law) {
+TestResult result_of(const char* caller, double difference, const Law& law) {
   const double h = transformed(difference / law.standard_error, law.a);
-  if (!std::isfinite(h)) {
-    check::fail({"skewness_corrected_t", "transformed statistic"}, h, "finite");
-  }
+  check::finite({caller, "transformed statistic"}, h);
   const LogTails tails = student_t_tails(h, law.degrees);
   return {h, {"student-t", {law.degrees}}, tails.lower, tails.upper, Exactness::asymptotic};
 }
@@ -102,8 +100,9 @@ double lower_excess(const Moments& x) {
 
 using ExcessKurtosis = double (*)(const Moments&);
 
-Residue residue_of(const Moments& x, Reference reference, ExcessKurtosis excess) {
-  const Law law = law_of(x, reference);
+Residue residue_of(const char* caller, const Moments& x, Reference reference,
+                   ExcessKurtosis excess) {
+  const Law law = law_of(caller, x, reference);
   const double of_x = influence_variance(x, 1);
   const double error = reference.standard_error;
   Residue residue{law.a};
@@ -111,8 +110,9 @@ Residue residue_of(const Moments& x, Reference reference, ExcessKurtosis excess)
   return residue;
 }
 
-Residue residue_of(const Moments& x, const Moments& y, double scale, ExcessKurtosis excess) {
-  const Law law = law_of(x, y, scale);
+Residue residue_of(const char* caller, const Moments& x, const Moments& y, double scale,
+                   ExcessKurtosis excess) {
+  const Law law = law_of(caller, x, y, scale);
   const double of_x = influence_variance(x, 1);
   const double of_y = influence_variance(y, scale);
   Residue residue{law.a};
@@ -121,12 +121,17 @@ Residue residue_of(const Moments& x, const Moments& y, double scale, ExcessKurto
   return residue;
 }
 
-double checked_factor(const Residue& residue, double critical_value) {
-  check::positive({"corrected_level_factor", "critical_value"}, critical_value);
+double checked_factor(const char* caller, const Residue& residue, double critical_value) {
+  check::positive({caller, "critical_value"}, critical_value);
   return factor_of(residue, critical_value);
 }
 
-Gate gate_of(double value, double low) {
+constexpr const char* of_factor = "corrected_level_factor";
+constexpr const char* of_gate = "residual_skewness_gate";
+
+Gate gate_of(const Residue& seen, const Residue& least, double critical_value) {
+  const double value = checked_factor(of_gate, seen, critical_value);
+  const double low = factor_of(least, critical_value);
   Gate gate{"level factor after correction", value, low, 2, GateState::amber};
   if (value <= 1.25)
     gate.state = GateState::green;
@@ -137,33 +142,37 @@ Gate gate_of(double value, double low) {
 
 }  // namespace
 
-TestResult skewness_corrected_t(const Moments& x, Reference null_mean) {
-  return result_of(x.mean_less(null_mean.value), law_of(x, null_mean));
+TestResult skewness_corrected_t(const Moments& x, Reference null_mean, const char* caller) {
+  return result_of(caller, x.mean_less(null_mean.value), law_of(caller, x, null_mean));
 }
 
-TestResult skewness_corrected_welch(const Moments& x, const Moments& y, Contrast null_value) {
-  check::finite({"skewness_corrected_welch", "offset"}, null_value.offset);
-  return result_of(contrast_of_means(x, y, null_value), law_of(x, y, null_value.scale));
+TestResult skewness_corrected_welch(const Moments& x, const Moments& y, Contrast null_value,
+                                    const char* caller) {
+  check::finite({caller, "offset"}, null_value.offset);
+  return result_of(caller, contrast_of_means(x, y, null_value),
+                   law_of(caller, x, y, null_value.scale));
 }
 
 double corrected_level_factor(const Moments& x, Reference null_mean, double critical_value) {
-  return checked_factor(residue_of(x, null_mean, excess_or_zero), critical_value);
+  return checked_factor(of_factor, residue_of(of_factor, x, null_mean, excess_or_zero),
+                        critical_value);
 }
 
 double corrected_level_factor(const Moments& x, const Moments& y, double scale,
                               double critical_value) {
-  return checked_factor(residue_of(x, y, scale, excess_or_zero), critical_value);
+  return checked_factor(of_factor, residue_of(of_factor, x, y, scale, excess_or_zero),
+                        critical_value);
 }
 
 Gate residual_skewness_gate(const Moments& x, Reference null_mean, double critical_value) {
-  return gate_of(corrected_level_factor(x, null_mean, critical_value),
-                 checked_factor(residue_of(x, null_mean, lower_excess), critical_value));
+  return gate_of(residue_of(of_gate, x, null_mean, excess_or_zero),
+                 residue_of(of_gate, x, null_mean, lower_excess), critical_value);
 }
 
 Gate residual_skewness_gate(const Moments& x, const Moments& y, double scale,
                             double critical_value) {
-  return gate_of(corrected_level_factor(x, y, scale, critical_value),
-                 checked_factor(residue_of(x, y, scale, lower_excess), critical_value));
+  return gate_of(residue_of(of_gate, x, y, scale, excess_or_zero),
+                 residue_of(of_gate, x, y, scale, lower_excess), critical_value);
 }
 
 }  // namespace assay::stats

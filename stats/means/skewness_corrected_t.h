@@ -21,10 +21,12 @@ namespace assay::stats {
 // small. All throw as the tests they correct.
 
 // Null hypothesis: E x = null_mean.value.
-TestResult skewness_corrected_t(const Moments& x, Reference null_mean);
+TestResult skewness_corrected_t(const Moments& x, Reference null_mean,
+                                const char* caller = "skewness_corrected_t");
 
 // Null hypothesis: E x - scale E y = offset.
-TestResult skewness_corrected_welch(const Moments& x, const Moments& y, Contrast null_value);
+TestResult skewness_corrected_welch(const Moments& x, const Moments& y, Contrast null_value,
+                                    const char* caller = "skewness_corrected_welch");
 
 // ---- Validity of the correction
 

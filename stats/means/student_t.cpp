@@ -29,8 +29,8 @@ Scale scale_of(const char* function, const Moments& x, Reference reference) {
 
 }  // namespace
 
-TestResult student_t(const Moments& x, Reference null_mean) {
-  const Scale scale = scale_of("student_t", x, null_mean);
+TestResult student_t(const Moments& x, Reference null_mean, const char* caller) {
+  const Scale scale = scale_of(caller, x, null_mean);
   const double t = x.mean_less(null_mean.value) / scale.standard_error;
   const LogTails tails = student_t_tails(t, scale.degrees);
   return {t,

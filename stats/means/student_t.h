@@ -17,8 +17,8 @@ struct Reference {
 // That is Welch-Satterthwaite with infinitely many degrees of freedom for the reference (Welch
 // 1947). Exact for normal data and an exact reference; asymptotic (labelled) with a reference
 // error. Throws std::domain_error (count < 2, non-finite value, negative error), ZeroVariance (s2 =
-// 0).
-TestResult student_t(const Moments& x, Reference null_mean);
+// 0). Their text names `caller`: the function that the user called.
+TestResult student_t(const Moments& x, Reference null_mean, const char* caller = "student_t");
 
 // Central interval of E x - reference.value. Throws as student_t, and for confidence outside (0,
 // 1).

@@ -91,11 +91,11 @@ double contrast_of_means(const Moments& x, const Moments& y, Contrast contrast) 
   return (difference - contrast.offset) + (of_difference - of_product + rest);
 }
 
-TestResult welch_t(const Moments& x, const Moments& y, Contrast null_value) {
-  check_samples("welch_t", x, y);
-  check::finite({"welch_t", "scale"}, null_value.scale);
-  check::finite({"welch_t", "offset"}, null_value.offset);
-  const ContrastScale scale = scale_of("welch_t", x, y, null_value.scale);
+TestResult welch_t(const Moments& x, const Moments& y, Contrast null_value, const char* caller) {
+  check_samples(caller, x, y);
+  check::finite({caller, "scale"}, null_value.scale);
+  check::finite({caller, "offset"}, null_value.offset);
+  const ContrastScale scale = scale_of(caller, x, y, null_value.scale);
   const double t = contrast_of_means(x, y, null_value) / scale.standard_error;
   const LogTails tails = student_t_tails(t, scale.degrees);
   return {t, {"student-t", {scale.degrees}}, tails.lower, tails.upper, Exactness::asymptotic};

@@ -20,8 +20,9 @@ double contrast_of_means(const Moments& x, const Moments& y, Contrast contrast);
 //   Degrees:  (vx + vy)^2 / (vx^2 / (nx - 1) + vy^2 / (ny - 1)).
 // The law is Student's t to second order even for normal data, hence `asymptotic`. One of the two
 // samples may be constant; it then counts as known exactly. Throws std::domain_error (count < 2,
-// non-finite arguments), ZeroVariance (vx + vy = 0).
-TestResult welch_t(const Moments& x, const Moments& y, Contrast null_value);
+// non-finite arguments), ZeroVariance (vx + vy = 0). Their text names `caller`, as in student_t.h.
+TestResult welch_t(const Moments& x, const Moments& y, Contrast null_value,
+                   const char* caller = "welch_t");
 
 // Central interval of E x - E y.
 Interval welch_t_interval(const Moments& x, const Moments& y, double confidence);

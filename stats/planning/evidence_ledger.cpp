@@ -79,7 +79,8 @@ void PooledNights::add(const NightEstimate& night) {
   check::finite({"PooledNights", "difference"}, night.difference);
   check::non_negative({"PooledNights", "standard_error"}, night.standard_error);
   check::positive({"PooledNights", "observations"}, night.observations);
-  check::non_negative({"PooledNights", "effective - 1"}, night.effective - 1);
+  if (!(night.effective >= 1) || std::isinf(night.effective))
+    check::fail({"PooledNights", "effective"}, night.effective, "at least 1 and finite");
   if (observations_ == 0) first_ = night.observations;
   observations_ += night.observations;
   sum_ += night.observations * night.difference;

@@ -174,8 +174,7 @@ SmirnovTail smirnov_upper_tail(LatticeDistance distance, std::span<const TiedRun
   const double n = static_cast<double>(distance.n);
   const std::uint64_t common = std::gcd(distance.m, distance.n);
   if (m / static_cast<double>(common) * n > 0x1p62) {
-    check::fail({"smirnov_upper_tail", "lcm(m, n)"}, m / static_cast<double>(common) * n,
-                "at most 2^62");
+    check::fail({"smirnov_upper_tail", "n"}, distance.n, "so small that lcm(m, n) <= 2^62");
   }
   check_ties(distance, ties);
   if (distance.steps == 0) return {0, Exactness::exact};

@@ -80,16 +80,17 @@ Moments about_one(const JointMoments& sample, const Coefficients& of) {
 
 void check_sample(const char* function, const JointMoments& sample) {
   check::at_least({function, "count"}, sample.count, 4);
-  for (const double sum : sample.sums) check::finite({function, "sum of powers"}, sum);
+  constexpr const char* held =
+      "within the numbers that a computer holds; give the observations in another unit";
+  for (const double sum : sample.sums) {
+    if (!std::isfinite(sum)) check::fail({function, "sum of powers"}, sum, held);
+  }
   if (sample.sum(2, 0) == 0) throw ZeroVariance(std::string(function) + ": zero variance");
   // Denormal numbers have lost their digits.
   constexpr double least =
       std::numeric_limits<double>::min() / std::numeric_limits<double>::epsilon();
   const double highest = sample.sum(sample.known, 0);
-  if (!(highest > least)) {
-    check::fail({function, "sum of the highest powers"}, highest,
-                "within the numbers that a computer holds; give the observations in another unit");
-  }
+  if (!(highest > least)) check::fail({function, "sum of the highest powers"}, highest, held);
 }
 
 double log_variance_of(const JointMoments& sample) {
@@ -180,14 +181,14 @@ Influence influence_of_error_and_cost(const JointMoments& sample, double truth) 
 TestResult influence_t(const Influence& x, double log_value) {
   const double null = ratio_of("influence_t", log_value - x.log_value);
   if (x.relative.m2 == 0) return deterministic(x.log_value - log_value);
-  return skewness_corrected_t(x.relative, {.value = null});
+  return skewness_corrected_t(x.relative, {.value = null}, "influence_t");
 }
 
 TestResult influence_t(const Influence& x, const Influence& y, double log_ratio) {
   const double distance = log_ratio - (x.log_value - y.log_value);
   const double null = ratio_of("influence_t", distance);
   if (x.relative.m2 == 0 && y.relative.m2 == 0) return deterministic(-distance);
-  return skewness_corrected_welch(x.relative, y.relative, {.scale = null});
+  return skewness_corrected_welch(x.relative, y.relative, {.scale = null}, "influence_t");
 }
 
 }  // namespace assay::stats

@@ -16,26 +16,27 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-void check_points(const SlopeData& data) {
-  check::at_least({"slope", "points"}, data.points.size(), 2);
-  check::non_negative({"slope", "reference_error"}, data.reference_error);
+void check_points(const char* function, const SlopeData& data) {
+  check::at_least({function, "points"}, data.points.size(), 2);
+  check::non_negative({function, "reference_error"}, data.reference_error);
   for (const SlopePoint& point : data.points) {
-    check::positive({"slope", "size"}, point.size);
-    check::finite({"slope", "estimate"}, point.estimate);
-    check::non_negative({"slope", "standard_error"}, point.standard_error);
-    if (point.standard_error == 0) throw ZeroVariance("slope: a standard error is zero");
+    check::positive({function, "size"}, point.size);
+    check::finite({function, "estimate"}, point.estimate);
+    check::non_negative({function, "standard_error"}, point.standard_error);
+    if (point.standard_error == 0)
+      throw ZeroVariance(std::string(function) + ": a standard error is zero");
   }
   for (std::size_t i = 1; i < data.points.size(); ++i) {
     if (data.points[i].size == data.points[i - 1].size) {
-      check::fail({"slope", "size"}, data.points[i].size, "different from every other size");
+      check::fail({function, "size"}, data.points[i].size, "different from every other size");
     }
   }
 }
 
-SlopeData ordered(SlopeData data) {
+SlopeData ordered(const char* function, SlopeData data) {
   std::sort(data.points.begin(), data.points.end(),
             [](const SlopePoint& a, const SlopePoint& b) { return a.size < b.size; });
-  check_points(data);
+  check_points(function, data);
   return data;
 }
 
@@ -186,7 +187,7 @@ double crossing(const Misfit& misfit, double threshold, double a, double b) {
 
 SlopeTest slope_test(const SlopeData& unordered, double null_slope) {
   check::finite({"slope_test", "null_slope"}, null_slope);
-  const SlopeData data = ordered(unordered);
+  const SlopeData data = ordered("slope_test", unordered);
   const Misfit misfit(data);
   const double degrees = degrees_of(data);
   const double here = misfit(null_slope);
@@ -206,7 +207,7 @@ SlopeTest slope_test(const SlopeData& unordered, double null_slope) {
 
 SlopeSet slope_set(const SlopeData& unordered, double confidence) {
   check::inside_unit({"slope_set", "confidence"}, confidence);
-  const SlopeData data = ordered(unordered);
+  const SlopeData data = ordered("slope_set", unordered);
   const Misfit misfit(data);
   const double threshold =
       chi_square_quantile({Tail::upper, std::log1p(-confidence)}, degrees_of(data));
@@ -232,7 +233,7 @@ SlopeSet slope_set(const SlopeData& unordered, double confidence) {
 }
 
 SlopeEstimate slope_estimate(const SlopeData& unordered) {
-  const SlopeData data = ordered(unordered);
+  const SlopeData data = ordered("slope_estimate", unordered);
   const Misfit misfit(data);
   const std::vector<Node> nodes = candidates(data, misfit);
   const auto best = std::min_element(
@@ -249,7 +250,7 @@ SlopeEstimate slope_estimate(const SlopeData& unordered) {
 double slope_power(const SlopeData& expected, double null_slope, double alpha) {
   check::finite({"slope_power", "null_slope"}, null_slope);
   check::inside_unit({"slope_power", "alpha"}, alpha);
-  const SlopeData data = ordered(expected);
+  const SlopeData data = ordered("slope_power", expected);
   const double degrees = degrees_of(data);
   const double threshold = chi_square_quantile({Tail::upper, std::log(alpha)}, degrees);
   const double noncentrality = Misfit(data)(null_slope);
