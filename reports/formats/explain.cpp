@@ -47,21 +47,27 @@ std::string meaning(const Test& test) {
 std::string what_was_found(const Test& test, const TestDisplay& words) {
   if (test.verdict == Verdict::inconclusive || !is_evidence(test) ||
       test.verdict == Verdict::skipped || test.expected != Verdict::pass) {
-    return sentence(trouble(test));
+    return trouble(test);
   }
-  return sentence(words.sentence);
+  return words.sentence;
+}
+
+/// The effect whose range the sentence of every report shows, or an empty one.
+Effect effect_in_sentence(const Test& test) {
+  if (!is_evidence(test)) return {};
+  const bool at_place =
+      test.image && test.verdict == Verdict::fail && !test.image->winner.place.empty();
+  return at_place ? test.image->winner.effect.value_or(Effect{}) : deciding_channel(test).effect;
 }
 
 /// How sure the finding is.
-std::string how_sure(const Test& test, const TestDisplay& words) {
+std::string how_sure(const Test& test, const TestDisplay& words, const std::string& found) {
   std::string text;
-  const bool at_place =
-      test.image && test.verdict == Verdict::fail && test.image->winner.effect.has_value();
-  const double confidence =
-      at_place ? test.image->winner.effect->confidence : deciding_channel(test).effect.confidence;
-  if (!words.interval.empty() && confidence > 0)
+  const Effect effect = effect_in_sentence(test);
+  const bool shown = found.find(words.sentence) != std::string::npos;
+  if (shown && effect.estimate && !interval_text(effect).empty() && effect.confidence > 0)
     text = fmt::format("The range holds the true value with a confidence of {}. ",
-                       confidence_text(confidence));
+                       confidence_text(effect.confidence));
   if (test.verdict == Verdict::fail && !words.chance.empty())
     text += fmt::format("The chance of such data, if nothing is wrong, is {}. ", words.chance);
   if (test.verdict == Verdict::pass && test.detectable && !test.detect)
@@ -98,10 +104,11 @@ std::string explain(const Suite& suite, const Test& test, int width) {
   say(fmt::format("{} {}{}", mark(outcome(test)), one_line(test.id), where));
   out += "\n";
   std::string text = fmt::format("The claim is `{}`. ", one_line(test.claim));
-  for (const std::string& part : {meaning(test), what_was_found(test, words)}) {
+  const std::string found = what_was_found(test, words);
+  for (const std::string& part : {meaning(test), sentence(found)}) {
     if (!part.empty()) text += part + " ";
   }
-  text += how_sure(test, words);
+  text += how_sure(test, words, found);
   if (test.verdict == Verdict::invalid) text += proof_of_break(words) + " ";
   text += what_was_drawn(words);
   say(text);

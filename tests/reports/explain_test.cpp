@@ -14,8 +14,10 @@ TEST(Explain, AFindingOfLawsIsASentence) {
                         .width = test.image->width,
                         .height = test.image->height,
                         .component = "red"};
-  EXPECT_THAT(explain(example_record().suites[0], test, 1000),
+  const std::string text = explain(example_record().suites[0], test, 1000);
+  EXPECT_THAT(text,
               HasSubstr("The claim is wrong. The whole image of red: the mean is larger in a"));
+  EXPECT_THAT(text, Not(HasSubstr("The range"))) << "there is none in the sentence";
 }
 
 TEST(Explain, AnUndecidedTestHasTheLineToAdd) {
