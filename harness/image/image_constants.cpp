@@ -195,6 +195,7 @@ void VaryingPart<Real>::settle_against_reference(const Question& question,
       unseen_.push_back({i, missing.sign(expected), missing.log_p(expected)});
     }
     if (span.low < span.high) replacements.push_back({i, constant});
+    if (differs) continue;
     value_[i] = constant;
     if (!error_.empty()) error_[i] = 0;
   }

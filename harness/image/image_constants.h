@@ -26,12 +26,10 @@ double z_of(const UnseenElement& unseen);
 
 /// The elements of an image pair that varied by more than their channels' declared rounding.
 ///
-/// An element that did not vary counts as exact and equal to its reference; a difference goes to
-/// `unseen`. Constants of two images that differ by rounding only are equal. If one image alone
-/// varied, its standard error tests the other's constant, provided that the other declares a range.
-/// Without a range Welch's test takes the values seen.
-///
-/// Such elements are in no sum (stats/image_halves.h).
+/// An element that did not vary is tested in sums with its neighbours. By itself it is held against
+/// its range, in `unseen`. Constants that differ by rounding only are equal. If one of two images
+/// alone varied, its standard error tests the other's constant, provided that the other declares a
+/// range. Without a range Welch's test takes the values seen.
 template <class Real>
 class VaryingPart {
  public:
@@ -48,6 +46,7 @@ class VaryingPart {
     if (of_two_) return use(first_, second_);
     return use(first_, stats::ImageReference{first_.extent, value_, error_});
   }
+
  private:
   void settle_against_reference(const Question& question, const ImagePair<Real>& pair);
   void settle_two(const Question& question);

@@ -31,9 +31,10 @@ constexpr double unseen_share = 0.02;
 
 template <class Real>
 void look_at_family(const VaryingPart<Real>& varying, const stats::ImageExtent& extent,
-                    ImageOutcome& outcome) {
+                    bool constants_decide, ImageOutcome& outcome) {
   outcome.z.resize(extent.elements());
-  const stats::PyramidOptions options{.z = outcome.z, .for_each = on_all_threads};
+  const stats::PyramidOptions options{
+      .z = outcome.z, .for_each = on_all_threads, .constants_decide = constants_decide};
   outcome.family = varying.with(
       [&](const auto& a, const auto& b) { return stats::image_pyramid(a, b, options); });
 }
@@ -210,7 +211,7 @@ stats::ImageDistance look_at(const Question& question, const ImageTest& test,
   require_spread(question, varying.any() || (partners != nullptr && varies(*partners)));
   outcome.unseen = varying.unseen();
   outcome.replicates = pair.most_replicates();
-  look_at_family(varying, pair.extent(), outcome);
+  look_at_family(varying, pair.extent(), pair.of_two() || question.is().of_pairs, outcome);
   for (const UnseenElement& unseen : outcome.unseen) outcome.z[unseen.element] = z_of(unseen);
   add_unseen(pair.extent(), outcome);
   outcome.uniform_error = uniform_error(pair, relative);

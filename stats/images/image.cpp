@@ -68,7 +68,8 @@ void same_extent(const char* function, const ImageExtent& a, const ImageExtent& 
     return std::to_string(e.width) + " x " + std::to_string(e.height) + " x " +
            std::to_string(e.channels);
   };
-  fail({function, "extent of the second image"}, text(b), "that of the first, " + text(a));
+  refuse({function, "extent of the second image"}, " = " + text(b),
+         "that of the first, " + text(a));
 }
 
 }  // namespace assay::stats::check

@@ -42,7 +42,7 @@ struct ImageFamily {
   ImageFinding winner;
   std::vector<ImageFinding> groups;  // The best of each group, fine to coarse, then the others.
   std::size_t tested = 0;            // Elements that vary, all channels.
-  std::size_t equal_constants = 0;
+  std::size_t equal_constants = 0;   // Also those that sums alone test.
   std::size_t different_constants = 0;
   std::vector<float> weights;  // The elements' in sums.
   // The squared norm of the bias that values can hide which their elements never showed

@@ -106,9 +106,7 @@ Half half_of(const ImagePair<Real>& pair, std::size_t half, RowRange rows,
   for (const double variance : result.variance) result.varied.push_back(variance > 0);
   result.weight = steadied(part, result.variance);
   if (pair.reference != nullptr) add_reference(*pair.reference, result);
-  for (std::size_t i = 0; i < result.weight.size(); ++i) {
-    result.weight[i] = result.varied[i] ? 1 / std::sqrt(result.weight[i]) : 0;
-  }
+  for (double& weight : result.weight) weight = weight > 0 ? 1 / std::sqrt(weight) : 0;
   return result;
 }
 

@@ -13,11 +13,15 @@ namespace assay::stats {
 inline constexpr std::size_t halves = 2;
 
 // One half: D = mean a - mean b, its squared error v, and the weight that the other half takes. The
-// weight is 1 / sqrt of the mean of v and of v smoothed over 5 x 5 elements of the channel. It is
-// zero if the element is constant within the half. A single element's v is from few values, and one
+// weight is 1 / sqrt of the mean of v and of v smoothed over 5 x 5 elements of the channel, and
+// zero if none of these varies within the half. A single element's v is from few values, and one
 // that is tiny by chance would carry the whole sum.
+//
+// The halves' sums are uncorrelated as far as an element's weight does not tell the sign of its own
+// D. So an element that is constant within the half, which rare values make too dark, keeps the
+// weight that its neighbours give it.
 struct Half {
-  std::size_t first = 0;  // The element that they begin with.
+  std::size_t first = 0;                    // The element that they begin with.
   std::array<std::vector<double>, 2> mean;  // Of either side; a reference has none.
   std::vector<double> difference;
   std::vector<double> variance;

@@ -102,7 +102,7 @@ WelchCells window_moments(const CoarseImages& coarse, const Groups& groups, std:
         // from.
         if (sums.total_of(group, i) == 0) moments.m2[window] = 0;
       });
-      moments.finish_part(side, count, side == 0 ? 0.5 : -0.5);
+      moments.finish_part(h, side, count, side == 0 ? 0.5 : -0.5);
     }
   }
   if (coarse.squared_error.blocks.empty()) return moments;
@@ -133,8 +133,10 @@ void offer_coarse_cells(const CoarseImages& coarse, const Groups& groups, std::s
   const Groups in_blocks = coarse_groups(groups);
   const WelchCells moments = window_moments(coarse, in_blocks, channel);
   const WindowSums third = channel_sums(coarse.extent, coarse.third, channel);
-  const WindowSums weights = channel_sums(coarse.extent, coarse.weights.blocks, channel);
-  const WindowSums squares = channel_sums(coarse.extent, coarse.squared_weights.blocks, channel);
+  CoarseSums weights(coarse.extent, channel);
+  CoarseSums squares(coarse.extent, channel);
+  weights.load(coarse.weights);
+  squares.load(coarse.squared_weights);
   for_each_window(in_blocks, [&](const WindowGroup& group, std::size_t i, std::size_t window) {
     // Different constants of two images were found before.
     if (!moments.varied(window)) return;
@@ -148,11 +150,8 @@ void offer_coarse_cells(const CoarseImages& coarse, const Groups& groups, std::s
     candidate.finding.channel = channel;
     if (alternating) candidate.finding.alternation = static_cast<Alternation>(i);
     moments.put(window, candidate.noise);
-    // Signs in turn cancel the skewness.
-    if (!alternating) {
-      candidate.noise.third = third.of(group, i);
-      candidate.noise.weight = squares.of(group, i) / weights.of(group, i);
-    }
+    candidate.noise.weight = squares.of(group, i) / weights.total_of(group, i);
+    if (!alternating) candidate.noise.third = third.of(group, i);
     const StudentValue value = own_value(candidate.noise);
     candidate.finding.z = t_to_z(value);
     ++best[g].windows;

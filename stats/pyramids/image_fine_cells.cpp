@@ -311,8 +311,7 @@ class FineTiles {
           coarse_.third[block] += all.third[i];
           const double weight = weight_of(element);
           found_.weights[element] = static_cast<float>(weight);
-          const double own = all.variance[0][i] + all.variance[1][i];
-          if (!(own > 0)) {
+          if (halves_that_vary(element) < halves) {
             note_constant(element);
             found_.z[element] = 0;
             return;
@@ -396,6 +395,7 @@ class FineTiles {
     for (double& weight : sums_.values()) weight *= weight;
     sums_.add_up(tile);
     keep_blocks(tile, coarse_.squared_weights);
+    add_alternating(tile, coarse_.squared_weights);
   }
 
   // A reference's squared error, weighted as the element is.
@@ -405,13 +405,17 @@ class FineTiles {
     return error * error;
   }
 
-  // An element without variance. One that varied in one half alone is in sums only.
-  void note_constant(std::size_t element) {
+  std::size_t halves_that_vary(std::size_t element) const {
     const std::size_t here = element - cells_.half[0].first;
-    const double difference = cells_.half[0].difference[here];
-    const bool varied = cells_.half[0].varied[here] > 0 || cells_.half[1].varied[here] > 0;
+    return static_cast<std::size_t>(std::ranges::count_if(
+        cells_.half, [here](const Half& half) { return half.varied[here] > 0; }));
+  }
+
+  // An element that varied in one half alone is in sums only.
+  void note_constant(std::size_t element) {
+    const double difference = cells_.half[0].difference[element - cells_.half[0].first];
     ElementCounts one;
-    if (varied || difference == 0) {
+    if (halves_that_vary(element) > 0 || difference == 0 || !cells_.constants_decide) {
       one.equal_constants = 1;
     } else {
       one = {.tested = 0,
@@ -445,7 +449,7 @@ class FineTiles {
       keep_blocks(tile, blocks);
       add_alternating(tile, blocks);
     }
-    for (WelchCells& moments : moments_) moments.finish_part(part.side, count, factor);
+    for (WelchCells& moments : moments_) moments.finish_part(part.half, part.side, count, factor);
   }
 
   void update_squares(const Tile& tile, std::size_t k, double inverse) {

@@ -40,7 +40,7 @@ struct CoarseImages {
   std::array<std::array<std::vector<BlockSums>, sides_of_pair>, halves> images;
   std::array<BlockSums, halves> varied;  // Number of elements that vary and have a weight.
   BlockSums squared_error;               // Of a reference, weighted; empty if it has none.
-  BlockSums weights;                     // Of the elements, averaged over the halves.
+  BlockSums weights;                     // The elements', averaged over the halves.
   BlockSums squared_weights;
   std::vector<double> third;  // Third cumulants of the effects of elements, by block.
 };
@@ -55,12 +55,13 @@ struct ElementCounts {
 };
 
 // Input of the test of fine cells: replicates, halves with the weights that each gives the other,
-// and groups of cells.
+// groups of cells, and whether constants that differ are a finding.
 template <class Real>
 struct FineCells {
   const ImagePair<Real>& pair;
   const std::array<Half, halves>& half;
   const std::vector<WindowGroup>& groups;
+  bool constants_decide;
 };
 
 struct FineFindings {

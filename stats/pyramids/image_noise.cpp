@@ -150,6 +150,7 @@ NoisePyramid::Kept NoisePyramid::kept(const CellNoise& cell, const Rectangle& wi
   const std::size_t x = window.x + window.width / 2;
   const std::size_t y = window.y + window.height / 2;
   const double direction = cell.effect < 0 ? 1 : -1;
+  const double toward = cell.weight < 0 ? -direction : direction;
   const double variance = cell.variance[0] + cell.variance[1];
   bool alike = true;
   double whole = 0;
@@ -173,7 +174,7 @@ NoisePyramid::Kept NoisePyramid::kept(const CellNoise& cell, const Rectangle& wi
         if (n == 0) continue;
         const PooledNoise::Moments moments = level.noise[s][block_of].cut_off(octave);
         second += moments.second / n;
-        third += (s == 0 ? direction : -direction) * moments.third / (n * n);
+        third += (s == 0 ? toward : -toward) * moments.third / (n * n);
         squared_error += moments.squared_error / square(n * n);
       }
       if (!(second > 0)) continue;
@@ -181,8 +182,8 @@ NoisePyramid::Kept NoisePyramid::kept(const CellNoise& cell, const Rectangle& wi
       beyond_error = std::max(beyond_error, (third - std::sqrt(squared_error)) / second);
     }
   }
-  const double growth = std::max(
-      {0.0, direction * cell.third / variance, cell.weight * (alike ? beyond_error : whole)});
+  const double growth = std::max({0.0, direction * cell.third / variance,
+                                  std::abs(cell.weight) * (alike ? beyond_error : whole)});
   const double standard_error = std::sqrt(variance + std::abs(cell.effect) * growth);
   return {.t = cell.effect / standard_error, .standard_error = standard_error};
 }

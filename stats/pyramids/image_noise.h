@@ -76,8 +76,9 @@ struct CellNoise {
   double effect = 0;                                // Estimate of the sum of a - b.
   std::array<double, sides_of_pair> variance = {};  // What either side adds to its squared error.
   double degrees = 1;
-  double third = 0;   // Third cumulant of the effect, of independent elements; 0 of few.
-  double weight = 0;  // Sum of the squared weights over that of the weights; 0 if signs alternate.
+  double third = 0;  // Third cumulant of the effect, of independent elements; 0 of few.
+  // The sum of the squared weights, with the signs in turn, over that of the weights.
+  double weight = 0;
 };
 
 // The noise of blocks of 8 x 8 elements, and of 2 x 2 blocks each up to the whole image.

@@ -32,6 +32,7 @@ class RowPyramid {
 
   ImageExtent extent_;
   ForEach for_each_;
+  bool constants_decide_;
   std::vector<double> own_z_;
   std::vector<WindowGroup> groups_;
   FineFindings found_;

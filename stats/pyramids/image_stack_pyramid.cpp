@@ -67,7 +67,9 @@ void divide_by_weights(ImageFinding& finding, const std::vector<float>& weights,
 
 template <class Real>
 RowPyramid<Real>::RowPyramid(const ImagePair<Real>& pair, const PyramidOptions& options)
-    : extent_(pair.a.extent), for_each_(options.for_each) {
+    : extent_(pair.a.extent),
+      for_each_(options.for_each),
+      constants_decide_(options.constants_decide) {
   check_pair(pair);
   if (!options.z.empty() && options.z.size() != extent_.elements()) {
     check::fail({function_name, "z.size()"}, options.z.size(), "that of the elements");
@@ -91,7 +93,7 @@ void RowPyramid<Real>::take(const ImagePair<Real>& pair, RowRange rows) {
                                                               wrong - each.variance.begin()))},
                 *wrong, "a finite difference with a finite variance");
   }
-  offer_fine_cells<Real>({pair, half, groups_}, rows, found_, for_each_);
+  offer_fine_cells<Real>({pair, half, groups_, constants_decide_}, rows, found_, for_each_);
 }
 
 template <class Real>

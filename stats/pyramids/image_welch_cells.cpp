@@ -9,13 +9,15 @@ void WelchCells::start(std::size_t cells) {
        {&mean, &m2, &effect, &variance[0], &variance[1], &reciprocal_degrees}) {
     each->assign(cells, 0.0);
   }
+  halves_that_vary.assign(cells, 0);
 }
 
-void WelchCells::finish_part(std::size_t side, double count, double factor) {
+void WelchCells::finish_part(std::size_t half, std::size_t side, double count, double factor) {
   for (std::size_t i = 0; i < mean.size(); ++i) {
     const double part = factor * factor * m2[i] / (count * (count - 1));
     effect[i] += factor * mean[i];
     variance[side][i] += part;
+    if (part > 0) halves_that_vary[i] |= static_cast<unsigned char>(1U << half);
     reciprocal_degrees[i] += part * part / (count - 1);
   }
   std::ranges::fill(mean, 0.0);

@@ -124,6 +124,30 @@ OwnedStack lit_stack(Philox& random, const Fireflies& rare, std::size_t replicat
 
 OwnedStack smooth_stack(Philox& random) { return lit_stack(random, {.rate = 0.5, .share = 0}); }
 
+// Values of 100 with probability .01, else 0. Most elements never vary in a half.
+constexpr ImageExtent mostly_zero{16, 16, 1};
+OwnedStack mostly_zero_stack(Philox& random, std::size_t replicates) {
+  return draw_stack(mostly_zero, replicates,
+                    [&](std::size_t) { return random.uniform() < 0.01 ? 100.0 : 0.0; });
+}
+
+// Signs in turn do not cancel the skewness where few elements carry the weight.
+CALIBRATED(ImagePyramid, RarelyLitElementsAgainstASmoothSideKeepTheLevel, 847, 400,
+           Shape::at_most_uniform) {
+  const OwnedStack a = mostly_zero_stack(random, 64);
+  const OwnedStack b =
+      draw_stack(mostly_zero, 64, [&](std::size_t) { return 1 + 0.05 * random.normal(); });
+  return image_pyramid(a.view(), b.view()).log_p;
+}
+
+CALIBRATED(ImagePyramid, RarelyLitElementsAgainstTheirMeansKeepTheLevel, 848, 800,
+           Shape::at_most_uniform) {
+  const std::vector<double> means(mostly_zero.elements(), 1.0);
+  return image_pyramid(mostly_zero_stack(random, 32).view(), ImageReference{mostly_zero, means},
+                       {.constants_decide = false})
+      .log_p;
+}
+
 CALIBRATED(ImagePyramid, RareLightOfOneSideKeepsTheLevel, 846, tests::repetitions(2000),
            Shape::at_most_uniform) {
   const OwnedStack a = lit_stack(random, {});
