@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "render/brdf_integrals.h"
+#include "render/brdf/brdf_integrals.h"
 #include "render/rejection.h"
 
 namespace assay::brdf {

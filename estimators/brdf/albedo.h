@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "estimators/estimator.h"
-#include "render/brdf.h"
+#include "render/brdf/brdf.h"
 
 namespace assay::brdf {
 

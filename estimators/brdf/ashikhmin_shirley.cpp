@@ -1,5 +1,5 @@
 // The directional albedo of the Ashikhmin-Shirley reflectance (specular part): E = the integral of
-// f cos_o over the hemisphere, by the half vector (render/brdf_ashikhmin_shirley.h). Like Ward's,
+// f cos_o over the hemisphere, by the half vector (render/brdf/brdf_ashikhmin_shirley.h). Like Ward's,
 // the published algorithm follows its own p(w_o); directions below the horizon count as zero.
 
 #include "brdf/ashikhmin_shirley.h"

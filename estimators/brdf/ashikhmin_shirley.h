@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "estimators/parameters.h"
-#include "render/brdf_ashikhmin_shirley.h"
+#include "render/brdf/brdf_ashikhmin_shirley.h"
 
 namespace assay::brdf {
 

@@ -1,6 +1,6 @@
 // The directional albedo of Ward's reflectance: E = the integral of f cos_o over the hemisphere.
 //
-// Directions are drawn by the half vector (render/brdf_ward.h). The published algorithm follows its
+// Directions are drawn by the half vector (render/brdf/brdf_ward.h). The published algorithm follows its
 // own density p(w_o), so the weight f cos / p is not constant. Directions below the horizon count
 // as zero: so the mean of the weights is the albedo.
 

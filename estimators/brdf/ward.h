@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "estimators/parameters.h"
-#include "render/brdf_ward.h"
+#include "render/brdf/brdf_ward.h"
 
 namespace assay::brdf {
 

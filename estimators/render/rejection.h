@@ -1,7 +1,7 @@
 #pragma once
 
 #include "estimators/stream.h"
-#include "render/brdf.h"
+#include "render/brdf/brdf.h"
 
 namespace assay::render {
 

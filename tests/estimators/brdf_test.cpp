@@ -1,11 +1,10 @@
 // The reflectances against formulas written out again here and brute-force sums.
 
-#include "render/brdf_ashikhmin_shirley.h"
-#include "render/brdf_integrals.h"
-#include "render/brdf_ward.h"
+#include "render/brdf/brdf_ashikhmin_shirley.h"
+#include "render/brdf/brdf_integrals.h"
+#include "render/brdf/brdf_ward.h"
 #include "render/rejection.h"
-#include "tests/estimators/draws.h"
-#include "tests/prelude.h"
+#include "tests/estimators/prelude.h"
 
 namespace assay {
 namespace {
@@ -14,8 +13,6 @@ using render::AshikhminShirley;
 using render::Target;
 using render::Vector3;
 using render::Ward;
-using namespace assay::draws;
-using std::numbers::pi;
 
 // The golden case: theta_i = 0.8, phi_i = 0.5.
 const double ix = std::sin(0.8) * std::cos(0.5);

@@ -1,4 +1,4 @@
-#include "render/brdf.h"
+#include "render/brdf/brdf.h"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "render/brdf_ashikhmin_shirley.h"
+#include "render/brdf/brdf_ashikhmin_shirley.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "render/brdf_integrals.h"
+#include "render/brdf/brdf_integrals.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "render/brdf.h"
+#include "render/brdf/brdf.h"
 
 namespace assay::render {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "render/brdf.h"
+#include "render/brdf/brdf.h"
 #include "render/quadrature.h"
 
 namespace assay::render {

@@ -1,4 +1,4 @@
-#include "render/brdf_ward.h"
+#include "render/brdf/brdf_ward.h"
 
 #include <algorithm>
 #include <cmath>
