@@ -1,6 +1,6 @@
 #pragma once
 
-// What every test includes, precompiled (tests/CMakeLists.txt): GoogleTest, the standard headers
+// Every test includes this, precompiled (tests/CMakeLists.txt): GoogleTest, the standard headers
 // and two tools.
 
 #include <gmock/gmock.h>
@@ -47,7 +47,7 @@
 
 namespace assay::tests {
 
-/// What the exception says that `act` throws; a text that no message equals if it throws none.
+/// The message of the exception that `act` throws; a text that none equals if it throws none.
 template <class Error = std::exception, class Act>
 std::string thrown(Act&& act) {
   try {
@@ -105,5 +105,6 @@ namespace assay {
 // Names of assay come first.
 using namespace tests;
 using namespace testing;
+using std::numbers::pi;
 
 }  // namespace assay

@@ -48,7 +48,7 @@ Stack pictures(const Picture& picture, const std::string& stream, std::uint64_t 
     Stream random(key, first + i);
     Cost cost;
     path_tracing::render(picture, random, paths, stack[i], cost);
-    // As a file would have them.
+    // A file would round them so.
     for (double& value : stack[i]) value = static_cast<double>(static_cast<float>(value));
   }
   return stack;

@@ -35,16 +35,16 @@ test_killed_runs_go_on_to_the_same_record() {
 
 test_interrupted_run_goes_on() {
   local suite=$source_folder/suites/luminaire.yaml
-  of_one_thread "$suite" --coarsen 2
-  "$assay" run "$suite" --coarsen 2 --quiet --checkpoint kept >/dev/null 2>err </dev/null &
+  of_one_thread "$suite" --coarsen 4
+  "$assay" run "$suite" --coarsen 4 --quiet --checkpoint kept >/dev/null 2>err </dev/null &
   sleep .4
   kill -TERM $!
   wait $!
   [ $? -eq 130 ] || fail 'not interrupted'
   contains err 'what was drawn is kept in kept; the same command goes on'
-  expect 2 run "$suite" --coarsen 2 --seed 7 --checkpoint kept
+  expect 2 run "$suite" --coarsen 4 --seed 7 --checkpoint kept
   contains err "kept: is the checkpoint of another run: the seed was the suite's and is 7; remove it, or name another file"
-  "$assay" run "$suite" --coarsen 2 --quiet --checkpoint kept --report json=other/run.json >/dev/null 2>err
+  "$assay" run "$suite" --coarsen 4 --quiet --checkpoint kept --report json=other/run.json >/dev/null 2>err
   same_as_of_one_thread resumed
 }
 
@@ -84,11 +84,12 @@ require_mpi() {
 
 test_ranks_give_the_record_of_one_process() {
   require_mpi
-  local suite n
-  for suite in luminaire images analytic; do
-    of_one_thread "$source_folder/suites/$suite.yaml" --coarsen 8
+  local suites=("$source_folder/tests/suites/kinds.yaml") suite n
+  [ -z "$long" ] || suites+=("$source_folder"/suites/{luminaire,images,analytic}.yaml)
+  for suite in "${suites[@]}"; do
+    of_one_thread "$suite" --coarsen 8
     for n in 1 2 3; do
-      ranks $n run "$source_folder/suites/$suite.yaml" --coarsen 8 --quiet --report json=other/run.json
+      ranks $n run "$suite" --coarsen 8 --quiet --report json=other/run.json
       [ $? -le 3 ] || fail "$n ranks of $suite"
       same_as_of_one_thread "$n ranks of $suite"
     done

@@ -1,12 +1,8 @@
+#include "tests/estimators/prelude.h"
 // The teaching estimators: what they declare against sums worked out here and against sampling.
-
-#include "tests/estimators/draws.h"
-#include "tests/prelude.h"
 
 namespace assay {
 namespace {
-
-using namespace assay::draws;
 
 const double e3 = std::exp(3.0);
 const double integral = (e3 - 1) / 3;

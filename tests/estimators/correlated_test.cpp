@@ -1,16 +1,13 @@
-
 #include "correlated/area_pairs.h"
 #include "correlated/estimators.h"
-#include "tests/estimators/draws.h"
+#include "tests/estimators/prelude.h"
 #include "tests/estimators/scenes.h"
-#include "tests/prelude.h"
 
 namespace assay {
 namespace {
 
 using correlated::Centre;
 using correlated::Sums;
-using namespace assay::draws;
 
 std::string hidden_beyond(double t, const std::string& more = "") {
   return "{scene: " + tests::hidden_beyond(t) + more + "}";
@@ -46,9 +43,9 @@ TEST(Correlated, WhereNothingIsHiddenTheEstimateIsTheIntegral) {
   const auto plugin = prepare("correlated/area", "{scene: rectangle, lambda: 1}");
   const auto least_squares =
       prepare("correlated/area_same_samples", "{scene: rectangle, centre: mean}");
-  const auto integral = Each(DoubleNear(1.320523614, 1e-9));
-  EXPECT_THAT(observe(plugin, 100)[0].values, integral);
-  EXPECT_THAT(observe(least_squares, 100, 16)[0].values, integral);
+  const auto is_exact = Each(DoubleNear(1.320523614, 1e-9));
+  EXPECT_THAT(observe(plugin, 100)[0].values, is_exact);
+  EXPECT_THAT(observe(least_squares, 100, 16)[0].values, is_exact);
 }
 
 TEST(Correlated, ThePublishedLambdaIsNotOneWhereNothingIsHidden) {

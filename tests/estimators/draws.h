@@ -3,11 +3,6 @@
 // Drawing from plugins by name, and plain statistics to judge the draws by. Bounds are for a false
 // alarm of 1e-6 a comparison unless they say so themselves; keys are those of seed 1.
 
-#include <cmath>
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "estimators/catalogue.h"
 #include "estimators/core/flow.h"
 #include "tests/prelude.h"
@@ -236,3 +231,7 @@ struct Pearson {
 };
 
 }  // namespace assay::draws
+
+namespace assay {
+using namespace draws;
+}  // namespace assay

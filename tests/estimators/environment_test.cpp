@@ -1,9 +1,7 @@
-
 #include "render/environment_map.h"
 #include "render/patch_integrals.h"
-#include "tests/estimators/draws.h"
+#include "tests/estimators/prelude.h"
 #include "tests/estimators/sky.h"
-#include "tests/prelude.h"
 
 namespace assay {
 namespace {
@@ -12,8 +10,6 @@ using render::EnvironmentMap;
 using render::Patch;
 using render::Rgb;
 using render::Vector3;
-using namespace assay::draws;
-using std::numbers::pi;
 
 const EnvironmentMap& sky_map() {
   static const EnvironmentMap map = render::read_environment(suite_data + "/sky.exr");

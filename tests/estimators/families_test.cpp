@@ -1,15 +1,12 @@
 // Estimators against the means, variances and ranges that they declare (tests/tables/families.txt),
 // and mutants against the bias of their defect (mutants.txt).
 
-#include "tests/estimators/draws.h"
+#include "tests/estimators/prelude.h"
 #include "tests/estimators/scenes.h"
-#include "tests/estimators/table.h"
-#include "tests/prelude.h"
 
 namespace assay {
 namespace {
 
-using namespace assay::draws;
 using direct_light_scenes::parameters;
 
 const std::string glossy = parameters("small", "glossy");
@@ -150,7 +147,7 @@ std::vector<Biased> mutants() {
 
 INSTANTIATE_TEST_SUITE_P(Table, Mutants, testing::ValuesIn(mutants()));
 
-/// Of each mutant below a heading: it, and its original.
+/// Looks at each mutant below a heading, and at its original.
 void for_each_mutant(const std::string& heading,
                      const std::function<void(const Prepared&, const Prepared&, Extent)>& look) {
   int count = 0;

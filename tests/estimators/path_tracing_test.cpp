@@ -1,4 +1,3 @@
-
 #include "estimators/path_tracing/image.h"
 #include "stats/basics/moments.h"
 #include "tests/prelude.h"

@@ -30,7 +30,7 @@ TEST(Quoting, CutsNoCharacter) {
   EXPECT_EQ(shown("Größe", 3), "Gr…");
   EXPECT_EQ(shown("a€", 3), "a…");
   EXPECT_EQ(shown("a€", 4), "a€");
-  // What is no UTF-8 is cut all the same.
+  // Bytes that are no UTF-8 are cut all the same.
   EXPECT_EQ(shown(std::string(9, '\x80'), 6), std::string(3, '\x80') + "…");
   EXPECT_EQ(shown("€", 0), "…");
 }

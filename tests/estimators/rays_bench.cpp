@@ -142,7 +142,7 @@ class Bare {
   }
 
  private:
-  /// Whether ray `i` hits.
+  /// `hits` tells whether ray `i` hits.
   template <class Hits>
   static double ray_time(const Hits& hits) {
     constexpr std::uint64_t count = 1'000'000;

@@ -1,10 +1,8 @@
-
 #include "estimators/core/text_pattern.h"
 #include "recorded/picture_setup.h"
-#include "tests/estimators/draws.h"
 #include "tests/estimators/exr.h"
 #include "tests/estimators/exr_kinds.h"
-#include "tests/prelude.h"
+#include "tests/estimators/prelude.h"
 
 namespace assay {
 namespace {
@@ -108,7 +106,7 @@ TEST_F(Pictures, ThatAreCopiesAreRefusedByName) {
   draws::observe(pictures, 2);
   EXPECT_THAT(thrown<InputError>([&] { draws::observe(pictures, 3); }),
               StartsWith(file("c.exr") + ": is the same picture as `" + file("a.exr") + "`"));
-  // Those of one value throughout may be equal.
+  // Pictures of one value throughout may be equal.
   for (const char* name : {"a.exr", "c.exr"}) write_texel(name, {"R", "G", "B"}, {0, 0, 0});
   EXPECT_EQ(draws::observe(prepare("{file: *.exr}"), 3)[0].values.size(), 3u);
 }

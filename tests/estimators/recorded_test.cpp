@@ -1,6 +1,5 @@
 #include <fcntl.h>
 #include <sys/stat.h>
-#include <unistd.h>
 #include <zlib.h>
 
 #include "estimators/core/line_error.h"
@@ -8,14 +7,12 @@
 #include "estimators/ready_made.h"
 #include "recorded/byte_source.h"
 #include "recorded/table.h"
-#include "tests/estimators/draws.h"
-#include "tests/estimators/table.h"
-#include "tests/prelude.h"
+#include "tests/estimators/prelude.h"
 
 namespace assay {
 namespace {
 
-/// As gzip does it.
+/// Packs a text as gzip does it.
 std::string packed(const std::string& text) {
   z_stream stream = {};
   deflateInit2(&stream, 6, Z_DEFLATED, 15 + 16, 8, Z_DEFAULT_STRATEGY);
@@ -77,7 +74,7 @@ class Recorded : public InFolder {
     }
     return "nothing was refused";
   }
-  /// Of the file as a whole.
+  /// The file as a whole is refused.
   void expect_refused(const std::string& text, const std::string& message) const {
     EXPECT_THAT(refusal(text), AllOf(StartsWith("0:0 "), HasSubstr(message)));
   }
@@ -211,7 +208,7 @@ TEST_F(Recorded, AsksOfOneRowWhetherItsNumbersAreObservations) {
   EXPECT_EQ(read("a b\n1 2\n").rows(), 1u);
 }
 
-/// What is said of standard input that holds a file's bytes.
+/// The refusal of standard input that holds a file's bytes.
 std::string refusal_of_standard_input(const std::string& file) {
   const int standard = dup(STDIN_FILENO);
   const int other = open(file.c_str(), O_RDONLY);
@@ -230,7 +227,7 @@ std::string refusal_of_standard_input(const std::string& file) {
   return said;
 }
 
-// What is to be pasted can be pasted.
+// The message holds a command that can be pasted.
 TEST_F(Recorded, SaysWhatToDoWithABinaryFileOrStandardInput) {
   using namespace std::string_literals;
   const std::string place = file("it's \"my\" file");

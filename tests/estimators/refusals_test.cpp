@@ -1,8 +1,5 @@
+#include "tests/estimators/prelude.h"
 // Each case of tests/tables/refusals.txt.
-
-#include "tests/estimators/draws.h"
-#include "tests/estimators/table.h"
-#include "tests/prelude.h"
 
 namespace assay {
 namespace {

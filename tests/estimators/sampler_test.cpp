@@ -5,8 +5,6 @@
 namespace assay {
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
 TEST(Marginals, DirectionsHaveThetaAndPhi) {
   for (const Domain domain : {Domain::hemisphere, Domain::sphere}) {
     const auto list = marginals(domain);

@@ -21,7 +21,7 @@ inline std::string hidden_beyond(double t) {
 
 }  // namespace assay::tests
 
-/// Those of suites/direct-light.yaml.
+/// The scenes of suites/direct-light.yaml.
 namespace assay::direct_light_scenes {
 
 inline const std::string receiver = "receiver: {position: [0, 0, 0], normal: [0, 0, 1]}";

@@ -1,19 +1,15 @@
-
 #include "render/polygon.h"
 #include "sky/harmonics.h"
 #include "sky/octahedron.h"
-#include "tests/estimators/draws.h"
-#include "tests/prelude.h"
+#include "tests/estimators/prelude.h"
 
 namespace assay {
 namespace {
 
-using namespace assay::draws;
 using render::normalised;
 using render::Vector3;
-using std::numbers::pi;
 
-const std::string smooth = "{harmonics: [3, .4, -.3, .5, .2, -.35, .3, .25, -.2]}";
+const std::string harmonic_sky = "{harmonics: [3, .4, -.3, .5, .2, -.35, .3, .25, -.2]}";
 
 double irradiance(const std::string& sky, const std::string& normal = "[0, 0, 1]") {
   return *channel("sky/cosine", "{sky: " + sky + ", normal: " + normal + "}").mean;
@@ -69,7 +65,7 @@ TEST(Octahedron, FindsTheTriangleOfADirection) {
 
 TEST(Skies, HaveTheIrradiancesOfTheirClosedForms) {
   EXPECT_NEAR(irradiance("{uniform: 2}", "[1, 2, 3]"), 2 * pi, 1e-12);
-  EXPECT_NEAR(irradiance(smooth, "[.3, -.5, .8]"), 2.593043473, 1e-9);
+  EXPECT_NEAR(irradiance(harmonic_sky, "[.3, -.5, .8]"), 2.593043473, 1e-9);
   EXPECT_NEAR(irradiance("{gradient: {base: 1, slope: [.5, 0, .3]}}"), pi + 2 * pi / 3 * .3, 1e-12);
   EXPECT_NEAR(irradiance("{gradient: {base: 1, slope: [.5, 0, .3]}}", "[1, 0, 0]"),
               pi + 2 * pi / 3 * .5, 1e-12);

@@ -1,21 +1,17 @@
-
 #include "steerable/directions.h"
 #include "steerable/linear_triangle.h"
 #include "steerable/lobe.h"
 #include "steerable/sky_tree.h"
-#include "tests/estimators/draws.h"
-#include "tests/prelude.h"
+#include "tests/estimators/prelude.h"
 
 namespace assay {
 namespace {
 
-using namespace assay::draws;
 using namespace assay::steerable;
 using render::normalised;
 using render::Vector3;
-using std::numbers::pi;
 
-const std::string smooth =
+const std::string smooth_sky =
     "sky: {harmonics: [3, .4, -.3, .5, .2, -.35, .3, .25, -.2]}, normal: [.3, -.5, .8]";
 const std::string peaked =
     "sky: {peak: {base: .2, height: 20, sharpness: 60, direction: [.3, .2, .8]}}";
@@ -112,10 +108,10 @@ double mass(const SteeredDirections<>& directions) {
 }
 
 TEST(SteeredDirections, HaveADensityThatIntegratesToOne) {
-  EXPECT_NEAR(mass(*steered(smooth)), 1, 3e-3);
+  EXPECT_NEAR(mass(*steered(smooth_sky)), 1, 3e-3);
   EXPECT_NEAR(mass(*steered(peaked)), 1, 3e-3);
   EXPECT_NEAR(mass(*steered(peaked, {.coefficients = 25})), 1, 3e-3);
-  EXPECT_NEAR(mass(*steered(smooth, {.coefficients = 1, .offset = 0}, 1)), 1, 3e-3);
+  EXPECT_NEAR(mass(*steered(smooth_sky, {.coefficients = 1, .offset = 0}, 1)), 1, 3e-3);
 }
 
 TEST(SteeredDirections, DeclareOfADrawWhatTheyAnswerWhenAsked) {
@@ -134,7 +130,7 @@ TEST(SteeredDirections, DeclareOfADrawWhatTheyAnswerWhenAsked) {
 // The number that chooses is used again: two thousand equal steps of it give a triangle each its
 // share, to one step.
 TEST(SteeredDirections, ChooseTrianglesInProportion) {
-  const auto directions = steered(smooth, {}, 1);
+  const auto directions = steered(smooth_sky, {}, 1);
   const auto& tree = directions->tree();
   std::vector<int> count(tree.count());
   constexpr int steps = 20000;
@@ -156,8 +152,8 @@ TEST(SteerableSky, PaysOnAPeakedSkyAndNotOnASmoothOne) {
   };
   EXPECT_LT(200 * std::pow(relative("steerable/sky", peaked), 2),
             std::pow(relative("sky/cosine", peaked), 2));
-  EXPECT_NEAR(relative("steerable/sky", smooth), .325, .01);
-  EXPECT_NEAR(relative("sky/cosine", smooth), .204, .01);
+  EXPECT_NEAR(relative("steerable/sky", smooth_sky), .325, .01);
+  EXPECT_NEAR(relative("sky/cosine", smooth_sky), .204, .01);
 }
 
 }  // namespace

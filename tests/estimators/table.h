@@ -2,12 +2,7 @@
 
 // Tables of tests/tables.
 
-#include <fstream>
-#include <sstream>
-#include <stdexcept>
-#include <string>
-#include <utility>
-#include <vector>
+#include "tests/prelude.h"
 
 namespace assay::tests {
 

@@ -4,16 +4,12 @@
 
 #include <fmt/format.h>
 
-#include <cstdint>
-#include <map>
-#include <string>
-#include <vector>
-
 #include "harness/draws/sampler_setup.h"
 #include "stats/cells/chi_square_fit.h"
 #include "tests/harness/many_seeds.h"
 #include "tests/harness/questions.h"
 #include "tests/harness/table.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 

@@ -3,18 +3,12 @@
 // Claims run whole under many seeds, 1, 2, 3, …: from the text of a suite to the p-values and
 // verdicts of its tests.
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <map>
-#include <string>
-#include <vector>
-
 #include "harness/run/evaluate.h"
 #include "harness/run/pools.h"
 #include "harness/sampling/executor.h"
 #include "harness/theta/methods.h"
 #include "tests/harness/planned.h"
+#include "tests/prelude.h"
 #include "tests/stats/calibration.h"
 
 namespace assay::harness {

@@ -4,12 +4,10 @@
 
 #include <fmt/format.h>
 
-#include <string>
-#include <vector>
-
 #include "tests/estimators/exr.h"
 #include "tests/harness/running.h"
 #include "tests/philox.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 

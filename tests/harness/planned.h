@@ -1,14 +1,11 @@
 #pragma once
 
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "harness/pilot/pilot.h"
 #include "harness/plan/plan.h"
 #include "tests/harness/questions.h"
 #include "tests/harness/running.h"
 #include "tests/harness/table.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 

@@ -1,14 +1,10 @@
 #pragma once
 
-#include <map>
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "harness/draws/sampler_setup.h"
 #include "harness/question/question.h"
 #include "harness/theta/ask.h"
 #include "tests/harness/running.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 

@@ -4,17 +4,9 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <cstdint>
-#include <functional>
-#include <map>
-#include <regex>
-#include <sstream>
-#include <string>
-#include <vector>
-
 #include "tests/harness/running.h"
 #include "tests/philox.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 

@@ -1,10 +1,7 @@
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <string>
-
 #include "estimators/core/value.h"
+#include "tests/prelude.h"
 
 namespace assay::harness {
 

@@ -1,9 +1,5 @@
 #pragma once
 
-#include <stdexcept>
-#include <string>
-#include <vector>
-
 #include "harness/command/run.h"
 #include "reports/formats/json.h"
 #include "tests/prelude.h"
@@ -11,6 +7,7 @@
 
 namespace assay::harness {
 
+using reports::Verdict;
 using Workplace = tests::Folder;
 
 /// A test with one.
@@ -33,7 +30,7 @@ inline std::string good_suite(const std::string& more = "") {
   return text.insert(text.find("statements:"), more);
 }
 
-/// What a command prints, and its exit code.
+/// The output of a command, and its exit code.
 struct Said {
   int code = 0;
   std::string text;

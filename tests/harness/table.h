@@ -2,9 +2,6 @@
 
 // Tables of tests/tables whose rows are claims, in sections.
 
-#include <string>
-#include <vector>
-
 #include "tests/prelude.h"
 
 namespace assay::harness {

@@ -1,11 +1,5 @@
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstdlib>
-#include <string>
-
 #include "reports/record/file.h"
 #include "tests/prelude.h"
 

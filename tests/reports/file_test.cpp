@@ -1,7 +1,6 @@
 #include "reports/record/file.h"
 
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include "tests/reports/prelude.h"
 

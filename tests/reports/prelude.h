@@ -1,7 +1,8 @@
 #pragma once
 
-// What every test of this folder includes: tests/prelude.h, property tests, and records.
+// Every test of this folder includes this: tests/prelude.h, property tests, and records.
 
+#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include "tests/prelude.h"

@@ -1,15 +1,7 @@
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <cstdlib>
-#include <functional>
-#include <string>
-#include <vector>
-
 #include "tests/philox.h"
+#include "tests/prelude.h"
 
 namespace assay::tests {
 

@@ -1,11 +1,7 @@
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <functional>
-#include <iostream>
-
 #include "stats/tails/test_result.h"
+#include "tests/prelude.h"
 #include "tests/stats/calibration.h"
 
 namespace assay::tests {

@@ -1,12 +1,8 @@
 #pragma once
 
-#include <array>
-#include <cmath>
-#include <cstddef>
-#include <vector>
-
 #include "stats/basics/moments.h"
 #include "tests/philox.h"
+#include "tests/prelude.h"
 
 namespace assay::tests {
 

@@ -22,10 +22,10 @@ double rate_of(std::uint32_t test_case, int repetitions,
 
 double bound(int repetitions) { return std::sqrt(std::log(2e5) / (2.0 * repetitions)); }
 
-const ErrorRates rates{.01, .2, true};
+const ErrorRates usual_rates{.01, .2, true};
 
 TEST(PowerSimulation, StudentTPlannedForAnEffectFindsItAsOftenAsPredicted) {
-  const MeanPlan plan{.rates = rates};
+  const MeanPlan plan{.rates = usual_rates};
   const auto n = student_t_sample_size(plan, .5).value();
   const double rate = rate_of(201, 10000, [&](Philox& random) {
     return log_p_two_sided(student_t(draw_moments(n, [&] { return .5 + random.normal(); }), {0}));
@@ -35,7 +35,7 @@ TEST(PowerSimulation, StudentTPlannedForAnEffectFindsItAsOftenAsPredicted) {
 }
 
 TEST(PowerSimulation, AnAllowedEffectIsSubtractedOnBothSides) {
-  const MeanPlan plan{.allow = .2, .rates = rates};
+  const MeanPlan plan{.allow = .2, .rates = usual_rates};
   const double rate = rate_of(202, 10000, [&](Philox& random) {
     const Moments x = draw_moments(60, [&] { return -.6 + random.normal(); });
     return std::min(0.0, std::log(2) + std::min(student_t(x, {.2}).log_p_upper,
@@ -45,7 +45,7 @@ TEST(PowerSimulation, AnAllowedEffectIsSubtractedOnBothSides) {
 }
 
 TEST(PowerSimulation, AReferenceErrorCostsPowerAsPredicted) {
-  const MeanPlan plan{.reference_standard_error = .1, .rates = rates};
+  const MeanPlan plan{.reference_standard_error = .1, .rates = usual_rates};
   const double rate = rate_of(203, 10000, [&](Philox& random) {
     const Moments x = draw_moments(80, [&] { return .5 + random.normal(); });
     return log_p_two_sided(student_t(x, {.1 * random.normal(), .1}));
@@ -55,7 +55,7 @@ TEST(PowerSimulation, AReferenceErrorCostsPowerAsPredicted) {
 
 TEST(PowerSimulation, WelchWithUnequalVariances) {
   const TwoMeansPlan plan{
-      .standard_deviation_x = 1, .standard_deviation_y = 2, .allocation = 2, .rates = rates};
+      .standard_deviation_x = 1, .standard_deviation_y = 2, .allocation = 2, .rates = usual_rates};
   const auto n = welch_sample_size(plan, 1).value();
   const double rate = rate_of(204, 10000, [&](Philox& random) {
     const Moments x = draw_moments(n, [&] { return 1 + random.normal(); });

@@ -1,6 +1,6 @@
 #pragma once
 
-// What every test of this folder includes: tests/prelude.h, samples and their laws, reference
+// Every test of this folder includes this: tests/prelude.h, samples and their laws, reference
 // tables, calibrations.
 
 #include "tests/philox.h"

@@ -1,4 +1,4 @@
-// What each function says of arguments that it cannot take: tests/tables/refused_arguments.txt.
+// Each function refuses arguments that it cannot take: tests/tables/refused_arguments.txt.
 
 #include "stats/basics/errors.h"
 #include "stats/cells/adaptive_cells.h"
@@ -38,12 +38,11 @@
 #include "tests/stats/point_by_point.h"
 #include "tests/stats/prelude.h"
 
-namespace assay::stats {
+namespace assay::stats::refusals {
 namespace {
 
 using Values = std::vector<double>;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 const Moments x = moments_of(golden_x);
 const Moments one = moments_of(Values{1});
@@ -341,4 +340,4 @@ TEST(Refusals, OfImages) {
 }
 
 }  // namespace
-}  // namespace assay::stats
+}  // namespace assay::stats::refusals

@@ -1,18 +1,13 @@
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
-#include <random>
-#include <span>
-#include <vector>
-
 #include "stats/basics/joint_moments.h"
 #include "stats/basics/moments.h"
 #include "tests/philox.h"
+#include "tests/prelude.h"
 
 namespace assay::tests {
+
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 inline stats::Moments moments_of(std::span<const double> values) {
   stats::Moments moments;

@@ -6,10 +6,9 @@
 #include "tests/estimators/table.h"
 #include "tests/prelude.h"
 
-namespace assay {
+namespace assay::depth_of_field {
 namespace {
 
-using namespace depth_of_field;
 using Counts = std::vector<std::uint64_t>;
 
 double total(const Counts& counts) {
@@ -81,4 +80,4 @@ TEST(LensCounts, LeaveOneSampleWhereThereIsNoVariance) {
 }
 
 }  // namespace
-}  // namespace assay
+}  // namespace assay::depth_of_field

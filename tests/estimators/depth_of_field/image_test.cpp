@@ -3,26 +3,22 @@
 #include "depth_of_field/image.h"
 
 #include "tests/estimators/depth_of_field/plans.h"
-#include "tests/estimators/draws.h"
-#include "tests/prelude.h"
+#include "tests/estimators/prelude.h"
 
-namespace assay {
+namespace assay::depth_of_field {
 namespace {
 
-using namespace depth_of_field;
-using namespace assay::draws;
-
-const std::string row = "scene: edge, width: 12, height: 1, size: 0.5, samples: 6";
+const std::string edge_row = "scene: edge, width: 12, height: 1, size: 0.5, samples: 6";
 
 TEST(LensImagePlan, AllotsByTheExponentOfItsName) {
   std::vector<double> variances;
-  for (const Moments& m : image_plan("{" + row + "}").exact)
+  for (const Moments& m : image_plan("{" + edge_row + "}").exact)
     variances.push_back(m.mean * (1 - m.mean));
   std::vector<std::vector<std::uint64_t>> seen;
   for (const auto& [allocation, exponent] :
        {std::pair{"uniform", 0.}, {"deviation", .5}, {"two_thirds", 2. / 3}, {"variance", 1.}}) {
     const ImagePlan plan =
-        image_plan("{" + row + ", prediction: exact, allocation: " + allocation + "}");
+        image_plan("{" + edge_row + ", prediction: exact, allocation: " + allocation + "}");
     EXPECT_EQ(plan.counts, lens_counts(variances, {6, exponent})) << allocation;
     EXPECT_EQ(plan.overhead.camera_rays, 0u);
     seen.push_back(plan.counts);
@@ -31,9 +27,10 @@ TEST(LensImagePlan, AllotsByTheExponentOfItsName) {
 }
 
 TEST(LensImagePlan, PaysForAPredictionOnlyWhereItAsksForOne) {
-  EXPECT_EQ(image_plan("{" + row + "}").overhead.camera_rays, 12u + 10);
-  EXPECT_EQ(image_plan("{" + row + ", prediction: covariance}").overhead.camera_rays, 12u + 10);
-  EXPECT_EQ(image_plan("{" + row + ", allocation: uniform}").overhead.camera_rays, 0u);
+  EXPECT_EQ(image_plan("{" + edge_row + "}").overhead.camera_rays, 12u + 10);
+  EXPECT_EQ(image_plan("{" + edge_row + ", prediction: covariance}").overhead.camera_rays,
+            12u + 10);
+  EXPECT_EQ(image_plan("{" + edge_row + ", allocation: uniform}").overhead.camera_rays, 0u);
 }
 
 TEST(LensImagePlan, CountsOfAPredictionAreThoseOfItsVariance) {
@@ -58,8 +55,8 @@ TEST(LensImagePlan, TheExtremesAreThoseOfNoiseAboveZero) {
 }
 
 TEST(LensImage, PixelsHaveTheirExactMeansAndTheVarianceOfTheirCounts) {
-  const ImagePlan plan = image_plan("{" + row + "}");
-  const auto channels = prepare("depth_of_field/image", "{" + row + "}").setup->channels();
+  const ImagePlan plan = image_plan("{" + edge_row + "}");
+  const auto channels = prepare("depth_of_field/image", "{" + edge_row + "}").setup->channels();
   std::size_t noisy = 0;
   for (std::size_t i = 0; i < 12; ++i) {
     const double c = half_plane_coverage(-plan.grid.pixel(i).x / .2);
@@ -73,8 +70,8 @@ TEST(LensImage, PixelsHaveTheirExactMeansAndTheVarianceOfTheirCounts) {
 }
 
 TEST(LensImage, ItsDiagnosticChannelsRepeatPixels) {
-  const NoiseExtremes ends = noise_extremes(image_plan("{" + row + "}"));
-  const Prepared image = prepare("depth_of_field/image", "{" + row + "}");
+  const NoiseExtremes ends = noise_extremes(image_plan("{" + edge_row + "}"));
+  const Prepared image = prepare("depth_of_field/image", "{" + edge_row + "}");
   const auto channels = image.setup->channels();
   ASSERT_EQ(channels.size(), 14u);
   EXPECT_EQ(channels[12].name, "worst");
@@ -89,8 +86,8 @@ TEST(LensImage, ItsDiagnosticChannelsRepeatPixels) {
 
 // With 4 primaries a pixel has 4 N samples, and the pass is counted 4 times.
 TEST(LensImage, APrimaryIsAnImageAndItsPass) {
-  const ImagePlan plan = image_plan("{" + row + "}");
-  const Prepared image = prepare("depth_of_field/image", "{" + row + "}");
+  const ImagePlan plan = image_plan("{" + edge_row + "}");
+  const Prepared image = prepare("depth_of_field/image", "{" + edge_row + "}");
   const auto [out, cost] = observe_one(image, 4);
   EXPECT_EQ(cost.camera_rays, 4 * (std::reduce(plan.counts.begin(), plan.counts.end()) + 12 + 10));
   EXPECT_EQ(cost.samples, 4u);
@@ -101,4 +98,4 @@ TEST(LensImage, APrimaryIsAnImageAndItsPass) {
 }
 
 }  // namespace
-}  // namespace assay
+}  // namespace assay::depth_of_field

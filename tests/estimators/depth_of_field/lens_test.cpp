@@ -3,15 +3,10 @@
 #include "depth_of_field/covariance.h"
 #include "depth_of_field/exact.h"
 #include "depth_of_field/spectrum.h"
-#include "tests/estimators/draws.h"
-#include "tests/estimators/table.h"
-#include "tests/prelude.h"
+#include "tests/estimators/prelude.h"
 
-namespace assay {
+namespace assay::depth_of_field {
 namespace {
-
-using namespace depth_of_field;
-using namespace assay::draws;
 
 const char* const corner =
     "{lens: {radius: .2, focus: 2}, background: .3, planes: [{depth: 1, x: [0, 100], y: [-100, "
@@ -155,4 +150,4 @@ TEST(DepthOfField, ForLowFrequenciesTheCovariancePredictsTheDiscsVariance) {
 }
 
 }  // namespace
-}  // namespace assay
+}  // namespace assay::depth_of_field

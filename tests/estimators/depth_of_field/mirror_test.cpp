@@ -2,14 +2,10 @@
 
 #include "depth_of_field/curved_mirror.h"
 #include "depth_of_field/exact.h"
-#include "tests/estimators/draws.h"
-#include "tests/prelude.h"
+#include "tests/estimators/prelude.h"
 
-namespace assay {
+namespace assay::depth_of_field {
 namespace {
-
-using namespace depth_of_field;
-using namespace assay::draws;
 
 Channel stated(const std::string& parameters) {
   return channel("depth_of_field/mirror", parameters);
@@ -90,4 +86,4 @@ TEST(CurvedMirror, IsRefusedWhereARayMayBeLost) {
 }
 
 }  // namespace
-}  // namespace assay
+}  // namespace assay::depth_of_field

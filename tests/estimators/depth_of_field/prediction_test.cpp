@@ -7,10 +7,8 @@
 #include "estimators/core/flow.h"
 #include "tests/prelude.h"
 
-namespace assay {
+namespace assay::depth_of_field {
 namespace {
-
-using namespace depth_of_field;
 
 Prediction predicted(const std::string& scene, const Grid& grid,
                      const PredictionRules& rules = wave_rules()) {
@@ -154,4 +152,4 @@ TEST(LensPrediction, AWaveWithoutPowerIsNotLetThrough) {
 }
 
 }  // namespace
-}  // namespace assay
+}  // namespace assay::depth_of_field

@@ -4,15 +4,10 @@
 #include "depth_of_field/reconstruction.h"
 
 #include "tests/estimators/depth_of_field/plans.h"
-#include "tests/estimators/draws.h"
-#include "tests/estimators/table.h"
-#include "tests/prelude.h"
+#include "tests/estimators/prelude.h"
 
-namespace assay {
+namespace assay::depth_of_field {
 namespace {
-
-using namespace depth_of_field;
-using namespace assay::draws;
 
 // At x the sinusoid behind the lens has the mean 1/2 + 1/2 j(3) cos(30 x): 2 x 15 of the footprint.
 double sinusoid(double x) { return .5 + .5 * disc_response(3) * std::cos(30 * x); }
@@ -113,4 +108,4 @@ TEST(Reconstruction, CostsItsSamplesAndThePass) {
 }
 
 }  // namespace
-}  // namespace assay
+}  // namespace assay::depth_of_field

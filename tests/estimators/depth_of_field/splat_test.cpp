@@ -4,10 +4,8 @@
 
 #include "tests/prelude.h"
 
-namespace assay {
+namespace assay::depth_of_field {
 namespace {
-
-using namespace depth_of_field;
 
 double sum(const std::vector<Share>& shares) {
   double out = 0;
@@ -101,4 +99,4 @@ TEST(Splats, NormalisedSharesKeepWhatIsConstant) {
 }
 
 }  // namespace
-}  // namespace assay
+}  // namespace assay::depth_of_field

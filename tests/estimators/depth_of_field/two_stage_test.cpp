@@ -4,10 +4,8 @@
 
 #include "tests/prelude.h"
 
-namespace assay {
+namespace assay::depth_of_field {
 namespace {
-
-using namespace depth_of_field;
 
 // s^2 / 0.11^2 is 20.66 of s^2 = 1/4.
 TEST(TwoStage, AsksForTheVarianceOverTheSquareOfTheNoiseRoundedUp) {
@@ -32,4 +30,4 @@ TEST(TwoStage, AveragesOnlyWhatFollowsThePilot) {
 }
 
 }  // namespace
-}  // namespace assay
+}  // namespace assay::depth_of_field

@@ -1,19 +1,15 @@
 // Direct lighting against closed forms, quadrature from elsewhere and theorems.
 
-#include "tests/estimators/draws.h"
+#include "tests/estimators/prelude.h"
 #include "tests/estimators/scenes.h"
-#include "tests/estimators/table.h"
-#include "tests/prelude.h"
 
 namespace assay {
 namespace {
 
-using namespace assay::draws;
 using direct_light_scenes::large;
 using direct_light_scenes::parameters;
 using direct_light_scenes::scene;
 using direct_light_scenes::small;
-using std::numbers::pi;
 
 Channel stated(const std::string& plugin, const std::string& given) {
   return channel("direct_light/" + plugin, given);

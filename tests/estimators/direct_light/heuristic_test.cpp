@@ -1,7 +1,6 @@
 #include "direct_light/heuristic.h"
 
-#include "tests/estimators/draws.h"
-#include "tests/prelude.h"
+#include "tests/estimators/prelude.h"
 
 namespace assay {
 namespace {

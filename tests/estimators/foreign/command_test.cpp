@@ -5,9 +5,8 @@
 #include "estimators/core/waiting.h"
 #include "estimators/foreign/render_seed.h"
 #include "estimators/ready_made.h"
-#include "tests/estimators/draws.h"
 #include "tests/estimators/exr_kinds.h"
-#include "tests/prelude.h"
+#include "tests/estimators/prelude.h"
 
 namespace assay {
 namespace {
@@ -224,15 +223,14 @@ TEST_F(Commands, ThatFailOnceLeaveNothingBehind) {
   EXPECT_THAT(thrown([&] { draws::observe(prepare(), 1, 2); }), HasSubstr("exit status 1"));
 }
 
-std::vector<std::string> said;
-std::mutex saying;
-
 // By the same seed and under the same name; what was half written is gone.
 TEST_F(Commands, ThatFailAreStartedAgain) {
   write_program(
       "test -e tried.$1.$2 || { touch tried.$1.$2; echo half >$3; echo bad luck >&2; exit 3; }; "
       "echo \"$1 $2\" >$3");
   const std::vector<Value::Member> once{as_text, {"retries", Value::scalar("1")}};
+  static std::vector<std::string> said;
+  static std::mutex saying;
   set_notice([](const std::string& sentence) {
     const std::scoped_lock lock(saying);
     said.push_back(sentence);

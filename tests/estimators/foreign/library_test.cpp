@@ -157,12 +157,12 @@ TEST_F(Library, OffersItsSamplers) {
   const auto samplers = setup->samplers();
   ASSERT_EQ(samplers.size(), 1u);
   EXPECT_EQ(samplers[0].name, "ramp");
-  const Sampler& ramp = *samplers[0].sampler;
-  EXPECT_EQ(ramp.domain(), Domain::interval);
-  EXPECT_EQ(ramp.density({0.25, 0, 0}), 0.5);
-  EXPECT_EQ(ramp.evaluate({0.25, 0, 0}), 1);
+  const Sampler& sampler = *samplers[0].sampler;
+  EXPECT_EQ(sampler.domain(), Domain::interval);
+  EXPECT_EQ(sampler.density({0.25, 0, 0}), 0.5);
+  EXPECT_EQ(sampler.evaluate({0.25, 0, 0}), 1);
   Stream random({1}, 0);
-  const SamplerDraw draw = ramp.sample(random);
+  const SamplerDraw draw = sampler.sample(random);
   EXPECT_TRUE(draw.valid);
   EXPECT_EQ(draw.density, 2 * draw.point[0]);
   // The same each time, so that their tables are made once.

@@ -1,4 +1,3 @@
-
 #include <csignal>
 #include <mutex>
 
@@ -66,7 +65,6 @@ TEST_F(Process, TheShellExampleThrowsDarts) {
   EXPECT_EQ(draw(*setup, 200, 7, 100), values);
   EXPECT_EQ(draw(*setup, 10, 0, 100), std::vector<double>(values.begin(), values.begin() + 10));
   EXPECT_NE(draw(*setup, 10, 0, 100, 1), std::vector<double>(values.begin(), values.begin() + 10));
-  constexpr double pi = std::numbers::pi;
   EXPECT_NEAR(std::accumulate(values.begin(), values.end(), 0.0) / 200, pi,
               4.892 * std::sqrt(pi * (4 - pi) / 20000));
 }
@@ -172,7 +170,7 @@ TEST_F(Process, RefusesWhatIsWrittenWithoutBeingAsked) {
   EXPECT_THAT(failure(*setup, 2, 2), HasSubstr("tidying up"));
 }
 
-// What is echoed for each observation. All of 128 pairs, k of them 1 and the others 0, are equal
+// A case is echoed for each observation. All of 128 pairs, k of them 1 and the others 0, are equal
 // with probability C(128, k) / C(256, 2 k). It is 2.6e-8 for 4 and 9.5e-10 for 5; the limit is 5e-7
 // / 128.
 TEST_F(Process, RefusesObservationsThatAreNoFunctionOfKeyAndIndex) {
@@ -304,11 +302,10 @@ TEST_F(Process, RefusesObservationsThatDependOnTheProcess) {
   EXPECT_THROW(draw_one(*two, 0), std::runtime_error);
 }
 
-std::vector<std::string> said;
-std::mutex saying;
-
 // Though two workers wait for a program each.
 TEST_F(Process, IsAskedOnceWhetherItFlushes) {
+  static std::vector<std::string> said;
+  static std::mutex saying;
   set_notice([](const std::string& sentence) {
     const std::scoped_lock lock(saying);
     said.push_back(sentence);

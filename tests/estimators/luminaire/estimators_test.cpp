@@ -1,13 +1,9 @@
+#include "tests/estimators/prelude.h"
 // The four estimators of one irradiance; families_test.cpp holds them against what is known
 // exactly. False-alarm rate 1e-4 for each comparison.
 
-#include "tests/estimators/draws.h"
-#include "tests/prelude.h"
-
 namespace assay::luminaire {
 namespace {
-
-using namespace draws;
 
 constexpr std::uint64_t observations = 1u << 20;
 const std::string at_origin = "{receiver: {position: [0, 0, 0], normal: [0, 0, 1]}, light: ";

@@ -1,10 +1,8 @@
 #include "luminaire/exact.h"
 
 #include "estimators/core/flow.h"
-#include "tests/estimators/draws.h"
+#include "tests/estimators/prelude.h"
 #include "tests/estimators/scenes.h"
-#include "tests/estimators/table.h"
-#include "tests/prelude.h"
 
 namespace assay::luminaire {
 namespace {

@@ -1,12 +1,8 @@
+#include "tests/estimators/prelude.h"
 // Images of a plane's irradiance: every pixel is a luminaire estimator of its own.
-
-#include "tests/estimators/draws.h"
-#include "tests/prelude.h"
 
 namespace assay {
 namespace {
-
-using namespace assay::draws;
 
 constexpr const char* small = "{width: 6, height: 4, size: 3}";
 

@@ -2,14 +2,11 @@
 
 #include <boost/math/distributions/chi_squared.hpp>
 
-#include "tests/estimators/draws.h"
+#include "tests/estimators/prelude.h"
 #include "tests/estimators/scenes.h"
-#include "tests/prelude.h"
 
 namespace assay {
 namespace {
-
-using namespace draws;
 
 constexpr std::uint64_t draw_count = 1u << 20;
 

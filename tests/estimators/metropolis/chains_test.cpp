@@ -1,16 +1,12 @@
-
 #include "metropolis/chain.h"
 #include "metropolis/parameters.h"
 #include "metropolis/product_target.h"
-#include "tests/estimators/draws.h"
-#include "tests/estimators/table.h"
-#include "tests/prelude.h"
+#include "tests/estimators/prelude.h"
 #include "tests/stats/calibration.h"
 
 namespace assay {
 namespace {
 
-using namespace assay::draws;
 using namespace assay::metropolis;
 
 std::vector<double> means(const Prepared& plugin) {

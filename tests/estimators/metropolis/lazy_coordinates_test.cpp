@@ -1,13 +1,11 @@
 #include "metropolis/lazy_coordinates.h"
 
 #include "metropolis/rules.h"
-#include "tests/estimators/draws.h"
-#include "tests/prelude.h"
+#include "tests/estimators/prelude.h"
 
 namespace assay {
 namespace {
 
-using namespace assay::draws;
 using namespace assay::metropolis;
 
 std::shared_ptr<const SmallStep> step(Boundary boundary) {

@@ -2,14 +2,10 @@
 // fall, or against the same picture worked out from the plan.
 
 #include "tests/estimators/depth_of_field/plans.h"
-#include "tests/estimators/draws.h"
-#include "tests/prelude.h"
+#include "tests/estimators/prelude.h"
 
-namespace assay {
+namespace assay::depth_of_field {
 namespace {
-
-using namespace depth_of_field;
-using namespace assay::draws;
 
 // Radius xi: the part of the lens within 1/2 gets half of the points, not a fourth.
 TEST(LensMutants, CrowdedPointsAreInTheSamplerToo) {
@@ -120,4 +116,4 @@ TEST(LensMutants, UnnormalisedSplatsFadeBeyondTheLastSample) {
 }
 
 }  // namespace
-}  // namespace assay
+}  // namespace assay::depth_of_field

@@ -1,14 +1,10 @@
+#include "tests/estimators/prelude.h"
 // Path estimators against their closed forms and one another.
-
-#include "tests/estimators/draws.h"
-#include "tests/prelude.h"
 
 namespace assay {
 namespace {
 
 constexpr std::uint64_t observations = 1u << 17;
-
-using namespace draws;
 
 double stated_variance(const char* plugin, const std::string& parameters) {
   return channel(plugin, parameters).variance.value();

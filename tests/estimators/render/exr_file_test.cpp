@@ -1,4 +1,3 @@
-
 #include "estimators/core/value.h"
 #include "estimators/picture_file.h"
 #include "tests/estimators/exr_kinds.h"

@@ -1,8 +1,6 @@
-
 #include "render/environment_map.h"
-#include "tests/estimators/draws.h"
 #include "tests/estimators/exr.h"
-#include "tests/prelude.h"
+#include "tests/estimators/prelude.h"
 
 namespace assay {
 namespace {
@@ -10,8 +8,6 @@ namespace {
 using render::EnvironmentMap;
 using render::Rgb;
 using render::Vector3;
-using namespace assay::draws;
-using std::numbers::pi;
 
 class Exr : public InFolder {
  protected:

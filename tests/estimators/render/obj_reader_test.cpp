@@ -1,4 +1,3 @@
-
 #include "estimators/core/value.h"
 #include "render/triangle_mesh.h"
 #include "tests/estimators/table.h"
@@ -35,8 +34,8 @@ TEST_F(ObjReader, ReadsVerticesAndFaces) {
 TEST_F(ObjReader, ReadsEveryFormOfACorner) {
   const TriangleMesh mesh =
       read(corners + "vt 0 0\nvn 0 0 1\nf 1/1 2/1 3/1\nf 1//1 2//1 3//1\nf 1/1/1 2/1/1 3/1/1\n");
-  for (const auto& triangle : mesh.triangles) {
-    EXPECT_EQ(triangle, (std::array<std::uint32_t, 3>{0, 1, 2}));
+  for (const auto& indices : mesh.triangles) {
+    EXPECT_EQ(indices, (std::array<std::uint32_t, 3>{0, 1, 2}));
   }
 }
 

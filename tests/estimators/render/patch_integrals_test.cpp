@@ -10,7 +10,6 @@ using render::EnvironmentMap;
 using render::Patch;
 using render::Rgb;
 using render::Vector3;
-using std::numbers::pi;
 
 // Midpoint sums of max(0, n.w)^k over a patch.
 std::array<double, 2> brute_force(const Patch& patch, const Vector3& n) {

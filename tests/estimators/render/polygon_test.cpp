@@ -5,7 +5,6 @@
 namespace assay::render {
 namespace {
 
-constexpr double pi = std::numbers::pi;
 constexpr Vector3 up = {0, 0, 1};
 
 // A square of half-width w at height 1 about the axis.

@@ -1,13 +1,8 @@
+#include "tests/estimators/prelude.h"
 // Virtual lights and their mutants against closed forms and quadrature.
-
-#include "tests/estimators/draws.h"
-#include "tests/estimators/table.h"
-#include "tests/prelude.h"
 
 namespace assay {
 namespace {
-
-using namespace assay::draws;
 
 const std::array<const char*, 6> walls = {
     "[[0,0,0],[1,0,0],[1,1,0],[0,1,0]]", "[[0,0,1],[0,1,1],[1,1,1],[1,0,1]]",

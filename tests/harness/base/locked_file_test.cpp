@@ -1,8 +1,7 @@
 #include "harness/base/locked_file.h"
 
 #include "harness/base/text_file.h"
-#include "tests/harness/running.h"
-#include "tests/prelude.h"
+#include "tests/harness/prelude.h"
 
 namespace assay::harness {
 namespace {

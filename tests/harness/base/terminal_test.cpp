@@ -25,7 +25,7 @@ TEST(ProgressText, CountsUnitsOrSaysWhichPartIsDone) {
   EXPECT_EQ(progress_text({.name = "pilot"}, 7), "pilot  0 %");
 }
 
-/// What a bar of the width has written.
+/// A bar of the width, and the text that it has written.
 struct Bar {
   std::ostringstream out = {};
   Hands hands = {};

@@ -1,15 +1,11 @@
-// What estimators declare, and what the program finds that they do.
-
-#include "tests/harness/running.h"
-#include "tests/prelude.h"
+#include "tests/harness/prelude.h"
+// Estimators declare their nature, and the program finds whether it is true.
 
 namespace assay::harness {
 namespace {
 
-using reports::Verdict;
-
 /// A test of a program that declares `averages`. `observation` makes a number of the list `draws`.
-reports::Test judged(const std::string& law, const std::string& observation, int seed) {
+reports::Test judged_declaring(const std::string& law, const std::string& observation, int seed) {
   const Workplace place;
   place.write("mine.py", "import math, sys\nsys.path.append('" ASSAY_SOURCE_DIR
                          R"(/estimators/foreign/python')
@@ -29,14 +25,14 @@ assay.serve(mine, averages=True)
 TEST(Declared, AveragesThatIsUntrueIsAnError) {
   for (const char* observation :
        {"draws[0]", "sum(draws)", "(draws[0] + sum(draws)) / primaries"}) {
-    const reports::Test test = judged("stream.gauss(0, 1)", observation, 1);
+    const reports::Test test = judged_declaring("stream.gauss(0, 1)", observation, 1);
     expect_said(test, Verdict::error, {"`mine` declares `averages`, but its observations of 32"});
   }
 }
 
 TEST(Declared, AveragesThatIsTrueIsNone) {
   for (const char* law : {"stream.gauss(0, 1)", "stream.lognormvariate(0, 2)"}) {
-    const reports::Test test = judged(law, "sum(draws) / primaries", 2);
+    const reports::Test test = judged_declaring(law, "sum(draws) / primaries", 2);
     EXPECT_NE(test.verdict, Verdict::error) << law << ": " << test.message;
   }
 }

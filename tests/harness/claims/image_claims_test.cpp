@@ -8,13 +8,10 @@
 #include "reports/formats/json.h"
 #include "reports/formats/read_json.h"
 #include "tests/estimators/exr.h"
-#include "tests/harness/running.h"
-#include "tests/prelude.h"
+#include "tests/harness/prelude.h"
 
 namespace assay::harness {
 namespace {
-
-using reports::Verdict;
 
 constexpr const char* floor_16 = "luminaire/floor, width: 16, height: 16";
 

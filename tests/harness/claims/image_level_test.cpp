@@ -10,7 +10,7 @@
 namespace assay::harness {
 namespace {
 
-constexpr double level = 0.05;  // of each test
+constexpr double level_of_each = 0.05;  // of each test
 
 class ImageLevel : public TestWithParam<ClaimSection> {};
 
@@ -20,9 +20,9 @@ TEST_P(ImageLevel, IsAsTheTableSays) {
   for (const ClaimRow& row : rows) {
     tests += fmt::format("  - {{name: '{}', claim: {}}}\n", &row - rows.data(), row.text);
   }
-  const std::string text =
-      fmt::format("suite: s\nalpha: {}\nbeta: {}\nestimators:\n{}tests:\n{}",
-                  level * static_cast<double>(rows.size()), level, estimators, tests);
+  const std::string text = fmt::format("suite: s\nalpha: {}\nbeta: {}\nestimators:\n{}tests:\n{}",
+                                       level_of_each * static_cast<double>(rows.size()),
+                                       level_of_each, estimators, tests);
   const std::size_t seeds = tests::repetitions(std::stoul(section.substr(section.rfind(' '))));
   const auto outcomes = over_seeds(seeds, [&](std::uint64_t) { return text; });
   for (const ClaimRow& row : rows) {

@@ -3,17 +3,13 @@
 #include <fmt/format.h>
 
 #include "tests/harness/pictures.h"
-#include "tests/harness/refusal.h"
-#include "tests/harness/running.h"
+#include "tests/harness/prelude.h"
 #include "tests/philox.h"
-#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
 
-using reports::Verdict;
-
-constexpr int width = 24;
+constexpr int pairs_width = 24;
 constexpr int height = 16;
 constexpr int pictures = 32;
 
@@ -27,10 +23,10 @@ struct Pairs {
 void write_pairs(const Workplace& place, const Pairs& pairs) {
   for (int i = 0; i < pictures; ++i) {
     tests::Philox random(static_cast<std::uint32_t>(500 + i));
-    draws::Picture first{width, height, {"R", "G", "B"}, {}};
+    draws::Picture first{pairs_width, height, {"R", "G", "B"}, {}};
     draws::Picture second = first;
-    for (int texel = 0; texel < width * height * 3; ++texel) {
-      const bool brighter = texel / 3 % width < 8;
+    for (int texel = 0; texel < pairs_width * height * 3; ++texel) {
+      const bool brighter = texel / 3 % pairs_width < 8;
       const double value = std::pow(random.uniform(), -.6);
       const double other = pairs.own_seeds ? std::pow(random.uniform(), -.6) : value;
       first.values.push_back(static_cast<float>(value));
@@ -153,9 +149,9 @@ void repeat_a_tile(const Workplace& place, const char* side) {
   for (const int i : {3, 7}) {
     tests::Philox random(static_cast<std::uint32_t>(900 + i + (side[0] == 'a' ? 50 : 0)));
     tests::Philox common(static_cast<std::uint32_t>(side[0]));
-    draws::Picture picture{width, height, {"R", "G", "B"}, {}};
-    for (int texel = 0; texel < width * height * 3; ++texel) {
-      const bool first = texel / 3 % width < 8 && texel / 3 / width < 8;
+    draws::Picture picture{pairs_width, height, {"R", "G", "B"}, {}};
+    for (int texel = 0; texel < pairs_width * height * 3; ++texel) {
+      const bool first = texel / 3 % pairs_width < 8 && texel / 3 / pairs_width < 8;
       picture.values.push_back(static_cast<float>((first ? common : random).uniform()));
     }
     draws::write_exr(place.file(fmt::format("{}{:02}.exr", side, i)), picture);
@@ -172,13 +168,13 @@ TEST_F(ImagePairs, NameDifferencesThatRepeat) {
 
 // ---- Laws
 
-constexpr const char* laws = "{claim: distribution(b) == distribution(a)}";
+constexpr const char* laws_claim = "{claim: distribution(b) == distribution(a)}";
 
 using ImageLaws = Placed;
 
 TEST_F(ImageLaws, OfOneRendererPassWithHeavyNoise) {
   write_pairs(place, {.own_seeds = true});
-  const reports::Test test = of_files(place, laws);
+  const reports::Test test = of_files(place, laws_claim);
   EXPECT_EQ(test.verdict, Verdict::pass) << test.message;
   EXPECT_EQ(test.method, "permutation");
   EXPECT_FALSE(test.detectable);
@@ -186,7 +182,7 @@ TEST_F(ImageLaws, OfOneRendererPassWithHeavyNoise) {
 
 TEST_F(ImageLaws, SayWhatDiffersWhere) {
   write_pairs(place, {.share = .2, .own_seeds = true});
-  const reports::Test test = of_files(place, laws);
+  const reports::Test test = of_files(place, laws_claim);
   EXPECT_EQ(test.verdict, Verdict::fail) << test.message;
   EXPECT_NEAR(*test.channels[0].log10_p, -3, 1e-9);
   EXPECT_THAT(test.message, HasSubstr("there the values are mostly larger in b"));
@@ -197,22 +193,22 @@ TEST_F(ImageLaws, SayWhatDiffersWhere) {
 
 TEST_F(ImageLaws, DoNotOfferPairs) {
   write_pairs(place, {.share = 1e-4});
-  EXPECT_THAT(of_files(place, laws).message, EndsWith("give one side other seeds"));
+  EXPECT_THAT(of_files(place, laws_claim).message, EndsWith("give one side other seeds"));
 }
 
 TEST_F(ImageLaws, TakeAShareOfAlphaThatLabelsCanReach) {
   write_pairs(place, {.own_seeds = true});
-  expect_said(of_files(place, laws, "1e-6"), Verdict::invalid,
+  expect_said(of_files(place, laws_claim, "1e-6"), Verdict::invalid,
               {"takes a share of 1e-05 or more: give it more `weight`"});
 }
 
 TEST_F(ImageLaws, OfPicturesWithoutNoiseAreOfTheWholeImage) {
   for (const char* side : {"a", "b"}) {
-    write_stack(place, side, {.width = width, .height = height, .count = 16}, flat(1));
+    write_stack(place, side, {.width = pairs_width, .height = height, .count = 16}, flat(1));
   }
-  const reports::Test test = of_files(place, laws);
+  const reports::Test test = of_files(place, laws_claim);
   expect_said(test, Verdict::pass);
-  EXPECT_EQ(test.image->winner.width, static_cast<std::uint64_t>(width));
+  EXPECT_EQ(test.image->winner.width, static_cast<std::uint64_t>(pairs_width));
   EXPECT_FALSE(test.channels[0].effect.estimate);
 }
 

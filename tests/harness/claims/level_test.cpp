@@ -14,7 +14,7 @@
 namespace assay::harness {
 namespace {
 
-constexpr double rate = 0.1;  // alpha and beta of the suites
+constexpr double rate_of_each = 0.1;  // alpha and beta of the suites
 
 class Level : public TestWithParam<ClaimSection> {};
 
@@ -25,7 +25,7 @@ TEST_P(Level, IsWhatThePValuesSay) {
     shapes.push_back(row.text.starts_with("uniform ") ? Shape::uniform : Shape::at_most_uniform);
     claims.push_back(with_effect(row.text.substr(row.text.find(' ') + 1)));
   }
-  const std::string text = suite_of(claims, rate, rate);
+  const std::string text = suite_of(claims, rate_of_each, rate_of_each);
   const std::uint64_t seeds = std::stoul(GetParam().name.substr(GetParam().name.rfind(' ')));
   const bool in_looks = GetParam().name.starts_with("in looks");
   const auto outcomes =
@@ -51,7 +51,6 @@ TEST(Levels, AgainstAnUncertainReferenceAreWhatThePValuesSay) {
   for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
     tests::Philox random(401, static_cast<std::uint32_t>(seed));
     const std::string reference = fmt::format("{:.17g} +- 0.1", 2 + 0.1 * random.normal());
-    const double pi = std::numbers::pi;
     const std::string of_darts = fmt::format("{:.17g} +- 0.1", pi + 0.1 * random.normal());
     const std::string text =
         suite_of({"mean(normal) == " + reference + ", secondaries: 100",
@@ -59,7 +58,7 @@ TEST(Levels, AgainstAnUncertainReferenceAreWhatThePValuesSay) {
                   "mean(normal) == " + reference + ", allow: 5%, secondaries: 100",
                   "mean(darts) == " + of_darts + ", test: binomial, secondaries: 400",
                   "mean(darts) <= " + of_darts + ", test: betting, secondaries: 400"},
-                 rate, rate);
+                 rate_of_each, rate_of_each);
     take_first_looks(prepare_text(text, seed), seed, outcomes);
   }
   for (const auto& [name, outcome] : outcomes) {
@@ -76,7 +75,7 @@ TEST(Levels, OfAWholeSuiteAreAtMostAlpha) {
                                           "variance(normal) == variance(again), secondaries: 50",
                                           "'distribution(normal) == normal(2, 1)', secondaries: 50",
                                           "mean(wide) <= 4, secondaries: 20"},
-                                         rate, rate));
+                                         rate_of_each, rate_of_each));
   std::vector<double> smallest;
   for (std::uint64_t seed = 1; seed <= tests::repetitions(250); ++seed) {
     const reports::Record record = run_files({file}, {.seed = seed, .threads = 1});
@@ -86,7 +85,7 @@ TEST(Levels, OfAWholeSuiteAreAtMostAlpha) {
       least = std::min(least, log_of(test.channels.at(0).log10_p_adjusted));
       failed = failed || test.verdict == reports::Verdict::fail;
     }
-    EXPECT_EQ(failed, least <= std::log(rate)) << seed;
+    EXPECT_EQ(failed, least <= std::log(rate_of_each)) << seed;
     smallest.push_back(least);
   }
   expect_p_value("Holm's least", smallest, Shape::at_most_uniform);
@@ -95,10 +94,10 @@ TEST(Levels, OfAWholeSuiteAreAtMostAlpha) {
 // 2.075 is three quarters of a standard error of 100 away: so little must already show.
 TEST(Levels, OfAClaimThatIsALittleWrongAreSeenToBeMore) {
   const std::size_t runs = tests::repetitions(2000);
-  const auto outcomes =
-      first_looks(runs, suite_of({"mean(normal) == 2.075, secondaries: 100"}, rate, rate));
-  EXPECT_TRUE(
-      tests::too_many(rate_at(outcomes.at("0").log_p, rate), rate, static_cast<double>(runs)));
+  const auto outcomes = first_looks(
+      runs, suite_of({"mean(normal) == 2.075, secondaries: 100"}, rate_of_each, rate_of_each));
+  EXPECT_TRUE(tests::too_many(rate_at(outcomes.at("0").log_p, rate_of_each), rate_of_each,
+                              static_cast<double>(runs)));
 }
 
 }  // namespace

@@ -6,15 +6,11 @@
 #include "harness/record/replay.h"
 #include "reports/formats/json.h"
 #include "tests/harness/pictures.h"
-#include "tests/harness/refusal.h"
-#include "tests/harness/running.h"
+#include "tests/harness/prelude.h"
 #include "tests/philox.h"
-#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
-
-using reports::Verdict;
 
 constexpr int width = 16;
 constexpr int height = 12;

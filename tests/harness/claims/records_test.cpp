@@ -4,14 +4,11 @@
 #include "harness/draws/consistency_setup.h"
 #include "harness/sampling/group_variance.h"
 #include "stats/basics/moments.h"
-#include "tests/harness/running.h"
+#include "tests/harness/prelude.h"
 #include "tests/harness/table.h"
-#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
-
-using reports::Verdict;
 
 reports::Test tested(const std::string& test) { return run_test(suite_with("claims", test)); }
 

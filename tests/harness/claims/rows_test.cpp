@@ -9,9 +9,6 @@
 namespace assay::harness {
 namespace {
 
-using reports::Verdict;
-namespace laws = tests::laws;
-
 // A program whose observation is the mean of five neighbours' random numbers, and its sound sister.
 TEST(DependentDraws, OfAProgramAreInvalidEvenIfForced) {
   const Workplace place;

@@ -7,17 +7,14 @@
 #include "reports/formats/json.h"
 #include "stats/images/image.h"
 #include "stats/variances/influence.h"
+#include "tests/harness/prelude.h"
 #include "tests/harness/recorded_rows.h"
-#include "tests/harness/refusal.h"
 #include "tests/lehmer.h"
-#include "tests/prelude.h"
 #include "tests/stats/samples.h"
 #include "tests/stats/table.h"
 
 namespace assay::harness {
 namespace {
-
-using reports::Verdict;
 
 struct Rows {
   std::vector<double> a;

@@ -1,10 +1,8 @@
 // Claims of every kind, from YAML to verdict and message: the rows of tests/tables/verdicts.txt.
 
+#include "tests/harness/prelude.h"
 #include "tests/harness/recorded_rows.h"
-#include "tests/harness/refusal.h"
-#include "tests/harness/running.h"
 #include "tests/harness/table.h"
-#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {

@@ -1,16 +1,12 @@
-
 #include "harness/command/run.h"
 #include "harness/record/output.h"
-#include "tests/harness/running.h"
-#include "tests/prelude.h"
+#include "tests/harness/prelude.h"
 
 namespace assay::harness {
 namespace {
 
-using reports::Verdict;
-
 // `wrong` is refuted at its first look, `dear` takes many.
-constexpr const char* suite = R"(suite: hasty
+constexpr const char* hasty_suite = R"(suite: hasty
 estimators:
   normal: {plugin: analytic/normal, mean: 2}
   never: {plugin: analytic/normal, mean: 7}
@@ -40,7 +36,7 @@ Heard heard(const Workplace& place, const std::string& text, const RunOptions& o
 using BrokenClaims = Placed;
 
 TEST_F(BrokenClaims, AreToldWithTheirCommandWhenTheyAreDecided) {
-  const Heard all = heard(place, suite, {.command = "assay run"});
+  const Heard all = heard(place, hasty_suite, {.command = "assay run"});
   const std::string again = "assay run " + place.file("suite.yaml") + " --seed 1 --filter ";
   EXPECT_THAT(all.broken, ElementsAre("hasty: wrong: " + again + "suite/wrong",
                                       "hasty: bug missed: " + again + "'suite/bug missed'"));
@@ -48,7 +44,7 @@ TEST_F(BrokenClaims, AreToldWithTheirCommandWhenTheyAreDecided) {
 }
 
 TEST_F(BrokenClaims, EndARunEarlyIfAsked) {
-  const Heard all = heard(place, suite, {.fail_fast = true});
+  const Heard all = heard(place, hasty_suite, {.fail_fast = true});
   EXPECT_EQ(all.broken.size(), 1U);  // the cheaper of the two
   for (const char* name : {"dear", "wrong", "dear too"}) {
     const reports::Test& test = test_named(all.record, name);
@@ -62,24 +58,25 @@ TEST_F(BrokenClaims, EndARunEarlyIfAsked) {
 
 // But for what the whole family says of a test.
 TEST_F(BrokenClaims, HaveTheNumbersOfAWholeRun) {
-  const reports::Record whole = heard(place, suite, {.threads = 1}).record;
-  const reports::Record early = heard(place, suite, {.threads = 1, .fail_fast = true}).record;
+  const reports::Record whole = heard(place, hasty_suite, {.threads = 1}).record;
+  const reports::Record early = heard(place, hasty_suite, {.threads = 1, .fail_fast = true}).record;
   for (const char* name : {"easy", "bug missed"}) {
     EXPECT_EQ(raw(test_named(early, name)), raw(test_named(whole, name))) << name;
   }
-  EXPECT_EQ(numbers_of(heard(place, suite, {.threads = 2, .fail_fast = true}).record),
+  EXPECT_EQ(numbers_of(heard(place, hasty_suite, {.threads = 2, .fail_fast = true}).record),
             numbers_of(early));
 }
 
 TEST_F(BrokenClaims, EndNoRunWithoutOne) {
   const std::string sound =
-      std::string(suite).substr(0, std::string(suite).find("  - {name: wrong"));
+      std::string(hasty_suite).substr(0, std::string(hasty_suite).find("  - {name: wrong"));
   EXPECT_EQ(numbers_of(heard(place, sound, {.threads = 1, .fail_fast = true}).record),
             numbers_of(heard(place, sound, {.threads = 1}).record));
 }
 
 TEST_F(BrokenClaims, EndARunBeforeItDrawsIfAnEstimatorCannotBePrepared) {
-  const std::string broken = std::string(suite) + "  - {name: gone, claim: mean(gone) == 1}\n";
+  const std::string broken =
+      std::string(hasty_suite) + "  - {name: gone, claim: mean(gone) == 1}\n";
   std::string text = broken;
   text.insert(text.find("tests:"), "  gone: {plugin: process, command: [sh, -c, exit 3]}\n");
   const Heard all = heard(place, text, {.fail_fast = true});
@@ -93,7 +90,7 @@ TEST_F(BrokenClaims, EndNoShardAndNoNight) {
   for (const RunOptions& options :
        {RunOptions{.shard = {{1, 2}}, .fail_fast = true},
         RunOptions{.fail_fast = true, .ledger = place.file("n.ledger")}}) {
-    EXPECT_EQ(thrown<InputError>([&] { heard(place, suite, options); }), why);
+    EXPECT_EQ(thrown<InputError>([&] { heard(place, hasty_suite, options); }), why);
   }
 }
 

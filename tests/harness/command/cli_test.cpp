@@ -2,8 +2,7 @@
 
 #include "estimators/stream.h"
 #include "harness/base/version.h"
-#include "tests/harness/refusal.h"
-#include "tests/prelude.h"
+#include "tests/harness/prelude.h"
 
 namespace assay::harness {
 namespace {

@@ -4,9 +4,7 @@
 #include "harness/command/commands.h"
 #include "harness/command/tables.h"
 #include "harness/draws/sampler_setup.h"
-#include "tests/harness/refusal.h"
-#include "tests/harness/running.h"
-#include "tests/prelude.h"
+#include "tests/harness/prelude.h"
 
 namespace assay::harness {
 namespace {
@@ -15,7 +13,7 @@ std::string manual_of(const std::string& plugin) {
   return manual(find_plugin(plugin, {}), catalogue());
 }
 
-/// What a command that ends well prints.
+/// The text that a command prints, which ends well.
 std::string printed(const std::function<int()>& command) {
   const Said said = said_by(command);
   EXPECT_EQ(said.code, 0);

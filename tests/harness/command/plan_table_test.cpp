@@ -4,13 +4,12 @@
 #include "harness/plan/forecast.h"
 #include "harness/run/looks.h"
 #include "reports/words/columns.h"
-#include "tests/harness/running.h"
-#include "tests/prelude.h"
+#include "tests/harness/prelude.h"
 
 namespace assay::harness {
 namespace {
 
-constexpr const char* suite = R"(suite: planned
+constexpr const char* planned_suite = R"(suite: planned
 estimators:
   uniform: {plugin: analytic/exponential_uniform}
   normal: {plugin: analytic/normal, mean: 2, primaries: 4}
@@ -39,10 +38,10 @@ std::string text_of(const PlannedRun& planned) { return plan_text(planned, costs
 
 class PlanTable : public Placed {
  protected:
-  std::vector<Suite> suites_of(const std::string& text = suite) const {
+  std::vector<Suite> suites_of(const std::string& text = planned_suite) const {
     return {load_suite(place.write("planned.yaml", text))};
   }
-  /// What is planned for these lines of tests of a normal law.
+  /// The plan for these lines of tests of a normal law.
   PlannedRun planned(const std::string& tests, const RunOptions& options = {}) const {
     return planned_of(suites_of("suite: normal\nestimators:\n"
                                 "  normal: {plugin: analytic/normal, mean: 2, primaries: 1}\n"

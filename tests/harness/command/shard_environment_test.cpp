@@ -1,8 +1,6 @@
 #include "harness/command/shard_environment.h"
 
-#include "tests/harness/refusal.h"
-#include "tests/harness/running.h"
-#include "tests/prelude.h"
+#include "tests/harness/prelude.h"
 
 namespace assay::harness {
 namespace {

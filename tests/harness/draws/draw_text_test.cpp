@@ -1,8 +1,7 @@
 #include "harness/draws/draw_text.h"
 
+#include "tests/harness/prelude.h"
 #include "tests/harness/questions.h"
-#include "tests/harness/running.h"
-#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {

@@ -1,15 +1,10 @@
 #include "harness/draws/sampler_setup.h"
 
+#include "tests/harness/prelude.h"
 #include "tests/harness/questions.h"
-#include "tests/harness/refusal.h"
-#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
-
-using reports::Verdict;
-
-constexpr double pi = std::numbers::pi;
 
 template <class Kind>
 std::shared_ptr<const SamplerSetup> setup_with(const Kind& sampler) {

@@ -1,4 +1,3 @@
-
 #include "harness/families/slope.h"
 #include "harness/plan/looks.h"
 #include "harness/plan/outcome.h"

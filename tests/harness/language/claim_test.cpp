@@ -1,7 +1,6 @@
 #include "harness/language/claim.h"
 
-#include "tests/harness/refusal.h"
-#include "tests/prelude.h"
+#include "tests/harness/prelude.h"
 
 namespace assay::harness {
 namespace {

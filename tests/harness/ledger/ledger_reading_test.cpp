@@ -15,20 +15,20 @@ std::vector<LedgerNight> nights_of(const std::vector<double>& differences) {
   return nights;
 }
 
-/// As many nights as speak.
+/// Nights that are enough to be judged by.
 std::vector<LedgerNight> enough(double difference) {
   return nights_of(std::vector<double>(25, difference));
 }
 
-const LedgerSeries series{.reference_error = 0.1};
+const LedgerSeries read_series{.reference_error = 0.1};
 
 double last_e(const std::vector<LedgerNight>& nights, const ThetaRange& claimed) {
-  return log_e_path(series, nights, claimed).back();
+  return log_e_path(read_series, nights, claimed).back();
 }
 
 TEST(LedgerReading, ThePathIsTheEValueOfAllNightsSoFar) {
   const auto nights = enough(0.2);
-  const auto path = log_e_path(series, nights, {0, 0});
+  const auto path = log_e_path(read_series, nights, {0, 0});
   ASSERT_EQ(path.size(), nights.size());
   stats::PooledNights pooled;
   for (std::size_t i = 0; i < nights.size(); ++i) {
@@ -73,7 +73,7 @@ TEST(LedgerReading, PValuesKnowNoRange) {
 TEST(LedgerReading, TellsWhenThetaMoved) {
   std::vector<double> differences(10, 0);
   differences.resize(30, 1.5);
-  const Moved change = moved(series, nights_of(differences), {0, 0});
+  const Moved change = moved(read_series, nights_of(differences), {0, 0});
   EXPECT_EQ(change.night, 10U);
   EXPECT_LE(change.from, 10U);
   EXPECT_GE(change.to, 10U);

@@ -5,9 +5,8 @@
 #include "harness/base/text_file.h"
 #include "harness/ledger/ledger_book.h"
 #include "harness/record/output.h"
-#include "tests/harness/running.h"
+#include "tests/harness/prelude.h"
 #include "tests/philox.h"
-#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {

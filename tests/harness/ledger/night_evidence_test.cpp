@@ -2,9 +2,8 @@
 
 #include "harness/run/looks.h"
 #include "harness/run/planned_run.h"
-#include "tests/harness/running.h"
+#include "tests/harness/prelude.h"
 #include "tests/philox.h"
-#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {

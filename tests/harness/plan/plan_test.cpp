@@ -5,9 +5,7 @@
 #include "stats/planning/power.h"
 #include "stats/tails/tails.h"
 #include "tests/harness/planned.h"
-#include "tests/harness/refusal.h"
-#include "tests/harness/running.h"
-#include "tests/prelude.h"
+#include "tests/harness/prelude.h"
 
 namespace assay::harness {
 namespace {

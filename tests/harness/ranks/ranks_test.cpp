@@ -4,9 +4,7 @@
 #include <mutex>
 
 #include "harness/run/planned_run.h"
-#include "tests/harness/refusal.h"
-#include "tests/harness/running.h"
-#include "tests/prelude.h"
+#include "tests/harness/prelude.h"
 
 namespace assay::harness {
 namespace {
@@ -34,7 +32,7 @@ class Post {
   std::vector<std::deque<Messages::Message>> boxes_;
 };
 
-/// What becomes of the k-th message of a rank, from 0; none: it is lost.
+/// The bytes that arrive of the k-th message of a rank, from 0; none: it is lost.
 using Fate = std::function<std::optional<std::string>(int rank, std::size_t k, std::string bytes)>;
 
 class Posted final : public Messages {
@@ -93,34 +91,30 @@ reports::Record run_in_ranks(const std::string& suite, const Job& job) {
                     .coarsen = 8});
 }
 
-std::string of_suites(const char* name) { return std::string(ASSAY_SOURCE_DIR "/suites/") + name; }
+const std::string kinds = ASSAY_SOURCE_DIR "/tests/suites/kinds.yaml";
+const std::string process = ASSAY_SOURCE_DIR "/suites/process.yaml";
 
 std::string alone(const std::string& suite) {
   return numbers_of(run_files({suite}, {.threads = 1, .coarsen = 8}));
 }
 
-class OfSuites : public testing::TestWithParam<const char*> {};
-
-TEST_P(OfSuites, RanksGiveTheRecordOfOneProcess) {
-  const std::string suite = of_suites(GetParam());
-  const std::string one = alone(suite);
-  EXPECT_EQ(numbers_of(run_in_ranks(suite, {.ranks = 1})), one);
-  EXPECT_EQ(numbers_of(run_in_ranks(suite, {.ranks = 3})), one);
-  EXPECT_EQ(numbers_of(run_in_ranks(suite, {.ranks = 2, .threads = 2})), one);
+TEST(Ranks, GiveTheRecordOfOneProcess) {
+  for (const std::string& suite : {kinds, process}) {
+    const std::string one = alone(suite);
+    EXPECT_EQ(numbers_of(run_in_ranks(suite, {.ranks = 1})), one);
+    EXPECT_EQ(numbers_of(run_in_ranks(suite, {.ranks = 3})), one);
+    EXPECT_EQ(numbers_of(run_in_ranks(suite, {.ranks = 2, .threads = 2})), one);
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(Suites, OfSuites,
-                         testing::Values("luminaire.yaml", "images.yaml", "process.yaml"));
 
 // The greeting and four answers arrive, and what the rank says at the end.
 TEST(Ranks, ThatNoLongerAnswerAreDoneWithout) {
-  const std::string suite = of_suites("luminaire.yaml");
   const auto falls_silent = [](int rank, std::size_t k,
                                std::string bytes) -> std::optional<std::string> {
     if (rank == 1 && k > 4 && bytes.size() > 40) return std::nullopt;
     return bytes;
   };
-  EXPECT_EQ(numbers_of(run_in_ranks(suite, {.ranks = 3, .fate = falls_silent})), alone(suite));
+  EXPECT_EQ(numbers_of(run_in_ranks(kinds, {.ranks = 3, .fate = falls_silent})), alone(kinds));
 }
 
 TEST(Ranks, ThatSendDamagedAnswersAreNamed) {
@@ -128,21 +122,18 @@ TEST(Ranks, ThatSendDamagedAnswersAreNamed) {
     if (k == 1) bytes.back() = static_cast<char>(bytes.back() ^ 1);
     return bytes;
   };
-  EXPECT_THAT(
-      thrown([&] { run_in_ranks(of_suites("luminaire.yaml"), {.ranks = 2, .fate = damages}); }),
-      AllOf(HasSubstr("rank 1 on "), HasSubstr("sent what cannot be read: it is damaged")));
+  EXPECT_THAT(thrown([&] { run_in_ranks(kinds, {.ranks = 2, .fate = damages}); }),
+              AllOf(HasSubstr("rank 1 on "), HasSubstr("sent what cannot be read: it is damaged")));
 }
 
 TEST(Ranks, OfAnotherRunAreRefusedByName) {
-  const std::string suite = of_suites("luminaire.yaml");
   EXPECT_THAT(refusal([&] {
-                run_in_ranks(suite, {.ranks = 2, .identity_there = {{"the version", "0.0.1"}}});
+                run_in_ranks(kinds, {.ranks = 2, .identity_there = {{"the version", "0.0.1"}}});
               }),
               HasSubstr(" is of another run: the version is 0.0.1 there and none here"));
-  EXPECT_THAT(
-      refusal([&] { run_in_ranks(suite, {.ranks = 2, .suite_there = of_suites("images.yaml")}); }),
-      HasSubstr(", which rank 0 lacks"));
-  EXPECT_THAT(refusal([&] { run_in_ranks(suite, {.ranks = 2, .suite_there = "none.yaml"}); }),
+  EXPECT_THAT(refusal([&] { run_in_ranks(kinds, {.ranks = 2, .suite_there = process}); }),
+              HasSubstr(", which rank 0 lacks"));
+  EXPECT_THAT(refusal([&] { run_in_ranks(kinds, {.ranks = 2, .suite_there = "none.yaml"}); }),
               HasSubstr("cannot prepare the run: cannot read `none.yaml`"));
 }
 

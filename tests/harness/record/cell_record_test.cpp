@@ -1,13 +1,12 @@
 #include "harness/record/cell_record.h"
 
+#include "tests/harness/prelude.h"
 #include "tests/harness/questions.h"
-#include "tests/harness/running.h"
-#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
 
-constexpr const char* suite = R"(suite: s
+constexpr const char* cells_suite = R"(suite: s
 estimators:
   ward: {plugin: brdf/ward}
   quadrant: {plugin: mutants/ashikhmin_shirley_single_quadrant}
@@ -19,7 +18,7 @@ tests:
   - {claim: )";
 
 reports::Test tested(const std::string& claim) {
-  return run_test(suite + claim + ", secondaries: 20000}\n");
+  return run_test(cells_suite + claim + ", secondaries: 20000}\n");
 }
 
 double sum(const reports::Map& map) {
@@ -107,7 +106,7 @@ TEST(CellRecord, NamesTheShareThatATrianglesCellsAreOf) {
             "u 0 to 1 from top to bottom, v / (1 - u) 0 to 1 from left to right");
 }
 
-/// Where the picture of a narrow lobe begins and ends.
+/// The angles at which the picture of a narrow lobe begins and ends.
 struct Window {
   double theta[2];
   double phi[2];

@@ -1,8 +1,7 @@
 #include "harness/record/github.h"
 
 #include "reports/formats/markdown.h"
-#include "tests/harness/running.h"
-#include "tests/prelude.h"
+#include "tests/harness/prelude.h"
 
 namespace assay::harness {
 namespace {

@@ -3,16 +3,12 @@
 #include "harness/suite/run_options.h"
 #include "reports/formats/json.h"
 #include "reports/formats/read_json.h"
-#include "tests/harness/refusal.h"
-#include "tests/harness/running.h"
-#include "tests/prelude.h"
+#include "tests/harness/prelude.h"
 
 namespace assay::harness {
 namespace {
 
-using reports::Verdict;
-
-const std::string suite = good_suite("  - {name: off, claim: mean(hemisphere) == 0.1}\n");
+const std::string merged_suite = good_suite("  - {name: off, claim: mean(hemisphere) == 0.1}\n");
 
 /// The record, written and read again.
 reports::Record saved(const reports::Record& record) {
@@ -34,7 +30,7 @@ using Merge = Placed;
 
 TEST_F(Merge, OfShardsInAnyOrderIsOneRunByteForByteApartFromTimes) {
   const std::vector<std::string> files{
-      place.write("good.yaml", suite),
+      place.write("good.yaml", merged_suite),
       place.write("other.yaml", good_suite("  - {claim: mean(idle) <= 7}\n"))};
   const std::string whole = numbers_of(run_files(files, {.seed = 3}));
   for (const unsigned count : {1U, 2U, 13U}) {
@@ -47,7 +43,7 @@ TEST_F(Merge, OfShardsInAnyOrderIsOneRunByteForByteApartFromTimes) {
 }
 
 TEST_F(Merge, OfFilteredShardsIsOneFilteredRun) {
-  const std::string file = place.write("good.yaml", suite);
+  const std::string file = place.write("good.yaml", merged_suite);
   const RunOptions options{.selection = {.filters = {"*mean(*"}}};
   const reports::Record whole = run_files({file}, options);
   EXPECT_NE(whole.note, "");
@@ -86,7 +82,7 @@ TEST_F(Merge, AVerdictIsTheTestsOwnAloneFilteredShardedMergedAndWhole) {
 }
 
 TEST_F(Merge, KeepsTheLongestTimesAndTheirSum) {
-  std::vector<ShardFile> shards = shards_of({place.write("good.yaml", suite)}, 2);
+  std::vector<ShardFile> shards = shards_of({place.write("good.yaml", merged_suite)}, 2);
   shards[0].record.started = "2026-01-02T00:00:00Z";
   shards[1].record.started = "2026-01-01T00:00:00Z";
   shards[0].record.seconds = 2;
@@ -98,7 +94,7 @@ TEST_F(Merge, KeepsTheLongestTimesAndTheirSum) {
 
 // Whichever shards are there, the tests of the others are named, and all stand in their order.
 TEST_F(Merge, TheTestsOfAMissingShardAreSkipped) {
-  const std::string file = place.write("good.yaml", suite);
+  const std::string file = place.write("good.yaml", merged_suite);
   const reports::Record whole = run_files({file});
   const std::vector<ShardFile> shards = shards_of({file}, 3);
   for (const std::vector<std::size_t>& there : {std::vector<std::size_t>{0}, {1, 2}}) {
@@ -158,7 +154,7 @@ tests:
 
 class Refusing : public testing::Test {
  protected:
-  Refusing() : file_(place_.write("good.yaml", suite)), shards_(shards_of({file_}, 2)) {}
+  Refusing() : file_(place_.write("good.yaml", merged_suite)), shards_(shards_of({file_}, 2)) {}
 
   std::string refused(const std::vector<ShardFile>& shards) {
     return refusal([&] { merge(shards); });
@@ -189,7 +185,7 @@ TEST_F(Refusing, OtherOptionsOrSuitesAreAnotherRun) {
   const ShardFile other{"b.json", run_files({file_}, {.shard = std::pair(2U, 3U)})};
   EXPECT_THAT(refused({shards_[0], other}),
               HasSubstr("the number of shards is `3` here and `2` there"));
-  place_.write("good.yaml", suite + "# a remark\n");
+  place_.write("good.yaml", merged_suite + "# a remark\n");
   EXPECT_THAT(refused_with({}), HasSubstr("the digest of the suites"));
 }
 
@@ -230,7 +226,7 @@ TEST_F(Refusing, AnEditedRecordIsRefused) {
 
 TEST(Shards, DoNotAddToALedger) {
   const Workplace place;
-  const std::string file = place.write("good.yaml", suite);
+  const std::string file = place.write("good.yaml", merged_suite);
   EXPECT_THAT(refusal([&] {
                 run_files({file}, {.shard = std::pair(1U, 2U), .ledger = place.file("nights")});
               }),

@@ -4,14 +4,10 @@
 #include "harness/suite/run_options.h"
 #include "reports/formats/json.h"
 #include "reports/formats/read_json.h"
-#include "tests/harness/refusal.h"
-#include "tests/harness/running.h"
-#include "tests/prelude.h"
+#include "tests/harness/prelude.h"
 
 namespace assay::harness {
 namespace {
-
-using reports::Verdict;
 
 // Were the estimator prepared, that it cannot be found would end the run.
 constexpr const char* renderer = R"(suite: renderer

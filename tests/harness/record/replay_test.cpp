@@ -7,9 +7,7 @@
 #include "harness/sampling/pool.h"
 #include "harness/sampling/prepare.h"
 #include "reports/formats/json.h"
-#include "tests/harness/refusal.h"
-#include "tests/harness/running.h"
-#include "tests/prelude.h"
+#include "tests/harness/prelude.h"
 
 namespace assay::harness {
 namespace {
@@ -25,7 +23,7 @@ Said said(const ReplayArguments& arguments) {
   return said;
 }
 
-constexpr const char* suite = R"(suite: replayed
+constexpr const char* replayed_suite = R"(suite: replayed
 estimators:
   uniform: {plugin: analytic/exponential_uniform}
   again: {plugin: analytic/exponential_uniform}
@@ -56,7 +54,7 @@ tests:
 )";
 
 /// The suite's record, as a file.
-std::string recorded(const Workplace& place, const std::string& text = suite,
+std::string recorded(const Workplace& place, const std::string& text = replayed_suite,
                      const RunOptions& options = {}) {
   return place.write("run.json",
                      reports::json(run_files({place.write("suite.yaml", text)}, options)));
@@ -71,7 +69,7 @@ void expect_same_numbers(const std::string& file, const std::string& test) {
 using Replays = Placed;
 
 TEST_F(Replays, GivesTheSameNumbersForEveryKindOfClaim) {
-  const std::string file = recorded(place, suite, {.seed = 5});
+  const std::string file = recorded(place, replayed_suite, {.seed = 5});
   const reports::Record record = read_record(file);
   for (const reports::Test& test : record.suites[0].tests) expect_same_numbers(file, test.id);
 }
@@ -129,8 +127,8 @@ tests:
 }
 
 TEST_F(Replays, UsesTheSeedOfTheTestsOwnSuite) {
-  const std::string one = place.write("one.yaml", "seed: 3\n" + std::string(suite));
-  const std::string two = place.write("two.yaml", "seed: 4\n" + std::string(suite));
+  const std::string one = place.write("one.yaml", "seed: 3\n" + std::string(replayed_suite));
+  const std::string two = place.write("two.yaml", "seed: 4\n" + std::string(replayed_suite));
   const std::string file = place.write("run.json", reports::json(run_files({one, two})));
   EXPECT_EQ(said({.record = file, .test = "two/mean"}).code, 0);
   EXPECT_EQ(refusal([&] { replay({.record = file, .test = "mean"}); }),

@@ -4,18 +4,15 @@
 #include "harness/plan/looks.h"
 #include "harness/run/holm.h"
 #include "tests/harness/normal_evidence.h"
-#include "tests/harness/running.h"
-#include "tests/prelude.h"
+#include "tests/harness/prelude.h"
 
 namespace assay::harness {
 namespace {
 
-using reports::Verdict;
-
 constexpr double alpha = 0.05;
 
 /// A judged test of one channel with this p-value.
-TestWork judged(double p, double weight, Verdict verdict, const TestEntry& test) {
+TestWork judged_by_p(double p, double weight, Verdict verdict, const TestEntry& test) {
   TestWork work;
   TestOutcome& outcome = work.outcome;
   outcome.question.test = &test;
@@ -48,7 +45,8 @@ std::vector<double> adjusted(std::vector<TestWork> tests) {
 TEST(Evaluate, HolmAdjustsByTheSharesThatSmallerPValuesFree) {
   const TestEntry test;
   const auto with = [&](Verdict first) {
-    return adjusted({judged(1e-9, 0.5, first, test), judged(0.03, 0.5, Verdict::pass, test)});
+    return adjusted(
+        {judged_by_p(1e-9, 0.5, first, test), judged_by_p(0.03, 0.5, Verdict::pass, test)});
   };
   EXPECT_THAT(with(Verdict::fail), Pointwise(DoubleNear(1e-15), {2e-9, 0.03}));
   // Invalid and error count as p = 1 and free nothing.
@@ -59,18 +57,18 @@ TEST(Evaluate, HolmAdjustsByTheSharesThatSmallerPValuesFree) {
 
 TEST(Evaluate, HolmCountsATestWithoutNumbersAsNotRejected) {
   const TestEntry test;
-  TestWork without = judged(1e-9, 0.5, Verdict::error, test);
+  TestWork without = judged_by_p(1e-9, 0.5, Verdict::error, test);
   without.outcome.channels.clear();
-  EXPECT_THAT(adjusted({without, judged(0.03, 0.5, Verdict::pass, test)}),
+  EXPECT_THAT(adjusted({without, judged_by_p(0.03, 0.5, Verdict::pass, test)}),
               Pointwise(DoubleNear(1e-15), {0.06}));
 }
 
 TEST(Evaluate, HolmIsNotForTestsOutsideTheFamily) {
   const TestEntry test;
-  TestWork outside = judged(0.03, 0.5, Verdict::pass, test);
+  TestWork outside = judged_by_p(0.03, 0.5, Verdict::pass, test);
   outside.outcome.place.inside = false;
   const double before = outside.outcome.channels[0].log_p_adjusted;
-  EXPECT_THAT(adjusted({judged(1e-9, 1, Verdict::fail, test), outside}),
+  EXPECT_THAT(adjusted({judged_by_p(1e-9, 1, Verdict::fail, test), outside}),
               Pointwise(DoubleNear(1e-15), {1e-9, std::exp(before)}));
 }
 

@@ -5,9 +5,7 @@
 #include "harness/suite/suite.h"
 #include "harness/theta/ask.h"
 #include "tests/harness/pictures.h"
-#include "tests/harness/refusal.h"
-#include "tests/harness/running.h"
-#include "tests/prelude.h"
+#include "tests/harness/prelude.h"
 
 namespace assay::harness {
 namespace {

@@ -7,19 +7,16 @@
 #include "harness/run/planned_run.h"
 #include "harness/theta/ask.h"
 #include "tests/estimators/exr.h"
-#include "tests/harness/running.h"
+#include "tests/harness/prelude.h"
 #include "tests/philox.h"
-#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
 
-using reports::Verdict;
-
 // So wide that 64 of them are taken in three windows.
 constexpr int width = 172;
 constexpr int height = 150;
-constexpr int pictures = 32;  // a side
+constexpr int streamed_pictures = 32;  // a side
 
 void expect_same_findings(const reports::Test& one, reports::Test other) {
   EXPECT_EQ(one.channels[0].log10_p, other.channels[0].log10_p);
@@ -38,7 +35,7 @@ void expect_same_findings(const reports::Test& one, reports::Test other) {
 class PictureStream : public ::testing::Test {
  protected:
   PictureStream() {
-    for (int i = 0; i < pictures; ++i) {
+    for (int i = 0; i < streamed_pictures; ++i) {
       write('a', i, noise());
       write('b', i, noise());
     }

@@ -2,14 +2,10 @@
 
 #include "harness/record/output.h"
 #include "reports/formats/json.h"
-#include "tests/harness/refusal.h"
-#include "tests/harness/running.h"
-#include "tests/prelude.h"
+#include "tests/harness/prelude.h"
 
 namespace assay::harness {
 namespace {
-
-using reports::Verdict;
 
 using Runs = Placed;
 

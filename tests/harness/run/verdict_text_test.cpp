@@ -5,17 +5,14 @@
 #include "harness/plan/looks.h"
 #include "harness/suite/run_options.h"
 #include "reports/words/effect.h"
+#include "tests/harness/prelude.h"
 #include "tests/harness/questions.h"
 #include "tests/harness/recorded_rows.h"
-#include "tests/harness/running.h"
 #include "tests/harness/table.h"
-#include "tests/prelude.h"
 #include "tests/stats/samples.h"
 
 namespace assay::harness {
 namespace {
-
-using reports::Verdict;
 
 reports::Test told(const std::string& test) {
   return run_test(suite_with("words", "{" + test + "}"), {});

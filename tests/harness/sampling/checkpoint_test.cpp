@@ -1,8 +1,6 @@
 #include "harness/sampling/checkpoint.h"
 
-#include "tests/harness/refusal.h"
-#include "tests/harness/running.h"
-#include "tests/prelude.h"
+#include "tests/harness/prelude.h"
 
 namespace assay::harness {
 namespace {
@@ -35,35 +33,24 @@ std::shared_ptr<Checkpoint> checkpoint(const std::string& file, const Identity& 
   return std::make_shared<Checkpoint>(file, std::chrono::seconds(0), identity, threads(2));
 }
 
-/// Runs a suite that is killed after so many blocks, then after twice as many, until it ends.
-struct Resumed {
-  reports::Record record;
-  std::size_t kills = 0;
-};
-Resumed resumed(const std::string& suite, const Workplace& place, std::size_t blocks) {
-  for (std::size_t kills = 0;; ++kills) {
-    try {
-      const auto mortal = std::make_shared<Mortal>(checkpoint(place.file("kept")), blocks << kills);
-      return {run_files({suite}, {.threads = 2, .executor = mortal, .coarsen = 8}), kills};
-    } catch (const Kill&) {
-    }
-  }
-}
-
-class Checkpoints : public testing::TestWithParam<const char*> {};
-
-// Pools of averages, spreads, laws, cells, images, slopes and samplers.
-TEST_P(Checkpoints, OfARunThatIsKilledGiveTheSameRecord) {
-  const std::string suite = std::string(ASSAY_SOURCE_DIR "/suites/") + GetParam();
-  const std::string whole = numbers_of(run_files({suite}, {.threads = 1, .coarsen = 8}));
+// Killed after 5 blocks, then after twice as many, until the run ends.
+TEST(Checkpoint, OfARunThatIsKilledGivesTheSameRecord) {
+  const std::string suite = ASSAY_SOURCE_DIR "/tests/suites/kinds.yaml";
   const Workplace place;
-  const Resumed run = resumed(suite, place, 5);
-  EXPECT_EQ(numbers_of(run.record), whole) << run.kills << " kills";
-  EXPECT_GT(run.kills, 1U);
+  const auto run_once = [&](std::size_t blocks) -> std::optional<reports::Record> {
+    try {
+      const auto mortal = std::make_shared<Mortal>(checkpoint(place.file("kept")), blocks);
+      return run_files({suite}, {.threads = 2, .executor = mortal, .coarsen = 8});
+    } catch (const Kill&) {
+      return std::nullopt;
+    }
+  };
+  std::size_t kills = 0;
+  std::optional<reports::Record> resumed;
+  while (!(resumed = run_once(5U << kills))) ++kills;
+  EXPECT_GT(kills, 1U);
+  EXPECT_EQ(numbers_of(*resumed), numbers_of(run_files({suite}, {.threads = 1, .coarsen = 8})));
 }
-
-INSTANTIATE_TEST_SUITE_P(Suites, Checkpoints,
-                         testing::Values("luminaire.yaml", "analytic.yaml", "images.yaml"));
 
 TEST(Checkpoint, OfAnotherRunIsRefusedWithTheDifference) {
   const Workplace place;

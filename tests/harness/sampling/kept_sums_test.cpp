@@ -9,13 +9,13 @@ namespace assay::harness {
 namespace {
 
 // Pieces of 4096 channels and one that is not whole.
-constexpr std::size_t channels = 10'000;
+constexpr std::size_t kept_channels = 10'000;
 constexpr std::size_t not_finite = 9'000;
 
 template <class Real>
 std::vector<std::vector<Real>> drawn() {
   tests::Philox random(1);
-  std::vector<std::vector<Real>> observations(3, std::vector<Real>(channels));
+  std::vector<std::vector<Real>> observations(3, std::vector<Real>(kept_channels));
   for (auto& observation : observations) {
     for (Real& value : observation) value = static_cast<Real>(random.uniform());
   }
@@ -43,8 +43,8 @@ TEST(KeptSums, AreThoseOfEveryChannelOfObservations) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
     const std::vector<ChannelSummary> sums =
         sums_of_kept(std::span<const std::vector<double>>(observations));
-    ASSERT_EQ(sums.size(), channels);
-    for (std::size_t c = 0; c < channels; ++c) expect_channel(sums[c], observations, c);
+    ASSERT_EQ(sums.size(), kept_channels);
+    for (std::size_t c = 0; c < kept_channels; ++c) expect_channel(sums[c], observations, c);
   }
 }
 
@@ -53,15 +53,15 @@ TEST(KeptSums, OfPicturesHaveThatOfTheirAverageLast) {
   const std::vector<std::span<const float>> pictures(observations.begin(), observations.end());
   const std::vector<ChannelSummary> sums =
       sums_of_kept(std::span<const std::span<const float>>(pictures));
-  ASSERT_EQ(sums.size(), channels + 1);
-  for (std::size_t c = 0; c < channels; ++c) expect_channel(sums[c], observations, c);
+  ASSERT_EQ(sums.size(), kept_channels + 1);
+  for (std::size_t c = 0; c < kept_channels; ++c) expect_channel(sums[c], observations, c);
   double sum = 0;
   for (const float value : observations[0]) sum += double{value};
   EXPECT_EQ(sums.back().first_nonfinite, 1u);
   EXPECT_NEAR(sums.back().moments.minimum + sums.back().moments.maximum,
               2 * sums.back().moments.mean, 1e-15);
-  EXPECT_TRUE(std::abs(sums.back().moments.minimum - sum / channels) < 1e-12 ||
-              std::abs(sums.back().moments.maximum - sum / channels) < 1e-12);
+  EXPECT_TRUE(std::abs(sums.back().moments.minimum - sum / kept_channels) < 1e-12 ||
+              std::abs(sums.back().moments.maximum - sum / kept_channels) < 1e-12);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "harness/sampling/packing.h"
 
+#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include "harness/sampling/executor.h"
@@ -9,7 +10,7 @@
 namespace assay::harness {
 namespace {
 
-constexpr std::size_t channels = 3;
+constexpr std::size_t channel_count = 3;
 const std::string nothing = thrown([] {});
 
 /// Two sums and the number of a cell; one observation may be no number, and one may throw.
@@ -45,7 +46,7 @@ Recipe some_recipe() {
   Recipe recipe{.key = {*rc::gen::arbitrary<std::uint64_t>()},
                 .primaries = *rc::gen::inRange<std::uint64_t>(1, 5000)};
   if (*rc::gen::arbitrary<bool>()) {
-    for (std::size_t c = 0; c < channels; ++c) {
+    for (std::size_t c = 0; c < channel_count; ++c) {
       recipe.plan.push_back(
           {.histogram_low = 0,
            .histogram_high = *rc::gen::element(0.0, 2.0, 9.0),
@@ -73,7 +74,7 @@ void draw_all_of(const std::shared_ptr<Pool>& pool) {
   draw_all({pool}, {.executor = threads(1)}, silence);
 }
 
-/// What is drawn, without the seconds.
+/// All that is drawn, without the seconds.
 std::string contents_of(const Pool& pool) {
   std::string bytes = packed_block(pool.drawn_parts());
   Pool::Block block = unpacked_block(bytes, pool, 0);

@@ -240,7 +240,7 @@ TEST(Pool, SaysAtWhichObservationItsEstimatorThrew) {
             "`lamp` stopped at observation 4321: the lamp burnt out");
   EXPECT_EQ(pool->sample(6000).drawn(), nullptr);
   EXPECT_EQ(pool->sample(6000).fault()->observation, 4321);
-  // What came before the trouble is still there.
+  // Observations from before the trouble are still there.
   expect_same(sample_of(*pool, 1000).summary(),
               sample_of(*drawn({.prefixes = {1000}}), 1000).summary());
 }

@@ -4,14 +4,10 @@
 #include "harness/record/replay.h"
 #include "reports/formats/json.h"
 #include "reports/record/file.h"
-#include "tests/harness/refusal.h"
-#include "tests/harness/running.h"
-#include "tests/prelude.h"
+#include "tests/harness/prelude.h"
 
 namespace assay::harness {
 namespace {
-
-using reports::Verdict;
 
 // Drawn once: moments of primaries, of means of 64, of two channels, of an image, and rows.
 constexpr const char* baseline = R"(suite: baseline

@@ -1,13 +1,12 @@
 #include "harness/suite/selection.h"
 
 #include "harness/command/commands.h"
-#include "tests/harness/running.h"
-#include "tests/prelude.h"
+#include "tests/harness/prelude.h"
 
 namespace assay::harness {
 namespace {
 
-const char* const text = R"(suite: selection
+const char* const selected_from = R"(suite: selection
 estimators: {normal: {plugin: analytic/normal, mean: 2, primaries: 1}}
 tests:
   - {name: first mean, claim: mean(normal) == 2, detect: 20%, tags: [mean, fast]}
@@ -18,7 +17,7 @@ tests:
 
 class SelectionOfTests : public testing::Test {
  protected:
-  std::vector<Suite> suites() const { return {load_suite(place_.write("s.yaml", text))}; }
+  std::vector<Suite> suites() const { return {load_suite(place_.write("s.yaml", selected_from))}; }
 
   std::vector<std::string> names(const Selection& selection) const {
     std::vector<std::string> found;
@@ -101,7 +100,7 @@ TEST_F(SelectionOfTests, SaysThatNoTestIsLeft) {
 // A part of a suite rests on fixed shares, whichever way it was chosen, and its numbers are those
 // of the whole.
 TEST_F(SelectionOfTests, ByTagIsThePartThatAFilterWouldBe) {
-  const std::string file = place_.write("s.yaml", text);
+  const std::string file = place_.write("s.yaml", selected_from);
   const reports::Record tagged = run_files({file}, {.selection = {.tags = {"mean"}}});
   const reports::Record filtered = run_files({file}, {.selection = {.filters = {"*mean"}}});
   ASSERT_EQ(tagged.suites[0].tests.size(), 2U);

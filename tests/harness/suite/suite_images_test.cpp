@@ -8,14 +8,10 @@
 #include "harness/command/cli.h"
 #include "harness/command/run.h"
 #include "tests/harness/pictures.h"
-#include "tests/harness/refusal.h"
-#include "tests/harness/running.h"
-#include "tests/prelude.h"
+#include "tests/harness/prelude.h"
 
 namespace assay::harness {
 namespace {
-
-using reports::Verdict;
 
 float noisy(int, int, const std::string&, double noise) {
   return static_cast<float>(0.3 + 0.05 * noise);

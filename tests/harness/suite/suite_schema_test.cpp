@@ -6,17 +6,16 @@
 #include "harness/suite/suite_entries.h"
 #include "harness/suite/yaml.h"
 #include "harness/theta/ask.h"
-#include "tests/harness/refusal.h"
-#include "tests/prelude.h"
+#include "tests/harness/prelude.h"
 
 namespace assay::harness {
 namespace {
 
-const std::string suites = std::string(ASSAY_SOURCE_DIR) + "/suites/";
+const std::string shipped_suites = std::string(ASSAY_SOURCE_DIR) + "/suites/";
 
 /// The schema of a test's key. JSON is YAML.
 Value schema_of(const std::string& key) {
-  const std::string file = suites + "suite.schema.json";
+  const std::string file = shipped_suites + "suite.schema.json";
   static const Document schema = read_yaml_text(read_text_file(file), file);
   return *schema.root().find("definitions")->find("test")->find("properties")->find(key);
 }
@@ -31,7 +30,7 @@ std::vector<std::string> matches_of(const std::string& text, const std::string& 
 }
 
 std::string manual_line(const std::string& beginning) {
-  const std::string text = read_text_file(suites + "README.md");
+  const std::string text = read_text_file(shipped_suites + "README.md");
   for (const std::string_view line : lines_of(text)) {
     if (line.starts_with(beginning)) return std::string(line);
   }

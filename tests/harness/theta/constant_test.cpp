@@ -2,16 +2,13 @@
 
 #include "harness/theta/decision.h"
 #include "harness/theta/methods.h"
+#include "tests/harness/prelude.h"
 #include "tests/harness/questions.h"
-#include "tests/harness/running.h"
-#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {
 
-using reports::Verdict;
-
-std::unique_ptr<Asked> asked_of(const std::string& test) {
+std::unique_ptr<Asked> asked_of_constants(const std::string& test) {
   return ask_text(R"(suite: constants
 estimators:
   zero: {plugin: analytic/zero_variance}                # its range is the constant, to rounding
@@ -34,7 +31,7 @@ Regions regions_of(const TestEntry& test) {
 }
 
 /// A test whose subjects were seen `count` times, always at `seen`.
-struct Case {
+struct ConstantCase {
   const char* test;
   std::uint64_t count;
   std::vector<double> seen;
@@ -42,8 +39,8 @@ struct Case {
   const char* why = "";
 };
 
-ConstantVerdict judge(const Case& of) {
-  const auto asked = asked_of(of.test);
+ConstantVerdict judge(const ConstantCase& of) {
+  const auto asked = asked_of_constants(of.test);
   const Question& question = asked->questions[0];
   std::vector<ChannelData> data(of.seen.size());
   for (std::size_t i = 0; i < of.seen.size(); ++i) {
@@ -53,8 +50,8 @@ ConstantVerdict judge(const Case& of) {
 }
 
 /// The same by bets on the declared range, at alpha = beta = .01.
-Verdict bet_on(const Case& of) {
-  const auto asked = asked_of(of.test);
+Verdict bet_on(const ConstantCase& of) {
+  const auto asked = asked_of_constants(of.test);
   const Question& question = asked->questions[0];
   std::vector<std::vector<double>> values;
   for (const double value : of.seen) values.emplace_back(of.count, value);
@@ -74,19 +71,19 @@ Verdict bet_on(const Case& of) {
 const double integral = std::expm1(3) / 3;
 
 TEST(Constant, IsSpreadWithinTheDeclaredRounding) {
-  const auto rounded = asked_of("mean(zero) < 7");
+  const auto rounded = asked_of_constants("mean(zero) < 7");
   stats::Moments moments;
   moments.add(integral);
   moments.add(integral * (1 + 0x1p-45));
   EXPECT_TRUE(is_constant(rounded->questions[0], 0, 0, moments));
-  EXPECT_FALSE(is_constant(asked_of("mean(normal) == 3")->questions[0], 0, 0, moments))
+  EXPECT_FALSE(is_constant(asked_of_constants("mean(normal) == 3")->questions[0], 0, 0, moments))
       << "declares no rounding";
   moments.add(integral * (1 + 0x1p-30));
   EXPECT_FALSE(is_constant(rounded->questions[0], 0, 0, moments));
 }
 
 TEST(Constant, WithoutARangeNothingBoundsWhatWasNotSeen) {
-  for (const Case& each : std::vector<Case>{
+  for (const ConstantCase& each : std::vector<ConstantCase>{
            {"mean(spike) == 0.5", 10, {0.5}, Verdict::pass, "classical"},
            {"mean(normal) == 2, detect: 1%", 100000, {2}, Verdict::inconclusive},
            {"mean(normal) == 3", 100000, {2}, Verdict::invalid},
@@ -114,7 +111,7 @@ TEST(Constant, WithoutARangeNothingBoundsWhatWasNotSeen) {
 // times the 23 bets of the mixture it takes ln(2300) / ln(1.0101) = 770 values. (10.49 / 10.5)^n <=
 // 0.005 from n = 5561 on, and a mixture of 23 takes ln(4600) / ln(10 / 9.99).
 TEST(Constant, IsJudgedByBetsOnItsRange) {
-  for (const Case& each : std::vector<Case>{
+  for (const ConstantCase& each : std::vector<ConstantCase>{
            {"mean(spike) == 0.5, detect: 0.1", 775, {0.5}, Verdict::pass},
            {"mean(spike) == 0.5, detect: 0.1",
             458,

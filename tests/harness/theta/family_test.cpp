@@ -6,7 +6,7 @@
 namespace assay::harness {
 namespace {
 
-std::unique_ptr<Asked> asked_of(const std::string& tests) {
+std::unique_ptr<Asked> asked_of_shares(const std::string& tests) {
   return ask_text(R"(suite: shares
 alpha: 0.04
 beta: 0.02
@@ -18,7 +18,7 @@ tests:
 }
 
 std::vector<FamilyPlace> places_of(const std::string& tests) {
-  const auto asked = asked_of(tests);
+  const auto asked = asked_of_shares(tests);
   return places(asked->suite, asked->questions);
 }
 
@@ -86,7 +86,7 @@ TEST(Family, OfMutantsAloneSharesAlphaAmongThem) {
 // The numbers of those that can be tested are the same with and without the dead source.
 TEST(Family, KeepsThePartOfATestThatCannotBeAsked) {
   for (const std::string dead : {"analytic", "expected", "mutant"}) {
-    const auto asked = asked_of(with_mutants);
+    const auto asked = asked_of_shares(with_mutants);
     const std::vector<FamilyPlace> sound = places(asked->suite, asked->questions);
     std::vector<FamilyPlace> known;
     std::vector<Question> questions;

@@ -1,4 +1,3 @@
-
 #include "harness/theta/evidence.h"
 #include "stats/means/student_t.h"
 #include "tests/prelude.h"

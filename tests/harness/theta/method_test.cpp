@@ -3,11 +3,9 @@
 #include "harness/theta/ask.h"
 #include "harness/theta/methods.h"
 #include "stats/tails/tails.h"
+#include "tests/harness/prelude.h"
 #include "tests/harness/questions.h"
-#include "tests/harness/refusal.h"
-#include "tests/harness/running.h"
 #include "tests/philox.h"
-#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {

@@ -1,9 +1,8 @@
 #include "harness/families/families.h"
 #include "harness/theta/ask.h"
+#include "tests/harness/prelude.h"
 #include "tests/harness/questions.h"
-#include "tests/harness/refusal.h"
 #include "tests/harness/table.h"
-#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {

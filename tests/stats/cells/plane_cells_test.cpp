@@ -13,8 +13,6 @@ CellProbabilities cell_probabilities(const PlaneGrid& grid, const PlaneDensity& 
   return adaptive_cells(grid, density, 1, limits).mass;
 }
 
-constexpr double pi = std::numbers::pi;
-
 TEST(PlaneCells, IndicesRunFastestInY) {
   const PlaneGrid grid = unit_grid(4, 4);
   EXPECT_EQ(grid.index(0, 0), 0U);

@@ -6,55 +6,56 @@
 namespace assay::stats {
 namespace {
 
-using Law = std::function<double(Philox&)>;
+using Draw = std::function<double(Philox&)>;
 
-const std::vector<std::pair<const char*, Law>> laws{
+const std::vector<std::pair<const char*, Draw>> drawn_laws{
     {"normal", [](Philox& random) { return random.normal(); }},
     {"lognormal(0, 2)", [](Philox& random) { return std::exp(2 * random.normal()); }},
     {"Pareto 2.1", [](Philox& random) { return std::pow(1 - random.uniform(), -1 / 2.1); }},
     {"spike of 1e-3", [](Philox& random) { return random.uniform() < 1e-3 ? 1000.0 : 1.0; }}};
 
-std::vector<double> means_of(const Law& law, std::size_t count, std::size_t each, Philox& random) {
+std::vector<double> means_of(const Draw& draw, std::size_t count, std::size_t each,
+                             Philox& random) {
   std::vector<double> means;
   for (std::size_t i = 0; i < count; ++i) {
     double sum = 0;
-    for (std::size_t k = 0; k < each; ++k) sum += law(random);
+    for (std::size_t k = 0; k < each; ++k) sum += draw(random);
     means.push_back(sum / static_cast<double>(each));
   }
   return means;
 }
 
 constexpr std::size_t each = 32;
-constexpr std::size_t count = 64;
+constexpr std::size_t averages = 64;
 
-double log_p(const Law& law, Philox& random, std::size_t taken) {
-  const std::vector<double> values = means_of(law, each * count, 1, random);
-  const double z = averages_gate(values, means_of(law, count, taken, random), each).value;
+double log_p(const Draw& draw, Philox& random, std::size_t taken) {
+  const std::vector<double> values = means_of(draw, each * averages, 1, random);
+  const double z = averages_gate(values, means_of(draw, averages, taken, random), each).value;
   // Two statistics, each on both sides.
   return std::min(0.0, normal_tails(z).upper + std::log(4.0));
 }
 
 TEST(AveragesGate, IsCalibratedAtAnyLaw) {
   std::uint32_t number = 0;
-  for (const auto& [name, law] : laws) {
+  for (const auto& [name, draw] : drawn_laws) {
     SCOPED_TRACE(name);
     expect_calibrated({7100 + number++, tests::repetitions(4000), Shape::at_most_uniform},
-                      [&](Philox& random) { return log_p(law, random, each); });
+                      [&](Philox& random) { return log_p(draw, random, each); });
   }
 }
 
 // Observations of 24 primaries that are said to be of 32.
 CAUGHT(AveragesGate, OfFewerPrimariesIsCaught, 7110, 4000, Shape::at_most_uniform) {
-  return log_p(laws[0].second, random, 24);
+  return log_p(drawn_laws[0].second, random, 24);
 }
 
 // One of 1000 seeds is accused with probability 1e-4.
 TEST(AveragesGate, AccusesNoMeans) {
   Philox random(7111);
-  for (const auto& [name, law] : laws) {
+  for (const auto& [name, draw] : drawn_laws) {
     for (int run = 0; run < 250; ++run) {
-      const std::vector<double> values = means_of(law, 8192, 1, random);
-      const Gate gate = averages_gate(values, means_of(law, 256, each, random), each);
+      const std::vector<double> values = means_of(draw, 8192, 1, random);
+      const Gate gate = averages_gate(values, means_of(draw, 256, each, random), each);
       EXPECT_NE(gate.state, GateState::red) << name << " " << gate.value;
     }
   }
@@ -63,12 +64,12 @@ TEST(AveragesGate, AccusesNoMeans) {
 TEST(AveragesGate, SeesWhatIsNoMean) {
   Philox random(7112);
   for (int run = 0; run < 50; ++run) {
-    for (const auto& [name, law] : {laws[0], laws[1], laws[2]}) {
-      const std::vector<double> values = means_of(law, 8192, 1, random);
-      const Gate of_one_primary = averages_gate(values, means_of(law, 256, 1, random), each);
+    for (const auto& [name, draw] : {drawn_laws[0], drawn_laws[1], drawn_laws[2]}) {
+      const std::vector<double> values = means_of(draw, 8192, 1, random);
+      const Gate of_one_primary = averages_gate(values, means_of(draw, 256, 1, random), each);
       EXPECT_EQ(of_one_primary.state, GateState::red) << name;
     }
-    const Law& normal = laws[0].second;
+    const Draw& normal = drawn_laws[0].second;
     const std::vector<double> values = means_of(normal, 8192, 1, random);
     const auto state_of = [&](const std::function<double(double)>& changed) {
       std::vector<double> means = means_of(normal, 256, each, random);

@@ -7,8 +7,6 @@
 namespace assay::stats {
 namespace {
 
-namespace laws = tests::laws;
-
 // make_dependence.R, sequence.
 std::vector<double> sequence(double phi, std::size_t n) {
   std::vector<double> values;

@@ -62,36 +62,36 @@ TEST(RecurringValues, TakesThirteenPairs) {
   }
 }
 
-struct Law {
+struct AtomLaw {
   std::string name;
   std::function<double(Philox&)> draw;
 };
 
-std::vector<Law> laws_of_atoms() {
-  std::vector<Law> laws;
+std::vector<AtomLaw> laws_of_atoms() {
+  std::vector<AtomLaw> found;
   for (const double atoms : {2.0, 3.0, 10.0, 50.0, 256.0, 1e4, 1e6}) {
-    laws.push_back({"equal " + std::to_string(atoms),
-                    [atoms](Philox& random) { return std::floor(atoms * random.uniform()); }});
+    found.push_back({"equal " + std::to_string(atoms),
+                     [atoms](Philox& random) { return std::floor(atoms * random.uniform()); }});
   }
   for (const double step : {1.0, 0.1, 0.001, 1e-6}) {
-    laws.push_back({"normal in steps of " + std::to_string(step),
-                    [step](Philox& random) { return std::round(random.normal() / step); }});
+    found.push_back({"normal in steps of " + std::to_string(step),
+                     [step](Philox& random) { return std::round(random.normal() / step); }});
   }
-  laws.push_back(
+  found.push_back(
       {"geometric", [](Philox& random) { return std::floor(random.exponential() * 5); }});
-  laws.push_back({"Pareto", [](Philox& random) { return std::floor(1 / random.uniform()); }});
+  found.push_back({"Pareto", [](Philox& random) { return std::floor(1 / random.uniform()); }});
   const auto half_atoms = [](Philox& random) {
     const double u = random.uniform();
     return random.uniform() < 0.5 ? u : std::floor(40 * u);
   };
-  laws.push_back({"half of 40 atoms", half_atoms});
-  return laws;
+  found.push_back({"half of 40 atoms", half_atoms});
+  return found;
 }
 
 // Such a ratio has a probability of at most about 1e-5. Among the 16,800 .17 would be found.
 TEST(RecurringValues, AreNotFoundInIndependentValues) {
   Philox random(3);
-  for (const Law& law : laws_of_atoms()) {
+  for (const AtomLaw& law : laws_of_atoms()) {
     for (const std::size_t n : {20u, 200u, 2000u}) {
       for (int i = 0; i < 400; ++i) {
         ASSERT_FALSE(recurring_values(sample_of(n, [&] { return law.draw(random); })))
@@ -146,8 +146,8 @@ TEST(SharedValues, FindsTheSameInAnotherOrder) {
 
 TEST(SharedValues, AreNotFoundInIndependentSamples) {
   Philox random(7);
-  for (const Law& law : laws_of_atoms()) {
-    for (const Law& other : laws_of_atoms()) {
+  for (const AtomLaw& law : laws_of_atoms()) {
+    for (const AtomLaw& other : laws_of_atoms()) {
       for (int i = 0; i < 30; ++i) {
         ASSERT_FALSE(shared_values(sample_of(200, [&] { return law.draw(random); }),
                                    sample_of(500, [&] { return other.draw(random); })))

@@ -5,10 +5,7 @@
 namespace assay::stats {
 namespace {
 
-namespace laws = tests::laws;
-
 constexpr Range unit{0, 1};
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double lowest = std::numeric_limits<double>::lowest();
 
 // make_means.py, fractions.

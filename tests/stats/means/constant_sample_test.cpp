@@ -6,8 +6,6 @@
 namespace assay::stats {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 TEST(ConstantSample, RareValuesOfAnExactMeanAreBinomial) {
   // 0.05 above 0 in [0, 0.1] needs a half of the values at 0.1 or more: (1/2)^10.
   EXPECT_NEAR(log_p_constant({0, 0, 0.1, 10}, {0.05, 0}), -10 * std::log(2.0), 1e-13);

@@ -6,8 +6,6 @@
 namespace assay::stats {
 namespace {
 
-namespace laws = tests::laws;
-
 // make_means.py, skewed.
 Moments skewed(int k, int n) {
   Moments moments;
@@ -97,18 +95,18 @@ Levels levels(std::uint32_t test_case, std::size_t runs,
   return result;
 }
 
-struct Shape {
+struct LawShape {
   double skewness = 0;
   double excess_kurtosis = 0;
 };
 
-struct Shaped {
+struct ShapedLaw {
   Law law;
-  Shape shape;
+  LawShape shape;
 };
 
 /// The factor of `n` values of the population's own shape.
-double factor_of(const Shape& shape, std::size_t n, double critical_value) {
+double factor_of(const LawShape& shape, std::size_t n, double critical_value) {
   const double count = static_cast<double>(n);
   Moments x;
   x.count = n;
@@ -118,7 +116,7 @@ double factor_of(const Shape& shape, std::size_t n, double critical_value) {
   return corrected_level_factor(x, {0}, critical_value);
 }
 
-const std::vector<Shaped> shaped{
+const std::vector<ShapedLaw> shaped{
     {laws::normal, {0, 0}},
     {laws::exponential, {2, 6}},
     {laws::lognormal_half, {1.7502, 5.8984}},
@@ -132,7 +130,7 @@ const std::vector<Shaped> shaped{
 TEST(SkewnessCorrectedT, KeepsItsLevelWhereTheFactorSaysSo) {
   std::uint32_t test_case = 201;
   int checked = 0;
-  for (const Shaped& each : shaped) {
+  for (const ShapedLaw& each : shaped) {
     for (const std::size_t n : {50UL, 200UL, 1000UL}) {
       const bool at_01 = factor_of(each.shape, n, 2.326) <= 1.25;
       const bool at_001 = factor_of(each.shape, n, 3.090) <= 1.25;

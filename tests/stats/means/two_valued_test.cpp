@@ -7,9 +7,9 @@
 namespace assay::stats {
 namespace {
 
-constexpr Range unit{0, 1};
+constexpr Range unit_range{0, 1};
 
-TwoValued hits(double successes, double trials, Range range = unit) {
+TwoValued hits(double successes, double trials, Range range = unit_range) {
   return {range, {static_cast<std::uint64_t>(successes), static_cast<std::uint64_t>(trials)}};
 }
 

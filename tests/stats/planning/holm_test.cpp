@@ -1,5 +1,6 @@
 #include "stats/planning/holm.h"
 
+#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
 #include "tests/stats/prelude.h"

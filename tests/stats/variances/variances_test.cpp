@@ -1,4 +1,3 @@
-
 #include "stats/gates/assumption_gates.h"
 #include "stats/tails/tails.h"
 #include "stats/variances/chi_square_variance.h"
