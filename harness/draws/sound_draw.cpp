@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "reports/words/number.h"
+
 namespace assay::harness {
 namespace {
 
@@ -81,16 +83,15 @@ void require_unit(const NamedSampler& named, const Point& point) {
   if (std::abs(length - 1) <= least_length_slack) return;
   if (std::abs(length - 1) <= named.sampler->rounding()) return;
   throw std::runtime_error(
-      fmt::format("sampler `{}` drew {}, whose length is {}: a direction must have length 1",
+      fmt::format("sampler `{}` drew {}, whose length is {:.6g}: a direction must have length 1",
                   named.name, in_words(*named.sampler, point), length));
 }
 
 void require_density(const NamedSampler& named, const SamplerDraw& draw) {
   if (!(draw.density < 0) || named.sampler->point_mass(draw.lobe) > 0) return;
   throw std::runtime_error(
-      fmt::format("sampler `{}` drew {} with density {}: a density must be "
-                  ">= 0",
-                  named.name, in_words(*named.sampler, draw.point), draw.density));
+      fmt::format("sampler `{}` drew {} with density {}: a density must be >= 0", named.name,
+                  in_words(*named.sampler, draw.point), reports::human(draw.density, 3)));
 }
 
 /// True for nearly all draws. The closer look asks the sampler questions that may cost more than
@@ -128,7 +129,7 @@ double sound_density(const NamedSampler& named, const Point& point, double densi
   throw std::domain_error(
       fmt::format("sampler `{}` declares the density {} at {}: a density must "
                   "be non-negative and finite",
-                  named.name, density, in_words(*named.sampler, point)));
+                  named.name, reports::human(density, 3), in_words(*named.sampler, point)));
 }
 
 }  // namespace assay::harness

@@ -307,11 +307,14 @@ std::string unseen_could_decide(const TestOutcome& outcome, std::size_t channel,
     const double error = (subject == 0 ? factor : 1) * other.moments.standard_error();
     if (shift <= tolerated_shift * error) continue;
     return fmt::format(
-        "every observation of `{}` is {:.10g}, and values never seen could move its mean by {:.3g} "
-        "where the comparison's standard error is {:.3g}; {}",
-        question.subjects[subject].estimator->name, mine.moments.mean, shift, error,
-        std::isfinite(shift) ? "take more observations"
-                             : "declare the range, or take more observations");
+        "every observation of `{}` is {:.10g}, and {}", question.subjects[subject].estimator->name,
+        mine.moments.mean,
+        std::isfinite(shift)
+            ? fmt::format("values never seen could move its mean by {:.3g} where the comparison's "
+                          "standard error is {:.3g}; take more observations",
+                          shift, error)
+            : "no declared range bounds how far values never seen could move its mean; declare "
+              "both ends of the range, or compare the other mean with a number");
   }
   return "";
 }

@@ -346,10 +346,10 @@ std::string outside_of_range(const Subject& subject, const Summary& drawn) {
     const bool above = seen.maximum > channel.high + slack;
     if (!above && !(seen.minimum < channel.low - slack)) continue;
     return fmt::format(
-        "`{}` gave {:.17g} in its channel `{}`, {} {:.17g}, which it declares to be "
-        "its `{}`",
+        "`{}` gave {:.3g} in its channel `{}`, {:.3g} {} {}, which it declares to be its `{}`",
         subject.estimator->name, above ? seen.maximum : seen.minimum, channel.name,
-        above ? "above" : "below", above ? channel.high : channel.low, above ? "high" : "low");
+        above ? seen.maximum - channel.high : channel.low - seen.minimum, above ? "above" : "below",
+        above ? channel.high : channel.low, above ? "high" : "low");
   }
   return "";
 }

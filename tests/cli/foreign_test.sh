@@ -255,7 +255,7 @@ done
 END
   suite beyond.yaml 'beyond: {plugin: process, command: [sh, beyond.sh]}'
   expect 1 run beyond.yaml
-  tells out 'gave 3.5 in its channel `x`, above 3, which it declares to be its `high`'
+  tells out 'gave 3.5 in its channel `x`, 0.5 above 3, which it declares to be its `high`'
 }
 
 test_of_means_single_primaries_show_a_value_outside_of_the_declared_range() {
@@ -273,7 +273,7 @@ done
 END
   suite rare.yaml 'rare: {plugin: process, command: [sh, rare.sh], primaries: 100}'
   expect 1 run rare.yaml
-  tells out 'gave 4 in its channel `x`, above 3, which it declares to be its `high`'
+  tells out 'gave 4 in its channel `x`, 1 above 3, which it declares to be its `high`'
 }
 
 test_a_renderer_that_no_test_names_is_asked_for_its_size_alone() {
