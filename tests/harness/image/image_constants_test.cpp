@@ -90,7 +90,9 @@ TEST_F(ImageConstants, APixelThatWasNeverLitIsHeldAgainstItsRangeAlone) {
   EXPECT_NEAR(part.unseen()[0].log_p, 64 * std::log1p(-0.005014548794971263 / 7.98), 1e-9);
   // Sums with its neighbours see it where it is.
   part.with([&](const auto&, const auto& b) {
-    if constexpr (requires { b.value; }) EXPECT_EQ(b.value[dark], reference.value);
+    if constexpr (requires { b.value; }) {
+      EXPECT_EQ(b.value[dark], reference.value);
+    }
   });
 }
 
