@@ -1,8 +1,8 @@
 // Pictures of a scene by path tracing.
 //
-// A pixel is the mean of paths through uniform points of it. A path's expectation is the light that
-// the pixel gets over at most so many bounces as the scene allows: integral of L over the pixel.
-// Light sampling, bsdf sampling and both together have this one expectation.
+// A pixel is the mean of paths through uniform points of it. A path's expectation is the integral
+// of L over the pixel, with at most so many bounces as the scene allows. Light sampling, bsdf
+// sampling and both together have this one expectation.
 
 #include "path_tracing/image.h"
 

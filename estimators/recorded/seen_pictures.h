@@ -36,13 +36,14 @@ class SeenPictures {
  public:
   /// Notes the picture of an observation by its digest. Returns two that had the same, or nullopt.
   /// Pictures of one value throughout, which noise may never have reached, count for nothing. So do
-  /// pictures with texels that are not finite, and pictures as long as all are alike: they have no
-  /// noise, such as a layer of depth. Thread-safe.
+  /// pictures with texels that are not finite. As long as all are alike, such as a layer of depth,
+  /// none counts. Thread-safe.
   std::optional<std::pair<std::uint64_t, std::uint64_t>> note(std::uint64_t index,
                                                               const PictureDigest& digest);
 
-  /// Indices below `count` of a picture here and of one there that had the same digest, the first
-  /// there; nullopt where no two do, or where all of a side are alike. Of what was noted so far.
+  /// Finds a picture here and the first one there that had the same digest, among those noted so
+  /// far. Their indices are below `count`. nullopt where no two have it, or all of a side are
+  /// alike.
   std::optional<std::pair<std::uint64_t, std::uint64_t>> shared_with(const SeenPictures& other,
                                                                      std::uint64_t count) const;
 

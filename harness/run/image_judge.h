@@ -24,8 +24,8 @@ struct PlaceEffect {
 };
 std::optional<PlaceEffect> effect_at_place(const DrawnTest& test);
 
-/// "; there it is 3 % too bright (2 to 4 %): 1.03 against 1" for a failed claim on images that one
-/// cell decided; else "".
+/// "; there it is 3 % too bright (2 to 4 %): 1.03 against 1", if one cell decided a failed claim on
+/// images. Else "".
 std::string means_where_it_differs(const DrawnTest& test);
 
 /// The least detectable difference that is the same everywhere, by the sum over the whole image.

@@ -15,8 +15,8 @@ struct Candidate {
   CellNoise noise;
 };
 
-// The cells of one group in a tile that are farthest from zero by their own noise, and the number
-// of cells they were chosen from.
+// The cells of one group in a tile that are farthest from zero by their own noise. It counts the
+// cells that they were chosen from.
 class Candidates {
  public:
   // Counts a cell with this value. True if it may be one of those that are kept.
