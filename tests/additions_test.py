@@ -210,7 +210,7 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         copy = pathlib.Path(name) / "source"
         shutil.copytree(source, copy, ignore=lambda folder, names: [
-            n for n in names if pathlib.Path(folder) == source and n in ("build", ".git")])
+            n for n in names if n in ("build", ".git", "node_modules")])
         for path, text in NEW_FILES.items():
             assert not (copy / path).exists(), path
             (copy / path).write_text(text)

@@ -16,12 +16,13 @@ long=${ASSAY_LONG-}
 same_as_of_one_thread() { diff <(timeless one/run.json) <(timeless other/run.json) >out || fail "$1: another record"; }
 
 test_killed_runs_go_on_to_the_same_record() {
-  local suite=$source_folder/suites/luminaire.yaml kills=0 most=.4
-  of_one_thread "$suite" --coarsen 4
+  local suite=$source_folder/tests/suites/kinds.yaml coarsen=1 kills=0 most=.1
+  [ -z "$long" ] || suite=$source_folder/suites/luminaire.yaml coarsen=4 most=.4
+  of_one_thread "$suite" --coarsen $coarsen
   for _ in 1 ${long:+2 3}; do
     while :; do
       timeout --signal=KILL "$(/usr/bin/python3 -c "import random; print(random.uniform(.02, $most))")" \
-        "$assay" run "$suite" --coarsen 4 --quiet --checkpoint kept --checkpoint-every .01 \
+        "$assay" run "$suite" --coarsen $coarsen --quiet --checkpoint kept --checkpoint-every .01 \
         --report json=other/run.json --report console=/dev/null >/dev/null 2>err </dev/null
       [ $? -le 3 ] && break
       kills=$((kills + 1))
@@ -100,9 +101,9 @@ test_ranks_give_the_record_of_one_process() {
 test_ranks_that_stall_are_done_without() {
   require_mpi
   local suite=$source_folder/suites/luminaire.yaml signal
-  of_one_thread "$suite" --coarsen 2
+  of_one_thread "$suite" --coarsen 4
   for signal in STOP TERM; do
-    ranks 3 run "$suite" --coarsen 2 --quiet --report json=other/run.json &
+    ranks 3 run "$suite" --coarsen 4 --quiet --report json=other/run.json &
     sleep .7
     signal_rank $signal 2 $! || fail 'no rank'
     wait $!
@@ -113,9 +114,9 @@ test_ranks_that_stall_are_done_without() {
 test_ranks_that_are_killed_go_on_from_a_checkpoint() {
   require_mpi
   local suite=$source_folder/suites/luminaire.yaml kills=0 rank
-  of_one_thread "$suite" --coarsen 2
+  of_one_thread "$suite" --coarsen 4
   for rank in 2 ${long:+1 0} none; do
-    ranks 3 run "$suite" --coarsen 2 --quiet --checkpoint kept --checkpoint-every .05 --report json=other/run.json &
+    ranks 3 run "$suite" --coarsen 4 --quiet --checkpoint kept --checkpoint-every .05 --report json=other/run.json &
     sleep "$(/usr/bin/python3 -c 'import random; print(random.uniform(.4, 1))')"
     [ $rank = none ] || ! signal_rank KILL $rank $! || kills=$((kills + 1))
     wait $!

@@ -18,7 +18,7 @@ assay.serve(mine, averages=True)
   const std::string file =
       place.write("mine.yaml",
                   "suite: mine\nestimators:\n  mine: {plugin: process, command: [python3, "
-                  "mine.py]}\ntests:\n  - {claim: variance(mine) == 1, secondaries: 2000}\n");
+                  "mine.py]}\ntests:\n  - {claim: variance(mine) == 1, secondaries: 500}\n");
   return run_files({file}, {.seed = static_cast<std::uint64_t>(seed)}).suites[0].tests[0];
 }
 

@@ -48,7 +48,7 @@ INSTANTIATE_TEST_SUITE_P(Table, Level, ValuesIn(levels()), name_of_section);
 // The reference is drawn anew for every seed from the law that its error declares.
 TEST(Levels, AgainstAnUncertainReferenceAreWhatThePValuesSay) {
   std::map<std::string, Outcomes> outcomes;
-  for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
+  for (std::uint64_t seed = 1; seed <= tests::repetitions(1000); ++seed) {
     tests::Philox random(401, static_cast<std::uint32_t>(seed));
     const std::string reference = fmt::format("{:.17g} +- 0.1", 2 + 0.1 * random.normal());
     const std::string of_darts = fmt::format("{:.17g} +- 0.1", pi + 0.1 * random.normal());
