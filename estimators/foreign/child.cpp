@@ -35,6 +35,8 @@ constexpr milliseconds glance{100};
 // A program that closed its output may take so long to end before it is killed.
 constexpr milliseconds grace{1000};
 constexpr std::size_t kept_errors = 4096;
+// A flood must not keep the caller: so much is read before it looks at the rest of the world.
+constexpr std::size_t some_errors = std::size_t{1} << 18;
 constexpr int wanted_pipe = 1 << 20;
 
 [[noreturn]] void system_failure(int error, const std::string& what) {
@@ -224,7 +226,7 @@ bool Child::wait_for(int descriptor, short event, Deadline deadline) {
     stop_if_asked();
     std::array<pollfd, 2> watched = {{{descriptor, event, 0}, {errors_, POLLIN, 0}}};
     poll(watched.data(), errors_ >= 0 ? 2 : 1, milliseconds_until(deadline));
-    if (errors_ >= 0 && watched[1].revents != 0) keep_errors();
+    if (errors_ >= 0 && watched[1].revents != 0) keep_errors(some_errors);
     if (watched[0].revents != 0) return true;
     // A program that it started may hold the pipe open after it has gone.
     if (has_ended()) return false;
@@ -263,13 +265,13 @@ bool Child::has_output() {
   return poll(&watched, 1, 0) == 1 && (watched.revents & POLLIN) != 0;
 }
 
-void Child::keep_errors() {
+void Child::keep_errors(std::size_t most) {
   std::array<char, 4096> buffer{};
-  // A flood must not keep the caller here: some rounds, then it looks at the rest of the world.
-  for (int round = 0; round < 64; ++round) {
+  for (std::size_t done = 0; done < most;) {
     const ssize_t count = read(errors_, buffer.data(), buffer.size());
     if (count == 0 || (count < 0 && !would_block(errno))) return close_descriptor(errors_);
     if (count < 0) return;
+    done += static_cast<std::size_t>(count);
     error_text_.append(buffer.data(), static_cast<std::size_t>(count));
     if (error_text_.size() > 2 * kept_errors) {
       error_text_.erase(0, error_text_.size() - kept_errors);
@@ -290,7 +292,7 @@ bool Child::has_ended() {
 bool Child::ends_by(Deadline deadline) {
   while (!has_ended()) {
     if (steady_clock::now() >= deadline) return false;
-    if (errors_ >= 0) keep_errors();
+    if (errors_ >= 0) keep_errors(some_errors);
     std::this_thread::sleep_for(milliseconds{2});
   }
   return true;
@@ -329,7 +331,8 @@ std::string Child::ending() {
 }
 
 std::string Child::last_errors() {
-  if (errors_ >= 0) keep_errors();
+  // It ended: what it wrote before is in the pipe, which holds no more than this.
+  if (errors_ >= 0) keep_errors(static_cast<std::size_t>(fcntl(errors_, F_GETPIPE_SZ)));
   std::string text = error_text_;
   if (text.size() > kept_errors) text.erase(0, text.size() - kept_errors);
   return text;

@@ -57,14 +57,14 @@ class Child {
   /// How it ended, in words: "ended with exit status 3". It is killed if it still runs a moment
   /// after its output was closed.
   std::string ending();
-  /// The last of what it wrote to standard error, whole lines where they fit.
+  /// The last of what it wrote to standard error before it ended, whole lines where they fit.
   std::string last_errors();
   /// CPU seconds of the program, without those of programs that it started and did not wait for.
   double cpu_seconds() const;
 
  private:
   bool wait_for(int descriptor, short event, Deadline deadline);
-  void keep_errors();
+  void keep_errors(std::size_t most);
   bool has_ended();
   void reap();
 
