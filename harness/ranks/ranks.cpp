@@ -386,7 +386,7 @@ void Ranks::draw(Round& round) {
   }
 }
 
-bool dismiss(Messages& messages) {
+bool dismiss(Messages& messages) try {
   for (int rank = 1; rank < messages.size(); ++rank) messages.send(rank, packed(Kind::end));
   const Clock::time_point start = Clock::now();
   Pause pause;
@@ -403,6 +403,8 @@ bool dismiss(Messages& messages) {
     }
   }
   return true;
+} catch (const Unpackable&) {  // of another version, which did not understand either
+  return false;
 }
 
 namespace {

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <list>
 #include <map>
+#include <set>
 
 #include "estimators/library_host.h"
 #include "harness/command/launcher.h"
@@ -48,19 +49,19 @@ class MpiMessages final : public Messages {
     };
     probe();
     // A large message moves on only while MPI is called.
-    for (int i = 0; i < 1000 && there == 0 && !sending_.empty(); ++i) {
+    for (int i = 0; i < 1000 && there == 0 && !(sending_.empty() && receiving_.empty()); ++i) {
       forget_sent();
       probe();
     }
-    if (there == 0) return std::nullopt;
-    int size = 0;
-    MPI_Get_count(&status, MPI_BYTE, &size);
-    std::string& bytes = parts_[status.MPI_SOURCE];
-    const std::size_t before = bytes.size();
-    bytes.resize(before + static_cast<std::size_t>(size));
-    MPI_Mrecv(bytes.data() + before, size, MPI_BYTE, &message, &status);
-    if (status.MPI_TAG != last_part) return std::nullopt;
-    return Message{status.MPI_SOURCE, std::exchange(bytes, {})};
+    if (there != 0) {
+      int size = 0;
+      MPI_Get_count(&status, MPI_BYTE, &size);
+      Receiving& part =
+          receiving_.emplace_back(Receiving{status.MPI_SOURCE, status.MPI_TAG == last_part});
+      part.bytes.resize(static_cast<std::size_t>(size));
+      MPI_Imrecv(part.bytes.data(), size, MPI_BYTE, &message, &part.request);
+    }
+    return received();
   }
 
   void wait_until_sent() {
@@ -80,6 +81,35 @@ class MpiMessages final : public Messages {
     std::vector<MPI_Request> requests;
   };
 
+  /// A part that is on its way. Its sender may stop for ever, so nothing waits for it.
+  struct Receiving {
+    int from;
+    bool last;
+    std::string bytes = "";
+    MPI_Request request = MPI_REQUEST_NULL;
+  };
+
+  /// A message whose last part is there. Parts of one sender are taken in their order.
+  std::optional<Message> received() {
+    std::set<int> unfinished;
+    for (auto part = receiving_.begin(); part != receiving_.end();) {
+      int done = 0;
+      if (!unfinished.contains(part->from)) {
+        MPI_Test(&part->request, &done, MPI_STATUS_IGNORE);
+      }
+      if (done == 0) {
+        unfinished.insert((part++)->from);
+        continue;
+      }
+      std::string& bytes = parts_[part->from];
+      bytes = bytes.empty() ? std::move(part->bytes) : bytes + part->bytes;
+      const auto [from, last] = std::pair(part->from, part->last);
+      part = receiving_.erase(part);
+      if (last) return Message{from, std::exchange(bytes, {})};
+    }
+    return std::nullopt;
+  }
+
   void forget_sent() {
     std::erase_if(sending_, [](Sending& each) {
       int done = 0;
@@ -92,6 +122,7 @@ class MpiMessages final : public Messages {
   int rank_ = 0;
   int size_ = 1;
   std::list<Sending> sending_;
+  std::list<Receiving> receiving_;
   std::map<int, std::string> parts_;
 };
 

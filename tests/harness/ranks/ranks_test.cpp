@@ -137,5 +137,13 @@ TEST(Ranks, OfAnotherRunAreRefusedByName) {
               HasSubstr("cannot prepare the run: cannot read `none.yaml`"));
 }
 
+// They cannot read that the run ends.
+TEST(Ranks, ThatCannotBeReadAreNotDismissed) {
+  Post post(2);
+  post.send(0, {.from = 1, .bytes = "assay 2"});
+  Posted messages(post, 0);
+  EXPECT_FALSE(dismiss(messages));
+}
+
 }  // namespace
 }  // namespace assay::harness
