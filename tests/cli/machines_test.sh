@@ -37,8 +37,8 @@ test_killed_runs_go_on_to_the_same_record() {
 test_interrupted_run_goes_on() {
   local suite=$source_folder/suites/luminaire.yaml
   of_one_thread "$suite" --coarsen 4
-  "$assay" run "$suite" --coarsen 4 --quiet --checkpoint kept >/dev/null 2>err </dev/null &
-  sleep .4
+  "$assay" run "$suite" --coarsen 4 --quiet --checkpoint kept --checkpoint-every .01 >/dev/null 2>err </dev/null &
+  until [ -s kept ]; do sleep .01; done
   kill -TERM $!
   wait $!
   [ $? -eq 130 ] || fail 'not interrupted'
