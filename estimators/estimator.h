@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -17,12 +18,32 @@
 #include <vector>
 
 #include "estimators/cost.h"
-#include "estimators/image.h"
 #include "estimators/parameters.h"
 #include "estimators/sampler.h"
 #include "estimators/stream.h"
 
 namespace assay {
+
+/// The shape of an image, the first elements() channels of a set-up. The channel of column x, row y
+/// and component c has the index (y * width + x) * components + c.
+struct ImageShape {
+  std::size_t width = 0;
+  std::size_t height = 0;
+  std::vector<std::string> components = {"value"};
+  /// True if the pixels of one observation are independent. They are not if they share random
+  /// numbers, if a filter reaches over several, or if a chain visits them.
+  bool independent = true;
+  /// Corner in the whole picture, of which a crop shows a part.
+  std::int64_t left = 0;
+  std::int64_t top = 0;
+
+  std::size_t pixels() const { return width * height; }
+  std::size_t elements() const { return pixels() * components.size(); }
+};
+
+/// The channel's name of one pixel, as claims and messages call it: "x3y5", with several components
+/// "x3y5.red". Columns and rows are those of the whole picture.
+std::string element_name(const ImageShape& shape, std::size_t element);
 
 /// Observations [first, last) of one stream, about to be asked for in order.
 struct Announcement {
@@ -207,6 +228,61 @@ std::shared_ptr<const Setup> averaging(Channel channel, Primary primary,
                          return std::make_unique<AveragingEstimator<Primary>>(primary);
                        },
                    .samplers = std::move(samplers)});
+}
+
+/// The source of the random numbers of an image's elements.
+enum class ImageStreams {
+  own,    ///< a substream for each element: the elements are independent
+  shared  ///< one for all of them: each element's primary gets the same numbers
+};
+
+/// A secondary estimate is an image at `primaries` samples an element. `Primary` is as for
+/// AveragingEstimator; there is one for each element.
+template <class Primary>
+class ImagingEstimator final : public Estimator {
+ public:
+  ImagingEstimator(const std::vector<Primary>& primaries, ImageStreams streams)
+      : streams_(streams) {
+    for (const Primary& primary : primaries) elements_.emplace_back(primary);
+  }
+
+  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
+                 Cost& cost) override {
+    for (std::size_t i = 0; i < elements_.size(); ++i) {
+      const std::size_t substream = streams_ == ImageStreams::own ? i : 0;
+      Stream mine = random.substream(static_cast<std::uint32_t>(substream));
+      elements_[i].secondary(mine, primaries, out.subspan(i, 1), cost);
+    }
+  }
+
+ private:
+  std::vector<AveragingEstimator<Primary>> elements_;
+  ImageStreams streams_;
+};
+
+/// The parts of an image: a channel and a primary for each element, in the shape's order. The
+/// channels' names are those of element_name().
+template <class Primary>
+struct ImageParts {
+  ImageShape shape;
+  std::vector<Channel> channels;
+  std::vector<Primary> primaries;
+  ImageStreams streams = ImageStreams::own;
+};
+
+/// The set-up of an image whose elements are averages. `parts.channels` and `parts.primaries` have
+/// parts.shape.elements() entries.
+template <class Primary>
+std::shared_ptr<const Setup> imaging(ImageParts<Primary> parts) {
+  parts.shape.independent = parts.streams == ImageStreams::own;
+  for (std::size_t i = 0; i < parts.channels.size(); ++i) {
+    parts.channels[i].name = element_name(parts.shape, i);
+  }
+  const auto make = [primaries = std::move(parts.primaries), streams = parts.streams] {
+    return std::make_unique<ImagingEstimator<Primary>>(primaries, streams);
+  };
+  return setup_of(
+      {.channels = std::move(parts.channels), .make = make, .image = std::move(parts.shape)});
 }
 
 }  // namespace assay

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <stdexcept>
+#include <utility>
 
 #include "estimators/core/flow.h"
 
@@ -68,6 +69,57 @@ std::string canonical_value(const ParameterInformation& parameter, const Value& 
 }
 
 }  // namespace
+
+ParameterInformation number_parameter(std::string name, std::string summary, std::string fallback,
+                                      const NumberRange& range, std::string unit) {
+  return {.name = std::move(name),
+          .summary = std::move(summary),
+          .unit = std::move(unit),
+          .fallback = std::move(fallback),
+          .low = range.low,
+          .high = range.high,
+          .low_excluded = range.low_excluded,
+          .high_excluded = range.high_excluded};
+}
+
+ParameterInformation count_parameter(std::string name, std::string summary, std::string fallback,
+                                     const NumberRange& range, std::string unit) {
+  ParameterInformation count = number_parameter(std::move(name), std::move(summary),
+                                                std::move(fallback), range, std::move(unit));
+  count.type = ParameterType::count;
+  return count;
+}
+
+ParameterInformation boolean_parameter(std::string name, std::string summary, bool fallback) {
+  return {.name = std::move(name),
+          .type = ParameterType::boolean,
+          .summary = std::move(summary),
+          .fallback = fallback ? "true" : "false"};
+}
+
+ParameterInformation text_parameter(std::string name, std::string summary, std::string fallback,
+                                    std::vector<std::string> choices) {
+  return {.name = std::move(name),
+          .type = ParameterType::string,
+          .summary = std::move(summary),
+          .fallback = std::move(fallback),
+          .choices = std::move(choices)};
+}
+
+ParameterInformation structure_parameter(std::string name, std::string summary,
+                                         std::string fallback, std::string unit) {
+  return {.name = std::move(name),
+          .type = ParameterType::structure,
+          .summary = std::move(summary),
+          .unit = std::move(unit),
+          .fallback = std::move(fallback)};
+}
+
+std::vector<ParameterInformation> joined(std::vector<ParameterInformation> all,
+                                         const std::vector<ParameterInformation>& more) {
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
 
 Parameters::Parameters(std::string plugin, std::vector<ParameterInformation> declared,
                        const Value& given, std::string folder)

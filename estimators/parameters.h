@@ -34,6 +34,30 @@ struct ParameterInformation {
   bool shapes_draws = true;
 };
 
+/// The numbers that a parameter may have.
+struct NumberRange {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool low_excluded = false;
+  bool high_excluded = false;
+};
+
+/// The usual declarations, in one line each. `low` of above() is excluded.
+inline NumberRange above(double low) { return {.low = low, .low_excluded = true}; }
+ParameterInformation number_parameter(std::string name, std::string summary, std::string fallback,
+                                      const NumberRange& range = {}, std::string unit = "");
+ParameterInformation count_parameter(std::string name, std::string summary, std::string fallback,
+                                     const NumberRange& range = {}, std::string unit = "");
+ParameterInformation boolean_parameter(std::string name, std::string summary, bool fallback);
+ParameterInformation text_parameter(std::string name, std::string summary,
+                                    std::string fallback = "",
+                                    std::vector<std::string> choices = {});
+ParameterInformation structure_parameter(std::string name, std::string summary,
+                                         std::string fallback = "", std::string unit = "");
+/// One list and then the other.
+std::vector<ParameterInformation> joined(std::vector<ParameterInformation> all,
+                                         const std::vector<ParameterInformation>& more);
+
 /// The values that a user gave for one estimator, checked against the plugin's declarations.
 ///
 /// Errors are InputErrors that name plugin, parameter and the place in the file. They are for an

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "estimators/image.h"
+#include "estimators/estimator.h"
 #include "estimators/picture_file.h"
 
 namespace assay::recorded {

@@ -3,13 +3,6 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "reports/formats/console.h"
-#include "reports/formats/json.h"
-#include "reports/formats/junit.h"
-#include "reports/formats/markdown.h"
-#include "reports/formats/metrics.h"
-#include "reports/viewer/html.h"
-
 namespace assay::reports {
 
 const std::vector<ReportFormat>& report_formats() {

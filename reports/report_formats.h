@@ -1,15 +1,110 @@
 #pragma once
 
-// The table of reports that a record can be shown as.
+// The reports that a record can be shown as, and their table.
 
+#include <array>
+#include <set>
+#include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "reports/formats/console.h"
 #include "reports/record/calibration.h"
 #include "reports/record/record.h"
 
 namespace assay::reports {
+
+struct ConsoleOptions {
+  bool colour = false;        ///< ANSI escape sequences.
+  int width = 80;             ///< Columns of a line at most; below 40 counts as 40.
+  int detail = 0;             ///< 0: a line a suite. 1: a line a test. 2: all numbers.
+  std::uint64_t slowest = 0;  ///< Names so many of the slowest tests.
+  std::string report = "";    ///< Path of a report that shows more; "": none.
+};
+
+/// The text of one run for a terminal or a log.
+class Console {
+ public:
+  explicit Console(ConsoleOptions options) : options_(std::move(options)) {}
+
+  /// A broken claim in 5 lines at most, and an empty line. It may be told before the run ends.
+  std::string broken(const Suite&, const Test&);
+
+  /// Suites, then claims that are not as they should be and were not told, then the verdict.
+  std::string rest(const Record&) const;
+
+ private:
+  ConsoleOptions options_;
+  std::set<std::string> told_ = {};  ///< Ids.
+};
+
+std::string console(const Record&, const ConsoleOptions& = {});
+
+/// The record as JSON (record.schema.json): keys in fixed order, doubles that read back as the same
+/// double. A number that does not exist is null; one that is not finite is the string "NaN",
+/// "Infinity" or "-Infinity", never null. Text is clean (words/text.h).
+std::string json(const Record&);
+
+/// The same without white space, for programs alone.
+std::string compact_json(const Record&);
+
+/// The keys of a test that repeat its worst channel's, for readers that want one number a test.
+inline constexpr std::array<std::string_view, 9> keys_of_worst_channel = {
+    "statistic", "distribution",     "p_value",      "log10_p", "p_adjusted",
+    "p_pass",    "log10_p_adjusted", "log10_p_pass", "effect"};
+
+/// A saved run that cannot be read. what() is "FILE: sentence".
+class ReadError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The record that json() wrote; `file_name` is for messages only. Throws ReadError that names the
+/// file and the place inside it. It refuses other text than JSON, text that was cut short, and
+/// another schema version. It also refuses a missing, unknown or repeated key, and a value of the
+/// wrong type.
+Record read_json(std::string_view text, std::string_view file_name);
+
+/// The record as JUnit XML, in the subset that GitLab, Jenkins, GitHub's actions and junitparser
+/// share. A test is one case, with its own class name and name. A case that is not ok has exactly
+/// one of three elements. <error> stands for the verdict error, <skipped> for inconclusive and
+/// skipped, and <failure type="VERDICT"> for the rest. Numbers stand both as properties and as
+/// text. The texts of a case stay below 64 KiB.
+std::string junit(const Record&);
+
+/// GitHub drops a whole step summary above 1024 KiB; other steps may have written to it before.
+inline constexpr std::size_t markdown_limit = 900 * 1024;
+
+/// The record as Markdown for a job summary ($GITHUB_STEP_SUMMARY) or a merge request's comment.
+/// Tests that are not ok come first, with message and replay command; then each suite has a table.
+/// The text has at most `limit` bytes and ends by saying what was cut.
+std::string markdown(const Record&, std::size_t limit = markdown_limit);
+
+/// GitHub shows ten annotations of a kind for each step and drops the rest without a word.
+inline constexpr std::size_t most_annotations = 10;
+
+/// GitHub's workflow commands, one a line: `::error file=…,line=…,title=…::message`. `::error`
+/// names what is not ok, the worst first; `::warning` names what is undecided. Each kind has at
+/// most ten, and the last counts the others. Returns "" if all is well. Escapes as the runner's
+/// toolkit does: per cent, carriage return and line feed; in file and title colon and comma too.
+std::string annotations(const Record&);
+
+/// The record's numbers as OpenMetrics 1.0 text, for GitLab's `artifacts:reports:metrics` and
+/// Prometheus. A test has the gauges `assay_ok` (1 or 0), `assay_effect`, `assay_effect_lower`,
+/// `assay_effect_upper` and `assay_detectable`. An estimator's channel has `assay_mean` and
+/// `assay_variance`. Numbers have six significant digits, so that unchanged ones are equal as text.
+/// There are no times, and a number that does not exist has no line.
+std::string metrics(const Record&);
+
+/// The record as one page without network or fonts. The page is the viewer's bundle and the record
+/// with its pictures, packed (viewer/page.h), compressed and in base64. A reader without scripts
+/// sees the Markdown tables. The Content-Security-Policy lets the bundle's own script and style
+/// run, no others.
+std::string html(const Record&);
+
+/// Tells what happened to a test, in sentences for a reader without a course in statistics, and
+/// what to do next, as lines to paste.
+std::string explain(const Suite&, const Test&, int width);
 
 /// A new kind of report is a row and a file.
 struct ReportFormat {

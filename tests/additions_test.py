@@ -17,7 +17,7 @@ import tempfile
 NEW_FILES = {
     "harness/families/added_method.h": """#pragma once
 
-#include "harness/theta/method.h"
+#include "harness/theta/methods.h"
 
 namespace assay::harness {
 
@@ -168,10 +168,10 @@ EDITS = {
         '#include <algorithm>\n', '#include "harness/families/added_quantity.h"\n',
         '      {.word = "variance",\n', QUANTITY_ROW),
     "reports/report_formats.cpp": (
-        '#include "reports/formats/console.h"\n', '#include "reports/formats/added_report.h"\n',
+        '#include "reports/report_formats.h"\n', '#include "reports/formats/added_report.h"\n',
         '      {"junit",', REPORT_ROW),
     "estimators/CMakeLists.txt": (
-        "", "", "  analytic/antithetic.cpp\n", "  analytic/added.cpp\n"),
+        "", "", "  analytic/dart_throwing.cpp\n", "  analytic/added.cpp\n"),
 }
 
 
@@ -225,8 +225,8 @@ def main():
                 "build/estimators/catalogue_list.cpp"]:
             like = {"harness": "harness/families/mean.cpp",
                     "reports": "reports/report_formats.cpp",
-                    "estimators": "estimators/analytic/antithetic.cpp",
-                    "build": "estimators/analytic/antithetic.cpp"}[path.split("/")[0]]
+                    "estimators": "estimators/analytic/dart_throwing.cpp",
+                    "build": "estimators/analytic/dart_throwing.cpp"}[path.split("/")[0]]
             words = command_of(commands, str(source / like))
             words = [f"-I{copy}" if word == f"-I{source}" else word for word in words]
             words = [f"-I{copy}/estimators" if word == f"-I{source}/estimators" else word

@@ -14,12 +14,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
 
-#include "analytic/normal.h"
-#include "analytic/variable.h"
 #include "estimators/estimator.h"
 
 namespace assay::analytic {
@@ -223,13 +222,6 @@ double Law::high() const {
   return family_ == Family::uniform ? b_ : infinity;
 }
 
-ParameterInformation law_parameter() {
-  return {.name = "law",
-          .type = ParameterType::string,
-          .summary = "the law with its numbers, as lognormal(0, 0.5)",
-          .fallback = "normal(0, 1)"};
-}
-
 Law law_of(Parameters& parameters) {
   try {
     return Law::parse(parameters.string("law"));
@@ -248,15 +240,22 @@ Channel channel_of(const Variable& variable) {
   return channel;
 }
 
+NormalLaw normal_law(Parameters& parameters) {
+  const double mean = parameters.number("mean");
+  return {.mean = mean, .deviation = parameters.number("deviation")};
+}
+
 }  // namespace assay::analytic
 
 namespace assay::plugins {
 
 namespace {
 
-using analytic::Law;
-using analytic::Variable;
-using analytic::VariableEstimator;
+using namespace analytic;
+
+ParameterInformation law_parameter() {
+  return text_parameter("law", "the law with its numbers, as lognormal(0, 0.5)", "normal(0, 1)");
+}
 
 /// Draws X with its density, on an interval of 12 standard deviations about the mean, cut by the
 /// range. Values outside are missing mass.
@@ -290,8 +289,8 @@ class VariableSampler final : public Sampler {
   std::array<double, 2> bounds_;
 };
 
-std::shared_ptr<const Setup> prepare(Parameters& parameters) {
-  const Law law = analytic::law_of(parameters);
+std::shared_ptr<const Setup> law(Parameters& parameters) {
+  const Law law = law_of(parameters);
   const Variable variable{law, parameters.number("shift"), parameters.number("scale")};
   std::vector<NamedSampler> samplers;
   if (law.has_density() && law.variance()) {
@@ -300,6 +299,20 @@ std::shared_ptr<const Setup> prepare(Parameters& parameters) {
   return setup_of({.channels = {channel_of(variable)},
                    .make = [variable] { return std::make_unique<VariableEstimator>(variable); },
                    .samplers = std::move(samplers)});
+}
+
+// X of a named law costs 1 + floor(r |X|) shadow rays: large values are dear, as long paths are.
+// E[X] is the law's.
+
+std::shared_ptr<const Setup> costly_law(Parameters& parameters) {
+  const Variable variable{law_of(parameters), 0, 1};
+  const double rays = parameters.number("rays");
+  return averaging(channel_of(variable), [=](Stream& random, Cost& cost) {
+    const double x = variable(random);
+    // So many as fit a counter: of a law that reaches so far no claim on costs is answered.
+    cost.shadow_rays += 1 + static_cast<std::uint64_t>(std::min(rays * std::abs(x), 0x1p40));
+    return x;
+  });
 }
 
 }  // namespace
@@ -314,19 +327,30 @@ std::vector<Entry> analytic_law() {
                 "with probability p and else 0. Mean, variance and range are declared where they "
                 "exist. What has a density can be sampled as `x`, within 6 standard deviations of "
                 "the mean. `assay calibrate` measures the methods on it.",
-            .parameters = {analytic::law_parameter(),
-                           {.name = "shift",
-                            .summary = "what is added",
-                            .fallback = "0",
-                            .low = -1e150,
-                            .high = 1e150},
-                           {.name = "scale",
-                            .summary = "what Y is multiplied by",
-                            .fallback = "1",
-                            .low = 0,
-                            .high = 1e150,
-                            .low_excluded = true}}},
-           prepare}};
+            .parameters = {law_parameter(),
+                           number_parameter("shift", "what is added", "0", {-1e150, 1e150}),
+                           number_parameter("scale", "what Y is multiplied by", "1",
+                                            {0, 1e150, true})}},
+           law},
+          {{.name = "analytic/normal",
+            .summary = "A normal variable.",
+            .description = "Estimates mu by mu + sigma Z, Z standard normal (Box and Muller).",
+            .parameters = {number_parameter("mean", "mu", "0", {-1e300, 1e300}),
+                           number_parameter("deviation", "sigma", "1", {0, 1e150})}},
+           [](Parameters& given) {
+             const NormalLaw law = normal_law(given);
+             return averaging(Channel{.mean = law.mean, .variance = law.deviation * law.deviation},
+                              law);
+           }},
+          {{.name = "analytic/costly_law",
+            .summary = "A variable of a named law that costs rays in proportion to its size.",
+            .description =
+                "Estimates the mean of X, one of the laws of `analytic/law`, by X, which costs 1 + "
+                "floor(r |X|) shadow rays: a cost that is random and depends on the value. `assay "
+                "calibrate` measures claims on costs and efficiencies on it.",
+            .parameters = {law_parameter(),
+                           number_parameter("rays", "r, rays a unit of |X|", "100", {0, 1e6})}},
+           costly_law}};
 }
 
 }  // namespace assay::plugins

@@ -1,5 +1,11 @@
 #pragma once
 
+// Named laws, and variables that have them.
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <string>
@@ -7,9 +13,25 @@
 #include <vector>
 
 #include "estimators/core/first_words.h"
+#include "estimators/estimator.h"
 #include "estimators/stream.h"
 
 namespace assay::analytic {
+
+/// Mean and standard deviation.
+struct NormalLaw {
+  double mean = 0;
+  double deviation = 1;
+
+  /// Box & Muller (1958), the cosine of the pair. `random` is a Stream or reads as one.
+  double operator()(auto& random) const {
+    const double radius = std::sqrt(-2 * std::log(random.uniform_open()));
+    return mean + deviation * radius * std::cos(2 * std::numbers::pi * random.uniform());
+  }
+};
+
+/// Reads `mean` and `deviation`.
+NormalLaw normal_law(Parameters&);
 
 /// A law by name and numbers, as "lognormal(0, 0.5)" says it.
 class Law {
@@ -49,6 +71,56 @@ class Law {
   Family family_;
   double a_;
   double b_;
+};
+
+/// X = shift + scale Y.
+struct Variable {
+  Law law;
+  double shift;
+  double scale;
+
+  double operator()(Stream& random) const { return shift + scale * law.draw(random); }
+};
+
+/// The law that was given. InputError if it is no law.
+Law law_of(Parameters& parameters);
+
+/// Its mean, variance and range, as far as they exist.
+Channel channel_of(const Variable& variable);
+
+/// Observations of one primary in batches, all others one by one: calibrations draw some millions
+/// of them a second.
+class VariableEstimator final : public Estimator {
+ public:
+  explicit VariableEstimator(const Variable& variable) : variable_(variable), means_(variable) {}
+
+  void announce(const Announcement& next) override { ahead_.announce(next); }
+
+  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
+                 Cost& cost) override {
+    const std::uint64_t index = random.observation();
+    if (primaries != 1 || !ahead_.has(random.key(), index)) {
+      means_.secondary(random, primaries, out, cost);
+      return;
+    }
+    if (ahead_.reach(index)) draw_batch();
+    out[0] = values_[ahead_.place(index)];
+    cost.samples += 1;
+  }
+
+ private:
+  void draw_batch() {
+    const std::span<FirstWords> words = ahead_.words();
+    variable_.law.draw(words, values_);
+    for (double& value : std::span(values_).first(words.size())) {
+      value = variable_.shift + variable_.scale * value;
+    }
+  }
+
+  Variable variable_;
+  AveragingEstimator<Variable> means_;
+  AnnouncedWords ahead_;
+  std::array<double, AnnouncedWords::batch> values_{};
 };
 
 }  // namespace assay::analytic

@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include "analytic/variable.h"
-#include "estimators/imaging.h"
+#include "analytic/law.h"
+#include "estimators/estimator.h"
 
 namespace assay::plugins {
 
@@ -45,12 +45,7 @@ std::shared_ptr<const Setup> prepare(Parameters& parameters) {
 }
 
 ParameterInformation size(const char* name, const char* summary) {
-  return {.name = name,
-          .type = ParameterType::count,
-          .summary = summary,
-          .fallback = "16",
-          .low = 2,
-          .high = 4096};
+  return count_parameter(name, summary, "16", {2, 4096});
 }
 
 }  // namespace
@@ -63,25 +58,14 @@ std::vector<Entry> analytic_ramp() {
                        "of a law as `analytic/law` names it, brought to mean 0 and variance 1. "
                        "With `shared`, one Z serves all pixels of a primary: they are then fully "
                        "correlated. `assay calibrate image` measures the method on it.",
-        .parameters = {size("width", "columns"),
-                       size("height", "rows"),
-                       {.name = "colour",
-                        .type = ParameterType::boolean,
-                        .summary = "three components, of brightness 1, 0.8 and 0.6, instead of one",
-                        .fallback = "false"},
-                       {.name = "spread",
-                        .summary = "standard deviation of a primary over its mean",
-                        .fallback = "1",
-                        .low = 0,
-                        .high = 1e100},
-                       {.name = "law",
-                        .type = ParameterType::string,
-                        .summary = "of Z up to mean and scale, as exponential(1)",
-                        .fallback = "normal(0, 1)"},
-                       {.name = "shared",
-                        .type = ParameterType::boolean,
-                        .summary = "whether all pixels get the same random numbers",
-                        .fallback = "false"}}},
+        .parameters =
+            {size("width", "columns"), size("height", "rows"),
+             boolean_parameter(
+                 "colour", "three components, of brightness 1, 0.8 and 0.6, instead of one", false),
+             number_parameter("spread", "standard deviation of a primary over its mean", "1",
+                              {0, 1e100}),
+             text_parameter("law", "of Z up to mean and scale, as exponential(1)", "normal(0, 1)"),
+             boolean_parameter("shared", "whether all pixels get the same random numbers", false)}},
        prepare}};
 }
 

@@ -66,12 +66,8 @@ std::vector<Entry> analytic_two_level() {
             .description = "Estimates 17/6 by 1 + u + (4 u^2 / s) (sum of N exponentials), N = "
                            "floor(s + v). Unbiased for every s > 0; the diagnostic channel "
                            "`children` counts N, of mean s.",
-            .parameters = {{.name = "splitting",
-                            .summary = "s, the expected number of children",
-                            .fallback = "1",
-                            .low = 0,
-                            .high = 1000,
-                            .low_excluded = true}}},
+            .parameters = {number_parameter("splitting", "s, the expected number of children", "1",
+                                            {0, 1000, true})}},
            prepare}};
 }
 

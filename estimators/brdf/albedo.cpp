@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
-#include "render/brdf/brdf_integrals.h"
-#include "render/rejection.h"
+#include "estimators/parameters.h"
+#include "render/brdf.h"
 
 namespace assay::brdf {
 
@@ -142,28 +142,86 @@ std::shared_ptr<const Setup> prepare_albedo(SharedBrdf brdf, Parameters& paramet
 }
 
 std::vector<ParameterInformation> incident_parameters() {
-  return {{.name = "theta_i",
-           .summary = "polar angle of the incident direction",
-           .unit = "rad",
-           .fallback = "0.8",
-           .low = 0,
-           .high = 1.5},
-          {.name = "phi_i",
-           .summary = "azimuth of the incident direction, from the x axis of the lobe",
-           .unit = "rad",
-           .fallback = "0.5",
-           .low = 0,
-           .high = 6.283185307179586}};
+  return {
+      number_parameter("theta_i", "polar angle of the incident direction", "0.8", {0, 1.5}, "rad"),
+      number_parameter("phi_i", "azimuth of the incident direction, from the x axis of the lobe",
+                       "0.5", {0, 6.283185307179586}, "rad")};
 }
 
 ParameterInformation sampler_parameter() {
-  return {.name = "sampler",
-          .type = ParameterType::string,
-          .summary =
-              "how directions are drawn: as published, or by rejection from the published "
-              "density above the horizon, from f, or from f cos",
-          .fallback = "published",
-          .choices = {"published", "density_rejection", "brdf_rejection", "brdf_cosine_rejection"}};
+  return text_parameter(
+      "sampler",
+      "how directions are drawn: as published, or by rejection from the published density above "
+      "the horizon, from f, or from f cos",
+      "published", {"published", "density_rejection", "brdf_rejection", "brdf_cosine_rejection"});
+}
+
+// The directional albedo of the Ashikhmin-Shirley reflectance (specular part): E = the integral of
+// f cos_o over the hemisphere, by the half vector (render/brdf/brdf_ashikhmin_shirley.h). Like
+// Ward's, the published algorithm follows its own p(w_o); directions below the horizon count as
+// zero.
+
+std::vector<ParameterInformation> ashikhmin_shirley_parameters() {
+  return joined(
+      {number_parameter("nu", "exponent along x", "10", {0, 10000}),
+       number_parameter("nv", "exponent along y", "100", {0, 10000}),
+       number_parameter("reflectance", "Fresnel reflectance at normal incidence (Schlick's)", "0.5",
+                        {0, 1})},
+      incident_parameters());
+}
+
+// The directional albedo of Ward's reflectance: E = the integral of f cos_o over the hemisphere.
+//
+// Directions are drawn by the half vector (render/brdf/brdf_ward.h). The published algorithm
+// follows its own density p(w_o), so the weight f cos / p is not constant. Directions below the
+// horizon count as zero: so the mean of the weights is the albedo.
+
+std::vector<ParameterInformation> ward_parameters() {
+  return joined({number_parameter("alpha_x", "roughness along x", "0.15", {0.02, 1}),
+                 number_parameter("alpha_y", "roughness along y", "0.4", {0.02, 1})},
+                incident_parameters());
 }
 
 }  // namespace assay::brdf
+
+namespace assay::plugins {
+
+std::vector<Entry> brdf_albedo() {
+  return {
+      {{.name = "brdf/ashikhmin_shirley",
+        .summary = "Directional albedo of the Ashikhmin-Shirley reflectance (specular part).",
+        .description =
+            "Estimates the integral of f cos over the upper hemisphere by f cos / p. "
+            "f = sqrt((nu+1)(nv+1)) / (8 pi) (n.h)^e F(h.w_i) / ((h.w_i) max(cos_i, cos_o)), "
+            "e = nu cos^2 phi + nv sin^2 phi, F Schlick's (Ashikhmin & Shirley 2000). The "
+            "published sampler has the density p = sqrt((nu+1)(nv+1)) / (2 pi) (n.h)^e / "
+            "(4 h.w_i) and the weight F cos_o / max(cos_i, cos_o); what falls below the "
+            "horizon is an invalid draw of weight 0. With the default parameters p has the "
+            "mass 0.916369 above the horizon and the albedo is 0.373217. The rejection "
+            "samplers propose cos_o = xi^2 and are normalised by quadrature.",
+        .parameters = joined(brdf::ashikhmin_shirley_parameters(), {brdf::sampler_parameter()})},
+       [](Parameters& given) {
+         const auto brdf =
+             std::make_shared<render::AshikhminShirley>(brdf::ashikhmin_shirley(given));
+         return brdf::prepare_albedo(brdf, given);
+       }},
+      {{.name = "brdf/ward",
+        .summary = "Directional albedo of Ward's anisotropic reflectance.",
+        .description =
+            "Estimates the integral of f cos over the upper hemisphere by f cos / p. "
+            "f = exp(-tan^2 d (cos^2 phi / ax^2 + sin^2 phi / ay^2)) / "
+            "(4 pi ax ay sqrt(cos_i cos_o)), d and phi the angles of the half vector h (Ward "
+            "1992). The published sampler has the density p = exp(.) / (4 pi ax ay (h . w_i) "
+            "cos^3 d) and the weight (h . w_i) cos^3 d sqrt(cos_o / cos_i) (Walter 2005); what "
+            "falls below the horizon is an invalid draw of weight 0. With the default "
+            "parameters p has the mass 0.980181 above the horizon and the albedo is 0.564185. "
+            "The rejection samplers propose cos_o = xi^2, because f is unbounded where w_o "
+            "grazes the surface, and are normalised by quadrature.",
+        .parameters = joined(brdf::ward_parameters(), {brdf::sampler_parameter()})},
+       [](Parameters& given) {
+         const auto ward = std::make_shared<render::Ward>(brdf::ward(given));
+         return brdf::prepare_albedo(ward, given);
+       }}};
+}
+
+}  // namespace assay::plugins

@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "estimators/estimator.h"
-#include "render/brdf/brdf.h"
+#include "estimators/parameters.h"
+#include "render/brdf.h"
 
 namespace assay::brdf {
 
@@ -30,5 +31,35 @@ Channel published_channel(const render::HalfVectorBrdf&);
 std::vector<ParameterInformation> incident_parameters();
 /// sampler.
 ParameterInformation sampler_parameter();
+
+/// nu, nv, reflectance, theta_i, phi_i.
+std::vector<ParameterInformation> ashikhmin_shirley_parameters();
+
+/// Reads them; `Brdf` is constructible as AshikhminShirley is.
+template <class Brdf = render::AshikhminShirley>
+Brdf ashikhmin_shirley(Parameters& parameters) {
+  const double u = parameters.number("nu");
+  const double v = parameters.number("nv");
+  const double reflectance = parameters.number("reflectance");
+  const double theta = parameters.number("theta_i");
+  const double phi = parameters.number("phi_i");
+  return Brdf({.exponents = {.u = u, .v = v}, .reflectance = reflectance},
+              {.theta = theta, .phi = phi});
+}
+
+/// alpha_x, alpha_y, theta_i, phi_i.
+std::vector<ParameterInformation> ward_parameters();
+/// Reads them; `Brdf` is constructible as Ward is.
+template <class Brdf = render::Ward>
+Brdf ward(Parameters&);
+
+template <class Brdf>
+Brdf ward(Parameters& parameters) {
+  const double x = parameters.number("alpha_x");
+  const double y = parameters.number("alpha_y");
+  const double theta = parameters.number("theta_i");
+  const double phi = parameters.number("phi_i");
+  return Brdf({.x = x, .y = y}, {.theta = theta, .phi = phi});
+}
 
 }  // namespace assay::brdf

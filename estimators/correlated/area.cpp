@@ -1,8 +1,67 @@
-// Irradiance from a polygonal luminaire past occluders, with the luminaire's unoccluded irradiance,
-// known by Lambert's formula, as the control.
+#include "correlated/area.h"
 
-#include "correlated/area_pairs.h"
-#include "correlated/parameters.h"
+#include <stdexcept>
+
+#include "correlated/estimators.h"
+
+namespace assay::correlated {
+
+namespace {
+
+using luminaire::SceneDescription;
+using luminaire::Setting;
+
+SceneDescription without_occluders(SceneDescription description) {
+  description.occluders.clear();
+  return description;
+}
+
+Colour colour_of(const Setting& setting, const Setting& open) {
+  const auto control = luminaire::exact_integrals(open);
+  if (!control) throw std::invalid_argument("AreaPairs: the luminaire must be a planar polygon");
+  const double l = setting.radiance();
+  Colour colour{.name = "irradiance", .control_integral = l * control->irradiance};
+  const auto full = luminaire::exact_integrals(setting);
+  if (!full) return colour;
+  colour.integral = l * full->irradiance;
+  if (!full->squared_geometry || !control->squared_geometry) return colour;
+  const double factor = full->area * l * l;
+  const double seen = factor * *full->squared_geometry;
+  colour.moments = {.full = seen, .product = seen, .control = factor * *control->squared_geometry};
+  return colour;
+}
+
+}  // namespace
+
+AreaPairs::AreaPairs(const SceneDescription& description, const Location& where)
+    : setting_(std::make_shared<const Setting>(description, where)),
+      primary_(setting_),
+      colours_{colour_of(*setting_, Setting(without_occluders(description), where))} {}
+
+void AreaPairs::draw(Stream& random, std::span<Pair> out, Cost& cost) const {
+  // Points first, rays after: see AveragingEstimator.
+  std::array<luminaire::LightSample, 32> points;
+  for (std::size_t done = 0; done < out.size(); done += points.size()) {
+    const std::size_t size = std::min(points.size(), out.size() - done);
+    for (std::size_t i = 0; i < size; ++i) points[i] = primary_.draw(random);
+    for (std::size_t i = 0; i < size; ++i) {
+      out[done + i].control[0] = points[i].value;
+      out[done + i].full[0] = primary_.value(points[i], cost);
+    }
+  }
+}
+
+std::shared_ptr<const AreaPairs> read_area_pairs(Parameters& given) {
+  const SceneDescription scene = luminaire::read_scene(given.structure("scene"), given.folder());
+  if (!std::holds_alternative<render::Polygon>(scene.light.shape)) {
+    given.refuse("scene",
+                 "the luminaire must be one polygon: of a mesh, which may shade itself, the "
+                 "integral of the control is not known in closed form");
+  }
+  return std::make_shared<const AreaPairs>(scene, given.where("scene"));
+}
+
+}  // namespace assay::correlated
 
 namespace assay::plugins {
 

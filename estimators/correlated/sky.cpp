@@ -1,8 +1,74 @@
-// Irradiance from a sky past occluders, with a uniform sky of the same mean, unoccluded, as the
-// control.
+#include "correlated/sky.h"
 
-#include "correlated/parameters.h"
-#include "correlated/sky_pairs.h"
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "correlated/estimators.h"
+#include "estimators/parameters.h"
+#include "steerable/directions.h"
+
+namespace assay::correlated {
+
+namespace {
+
+sky::SharedDirections directions_of(Parameters& given, const sky::Setting& setting) {
+  const std::string sampling = given.string("sampling");
+  if (sampling == "uniform") return std::make_shared<const sky::UniformDirections>();
+  if (sampling == "cosine") return std::make_shared<const sky::CosineDirections>();
+  // A lobe of one coefficient is constant: what is left is the sky alone.
+  const steerable::Lobe lobe =
+      sampling == "emittance" ? steerable::Lobe{.coefficients = 1, .offset = 0} : steerable::Lobe{};
+  const auto tree = std::make_shared<const steerable::SkyTree>(
+      setting.radiance(), steerable::Preparation{.coefficients = lobe.coefficients});
+  if (!(tree->least() > 0)) {
+    given.refuse("sky", "is black at a vertex of the subdivision that `sampling: " + sampling +
+                            "` draws by: some directions would never be drawn; sample it uniformly "
+                            "or by the cosine");
+  }
+  return std::make_shared<const steerable::SteeredDirections<>>(tree, lobe, setting.frame());
+}
+
+}  // namespace
+
+SkyPairs::SkyPairs(sky::SharedSetting setting, sky::SharedDirections directions)
+    : setting_(std::move(setting)),
+      directions_(std::move(directions)),
+      mean_(setting_->radiance().mean()) {
+  for (const Channel& channel : sky::irradiance_channels(*setting_)) {
+    colours_.push_back({.name = channel.name,
+                        .control_integral = std::numbers::pi * mean_[colours_.size()],
+                        .integral = channel.mean,
+                        .integral_error = channel.mean_error});
+  }
+}
+
+void SkyPairs::draw(Stream& random, std::span<Pair> out, Cost& cost) const {
+  for (Pair& pair : out) {
+    const double u = random.uniform();
+    const sky::Direction direction = directions_->draw(u, random.uniform());
+    pair = {};
+    if (direction.w.z <= 0) continue;
+    const Rgb received = setting_->received(direction.w, cost);
+    for (std::size_t c = 0; c < colours_.size(); ++c) {
+      pair.full[c] = received[c] / direction.density;
+      pair.control[c] = mean_[c] * direction.w.z / direction.density;
+    }
+  }
+}
+
+std::vector<ParameterInformation> sky_pair_parameters() {
+  return joined(sky::parameters(),
+                {text_parameter("sampling", "the density of directions", "emittance",
+                                {"uniform", "cosine", "emittance", "steered"})});
+}
+
+std::shared_ptr<const SkyPairs> read_sky_pairs(Parameters& given) {
+  const sky::SharedSetting setting = sky::read_setting(given);
+  return std::make_shared<const SkyPairs>(setting, directions_of(given, *setting));
+}
+
+}  // namespace assay::correlated
 
 namespace assay::plugins {
 

@@ -1,34 +1,134 @@
+#include "depth_of_field/image.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "estimators/parameters.h"
+
+namespace assay::depth_of_field {
+
+namespace {
+
+std::vector<std::uint64_t> counts(std::span<const double> shares, double scale) {
+  std::vector<std::uint64_t> out;
+  for (const double share : shares) {
+    out.push_back(static_cast<std::uint64_t>(std::max(1.0, std::round(scale * share))));
+  }
+  return out;
+}
+
+double total(const std::vector<std::uint64_t>& counts) {
+  return static_cast<double>(std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}));
+}
+
+}  // namespace
+
+std::vector<std::uint64_t> lens_counts(std::span<const double> variances, const Allocation& plan) {
+  std::vector<double> shares;
+  for (const double v : variances) shares.push_back(std::pow(v, plan.exponent));
+  const double sum = std::accumulate(shares.begin(), shares.end(), 0.0);
+  if (!(sum > 0)) return counts(shares, 0);
+  const double budget = plan.mean_count * static_cast<double>(shares.size());
+  double low = 0;
+  double high = 2 * budget / sum;  // more than the budget, whatever is rounded down to one
+  for (int i = 0; i < 60; ++i) {
+    const double middle = (low + high) / 2;
+    (total(counts(shares, middle)) <= budget ? low : high) = middle;
+  }
+  return counts(shares, low);
+}
+
+namespace {
+
+std::vector<double> exact_variances(const std::vector<Moments>& moments) {
+  std::vector<double> out;
+  // Below, the difference is rounding.
+  for (const Moments& m : moments) {
+    out.push_back(m.variance() > 1e-10 * m.square ? m.variance() : 0);
+  }
+  return out;
+}
+
+double exponent(const std::string& allocation) {
+  if (allocation == "variance") return 1;
+  if (allocation == "two_thirds") return 2.0 / 3;
+  return allocation == "deviation" ? 0.5 : 0;
+}
+
+}  // namespace
+
+std::vector<ParameterInformation> grid_parameters() {
+  return {count_parameter("width", "columns of pixels", "32", {2, 1024}),
+          count_parameter("height", "rows of pixels", "24", {1, 1024}),
+          number_parameter("size", "of the image along the width, on the focal plane", "2",
+                           above(0), "scene units")};
+}
+
+Grid read_grid(Parameters& given) {
+  return {given.count("width"), given.count("height"), given.number("size")};
+}
+
+ImagePlan read_image_plan(Parameters& given, const PredictionRules* rules) {
+  ImagePlan plan{.setting = read_setting(given), .grid = read_grid(given)};
+  for (std::size_t i = 0; i < plan.grid.pixels(); ++i) {
+    plan.exact.push_back(exact_moments(plan.setting->scene(), plan.grid.pixel(i)));
+  }
+  const Allocation allocation{static_cast<double>(given.count("samples")),
+                              exponent(given.string("allocation"))};
+  const std::string source = given.string("prediction");
+  std::vector<double> variances = exact_variances(plan.exact);
+  if (rules || (allocation.exponent > 0 && source != "exact")) {
+    const PredictionRules own = source == "covariance" ? covariance_rules() : wave_rules();
+    Prediction found = predict(*plan.setting, plan.grid, rules ? *rules : own);
+    plan.background = std::move(found.background);
+    plan.overhead = found.cost;
+    if (source != "exact") variances = std::move(found.variance);
+  }
+  plan.counts = lens_counts(variances, allocation);
+  return plan;
+}
+
+NoiseExtremes noise_extremes(const ImagePlan& plan) {
+  NoiseExtremes out;
+  double most = 0;
+  double least = std::numeric_limits<double>::infinity();
+  const std::vector<double> variances = exact_variances(plan.exact);
+  for (std::size_t i = 0; i < variances.size(); ++i) {
+    const double noise = variances[i] / static_cast<double>(plan.counts[i]);
+    if (noise > most) out.worst = i, most = noise;
+    if (noise > 0 && noise < least) out.quietest = i, least = noise;
+  }
+  return out;
+}
+
+std::vector<Channel> image_channels(const ImagePlan& plan) {
+  std::vector<Channel> out;
+  const ImageShape shape{plan.grid.width, plan.grid.height, {"radiance"}};
+  for (std::size_t i = 0; i < plan.exact.size(); ++i) {
+    out.push_back(radiance_channel(plan.setting->scene(), plan.exact[i],
+                                   static_cast<double>(plan.counts[i])));
+    out.back().name = element_name(shape, i);
+  }
+  const NoiseExtremes ends = noise_extremes(plan);
+  const auto repeat = [&](std::size_t pixel, const char* name) {
+    out.push_back(out[pixel]);
+    out.back().name = name;
+    out.back().diagnostic = true;
+  };
+  repeat(ends.worst, "worst");
+  repeat(ends.quietest, "quietest");
+  return out;
+}
+
 // An image behind a thin lens.
 //
 // Each pixel is the mean of N lens samples (pixel.cpp). N is fixed beforehand: the same for all, or
 // in proportion to a power of the variance. The variance comes from a prediction or the closed
 // form. N depends on no sample that is averaged, so E of every pixel is its lens average.
 
-#include "depth_of_field/image.h"
-
-namespace assay::depth_of_field {
-
 Information image_information() {
-  std::vector<ParameterInformation> parameters = {scene_parameter("strip")};
-  for (ParameterInformation& p : grid_parameters()) parameters.push_back(std::move(p));
-  parameters.push_back({.name = "samples",
-                        .type = ParameterType::count,
-                        .summary = "lens samples a pixel, the mean over the image",
-                        .fallback = "16",
-                        .low = 1,
-                        .high = 1e6});
-  parameters.push_back({.name = "allocation",
-                        .type = ParameterType::string,
-                        .summary = "what the number of lens samples of a pixel goes with: nothing, "
-                                   "the variance V, V^(2/3) or sqrt V",
-                        .fallback = "variance",
-                        .choices = {"uniform", "variance", "two_thirds", "deviation"}});
-  parameters.push_back({.name = "prediction",
-                        .type = ParameterType::string,
-                        .summary = "where V is from: waves or their covariance, carried to the "
-                                   "lens, or the closed form (an oracle, without rays)",
-                        .fallback = "waves",
-                        .choices = {"waves", "covariance", "exact"}});
   return {.name = "depth_of_field/image",
           .summary = "An image behind a thin lens, lens samples allotted by predicted variance.",
           .description =
@@ -42,7 +142,18 @@ Information image_information() {
               "columns. N = max(1, K V^exponent), rounded. Means of all pixels, and variances of "
               "one image, are exact. Channels: the pixels; diagnostic ones `worst` and `quietest`, "
               "the pixels of the largest and the least noise V / N above zero by the closed form.",
-          .parameters = std::move(parameters)};
+          .parameters = joined(
+              joined({scene_parameter("strip")}, grid_parameters()),
+              {count_parameter("samples", "lens samples a pixel, the mean over the image", "16",
+                               {1, 1e6}),
+               text_parameter("allocation",
+                              "what the number of lens samples of a pixel goes with: "
+                              "nothing, the variance V, V^(2/3) or sqrt V",
+                              "variance", {"uniform", "variance", "two_thirds", "deviation"}),
+               text_parameter("prediction",
+                              "where V is from: waves or their covariance, carried to the "
+                              "lens, or the closed form (an oracle, without rays)",
+                              "waves", {"waves", "covariance", "exact"})})};
 }
 
 }  // namespace assay::depth_of_field

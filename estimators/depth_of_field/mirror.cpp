@@ -12,11 +12,12 @@
 
 #include <numbers>
 
-#include "analytic/normal.h"
+#include "analytic/law.h"
 #include "depth_of_field/curved_mirror.h"
-#include "depth_of_field/disc_sampler.h"
 #include "depth_of_field/exact.h"
 #include "depth_of_field/spectrum.h"
+#include "depth_of_field/thin_lens.h"
+#include "estimators/parameters.h"
 
 namespace assay::plugins {
 
@@ -86,12 +87,7 @@ std::shared_ptr<const Setup> prepare(Parameters& given) {
 }
 
 ParameterInformation length(const char* name, const char* summary, const char* fallback) {
-  return {.name = name,
-          .summary = summary,
-          .unit = "scene units",
-          .fallback = fallback,
-          .low = 0,
-          .low_excluded = true};
+  return number_parameter(name, summary, fallback, above(0), "scene units");
 }
 
 }  // namespace
@@ -118,25 +114,18 @@ std::vector<Entry> depth_of_field_mirror() {
              length("focus", "depth of what is sharp, from the lens along the ray", "2"),
              length("distance", "from the lens to the mirror", "1"),
              length("beyond", "from the mirror to the board", "3"),
-             {.name = "curvature",
-              .summary = "of the mirror, positive where it bulges; 0 is flat",
-              .unit = "1 / scene unit",
-              .fallback = "0"},
-             {.name = "roughness",
-              .summary = "standard deviation of the slopes about the mirror's; 0 is smooth",
-              .fallback = "0",
-              .low = 0},
+             number_parameter("curvature", "of the mirror, positive where it bulges; 0 is flat",
+                              "0", {}, "1 / scene unit"),
+             number_parameter("roughness",
+                              "standard deviation of the slopes about the mirror's; 0 is smooth",
+                              "0", {0}),
              length("wavelength", "of the board", "0.41887902047863907"),
-             {.name = "phase", .summary = "of the board", .unit = "radians", .fallback = "0"},
-             {.name = "pixel",
-              .summary = "the point of the focal plane that the pixel sees",
-              .unit = "scene units",
-              .fallback = "0"},
-             {.name = "rays",
-              .type = ParameterType::string,
-              .summary = "carried to first order about the axis, or by the law of reflection",
-              .fallback = "linear",
-              .choices = {"linear", "exact"}}}},
+             number_parameter("phase", "of the board", "0", {}, "radians"),
+             number_parameter("pixel", "the point of the focal plane that the pixel sees", "0", {},
+                              "scene units"),
+             text_parameter("rays",
+                            "carried to first order about the axis, or by the law of reflection",
+                            "linear", {"linear", "exact"})}},
        prepare}};
 }
 

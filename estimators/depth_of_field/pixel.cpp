@@ -1,12 +1,57 @@
+#include "depth_of_field/pixel.h"
+
+#include <utility>
+
+#include "estimators/parameters.h"
+
+namespace assay::depth_of_field {
+
+ParameterInformation scene_parameter(const char* fallback) {
+  return structure_parameter("scene",
+                             "a built-in scene (edge, sinusoid, strip, portrait, boards), or a map "
+                             "of lens, background and planes",
+                             fallback);
+}
+
+SharedSetting read_setting(Parameters& given) {
+  return std::make_shared<const Setting>(read_scene(given.structure("scene")));
+}
+
+ParameterInformation pixel_parameter() {
+  return structure_parameter("pixel", "the point [x, y] of the focal plane that the pixel sees",
+                             "[0, 0]", "scene units");
+}
+
+PlanePoint read_pixel(Parameters& given) {
+  const Value& value = given.structure("pixel");
+  if (value.kind() != Value::Kind::list || value.items().size() != 2) {
+    given.refuse("pixel", "must be a list of two numbers, x and y on the focal plane");
+  }
+  const PlanePoint out{value.items()[0].number("the pixel's x"),
+                       value.items()[1].number("the pixel's y")};
+  if (!std::isfinite(out.x) || !std::isfinite(out.y)) given.refuse("pixel", "must be finite");
+  return out;
+}
+
+Channel radiance_channel(const SceneDescription& scene, const Moments& moments, double samples) {
+  const Interval range = scene.range();
+  Channel channel{.name = "radiance",
+                  .mean = moments.mean,
+                  .mean_error = moments.error,
+                  .low = range.low,
+                  .high = range.high,
+                  .rounding = range.high * 0x1p-40};
+  // Rounding of the difference: 32 halves of a last place of the largest square.
+  const double off = moments.variance_error() + 0x1p-48 * range.high * range.high;
+  if (off <= 1e-8 * moments.variance()) channel.variance = moments.variance() / samples;
+  return channel;
+}
+
 // The radiance that a thin lens gathers at one pixel.
 //
 // X = L(u, P) is the radiance along a ray. It goes from a lens point u, uniform on the disc,
 // through the pixel's point P of the focal plane. E[X] is the average of L over the lens. Both E[X]
 // and Var X are known in closed form or by quadrature (exact.h).
-
-#include "depth_of_field/pixel.h"
-
-namespace assay::depth_of_field {
 
 Information pixel_information() {
   return {
@@ -22,14 +67,35 @@ Information pixel_information() {
           "With `jitter: n` a primary is the mean of n^2 lens points, one in each cell of a "
           "grid. (Soler, Subr, Durand, Holzschuch and Sillion 2009, ACM Trans. Graph. 28(2), "
           "article 18.)",
-      .parameters = {scene_parameter("edge"),
-                     pixel_parameter(),
-                     {.name = "jitter",
-                      .type = ParameterType::count,
-                      .summary = "side n of the grid; 1 for independent lens points",
-                      .fallback = "1",
-                      .low = 1,
-                      .high = 1024}}};
+      .parameters = {scene_parameter("edge"), pixel_parameter(),
+                     count_parameter("jitter", "side n of the grid; 1 for independent lens points",
+                                     "1", {1, 1024})}};
+}
+
+// Lens integration in two stages: a pilot decides how many lens samples follow, and is thrown away.
+//
+// X is the mean of N fresh lens samples, N a function of the pilot alone: E[X | N] is the average
+// over the lens, whatever N.
+
+Information two_stage_information() {
+  return {.name = "depth_of_field/two_stage",
+          .summary = "The radiance at one pixel, by as many lens points as a pilot asks for.",
+          .description =
+              "A pilot of lens samples gives their variance s^2; X is the mean of N = max(1, "
+              "ceil(s^2 / noise^2)) further ones, at most `most`. As the pilot is not averaged "
+              "with them, N does not depend on what is averaged, and X is unbiased; to average "
+              "the pilot too is a bias (Kirk and Arvo 1991, \"Unbiased sampling techniques for "
+              "image synthesis\"). The pilot's rays are counted.",
+          .parameters = {
+              scene_parameter("edge"), pixel_parameter(),
+              count_parameter("pilot", "lens samples of the pilot", "8", {2, 1e6}),
+              number_parameter("noise", "standard error that is asked for", "0.1", above(0),
+                               "radiance"),
+              count_parameter("most", "lens samples after the pilot, at most", "4096", {1, 1e6})}};
+}
+
+StageRule read_stage_rule(Parameters& given) {
+  return {given.count("pilot"), given.number("noise"), given.count("most")};
 }
 
 }  // namespace assay::depth_of_field
@@ -37,7 +103,9 @@ Information pixel_information() {
 namespace assay::plugins {
 
 std::vector<Entry> depth_of_field_pixel() {
-  return {{depth_of_field::pixel_information(), depth_of_field::prepare_pixel<>}};
+  using namespace depth_of_field;
+  return {{pixel_information(), prepare_pixel<>},
+          {two_stage_information(), [](Parameters& given) { return prepare_two_stage<>(given); }}};
 }
 
 }  // namespace assay::plugins

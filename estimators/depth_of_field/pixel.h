@@ -1,10 +1,39 @@
 #pragma once
 
-// Lens integration at one pixel with a number of lens samples that is known beforehand.
+#include <algorithm>
+#include <cmath>
 
-#include "depth_of_field/family.h"
+#include "depth_of_field/exact.h"
+#include "depth_of_field/scene_description.h"
+#include "depth_of_field/thin_lens.h"
+#include "estimators/core/running_moments.h"
 
 namespace assay::depth_of_field {
+
+ParameterInformation scene_parameter(const char* fallback);
+SharedSetting read_setting(Parameters&);
+
+/// `pixel`: the point of the focal plane.
+ParameterInformation pixel_parameter();
+PlanePoint read_pixel(Parameters&);
+
+/// Average radiance over the lens at one pixel: mean with its error, and range. The variance is
+/// that of one lens sample divided by `samples`. It is stated only if quadrature and rounding leave
+/// it eight digits.
+Channel radiance_channel(const SceneDescription& scene, const Moments& moments, double samples = 1);
+
+/// One lens sample at one pixel: the radiance along the ray from a point of the lens.
+template <class Disc = UniformDisc>
+struct LensPrimary {
+  SharedSetting setting;
+  PlanePoint pixel;
+
+  PlanePoint draw(Stream& random) const {
+    const double s = random.uniform();
+    return Disc{}(s, random.uniform());
+  }
+  double value(const PlanePoint& u, Cost& cost) const { return setting->radiance(pixel, u, cost); }
+};
 
 /// Static information of depth_of_field/pixel.
 Information pixel_information();
@@ -46,6 +75,50 @@ std::shared_ptr<const Setup> prepare_pixel(Parameters& given) {
   if (side == 1) return averaging(std::move(channel), primary, lens_samplers<Disc>());
   channel.variance.reset();
   return averaging(std::move(channel), JitteredPrimary<Disc>(primary, side), lens_samplers<Disc>());
+}
+
+/// How many lens samples follow a pilot.
+struct StageRule {
+  std::uint64_t pilot = 8;    ///< lens samples of the pilot, 2 or more
+  double noise = 0.1;         ///< standard error that is wanted
+  std::uint64_t most = 4096;  ///< lens samples at the most
+
+  /// max(1, ceil(s^2 / noise^2)), at most `most`, s^2 a sample variance.
+  double count(double variance) const {
+    const double wanted = std::ceil(variance / (noise * noise));
+    return std::clamp(wanted, 1.0, static_cast<double>(most));
+  }
+};
+
+/// The pilot is thrown away: the number of samples is independent of those that are averaged.
+struct FreshSamples {
+  template <class Draw>
+  double operator()(const StageRule& rule, const Draw& draw) const {
+    RunningMoments pilot;
+    for (std::uint64_t i = 0; i < rule.pilot; ++i) pilot.add(draw());
+    RunningMoments main;
+    for (const double n = rule.count(pilot.variance()); main.count() < n;) main.add(draw());
+    return main.mean();
+  }
+};
+
+Information two_stage_information();
+StageRule read_stage_rule(Parameters&);
+
+/// `Stages` makes one estimate from a rule and a callable that draws a lens sample.
+template <class Stages = FreshSamples>
+std::shared_ptr<const Setup> prepare_two_stage(Parameters& given) {
+  const LensPrimary<> primary{read_setting(given), read_pixel(given)};
+  const SceneDescription& scene = primary.setting->scene();
+  const StageRule rule = read_stage_rule(given);
+  Channel channel = radiance_channel(scene, exact_moments(scene, primary.pixel));
+  channel.variance.reset();
+  return averaging(
+      std::move(channel),
+      [primary, rule](Stream& random, Cost& cost) {
+        return Stages{}(rule, [&] { return primary.value(primary.draw(random), cost); });
+      },
+      lens_samplers<>());
 }
 
 }  // namespace assay::depth_of_field

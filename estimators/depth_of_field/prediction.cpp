@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "depth_of_field/covariance.h"
 #include "depth_of_field/exact.h"
+#include "depth_of_field/spectrum.h"
 
 namespace assay::depth_of_field {
 

@@ -28,7 +28,7 @@
 #include <span>
 #include <vector>
 
-#include "depth_of_field/setting.h"
+#include "depth_of_field/scene_description.h"
 #include "depth_of_field/spectrum.h"
 
 namespace assay::depth_of_field {

@@ -1,37 +1,206 @@
-// An image behind a thin lens from samples as dense as its predicted detail asks for.
-//
-// Each image sample is the mean of N lens samples at a pixel's middle, N in proportion to the
-// predicted variance. Each pixel is a weighted mean of the image samples near it. The lens averages
-// are unbiased. E of a pixel is the interpolant of the exact means.
-
 #include "depth_of_field/reconstruction.h"
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
 #include "depth_of_field/image.h"
+#include "estimators/parameters.h"
 
 namespace assay::depth_of_field {
 
 namespace {
 
-std::vector<ParameterInformation> parameters() {
-  std::vector<ParameterInformation> all = {scene_parameter("portrait")};
-  for (ParameterInformation& p : grid_parameters()) all.push_back(std::move(p));
-  all.push_back({.name = "samples",
-                 .type = ParameterType::count,
-                 .summary = "lens samples an image sample, the mean over the image",
-                 .fallback = "16",
-                 .low = 1,
-                 .high = 1e6});
-  all.push_back({.name = "spacing",
-                 .type = ParameterType::count,
-                 .summary = "of image samples: 1, 2, 4 or 8, or 0 for what the prediction says",
-                 .unit = "pixels",
-                 .fallback = "0",
-                 .low = 0,
-                 .high = 8});
-  return all;
+/// The samples of one tile whose first pixel is (x0, y0).
+void add_tile(std::vector<ImageSample>& out, const Grid& grid, const ImageSample& first) {
+  const std::size_t x_end = std::min(first.x + tile_side, grid.width);
+  const std::size_t y_end = std::min(first.y + tile_side, grid.height);
+  for (std::size_t y = first.y; y < y_end; y += first.spacing) {
+    for (std::size_t x = first.x; x < x_end; x += first.spacing) {
+      out.push_back({x, y, first.spacing});
+    }
+  }
+}
+
+double highest(const Grid& grid, std::span<const double> bandwidth, const ImageSample& first) {
+  double most = 0;
+  for (std::size_t y = first.y; y < std::min(first.y + tile_side, grid.height); ++y) {
+    for (std::size_t x = first.x; x < std::min(first.x + tile_side, grid.width); ++x) {
+      most = std::max(most, bandwidth[y * grid.width + x]);
+    }
+  }
+  return most;
+}
+
+template <class Spacing>
+std::vector<ImageSample> tiles(const Grid& grid, const Spacing& spacing) {
+  std::vector<ImageSample> out;
+  for (std::size_t y = 0; y < grid.height; y += tile_side) {
+    for (std::size_t x = 0; x < grid.width; x += tile_side) {
+      add_tile(out, grid, {x, y, spacing(ImageSample{x, y})});
+    }
+  }
+  return out;
+}
+
+double tent(std::size_t a, std::size_t b, std::size_t reach) {
+  const double distance = static_cast<double>(a > b ? a - b : b - a);
+  return std::max(0.0, 1 - distance / static_cast<double>(reach));
 }
 
 }  // namespace
+
+std::vector<ImageSample> regular_samples(const Grid& grid, std::size_t spacing) {
+  return tiles(grid, [&](const ImageSample&) { return spacing; });
+}
+
+std::vector<ImageSample> samples_by_bandwidth(const Grid& grid, std::span<const double> bandwidth) {
+  return tiles(grid, [&](const ImageSample& first) {
+    const double most = highest(grid, bandwidth, first);
+    std::size_t spacing = tile_side;
+    while (spacing > 1 && static_cast<double>(spacing) * grid.pitch() * most > std::numbers::pi) {
+      spacing /= 2;
+    }
+    return spacing;
+  });
+}
+
+Splats tents(const Grid& grid, std::span<const ImageSample> samples) {
+  Splats out(grid.pixels());
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const ImageSample& s = samples[i];
+    const std::size_t x0 = s.x < s.spacing ? 0 : s.x - s.spacing;
+    const std::size_t y0 = s.y < s.spacing ? 0 : s.y - s.spacing;
+    for (std::size_t y = y0; y < std::min(s.y + s.spacing, grid.height); ++y) {
+      for (std::size_t x = x0; x < std::min(s.x + s.spacing, grid.width); ++x) {
+        const double weight = tent(x, s.x, s.spacing) * tent(y, s.y, s.spacing);
+        if (weight > 0) out[y * grid.width + x].push_back({i, weight});
+      }
+    }
+  }
+  return out;
+}
+
+Splats normalised(Splats splats) {
+  for (std::vector<Share>& shares : splats) {
+    double sum = 0;
+    for (const Share& share : shares) sum += share.weight;
+    for (Share& share : shares) share.weight /= sum;
+  }
+  return splats;
+}
+
+namespace {
+
+class Reconstruction final : public Estimator {
+ public:
+  Reconstruction(std::shared_ptr<const ReconstructionPlan> plan, std::size_t worst)
+      : plan_(std::move(plan)), worst_(worst), values_(plan_->samples.size()) {}
+
+  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
+                 Cost& cost) override {
+    for (std::size_t i = 0; i < values_.size(); ++i) {
+      Stream mine = random.substream(static_cast<std::uint32_t>(i));
+      values_[i] = lens_average(i, primaries * plan_->counts[i], mine, cost);
+    }
+    for (std::size_t p = 0; p < plan_->splats.size(); ++p) {
+      double sum = 0;
+      for (const Share& share : plan_->splats[p]) sum += share.weight * values_[share.sample];
+      out[p] = sum;
+    }
+    out[plan_->splats.size()] = out[worst_];
+    cost.camera_rays += primaries * plan_->overhead.camera_rays;
+    cost.samples += primaries;
+  }
+
+ private:
+  double lens_average(std::size_t sample, std::uint64_t count, Stream& random, Cost& cost) const {
+    const PlanePoint pixel = plan_->grid.pixel(plan_->pixel_of(plan_->samples[sample]));
+    double sum = 0;
+    for (std::uint64_t k = 0; k < count; ++k) {
+      const double s = random.uniform();
+      const PlanePoint u = UniformDisc{}(s, random.uniform());
+      sum += plan_->setting->radiance(pixel, u, cost);
+    }
+    return sum / static_cast<double>(count);
+  }
+
+  std::shared_ptr<const ReconstructionPlan> plan_;
+  std::size_t worst_;
+  std::vector<double> values_;  // scratch
+};
+
+std::size_t worst_pixel(const ReconstructionPlan& plan) {
+  const std::vector<double> bias = plan.bias();
+  const auto larger = [](double a, double b) { return std::abs(a) < std::abs(b); };
+  return static_cast<std::size_t>(std::ranges::max_element(bias, larger) - bias.begin());
+}
+
+std::vector<Channel> channels_of(const ReconstructionPlan& plan, const ImageShape& shape,
+                                 std::size_t worst) {
+  std::vector<Channel> out;
+  for (std::size_t p = 0; p < plan.exact.size(); ++p) {
+    out.push_back(radiance_channel(plan.setting->scene(), plan.exact[p]));
+    out.back().name = element_name(shape, p);
+    out.back().variance.reset();
+  }
+  out.push_back(out[worst]);
+  out.back().name = "worst";
+  out.back().diagnostic = true;
+  return out;
+}
+
+}  // namespace
+
+ReconstructionPlan read_reconstruction_plan(Parameters& given, const ReconstructionRules& rules) {
+  const std::uint64_t spacing = given.count("spacing");
+  if (spacing > tile_side || (spacing & (spacing - 1)) != 0) {
+    given.refuse("spacing", "must be 0 (by the predicted bandwidth), 1, 2, 4 or 8 pixels");
+  }
+  ReconstructionPlan plan{.setting = read_setting(given), .grid = read_grid(given)};
+  const Prediction found = predict(*plan.setting, plan.grid, rules.prediction);
+  plan.overhead = found.cost;
+  plan.samples = spacing > 0 ? regular_samples(plan.grid, spacing)
+                             : samples_by_bandwidth(plan.grid, found.bandwidth);
+  std::vector<double> variances;
+  for (const ImageSample& s : plan.samples) variances.push_back(found.variance[plan.pixel_of(s)]);
+  plan.counts = lens_counts(variances, {static_cast<double>(given.count("samples"))});
+  plan.splats = rules.weights(tents(plan.grid, plan.samples));
+  for (std::size_t p = 0; p < plan.grid.pixels(); ++p) {
+    plan.exact.push_back(exact_moments(plan.setting->scene(), plan.grid.pixel(p)));
+  }
+  return plan;
+}
+
+std::vector<double> ReconstructionPlan::bias() const {
+  std::vector<double> out;
+  for (std::size_t p = 0; p < splats.size(); ++p) {
+    double sum = -exact[p].mean;
+    for (const Share& share : splats[p]) {
+      sum += share.weight * exact[pixel_of(samples[share.sample])].mean;
+    }
+    out.push_back(sum);
+  }
+  return out;
+}
+
+std::shared_ptr<const Setup> prepare_reconstruction(Parameters& given,
+                                                    const ReconstructionRules& rules) {
+  const auto plan =
+      std::make_shared<const ReconstructionPlan>(read_reconstruction_plan(given, rules));
+  const std::size_t worst = worst_pixel(*plan);
+  const ImageShape shape{plan->grid.width, plan->grid.height, {"radiance"}, false};
+  return setup_of({.channels = channels_of(*plan, shape, worst),
+                   .make = [plan, worst] { return std::make_unique<Reconstruction>(plan, worst); },
+                   .samplers = lens_samplers<>(),
+                   .image = shape});
+}
+
+// An image behind a thin lens from samples as dense as its predicted detail asks for.
+//
+// Each image sample is the mean of N lens samples at a pixel's middle, N in proportion to the
+// predicted variance. Each pixel is a weighted mean of the image samples near it. The lens averages
+// are unbiased. E of a pixel is the interpolant of the exact means.
 
 Information reconstruction_information() {
   return {
@@ -48,7 +217,13 @@ Information reconstruction_information() {
           "the pixels, with their lens averages as means, which the reconstruction approaches like "
           "spacing^2 where the image is smooth; diagnostic: `worst`, the pixel that it is farthest "
           "off from.",
-      .parameters = parameters(),
+      .parameters = joined(
+          joined({scene_parameter("portrait")}, grid_parameters()),
+          {count_parameter("samples", "lens samples an image sample, the mean over the image", "16",
+                           {1, 1e6}),
+           count_parameter("spacing",
+                           "of image samples: 1, 2, 4 or 8, or 0 for what the prediction says", "0",
+                           {0, 8}, "pixels")}),
       .bias = BiasClass::reconstruction};
 }
 

@@ -8,11 +8,14 @@
 //   x = (1 - z / focus) radius u + z / focus P.x,   y likewise.
 // The lens is seen there as the disc of confusion, of radius |1 - z / focus| radius.
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
 
+#include "estimators/estimator.h"
 #include "estimators/stream.h"
+#include "render/hemisphere.h"
 #include "render/scene.h"
-#include "render/unit_circle.h"
 
 namespace assay::depth_of_field {
 
@@ -57,5 +60,31 @@ struct UniformDisc {
     return {radius * x, radius * y};
   }
 };
+
+/// Lens points lifted to the hemisphere above the unit disc, (u, v, sqrt(1 - u^2 - v^2)). Points
+/// uniform on the disc become directions of density cos(theta) / pi (Malley's method, backwards).
+/// The type `Disc` maps two numbers to a point of the disc.
+template <class Disc = UniformDisc>
+class LensSampler final : public Sampler {
+ public:
+  Domain domain() const override { return Domain::hemisphere; }
+  SamplerDraw sample(Stream& random) const override {
+    const double s = random.uniform();
+    const PlanePoint u = Disc{}(s, random.uniform());
+    const double height = std::sqrt(std::max(0.0, 1 - u.x * u.x - u.y * u.y));
+    SamplerDraw out{.point = {u.x, u.y, height}};
+    out.density = density(out.point);
+    out.weight = out.density > 0 ? evaluate(out.point) / out.density : 0;
+    return out;
+  }
+  double density(const Point& w) const override { return std::max(0.0, w[2]) / std::numbers::pi; }
+  /// The average over the disc: its integral is 1.
+  double evaluate(const Point& w) const override { return density(w); }
+};
+
+template <class Disc = UniformDisc>
+std::vector<NamedSampler> lens_samplers() {
+  return {{"lens", std::make_shared<const LensSampler<Disc>>()}};
+}
 
 }  // namespace assay::depth_of_field

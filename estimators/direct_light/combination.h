@@ -1,14 +1,52 @@
 #pragma once
 
-// Multiple importance sampling of the two techniques: the multi-sample and the one-sample model
-// (Veach 1997, sections 9.2.1 and 9.2.4).
+// Weights of two sampling techniques (Veach 1997, sections 9.2.2 and 9.2.3).
 
 #include <cstdint>
 #include <utility>
 
 #include "direct_light/techniques.h"
+#include "estimators/parameters.h"
 
 namespace assay::direct_light {
+
+/// Weights that sum to 1, from q_i, the density of a technique times its number of samples. In the
+/// one-sample model q_i is the density times the technique's probability.
+///   balance      w_i = q_i / sum q_k  (eq. 9.8)
+///   power        w_i = q_i^e / sum q_k^e
+///   cutoff       0 where q_i < t max q_k, else q_i / sum of the q_k that are not
+///   maximum      1 where q_i is the largest, else 0.
+/// All are functions of the ratio r of the smaller q to the larger. The technique of the larger has
+/// the weight 1 / (1 + g(r)), with g = r, r^e, r [r >= t], 0.
+class Heuristic {
+ public:
+  static Heuristic balance() { return Heuristic(1, 0); }
+  static Heuristic power(double exponent) { return Heuristic(exponent, 0); }
+  static Heuristic cutoff(double threshold) { return Heuristic(1, threshold); }
+  static Heuristic maximum() { return Heuristic(1, 2); }
+
+  /// One of q is above 0. Equal ones are as if the light's were the larger.
+  Pair operator()(const Pair& q) const;
+  /// True if weights are smooth functions of q.
+  bool smooth() const { return threshold_ == 0; }
+
+ private:
+  Heuristic(double exponent, double threshold) : exponent_(exponent), threshold_(threshold) {}
+
+  double of_smaller(double ratio) const;
+
+  double exponent_;
+  double threshold_;
+};
+
+/// `heuristic`: balance, power (of exponent 2), maximum, {power: exponent}, {cutoff: threshold}.
+ParameterInformation heuristic_parameter();
+/// InputError at the parameter for anything else, an exponent below 1 or a threshold outside [0,
+/// 1].
+Heuristic read_heuristic(Parameters&);
+
+// Multiple importance sampling of the two techniques: the multi-sample and the one-sample model
+// (Veach 1997, sections 9.2.1 and 9.2.4).
 
 /// A Combination weighs a draw of either technique by light(p) and brdf(p), p the densities of both
 /// there. This one is a heuristic on the densities times numbers of samples or probabilities.

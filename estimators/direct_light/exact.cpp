@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "luminaire/exact.h"
-#include "render/gauss_legendre.h"
+#include "render/quadrature.h"
 
 namespace assay::direct_light {
 

@@ -2,19 +2,16 @@
 
 #include <utility>
 
+#include "estimators/parameters.h"
+
 namespace assay::direct_light {
 
 std::vector<ParameterInformation> common_parameters() {
-  std::vector<ParameterInformation> all = luminaire::information("", "", "").parameters;
-  all.push_back(brdf_parameter());
-  return all;
+  return joined(luminaire::information("", "", "").parameters, {brdf_parameter()});
 }
 
 std::vector<ParameterInformation> parameters_with(std::vector<ParameterInformation> more) {
-  std::vector<ParameterInformation> all = common_parameters();
-  all.push_back(light_sampling_parameter());
-  for (ParameterInformation& p : more) all.push_back(std::move(p));
-  return all;
+  return joined(joined(common_parameters(), {light_sampling_parameter()}), more);
 }
 
 Parts read_parts(Parameters& given) {
@@ -28,18 +25,8 @@ SharedTechniques read_techniques(Parameters& given) {
 }
 
 std::vector<ParameterInformation> count_parameters() {
-  return {{.name = "light_samples",
-           .type = ParameterType::count,
-           .summary = "samples of the light in a primary",
-           .fallback = "1",
-           .low = 1,
-           .high = 1000},
-          {.name = "brdf_samples",
-           .type = ParameterType::count,
-           .summary = "samples of the BRDF in a primary",
-           .fallback = "1",
-           .low = 1,
-           .high = 1000}};
+  return {count_parameter("light_samples", "samples of the light in a primary", "1", {1, 1000}),
+          count_parameter("brdf_samples", "samples of the BRDF in a primary", "1", {1, 1000})};
 }
 
 Counts read_counts(Parameters& given) {

@@ -1,8 +1,172 @@
 #include "direct_light/techniques.h"
 
+#include <algorithm>
+#include <numbers>
 #include <utility>
 
+#include "brdf/albedo.h"
+#include "estimators/parameters.h"
+#include "luminaire/area.h"
+#include "luminaire/scene_description.h"
+#include "luminaire/solid_angle.h"
+#include "render/hemisphere.h"
+
 namespace assay::direct_light {
+
+namespace {
+
+using render::Vector3;
+using std::numbers::pi;
+
+// f = albedo / pi, drawn by the cosine.
+class Lambert final : public Reflectance {
+ public:
+  explicit Lambert(double albedo) : albedo_(albedo) {}
+
+  double value(const Vector3&) const override { return albedo_ / pi; }
+  Vector3 sample(Stream& random) const override {
+    const double u = random.uniform();
+    return render::cosine_hemisphere(u, random.uniform());
+  }
+  double density(const Vector3& w) const override { return std::max(0.0, w.z) / pi; }
+  double weight_bound() const override { return albedo_; }
+  double width() const override { return 1; }
+  std::optional<double> constant() const override { return albedo_ / pi; }
+
+ private:
+  double albedo_;
+};
+
+template <class Brdf>
+class Glossy final : public Reflectance {
+ public:
+  explicit Glossy(Brdf brdf) : brdf_(std::move(brdf)) {}
+
+  double value(const Vector3& w) const override { return brdf_.value(w); }
+  Vector3 sample(Stream& random) const override {
+    const double u = random.uniform();
+    return brdf_.reflected(brdf_.half_vector(u, random.uniform_open()));
+  }
+  double density(const Vector3& w) const override { return brdf_.density(w); }
+  double weight_bound() const override { return brdf_.weight_bound(); }
+  // The lobe of w is twice as wide as that of the half vector.
+  double width() const override { return 2 * brdf_.width(); }
+
+ private:
+  Brdf brdf_;
+};
+
+template <class Brdf>
+SharedReflectance glossy(Brdf brdf) {
+  return std::make_shared<Glossy<Brdf>>(std::move(brdf));
+}
+
+}  // namespace
+
+ParameterInformation brdf_parameter() {
+  return structure_parameter(
+      "brdf",
+      "the reflectance and its parameters: {lambert: {albedo}}, {ward: {alpha_x, alpha_y, theta_i, "
+      "phi_i}} or {ashikhmin_shirley: {nu, nv, reflectance, theta_i, phi_i}}; theta_i and phi_i "
+      "are the viewer's direction",
+      "{ward: {alpha_x: 0.15, alpha_y: 0.4, theta_i: 0.8, phi_i: 0.5}}");
+}
+
+SharedReflectance read_reflectance(Parameters& given) {
+  const Value& value = given.structure("brdf");
+  luminaire::require_keys(value, "the brdf", {"lambert", "ward", "ashikhmin_shirley"});
+  if (value.members().size() != 1) {
+    given.refuse("brdf", "must have one of the keys `lambert`, `ward` and `ashikhmin_shirley`");
+  }
+  const auto& [kind, own] = value.members().front();
+  const auto parameters = [&](std::vector<ParameterInformation> declared) {
+    return Parameters(given.plugin() + ": " + kind, std::move(declared), own, given.folder());
+  };
+  if (kind == "ward") {
+    Parameters ward = parameters(brdf::ward_parameters());
+    return glossy(brdf::ward(ward));
+  }
+  if (kind == "ashikhmin_shirley") {
+    Parameters ashikhmin_shirley = parameters(brdf::ashikhmin_shirley_parameters());
+    return glossy(brdf::ashikhmin_shirley(ashikhmin_shirley));
+  }
+  Parameters lambert =
+      parameters({number_parameter("albedo", "reflected part of the light", "", {0, 1})});
+  return std::make_shared<Lambert>(lambert.number("albedo"));
+}
+
+namespace {
+
+using luminaire::LightTriangle;
+using luminaire::SharedSetting;
+using render::Vector3;
+
+class AreaSampling final : public LightSampling {
+ public:
+  explicit AreaSampling(SharedSetting setting) : points_(std::move(setting)) {}
+
+  std::optional<LightPoint> sample(Stream& random) const override {
+    double x = random.uniform();
+    const double y = random.uniform();
+    const LightTriangle& triangle = points_.setting().triangles()[points_.shares().pick(x)];
+    const auto [u, v] = luminaire::UniformTriangle{}(x, y);
+    if (!triangle.emits) return {};
+    const luminaire::Connection way = points_.setting().connect(triangle, u, v);
+    return LightPoint{way.to_light,
+                      way.squared_distance / (points_.setting().area() * way.light_cosine())};
+  }
+
+  double density(const LightTriangle& triangle, const Vector3& w) const override {
+    const double cosine = -dot(w, triangle.normal);
+    const double distance = triangle.plane_distance / cosine;
+    return distance * distance / (points_.setting().area() * cosine);
+  }
+
+ private:
+  luminaire::AreaPrimary<> points_;
+};
+
+class SolidAngleSampling final : public LightSampling {
+ public:
+  explicit SolidAngleSampling(SharedSetting setting) : directions_(std::move(setting)) {}
+
+  std::optional<LightPoint> sample(Stream& random) const override {
+    if (directions_.triangles().empty()) return {};
+    double u = random.uniform();
+    const double v = random.uniform();
+    const luminaire::LitTriangle& triangle = directions_.triangles()[directions_.shares().pick(u)];
+    const Vector3 w = triangle.seen.sample(u, v);
+    return LightPoint{triangle.distance(w) * w, 1 / directions_.solid_angle()};
+  }
+
+  double density(const LightTriangle&, const Vector3&) const override {
+    return 1 / directions_.solid_angle();
+  }
+
+ private:
+  luminaire::SolidAnglePrimary<> directions_;
+};
+
+}  // namespace
+
+SharedLightSampling area_sampling(SharedSetting setting) {
+  return std::make_shared<AreaSampling>(std::move(setting));
+}
+
+SharedLightSampling solid_angle_sampling(SharedSetting setting) {
+  return std::make_shared<SolidAngleSampling>(std::move(setting));
+}
+
+ParameterInformation light_sampling_parameter() {
+  return text_parameter("light_sampling",
+                        "how points of the luminaire are drawn: uniform in solid angle or in area",
+                        "solid_angle", {"solid_angle", "area"});
+}
+
+SharedLightSampling read_light_sampling(Parameters& given, SharedSetting setting) {
+  return given.string("light_sampling") == "area" ? area_sampling(std::move(setting))
+                                                  : solid_angle_sampling(std::move(setting));
+}
 
 using render::Vector3;
 

@@ -1,14 +1,75 @@
 #pragma once
 
-// The two techniques of direct lighting, each of which knows the density of the other.
-
 #include <memory>
+#include <optional>
 
-#include "direct_light/heuristic.h"
-#include "direct_light/light_sampling.h"
-#include "direct_light/reflectance.h"
+#include "estimators/parameters.h"
+#include "estimators/stream.h"
+#include "luminaire/family.h"
+#include "render/vector.h"
 
 namespace assay::direct_light {
+
+/// A number for each of the two techniques: sampling the light, sampling the BRDF.
+struct Pair {
+  double light = 0;
+  double brdf = 0;
+};
+
+/// A BRDF f(w, viewer) with the viewer fixed and the directions w in the receiver's frame, +z up.
+class Reflectance {
+ public:
+  virtual ~Reflectance() = default;
+
+  /// f per steradian at w above the horizon.
+  virtual double value(const render::Vector3& w) const = 0;
+  /// A direction of density(w) per solid angle; below the horizon (z <= 0) none came out.
+  virtual render::Vector3 sample(Stream& random) const = 0;
+  virtual double density(const render::Vector3& w) const = 0;
+  /// An upper bound of f cos / density.
+  virtual double weight_bound() const = 0;
+  /// About the angle across a lobe.
+  virtual double width() const = 0;
+  /// f where it is the same for all directions.
+  virtual std::optional<double> constant() const { return {}; }
+};
+
+using SharedReflectance = std::shared_ptr<const Reflectance>;
+
+/// The parameter `brdf`: a map with one key, `lambert` (albedo), `ward` or `ashikhmin_shirley`, and
+/// under it the parameters of that reflectance.
+ParameterInformation brdf_parameter();
+/// InputError at the offending node for what is not such a map, and whatever the reflectance
+/// refuses.
+SharedReflectance read_reflectance(Parameters&);
+
+/// A point of the luminaire, seen from the receiver.
+struct LightPoint {
+  render::Vector3 to_light;
+  double density = 0;  ///< per solid angle
+};
+
+class LightSampling {
+ public:
+  virtual ~LightSampling() = default;
+  /// None where the point does not emit towards the receiver.
+  virtual std::optional<LightPoint> sample(Stream& random) const = 0;
+  /// The density per solid angle of the point of a triangle that emits towards the receiver in the
+  /// direction of the unit vector w.
+  virtual double density(const luminaire::LightTriangle&, const render::Vector3& w) const = 0;
+};
+
+using SharedLightSampling = std::shared_ptr<const LightSampling>;
+
+/// Points uniform in area: density distance^2 / (area light_cosine).
+SharedLightSampling area_sampling(luminaire::SharedSetting);
+/// Directions uniform in the solid angle Omega of the triangles that emit towards the receiver
+/// (Arvo 1995): density 1 / Omega.
+SharedLightSampling solid_angle_sampling(luminaire::SharedSetting);
+
+/// `light_sampling`: solid_angle or area.
+ParameterInformation light_sampling_parameter();
+SharedLightSampling read_light_sampling(Parameters&, luminaire::SharedSetting);
 
 /// A direction that a technique drew.
 struct Draw {

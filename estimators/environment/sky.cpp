@@ -1,18 +1,88 @@
-#include "environment/sky.h"
+// A receiver under the picture of an environment, with occluders between. The estimators of the
+// family estimate the irradiance of each colour channel,
+//   E = integral over directions w of L(w) max(0, n . w) V(w).
+// V(w) = 1 if nothing stands in the way, else 0.
 
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <numbers>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
-namespace assay::environment {
+#include "estimators/estimator.h"
+#include "estimators/parameters.h"
+#include "render/alias_table.h"
+#include "render/environment_map.h"
+#include "render/hemisphere.h"
+#include "sky/setting.h"
 
-std::vector<ParameterInformation> parameters() {
-  return sky::with_receiver(
-      {.name = "map",
-       .type = ParameterType::string,
-       .summary = "the sky: an OpenEXR picture, latitude-longitude, +z the first row's pole"});
-}
+namespace assay::plugins {
 
 namespace {
+
+using render::Rgb;
+using render::Vector3;
+using std::numbers::pi;
+
+class Sky : public sky::Receiver {
+ public:
+  Sky(render::EnvironmentMap map, sky::Receiver receiver)
+      : sky::Receiver(std::move(receiver)), map_(std::move(map)) {}
+
+  const render::EnvironmentMap& map() const { return map_; }
+
+ private:
+  render::EnvironmentMap map_;
+};
+
+using SharedSky = std::shared_ptr<const Sky>;
+
+struct Primaries {
+  /// E[X^2] of a channel is the sum of L^2 times this over texels of radiance L.
+  std::function<double(std::size_t texel, const render::CosineMoments&)> second_moment;
+  Rgb largest;  ///< no X is above, channel by channel
+};
+
+/// Mean of the three channels: what samplers of directions evaluate.
+inline double grey(const Rgb& rgb) { return (rgb[0] + rgb[1] + rgb[2]) / 3; }
+
+/// An estimator whose primary, Rgb(Stream&, Cost&), has three channels.
+template <class Primary>
+class RgbEstimator final : public Estimator {
+ public:
+  explicit RgbEstimator(Primary primary) : primary_(std::move(primary)) {}
+
+  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
+                 Cost& cost) override {
+    Rgb sum{};
+    for (std::uint64_t i = 0; i < primaries; ++i) {
+      const Rgb value = primary_(random, cost);
+      for (std::size_t c = 0; c < 3; ++c) sum[c] += value[c];
+    }
+    for (std::size_t c = 0; c < 3; ++c) out[c] = sum[c] / static_cast<double>(primaries);
+    cost.samples += primaries;
+  }
+
+ private:
+  Primary primary_;
+};
+
+template <class Primary>
+std::shared_ptr<const Setup> rgb_setup(std::vector<Channel> channels, Primary primary,
+                                       NamedSampler sampler) {
+  return setup_of({.channels = std::move(channels),
+                   .make = [primary] { return std::make_unique<RgbEstimator<Primary>>(primary); },
+                   .samplers = {std::move(sampler)}});
+}
+
+/// map, normal, position, occluders.
+std::vector<ParameterInformation> parameters() {
+  return sky::with_receiver(text_parameter(
+      "map", "the sky: an OpenEXR picture, latitude-longitude, +z the first row's pole"));
+}
 
 render::EnvironmentMap read_map(Parameters& parameters) {
   const std::string file = parameters.file("map");
@@ -23,13 +93,13 @@ render::EnvironmentMap read_map(Parameters& parameters) {
   }
 }
 
-}  // namespace
-
+/// Reads them. InputError at the parameter for a picture that cannot be used.
 SharedSky read_sky(Parameters& parameters) {
   sky::Receiver receiver = sky::read_receiver(parameters);
   return std::make_shared<const Sky>(read_map(parameters), std::move(receiver));
 }
 
+/// The channels r, g, b. Under the open sky with mean (exact to `mean_error`) and variance.
 std::vector<Channel> irradiance_channels(const Sky& sky, const Primaries& primaries) {
   const render::EnvironmentMap& map = sky.map();
   Rgb mean{}, error{}, square{};
@@ -61,4 +131,197 @@ std::vector<Channel> irradiance_channels(const Sky& sky, const Primaries& primar
   return channels;
 }
 
-}  // namespace assay::environment
+// Irradiance from a sky by directions with density cos / pi about the receiver's normal:
+// X = pi L(w) V(w). E[X] = E, E[X^2] = pi times the integral of L^2 cos+ under the open sky.
+
+Vector3 draw(Stream& random) {
+  const double u = random.uniform();
+  return render::cosine_hemisphere(u, random.uniform());
+}
+
+Rgb radiance(const Sky& sky, const Vector3& local, Cost& cost) {
+  return sky.visible(local, cost) ? sky.map().radiance(sky.frame().to_world(local)) : Rgb{};
+}
+
+/// Directions of the receiver's frame.
+class CosineSampler final : public Sampler {
+ public:
+  explicit CosineSampler(SharedSky sky) : sky_(std::move(sky)) {}
+
+  Domain domain() const override { return Domain::hemisphere; }
+  SamplerDraw sample(Stream& random) const override {
+    const Vector3 w = draw(random);
+    Cost uncounted;
+    return {.point = {w.x, w.y, w.z},
+            .density = w.z / pi,
+            .weight = pi * grey(radiance(*sky_, w, uncounted))};
+  }
+  double density(const Point& p) const override { return p[2] / pi; }
+  double evaluate(const Point& p) const override {
+    Cost uncounted;
+    return p[2] * grey(radiance(*sky_, {p[0], p[1], p[2]}, uncounted));
+  }
+
+ private:
+  SharedSky sky_;
+};
+
+Rgb primary(const Sky& sky, Stream& random, Cost& cost) {
+  Rgb value = radiance(sky, draw(random), cost);
+  for (double& x : value) x *= pi;
+  return value;
+}
+
+Rgb largest(const render::EnvironmentMap& map) {
+  Rgb most{};
+  for (std::size_t texel = 0; texel < map.size(); ++texel) {
+    for (std::size_t c = 0; c < 3; ++c) most[c] = std::max(most[c], pi * map.radiance(texel)[c]);
+  }
+  return most;
+}
+
+std::shared_ptr<const Setup> prepare_cosine(Parameters& given) {
+  const SharedSky sky = read_sky(given);
+  auto channels = irradiance_channels(
+      *sky,
+      {.second_moment = [](std::size_t, const render::CosineMoments& m) { return pi * m.first; },
+       .largest = largest(sky->map())});
+  const auto draw_one = [sky](Stream& random, Cost& cost) { return primary(*sky, random, cost); };
+  return rgb_setup(std::move(channels), draw_one,
+                   NamedSampler{"direction", std::make_shared<CosineSampler>(sky)});
+}
+
+// Irradiance from a sky by directions drawn where it is bright.
+//
+// A texel t has probability s_t O_t / S, and the direction is uniform in it. Its radiance is s = r
+// + g + b, its solid angle O, and S = sum s O. The density is p = s / S per solid angle.
+//   X_c = (L_c / s) S cos+ V. E[X_c] = E_c, since s > 0 wherever any L_c > 0.
+//   E[X_c^2] = S sum over texels of (L_c^2 / s) times the integral of cos+^2.
+
+double sum(const Rgb& rgb) { return rgb[0] + rgb[1] + rgb[2]; }
+
+std::vector<double> powers(const render::EnvironmentMap& map) {
+  std::vector<double> all;
+  for (std::size_t texel = 0; texel < map.size(); ++texel) {
+    all.push_back(sum(map.radiance(texel)) * solid_angle(map.patch(texel)));
+  }
+  return all;
+}
+
+/// A direction and the texel that it was drawn in; near a border, rounding may disagree with the
+/// map's own look-up.
+struct Choice {
+  std::size_t texel;
+  Vector3 direction;
+};
+
+/// Directions of the world's frame, drawn by brightness.
+class EmittanceSampler final : public Sampler {
+ public:
+  explicit EmittanceSampler(SharedSky sky) : sky_(std::move(sky)), texels_(powers(sky_->map())) {}
+
+  Domain domain() const override { return Domain::sphere; }
+  SamplerDraw sample(Stream& random) const override {
+    const Choice choice = choose(random);
+    const Vector3& w = choice.direction;
+    Cost uncounted;
+    return {.point = {w.x, w.y, w.z},
+            .density = density(choice.texel),
+            .weight = grey(contribution(choice, uncounted))};
+  }
+  double density(const Point& p) const override {
+    return density(sky_->map().texel({p[0], p[1], p[2]}));
+  }
+  double evaluate(const Point& p) const override {
+    const Vector3 w{p[0], p[1], p[2]};
+    Cost uncounted;
+    return grey(sky_->map().radiance(w)) * received(w, uncounted);
+  }
+  // The density jumps between texels: rows in theta, columns in phi.
+  Panels panels() const override {
+    return {.first = sky_->map().resolution().height, .second = sky_->map().resolution().width};
+  }
+
+  Choice choose(Stream& random) const {
+    const double u = random.uniform();
+    const std::size_t texel = texels_.pick(u, random.uniform());
+    const double v = random.uniform();
+    return {texel, direction_in(sky_->map().patch(texel), {v, random.uniform()})};
+  }
+  /// X: radiance times cos+ V over the density.
+  Rgb contribution(const Choice& choice, Cost& cost) const {
+    const double factor = received(choice.direction, cost) / density(choice.texel);
+    Rgb value = sky_->map().radiance(choice.texel);
+    for (double& x : value) x *= factor;
+    return value;
+  }
+  double total() const { return texels_.total(); }
+
+ private:
+  double density(std::size_t texel) const {
+    return sum(sky_->map().radiance(texel)) / texels_.total();
+  }
+  double received(const Vector3& w, Cost& cost) const {
+    const Vector3 local = sky_->frame().to_local(w);
+    return local.z > 0 && sky_->visible(local, cost) ? local.z : 0;
+  }
+
+  SharedSky sky_;
+  render::AliasTable texels_;
+};
+
+Primaries primaries(const SharedSky& sky, double total) {
+  Primaries result;
+  const render::EnvironmentMap& map = sky->map();
+  for (std::size_t texel = 0; texel < map.size(); ++texel) {
+    const Rgb& radiance = map.radiance(texel);
+    for (std::size_t c = 0; c < 3 && sum(radiance) > 0; ++c) {
+      result.largest[c] = std::max(result.largest[c], total * radiance[c] / sum(radiance));
+    }
+  }
+  result.second_moment = [sky, total](std::size_t texel, const render::CosineMoments& moments) {
+    const double brightness = sum(sky->map().radiance(texel));
+    return brightness > 0 ? total * moments.second / brightness : 0;
+  };
+  return result;
+}
+
+std::shared_ptr<const Setup> prepare_emittance(Parameters& given) {
+  const SharedSky sky = read_sky(given);
+  const render::EnvironmentMap& map = sky->map();
+  bool black = true;
+  for (std::size_t texel = 0; texel < map.size(); ++texel) black &= sum(map.radiance(texel)) == 0;
+  if (black) given.refuse("map", "is black all over: there is nothing to draw directions from");
+
+  const auto sampler = std::make_shared<const EmittanceSampler>(sky);
+  const auto primary = [sampler](Stream& random, Cost& cost) {
+    return sampler->contribution(sampler->choose(random), cost);
+  };
+  return rgb_setup(irradiance_channels(*sky, primaries(sky, sampler->total())), primary,
+                   NamedSampler{"direction", sampler});
+}
+
+}  // namespace
+
+std::vector<Entry> environment_sky() {
+  return {{{.name = "environment/cosine",
+            .summary = "Irradiance from a picture of the sky by cosine-distributed directions.",
+            .description =
+                "Estimates the integral of L(w) max(0, n . w) V(w) over directions, channels r, g "
+                "and b, by pi L(w) V(w) with w of density cos / pi about the normal n. The "
+                "picture's texels are constant, so that under the open sky mean and variance are "
+                "exact. The sampler `direction` is in the receiver's frame (z along n).",
+            .parameters = parameters()},
+           prepare_cosine},
+          {{.name = "environment/emittance",
+            .summary = "Irradiance from a picture of the sky by directions to its bright texels.",
+            .description =
+                "Estimates the integral of L(w) max(0, n . w) V(w) over directions, channels r, g "
+                "and b, by L max(0, n . w) V / p: a texel with probability proportional to (r + g "
+                "+ b) times its solid angle, then a direction uniform in it. Under the open sky "
+                "mean and variance are exact. The sampler `direction` is in the world's frame.",
+            .parameters = parameters()},
+           prepare_emittance}};
+}
+
+}  // namespace assay::plugins

@@ -13,8 +13,7 @@
 #include <vector>
 
 #include "estimators/foreign/child.h"
-#include "estimators/foreign/hello.h"
-#include "estimators/foreign/reply.h"
+#include "estimators/foreign/protocol.h"
 
 namespace assay::foreign {
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <string_view>
 
-#include "estimators/foreign/shared_object.h"
+#include "estimators/foreign/shared_library.h"
 
 namespace assay::foreign {
 

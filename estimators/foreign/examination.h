@@ -28,7 +28,7 @@
 #include <string>
 #include <vector>
 
-#include "estimators/foreign/reply.h"
+#include "estimators/foreign/protocol.h"
 
 namespace assay::foreign {
 

@@ -17,10 +17,8 @@
 #include <thread>
 
 #include "estimators/core/flush_denormals.h"
-#include "estimators/foreign/library_sampler.h"
-#include "estimators/foreign/library_setup.h"
-#include "estimators/foreign/reply.h"
-#include "estimators/foreign/streams_ahead.h"
+#include "estimators/foreign/protocol.h"
+#include "estimators/foreign/shared_library.h"
 #include "estimators/foreign/words.h"
 
 namespace assay {

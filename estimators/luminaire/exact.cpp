@@ -5,7 +5,7 @@
 #include <functional>
 #include <span>
 
-#include "render/gauss_legendre.h"
+#include "render/quadrature.h"
 
 namespace assay::luminaire {
 

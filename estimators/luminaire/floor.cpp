@@ -1,12 +1,79 @@
+#include "luminaire/floor.h"
+
+#include <algorithm>
+
+#include "estimators/parameters.h"
+
+namespace assay::luminaire {
+
+namespace {
+
+using render::Frame;
+using render::Vector3;
+
+/// The middle of pixel `index` of `count` that divide a length into equal parts, from its middle.
+double offset(std::size_t index, std::size_t count, double part) {
+  return (static_cast<double>(index) + 0.5 - static_cast<double>(count) / 2) * part;
+}
+
+/// cos+ light_cosine+ / r^2 <= 1 / r^2, and r is at least the distance to the luminaire's plane.
+double highest(const Setting& setting) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const LightTriangle& triangle : setting.triangles()) {
+    if (triangle.emits) nearest = std::min(nearest, triangle.plane_distance);
+  }
+  return setting.area() * setting.radiance() / (nearest * nearest);
+}
+
+}  // namespace
+
+std::vector<ParameterInformation> floor_parameters() {
+  return joined(
+      information("", "", "").parameters,
+      {count_parameter("width", "columns of receivers", "32", {2, 1024}),
+       count_parameter("height", "rows of receivers", "32", {2, 1024}),
+       number_parameter("size", "length of the plane's rectangle along the width", "4", above(0)),
+       boolean_parameter("shared", "whether all receivers look at the same points of the luminaire",
+                         false)});
+}
+
+Floor read_floor(Parameters& parameters) {
+  SceneDescription scene = read_scene(parameters.structure("scene"), parameters.folder());
+  Floor floor{.shape = {.width = parameters.count("width"),
+                        .height = parameters.count("height"),
+                        .components = {"irradiance"}},
+              .streams = parameters.boolean("shared") ? ImageStreams::shared : ImageStreams::own};
+  const double part = parameters.number("size") / static_cast<double>(floor.shape.width);
+  const Vector3 centre = scene.receiver.position;
+  const Frame frame = Frame::about(scene.receiver.normal);
+  for (std::size_t y = 0; y < floor.shape.height; ++y) {
+    for (std::size_t x = 0; x < floor.shape.width; ++x) {
+      scene.receiver.position = centre + offset(x, floor.shape.width, part) * frame.tangent +
+                                offset(y, floor.shape.height, part) * frame.bitangent;
+      floor.settings.push_back(std::make_shared<const Setting>(scene, parameters.where("scene")));
+    }
+  }
+  return floor;
+}
+
+std::vector<Channel> floor_channels(const Floor& floor) {
+  const auto unknown = [](const ExactIntegrals&) { return std::optional<double>(); };
+  std::vector<Channel> channels;
+  for (const SharedSetting& setting : floor.settings) {
+    channels.push_back(irradiance_channel(*setting, unknown, highest(*setting)));
+  }
+  return channels;
+}
+
+}  // namespace assay::luminaire
+
+namespace assay::plugins {
+
 // The irradiance of a plane under a luminaire, as an image.
 //
 // Pixel (x, y) is the receiver at the middle of its square. At points uniform on the luminaire it
 // has X = A L cos+ light_cosine+ / r^2 [visible]. E[X] is that receiver's irradiance, known by
 // Lambert's formula.
-
-#include "luminaire/floor.h"
-
-namespace assay::plugins {
 
 namespace {
 

@@ -3,7 +3,7 @@
 // The parts of the image of a plane's irradiance: a luminaire estimator at each of a grid of
 // receivers.
 
-#include "estimators/imaging.h"
+#include "estimators/estimator.h"
 #include "luminaire/area.h"
 
 namespace assay::luminaire {

@@ -12,8 +12,8 @@
 
 #include "estimators/cost.h"
 #include "luminaire/scene_description.h"
-#include "render/frame.h"
 #include "render/scene.h"
+#include "render/vector.h"
 
 namespace assay::luminaire {
 

@@ -7,10 +7,13 @@
 #include <numbers>
 #include <utility>
 
-#include "luminaire/direction_sampler.h"
+#include "luminaire/family.h"
 #include "render/spherical_triangle.h"
 
 namespace assay::luminaire {
+
+inline Point point_of(const render::Vector3& w) { return {w.x, w.y, w.z}; }
+inline render::Vector3 direction_of(const Point& p) { return {p[0], p[1], p[2]}; }
 
 /// A triangle of the luminaire that faces the receiver.
 struct LitTriangle {

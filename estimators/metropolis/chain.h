@@ -1,14 +1,120 @@
 #pragma once
 
-// One Markov chain as an observation.
+// One Markov chain as an observation: how it decides, what its steps count for, how it starts.
 
 #include <functional>
 #include <memory>
+#include <vector>
 
 #include "estimators/estimator.h"
-#include "metropolis/rules.h"
+#include "metropolis/coordinates.h"
+#include "metropolis/target.h"
 
 namespace assay::metropolis {
+
+/// One step of a chain, from `current` to `proposed`.
+struct Step {
+  const Contribution& current;   ///< x
+  const Contribution& proposed;  ///< y
+  double acceptance;             ///< a
+  bool large;
+  bool accepted;      ///< weights do without it: a is its expectation
+  double normaliser;  ///< b, the estimate of the integral of I
+};
+
+/// Sums over steps.
+struct Tally {
+  std::vector<Spectrum> pixels;
+  double steps = 0;
+  double acceptance = 0;
+
+  void add(std::size_t pixel, double weight, const Spectrum& value) {
+    pixels[pixel] += weight * value;
+  }
+};
+
+/// The factors of F(y) and F(x) in a step.
+struct Weights {
+  double proposed;
+  double current;
+};
+
+/// How a chain decides and what its steps count for.
+class Rules {
+ public:
+  virtual ~Rules() = default;
+  /// a = min(1, I(y) / I(x)); 1 where I(x) = 0.
+  virtual double acceptance(double proposed, double current) const;
+  virtual Weights weights(const Step& step) const = 0;
+  /// Adds a step to the sums: both ends, each in its own pixel.
+  virtual void record(const Step& step, Tally& tally) const;
+};
+
+/// Both ends of a step by the expected value (Veach and Guibas 1997): a b / I(y) and (1 - a) b /
+/// I(x).
+class MeanValueRules : public Rules {
+ public:
+  Weights weights(const Step& step) const override;
+};
+
+/// Weights of multiple importance sampling (Kelemen et al. 2002, section 3.4). Large steps are a
+/// second way of sampling, uniform:
+///   (a + [large]) / (I(y) / b + p_large)  and  (1 - a) / (I(x) / b + p_large).
+class MultipleImportanceRules : public Rules {
+ public:
+  explicit MultipleImportanceRules(double p_large) : p_large_(p_large) {}
+  Weights weights(const Step& step) const override;
+
+ protected:
+  double p_large() const { return p_large_; }
+
+ private:
+  double p_large_;
+};
+
+/// The recipe of a chain and its state.
+struct Walker {
+  const Target& target;
+  LazyCoordinates& coordinates;
+  Stream& random;
+  Cost& cost;
+  Contribution current = {};
+
+  /// The value of a proposal; nothing where it has left the unit cube.
+  Contribution propose(bool large);
+};
+
+/// Finds the first state.
+class Start {
+ public:
+  virtual ~Start() = default;
+  /// Puts the walker at its first state and returns b, the mean of I over independent points.
+  virtual double operator()(Walker& walker) const = 0;
+};
+
+/// The first state is one of `count` independent points, drawn in proportion to I. The normaliser b
+/// is the mean of I over the same points. So E[b h(first)] is the integral of h I for every h.
+class ResampledStart : public Start {
+ public:
+  explicit ResampledStart(std::uint64_t count) : count_(count) {}
+  double operator()(Walker& walker) const override;
+
+ protected:
+  std::uint64_t count() const { return count_; }
+
+ private:
+  std::uint64_t count_;
+};
+
+/// The first state is a uniform point; b is the mean of I over `count` others.
+class UniformStart final : public Start {
+ public:
+  explicit UniformStart(std::uint64_t count) : count_(count) {}
+  double operator()(Walker& walker) const override;
+
+ private:
+  std::uint64_t count_;
+};
 
 struct Recipe {
   SharedTarget target;
@@ -20,16 +126,21 @@ struct Recipe {
   std::function<std::unique_ptr<LazyCoordinates>(std::shared_ptr<const SmallStep>)> coordinates;
 };
 
-/// Coordinates as they should be.
-std::unique_ptr<LazyCoordinates> lazy_coordinates(std::shared_ptr<const SmallStep> step);
-
 /// A secondary estimate is the image of one chain of `primaries` steps. Channels: the image's
 /// elements; then diagnostic ones, `image_mean` (of I over the image), `normaliser` (b) and
 /// `acceptance` (mean of a).
 std::shared_ptr<const Setup> chain(Recipe recipe);
 
-/// A secondary estimate is the image of `primaries` independent points: what chains are held
-/// against. Channels: the image's elements and `image_mean`.
-std::shared_ptr<const Setup> independent(SharedTarget target);
+/// Parameters that a plugin reads before it knows its rules and its start.
+struct Ingredients {
+  SharedTarget target;
+  double p_large;
+  std::uint64_t bootstrap;
+  Boundary boundary;
+};
+Ingredients read_ingredients(Parameters& given);
+
+/// A sound chain with these rules, started from the bootstrap.
+Recipe recipe(const Ingredients& ingredients, std::shared_ptr<const Rules> rules);
 
 }  // namespace assay::metropolis

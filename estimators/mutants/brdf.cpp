@@ -9,8 +9,6 @@
 #include <utility>
 
 #include "brdf/albedo.h"
-#include "brdf/ashikhmin_shirley.h"
-#include "brdf/ward.h"
 #include "estimators/mutant.h"
 
 namespace assay::plugins {

@@ -5,9 +5,9 @@
 #include <numbers>
 #include <utility>
 
-#include "correlated/area_pairs.h"
-#include "correlated/parameters.h"
-#include "correlated/sky_pairs.h"
+#include "correlated/area.h"
+#include "correlated/estimators.h"
+#include "correlated/sky.h"
 #include "estimators/mutant.h"
 
 namespace assay::plugins {

@@ -6,7 +6,6 @@
 #include "depth_of_field/image.h"
 #include "depth_of_field/pixel.h"
 #include "depth_of_field/reconstruction.h"
-#include "depth_of_field/two_stage.h"
 #include "estimators/mutant.h"
 
 namespace assay::plugins {

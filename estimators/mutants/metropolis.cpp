@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "estimators/mutant.h"
-#include "metropolis/parameters.h"
+#include "metropolis/chain.h"
 
 namespace assay::plugins {
 

@@ -22,7 +22,7 @@ Entry entry(const Defect& defect) {
   return mutant({defect.name,
                  "path_tracing/image",
                  defect.does,
-                 {{.name = "amount", .summary = defect.amount, .fallback = defect.fallback}}},
+                 {number_parameter("amount", defect.amount, defect.fallback)}},
                 [put = defect.put](Parameters& given) {
                   Picture picture = read_picture(given);
                   put(picture, given.number("amount"));

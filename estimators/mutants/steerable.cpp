@@ -8,9 +8,8 @@
 
 #include "estimators/mutant.h"
 #include "luminaire/setting.h"
-#include "sky/estimator.h"
+#include "sky/directions.h"
 #include "steerable/directions.h"
-#include "steerable/parameters.h"
 #include "steerable/triangle.h"
 
 namespace assay::plugins {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "estimators/mutant.h"
-#include "virtual_lights/family.h"
+#include "virtual_lights/lights.h"
 
 namespace assay::plugins {
 
@@ -87,43 +87,34 @@ std::shared_ptr<const Setup> clamped_distance(Parameters& parameters) {
   return setup(scene, recipe(ClampedDistance{{scene.room}, parameters.number("least_distance")}));
 }
 
-const ParameterInformation least_distance{.name = "least_distance",
-                                          .summary = "in units of the scene's longest side",
-                                          .fallback = "0.1",
-                                          .low = 0};
-
 }  // namespace
 
 std::vector<Entry> mutants_virtual_lights() {
   return {
-      mutant(
-          {"target_integral_one", "virtual_lights/weighted",
-           "takes the target's integral for 1 although not all of it can be shot at: 1 / G - 1 too "
-           "much, +20 % in a cube that emits evenly, +32 % in the middle of the floor where the "
-           "ceiling alone emits. It does not fall with M. `target_integral` is read and of no "
-           "account."},
-          weighted<TargetIntegralOne>),
-      mutant(
-          {"density_of_direction", "virtual_lights/weighted",
-           "divides the target, a density by area, by the density of the direction that the light "
-           "was shot along: inconsistent, the limit depends on the units of length; -13 % in the "
-           "middle of the floor of a unit cube that emits evenly."},
-          weighted<DensityOfDirection>),
-      mutant(
-          {"target_unhidden", "virtual_lights/weighted",
-           "leaves the visibility between receiver and virtual light out of the target: too dark "
-           "where something hides a part of what would be seen (by their form factors, -3.6 % in "
-           "suites/data/room.obj); nothing in convex rooms."},
-          weighted<TargetUnhidden>),
-      mutant(
-          {"mean_of_weights", "virtual_lights/weighted",
-           "averages the ratios of integrand and target in place of dividing their sums: "
-           "inconsistent; by the marginal density +47 % in the middle of the floor of a cube whose "
-           "ceiling alone emits."},
-          weighted<MeanOfWeights>),
+      mutant({"target_integral_one", "virtual_lights/weighted",
+              "takes the target's integral for 1 although not all of it can be shot at: 1 / G - 1 "
+              "too much, +20 % in a cube that emits evenly, +32 % in the middle of the floor where "
+              "the ceiling alone emits. It does not fall with M. `target_integral` is read and of "
+              "no account."},
+             weighted<TargetIntegralOne>),
+      mutant({"density_of_direction", "virtual_lights/weighted",
+              "divides the target, a density by area, by the density of the direction that the "
+              "light was shot along: inconsistent, the limit depends on the units of length; -13 % "
+              "in the middle of the floor of a unit cube that emits evenly."},
+             weighted<DensityOfDirection>),
+      mutant({"target_unhidden", "virtual_lights/weighted",
+              "leaves the visibility between receiver and virtual light out of the target: too "
+              "dark where something hides a part of what would be seen (by their form factors, "
+              "-3.6 % in suites/data/room.obj); nothing in convex rooms."},
+             weighted<TargetUnhidden>),
+      mutant({"mean_of_weights", "virtual_lights/weighted",
+              "averages the ratios of integrand and target in place of dividing their sums: "
+              "inconsistent; by the marginal density +47 % in the middle of the floor of a cube "
+              "whose ceiling alone emits."},
+             weighted<MeanOfWeights>),
       mutant({"target_of_other_paths", "virtual_lights/weighted",
-              "sums the target over other paths than the integrand: consistent, but the "
-              "spikes of the two no longer cancel."},
+              "sums the target over other paths than the integrand: consistent, but the spikes of "
+              "the two no longer cancel."},
              other_paths),
       mutant({"power_not_divided", "virtual_lights/classic",
               "gives each of M virtual lights the power of all: M times too much."},
@@ -132,7 +123,8 @@ std::vector<Entry> mutants_virtual_lights() {
               "virtual_lights/classic",
               "takes no distance for less than `least_distance`: the spikes are gone, and so is "
               "the light that they stand for, more of it the nearer the receiver is to a corner.",
-              {least_distance}},
+              {number_parameter("least_distance", "in units of the scene's longest side", "0.1",
+                                {0})}},
              clamped_distance)};
 }
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "render/frame.h"
+#include "render/vector.h"
 
 namespace assay::path_tracing {
 namespace {
@@ -194,8 +194,6 @@ Scene plates() {
 }
 
 }  // namespace
-
-std::vector<std::string> scene_names() { return {"box", "glass", "plates"}; }
 
 std::shared_ptr<const Scene> scene_of(const std::string& name) {
   if (name == "glass") return std::make_shared<const Scene>(glass_box());

@@ -104,7 +104,6 @@ class Scene {
 
 /// "box": diffuse walls under a wide light. "glass": a glass sphere and a mirror under a small
 /// light. "plates": four glossy plates under four lights, after Veach (1997, figure 9.2).
-std::vector<std::string> scene_names();
 std::shared_ptr<const Scene> scene_of(const std::string& name);
 
 }  // namespace assay::path_tracing

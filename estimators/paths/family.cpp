@@ -180,39 +180,19 @@ std::shared_ptr<const Setup> setup(const Scene& scene, const Knowledge& known, T
                    .cost = cost});
 }
 
-std::shared_ptr<const Setup> mutant_setup(const Scene& scene, Trace trace) {
-  return setup(scene, knowledge(scene, {}), std::move(trace));
-}
-
 ParameterInformation scene_parameter(std::string fallback) {
-  return {.name = "scene",
-          .type = ParameterType::structure,
-          .summary =
-              "furnace, sphere, coloured_sphere or box, or a camera and one of zones, "
-              "furnace and surfaces",
-          .fallback = std::move(fallback)};
+  return structure_parameter(
+      "scene",
+      "furnace, sphere, coloured_sphere or box, or a camera and one of zones, furnace and surfaces",
+      std::move(fallback));
 }
 
 ParameterInformation direct_parameter() {
-  return {.name = "direct",
-          .type = ParameterType::string,
-          .summary =
-              "how emitted light is learnt of: by arriving at what emits (hit), in closed "
-              "form at every vertex (exact: spheres and furnaces), by a shadow ray "
-              "at every vertex (sampled)",
-          .fallback = "hit",
-          .choices = {"hit", "exact", "sampled"}};
-}
-
-ParameterInformation rule_parameter() {
-  return {.name = "rule",
-          .type = ParameterType::string,
-          .summary =
-              "the probability to go on: the largest albedo, its mean over the colours, "
-              "its luminance, its mean weighted with the throughput, or with throughput x "
-              "mean radiance",
-          .fallback = "max_albedo",
-          .choices = {"max_albedo", "mean_albedo", "luminance", "throughput", "radiance"}};
+  return text_parameter(
+      "direct",
+      "how emitted light is learnt of: by arriving at what emits (hit), in closed form at every "
+      "vertex (exact: spheres and furnaces), by a shadow ray at every vertex (sampled)",
+      "hit", {"hit", "exact", "sampled"});
 }
 
 Direct read_direct(Parameters& parameters, const Scene& scene) {
@@ -228,14 +208,6 @@ Direct read_direct(Parameters& parameters, const Scene& scene) {
     parameters.refuse("direct", "there is no light to sample: no surface emits");
   }
   return Direct::sampled;
-}
-
-Rule read_rule(Parameters& parameters) {
-  const std::string name = parameters.string("rule");
-  if (name == "max_albedo") return Rule::max_albedo;
-  if (name == "mean_albedo") return Rule::mean_albedo;
-  if (name == "luminance") return Rule::luminance;
-  return name == "throughput" ? Rule::throughput : Rule::radiance;
 }
 
 NamedSampler direction_sampler() { return {"direction", std::make_shared<Directions>()}; }

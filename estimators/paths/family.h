@@ -8,10 +8,8 @@
 #include <variant>
 
 #include "estimators/estimator.h"
-#include "paths/mesh_world.h"
 #include "paths/path.h"
-#include "paths/sphere_world.h"
-#include "paths/terminal.h"
+#include "paths/worlds.h"
 #include "paths/zone_law.h"
 
 namespace assay::paths {
@@ -61,22 +59,51 @@ using Trace = std::function<void(Stream&, Tally&, Cost&)>;
 std::shared_ptr<const Setup> setup(const Scene& scene, const Knowledge& known, Trace trace,
                                    std::vector<NamedSampler> samplers = {}, const Cost& cost = {});
 
-/// The channels of a scene for a mutant: means alone.
-std::shared_ptr<const Setup> mutant_setup(const Scene& scene, Trace trace);
+/// The same for paths that `path(world, random, tally, cost)` follows in the world that a scene
+/// has.
+template <class Path>
+std::shared_ptr<const Setup> setup_in_world(const Scene& scene, const Knowledge& known,
+                                            const Path& path,
+                                            std::vector<NamedSampler> samplers = {},
+                                            const Cost& cost = {}) {
+  return std::visit(
+      [&](const auto& world) {
+        return setup(
+            scene, known,
+            [world, path](Stream& random, Tally& tally, Cost& spent) {
+              path(*world, random, tally, spent);
+            },
+            std::move(samplers), cost);
+      },
+      scene.world);
+}
 
 ParameterInformation scene_parameter(std::string fallback);
 ParameterInformation direct_parameter();
-ParameterInformation rule_parameter();
 Direct read_direct(Parameters& parameters, const Scene& scene);
-Rule read_rule(Parameters& parameters);
-
-/// Calls `make` with the world that a scene has.
-template <class Make>
-auto with_world(const Scene& scene, const Make& make) {
-  return std::visit([&](const auto& world) { return make(world); }, scene.world);
-}
 
 /// The sampler of diffuse directions in the frame of the normal, of density cos / pi.
 NamedSampler direction_sampler();
+
+/// Everything that a path with roulette needs besides its world.
+struct RoulettePlan {
+  Rule rule = Rule::max_albedo;
+  Direct direct = Direct::hit;
+  /// e of each patch; empty for the classical roulette.
+  std::vector<Spectrum> terminal = {};
+  /// The global estimate and the factor that e was made with; nothing for local estimates.
+  std::optional<Incoming> incoming = {};
+  double scale = 0;
+  Cost cost = {};
+
+  Roulette roulette(const Scene& scene) const { return {rule, scene.global.all, terminal}; }
+};
+
+RoulettePlan read_classical(Parameters& parameters, const Scene& scene);
+RoulettePlan read_improved(Parameters& parameters, const Scene& scene);
+
+/// e of every patch of a scene from its global estimate.
+std::vector<Spectrum> global_terminal(const Scene& scene, const Incoming& incoming, Direct direct,
+                                      double scale);
 
 }  // namespace assay::paths

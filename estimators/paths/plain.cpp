@@ -6,7 +6,7 @@
 // scene with the other estimators and nothing of their roulette, direct light or splitting.
 
 #include "paths/family.h"
-#include "paths/walk.h"
+#include "paths/path.h"
 
 namespace assay::plugins {
 
@@ -15,15 +15,10 @@ namespace {
 using namespace paths;
 
 ParameterInformation survival_parameter() {
-  return {.name = "survival",
-          .summary =
-              "q, the probability to go on at any vertex; the variance is finite where it "
-              "exceeds the square of every albedo",
-          .fallback = "0.8",
-          .low = 0,
-          .high = 1,
-          .low_excluded = true,
-          .high_excluded = true};
+  return number_parameter("survival",
+                          "q, the probability to go on at any vertex; the variance is finite where "
+                          "it exceeds the square of every albedo",
+                          "0.8", {0, 1, true, true});
 }
 
 std::optional<Steps> steps(const Scene& scene, double survival) {
@@ -43,13 +38,11 @@ Knowledge known(const Scene& scene, double survival) {
 std::shared_ptr<const Setup> plain(Parameters& parameters) {
   const Scene scene = paths::read_scene(parameters);
   const double q = parameters.number("survival");
-  return with_world(scene, [&](const auto& world) {
-    return setup(scene, known(scene, q),
-                 [world, q](Stream& random, Tally& tally, Cost& cost) {
-                   paths::walk(*world, world->camera(cost), q, random, tally, cost);
-                 },
-                 {direction_sampler()});
-  });
+  return setup_in_world(scene, known(scene, q),
+                        [q](const auto& world, auto& random, Tally& tally, Cost& cost) {
+                          paths::walk(world, world.camera(cost), q, random, tally, cost);
+                        },
+                        {direction_sampler()});
 }
 
 std::shared_ptr<const Setup> ray_free(Parameters& parameters) {
@@ -85,11 +78,10 @@ std::vector<Entry> paths_plain() {
        plain},
       {{.name = "paths/ray_free",
         .summary = "The integrating sphere without rays: vertices uniform on the sphere.",
-        .description =
-            "paths/plain in a sphere with zones, the next vertex drawn uniformly on the sphere "
-            "instead of traced to: a diffuse reflection inside a sphere has density cos / pi, and "
-            "cos' / r^2 = 1 / (2 R) for any two points. The same law as paths/plain without any "
-            "geometry. Traces no rays.",
+        .description = "paths/plain in a sphere with zones, the next vertex drawn uniformly on the "
+                       "sphere instead of traced to: a diffuse reflection inside a sphere has "
+                       "density cos / pi, and cos' / r^2 = 1 / (2 R) for any two points. The same "
+                       "law as paths/plain without any geometry. Traces no rays.",
         .parameters = {scene_parameter("sphere"), survival_parameter()}},
        ray_free}};
 }

@@ -6,14 +6,182 @@
 // cancel on average for every e. The classical roulette with s = a has the variance Le^2 a / (1 -
 // a)^2 in a furnace. A terminal value e = kappa a L multiplies it by (1 - kappa)^2.
 
+#include <numbers>
+
 #include "paths/family.h"
-#include "paths/roulette_setup.h"
+
+namespace assay::paths {
+
+namespace {
+
+constexpr std::size_t local_rays = 256;
+
+std::vector<Surface> patch_surfaces(const Scene& scene) {
+  std::vector<Surface> all;
+  if (const auto* const mesh = std::get_if<SharedMesh>(&scene.world)) {
+    for (std::size_t i = 0; i < (*mesh)->patches(); ++i) all.push_back((*mesh)->surface(i));
+  } else {
+    for (const ZonedScene::Zone& zone : scene.law->zones) all.push_back(zone.surface);
+  }
+  return all;
+}
+
+// The point where a reflected ray arrives in a sphere: uniform in area.
+class SphereHits final : public Sampler {
+ public:
+  explicit SphereHits(SharedSphere world) : world_(std::move(world)) {}
+  Domain domain() const override { return Domain::sphere; }
+  SamplerDraw sample(Stream& random) const override {
+    Cost uncounted;
+    const Vertex hit = world_->reflected(world_->camera(uncounted), random, uncounted);
+    const Point point = {hit.position.x, hit.position.y, hit.position.z};
+    return {.point = point, .density = density(point), .weight = 1};
+  }
+  double density(const Point&) const override { return 1 / (4 * std::numbers::pi); }
+  double evaluate(const Point&) const override { return 1 / (4 * std::numbers::pi); }
+
+ private:
+  SharedSphere world_;
+};
+
+// The number of bounces of a path with roulette in a furnace, the last cell for all beyond.
+class Lengths final : public Sampler {
+ public:
+  Lengths(SharedMesh world, Roulette roulette, double survival)
+      : world_(std::move(world)), roulette_(std::move(roulette)), survival_(survival) {}
+  Domain domain() const override { return Domain::interval; }
+  int lobes() const override { return cells; }
+  SamplerDraw sample(Stream& random) const override {
+    Cost uncounted;
+    Tally tally;
+    trace(*world_, roulette_, Direct::hit, random, tally, uncounted);
+    return {.density = 0,
+            .weight = 1,
+            .lobe = static_cast<int>(std::min<std::uint64_t>(tally.vertices, cells) - 1)};
+  }
+  double density(const Point&) const override { return 0; }
+  double evaluate(const Point&) const override { return 0; }
+  double point_mass(int lobe) const override {
+    const double reached = std::pow(survival_, lobe);
+    return lobe + 1 == cells ? reached : reached * (1 - survival_);
+  }
+
+ private:
+  static constexpr int cells = 12;
+  SharedMesh world_;
+  Roulette roulette_;
+  double survival_;
+};
+
+ParameterInformation rule_parameter() {
+  return text_parameter(
+      "rule",
+      "the probability to go on: the largest albedo, its mean over the colours, its luminance, its "
+      "mean weighted with the throughput, or with throughput x mean radiance",
+      "max_albedo", {"max_albedo", "mean_albedo", "luminance", "throughput", "radiance"});
+}
+
+Rule read_rule(Parameters& parameters) {
+  const std::string name = parameters.string("rule");
+  if (name == "max_albedo") return Rule::max_albedo;
+  if (name == "mean_albedo") return Rule::mean_albedo;
+  if (name == "luminance") return Rule::luminance;
+  return name == "throughput" ? Rule::throughput : Rule::radiance;
+}
+
+/// The terminal value e of a surface: scale x albedo x arriving radiance. If direct light is found
+/// separately, its part of the diffuse reflection is left out.
+Spectrum terminal_value(const Surface& surface, const Incoming& incoming, Direct direct,
+                        double scale) {
+  const Spectrum& diffuse = direct == Direct::hit ? incoming.all : incoming.reflected;
+  return scale * (surface.diffuse * diffuse + surface.mirror * incoming.all);
+}
+
+}  // namespace
+
+std::vector<Spectrum> global_terminal(const Scene& scene, const Incoming& incoming, Direct direct,
+                                      double scale) {
+  std::vector<Spectrum> all;
+  for (const Surface& surface : patch_surfaces(scene)) {
+    all.push_back(terminal_value(surface, incoming, direct, scale));
+  }
+  return all;
+}
+
+RoulettePlan read_classical(Parameters& parameters, const Scene& scene) {
+  return {.rule = read_rule(parameters), .direct = read_direct(parameters, scene)};
+}
+
+RoulettePlan read_improved(Parameters& parameters, const Scene& scene) {
+  RoulettePlan plan = read_classical(parameters, scene);
+  plan.scale = parameters.number("scale");
+  if (parameters.string("terminal") == "global") {
+    plan.incoming = scene.global;
+    plan.terminal = global_terminal(scene, scene.global, plan.direct, plan.scale);
+    return plan;
+  }
+  const auto* const mesh = std::get_if<SharedMesh>(&scene.world);
+  if (!mesh) {
+    parameters.refuse("terminal",
+                      "inside a sphere the same light arrives everywhere: use `global`");
+  }
+  const std::vector<Incoming> local = local_incoming(**mesh, local_rays, plan.cost);
+  for (std::size_t i = 0; i < local.size(); ++i) {
+    plan.terminal.push_back(terminal_value((*mesh)->surface(i), local[i], plan.direct, plan.scale));
+  }
+  return plan;
+}
+
+}  // namespace assay::paths
 
 namespace assay::plugins {
 
 namespace {
 
 using namespace paths;
+
+std::vector<ParameterInformation> improved_parameters() {
+  return {scene_parameter("furnace"), rule_parameter(), direct_parameter(),
+          text_parameter("terminal",
+                         "where the terminal value comes from: one estimate for the scene, or one "
+                         "for each side of each triangle",
+                         "global", {"global", "local"}),
+          number_parameter("scale",
+                           "factor of the terminal value: 1 where the estimate is trusted, 0 is "
+                           "the classical roulette",
+                           "1", {0, 1000})};
+}
+
+/// The steps of zones where the probability to go on depends on the zone alone.
+std::optional<Steps> exact_steps(const Scene& scene, const RoulettePlan& plan) {
+  const bool by_surface = plan.rule == Rule::max_albedo || plan.rule == Rule::mean_albedo ||
+                          plan.rule == Rule::luminance;
+  if (!scene.law || (!scene.grey && !by_surface)) return {};
+  // A local estimate of a furnace is rough.
+  if (!plan.terminal.empty() && !plan.incoming) return {};
+  const Roulette roulette = plan.roulette(scene);
+  const auto survival = [roulette](const Surface& surface) {
+    return roulette.survival(Spectrum::grey(1), surface).total();
+  };
+  const auto terminal = [incoming = plan.incoming.value_or(Incoming{}), direct = plan.direct,
+                         scale = plan.scale](const Surface& surface) {
+    return terminal_value(surface, incoming, direct, scale);
+  };
+  return Steps{.survival = survival, .terminal = terminal, .direct = plan.direct};
+}
+
+std::vector<NamedSampler> samplers_of(const Scene& scene, const RoulettePlan& plan,
+                                      const Knowledge& known) {
+  std::vector<NamedSampler> all = {direction_sampler()};
+  if (const auto* const sphere = std::get_if<SharedSphere>(&scene.world)) {
+    all.push_back({"hit", std::make_shared<SphereHits>(*sphere)});
+  } else if (known.vertices) {
+    all.push_back(
+        {"length", std::make_shared<Lengths>(std::get<SharedMesh>(scene.world),
+                                             plan.roulette(scene), (*known.vertices)[1])});
+  }
+  return all;
+}
 
 template <class Plan>
 std::shared_ptr<const Setup> prepared(Parameters& parameters, const Plan& plan_of) {
@@ -22,15 +190,12 @@ std::shared_ptr<const Setup> prepared(Parameters& parameters, const Plan& plan_o
   Knowledge known = knowledge(scene, exact_steps(scene, plan));
   if (plan.terminal.empty()) known.low = 0;
   std::vector<NamedSampler> samplers = samplers_of(scene, plan, known);
-  return with_world(scene, [&](const auto& world) {
-    const Roulette roulette = plan.roulette(scene);
-    return setup(
-        scene, known,
-        [world, roulette, direct = plan.direct](Stream& random, Tally& tally, Cost& cost) {
-          trace(*world, roulette, direct, random, tally, cost);
-        },
-        std::move(samplers), plan.cost);
-  });
+  return setup_in_world(
+      scene, known,
+      [roulette = plan.roulette(scene), direct = plan.direct](const auto& world, auto&... run) {
+        trace(world, roulette, direct, run...);
+      },
+      std::move(samplers), plan.cost);
 }
 
 }  // namespace
@@ -41,15 +206,15 @@ std::vector<Entry> paths_roulette() {
         .summary = "Radiance by paths that end by classical Russian roulette.",
         .description =
             "Goes on with probability s and multiplies the throughput T by a / s. s by `rule`, a "
-            "the albedo: max_albedo, mean_albedo, luminance (of a), throughput (sum T a / sum "
-            "T), radiance (sum T a L / sum T L, L the scene's mean radiance for each colour); "
-            "equal in grey scenes. A mirror is chosen in proportion to the rule's value for it. "
-            "Unbiased for every rule. `direct` says how emitted light is learnt of. Mean exact in "
-            "spheres and furnaces, variance there too where s depends on the surface alone: in a "
-            "grey furnace Le^2 a / (1 - a)^2. Diagnostic channels: vertices, bounce_1 to "
-            "bounce_6. Cost: a camera ray, a closest-hit ray a bounce, a shadow ray where one is "
-            "traced. Samplers: direction; in spheres hit (where a reflected ray arrives, uniform "
-            "on the sphere); length (the number of bounces, in a furnace where the law is known).",
+            "the albedo: max_albedo, mean_albedo, luminance (of a), throughput (sum T a / sum T), "
+            "radiance (sum T a L / sum T L, L the scene's mean radiance for each colour); equal in "
+            "grey scenes. A mirror is chosen in proportion to the rule's value for it. Unbiased "
+            "for every rule. `direct` says how emitted light is learnt of. Mean exact in spheres "
+            "and furnaces, variance there too where s depends on the surface alone: in a grey "
+            "furnace Le^2 a / (1 - a)^2. Diagnostic channels: vertices, bounce_1 to bounce_6. "
+            "Cost: a camera ray, a closest-hit ray a bounce, a shadow ray where one is traced. "
+            "Samplers: direction; in spheres hit (where a reflected ray arrives, uniform on the "
+            "sphere); length (the number of bounces, in a furnace where the law is known).",
         .parameters = {scene_parameter("furnace"), rule_parameter(), direct_parameter()}},
        [](Parameters& p) { return prepared(p, read_classical); }},
       {{.name = "paths/improved_roulette",

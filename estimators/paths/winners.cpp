@@ -5,9 +5,8 @@
 // floor(n + u) of them, each of weight W a / n. They are n on average, so the expectation is that
 // of one child of weight W a.
 
-#include "paths/winners.h"
-
 #include "paths/family.h"
+#include "paths/path.h"
 
 namespace assay::plugins {
 
@@ -29,14 +28,11 @@ std::shared_ptr<const Setup> prepare(Parameters& parameters) {
   const double splitting = parameters.number("splitting");
   Knowledge known = knowledge(scene, exact_steps(scene, direct, splitting));
   known.low = 0;
-  return with_world(scene, [&](const auto& world) {
-    return setup(
-        scene, known,
-        [world, rule = Winners(splitting), direct](Stream& random, Tally& tally, Cost& cost) {
-          Tree(*world, rule, direct).trace(random, tally, cost);
-        },
-        {direction_sampler()});
-  });
+  return setup_in_world(scene, known,
+                        [rule = Winners(splitting), direct](const auto& world, auto&... run) {
+                          Tree(world, rule, direct).trace(run...);
+                        },
+                        {direction_sampler()});
 }
 
 }  // namespace
@@ -55,13 +51,10 @@ std::vector<Entry> paths_winners() {
             "number of children there too in grey scenes without mirrors. Diagnostic channels: "
             "vertices, bounce_1 to bounce_6. Cost: a camera ray, a closest-hit ray a child, a "
             "shadow ray where one is traced. Sampler: direction.",
-        .parameters = {scene_parameter("sphere"),
-                       direct_parameter(),
-                       {.name = "splitting",
-                        .summary = "N, children of a diffuse vertex of weight and albedo 1",
-                        .fallback = "4",
-                        .low = 1,
-                        .high = 1000}}},
+        .parameters = {scene_parameter("sphere"), direct_parameter(),
+                       number_parameter("splitting",
+                                        "N, children of a diffuse vertex of weight and albedo 1",
+                                        "4", {1, 1000})}},
        prepare}};
 }
 

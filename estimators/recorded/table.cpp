@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <charconv>
 #include <limits>
@@ -12,14 +13,238 @@
 
 #include "estimators/core/line_error.h"
 #include "estimators/core/quoting.h"
+#include "estimators/ready_made.h"
 #include "recorded/byte_source.h"
-#include "recorded/fields.h"
-#include "recorded/foreign_formats.h"
 #include "recorded/npy.h"
 
 namespace assay::recorded {
 
 namespace {
+
+/// The separator if there is no other: white space of any length.
+inline constexpr char blank = ' ';
+
+/// A piece of a line and the column it begins at, counted from 1.
+struct Field {
+  std::string_view text;
+  int column;
+};
+
+constexpr std::string_view blanks = " \t\r\f\v";
+
+bool is_blank(char c) { return blanks.find(c) != blanks.npos; }
+
+/// Calls `visit(i)` for each character outside of quotes until it says true.
+template <class Visit>
+void outside_quotes(std::string_view line, const Visit& visit) {
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '"') quoted = !quoted;
+    if (!quoted && visit(i)) return;
+  }
+}
+
+bool is_quoted(std::string_view text) {
+  return text.size() > 1 && text.front() == '"' && text.back() == '"';
+}
+
+/// Returns the bytes from `begin` to before `end` without the white space around them.
+Field trimmed(std::string_view line, std::size_t begin, std::size_t end) {
+  while (begin < end && is_blank(line[begin])) ++begin;
+  while (end > begin && is_blank(line[end - 1])) --end;
+  return {line.substr(begin, end - begin), static_cast<int>(begin) + 1};
+}
+
+/// Returns the line without its comment. A comment begins where a field could, so that `1.#INF` has
+/// none.
+std::string_view without_comment(std::string_view line) {
+  constexpr std::string_view separators = " \t\r\f\v;,";
+  std::size_t end = line.size();
+  outside_quotes(line, [&](std::size_t i) {
+    const bool begins = i == 0 || separators.find(line[i - 1]) != separators.npos;
+    if (line[i] == '#' && begins) end = i;
+    return end < line.size();
+  });
+  return line.substr(0, end);
+}
+
+/// Returns what separates the fields of a line: `;`, else `,`, else a tab, else `blank`. Separators
+/// within quotes do not count, here as in split().
+char separator_of(std::string_view line) {
+  constexpr std::string_view kinds = ";,\t";
+  std::size_t first = kinds.size();
+  outside_quotes(line, [&](std::size_t i) {
+    first = std::min(first, kinds.find(line[i]));
+    return first == 0;
+  });
+  return first < kinds.size() ? kinds[first] : blank;
+}
+
+/// Returns the fields of a line; none where it is empty. A tab at its end is no separator.
+std::vector<Field> split(std::string_view line, char separator) {
+  const std::size_t last = line.find_last_not_of(blanks);
+  if (last == line.npos) return {};
+  line = line.substr(0, last + 1);
+  std::vector<Field> fields;
+  std::size_t begin = 0;
+  const auto add = [&](std::size_t end) {
+    const Field field = trimmed(line, begin, end);
+    if (separator != blank || !field.text.empty()) fields.push_back(field);
+    begin = end + 1;
+  };
+  outside_quotes(line, [&](std::size_t i) {
+    if (separator == blank ? is_blank(line[i]) : line[i] == separator) add(i);
+    return false;
+  });
+  add(line.size());
+  return fields;
+}
+
+/// Returns the text between quotes, a doubled one for one.
+std::string unquoted(std::string_view text) {
+  if (!is_quoted(text)) return std::string(text);
+  std::string inside;
+  for (std::size_t i = 1; i + 1 < text.size(); ++i) {
+    inside += text[i];
+    if (text[i] == '"') ++i;
+  }
+  return inside;
+}
+
+/// The number that a text is, if it is one.
+struct Parsed {
+  double value = 0;
+  bool is_number = false;
+  bool out_of_range = false;
+};
+
+/// Reads a number as C++ writes it, also in quotes. With `decimal_comma` a comma may be its point.
+Parsed parse(std::string_view text, bool decimal_comma) {
+  if (is_quoted(text)) text = text.substr(1, text.size() - 2);
+  std::string pointed;
+  if (decimal_comma && text.find('.') == text.npos && std::ranges::count(text, ',') == 1) {
+    pointed = text;
+    pointed[pointed.find(',')] = '.';
+    text = pointed;
+  }
+  // from_chars knows no plus sign; "+-1" stays junk.
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+  Parsed parsed;
+  const char* const end = text.data() + text.size();
+  const auto [stop, problem] = std::from_chars(text.data(), end, parsed.value);
+  parsed.is_number = problem == std::errc{} && stop == end;
+  parsed.out_of_range = problem == std::errc::result_out_of_range && stop == end;
+  return parsed;
+}
+
+/// Tells whether a program wrote that a number is missing.
+bool is_missing(std::string_view text) {
+  constexpr std::array words{"NA", "N/A", "n/a", "<NA>", "null", "NULL", "None", "-"};
+  return std::ranges::find(words, text) != words.end();
+}
+
+/// Tells whether a field of a first line may name a column: nothing that was meant as a number.
+bool may_be_name(const Field& field) {
+  const bool numeric = std::string_view("0123456789+-.").find(field.text[0]) != std::string::npos;
+  return !numeric && !is_missing(field.text) && !parse(field.text, false).is_number &&
+         (field.text[0] != '"' || is_quoted(field.text));
+}
+
+using namespace std::string_view_literals;
+
+struct Format {
+  std::string_view magic;
+  std::string_view what;         ///< behind "it is a binary file, not text: "
+  std::string_view mend;         ///< $ stands for the file as a shell takes it, @ as Python does
+  std::string_view filter = "";  ///< a command that makes text of it, from its input to its output
+};
+
+constexpr std::string_view as_exr =
+    "a mean of pixels needs them unrounded: render to OpenEXR (.exr)";
+
+constexpr std::string_view as_file =
+    "name the file of the picture itself: it is not read from pipes or packed";
+
+constexpr std::array formats{
+    Format{"\x76\x2f\x31\x01"sv, "an OpenEXR picture", as_file},
+    Format{"\x89PNG"sv, "a PNG picture", as_file},
+    Format{"PF\n"sv, "a PFM picture", as_file},
+    Format{"\xff\xd8\xff"sv, "a JPEG picture", as_exr},
+    Format{"II*\0"sv, "a TIFF picture", as_exr},
+    Format{"MM\0*"sv, "a TIFF picture", as_exr},
+    Format{"#?RADIANCE"sv, "a Radiance picture", as_exr},
+    Format{"PK\x03\x04"sv, "a zip archive, as .npz and .xlsx are",
+           "`unzip $` gives the arrays of an .npz as .npy files, which can be read;\n"
+           "  save a spreadsheet as CSV"},
+    Format{"\x89HDF\r\n\x1a\n"sv, "HDF5",
+           "in Python `numpy.save(\"mine.npy\", h5py.File(@)[\"NAME\"][:])`"},
+    Format{"MATLAB 5.0 MAT-file"sv, "MATLAB's .mat",
+           "in MATLAB `writematrix(x, 'mine.csv')`, x being the matrix"},
+    Format{"PAR1"sv, "Parquet", "in Python `pandas.read_parquet(@).to_csv(\"mine.csv\")`"},
+    Format{"SQLite format 3"sv, "an SQLite database",
+           "`sqlite3 -csv -header $ 'select x from t' > mine.csv`"},
+    Format{"\x28\xb5\x2f\xfd"sv, "compressed by zstd",
+           "`zstd -dc $ | assay …` with `file=-`, or compress by gzip", "zstd -dc"},
+    Format{"\xfd\x37zXZ\0"sv, "compressed by xz",
+           "`xz -dc $ | assay …` with `file=-`, or compress by gzip", "xz -dc"},
+    Format{"BZh"sv, "compressed by bzip2",
+           "`bzip2 -dc $ | assay …` with `file=-`, or compress by gzip", "bzip2 -dc"},
+    Format{"\x7f"
+           "ELF"sv,
+           "a program", "let it write into a pipe: `PROGRAM | assay …` with `file=-`"},
+    Format{"\xff\xfe"sv, "UTF-16, as PowerShell and Excel write it",
+           "`iconv -f UTF-16 -t UTF-8 $ > mine.txt` makes text of it", "iconv -f UTF-16 -t UTF-8"},
+    Format{"\xfe\xff"sv, "UTF-16", "`iconv -f UTF-16 -t UTF-8 $ > mine.txt` makes text of it",
+           "iconv -f UTF-16 -t UTF-8"},
+};
+
+/// The name of a file in a line to paste. Only its user knows what a pipe came from.
+std::string to_paste(const std::string& file) {
+  return file == called("-") || is_read_once(file) ? "FILE" : file;
+}
+
+std::string mend_of(const Format& format, const std::string& file) {
+  if (file == called("-") && !format.filter.empty()) {
+    return "put `" + std::string(format.filter) + " |` before `assay`";
+  }
+  std::string mend(format.mend);
+  const std::size_t place = mend.find_first_of("$@");
+  if (place == mend.npos) return mend;
+  const std::string name = to_paste(file);
+  return mend.replace(place, 1, mend[place] == '$' ? shell_quoted(name) : python_quoted(name));
+}
+
+/// Returns the place of the first byte that no text has, npos where there is none. Escapes of
+/// terminals count as text.
+std::size_t first_binary_byte(std::string_view bytes) {
+  const auto binary = [](char c) {
+    const auto byte = static_cast<unsigned char>(c);
+    constexpr unsigned char escape = 0x1b;
+    return (byte < 0x20 && (byte < '\b' || byte > '\r') && byte != escape) || byte == 0x7f;
+  };
+  const auto found = std::ranges::find_if(bytes, binary);
+  return found == bytes.end() ? bytes.npos : static_cast<std::size_t>(found - bytes.begin());
+}
+
+/// Names the format of a binary file by its first bytes, and says how to come to numbers. Returns
+/// "" for what may be text. `file` is its name, as called() says it.
+std::string no_text(std::string_view beginning, const std::string& file) {
+  const bool text = first_binary_byte(beginning) == beginning.npos;
+  for (const Format& format : formats) {
+    if (!beginning.starts_with(format.magic)) continue;
+    // A text may begin by chance as a picture does: `PF`, `BZh`.
+    const bool printable = first_binary_byte(format.magic) == format.magic.npos &&
+                           static_cast<unsigned char>(format.magic[0]) < 0x80;
+    if (printable && text) continue;
+    return "it is a binary file, not text: " + std::string(format.what) + ";\n  " +
+           mend_of(format, file);
+  }
+  if (text) return "";
+  return "it is a binary file, not text; write the numbers as text, an observation a\n"
+         "  line, or as .npy, from raw doubles in Python:\n"
+         "  `numpy.save(\"mine.npy\", numpy.fromfile(" +
+         python_quoted(to_paste(file)) + "))`";
+}
 
 constexpr std::string_view stream_keyword = "stream:";
 constexpr std::size_t longest_line = std::size_t{64} << 20;

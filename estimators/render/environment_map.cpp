@@ -5,6 +5,9 @@
 #include <numbers>
 #include <stdexcept>
 #include <utility>
+#include <vector>
+
+#include "render/quadrature.h"
 
 namespace assay::render {
 
@@ -64,6 +67,105 @@ Patch EnvironmentMap::patch(std::size_t texel) const {
   const auto columns = static_cast<double>(resolution_.width);
   return {.theta = {pi * row / rows, pi * (row + 1) / rows},
           .phi = {2 * pi * column / columns, 2 * pi * (column + 1) / columns}};
+}
+
+namespace {
+
+using std::numbers::pi;
+using Pair = std::array<double, 2>;
+
+double cubed(double x) { return x * x * x; }
+
+// Integrals over theta of sin^2, sin cos, sin^3, sin^2 cos and sin cos^2.
+struct PolarIntegrals {
+  double ss, sc, sss, ssc, scc;
+
+  explicit PolarIntegrals(Pair theta) {
+    const auto [a, b] = theta;
+    const double sine_a = std::sin(a), sine_b = std::sin(b);
+    const double cosine_a = std::cos(a), cosine_b = std::cos(b);
+    ss = (b - a) / 2 - std::cos(a + b) * std::sin(b - a) / 2;
+    sc = std::sin(a + b) * std::sin(b - a) / 2;
+    scc = (cubed(cosine_a) - cubed(cosine_b)) / 3;
+    sss = cosine_a - cosine_b - scc;
+    ssc = (cubed(sine_b) - cubed(sine_a)) / 3;
+  }
+};
+
+// n . w = P sin theta + Q cos theta along a meridian: P = nx cos phi + ny sin phi, Q = nz.
+Pair whole_patch(const Patch& patch, const Vector3& n) {
+  const PolarIntegrals polar(patch.theta);
+  const auto [c, d] = patch.phi;
+  const double width = d - c;
+  const double of_p = n.x * (std::sin(d) - std::sin(c)) + n.y * (std::cos(c) - std::cos(d));
+  const double twice = (std::sin(2 * d) - std::sin(2 * c)) / 4;
+  const double product = std::sin(d + c) * std::sin(d - c);
+  const double of_pp =
+      n.x * n.x * (width / 2 + twice) + n.y * n.y * (width / 2 - twice) + n.x * n.y * product;
+  return {of_p * polar.ss + n.z * width * polar.sc,
+          of_pp * polar.sss + 2 * of_p * n.z * polar.ssc + n.z * n.z * width * polar.scc};
+}
+
+// Both moments along the meridian at phi. In (0, pi) P sin + Q cos has one zero, at (sin, cos) ~
+// (|Q|, -P sign Q). It is positive before the zero if Q > 0, after it if Q < 0.
+Pair along_meridian(Pair theta, const Vector3& n, double phi) {
+  const double p = n.x * std::cos(phi) + n.y * std::sin(phi);
+  const double q = n.z;
+  if (q == 0 && p <= 0) return {0, 0};
+  if (q != 0) {
+    const double zero = std::atan2(std::abs(q), q > 0 ? -p : p);
+    double& end = q > 0 ? theta[1] : theta[0];
+    end = std::clamp(zero, theta[0], theta[1]);
+  }
+  const PolarIntegrals polar(theta);
+  return {p * polar.ss + q * polar.sc,
+          p * p * polar.sss + 2 * p * q * polar.ssc + q * q * polar.scc};
+}
+
+// The ends of the patch in azimuth, and the azimuths between them at which the horizon meets one of
+// its parallels. Also those at which it is steepest: a near-vertical horizon runs from pole to pole
+// there.
+std::vector<double> breaks(const Patch& patch, const Vector3& n) {
+  const auto [c, d] = patch.phi;
+  std::vector<double> all{c, d};
+  const double radius = std::hypot(n.x, n.y);
+  const double towards = std::atan2(n.y, n.x);
+  const auto add = [&](double cosine) {
+    if (!(std::abs(cosine) <= 1)) return;
+    for (const double offset : {std::acos(cosine), -std::acos(cosine)}) {
+      const double phi = towards + offset;
+      const double turned = phi - 2 * pi * std::floor((phi - c) / (2 * pi));
+      if (turned < d) all.push_back(turned);
+    }
+  };
+  // radius cos(phi - towards) sin theta + nz cos theta = 0
+  for (const double theta : patch.theta) {
+    add(-n.z * std::cos(theta) / (radius * std::sin(theta)));
+  }
+  add(0);
+  return all;
+}
+
+CosineMoments crossed(const Patch& patch, const Vector3& n) {
+  std::vector<double> ends = breaks(patch, n);
+  const auto meridian = [&](double phi) { return along_meridian(patch.theta, n, phi); };
+  const Integrals<2> total = tanh_sinh_pieces<2>(meridian, ends, 1e-12);
+  return {.first = total.value[0],
+          .second = total.value[1],
+          .error = std::max(total.error[0], total.error[1])};
+}
+
+}  // namespace
+
+CosineMoments cosine_moments(const Patch& patch, const Vector3& normal) {
+  // No point of the patch is farther from its middle than its height plus half its widest parallel.
+  const Vector3 middle = direction_in(patch, {0.5, 0.5});
+  const double radius = patch.theta[1] - patch.theta[0] + (patch.phi[1] - patch.phi[0]) / 2;
+  const double height = std::asin(std::clamp(dot(normal, middle), -1.0, 1.0));
+  if (height < -radius) return {};
+  if (height <= radius) return crossed(patch, normal);
+  const Pair exact = whole_patch(patch, normal);
+  return {.first = exact[0], .second = exact[1]};
 }
 
 }  // namespace assay::render

@@ -1,13 +1,110 @@
 #include "render/scene.h"
 
+#include <embree3/rtcore.h>
+#include <oneapi/tbb/global_control.h>
+
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstddef>
+#include <memory>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
-#include "render/device.h"
-
 namespace assay::render {
+
+[[noreturn]] void embree_failed(const char* message);
+
+/// One device for the process: it pins the instruction set. Its own `threads` setting must stay
+/// away: Embree would limit oneTBB to that number in the whole process for as long as the device
+/// lives.
+class Device {
+ public:
+  Device();
+  ~Device() { rtcReleaseDevice(handle_); }
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  static const std::shared_ptr<const Device>& shared();
+
+  RTCDevice handle() const { return handle_; }
+  const std::string& isa() const { return isa_; }
+
+  /// Throws what Embree has to complain of; it keeps the first error of each thread until asked.
+  void check() const;
+
+  /// An empty scene that keeps the device alive. The scene is then built on the calling thread, so
+  /// that the tree does not depend on the number of processors.
+  static std::shared_ptr<RTCSceneTy> new_scene();
+  static void commit(RTCScene scene);
+
+ private:
+  std::string isa_;
+  RTCDevice handle_ = nullptr;
+};
+
+void embree_failed(const char* message) {
+  throw std::runtime_error(std::string("Embree: ") + message);
+}
+
+namespace {
+
+std::string best_isa() {
+#ifdef __x86_64__
+  return __builtin_cpu_supports("avx2") ? "avx2" : "sse4.2";
+#else
+  return "sse2";  // Embree's word for the four lanes that every processor has
+#endif
+}
+
+}  // namespace
+
+Device::Device() : isa_(best_isa()) {
+  const std::string settings = "isa=" + isa_ + ",set_affinity=0";
+  handle_ = rtcNewDevice(settings.c_str());
+  if (!handle_) embree_failed("no device could be made");
+}
+
+const std::shared_ptr<const Device>& Device::shared() {
+  static const std::shared_ptr<const Device> device = std::make_shared<const Device>();
+  return device;
+}
+
+void Device::check() const {
+  switch (rtcGetDeviceError(handle_)) {
+    case RTC_ERROR_NONE:
+      return;
+    case RTC_ERROR_INVALID_ARGUMENT:
+      embree_failed("invalid argument");
+    case RTC_ERROR_INVALID_OPERATION:
+      embree_failed("invalid operation");
+    case RTC_ERROR_OUT_OF_MEMORY:
+      embree_failed("out of memory");
+    case RTC_ERROR_UNSUPPORTED_CPU:
+      embree_failed("this processor is not supported");
+    default:
+      embree_failed("unknown error");
+  }
+}
+
+std::shared_ptr<RTCSceneTy> Device::new_scene() {
+  const std::shared_ptr<const Device> device = shared();
+  // The deleter holds the device, which must outlive its scenes.
+  std::shared_ptr<RTCSceneTy> scene(rtcNewScene(device->handle()),
+                                    [device](RTCScene held) { rtcReleaseScene(held); });
+  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
+  return scene;
+}
+
+void Device::commit(RTCScene scene) {
+  {
+    const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
+    rtcCommitScene(scene);
+  }
+  shared()->check();
+}
 
 namespace {
 
@@ -96,5 +193,99 @@ bool Scene::occluded(const RoundedRay& ray) const {
 }
 
 std::string isa() { return Device::shared()->isa(); }
+
+namespace {
+
+// A query in double precision: Embree hands the context it was given on to the callbacks. The
+// context comes first, so that a pointer to it is a pointer to the whole.
+struct Query {
+  RTCIntersectContext context;
+  Vector3 origin;
+  Vector3 direction;
+  bool from_surface = false;
+  double far = 0;
+  double t = -1;
+};
+
+// The larger root of |o + t d|^2 = 1, d of unit length. From the surface |o| = 1 and the other root
+// is 0: to say so is exact where computing it is not.
+double exit_distance(const Query& query) {
+  const double b = dot(query.origin, query.direction);
+  if (query.from_surface) return -2 * b;
+  return -b + std::sqrt(b * b + 1 - squared_length(query.origin));
+}
+
+void bounds(const RTCBoundsFunctionArguments* arguments) {
+  // A little more than the sphere: the box must hold the rounded ray's hit, too.
+  constexpr float half = 1.001F;
+  *arguments->bounds_o = {-half, -half, -half, 0, half, half, half, 0};
+}
+
+void intersect(const RTCIntersectFunctionNArguments* arguments) {
+  auto* const query = reinterpret_cast<Query*>(arguments->context);
+  query->t = exit_distance(*query);
+}
+
+void occlude(const RTCOccludedFunctionNArguments* arguments) {
+  auto* const query = reinterpret_cast<Query*>(arguments->context);
+  const double t = exit_distance(*query);
+  if (t > 0 && t < query->far) query->t = t;
+}
+
+RTCRay rounded(const Query& query) {
+  const auto single = [](double x) { return static_cast<float>(x); };
+  RTCRay ray{};
+  ray.org_x = single(query.origin.x);
+  ray.org_y = single(query.origin.y);
+  ray.org_z = single(query.origin.z);
+  ray.dir_x = single(query.direction.x);
+  ray.dir_y = single(query.direction.y);
+  ray.dir_z = single(query.direction.z);
+  ray.tfar = 4;  // beyond every point of the sphere
+  ray.mask = ~0U;
+  return ray;
+}
+
+}  // namespace
+
+SphereScene::SphereScene() {
+  scene_ = Device::new_scene();
+  const RTCDevice device = Device::shared()->handle();
+  const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryUserPrimitiveCount(geometry, 1);
+  rtcSetGeometryBoundsFunction(geometry, bounds, nullptr);
+  rtcSetGeometryIntersectFunction(geometry, intersect);
+  rtcSetGeometryOccludedFunction(geometry, occlude);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(scene_.get(), geometry);
+  rtcReleaseGeometry(geometry);
+  Device::commit(scene_.get());
+}
+
+Vector3 SphereScene::exit(const Vector3& origin, const Vector3& direction,
+                          bool from_surface) const {
+  Query query{
+      .context = {}, .origin = origin, .direction = direction, .from_surface = from_surface};
+  rtcInitIntersectContext(&query.context);
+  RTCRayHit ray{};
+  ray.ray = rounded(query);
+  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(scene_.get(), &query.context, &ray);
+  // Normalised, so that rounding does not add up along a path.
+  return normalised(origin + query.t * direction);
+}
+
+bool SphereScene::occluded(const Vector3& from, const Vector3& to) const {
+  const double distance = length(to - from);
+  Query query{.origin = from,
+              .direction = (to - from) / distance,
+              .from_surface = true,
+              .far = distance * (1 - 1e-9)};
+  rtcInitIntersectContext(&query.context);
+  RTCRay ray = rounded(query);
+  rtcOccluded1(scene_.get(), &query.context, &ray);
+  return query.t > 0;
+}
 
 }  // namespace assay::render

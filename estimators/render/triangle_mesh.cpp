@@ -1,5 +1,14 @@
 #include "render/triangle_mesh.h"
 
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <fstream>
+#include <string>
+#include <string_view>
+
+#include "estimators/core/value.h"
+
 namespace assay::render {
 
 TriangleMesh fan(const Polygon& polygon) {
@@ -10,5 +19,124 @@ TriangleMesh fan(const Polygon& polygon) {
   }
   return mesh;
 }
+
+namespace {
+
+constexpr std::string_view blanks = " \t\r";
+
+// The next word of a line, which is removed from it; empty at the end.
+std::string_view take_word(std::string_view& line) {
+  const std::size_t begin = line.find_first_not_of(blanks);
+  if (begin == std::string_view::npos) return line = {};
+  const std::size_t end = std::min(line.find_first_of(blanks, begin), line.size());
+  const std::string_view word = line.substr(begin, end - begin);
+  line.remove_prefix(end);
+  return word;
+}
+
+template <class Number>
+bool parse(std::string_view word, Number& number) {
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+  return error == std::errc{} && end == word.data() + word.size();
+}
+
+class ObjReader {
+ public:
+  explicit ObjReader(const std::string& file) : file_(file), stream_(file) {
+    if (!stream_) {
+      const int why = errno;
+      throw InputError({file_, 0, 0},
+                       std::string("cannot open the OBJ file: ") + std::strerror(why));
+    }
+  }
+
+  TriangleMesh read() {
+    std::string text;
+    while (std::getline(stream_, text)) {
+      ++line_;
+      statement(std::string_view(text).substr(0, text.find('#')));
+    }
+    if (stream_.bad()) throw InputError({file_, line_, 1}, "cannot read the OBJ file");
+    if (mesh_.triangles.empty()) throw InputError({file_, 0, 0}, "the OBJ file holds no face");
+    return std::move(mesh_);
+  }
+
+ private:
+  void statement(std::string_view rest) {
+    const std::string_view keyword = take_word(rest);
+    if (keyword.empty()) return;
+    if (keyword == "v") return vertex(rest);
+    if (keyword == "f") return face(rest);
+    for (const char* shapeless : {"vt", "vn", "g", "o", "s", "usemtl", "mtllib"}) {
+      if (keyword == shapeless) return;
+    }
+    fail("the statement `" + std::string(keyword) +
+         "` is not one of v f vt vn g o s usemtl mtllib");
+  }
+
+  void vertex(std::string_view rest) {
+    Vector3 p;
+    for (double* const coordinate : {&p.x, &p.y, &p.z}) {
+      const std::string_view word = take_word(rest);
+      if (!parse(word, *coordinate) || !std::isfinite(*coordinate)) {
+        fail("a vertex needs three finite numbers, but one is `" + std::string(word) + "`");
+      }
+    }
+    if (!take_word(rest).empty()) fail("a vertex has exactly three coordinates");
+    mesh_.vertices.push_back(p);
+  }
+
+  void face(std::string_view rest) {
+    std::vector<std::uint32_t> corners;
+    for (std::string_view word = take_word(rest); !word.empty(); word = take_word(rest)) {
+      corners.push_back(corner(word));
+    }
+    if (corners.size() < 3) fail("a face needs three corners or more");
+    for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
+      mesh_.triangles.push_back({corners[0], corners[i], corners[i + 1]});
+      const auto [a, b, c] = mesh_.corners(mesh_.triangles.size() - 1);
+      if (!(length(cross(b - a, c - a)) > 0)) fail("a face has no area");
+    }
+  }
+
+  // `v`, `v/vt`, `v//vn` or `v/vt/vn`; only v matters, the others must be numbers all the same.
+  std::uint32_t corner(std::string_view word) {
+    const std::size_t slash = word.find('/');
+    long index = 0;
+    if (!parse(word.substr(0, slash), index)) malformed_corner(word);
+    if (slash != std::string_view::npos) check_further(word, word.substr(slash + 1));
+    const long count = static_cast<long>(mesh_.vertices.size());
+    if (index == 0 || index > count || index < -count) {
+      fail("there is no vertex " + std::to_string(index) + " yet: " + std::to_string(count) +
+           " are defined above");
+    }
+    return static_cast<std::uint32_t>(index > 0 ? index - 1 : count + index);
+  }
+
+  void check_further(std::string_view word, std::string_view further) {
+    const std::size_t slash = further.find('/');
+    const std::string_view texture = further.substr(0, slash);
+    long index = 0;
+    const bool texture_fine = parse(texture, index) || (texture.empty() && slash == 0);
+    const bool normal_fine =
+        slash == std::string_view::npos || parse(further.substr(slash + 1), index);
+    if (!texture_fine || !normal_fine) malformed_corner(word);
+  }
+
+  [[noreturn]] void malformed_corner(std::string_view word) const {
+    fail("a corner must be v, v/vt, v//vn or v/vt/vn, but it is `" + std::string(word) + "`");
+  }
+
+  [[noreturn]] void fail(const std::string& why) const { throw InputError({file_, line_, 1}, why); }
+
+  std::string file_;
+  std::ifstream stream_;
+  int line_ = 0;
+  TriangleMesh mesh_;
+};
+
+}  // namespace
+
+TriangleMesh read_obj(const std::string& file) { return ObjReader(file).read(); }
 
 }  // namespace assay::render

@@ -4,7 +4,11 @@
 
 #include <memory>
 #include <numbers>
+#include <optional>
+#include <utility>
+#include <vector>
 
+#include "estimators/parameters.h"
 #include "render/hemisphere.h"
 #include "sky/setting.h"
 
@@ -77,5 +81,109 @@ class DirectionSampler final : public Sampler {
   SharedSetting setting_;
   SharedDirections directions_;
 };
+
+struct Outcome {
+  Rgb value{};
+  double below = 0;  ///< 1 if the direction lay below the horizon
+  double nodes = 0;  ///< of a tree, that were passed through
+};
+
+/// L cos+ V / p.
+inline Outcome outcome(const Setting& setting, const Direction& direction, Cost& cost) {
+  Outcome result{.below = direction.w.z > 0 ? 0.0 : 1.0,
+                 .nodes = static_cast<double>(direction.nodes)};
+  if (direction.w.z <= 0) return result;
+  result.value = setting.received(direction.w, cost);
+  for (double& x : result.value) x /= direction.density;
+  return result;
+}
+
+/// A primary: the mean over `strata` samples. The j-th has its first number in [j, j + 1) / strata.
+/// `Follow` is Outcome(const Setting&, const Direction&, Cost&).
+template <class Follow = decltype(&outcome)>
+class StratifiedPrimary {
+ public:
+  StratifiedPrimary(SharedSetting setting, SharedDirections directions, std::uint64_t strata,
+                    Follow follow = &outcome)
+      : setting_(std::move(setting)),
+        directions_(std::move(directions)),
+        strata_(strata),
+        follow_(std::move(follow)) {}
+
+  Outcome operator()(Stream& random, Cost& cost) const {
+    const auto k = static_cast<double>(strata_);
+    Outcome sum;
+    for (std::uint64_t j = 0; j < strata_; ++j) {
+      const double u = (static_cast<double>(j) + random.uniform()) / k;
+      const Outcome one = follow_(*setting_, directions_->draw(u, random.uniform()), cost);
+      for (std::size_t c = 0; c < 3; ++c) sum.value[c] += one.value[c] / k;
+      sum.below += one.below / k;
+      sum.nodes += one.nodes / k;
+    }
+    cost.samples += strata_;
+    return sum;
+  }
+
+ private:
+  SharedSetting setting_;
+  SharedDirections directions_;
+  std::uint64_t strata_;
+  Follow follow_;
+};
+
+/// The mean of primaries. Writes `colours` numbers, then the shares `below` and `nodes` if there
+/// are two channels more.
+template <class Primary>
+class SkyEstimator final : public Estimator {
+ public:
+  SkyEstimator(Primary primary, std::size_t colours)
+      : primary_(std::move(primary)), colours_(colours) {}
+
+  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
+                 Cost& cost) override {
+    Outcome sum;
+    for (std::uint64_t i = 0; i < primaries; ++i) {
+      const Outcome one = primary_(random, cost);
+      for (std::size_t c = 0; c < 3; ++c) sum.value[c] += one.value[c];
+      sum.below += one.below;
+      sum.nodes += one.nodes;
+    }
+    const auto n = static_cast<double>(primaries);
+    for (std::size_t c = 0; c < colours_; ++c) out[c] = sum.value[c] / n;
+    if (out.size() == colours_) return;
+    out[colours_] = sum.below / n;
+    out[colours_ + 1] = sum.nodes / n;
+  }
+
+ private:
+  Primary primary_;
+  std::size_t colours_;
+};
+
+/// A set-up with the sampler `direction`; `diagnostic` adds the channels `below` and `nodes`;
+/// `gain` is that of irradiance_channels().
+template <class Primary>
+std::shared_ptr<const Setup> sky_setup(const SharedSetting& setting, SharedDirections directions,
+                                       Primary primary, bool diagnostic,
+                                       std::optional<double> gain = {}) {
+  std::vector<Channel> channels = irradiance_channels(*setting, gain);
+  if (diagnostic) {
+    channels.push_back({.name = "below", .low = 0, .high = 1, .diagnostic = true});
+    channels.push_back({.name = "nodes", .low = 0, .diagnostic = true});
+  }
+  const auto make = [primary = std::move(primary), colours = setting->colours()] {
+    return std::make_unique<SkyEstimator<Primary>>(primary, colours);
+  };
+  return setup_of({.channels = std::move(channels),
+                   .make = make,
+                   .samplers = {{"direction", std::make_shared<DirectionSampler>(
+                                                  setting, std::move(directions))}}});
+}
+
+/// `strata`, of all estimators of the family.
+inline ParameterInformation strata_parameter() {
+  return count_parameter(
+      "strata", "samples of a primary, the first of their two numbers stratified", "1", {1, 1e6});
+}
 
 }  // namespace assay::sky

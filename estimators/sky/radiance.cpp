@@ -8,8 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "estimators/parameters.h"
 #include "luminaire/scene_description.h"
-#include "render/patch_integrals.h"
+#include "render/environment_map.h"
 #include "render/quadrature.h"
 #include "sky/harmonics.h"
 #include "sky/octahedron.h"
@@ -255,10 +256,8 @@ SharedRadiance read_picture(const Value& value, const Parameters& given) {
 }  // namespace
 
 ParameterInformation sky_parameter() {
-  return {.name = "sky",
-          .type = ParameterType::structure,
-          .summary = "the sky: one of uniform, gradient, harmonics, peak, map",
-          .fallback = "{uniform: 1}"};
+  return structure_parameter("sky", "the sky: one of uniform, gradient, harmonics, peak, map",
+                             "{uniform: 1}");
 }
 
 SharedRadiance read_radiance(Parameters& given) {

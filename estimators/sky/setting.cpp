@@ -3,7 +3,33 @@
 #include <array>
 #include <utility>
 
+#include "estimators/parameters.h"
+#include "luminaire/setting.h"
+
 namespace assay::sky {
+
+Receiver::Receiver(const render::Vector3& normal, const std::vector<render::Shape>& occluders)
+    : frame_(render::Frame::about(normal)) {
+  if (!occluders.empty()) scene_.emplace(occluders);
+}
+
+std::vector<ParameterInformation> with_receiver(ParameterInformation sky) {
+  return {std::move(sky),
+          structure_parameter("normal", "the receiver's normal, of any length", "[0, 0, 1]"),
+          structure_parameter("position", "where the receiver is, for the occluders' sake",
+                              "[0, 0, 0]"),
+          structure_parameter("occluders",
+                              "what hides the sky: a list as in the scenes of the luminaire family",
+                              "[]")};
+}
+
+Receiver read_receiver(Parameters& given) {
+  const luminaire::Receiver receiver{
+      .position = luminaire::read_vector(given.structure("position"), "`position`"),
+      .normal = luminaire::read_unit_vector(given.structure("normal"), "`normal`")};
+  const auto occluders = luminaire::read_occluders(given.structure("occluders"), given.folder());
+  return Receiver(receiver.normal, luminaire::occluder_shapes(occluders, receiver));
+}
 
 Rgb Setting::received(const Vector3& w, Cost& cost) const {
   if (w.z <= 0 || !visible(w, cost)) return {};

@@ -1,7 +1,8 @@
 // Irradiance from a sky by directions uniform over the hemisphere about the normal, and by
 // cosine-distributed ones: X = 2 pi L cos V and X = pi L V.
 
-#include "sky/estimator.h"
+#include "estimators/parameters.h"
+#include "sky/directions.h"
 
 namespace assay::plugins {
 
@@ -17,9 +18,7 @@ std::shared_ptr<const Setup> prepare(Parameters& given) {
 }
 
 std::vector<ParameterInformation> parameters() {
-  std::vector<ParameterInformation> all = sky::parameters();
-  all.push_back(sky::strata_parameter());
-  return all;
+  return joined(sky::parameters(), {sky::strata_parameter()});
 }
 
 }  // namespace

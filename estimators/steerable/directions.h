@@ -3,16 +3,86 @@
 // Directions with density in proportion to a sky times a steerable lobe.
 
 #include <algorithm>
+#include <cstddef>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "sky/directions.h"
-#include "steerable/lobe.h"
-#include "steerable/sky_tree.h"
+#include "sky/harmonics.h"
+#include "sky/octahedron.h"
+#include "sky/radiance.h"
+#include "sky/setting.h"
+#include "steerable/triangle.h"
 
 namespace assay::steerable {
 
 using render::Vector3;
+
+/// The first terms of cos+ = sum A_l Y_lm(n) Y_lm(w), with `offset` added to the coefficient of
+/// Y_00. The number `coefficients` is 1, 4, 9 or 25: bands 0 to 0, 1, 2 or 4. Band 3 of the clamped
+/// cosine is zero.
+struct Lobe {
+  std::size_t coefficients = 9;
+  double offset = 0.15;
+};
+
+/// a such that the lobe about n is sum a_i Y_i(w); zero from `coefficients` on.
+sky::Harmonics lobe_coefficients(const Lobe& lobe, const render::Vector3& n);
+
+/// The lobe's value at the cosine c to its normal. By Legendre polynomials it is sum (2 l + 1) / (4
+/// pi) A_l P_l(c) + offset / sqrt(4 pi).
+double lobe_value(const Lobe& lobe, double c);
+
+/// The least value of the lobe. With nine coefficients and no offset -19/480, at c = -8/15.
+double lobe_minimum(const Lobe& lobe);
+
+/// How a sky is cut up.
+struct Preparation {
+  std::size_t level = 4;         ///< of the octahedron's subdivision: 8 4^level triangles
+  std::size_t coefficients = 9;  ///< harmonics kept
+  double floor = 0;  ///< added to the luminance at every vertex, as a part of the sky's mean
+};
+
+/// Nodes are numbered as in a heap. The root is 1, and the children of k are 2 k and 2 k + 1.
+/// Leaves are `count` to 2 count - 1.
+class SkyTree {
+ public:
+  SkyTree(const sky::Radiance& radiance, const Preparation& preparation);
+
+  const sky::Octahedron& sphere() const { return sphere_; }
+  /// Triangles; a power of two.
+  std::size_t count() const { return sphere_.triangles().size(); }
+  std::size_t coefficients() const { return coefficients_; }
+  /// The least luminance, floor included, at a vertex.
+  double least() const { return least_; }
+
+  /// The area times the mean of the three vertices' weights, summed over the leaves below: for
+  /// steering coefficients a.
+  double node(std::size_t index, const sky::Harmonics& a) const {
+    return product(nodes_, index, a);
+  }
+  VertexWeights weights(std::size_t triangle, const sky::Harmonics& a) const {
+    const auto& [x, y, z] = sphere_.triangles()[triangle];
+    return {product(vertices_, x, a), product(vertices_, y, a), product(vertices_, z, a)};
+  }
+
+ private:
+  double product(const std::vector<double>& table, std::size_t row, const sky::Harmonics& a) const {
+    const double* values = &table[row * coefficients_];
+    double sum = 0;
+    for (std::size_t i = 0; i < coefficients_; ++i) sum += a[i] * values[i];
+    return sum;
+  }
+  void fill_vertices(const sky::Radiance& radiance, double floor);
+  void fill_nodes();
+
+  sky::Octahedron sphere_;
+  std::size_t coefficients_;
+  double least_ = 0;
+  std::vector<double> vertices_;  // rows of luminance times harmonics
+  std::vector<double> nodes_;
+};
 
 /// The factor |q|^3 / d from density per area to density per solid angle. The point q is on a plane
 /// at the distance d from the origin.
@@ -115,5 +185,13 @@ class SteeredDirections : public sky::Directions {
   sky::Harmonics a_;
   double total_;
 };
+
+/// Coefficients and offset. InputError at `offset` when the lobe is not positive everywhere: a
+/// density that is zero or negative where light comes from makes the estimate biased.
+Lobe read_lobe(Parameters&);
+
+/// InputError at `floor` when the luminance is zero at a vertex of the subdivision: directions near
+/// by might never be drawn.
+std::shared_ptr<const SkyTree> read_tree(Parameters&, const sky::Setting&);
 
 }  // namespace assay::steerable

@@ -1,15 +1,115 @@
 #include "virtual_lights/room.h"
 
+#include <algorithm>
+#include <map>
 #include <numbers>
+#include <numeric>
+#include <tuple>
 #include <utility>
+
+#include "paths/scene_description.h"
 
 namespace assay::virtual_lights {
 
 using paths::MeshWorld;
+using render::TriangleMesh;
 using render::Vector3;
 using std::numbers::pi;
 
 namespace {
+
+constexpr double flat = 1e-9;  // of the longest side
+
+double longest_side(const TriangleMesh& mesh) {
+  Vector3 low = mesh.vertices.front();
+  Vector3 high = low;
+  for (const Vector3& v : mesh.vertices) {
+    low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
+    high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
+  }
+  return std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+}
+
+TriangleMesh welded(const TriangleMesh& mesh) {
+  std::map<std::tuple<double, double, double>, std::uint32_t> index;
+  TriangleMesh out;
+  std::vector<std::uint32_t> moved;
+  for (const Vector3& v : mesh.vertices) {
+    const auto [found, fresh] = index.emplace(std::tuple{v.x, v.y, v.z}, out.vertices.size());
+    if (fresh) out.vertices.push_back(v);
+    moved.push_back(found->second);
+  }
+  for (const auto& [a, b, c] : mesh.triangles) {
+    out.triangles.push_back({moved[a], moved[b], moved[c]});
+  }
+  return out;
+}
+
+// Sets of triangles that have been found to belong together.
+class Sets {
+ public:
+  explicit Sets(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0u); }
+
+  std::uint32_t of(std::uint32_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void join(std::uint32_t i, std::uint32_t j) { parent_[of(i)] = of(j); }
+  bool all_one() {
+    for (std::uint32_t i = 1; i < parent_.size(); ++i) {
+      if (of(i) != of(0)) return false;
+    }
+    return true;
+  }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+struct Side {
+  std::uint32_t triangle;
+  std::uint32_t opposite;  ///< vertex
+};
+
+std::map<std::pair<std::uint32_t, std::uint32_t>, Side> sides(const TriangleMesh& mesh) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, Side> all;
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto [a, b, c] = mesh.triangles[i];
+    all[{a, b}] = {i, c};
+    all[{b, c}] = {i, a};
+    all[{c, a}] = {i, b};
+  }
+  return all;
+}
+
+// How far a point lies on the counter-clockwise side of a triangle's plane.
+double height(const TriangleMesh& mesh, std::size_t triangle, const Vector3& point) {
+  const auto [a, b, c] = mesh.corners(triangle);
+  return dot(normalised(cross(b - a, c - a)), point - a);
+}
+
+void find_walls(const TriangleMesh& mesh, Enclosure& room) {
+  Sets walls(mesh.triangles.size());
+  Sets connected(mesh.triangles.size());
+  const auto all = sides(mesh);
+  const double tolerance = flat * longest_side(mesh);
+  for (const auto& [edge, side] : all) {
+    const Side& other = all.at({edge.second, edge.first});
+    connected.join(side.triangle, other.triangle);
+    const double out = height(mesh, side.triangle, mesh.vertices[other.opposite]);
+    const double inwards = room.counter_clockwise ? out : -out;
+    if (inwards < -tolerance) {
+      room.why_not_convex = "its walls turn outwards at an edge";
+      return;
+    }
+    if (inwards <= tolerance) walls.join(side.triangle, other.triangle);
+  }
+  if (!connected.all_one()) {
+    room.why_not_convex = "its walls are not connected";
+    return;
+  }
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) room.wall_of.push_back(walls.of(i));
+}
 
 Vertex seen_by_camera(const MeshWorld& world) {
   Cost counted_by_the_set_up;
@@ -40,7 +140,40 @@ std::vector<std::uint32_t> triangles_of(const std::vector<std::uint32_t>& sides)
   return triangles;
 }
 
+// The share of the light on wall j that comes from elsewhere.
+double reached(const std::vector<double>& shares, std::uint32_t wall, Weighting weighting) {
+  const double elsewhere = 1 - shares[wall];
+  if (weighting == Weighting::conditional) return elsewhere;
+  // All power on one wall leaves nothing for it but rounding.
+  return elsewhere > 1e-12 ? 1 : 0;
+}
+
+bool even_albedo(const Room& room) {
+  const paths::MeshWorld& world = room.world();
+  for (std::size_t i = 0; i < world.patches(); ++i) {
+    if (!(world.surface(i).diffuse == world.surface(0).diffuse)) return false;
+  }
+  return true;
+}
+
 }  // namespace
+
+Enclosure enclosure(const TriangleMesh& mesh, const Vector3& point) {
+  const TriangleMesh whole = welded(mesh);
+  Enclosure room{.why_open = paths::why_not_closed(whole)};
+  if (room.why_open.empty()) {
+    const int turns = paths::winding_number(whole, point);
+    // Seen counter-clockwise from inside, the triangles' solid angles are negative.
+    room.counter_clockwise = turns < 0;
+    if (turns != 1 && turns != -1) room.why_open = "the receiver is not inside";
+  }
+  if (room.why_open.empty()) {
+    find_walls(whole, room);
+  } else {
+    room.why_not_convex = room.why_open;
+  }
+  return room;
+}
 
 Room::Room(paths::SharedMesh world, double shininess)
     : world_(std::move(world)),
@@ -123,6 +256,43 @@ std::vector<double> Room::shares_of_power() const {
         world_->patch_area(2 * std::size_t{lamp}) * brightness(lamp) / shares_.total();
   }
   return shares;
+}
+
+Known target_integral(const Room& room, Weighting weighting) {
+  if (weighting == Weighting::marginal && room.even_emission()) return {1};
+  if (room.shininess() > 0) {
+    return {{}, "known of a glossy receiver only with marginal weights where emission is even"};
+  }
+  const Enclosure& walls = room.walls();
+  if (!walls.why_open.empty()) {
+    return {{}, "known only in a closed room, and this one is open: " + walls.why_open};
+  }
+  if (!walls.why_not_convex.empty()) {
+    return {{}, "known only in a convex room; of this one " + walls.why_not_convex};
+  }
+  const std::vector<double> shares = room.shares_of_power();
+  const std::uint32_t own = walls.wall_of[room.receiver().patch / 2];
+  double sum = 0;
+  for (std::size_t i = 0; i < walls.wall_of.size(); ++i) {
+    if (walls.wall_of[i] == own) continue;
+    sum += room.form_factor(i) * reached(shares, walls.wall_of[i], weighting);
+  }
+  return {sum};
+}
+
+std::optional<Spectrum> twice_reflected(const Room& room) {
+  if (!room.even_emission()) return {};
+  const paths::MeshWorld& world = room.world();
+  const Spectrum first = room.receiver().surface->diffuse * *room.even_emission();
+  if (even_albedo(room)) return first * world.surface(0).diffuse;
+  const Enclosure& walls = room.walls();
+  if (room.shininess() > 0 || !walls.why_not_convex.empty()) return {};
+  const std::uint32_t own = walls.wall_of[room.receiver().patch / 2];
+  Spectrum seen;
+  for (std::size_t i = 0; i < walls.wall_of.size(); ++i) {
+    if (walls.wall_of[i] != own) seen += room.form_factor(i) * world.surface(2 * i).diffuse;
+  }
+  return first * seen;
 }
 
 }  // namespace assay::virtual_lights

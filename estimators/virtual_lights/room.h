@@ -1,20 +1,40 @@
 #pragma once
 
-// A scene of triangles as a source of virtual lights, and the receiver that a camera sees in it.
+// A scene of triangles as a source of virtual lights, the receiver that a camera sees in it, and
+// the exact light of the two.
 
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "luminaire/setting.h"
 #include "paths/family.h"
-#include "virtual_lights/enclosure.h"
+#include "render/triangle_mesh.h"
 
 namespace assay::virtual_lights {
 
 using paths::Spectrum;
 using paths::Vertex;
+
+struct Enclosure {
+  /// Why the triangles do not enclose the point; empty where they do.
+  std::string why_open;
+  /// Why they do not form one convex room; empty where they do.
+  std::string why_not_convex;
+  /// True if triangles are seen counter-clockwise from inside.
+  bool counter_clockwise = true;
+  /// The wall that each triangle is part of, in a convex room: triangles of one plane share a
+  /// number.
+  std::vector<std::uint32_t> wall_of;
+};
+
+/// Vertices at the same position, bit by bit, are one. Walls are planes to 1e-9 of the longest side
+/// of the mesh along an axis. Closed: every edge runs once each way, and the surface winds about
+/// the point once. Convex: connected, and convex at every edge, which makes it convex as a whole
+/// (Tietze 1928, Nakajima 1928).
+Enclosure enclosure(const render::TriangleMesh& mesh, const render::Vector3& point);
 
 /// The way of light from the point y0 of what emits to the point y1 where it arrives, y1 being the
 /// virtual light.
@@ -90,5 +110,35 @@ class Room {
 };
 
 using SharedRoom = std::shared_ptr<const Room>;
+
+/// The density that the target is divided by.
+enum class Weighting {
+  conditional,  ///< of y1 given y0, in the space of paths
+  marginal,     ///< of y1
+};
+
+/// A number, or why it is not known.
+struct Known {
+  std::optional<double> value = {};
+  std::string why_not = {};
+};
+
+/// G, the integral of the target over the points that the shooting can reach. The target is the
+/// density by area of y1 in the receiver's diffuse reflection, cos cos' V / (pi r^2).
+///
+/// A convex room has G by form factors F of its walls. The conditional density sums F times the
+/// share of power that is not on the wall itself. The marginal density sums F over the walls that
+/// some light reaches; it has G = 1 in any closed room that emits evenly.
+Known target_integral(const Room& room, Weighting weighting);
+
+/// The radiance that the receiver sends after exactly two reflections in a closed room that emits
+/// evenly, in units of Le. It is a Le a' if all walls reflect a', and a Le sum F a' of a convex
+/// room.
+///
+/// It is that of the scene as described. Shooting moves its points (paths::mesh_resolution), which
+/// changes virtual lights by some 2^-14 of a wall's length over the receiver's distance to the
+/// nearest other wall. That is 1e-4 in the middle of a cube, and up to a hundredth at a 200th of
+/// its side from two walls.
+std::optional<Spectrum> twice_reflected(const Room& room);
 
 }  // namespace assay::virtual_lights

@@ -8,7 +8,7 @@
 
 #include "estimators/core/quoting.h"
 #include "estimators/parameters.h"
-#include "reports/formats/read_json.h"
+#include "reports/report_formats.h"
 
 namespace assay::harness {
 

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <mutex>
 
-#include "reports/words/columns.h"
+#include "reports/words/text.h"
 
 namespace assay::harness {
 

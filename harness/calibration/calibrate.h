@@ -1,8 +1,10 @@
 #pragma once
 
 // `assay calibrate`: how often the methods err and how much they find, on laws whose truth is
-// known.
+// known. Each case is asked, piloted, planned, sampled in looks and judged as by `assay run`, under
+// many seeds.
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "harness/language/laws.h"
-#include "harness/plan/image_plan.h"
+#include "harness/plan/sizes.h"
 
 namespace assay::harness {
 namespace {
@@ -40,31 +40,27 @@ struct Facts {
   double shift() const { return mean_effect * deviation; }
 };
 
-EstimatorEntry entry_of(const std::string& name, const std::string& law, double shift,
-                        double scale) {
+EstimatorEntry entry_of(const std::string& name, const std::string& plugin, const std::string& law,
+                        const std::vector<std::pair<std::string, double>>& numbers = {},
+                        std::uint64_t primaries = 1) {
+  std::vector<Value::Member> given{{"law", Value::scalar(law)}};
+  for (const auto& [key, number] : numbers) {
+    given.emplace_back(key, Value::scalar(fmt::format("{:.17g}", number)));
+  }
   return {.name = name,
-          .plugin = "analytic/law",
-          .parameters = Value::map({{"law", Value::scalar(law)},
-                                    {"shift", Value::scalar(fmt::format("{:.17g}", shift))},
-                                    {"scale", Value::scalar(fmt::format("{:.17g}", scale))}}),
-          .primaries = 1};
+          .plugin = plugin,
+          .parameters = Value::map(std::move(given)),
+          .primaries = primaries};
 }
 
-EstimatorEntry costly(const std::string& name, const std::string& law) {
-  return {.name = name,
-          .plugin = "analytic/costly_law",
-          .parameters = Value::map({{"law", Value::scalar(law)}}),
-          .primaries = 1};
+EstimatorEntry drawn_from(const std::string& law, const std::string& name, double shift = 0,
+                          double scale = 1) {
+  return entry_of(name, "analytic/law", law, {{"shift", shift}, {"scale", scale}});
 }
 
 /// 64 pixels with means from 1 to 10, each with this law's noise.
-EstimatorEntry picture_of(const std::string& name, const std::string& law) {
-  return {.name = name,
-          .plugin = "analytic/ramp",
-          .parameters = Value::map({{"law", Value::scalar(law)},
-                                    {"width", Value::scalar("8")},
-                                    {"height", Value::scalar("8")}}),
-          .primaries = 4};
+EstimatorEntry picture_of(const std::string& law, const std::string& name) {
+  return entry_of(name, "analytic/ramp", law, {{"width", 8}, {"height", 8}}, 4);
 }
 
 /// sup over x of P(x - shift < X <= x).
@@ -92,18 +88,17 @@ double shift_at_law_effect(const Facts& facts) {
 }
 
 Facts facts_of(const std::string& law) {
-  const PreparedEstimator x = prepare(entry_of("x", law, 0, 1), ".");
+  const PreparedEstimator x = prepare(drawn_from(law, "x"), ".");
   const Channel channel = x.setup->channels()[0];
   if (!channel.mean || !channel.variance) {
     throw InputError({}, fmt::format("`{}` has no variance: nothing is promised on it", law));
   }
-  Facts facts{.law = law,
-              .mean = *channel.mean,
-              .deviation = std::sqrt(*channel.variance),
-              .low = channel.low,
-              .high = channel.high,
-              .has_density = !x.setup->samplers().empty()};
-  return facts;
+  return {.law = law,
+          .mean = *channel.mean,
+          .deviation = std::sqrt(*channel.variance),
+          .low = channel.low,
+          .high = channel.high,
+          .has_density = !x.setup->samplers().empty()};
 }
 
 /// The kinds of `detect`.
@@ -293,12 +288,12 @@ CalibrationBench::CalibrationBench(const CalibrationScope& scope) : law(scope.la
   Facts facts = facts_of(scope.law);
   if (facts.has_density) facts.shift_at_law_effect = shift_at_law_effect(facts);
   for (const EstimatorEntry& entry :
-       {entry_of("x", law, 0, 1), entry_of("y", law, 0, 1),
-        entry_of("shifted", law, facts.shift(), 1),
-        entry_of("moved", law, facts.shift_at_law_effect, 1),
-        entry_of("scaled", law, 0, std::sqrt(1 + variance_effect)), costly("costly", law),
-        costly("other_costly", law), picture_of("picture", law),
-        picture_of("other_picture", law)}) {
+       {drawn_from(law, "x"), drawn_from(law, "y"), drawn_from(law, "shifted", facts.shift()),
+        drawn_from(law, "moved", facts.shift_at_law_effect),
+        drawn_from(law, "scaled", 0, std::sqrt(1 + variance_effect)),
+        entry_of("costly", "analytic/costly_law", law),
+        entry_of("other_costly", "analytic/costly_law", law), picture_of(law, "picture"),
+        picture_of(law, "other_picture")}) {
     estimators.emplace(entry.name, prepare(entry, "."));
   }
   for (const Draft& draft : drafts_of(facts)) {

@@ -13,12 +13,12 @@
 #include "harness/command/run_identity.h"
 #include "harness/command/tables.h"
 #include "harness/ranks/ranks.h"
-#include "harness/record/last_run.h"
-#include "harness/record/recorded_test.h"
+#include "harness/record/output.h"
+#include "harness/record/replay.h"
 #include "harness/run/unit_cost.h"
 #include "harness/sampling/checkpoint.h"
 #include "harness/suite/files_read.h"
-#include "reports/formats/explain.h"
+#include "reports/report_formats.h"
 
 namespace assay::harness {
 namespace {
@@ -122,7 +122,7 @@ int explain(const ExplainArguments& arguments) {
                      "before the test");
   }
   const reports::Record record = read_record(file);
-  const Recorded found = find_test_by_part(record, {file, words.back()});
+  const Recorded found = find_test(record, {file, words.back()}, true);
   fmt::print("{}",
              reports::explain(found.suite, found.test, std::min(terminal_width(stdout), 100)));
   return 0;

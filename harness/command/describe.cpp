@@ -9,7 +9,7 @@
 #include "estimators/catalogue.h"
 #include "harness/command/commands.h"
 #include "harness/command/tables.h"
-#include "reports/words/columns.h"
+#include "reports/words/text.h"
 
 namespace assay::harness {
 

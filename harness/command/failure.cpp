@@ -5,7 +5,6 @@
 #include "estimators/core/line_error.h"
 #include "harness/base/text_file.h"
 #include "harness/suite/suite.h"
-#include "reports/words/columns.h"
 #include "reports/words/text.h"
 
 namespace assay::harness {

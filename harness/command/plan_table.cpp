@@ -8,8 +8,6 @@
 
 #include "harness/plan/forecast.h"
 #include "harness/theta/theta.h"
-#include "reports/words/columns.h"
-#include "reports/words/effect.h"
 #include "reports/words/number.h"
 #include "reports/words/text.h"
 

@@ -8,7 +8,6 @@
 #include "harness/base/interrupt.h"
 #include "harness/base/parallel.h"
 #include "harness/ledger/ledger.h"
-#include "harness/record/environment.h"
 #include "harness/record/record_of.h"
 #include "harness/run/holm.h"
 #include "harness/run/looks.h"

@@ -7,7 +7,7 @@
 #include <fstream>
 
 #include "harness/base/text_hash.h"
-#include "harness/record/environment.h"
+#include "harness/record/record_of.h"
 #include "harness/suite/files_read.h"
 
 namespace assay::harness {

@@ -20,18 +20,8 @@ double relative_difference(double a, double b) {
 
 double farther(double one, double other) { return std::isnan(one) || one > other ? one : other; }
 
-/// True if the draw alone tells how far it is from what its sampler declares.
-bool needs_no_density(const Sampler& sampler, const SamplerDraw& draw) {
-  return !draw.valid || sampler.point_mass(draw.lobe) > 0;
-}
-
 double without_density(const SamplerDraw& draw) {
   return draw.valid || draw.weight == 0 ? 0 : std::numeric_limits<double>::infinity();
-}
-
-double with_density(const SamplerDraw& draw, double density, double evaluation) {
-  return farther(relative_difference(draw.density, density),
-                 relative_difference(draw.weight * density, evaluation));
 }
 
 struct JudgedDraw {
@@ -40,30 +30,24 @@ struct JudgedDraw {
   double density = 0;  ///< declared at its point, if asked for
 };
 
+/// The difference of a draw is the larger of two relative differences |a - b| / max(|a|, |b|), 0 if
+/// a = b. One compares the draw's density with density(point), the other weight x density(point)
+/// with evaluate(point). It is infinite for a draw without a point whose weight is not 0. Point
+/// masses have no density and give 0. It is NaN if one of the numbers is NaN.
 std::vector<JudgedDraw> judged(const NamedSampler& named, std::span<const Stream> streams) {
   const Sampler& sampler = *named.sampler;
+  const JudgedDraws judged =
+      judged_draws(named, streams,
+                   {[&](auto some, auto out) { return sampler.densities(some, out); },
+                    [&](auto some, auto out) { return sampler.evaluations(some, out); }});
   std::vector<JudgedDraw> all;
-  std::vector<std::size_t> places;
-  std::vector<Point> points;
-  for (const SamplerDraw& draw : sound_draws(named, streams)) {
-    if (!needs_no_density(sampler, draw)) {
-      places.push_back(all.size());
-      points.push_back(draw.point);
-    }
-    all.push_back({draw, without_density(draw)});
-  }
-  std::vector<double> densities(points.size());
-  std::vector<double> evaluations(points.size());
-  all.resize(leading(places, all.size(), [&] {
-    const std::size_t known = write_some(
-        points, densities, [&](auto some, auto out) { return sampler.densities(some, out); });
-    return write_some(std::span(points).first(known), evaluations,
-                      [&](auto some, auto out) { return sampler.evaluations(some, out); });
-  }));
-  for (std::size_t i = 0; i < places.size() && places[i] < all.size(); ++i) {
-    JudgedDraw& mine = all[places[i]];
-    mine.difference = with_density(mine.draw, densities[i], evaluations[i]);
-    mine.density = densities[i];
+  for (const SamplerDraw& draw : judged.draws) all.push_back({draw, without_density(draw)});
+  for (std::size_t i = 0; i < judged.places.size(); ++i) {
+    JudgedDraw& mine = all[judged.places[i]];
+    mine.density = judged.numbers[0][i];
+    mine.difference =
+        farther(relative_difference(mine.draw.density, mine.density),
+                relative_difference(mine.draw.weight * mine.density, judged.numbers[1][i]));
   }
   return all;
 }
@@ -97,11 +81,6 @@ class ConsistencyEstimator final : public Estimator {
 };
 
 }  // namespace
-
-double inconsistency(const Sampler& sampler, const SamplerDraw& draw) {
-  if (needs_no_density(sampler, draw)) return without_density(draw);
-  return with_density(draw, sampler.density(draw.point), sampler.evaluate(draw.point));
-}
 
 ConsistencySetup::ConsistencySetup(NamedSampler named)
     : SamplerSetup(std::move(named)), cells_(sampler()) {}

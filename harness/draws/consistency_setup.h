@@ -9,13 +9,8 @@
 
 namespace assay::harness {
 
-/// The larger of two relative differences |a - b| / max(|a|, |b|), 0 if a = b. One compares the
-/// draw's density with density(point), the other weight x density(point) with evaluate(point).
-/// Infinite for a draw without a point whose weight is not 0. Point masses have no density and give
-/// 0. NaN if one of the numbers is NaN.
-double inconsistency(const Sampler& sampler, const SamplerDraw& draw);
-
-/// A sampler's draws as observations of two channels. Channel `difference` has inconsistency().
+/// A sampler's draws as observations of two channels. Channel `difference` is
+/// how far a draw is from what its sampler declares.
 /// Channel `inconsistent` is 0 if that is at most the sampler's rounding(), else 1 + the number of
 /// the draw's cell.
 class ConsistencySetup final : public SamplerSetup {

@@ -2,10 +2,15 @@
 
 // The density that a sampler declares, as stats integrates it.
 
+#include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "estimators/estimator.h"
+#include "harness/draws/draw_cells.h"
 #include "stats/cells/adaptive_cells.h"
 #include "stats/cells/cell_quadrature.h"
 
@@ -33,5 +38,53 @@ bool is_impossible(const Sampler& sampler, const Point& point, double density);
 /// panels.
 stats::PlaneDensity plane_density(const Sampler& sampler, std::size_t marginal,
                                   std::span<const Point> drawn, Densities densities);
+
+/// Cells of a sampler's domain with the probability that the declared density gives each. Cells of
+/// nearly equal measure, with borders from the suite's seed (shifted_grid), are halved until none
+/// has more than 1/40 (1/32 on an interval). The quadrature's evaluations limit this
+/// (stats/adaptive_cells.h). Each lobe has its own cells; a point mass is one cell. The last cell,
+/// draws without a point, has no probability here.
+///
+/// A draw where the density is 0 has a number of its own: that of its cell, plus the number of
+/// cells.
+struct DensityCells {
+  DrawCells cells;
+  stats::CellProbabilities mass;
+  double point_masses = 0;  ///< part of the total
+
+  /// The largest plausible error of the total: eight times the quadrature's estimate, which corners
+  /// of a support exceed fourfold, and the rounding of the sum.
+  double tolerance() const;
+  /// 1 - total; exactly 0 if the tolerance could explain it.
+  double missing() const;
+  /// The cells and, behind them, those of draws where the density is 0.
+  std::size_t numbers() const { return 2 * cells.size(); }
+  /// Counts of the cells alone.
+  std::vector<std::uint64_t> in_cells(std::span<const std::uint64_t> counts) const;
+  /// Counts of draws where the density is 0, by their cells.
+  std::span<const std::uint64_t> impossible(std::span<const std::uint64_t> counts) const {
+    return counts.subspan(cells.size());
+  }
+  /// Probability of the draws that no marginal's density is about.
+  double without_density() const { return missing() + point_masses; }
+};
+
+/// Computes them by quadrature, with the borders of this key. `drawn` are points of the sampler.
+/// Throws std::domain_error if the density is negative or not finite.
+DensityCells density_cells(const NamedSampler& named, StreamKey key, std::span<const Point> drawn);
+
+/// The residuals at side x side points of a rectangle, row by row. A point has its cell's residual.
+struct CloseUp {
+  std::string axes;
+  std::size_t side = 0;
+  std::vector<double> z = {};
+};
+
+/// The rectangle around the cells that have at least half of the heaviest one's mass. An azimuth
+/// may go on beyond 2 pi. `z` has the residual of each cell in the domain. With several lobes a
+/// point shows the cell that is farthest off. A cell without a residual shows 0. nullopt if the
+/// rectangle has no residual, or covers an eighth of the domain, which the grid shows.
+std::optional<CloseUp> close_up(const DensityCells& density, const Sampler& sampler,
+                                std::span<const std::optional<double>> z);
 
 }  // namespace assay::harness

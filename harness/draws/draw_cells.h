@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "estimators/estimator.h"
-#include "stats/cells/halved_cells.h"
+#include "stats/cells/plane_cells.h"
 
 namespace assay::harness {
 

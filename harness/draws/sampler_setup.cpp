@@ -1,15 +1,17 @@
 #include "harness/draws/sampler_setup.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 
 #include "estimators/core/flush_denormals.h"
 #include "harness/draws/sound_draw.h"
 #include "harness/sampling/fetched_ahead.h"
-#include "harness/sampling/sample.h"
+#include "harness/sampling/pool.h"
 
 namespace assay::harness {
 namespace {
@@ -43,8 +45,28 @@ stats::TabulatedLaw law_of(const NamedSampler& named, std::size_t marginal,
   return stats::tabulate(stats::marginal_density(density, rule), parts, rule);
 }
 
-bool has_density(const Sampler& sampler, const SamplerDraw& draw) {
-  return draw.valid && sampler.point_mass(draw.lobe) == 0;
+std::vector<SamplerDraw> sound_draws(const NamedSampler& named, std::span<const Stream> streams) {
+  std::vector<SamplerDraw> draws = draws_of(*named.sampler, streams);
+  for (std::size_t i = 0; i < draws.size(); ++i) {
+    try {
+      sound(named, draws[i]);
+    } catch (const std::runtime_error&) {
+      if (i == 0) throw;
+      draws.resize(i);
+    }
+  }
+  return draws;
+}
+
+std::size_t write_some(std::span<const Point> points, std::span<double> out,
+                       const Densities& numbers) {
+  std::size_t done = 0;
+  try {
+    while (done < points.size()) done += numbers(points.subspan(done), out.subspan(done));
+  } catch (...) {
+    if (done == 0) throw;
+  }
+  return done;
 }
 
 /// A draw, and whether its sampler declares that there is none.
@@ -54,22 +76,12 @@ struct CheckedDraw {
 };
 
 std::vector<CheckedDraw> checked_draws(const NamedSampler& named, std::span<const Stream> streams) {
-  const Sampler& sampler = *named.sampler;
+  const JudgedDraws judged = judged_draws(named, streams, {densities_of(named)});
   std::vector<CheckedDraw> all;
-  std::vector<std::size_t> places;
-  std::vector<Point> points;
-  for (const SamplerDraw& draw : sound_draws(named, streams)) {
-    if (has_density(sampler, draw)) {
-      places.push_back(all.size());
-      points.push_back(draw.point);
-    }
-    all.push_back({draw});
-  }
-  std::vector<double> densities(points.size());
-  all.resize(leading(places, all.size(),
-                     [&] { return write_some(points, densities, densities_of(named)); }));
-  for (std::size_t i = 0; i < places.size() && places[i] < all.size(); ++i) {
-    all[places[i]].impossible = is_impossible(sampler, points[i], densities[i]);
+  for (const SamplerDraw& draw : judged.draws) all.push_back({draw});
+  for (std::size_t i = 0; i < judged.places.size(); ++i) {
+    CheckedDraw& mine = all[judged.places[i]];
+    mine.impossible = is_impossible(*named.sampler, mine.draw.point, judged.numbers[0][i]);
   }
   return all;
 }
@@ -116,6 +128,10 @@ class SamplerEstimator final : public Estimator {
   FetchedAhead<CheckedDraw> ahead_;
 };
 
+std::size_t coordinates(Domain domain) {
+  return domain == Domain::interval ? 1 : has_directions(domain) ? 3 : 2;
+}
+
 }  // namespace
 
 std::vector<SamplerDraw> draws_of(const Sampler& sampler, std::span<const Stream> streams) {
@@ -124,39 +140,35 @@ std::vector<SamplerDraw> draws_of(const Sampler& sampler, std::span<const Stream
   return draws;
 }
 
-std::vector<SamplerDraw> sound_draws(const NamedSampler& named, std::span<const Stream> streams) {
-  std::vector<SamplerDraw> draws = draws_of(*named.sampler, streams);
-  for (std::size_t i = 0; i < draws.size(); ++i) {
-    try {
-      sound(named, draws[i]);
-    } catch (const std::runtime_error&) {
-      if (i == 0) throw;
-      draws.resize(i);
-    }
-  }
-  return draws;
+bool has_density(const Sampler& sampler, const SamplerDraw& draw) {
+  return draw.valid && sampler.point_mass(draw.lobe) == 0;
 }
 
-std::size_t write_some(std::span<const Point> points, std::span<double> out,
-                       const Densities& numbers) {
-  std::size_t done = 0;
-  try {
-    while (done < points.size()) done += numbers(points.subspan(done), out.subspan(done));
-  } catch (...) {
-    if (done == 0) throw;
+JudgedDraws judged_draws(const NamedSampler& named, std::span<const Stream> streams,
+                         const std::vector<Densities>& kinds) {
+  JudgedDraws judged{.draws = sound_draws(named, streams)};
+  std::vector<Point> points;
+  for (std::size_t i = 0; i < judged.draws.size(); ++i) {
+    if (!has_density(*named.sampler, judged.draws[i])) continue;
+    judged.places.push_back(i);
+    points.push_back(judged.draws[i].point);
   }
-  return done;
-}
-
-std::size_t leading(std::span<const std::size_t> places, std::size_t draws,
-                    const std::function<std::size_t()>& ask) {
   std::size_t known = 0;
   try {
-    known = ask();
+    std::size_t asked = points.size();
+    for (const Densities& kind : kinds) {
+      std::vector<double>& numbers = judged.numbers.emplace_back(points.size());
+      asked = write_some(std::span(points).first(asked), numbers, kind);
+    }
+    known = asked;
   } catch (...) {
-    if (places.front() == 0) throw;
+    if (judged.places.front() == 0) throw;
   }
-  return known < places.size() ? places[known] : draws;
+  if (known < judged.places.size()) {
+    judged.draws.resize(judged.places[known]);
+    judged.places.resize(known);
+  }
+  return judged;
 }
 
 void require_sound(const NamedSampler& named, const Location& where) {
@@ -268,6 +280,20 @@ std::shared_ptr<const SamplerSetup> sampler_setup(const NamedSampler& named, con
   const auto setup = std::make_shared<const SamplerSetup>(named, key);
   place = setup;
   return setup;
+}
+
+std::string draw_text(const Sampler& sampler, StreamKey key, std::uint64_t index) {
+  const FlushDenormals flush;
+  Stream random(key, index);
+  const SamplerDraw draw = draws_of(sampler, std::span(&random, 1)).at(0);
+  if (!draw.valid) return fmt::format("no point; weight {}", draw.weight);
+  const std::span point = std::span(draw.point).first(coordinates(sampler.domain()));
+  std::string text = fmt::format("point ({}); weight {}", fmt::join(point, ", "), draw.weight);
+  if (sampler.lobes() > 1) text += fmt::format("; lobe {}", draw.lobe);
+  if (sampler.point_mass(draw.lobe) > 0) return text + "; a point mass, which has no density";
+  return text + fmt::format("; density {} with the draw, {} at its point; evaluate there {}",
+                            draw.density, sampler.density(draw.point),
+                            sampler.evaluate(draw.point));
 }
 
 }  // namespace assay::harness

@@ -3,6 +3,7 @@
 // A sampler's draws as observations: a channel for each marginal, and one for the number of the
 // cell. Samplers are thus drawn, counted and replayed as estimators are.
 
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
@@ -14,8 +15,9 @@
 #include <vector>
 
 #include "estimators/estimator.h"
+#include "estimators/sampler.h"
+#include "estimators/stream.h"
 #include "harness/draws/declared_density.h"
-#include "harness/draws/density_cells.h"
 #include "stats/tails/tabulated_law.h"
 
 namespace assay::harness {
@@ -37,17 +39,20 @@ class NoDensity : public std::runtime_error {
 
 /// Draws of the first few streams.
 std::vector<SamplerDraw> draws_of(const Sampler& sampler, std::span<const Stream> streams);
-/// The same before the first unsound draw. Throws if the first is unsound.
-std::vector<SamplerDraw> sound_draws(const NamedSampler& named, std::span<const Stream> streams);
-/// Writes numbers at the first points, as many as can be had, and returns how many. Throws if the
-/// first has none. `numbers` writes some and returns how many.
-std::size_t write_some(std::span<const Point> points, std::span<double> out,
-                       const Densities& numbers);
 
-/// The number of leading draws that can be judged. Those at `places` need numbers, which `ask` has
-/// written for the first of them, and says how many. Throws if it is 0.
-std::size_t leading(std::span<const std::size_t> places, std::size_t draws,
-                    const std::function<std::size_t()>& ask);
+/// True if the density at its point is about the draw.
+bool has_density(const Sampler& sampler, const SamplerDraw& draw);
+
+/// Draws before the first that is unsound or whose numbers cannot be had.
+struct JudgedDraws {
+  std::vector<SamplerDraw> draws;
+  std::vector<std::size_t> places;           ///< of the draws that have a density
+  std::vector<std::vector<double>> numbers;  ///< of each kind asked for, at each place
+};
+/// Draws of the first few streams, with numbers at their points. Throws if the first has none, or
+/// is unsound.
+JudgedDraws judged_draws(const NamedSampler& named, std::span<const Stream> streams,
+                         const std::vector<Densities>& kinds);
 
 class SamplerSetup : public Setup {
  public:
@@ -92,5 +97,8 @@ void require_sound(const NamedSampler& named, const Location& where);
 /// Throws as require_sound.
 std::shared_ptr<const SamplerSetup> sampler_setup(const NamedSampler& named, const Location& where,
                                                   StreamKey key = {});
+
+/// The draw of observation `index` and what the sampler declares at its point, with all digits.
+std::string draw_text(const Sampler& sampler, StreamKey key, std::uint64_t index);
 
 }  // namespace assay::harness

@@ -16,7 +16,7 @@
 #include "harness/run/evaluate.h"
 #include "stats/basics/sorted.h"
 #include "stats/cells/chi_square_fit.h"
-#include "stats/gates/quantisation_gate.h"
+#include "stats/gates/assumption_gates.h"
 #include "stats/planning/power.h"
 
 namespace assay::harness {
@@ -34,16 +34,6 @@ Evidence values_against_law(const Method&, const Question& question, std::size_t
                             std::span<const ChannelData> data) {
   return points_against_law(points_of(question, 0, channel, data[0].values),
                             declared_law(question, channel));
-}
-
-Evidence cells_of_density(const Method&, const Question& question, std::size_t,
-                          std::span<const ChannelData> data) {
-  return cells_against_density(question, data[0]);
-}
-
-Evidence cells_of_two(const Method& method, const Question& question, std::size_t,
-                      std::span<const ChannelData> data) {
-  return cells_against_cells(method, question, data);
 }
 
 /// True if a sampler's draws are tested against its density in cells of all coordinates.
@@ -282,11 +272,11 @@ const std::vector<MethodRow>& LawTheta::rows() {
        "chi-square of two: one or two coordinates together, in cells",
        [](const Question& q) { return q.of_two(); },
        Keeps::points,
-       cells_of_two,
+       cells_against_cells,
        {.joins_channels = true, .cells_of_pilots = true}},
       {"chi-square-fit", "chi-square: draws against their declared density, in cells",
        [](const Question& q) { return !q.of_two() && q.law.name.empty() && of_whole_draws(q); },
-       Keeps::cells, cells_of_density}};
+       Keeps::cells, cells_against_density}};
   return table;
 }
 

@@ -13,9 +13,8 @@
 #include "stats/basics/sorted.h"
 #include "stats/cells/chi_square_fit.h"
 #include "stats/cells/chi_square_two_sample.h"
-#include "stats/laws/two_part_ks.h"
+#include "stats/laws/kolmogorov_smirnov.h"
 #include "stats/means/binomial.h"
-#include "stats/means/two_valued.h"
 
 namespace assay::harness {
 namespace {
@@ -313,10 +312,11 @@ std::vector<std::uint64_t> counts_in(const stats::SampledCells& cells, const Sub
   return counts;
 }
 
-Evidence cells_against_density(const Question& question, const ChannelData& data) {
+Evidence cells_against_density(const Method&, const Question& question, std::size_t,
+                               std::span<const ChannelData> data) {
   const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
   const stats::CellProbabilities& mass = draws.density_cells().mass;
-  stats::CellCounts counts{.observed = draws.density_cells().in_cells(data.cells),
+  stats::CellCounts counts{.observed = draws.density_cells().in_cells(data[0].cells),
                            .probability = mass.probability,
                            .error = mass.error};
   counts.probability.push_back(draws.density_cells().missing());
@@ -337,7 +337,7 @@ Evidence cells_against_density(const Question& question, const ChannelData& data
           .distance = true};
 }
 
-Evidence cells_against_cells(const Method& method, const Question& question,
+Evidence cells_against_cells(const Method& method, const Question& question, std::size_t,
                              std::span<const ChannelData> data) {
   if (!method.frozen.cells) throw std::domain_error("the pilots gave no cells to count in");
   const stats::SampledCells& cells = *method.frozen.cells;

@@ -10,7 +10,7 @@
 
 #include "harness/question/question.h"
 #include "harness/theta/evidence.h"
-#include "harness/theta/method.h"
+#include "harness/theta/methods.h"
 #include "stats/laws/kolmogorov_smirnov.h"
 
 namespace assay::harness {
@@ -44,7 +44,7 @@ DeclaredLaw declared_law(const Question& question, std::size_t channel);
 /// mass have half the level each (Bonferroni).
 Evidence points_against_law(const Points& points, const DeclaredLaw& declared);
 
-/// "One law" is tested given the pooled values (stats/laws/two_part_ks.h), "at most theta" by a
+/// "One law" is tested given the pooled values (stats/laws/kolmogorov_smirnov.h), "at most theta" by a
 /// bound on the distance. Two samplers always share the level: missing mass is not known
 /// beforehand.
 Evidence points_against_points(const Points& x, const Points& y);
@@ -56,11 +56,12 @@ std::vector<std::uint64_t> counts_in(const stats::SampledCells& cells, const Sub
                                      const ChannelData& data);
 
 /// A sampler's draws against its declared density.
-Evidence cells_against_density(const Question& question, const ChannelData& data);
+Evidence cells_against_density(const Method&, const Question& question, std::size_t,
+                               std::span<const ChannelData> data);
 
 /// Two samples against each other in the method's cells. One more cell counts draws without a
 /// point. Throws std::domain_error if there are no cells.
-Evidence cells_against_cells(const Method& method, const Question& question,
+Evidence cells_against_cells(const Method& method, const Question& question, std::size_t,
                              std::span<const ChannelData> data);
 
 }  // namespace assay::harness

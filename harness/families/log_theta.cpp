@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "harness/plan/sizes.h"
+#include "harness/run/evaluate.h"
+#include "harness/theta/constant.h"
 #include "harness/theta/evidence.h"
 #include "stats/gates/assumption_gates.h"
 #include "stats/means/skewness_corrected_t.h"
@@ -239,6 +241,14 @@ std::optional<double> LogTheta::power(const Question& question, const TestSize& 
   const double one_margin =
       stats::student_t_power(mean.plan, mean.count, within ? *channel.regions.detect : effect);
   return within ? std::max(0.0, 2 * one_margin - 1) : one_margin;
+}
+
+std::string LogTheta::lack_of_numbers(const DrawnTest& test, std::size_t channel,
+                                      std::span<const ChannelData> data) const {
+  const std::string reason = Theta::lack_of_numbers(test, channel, data);
+  const bool of_one_variance = is.of_spread && !is.joins_channels;
+  return reason.empty() && of_one_variance ? lack_of_variance(test.outcome.question, channel, data)
+                                           : reason;
 }
 
 std::vector<Gate> LogTheta::gates(const TestOutcome& outcome, std::size_t channel,

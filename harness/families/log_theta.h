@@ -63,6 +63,8 @@ class LogTheta : public Theta {
                                    const PlannedChannel&) const override;
   std::optional<double> power(const Question&, const TestSize&, const Plan&, const PlannedChannel&,
                               double effect) const override;
+  std::string lack_of_numbers(const DrawnTest&, std::size_t channel,
+                              std::span<const ChannelData>) const override;
   std::vector<Gate> gates(const TestOutcome&, std::size_t channel, std::span<const ChannelData>,
                           double critical) const override;
 

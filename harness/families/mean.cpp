@@ -150,7 +150,7 @@ std::uint64_t for_equivalence(const ErrorShare& share, const PlannedChannel& cha
 
 // ---- Exact methods
 
-// Barnard's maximum over the nuisance probability costs at most this (stats/means/two_valued.h).
+// Barnard's maximum over the nuisance probability costs at most this (stats/means/binomial.h).
 constexpr double two_sample_cost = 1.4;
 
 /// Sides of the reference where an effect is to be found. An alarm finds what speaks against the
@@ -194,11 +194,8 @@ std::optional<std::uint64_t> exact_secondaries(const Question& question, const P
                                                const stats::ErrorRates& rates) {
   const double detect = channel.regions.detect.value_or(0) * channel.unit;
   if (question.of_two()) {
-    const auto welch = stats::welch_sample_size({.standard_deviation_x = channel.standard_deviation,
-                                                 .standard_deviation_y = channel.other_deviation,
-                                                 .allow = channel.regions.allow * channel.unit,
-                                                 .rates = rates},
-                                                detect);
+    const auto welch =
+        stats::welch_sample_size(means_plan(rates, channel.regions.allow, channel), detect);
     if (!welch) return std::nullopt;
     return static_cast<std::uint64_t>(std::ceil(two_sample_cost * static_cast<double>(*welch)));
   }
@@ -282,8 +279,8 @@ std::uint64_t choose_for_mean(const Question& question, const FamilyPlace& place
     }
   }
   // Without a size to plan, the floor is as usual as any.
-  const bool planned = question.test->detect || is_within(question);
-  return plan.method.is.exact && planned ? least_secondaries : secondaries_of_floor(question, plan);
+  return plan.method.is.exact && has_planned_size(question) ? least_secondaries
+                                                            : secondaries_of_floor(question, plan);
 }
 
 // ---- Data

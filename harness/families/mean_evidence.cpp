@@ -12,13 +12,12 @@
 #include "harness/question/question_sources.h"
 #include "harness/theta/evidence.h"
 #include "harness/theta/theta.h"
-#include "stats/basics/mean_rounding.h"
+#include "stats/basics/moments.h"
 #include "stats/means/betting_mean.h"
+#include "stats/means/binomial.h"
 #include "stats/means/skewness_corrected_t.h"
 #include "stats/means/student_t.h"
-#include "stats/means/two_valued.h"
 #include "stats/means/uncertain_reference.h"
-#include "stats/means/welch_t.h"
 
 namespace assay::harness {
 namespace {

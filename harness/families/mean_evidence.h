@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "harness/theta/method.h"
+#include "harness/theta/methods.h"
 
 namespace assay::harness {
 

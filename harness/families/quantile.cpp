@@ -200,27 +200,15 @@ const QuantileTheta quantile_theta;
 
 Question bind_quantile(const TestEntry& test, const Estimators& estimators) {
   const Claim& claim = test.claim;
-  Question question{.test = &test,
-                    .theta = &quantile_theta,
-                    .subjects = {estimates(claim.left.source, estimators)}};
+  Question question = one_or_two(test, quantile_theta, estimators);
   const ScaledQuantity* other = other_side(claim);
-  if (other == nullptr) {
-    const Constant number = std::get<Constant>(claim.right);
-    if (number.standard_error > 0) {
-      throw InputError(claim.left.where,
-                       "`quantile` is tested against an exact number: `+-` has no method here");
-    }
-    question.references.assign(question.channel_count(), number);
-    return question;
-  }
+  if (other == nullptr) return question;
   if (other->quantity.arguments != claim.left.arguments) {
     throw InputError(other->quantity.where, "both quantiles must be of the same probability");
   }
   if (other->factor < 0) {
     throw InputError(other->quantity.where, "the factor of a quantile must be above 0");
   }
-  question.factor = other->factor;
-  question.subjects.push_back(estimates(other->quantity.source, estimators));
   return question;
 }
 

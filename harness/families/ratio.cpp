@@ -8,7 +8,6 @@
 #include "harness/run/evaluate.h"
 #include "harness/theta/constant.h"
 #include "stats/means/student_t.h"
-#include "stats/means/welch_t.h"
 
 namespace assay::harness {
 namespace {
@@ -115,6 +114,10 @@ class RatioTheta : public LogTheta {
   using LogTheta::LogTheta;
 
  protected:
+  static std::vector<MethodRow> rows(const char* of_replicates) {
+    return {influence_row(in_counts, Keeps::costs),
+            {"replicates", of_replicates, in_seconds, Keeps::blocks, evidence_of_replicates}};
+  }
   std::optional<double> spread(const Question& question, std::size_t subject, std::size_t channel,
                                std::span<const ChannelData> data) const override {
     const ChannelData& mine = data[subject];
@@ -130,9 +133,7 @@ class CostTheta final : public RatioTheta {
   CostTheta() : RatioTheta({.joins_channels = true}, {"cost", "costs"}) {}
 
   const std::vector<MethodRow>& methods() const override {
-    static const std::vector<MethodRow> table{influence_row(in_counts, Keeps::costs),
-                                              {"replicates", "t of replicates: costs in seconds",
-                                               in_seconds, Keeps::blocks, evidence_of_replicates}};
+    static const std::vector<MethodRow> table = rows("t of replicates: costs in seconds");
     return table;
   }
   const Theta* of_images() const override { return this; }
@@ -159,16 +160,8 @@ class EfficiencyTheta final : public RatioTheta {
   EfficiencyTheta() : RatioTheta({.of_spread = true}, {"efficiency", "efficiencies"}) {}
 
   const std::vector<MethodRow>& methods() const override {
-    static const std::vector<MethodRow> table{
-        influence_row(in_counts, Keeps::costs),
-        {"replicates", "t of replicates: efficiencies in seconds", in_seconds, Keeps::blocks,
-         evidence_of_replicates}};
+    static const std::vector<MethodRow> table = rows("t of replicates: efficiencies in seconds");
     return table;
-  }
-  std::string lack_of_numbers(const DrawnTest& test, std::size_t channel,
-                              std::span<const ChannelData> data) const override {
-    const std::string reason = Theta::lack_of_numbers(test, channel, data);
-    return reason.empty() ? lack_of_variance(test.outcome.question, channel, data) : reason;
   }
 
  protected:

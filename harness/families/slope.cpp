@@ -112,8 +112,7 @@ std::optional<std::uint64_t> slope_channel(const Question& question, std::size_t
     if (!factor) return impossible_secondaries;
     most = std::max(most, *factor);
   }
-  const double count = std::ceil(most);
-  return whole_secondaries(count);
+  return whole_secondaries(most);
 }
 
 /// The level at which the verdict rejects theta: a pass beyond its margin, a fail elsewhere.
@@ -404,10 +403,10 @@ Evidence evidence_of_slope(const Question& question, std::size_t channel,
   const SlopeData points = points_of(question, channel, data);
   const double null = question.references[channel].value;
   if (is_exact(points)) return exact_evidence(points, null);
-  const auto at = [=](double theta) { return stats::slope_test(points, null + theta).test; };
+  const auto at = [=](double theta) { return stats::slope_test(points, null + theta); };
   const auto interval = [=](double confidence) {
     // The set takes each end at the whole level (stats/variances/slope.h).
-    stats::Interval hull = stats::slope_set(points, (1 + confidence) / 2).hull;
+    const stats::Interval hull = stats::slope_set(points, (1 + confidence) / 2);
     return stats::Interval{hull.low - null, hull.high - null, confidence};
   };
   return {.estimate = stats::slope_estimate(points).slope - null,

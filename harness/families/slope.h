@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "harness/theta/gate.h"
-#include "harness/theta/method.h"
+#include "harness/theta/methods.h"
 #include "reports/record/record.h"
 
 namespace assay::harness {

@@ -3,7 +3,7 @@
 #include "harness/plan/sizes.h"
 #include "harness/question/question_sources.h"
 #include "harness/run/evaluate.h"
-#include "harness/sampling/beyond_doubles.h"
+#include "harness/sampling/summary.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/theta.h"
 

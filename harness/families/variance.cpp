@@ -13,8 +13,7 @@
 #include "harness/theta/evidence.h"
 #include "harness/theta/methods.h"
 #include "stats/gates/assumption_gates.h"
-#include "stats/variances/chi_square_variance.h"
-#include "stats/variances/f_ratio.h"
+#include "stats/variances/normal_variances.h"
 
 namespace assay::harness {
 namespace {
@@ -55,7 +54,7 @@ Evidence of_normal_values(const Method&, const Question& question, std::size_t c
 /// channel.
 bool are_near_normal(const Question& question, const std::vector<Known>& channels, double critical,
                      std::vector<stats::Gate>& gates) {
-  const double limit = shape_limits(critical).excess_kurtosis;
+  const double limit = kurtosis_limit(critical);
   bool normal = channels.size() == question.subjects.size() * question.channel_count();
   for (const Known& known : channels) {
     constexpr std::uint64_t fewest_with_kurtosis = 4;
@@ -134,12 +133,6 @@ class VarianceTheta final : public LogTheta {
                                          const ErrorShare&) const override {
     if (question.of_two()) return std::nullopt;
     return judge_constant_variance(question, channel, data[0], regions);
-  }
-
-  std::string lack_of_numbers(const DrawnTest& test, std::size_t channel,
-                              std::span<const ChannelData> data) const override {
-    const std::string reason = Theta::lack_of_numbers(test, channel, data);
-    return reason.empty() ? lack_of_variance(test.outcome.question, channel, data) : reason;
   }
 
   std::vector<Gate> gates(const TestOutcome& outcome, std::size_t channel,

@@ -16,7 +16,6 @@
 #include "harness/suite/suite_keys.h"
 #include "harness/theta/ask.h"
 #include "reports/words/describe.h"
-#include "reports/words/evidence.h"
 #include "reports/words/number.h"
 
 namespace assay::googletest {

@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "harness/question/question.h"
-#include "harness/theta/method.h"
+#include "harness/sampling/element_sums.h"
+#include "harness/theta/methods.h"
 #include "stats/images/image.h"
 
 namespace assay::harness {
@@ -68,5 +69,24 @@ auto with_pair(const Question& question, std::span<const ChannelData> data, cons
   if (in_single_precision(question, data)) return use(ImagePair<float>(question, data));
   return use(ImagePair<double>(question, data));
 }
+
+/// Means of replicates. The spread of these means shows how far pixels depend on each other.
+template <class Real>
+ChannelMeans channel_means(const stats::ImageStack<Real>& stack);
+
+/// Means from the sums of stats::image_channel_sums.
+ChannelMeans channel_means(const std::vector<double>& sums, const stats::ImageExtent& extent);
+
+/// Means of numbers whose errors are independent between pixels.
+ChannelMeans channel_means(const stats::ImageReference& reference);
+
+/// Makes means the unit of something else.
+inline void drop_errors(ChannelMeans& means) {
+  for (Constant& mean : means) mean.standard_error = 0;
+}
+
+/// Standard error of a theta that is the same everywhere, in the best channel: absolute, or a part
+/// of the second's mean.
+double uniform_error(const ChannelMeans& first, const ChannelMeans& second, bool relative);
 
 }  // namespace assay::harness

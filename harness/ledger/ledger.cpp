@@ -10,7 +10,6 @@
 #include "harness/base/locked_file.h"
 #include "harness/base/text_file.h"
 #include "harness/ledger/ledger_book.h"
-#include "harness/ledger/ledger_reading.h"
 #include "harness/ledger/night_evidence.h"
 #include "harness/theta/theta.h"
 #include "stats/tails/tails.h"
@@ -33,23 +32,20 @@ struct Entry {
   std::size_t channel;
 };
 
-struct Added {
-  bool added = false;
-  std::string note;
-};
-
 /// Adds a night to the open series, or to one that it opens.
-Added add_night(LedgerBook& book, const LedgerRun& ledger, const Entry& entry,
-                const LedgerSeries& series, const NightValue& value) {
+void add_night(LedgerBook& book, const LedgerRun& ledger, const Entry& entry,
+               const LedgerSeries& series, const NightValue& value, reports::LedgerSeries& result) {
   if (book.has_seed(series, entry.run.seed)) {
-    return {false,
-            fmt::format("nothing added: seed {} is in the ledger already and its numbers are "
-                        "no news; run with --seed random",
-                        entry.run.seed)};
+    result.note = fmt::format(
+        "nothing added: seed {} is in the ledger already and its numbers are "
+        "no news; run with --seed random",
+        entry.run.seed);
+    return;
   }
   const LedgerSeries* open = book.open_series(series);
   if (open != nullptr && open->has_estimates() != series.has_estimates()) {
-    return {false, "nothing added: its method this time gives evidence of another kind"};
+    result.note = "nothing added: its method this time gives evidence of another kind";
+    return;
   }
   const bool begins = open == nullptr;
   const std::size_t index = book.open(series);
@@ -58,10 +54,9 @@ Added add_night(LedgerBook& book, const LedgerRun& ledger, const Entry& entry,
             .commit = ledger.commit,
             .series = index,
             .value = value});
-  return {true, begins && book.generation(index) > 1
-                    ? "the claim, its margins or parameters are new, or it was begun anew: a new "
-                      "series"
-                    : ""};
+  result.added = true;
+  if (!begins || book.generation(index) == 1) return;
+  result.note = "the claim, its margins or parameters are new, or it was begun anew: a new series";
 }
 
 void read_moved(reports::LedgerSeries& result, const LedgerSeries& series,
@@ -103,8 +98,7 @@ void read_nights(reports::LedgerSeries& result, const LedgerBook& book, std::siz
   }
   result.limit = -std::log(alpha);
   if (series.has_estimates()) {
-    stats::PooledNights pooled;
-    for (const stats::NightEstimate& night : estimates_of(nights)) pooled.add(night);
+    const stats::PooledNights pooled = pooled_nights(nights);
     result.estimate = pooled.difference();
     result.standard_error = std::sqrt(pooled.variance());
     result.reference_error = *series.reference_error;
@@ -128,25 +122,22 @@ reports::LedgerSeries keep(LedgerBook& book, const LedgerRun& ledger, const Entr
                       .weight = test.place.weight,
                       .test = test.question.test->id,
                       .channel = test.question.channel_name(entry.channel)};
-  Added added;
-  const auto night = night_evidence(entry.work, entry.channel);
-  if (const auto* none = std::get_if<NoEvidence>(&night)) {
-    added.note = "nothing added: " + none->why;
-  } else {
-    const auto& evidence = std::get<NightEvidence>(night);
-    if (std::holds_alternative<stats::NightEstimate>(evidence.value)) {
-      series.reference_error = evidence.reference_error;
-    }
-    added = add_night(book, ledger, entry, series, evidence.value);
-  }
   reports::LedgerSeries result{
       .test = series.test,
       .channel = series.channel,
       .series = series.hash,
       .quantity = quantity_of(test),
-      .relative = test.question.theta->is_relative(test.question, entry.channel),
-      .added = added.added,
-      .note = added.note};
+      .relative = test.question.theta->is_relative(test.question, entry.channel)};
+  const auto night = night_evidence(entry.work, entry.channel);
+  if (const auto* none = std::get_if<NoEvidence>(&night)) {
+    result.note = "nothing added: " + none->why;
+  } else {
+    const auto& evidence = std::get<NightEvidence>(night);
+    if (std::holds_alternative<stats::NightEstimate>(evidence.value)) {
+      series.reference_error = evidence.reference_error;
+    }
+    add_night(book, ledger, entry, series, evidence.value, result);
+  }
   if (const LedgerSeries* open = book.open_series(series)) {
     read_nights(result, book, static_cast<std::size_t>(open - book.series().data()), entry);
   }

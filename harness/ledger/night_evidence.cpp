@@ -92,6 +92,32 @@ std::string side_text(const TestWork& work, std::size_t subject, std::size_t cha
   return text;
 }
 
+constexpr double zeta_3 = 1.2020569031595942;
+constexpr double credibility = 0.9;
+
+std::vector<stats::NightEstimate> estimates_of(const std::vector<LedgerNight>& nights) {
+  std::vector<stats::NightEstimate> estimates;
+  for (const LedgerNight& night : nights) {
+    estimates.push_back(std::get<stats::NightEstimate>(night.value));
+  }
+  return estimates;
+}
+
+std::vector<double> log_p_values_of(const std::vector<LedgerNight>& nights) {
+  std::vector<double> log_p;
+  for (const LedgerNight& night : nights) {
+    log_p.push_back(std::get<NightPValue>(night.value).log_p);
+  }
+  return log_p;
+}
+
+/// The null hypothesis at the nearest value that the claim allows.
+stats::NullTheta nearest(const ThetaRange& claimed, const stats::PooledNights& pooled,
+                         const LedgerSeries& series) {
+  return {.value = std::clamp(pooled.difference(), claimed.low, claimed.high),
+          .reference_error = *series.reference_error};
+}
+
 }  // namespace
 
 std::variant<NightEvidence, NoEvidence> night_evidence(const TestWork& work, std::size_t channel) {
@@ -123,5 +149,43 @@ std::string series_hash(const TestWork& work, std::size_t channel) {
   }
   return fmt::format("{:016x}", text_hash(text));
 }
+
+stats::PooledNights pooled_nights(const std::vector<LedgerNight>& nights) {
+  stats::PooledNights pooled;
+  for (const stats::NightEstimate& night : estimates_of(nights)) pooled.add(night);
+  return pooled;
+}
+
+std::vector<double> log_e_path(const LedgerSeries& series, const std::vector<LedgerNight>& nights,
+                               const ThetaRange& claimed) {
+  std::vector<double> path;
+  if (series.has_estimates()) {
+    stats::PooledNights pooled;
+    for (const stats::NightEstimate& night : estimates_of(nights)) {
+      pooled.add(night);
+      path.push_back(stats::log_e_value(pooled, nearest(claimed, pooled, series)));
+    }
+    return path;
+  }
+  stats::PooledPValues pooled;
+  for (const double log_p : log_p_values_of(nights)) {
+    pooled.add(log_p);
+    path.push_back(stats::log_e_value(pooled));
+  }
+  return path;
+}
+
+Moved moved(const LedgerSeries& series, const std::vector<LedgerNight>& nights,
+            const ThetaRange& claimed) {
+  const auto change = [&] {
+    if (!series.has_estimates()) return stats::change_point(log_p_values_of(nights));
+    return stats::change_point(estimates_of(nights),
+                               nearest(claimed, pooled_nights(nights), series));
+  }();
+  const std::vector<std::size_t> credible = stats::credible_nights(change, credibility);
+  return {change.night, credible.front(), credible.back()};
+}
+
+double generation_share(int generation) { return 1 / (zeta_3 * std::pow(generation, 3)); }
 
 }  // namespace assay::harness

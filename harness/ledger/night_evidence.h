@@ -1,6 +1,6 @@
 #pragma once
 
-// Evidence of one run on a claim, in a form that pools over runs.
+// Evidence of one run on a claim, in a form that pools over runs, and of all nights of a series.
 //
 // A claim about a number gives an estimate of theta at the last look taken. Its standard error
 // (theta.h) and the observations that it rests on come with it. A family that tells no error gives
@@ -16,9 +16,11 @@
 
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "harness/ledger/ledger_book.h"
 #include "harness/run/evaluate.h"
+#include "harness/theta/decision.h"
 
 namespace assay::harness {
 
@@ -37,5 +39,28 @@ std::variant<NightEvidence, NoEvidence> night_evidence(const TestWork& work, std
 /// A hash of claim, margins, plugins, parameters and primaries of its estimators, references and
 /// recorded data.
 std::string series_hash(const TestWork& work, std::size_t channel);
+
+/// ln E after each night, for the null hypothesis "theta is in the range". It is the least over the
+/// range, which lies at the value nearest to the estimate of all nights so far. It is at most E at
+/// the true theta, a martingale, so P(any >= 1 / alpha) <= alpha. P-values know no range.
+std::vector<double> log_e_path(const LedgerSeries& series, const std::vector<LedgerNight>& nights,
+                               const ThetaRange& claimed);
+
+/// The most likely first night of a change, and the range of likely nights. The range holds 90 % of
+/// the posterior (stats::change_point).
+struct Moved {
+  std::size_t night = 0;
+  std::size_t from = 0;
+  std::size_t to = 0;
+};
+Moved moved(const LedgerSeries& series, const std::vector<LedgerNight>& nights,
+            const ThetaRange& claimed);
+
+/// The sum of all nights that have estimates.
+stats::PooledNights pooled_nights(const std::vector<LedgerNight>& nights);
+
+/// The share of a test's error budget for its k-th series: 1 / (zeta(3) k^3). The shares sum to 1,
+/// so a claim keeps its budget however often it is changed or begun anew. The first has 0.83.
+double generation_share(int generation);
 
 }  // namespace assay::harness

@@ -5,7 +5,6 @@
 #include "estimators/ready_made.h"
 #include "harness/base/interrupt.h"
 #include "harness/sampling/recorded_run.h"
-#include "harness/theta/method.h"
 #include "harness/theta/methods.h"
 #include "stats/images/image.h"
 
@@ -129,6 +128,10 @@ std::set<std::string> costly(const std::vector<Question>& questions) {
   return names;
 }
 
+std::string pilot_name_of(const std::string& estimator, const std::string& purpose) {
+  return estimator + (purpose.empty() ? "" : "." + purpose);
+}
+
 }  // namespace
 
 std::optional<std::uint64_t> usual_images(const Setup& setup, std::uint64_t primaries) {
@@ -137,14 +140,6 @@ std::optional<std::uint64_t> usual_images(const Setup& setup, std::uint64_t prim
   return std::clamp(image_elements / (image->elements() * primaries), least_images,
                     few_observations);
 }
-
-namespace {
-
-std::string pilot_name_of(const std::string& estimator, const std::string& purpose) {
-  return estimator + (purpose.empty() ? "" : "." + purpose);
-}
-
-}  // namespace
 
 std::string pilot_name(const Subject& subject) {
   return pilot_name_of(subject.estimator->name, subject.purpose);

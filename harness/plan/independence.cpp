@@ -13,11 +13,9 @@
 #include "harness/theta/constant.h"
 #include "harness/theta/gate.h"
 #include "harness/theta/methods.h"
+#include "stats/gates/copies.h"
 #include "stats/gates/dependence.h"
 #include "stats/gates/independence_gates.h"
-#include "stats/gates/lagged_correlation.h"
-#include "stats/gates/recurring_values.h"
-#include "stats/gates/repeated_run.h"
 
 namespace assay::harness {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "harness/pilot/pilot.h"
 #include "harness/plan/outcome.h"
-#include "harness/theta/method.h"
+#include "harness/theta/methods.h"
 #include "stats/gates/assumption_gates.h"
 
 namespace assay::harness {
@@ -24,15 +24,15 @@ bool is_recorded(const Subject& subject);
 bool has_rows(const Question& question);
 
 /// Throws InputError at the claim if the first `count` data of two sides coincide beyond chance.
-/// They may share a picture (recorded::shared_picture), a run of rows (stats/gates/repeated_run.h),
-/// or rows in another order (stats/gates/recurring_values.h). Two sources of one file are another
+/// They may share a picture (recorded::shared_picture), a run of rows (stats/gates/copies.h),
+/// or rows in another order (stats/gates/copies.h). Two sources of one file are another
 /// mistake.
 void require_independent_sides(const Question& question, const Pilots& pilots, std::uint64_t count);
 
 /// Notes what the first `count` rows of every recorded subject say of independence
 /// (stats/gates/independence_gates.h). Dependent rows make a test of means one of batch means, if
-/// they are enough, and other tests invalid. A run of rows that recurs (stats/gates/repeated_run.h)
-/// or values that occur equally often (stats/gates/recurring_values.h) make any test invalid, a
+/// they are enough, and other tests invalid. A run of rows that recurs (stats/gates/copies.h)
+/// or values that occur equally often (stats/gates/copies.h) make any test invalid, a
 /// forced method as well. For dependence too weak for a gate, a test of means allows
 /// (stats::allowance_for_dependence).
 void judge_independence(const Question& question, const Pilots& pilots, std::uint64_t count,

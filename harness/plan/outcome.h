@@ -12,7 +12,7 @@
 #include "harness/theta/decision.h"
 #include "harness/theta/family.h"
 #include "harness/theta/gate.h"
-#include "harness/theta/method.h"
+#include "harness/theta/methods.h"
 #include "reports/record/record.h"
 #include "stats/planning/looks.h"
 #include "stats/tails/test_result.h"

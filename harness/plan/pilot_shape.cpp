@@ -7,7 +7,7 @@
 
 #include "harness/plan/independence.h"
 #include "harness/question/question_sources.h"
-#include "harness/sampling/beyond_doubles.h"
+#include "harness/sampling/summary.h"
 #include "harness/theta/constant.h"
 #include "harness/theta/gate.h"
 #include "harness/theta/methods.h"
@@ -51,6 +51,22 @@ std::vector<stats::PlanePoint> pilot_points(const Question& question, const Pilo
     }
   }
   return points;
+}
+
+// So few values beyond half the way to an end may be none in the test.
+constexpr std::ptrdiff_t few_values = 32;
+
+/// Ends of a mean's range that its decisions need: to reject "too much" the low one.
+struct NeededEnds {
+  bool low;
+  bool high;
+};
+
+NeededEnds needed_ends(const TestEntry& test) {
+  const Regions regions{.relation = test.claim.relation};
+  const bool both = regions.two_sided() || (!regions.proof() && test.detect);
+  const bool high = regions.bounds_above() == regions.proof();
+  return {.low = both || !high, .high = both || high};
 }
 
 }  // namespace
@@ -126,26 +142,6 @@ stats::Gate near_normal_gate(const Known& known) {
           .limit = limit,
           .state = value <= limit ? stats::GateState::green : stats::GateState::amber};
 }
-
-namespace {
-
-// So few values beyond half the way to an end may be none in the test.
-constexpr std::ptrdiff_t few_values = 32;
-
-/// Ends of a mean's range that its decisions need: to reject "too much" the low one.
-struct NeededEnds {
-  bool low;
-  bool high;
-};
-
-NeededEnds needed_ends(const TestEntry& test) {
-  const Regions regions{.relation = test.claim.relation};
-  const bool both = regions.two_sided() || (!regions.proof() && test.detect);
-  const bool high = regions.bounds_above() == regions.proof();
-  return {.low = both || !high, .high = both || high};
-}
-
-}  // namespace
 
 bool hides(std::span<const double> values, double mean, double end) {
   const double half = mean + (end - mean) / 2;

@@ -259,17 +259,6 @@ const ScaledQuantity* other_side(const Claim& claim) {
   return std::get_if<ScaledQuantity>(&claim.right);
 }
 
-Constant exact_number(const Claim& claim) {
-  const Constant number = std::get<Constant>(claim.right);
-  const std::string& name = claim.left.row->word;
-  if (number.standard_error > 0) {
-    throw InputError(
-        claim.left.where,
-        fmt::format("`{}` is tested against an exact number: `+-` has no method here", name));
-  }
-  return number;
-}
-
 Question one_or_two(const TestEntry& test, const Theta& theta, const Estimators& estimators) {
   const Claim& claim = test.claim;
   Question question{
@@ -278,7 +267,14 @@ Question one_or_two(const TestEntry& test, const Theta& theta, const Estimators&
     question.factor = other->factor;
     question.subjects.push_back(estimates(other->quantity.source, estimators));
   } else {
-    question.references.assign(question.channel_count(), exact_number(claim));
+    const Constant number = std::get<Constant>(claim.right);
+    if (number.standard_error > 0) {
+      throw InputError(
+          claim.left.where,
+          fmt::format("`{}` is tested against an exact number: `+-` has no method here",
+                      claim.left.row->word));
+    }
+    question.references.assign(question.channel_count(), number);
   }
   return question;
 }

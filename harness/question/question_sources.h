@@ -48,10 +48,7 @@ void require_moments_suffice(const Question& question);
 /// The quantity on the right; null if there is another side.
 const ScaledQuantity* other_side(const Claim& claim);
 
-/// The number on the right. InputError if it has an error.
-Constant exact_number(const Claim& claim);
-
-/// One source against a number, or two against each other.
+/// One source against a number, InputError if that has an error, or two against each other.
 Question one_or_two(const TestEntry& test, const Theta& theta, const Estimators& estimators);
 
 /// The true mean of each channel: the number of `reference:`, else the plugin's.

@@ -12,9 +12,15 @@
 #include "harness/base/interrupt.h"
 #include "harness/base/parallel.h"
 #include "harness/draws/consistency_setup.h"
-#include "harness/sampling/packed_block.h"
+#include "harness/sampling/packing.h"
 
 namespace assay::harness {
+
+template <class Archive, maybe_const<Task> T>
+void parts(Archive& a, T& task) {
+  a(task.pool, task.first, task.last);
+}
+
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -60,22 +66,11 @@ std::string host_name() {
   return name.c_str();
 }
 
-struct Order {
-  std::uint64_t pool;
-  std::uint64_t first;
-  std::uint64_t last;
-};
-
 struct NamedRecipe {
   std::uint64_t pool = 0;
   std::string setup = "";
   Recipe recipe = {};
 };
-
-template <class Archive, maybe_const<Order> T>
-void parts(Archive& a, T& order) {
-  a(order.pool, order.first, order.last);
-}
 
 template <class Archive, maybe_const<NamedRecipe> T>
 void parts(Archive& a, T& named) {
@@ -334,11 +329,11 @@ bool Ranks::take_replies(Window& window) {
 void Ranks::send_batch(int rank, std::vector<std::uint64_t> slots, const Window& window) {
   Rank& to = ranks_[static_cast<std::size_t>(rank)];
   std::vector<NamedRecipe> recipes;
-  std::vector<Order> orders;
+  std::vector<Task> orders;
   for (const std::uint64_t number : slots) {
     const Window::Slot& slot = window.at(number);
     const Pool& pool = window.pool(slot);
-    orders.push_back({slot.task.pool, slot.task.first, slot.task.last});
+    orders.push_back(slot.task);
     if (!to.recipes.insert(slot.task.pool).second) continue;
     recipes.push_back({slot.task.pool, names_.at(pool.setup().get()), pool.recipe()});
   }
@@ -409,51 +404,6 @@ bool dismiss(Messages& messages) try {
 
 namespace {
 
-/// Pools of a round by rank 0's recipes, and who draws their blocks.
-class Drawers {
- public:
-  explicit Drawers(const PreparedRank& prepared) : prepared_(prepared) {}
-
-  void add(const NamedRecipe& named) {
-    const auto setup =
-        std::ranges::find(prepared_.setups, named.setup, &NamedSetups::value_type::first);
-    Unpacker::require(setup != prepared_.setups.end() && named.pool < most_pools,
-                      "a recipe for no set-up");
-    // Workers count in cells that are there when they are made (run/pools.cpp).
-    const auto* const draws = dynamic_cast<const SamplerSetup*>(setup->second.get());
-    const bool counts =
-        std::ranges::any_of(named.recipe.plan, [](const auto& each) { return each.cells > 0; });
-    if (draws != nullptr && counts && dynamic_cast<const ConsistencySetup*>(draws) == nullptr) {
-      draws->density_cells();
-    }
-    pools_.resize(std::max<std::size_t>(pools_.size(), named.pool + 1));
-    pools_[named.pool] = std::make_shared<Pool>(pool_of(named.recipe, setup->second));
-  }
-
-  std::vector<std::string> draw(const std::vector<Order>& orders) {
-    for (const Order& order : orders) {
-      Unpacker::require(
-          order.pool < pools_.size() && pools_[order.pool] && order.first < order.last,
-          "an order for no pool");
-    }
-    std::vector<std::string> blocks(orders.size());
-    with_threads(prepared_.threads, [&] {
-      tbb::parallel_for(std::size_t{0}, orders.size(), [&](std::size_t i) {
-        blocks[i] = packed_block(
-            Pool::parts_of(workers_.draw({orders[i].pool, orders[i].first, orders[i].last})));
-      });
-    });
-    return blocks;
-  }
-
- private:
-  static constexpr std::uint64_t most_pools = std::uint64_t{1} << 20;
-
-  const PreparedRank& prepared_;
-  SomePools pools_;
-  Workers workers_{pools_};
-};
-
 /// A rank's answers to rank 0.
 class Servant {
  public:
@@ -468,12 +418,20 @@ class Servant {
     unpack(kind);
     if (kind == Kind::begin) begin(unpack);
     if (kind == Kind::batch) draw(unpack);
-    if (kind == Kind::forget) drawers_.reset();
+    if (kind == Kind::forget) round_.reset();
     if (kind == Kind::end) messages_.send(0, packed(Kind::goodbye));
     return kind != Kind::end;
   }
 
  private:
+  static constexpr std::uint64_t most_pools = std::uint64_t{1} << 20;
+
+  /// Pools of a round by rank 0's recipes, and who draws their blocks.
+  struct DrawnRound {
+    SomePools pools = {};
+    Workers workers{pools};
+  };
+
   void begin(Unpacker& unpack) {
     std::optional<std::uint64_t> seed;
     unpack(seed);
@@ -483,34 +441,63 @@ class Servant {
     } catch (const std::exception&) {
       fault = "cannot prepare the run: " + words_of(std::current_exception());
     }
-    std::vector<std::string> names;
-    for (const auto& [name, setup] : prepared_.setups) names.push_back(name);
-    std::ranges::sort(names);
-    const auto [first, last] = std::ranges::unique(names);
-    names.erase(first, last);
-    messages_.send(
-        0, packed(Kind::hello, host_name(), fault, prepared_.identity, names, prepared_.threads));
+    std::set<std::string> names;
+    for (const auto& [name, setup] : prepared_.setups) names.insert(name);
+    messages_.send(0, packed(Kind::hello, host_name(), fault, prepared_.identity,
+                             std::vector(names.begin(), names.end()), prepared_.threads));
   }
 
   void draw(Unpacker& unpack) {
     std::uint64_t number = 0;
     std::vector<NamedRecipe> recipes;
-    std::vector<Order> orders;
+    std::vector<Task> orders;
     unpack(number, recipes, orders);
     unpack.end();
     const Clock::time_point start = Clock::now();
-    if (!drawers_) drawers_.emplace(prepared_);
-    for (const NamedRecipe& each : recipes) drawers_->add(each);
-    const std::vector<std::string> blocks = drawers_->draw(orders);
+    if (!round_) round_ = std::make_unique<DrawnRound>();
+    for (const NamedRecipe& each : recipes) add(each);
+    const std::vector<std::string> blocks = drawn(orders);
     // Programs may have stopped for the same signal.
-    if (!interrupted())
-      messages_.send(0, packed(Kind::reply, number, seconds_since(start), blocks));
+    if (interrupted()) return;
+    messages_.send(0, packed(Kind::reply, number, seconds_since(start), blocks));
+  }
+
+  void add(const NamedRecipe& named) {
+    const auto setup =
+        std::ranges::find(prepared_.setups, named.setup, &NamedSetups::value_type::first);
+    Unpacker::require(setup != prepared_.setups.end() && named.pool < most_pools,
+                      "a recipe for no set-up");
+    // Workers count in cells that are there when they are made (run/pools.cpp).
+    const auto* const draws = dynamic_cast<const SamplerSetup*>(setup->second.get());
+    const bool counts =
+        std::ranges::any_of(named.recipe.plan, [](const auto& each) { return each.cells > 0; });
+    if (draws != nullptr && counts && dynamic_cast<const ConsistencySetup*>(draws) == nullptr) {
+      draws->density_cells();
+    }
+    SomePools& pools = round_->pools;
+    pools.resize(std::max<std::size_t>(pools.size(), named.pool + 1));
+    pools[named.pool] = std::make_shared<Pool>(pool_of(named.recipe, setup->second));
+  }
+
+  std::vector<std::string> drawn(const std::vector<Task>& orders) {
+    const SomePools& pools = round_->pools;
+    for (const Task& order : orders) {
+      Unpacker::require(order.pool < pools.size() && pools[order.pool] && order.first < order.last,
+                        "an order for no pool");
+    }
+    std::vector<std::string> blocks(orders.size());
+    with_threads(prepared_.threads, [&] {
+      tbb::parallel_for(std::size_t{0}, orders.size(), [&](std::size_t i) {
+        blocks[i] = packed_block(round_->workers.draw(orders[i]));
+      });
+    });
+    return blocks;
   }
 
   Messages& messages_;
   const std::function<PreparedRank(std::optional<std::uint64_t>)>& prepare_;
   PreparedRank prepared_ = {};
-  std::optional<Drawers> drawers_;
+  std::unique_ptr<DrawnRound> round_;
 };
 
 }  // namespace

@@ -13,7 +13,6 @@
 #include "harness/base/parallel.h"
 #include "harness/base/text_hash.h"
 #include "harness/question/question_sources.h"
-#include "harness/record/picture.h"
 #include "harness/run/image_judge.h"
 #include "stats/tails/tails.h"
 
@@ -143,87 +142,18 @@ std::string file_name(const std::string& id) {
   return fmt::format("{}-{:08x}.exr", name, text_hash(id) & 0xffffffff);
 }
 
-}  // namespace
-
-namespace {
-
-struct Extremes {
-  double minimum = std::numeric_limits<double>::infinity();
-  double maximum = -std::numeric_limits<double>::infinity();
-  std::uint64_t nonzero = 0;
-  std::uint64_t nonfinite = 0;
-};
-
 Extremes extremes_of(const Summary& summary, const std::vector<std::size_t>& channels) {
   if (summary.elements) {
-    return {summary.elements->minimum, summary.elements->maximum, summary.elements->nonzero};
+    return summary.elements->extremes;
   }
   Extremes extremes;
   for (const std::size_t channel : channels) {
     const ChannelSummary& kept = summary.channels[channel];
-    extremes.nonfinite += kept.nonfinite;
     extremes.nonzero += kept.moments.nonzero;
-    if (kept.moments.count < 2) continue;
-    extremes.minimum = std::min(extremes.minimum, kept.moments.minimum);
-    extremes.maximum = std::max(extremes.maximum, kept.moments.maximum);
+    if (kept.moments.count >= 2) extremes.merge({kept.moments.minimum, kept.moments.maximum, 0});
   }
   return extremes;
 }
-
-}  // namespace
-
-reports::Sample image_sample(const TestOutcome& outcome, std::size_t subject, const Drawn& drawn) {
-  const Subject& side = outcome.question.subjects[subject];
-  const Summary& summary = drawn.summary();
-  reports::Sample sample{.estimator = side.estimator->listed,
-                         .plugin = side.estimator->entry->information.name,
-                         .parameters = side.estimator->parameters,
-                         .channel = image_name(*side.image),
-                         .stream = stream_text(drawn.pool().key()),
-                         .primaries = outcome.plan.primaries[subject],
-                         .secondaries = outcome.secondaries(subject)};
-  const Extremes extremes = extremes_of(summary, side.channels);
-  sample.nonfinite = extremes.nonfinite;
-  sample.nonzero = extremes.nonzero;
-  stats::Moments means;
-  double variance = 0;
-  for (const std::size_t channel : side.channels) {
-    const stats::Moments moments = summary.moments(channel);
-    if (moments.count < 2) continue;
-    means.add(moments.mean);
-    variance += moments.variance();
-  }
-  if (means.count > 0) {
-    sample.mean = number(means.mean);
-    sample.variance = number(variance / static_cast<double>(means.count));
-    sample.min = number(extremes.minimum);
-    sample.max = number(extremes.maximum);
-  }
-  sample.cost = cost_of(summary);
-  return sample;
-}
-
-void add_image(const DrawnTest& drawn, reports::Test& test) {
-  const TestOutcome& outcome = drawn.outcome;
-  if (outcome.channels.empty() || !outcome.channels[0].image) return;
-  const ImageOutcome& found = *outcome.channels[0].image;
-  test.image = image_of(found, *outcome.question.subjects[0].image);
-  if (!found.seen.empty()) test.image->winner.statistic = found.seen;
-  if (const std::optional<PlaceEffect> effect = effect_at_place(drawn)) {
-    const bool relative = effect->other != 0;
-    const double unit = relative ? std::abs(effect->other) : 1;
-    test.image->winner.effect =
-        reports::Effect{.quantity = relative ? "relative difference" : "difference",
-                        .estimate = number(effect->estimate / unit),
-                        .low = number(effect->interval.low / unit),
-                        .high = number(effect->interval.high / unit),
-                        .confidence = confidence_at_place,
-                        .relative = relative};
-  }
-  add_maps(drawn, found, test);
-}
-
-namespace {
 
 /// The mean over an image whose pixels are independent. A pixel's components may depend on each
 /// other: the standard deviation of their sum is at most the sum of theirs. The interval can thus
@@ -258,6 +188,46 @@ reports::Estimate image_mean(const ImageShape& shape, const Summary& summary, do
 }
 
 }  // namespace
+
+void add_elements(const Subject& side, const Summary& summary, reports::Sample& sample) {
+  const Extremes extremes = extremes_of(summary, side.channels);
+  sample.nonzero = extremes.nonzero;
+  stats::Moments means;
+  double variance = 0;
+  for (const std::size_t channel : side.channels) {
+    if (!summary.elements) sample.nonfinite += summary.channels[channel].nonfinite;
+    const stats::Moments moments = summary.moments(channel);
+    if (moments.count < 2) continue;
+    means.add(moments.mean);
+    variance += moments.variance();
+  }
+  if (means.count > 0) {
+    sample.mean = number(means.mean);
+    sample.variance = number(variance / static_cast<double>(means.count));
+    sample.min = number(extremes.minimum);
+    sample.max = number(extremes.maximum);
+  }
+}
+
+void add_image(const DrawnTest& drawn, reports::Test& test) {
+  const TestOutcome& outcome = drawn.outcome;
+  if (outcome.channels.empty() || !outcome.channels[0].image) return;
+  const ImageOutcome& found = *outcome.channels[0].image;
+  test.image = image_of(found, *outcome.question.subjects[0].image);
+  if (!found.seen.empty()) test.image->winner.statistic = found.seen;
+  if (const std::optional<PlaceEffect> effect = effect_at_place(drawn)) {
+    const bool relative = effect->other != 0;
+    const double unit = relative ? std::abs(effect->other) : 1;
+    test.image->winner.effect =
+        reports::Effect{.quantity = relative ? "relative difference" : "difference",
+                        .estimate = number(effect->estimate / unit),
+                        .low = number(effect->interval.low / unit),
+                        .high = number(effect->interval.high / unit),
+                        .confidence = confidence_at_place,
+                        .relative = relative};
+  }
+  add_maps(drawn, found, test);
+}
 
 reports::EstimatorChannel image_channel(const Setup& setup, const Summary& summary,
                                         ImagePicture picture) {

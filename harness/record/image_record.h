@@ -8,8 +8,8 @@
 
 namespace assay::harness {
 
-/// A source's row: moments over its elements' means, counts over all elements.
-reports::Sample image_sample(const TestOutcome& outcome, std::size_t subject, const Drawn& drawn);
+/// Fills in a source's row: moments over its elements' means, counts over all elements.
+void add_elements(const Subject& side, const Summary& summary, reports::Sample& row);
 
 /// Adds findings and maps; nothing if the images could not be tested.
 void add_image(const DrawnTest& drawn, reports::Test& test);

@@ -4,19 +4,55 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <set>
 #include <stdexcept>
 #include <utility>
 
+#include "estimators/ready_made.h"
 #include "harness/base/numbers.h"
 #include "harness/base/record_file.h"
-#include "harness/record/comparisons.h"
-#include "harness/record/record_of.h"
+#include "harness/base/text_hash.h"
+#include "harness/record/picture.h"
 #include "harness/run/holm.h"
 
 namespace assay::harness {
 namespace {
+
+/// A hash of the suite's text and its data, which all shards must share.
+std::string digest_of(const SuiteRun& run) {
+  std::uint64_t hash = text_hash(run.suite.text);
+  for (const EstimatorEntry& entry : run.suite.estimators) {
+    const auto prepared = run.estimators.find(entry.name);
+    if (prepared == run.estimators.end()) continue;  // of a skipped suite
+    if (const auto rows = recorded::observations_digest(*prepared->second.setup)) {
+      hash = text_hash(fmt::format("{:016x}", *rows), hash);
+      continue;
+    }
+    const std::string file = prepared->second.setup->data_file();
+    if (file.empty()) continue;
+    std::ifstream stream(file, std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    hash = text_hash(text, hash);
+  }
+  return fmt::format("{:016x}", hash);
+}
+
+std::uint64_t position_of(const TestEntry& test, const Suite& suite) {
+  return static_cast<std::uint64_t>(&test - suite.tests.data());
+}
+
+reports::ShardTest test_of(const TestOutcome& outcome, const SuiteRun& run) {
+  const FamilyMember member = member_of(outcome);
+  return {.position = position_of(*outcome.question.test, run.suite),
+          .inside = outcome.place.inside,
+          .weight = member.weight,
+          .untested = member.untested,
+          .log_p = member.log_p,
+          .compared = compared_by(outcome.question)};
+}
 
 using reports::Verdict;
 
@@ -61,14 +97,16 @@ std::vector<Part> parts_of(const std::vector<ShardFile>& shards, std::size_t sui
 
 void adjust_p_values(std::vector<Part>& parts) {
   std::vector<FamilyMember> family;
-  std::vector<Part*> owners;
   for (Part& part : parts) {
     if (!part.family.inside) continue;
     family.push_back({.verdict = part.test.verdict,
                       .weight = part.family.weight,
                       .untested = part.family.untested,
-                      .log_p = part.family.log_p});
-    owners.push_back(&part);
+                      .log_p = part.family.log_p,
+                      .adjusted = [&part](std::size_t i, double log_p) {
+                        part.test.channels[i].p_adjusted = probability(log_p);
+                        part.test.channels[i].log10_p_adjusted = log10_of(log_p);
+                      }});
   }
   try {
     adjust_family(family);
@@ -76,13 +114,6 @@ void adjust_p_values(std::vector<Part>& parts) {
     throw InputError({}, fmt::format("the shards' shares of alpha do not fit together: {}; was a "
                                      "record edited? Run the shards again",
                                      error.what()));
-  }
-  for (std::size_t k = 0; k < family.size(); ++k) {
-    std::vector<reports::Channel>& channels = owners[k]->test.channels;
-    for (std::size_t i = 0; i < channels.size(); ++i) {
-      channels[i].p_adjusted = probability(family[k].log_p_adjusted[i]);
-      channels[i].log10_p_adjusted = log10_of(family[k].log_p_adjusted[i]);
-    }
   }
 }
 
@@ -98,21 +129,15 @@ struct View {
   }
 };
 
-/// The view of each estimator that one run would have, in the suite's order.
-std::vector<View> views_of(const std::vector<ShardFile>& shards, std::size_t suite) {
-  std::vector<View> best;
+/// The view of each estimator that one run would have, by its place in the suite.
+std::map<std::uint64_t, View> views_of(const std::vector<ShardFile>& shards, std::size_t suite) {
+  std::map<std::uint64_t, View> best;
   for (const ShardFile& shard : shards) {
     const std::vector<reports::EstimatorSummary>& rows = shard.record.suites[suite].estimators;
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const View view{&rows[i], &shard.record.shard->suites[suite].pictures[i]};
-      const auto at = std::lower_bound(best.begin(), best.end(), view, [](const View& a, View b) {
-        return a.picture->position < b.picture->position;
-      });
-      if (at == best.end() || at->picture->position != view.picture->position) {
-        best.insert(at, view);
-      } else if (at->shows_less_than(view)) {
-        *at = view;
-      }
+      const auto [at, is_new] = best.try_emplace(view.picture->position, view);
+      if (!is_new && at->second.shows_less_than(view)) at->second = view;
     }
   }
   return best;
@@ -151,7 +176,7 @@ reports::Suite merge_suite(const std::vector<ShardFile>& shards, std::size_t ind
   if (complete) adjust_p_values(parts);
   whole = whole && complete;
   std::vector<Pictured> pictures;
-  for (const View& view : views_of(shards, index)) {
+  for (const auto& [place, view] : views_of(shards, index)) {
     suite.estimators.push_back(*view.row);
     pictures.push_back({view.row->name, view.row->variance_of == "primary", *view.picture});
   }
@@ -179,21 +204,19 @@ void check_whole(const ShardFile& shard) {
            "is a whole run, not a shard; shards are made by `assay run … --shard I/N "
            "--report json=SHARD.json`");
   }
-  bool sound = record.shard->index >= 1 && record.shard->index <= record.shard->count &&
-               record.shard->suites.size() == record.suites.size();
-  for (std::size_t i = 0; sound && i < record.suites.size(); ++i) {
-    const reports::Suite& suite = record.suites[i];
-    const reports::ShardSuite& part = record.shard->suites[i];
-    sound = part.pictures.size() == suite.estimators.size() &&
-            part.results.size() == suite.tests.size();
-    for (std::size_t k = 0; sound && k < suite.tests.size(); ++k) {
-      const reports::ShardTest& result = part.results[k];
-      const std::size_t channels = suite.tests[k].channels.size();
-      sound = result.log_p.size() == channels && (!result.inside || result.weight > 0);
-    }
-  }
-  if (!sound)
+  const auto fits = [](const reports::ShardTest& result, const reports::Test& test) {
+    return result.log_p.size() == test.channels.size() && (!result.inside || result.weight > 0);
+  };
+  const bool sound =
+      record.shard->index >= 1 && record.shard->index <= record.shard->count &&
+      std::ranges::equal(record.shard->suites, record.suites,
+                         [&](const reports::ShardSuite& part, const reports::Suite& suite) {
+                           return part.pictures.size() == suite.estimators.size() &&
+                                  std::ranges::equal(part.results, suite.tests, fits);
+                         });
+  if (!sound) {
     refuse(shard, "its `shard` does not fit its tests: was it edited? Run the shard again");
+  }
 }
 
 struct Property {
@@ -202,24 +225,25 @@ struct Property {
   const char* mend;
 };
 
+/// What is told of each item, with blanks between.
+template <class List, class Tell>
+std::string all_of(const List& list, const Tell& tell) {
+  std::vector<std::string> texts;
+  for (const auto& each : list) texts.push_back(tell(each));
+  return fmt::format("{}", fmt::join(texts, " "));
+}
+
 std::string seeds(const reports::Record& record) {
-  std::string text;
-  for (const reports::Suite& suite : record.suites) text += fmt::format(" {}", suite.seed);
-  return text.substr(text.empty() ? 0 : 1);
+  return all_of(record.suites, [](const auto& suite) { return fmt::format("{}", suite.seed); });
 }
 
 std::string digests(const reports::Record& record) {
-  std::string text;
-  for (const reports::ShardSuite& suite : record.shard->suites) text += " " + suite.digest;
-  return text.substr(text.empty() ? 0 : 1);
+  return all_of(record.shard->suites, [](const auto& suite) { return suite.digest; });
 }
 
 std::string alphas(const reports::Record& record) {
-  std::string text;
-  for (const reports::Suite& suite : record.suites) {
-    text += fmt::format(" {} {}", suite.alpha, suite.beta);
-  }
-  return text.substr(text.empty() ? 0 : 1);
+  return all_of(record.suites,
+                [](const auto& suite) { return fmt::format("{} {}", suite.alpha, suite.beta); });
 }
 
 const Property properties[] = {
@@ -267,6 +291,38 @@ void check_shards(const std::vector<ShardFile>& shards) {
 }
 
 }  // namespace
+
+void add_shard(const SuiteRuns& runs, const RunOptions& options, reports::Record& record) {
+  const auto [index, count] = *options.shard;
+  reports::Shard shard{
+      .index = index, .count = count, .options = options.command + options_text(options.selection)};
+  for (const auto& run : runs) {
+    reports::ShardSuite suite{.digest = digest_of(*run), .tests = run->suite.tests.size()};
+    for (const Picture& picture : run->pictures) {
+      suite.pictures.push_back(pictured(picture, *run).shown);
+    }
+    for (const TestWork& work : run->tests) suite.results.push_back(test_of(work.outcome, *run));
+    for (const Untested& each : run->untested) {
+      suite.results.push_back({.position = position_of(*each.test, run->suite)});
+    }
+    for (const Elsewhere& each : run->elsewhere) {
+      suite.elsewhere.push_back({.shard = each.shard,
+                                 .position = position_of(*each.test, run->suite),
+                                 .id = each.test->id,
+                                 .name = each.test->name,
+                                 .claim = each.test->claim.text,
+                                 .line = each.test->where.line});
+    }
+    // The record has its tests in this order.
+    std::ranges::sort(suite.results, {}, &reports::ShardTest::position);
+    shard.suites.push_back(std::move(suite));
+  }
+  record.shard = std::move(shard);
+  record.note = fmt::format(
+      "shard {} of {}: `assay merge` joins the records of all shards and adjusts their p-values by "
+      "Holm's method",
+      index, count);
+}
 
 std::string missing_shards(const std::vector<ShardFile>& shards) {
   const std::set<std::uint64_t> there = indices_of(shards);

@@ -10,6 +10,10 @@
 
 namespace assay::harness {
 
+/// Fills in `record.shard`, which `merge` needs, and adds a note on the basis of a shard's
+/// verdicts.
+void add_shard(const SuiteRuns& runs, const RunOptions& options, reports::Record& record);
+
 struct ShardFile {
   std::string file;
   reports::Record record;

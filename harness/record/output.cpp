@@ -4,16 +4,15 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 
 #include "estimators/core/quoting.h"
 #include "estimators/parameters.h"
 #include "harness/base/terminal.h"
-#include "harness/record/github.h"
 #include "harness/record/image_record.h"
-#include "harness/sampling/sample.h"
+#include "harness/sampling/pool.h"
 #include "harness/suite/files_read.h"
 #include "reports/record/file.h"
 #include "reports/report_formats.h"
@@ -21,10 +20,7 @@
 namespace assay::harness {
 namespace {
 
-bool is_set(const char* variable) {
-  const char* value = std::getenv(variable);
-  return value != nullptr && *value != '\0';
-}
+bool is_set(const char* variable) { return !system_environment(variable).empty(); }
 
 /// --color comes first, then NO_COLOR, then FORCE_COLOR, then the terminal's abilities.
 bool use_colour(Colour colour, std::FILE* stream) {
@@ -57,6 +53,23 @@ reports::ConsoleOptions console_options(const Output& output, std::FILE* stream)
   options.colour = use_colour(output.colour, stream);
   options.width = terminal_width(stream);
   return options;
+}
+
+// Less room would hold no readable summary.
+constexpr std::size_t least_summary = 2048;
+
+/// The error, or "" if the summary was written.
+std::string append_summary(const reports::Record& record, const std::string& file) {
+  std::error_code none;
+  const std::uintmax_t there =
+      std::filesystem::exists(file, none) ? std::filesystem::file_size(file, none) : 0;
+  if (there + least_summary > reports::markdown_limit) {
+    return "the step's summary is full: this run has none there";
+  }
+  const std::size_t room = reports::markdown_limit - static_cast<std::size_t>(there);
+  std::ofstream stream(file, std::ios::app | std::ios::binary);
+  stream << reports::markdown(record, room) << '\n' << std::flush;
+  return stream ? "" : "the step's summary cannot be written";
 }
 
 }  // namespace
@@ -138,6 +151,40 @@ int exit_code(const reports::Record& record, InconclusivePolicy policy) {
   if (undecided > 0) return 3;
   if (tally.passed + tally.inconclusive == 0) return 77;
   return 0;
+}
+
+std::string tell_github(const reports::Record& record, const Environment& environment) {
+  if (environment("GITHUB_ACTIONS") != "true") return "";
+  std::string text = reports::annotations(record);
+  const std::string file = environment("GITHUB_STEP_SUMMARY");
+  if (file.empty()) return text;
+  const std::string trouble = append_summary(record, file);
+  if (!trouble.empty()) text += fmt::format("::warning title=assay::{}\n", trouble);
+  return text;
+}
+
+std::string last_run_file() {
+  std::string folder = system_environment("XDG_CACHE_HOME");
+  const std::string home = system_environment("HOME");
+  if (folder.empty() && !home.empty()) folder = home + "/.cache";
+  return folder.empty() ? "" : folder + "/assay/last_run.json";
+}
+
+void keep_last_run(reports::Record record, bool says_failure) {
+  const std::filesystem::path file = last_run_file();
+  if (file.empty()) return;
+  for (reports::Suite& suite : record.suites) {
+    for (reports::Test& test : suite.tests) test.maps.clear();
+  }
+  try {
+    std::filesystem::create_directories(file.parent_path());
+    reports::write_whole(file, reports::compact_json(record));
+  } catch (...) {
+    if (says_failure) {
+      say_beside_progress("the run is not kept for `assay explain`: " +
+                          words_of(std::current_exception()));
+    }
+  }
 }
 
 }  // namespace assay::harness

@@ -1,6 +1,7 @@
 #pragma once
 
-// Writes a command's reports and chooses its exit code.
+// Writes a command's reports, tells GitHub Actions, keeps the run for `assay explain`, and chooses
+// the exit code.
 
 #include <cstdint>
 #include <cstdio>
@@ -8,8 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "reports/formats/console.h"
+#include "harness/base/environment_variables.h"
 #include "reports/record/record.h"
+#include "reports/report_formats.h"
 
 namespace assay::harness {
 
@@ -30,8 +32,8 @@ struct Output {
   bool quiet = false;  ///< No progress.
   int detail = 0;      ///< Of the console: reports::ConsoleOptions.
   std::uint64_t slowest = 0;
-  bool kept = false;   ///< The run is kept for `assay explain` (last_run.h).
-  bool github = true;  ///< Tells GitHub Actions what is not ok (github.h).
+  bool kept = false;   ///< The run is kept for `assay explain` (keep_last_run).
+  bool github = true;  ///< Tells GitHub Actions what is not ok (tell_github).
 };
 
 /// Makes the text of a report. The options are those of a console at its place.
@@ -55,7 +57,7 @@ class RunReports {
 
   /// Writes the reports. Maps are written beside the JSON report, and the record gets their names.
   void write(reports::Record& record) const;
-  /// Also tells GitHub Actions (github.h).
+  /// Also tells GitHub Actions.
   void write_and_annotate(reports::Record& record) const;
 
  private:
@@ -67,5 +69,19 @@ class RunReports {
 /// Returns 0 if every test is ok, and 1 if one is not or the ledger has an alarm. Returns 3 if
 /// nothing failed but something is inconclusive, 4 if nothing ran, 77 if all were skipped.
 int exit_code(const reports::Record&, InconclusivePolicy);
+
+/// Returns annotations of GitHub Actions to print; "" unless GITHUB_ACTIONS is `true`. It also
+/// appends the record as Markdown to the file that GITHUB_STEP_SUMMARY names. GitHub drops a
+/// summary above reports::markdown_limit, so the text is cut there, with a remark. A summary that
+/// cannot be written becomes a warning among the annotations, not a failure.
+std::string tell_github(const reports::Record& record, const Environment& environment);
+
+/// The last run of the user: a file in $XDG_CACHE_HOME/assay, else in ~/.cache/assay; "" if there
+/// is no such folder to be.
+std::string last_run_file();
+
+/// Writes the record without its maps, whole or not at all. Nobody needs it to go on: a failure is
+/// said only if asked.
+void keep_last_run(reports::Record record, bool says_failure);
 
 }  // namespace assay::harness

@@ -3,17 +3,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <ctime>
+#include <fstream>
 #include <limits>
+#include <map>
+#include <thread>
 
+#include "estimators/instruction_set.h"
 #include "estimators/rendered.h"
 #include "harness/base/numbers.h"
-#include "harness/record/cell_record.h"
-#include "harness/record/environment.h"
+#include "harness/base/version.h"
+#include "harness/question/question_sources.h"
 #include "harness/record/image_record.h"
-#include "harness/record/law_picture.h"
+#include "harness/record/law_record.h"
+#include "harness/record/merge.h"
 #include "harness/record/picture.h"
-#include "harness/record/shard_record.h"
 #include "harness/run/pools.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/methods.h"
@@ -21,6 +27,15 @@
 
 namespace assay::harness {
 namespace {
+
+std::string processor_name() {
+  std::ifstream file("/proc/cpuinfo");
+  std::string line;
+  while (std::getline(file, line)) {
+    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+  }
+  return "unknown";
+}
 
 using reports::Number;
 
@@ -49,24 +64,36 @@ std::vector<reports::QuantilePoint> quantile_points(std::span<const double> valu
 }
 
 reports::Sample sample_of(const TestOutcome& outcome, std::size_t subject, const Drawn& drawn,
+                          const std::string& channel) {
+  const PreparedEstimator& estimator = *outcome.question.subjects[subject].estimator;
+  return {.estimator = estimator.listed,
+          .plugin = estimator.entry->information.name,
+          .parameters = estimator.parameters,
+          .channel = channel,
+          .stream = stream_text(drawn.pool().key()),
+          .primaries = outcome.plan.primaries[subject],
+          .secondaries = drawn.summary().count,
+          .cost = cost_of(drawn.summary())};
+}
+
+reports::Sample image_sample(const TestOutcome& outcome, std::size_t subject, const Drawn& drawn) {
+  const Subject& side = outcome.question.subjects[subject];
+  reports::Sample sample = sample_of(outcome, subject, drawn, image_name(*side.image));
+  add_elements(side, drawn.summary(), sample);
+  return sample;
+}
+
+reports::Sample sample_of(const TestOutcome& outcome, std::size_t subject, const Drawn& drawn,
                           std::size_t channel) {
   const Subject& side = outcome.question.subjects[subject];
   const std::size_t index = side.channels[channel];
-  const Summary& summary = drawn.summary();
-  const ChannelSummary& kept = summary.channels[index];
+  const ChannelSummary& kept = drawn.summary().channels[index];
   const stats::Moments& moments = kept.moments;
   const ChannelDetails& details = kept.details();
   const bool spread = moments.count > 1 && moments.m2 > 0;
-  reports::Sample sample{.estimator = side.estimator->listed,
-                         .plugin = side.estimator->entry->information.name,
-                         .parameters = side.estimator->parameters,
-                         .channel = side.setup->channels()[index].name,
-                         .stream = stream_text(drawn.pool().key()),
-                         .primaries = outcome.plan.primaries[subject],
-                         .secondaries = summary.count};
+  reports::Sample sample = sample_of(outcome, subject, drawn, side.setup->channels()[index].name);
   sample.nonzero = moments.nonzero;
   sample.nonfinite = kept.nonfinite;
-  sample.cost = cost_of(summary);
   // A record must not show what another test on the same observations kept.
   const bool costs = outcome.plan.method.keeps == Keeps::costs;
   for (std::size_t i = 0; costs && i < details.joint.size(); ++i) {
@@ -242,6 +269,25 @@ reports::Test head_of(const TestEntry& entry, const std::string& file) {
 
 }  // namespace
 
+reports::Tool this_tool() { return {.name = "assay", .version = version(), .commit = commit()}; }
+
+reports::Environment this_environment(unsigned threads) {
+  return {
+      .compiler = fmt::format("g++ {}.{}.{}", __GNUC__, __GNUC_MINOR__, __GNUC_PATCHLEVEL__),
+      .cpu = processor_name(),
+      .isa = ray_instruction_set(),
+      .threads = static_cast<int>(threads != 0 ? threads : std::thread::hardware_concurrency())};
+}
+
+std::string utc_now() {
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  char text[sizeof "2000-01-01T00:00:00Z"];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
+}
+
 reports::Test record_of_test(const TestWork& work, const std::string& file, bool adjusted) {
   const TestOutcome& outcome = work.outcome;
   const TestEntry& entry = *outcome.question.test;
@@ -339,22 +385,18 @@ reports::Record record_of(const SuiteRuns& runs, const RunOptions& options) {
   bool whole = true;
   for (const auto& run : runs) {
     reports::Suite suite = head_of(*run);
-    const auto add = [&](reports::Test test, const TestEntry& entry) {
-      test.replay = replay_line(entry, *run, runs, options);
-      suite.tests.push_back(std::move(test));
-    };
-    // Both lists are in the order of the suite's file.
-    auto untested = run->untested.begin();
-    const auto add_untested_before = [&](const TestEntry* next) {
-      for (; untested != run->untested.end() && (!next || untested->test < next); ++untested) {
-        add(record_of_untested(*untested, *run), *untested->test);
-      }
-    };
-    for (const TestWork& work : run->tests) {
-      add_untested_before(work.outcome.question.test);
-      add(record_of_test(work, run->suite.file, run->adjusted), *work.outcome.question.test);
+    std::map<const TestEntry*, reports::Test> tests;  // in the order of the suite's file
+    for (const Untested& each : run->untested) {
+      tests.emplace(each.test, record_of_untested(each, *run));
     }
-    add_untested_before(nullptr);
+    for (const TestWork& work : run->tests) {
+      tests.emplace(work.outcome.question.test,
+                    record_of_test(work, run->suite.file, run->adjusted));
+    }
+    for (auto& [entry, test] : tests) {
+      test.replay = replay_line(*entry, *run, runs, options);
+      suite.tests.push_back(std::move(test));
+    }
     suite.statements = statements_of(run->suite, suite.tests);
     suite.timed = std::any_of(run->tests.begin(), run->tests.end(), is_timed);
     for (const auto& [name, estimator] : run->estimators) {

@@ -4,11 +4,16 @@
 #include <string>
 #include <vector>
 
-#include "harness/run/suite_run.h"
+#include "harness/run/planned_run.h"
 #include "harness/suite/run_options.h"
 #include "reports/record/record.h"
 
 namespace assay::harness {
+
+reports::Tool this_tool();
+reports::Environment this_environment(unsigned threads);
+/// The time now as "2000-01-01T00:00:00Z".
+std::string utc_now();
 
 /// Adds a note on the programs that were started again.
 void note_retries(reports::Record& record);

@@ -5,17 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <optional>
-#include <sstream>
-#include <string>
 #include <vector>
 
 #include "estimators/catalogue.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/record_file.h"
 #include "harness/base/terminal.h"
-#include "harness/draws/draw_text.h"
 #include "harness/draws/sampler_setup.h"
 #include "harness/pilot/pilot.h"
 #include "harness/plan/independence.h"
@@ -31,6 +26,32 @@
 
 namespace assay::harness {
 namespace {
+
+/// The nearest id to an unknown one; "" if none is near.
+std::string meant(const std::string& asked, const std::vector<Recorded>& all) {
+  std::vector<std::string> spellings;
+  for (const Recorded& each : all) {
+    spellings.push_back(each.test.id);
+    spellings.push_back(each.test.name);
+  }
+  const std::string near = nearest(asked, spellings);
+  for (const Recorded& each : all) {
+    const bool is_near = !near.empty() && (each.test.id == near || each.test.name == near);
+    if (is_near || (near.empty() && each.test.id.find(asked) != std::string::npos)) {
+      return each.test.id;
+    }
+  }
+  return "";
+}
+
+std::string some_ids(const std::vector<Recorded>& tests) {
+  constexpr std::size_t most = 5;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, tests.size()); ++i) {
+    text += (i == 0 ? "`" : ", `") + tests[i].test.id + "`";
+  }
+  return text + (tests.size() > most ? ", …" : "");
+}
 
 /// A list of texts without the colon before each.
 Value unmarked(const Value& texts, const Location& where) {
@@ -235,12 +256,12 @@ std::unique_ptr<Rebuilt> rebuild(const Recorded& recorded, const std::string& re
   rebuilt->suite = suite_of(recorded, record);
   require_lasting_rows(rebuilt->suite, record);
   rebuilt->estimators = prepare_all(rebuilt->suite);
-  Question question = ask(rebuilt->suite.tests[0], rebuilt->estimators, recorded.seed);
+  Question question = ask(rebuilt->suite.tests[0], rebuilt->estimators, recorded.suite.seed);
   Plan plan = recorded_plan(question, recorded);
   require_same_rows(question, recorded, record);
   draw_recorded_streams(question, recorded.test);
   if (plan.method.is.cells_of_pilots) {
-    freeze(question, pilots_of(*rebuilt, question, recorded.seed), plan);
+    freeze(question, pilots_of(*rebuilt, question, recorded.suite.seed), plan);
   }
   rebuilt->work.outcome = {
       .question = std::move(question),
@@ -250,8 +271,8 @@ std::unique_ptr<Rebuilt> rebuild(const Recorded& recorded, const std::string& re
       .plan = std::move(plan)};
   TestWork& work = rebuilt->work;
   if (!recorded.test.looks.empty()) work.last_look = recorded.test.looks.size() - 1;
-  work.pools =
-      rebuilt->pools.for_question(work.outcome.question, work.outcome.plan, recorded.seed, {});
+  work.pools = rebuilt->pools.for_question(work.outcome.question, work.outcome.plan,
+                                           recorded.suite.seed, {});
   return rebuilt;
 }
 
@@ -399,6 +420,35 @@ int replay(const Recorded& recorded, const ReplayArguments& arguments) {
 }
 
 }  // namespace
+
+Recorded find_test(const reports::Record& record, const ReplayArguments& arguments, bool by_part) {
+  std::vector<Recorded> all;
+  std::vector<Recorded> named;
+  std::vector<Recorded> parts;
+  for (const reports::Suite& suite : record.suites) {
+    for (const reports::Test& test : suite.tests) {
+      all.push_back({suite, test});
+      if (test.id == arguments.test) return all.back();
+      if (test.name == arguments.test) named.push_back(all.back());
+      if (by_part && test.id.find(arguments.test) != std::string::npos) parts.push_back(all.back());
+    }
+  }
+  if (parts.size() > 1) {
+    throw InputError({}, fmt::format("{} tests have `{}` in their id; give more of one: {}",
+                                     parts.size(), arguments.test, some_ids(parts)));
+  }
+  if (parts.size() == 1) return parts.front();
+  if (named.size() == 1) return named.front();
+  const Location where{.file = arguments.record};
+  if (!named.empty()) {
+    throw InputError(where, fmt::format("{} tests have the name `{}`; give the id of one: {}",
+                                        named.size(), arguments.test, some_ids(named)));
+  }
+  const std::string near = meant(arguments.test, all);
+  throw InputError(where, fmt::format("no test `{}` in this run; {}", arguments.test,
+                                      near.empty() ? "there is: " + some_ids(all)
+                                                   : "did you mean `" + near + "`?"));
+}
 
 int replay(const ReplayArguments& arguments) {
   const reports::Record record = read_record(arguments.record);

@@ -10,8 +10,6 @@
 #include "harness/plan/independence.h"
 #include "harness/plan/plan.h"
 #include "harness/plan/sizes.h"
-#include "harness/run/activation.h"
-#include "harness/run/found_effect.h"
 #include "harness/run/image_judge.h"
 #include "harness/run/observation_faults.h"
 #include "harness/run/verdict_text.h"
@@ -19,6 +17,92 @@
 
 namespace assay::harness {
 namespace {
+
+using reports::Verdict;
+
+/// The size for which detectable effect and power are quoted: the last look, or where a budget
+/// ended.
+TestSize full_size(const TestOutcome& outcome) {
+  const stats::LookSchedule& looks = outcome.plan.looks;
+  const bool ended = outcome.verdict == Verdict::inconclusive;
+  const std::size_t look = ended ? outcome.look : looks.sizes.size() - 1;
+  return {.share = outcome.share_at(look), .secondaries = looks.sizes[look]};
+}
+
+/// Error of the interval whose ends decide: two tests at beta, or one or two tails at alpha.
+double deciding_error(const TestOutcome& outcome, const ChannelOutcome& channel,
+                      const ErrorShare& share) {
+  if (outcome.verdict != Verdict::fail && channel.regions.has_forbidden()) return 2 * share.beta;
+  const bool two_tails = channel.regions.two_sided() && !channel.evidence.distance;
+  return (two_tails ? 1 : 2) * share.alpha;
+}
+
+/// With a factor the effect is relative to factor * second.
+std::string quantity_of(const Evidence& evidence, double factor) {
+  std::string quantity = evidence.quantity;
+  if (factor != 1) {
+    quantity += fmt::format(" {} {:g} times the second",
+                            quantity.starts_with("ratio") ? "to" : "from", factor);
+  }
+  return evidence.ratio ? "ln(" + quantity + ")" : quantity;
+}
+
+/// The effect with the interval behind the verdict. Its ends are at this look's levels, so it holds
+/// theta with the confidence shown wherever sampling stops (repeated confidence interval). A fail
+/// shows the interval at alpha, which misses the claimed region. A pass that excludes the forbidden
+/// region shows the interval at 1 - 2 beta: one test at beta to each side. An undecided test shows
+/// that interval too.
+reports::Effect effect_of(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  const Evidence& evidence = channel.evidence;
+  // A smaller error is lost in 1 - error. A narrower interval shows the same verdict.
+  constexpr double least_error = 1e-12;
+  const double error = std::max(deciding_error(outcome, channel, outcome.share()), least_error);
+  const stats::Interval interval = evidence.interval(1 - error);
+  const auto number = [](double value) {
+    return std::isfinite(value) ? reports::Number(value) : reports::Number();
+  };
+  return {.quantity = quantity_of(evidence, outcome.question.factor),
+          .estimate = number(evidence.estimate),
+          .low = number(interval.low),
+          .high = number(interval.high),
+          .confidence = 1 - deciding_error(outcome, channel, outcome.place.share),
+          .relative = evidence.relative};
+}
+
+void note_sizes(TestOutcome& outcome, const DrawnTest& test) {
+  for (ChannelOutcome& channel : outcome.channels) {
+    channel.effect = effect_of(outcome, channel);
+    if (channel.image) {
+      channel.detectable = detectable_uniformly(outcome, full_size(outcome), channel);
+      continue;
+    }
+    const std::vector<ChannelData> data = data_of(test, channel.index);
+    PlannedChannel observed =
+        outcome.question.theta->observed(outcome.question, channel.regions, channel.index, data);
+    if (outcome.plan.method.is.of_batches) {
+      // The deviations of independent values whose means are as uncertain.
+      const auto deviation = [&](std::size_t subject) {
+        return std::sqrt(static_cast<double>(outcome.secondaries(subject))) *
+               data[subject].moments.standard_error();
+      };
+      observed.standard_deviation = deviation(0);
+      if (outcome.question.of_two()) {
+        observed.other_deviation = std::abs(outcome.question.factor) * deviation(1);
+      }
+    }
+    channel.detectable =
+        detectable_effect(outcome.question, full_size(outcome), outcome.plan, observed);
+    channel.finds_nothing =
+        !channel.detectable && outcome.question.theta->finds_nothing(
+                                   outcome.question, full_size(outcome), outcome.plan, observed);
+    const bool equivalence = channel.regions.relation == Relation::within;
+    if (!equivalence && !channel.regions.detect) continue;
+    const std::optional<double> power =
+        outcome.question.theta->power(outcome.question, full_size(outcome), outcome.plan, observed,
+                                      equivalence ? 0 : *channel.regions.detect);
+    if (power) outcome.power = std::min(*power, outcome.power.value_or(1));
+  }
+}
 
 using reports::Verdict;
 
@@ -229,6 +313,49 @@ std::vector<Replicate> replicates_of(const DrawnTest& test, std::size_t subject,
   return replicates;
 }
 
+/// True if the last look is void and will be taken again at a larger size.
+bool is_put_off(const TestOutcome& outcome) {
+  return !outcome.plan.postponed.empty() && outcome.plan.gates_invalidate &&
+         need_more(outcome.gates) && !red_gates(outcome.gates).empty();
+}
+
+void take_sound_look(TestWork& work, const DrawnTest& test, bool may_go_on) {
+  TestOutcome& outcome = work.outcome;
+  if (is_settled_beforehand(outcome)) return;
+  judge_drawn_order(outcome, test);
+  judge(outcome, test);
+  const bool last =
+      outcome.look == work.last_look || outcome.look + 1 == outcome.plan.looks.count();
+  const bool settled = outcome.verdict == Verdict::fail || outcome.verdict == Verdict::pass;
+  const bool goes_on = last ? is_put_off(outcome) : !settled;
+  if (may_go_on && goes_on && outcome.plan.invalid.empty()) {
+    outcome.decided = false;
+    return;
+  }
+  if (!work.verdict_only) {
+    note_sizes(outcome, test);
+    if (outcome.message.empty()) {
+      outcome.message = narrate(outcome) + outcome.question.theta->where_it_differs(test);
+      if (outcome.verdict == Verdict::fail) {
+        outcome.message +=
+            outcome.plan.hint + outcome.question.theta->taken_as_exact(outcome.question);
+      }
+    }
+  }
+  require_activation(outcome, test);
+}
+
+/// The reason why the look cannot be taken; nullopt if it was.
+std::optional<std::string> take_drawn_look(TestWork& work, bool may_go_on) {
+  if (!work.outcome.plan.error.empty()) return work.outcome.plan.error;
+  const std::optional<DrawnTest> test = drawn(work);
+  if (!test) return where_it_stopped(work);
+  if (std::string why = unusable(*test); !why.empty()) return why;
+  if (!work.outcome.plan.pilot_error.empty()) return work.outcome.plan.pilot_error;
+  take_sound_look(work, *test, may_go_on);
+  return std::nullopt;
+}
+
 }  // namespace
 
 Sample TestWork::sample(std::size_t subject) const {
@@ -277,53 +404,6 @@ std::vector<ChannelData> data_of(const DrawnTest& test, std::size_t channel) {
   }
   return data;
 }
-
-namespace {
-
-/// True if the last look is void and will be taken again at a larger size.
-bool is_put_off(const TestOutcome& outcome) {
-  return !outcome.plan.postponed.empty() && outcome.plan.gates_invalidate &&
-         need_more(outcome.gates) && !red_gates(outcome.gates).empty();
-}
-
-void take_sound_look(TestWork& work, const DrawnTest& test, bool may_go_on) {
-  TestOutcome& outcome = work.outcome;
-  if (is_settled_beforehand(outcome)) return;
-  judge_drawn_order(outcome, test);
-  judge(outcome, test);
-  const bool last =
-      outcome.look == work.last_look || outcome.look + 1 == outcome.plan.looks.count();
-  const bool settled = outcome.verdict == Verdict::fail || outcome.verdict == Verdict::pass;
-  const bool goes_on = last ? is_put_off(outcome) : !settled;
-  if (may_go_on && goes_on && outcome.plan.invalid.empty()) {
-    outcome.decided = false;
-    return;
-  }
-  if (!work.verdict_only) {
-    note_sizes(outcome, test);
-    if (outcome.message.empty()) {
-      outcome.message = narrate(outcome) + outcome.question.theta->where_it_differs(test);
-      if (outcome.verdict == Verdict::fail) {
-        outcome.message +=
-            outcome.plan.hint + outcome.question.theta->taken_as_exact(outcome.question);
-      }
-    }
-  }
-  require_activation(outcome, test);
-}
-
-/// The reason why the look cannot be taken; nullopt if it was.
-std::optional<std::string> take_drawn_look(TestWork& work, bool may_go_on) {
-  if (!work.outcome.plan.error.empty()) return work.outcome.plan.error;
-  const std::optional<DrawnTest> test = drawn(work);
-  if (!test) return where_it_stopped(work);
-  if (std::string why = unusable(*test); !why.empty()) return why;
-  if (!work.outcome.plan.pilot_error.empty()) return work.outcome.plan.pilot_error;
-  take_sound_look(work, *test, may_go_on);
-  return std::nullopt;
-}
-
-}  // namespace
 
 void take_look(TestWork& work, bool may_go_on) {
   TestOutcome& outcome = work.outcome;

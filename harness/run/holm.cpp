@@ -6,7 +6,7 @@ namespace assay::harness {
 
 using reports::Verdict;
 
-void adjust_family(std::vector<FamilyMember>& family) {
+void adjust_family(const std::vector<FamilyMember>& family) {
   std::vector<stats::WeightedLogP> entries;
   for (const FamilyMember& member : family) {
     const bool tested = member.verdict != Verdict::invalid && member.verdict != Verdict::error;
@@ -19,10 +19,9 @@ void adjust_family(std::vector<FamilyMember>& family) {
   if (entries.empty()) return;
   const std::vector<double> adjusted = stats::weighted_holm(entries);
   auto next = adjusted.cbegin();
-  for (FamilyMember& member : family) {
-    const auto end = next + static_cast<std::ptrdiff_t>(member.log_p.size());
-    member.log_p_adjusted.assign(next, end);
-    next = end + static_cast<std::ptrdiff_t>(member.untested);
+  for (const FamilyMember& member : family) {
+    for (std::size_t i = 0; i < member.log_p.size(); ++i) member.adjusted(i, *next++);
+    next += static_cast<std::ptrdiff_t>(member.untested);
   }
 }
 
@@ -38,19 +37,14 @@ FamilyMember member_of(const TestOutcome& outcome) {
 
 void adjust_p_values(std::vector<TestWork>& suite) {
   std::vector<FamilyMember> family;
-  std::vector<TestOutcome*> outcomes;
   for (TestWork& work : suite) {
     if (!work.outcome.place.inside) continue;
     family.push_back(member_of(work.outcome));
-    outcomes.push_back(&work.outcome);
+    family.back().adjusted = [&channels = work.outcome.channels](std::size_t i, double log_p) {
+      channels[i].log_p_adjusted = log_p;
+    };
   }
   adjust_family(family);
-  for (std::size_t k = 0; k < family.size(); ++k) {
-    std::vector<ChannelOutcome>& channels = outcomes[k]->channels;
-    for (std::size_t i = 0; i < channels.size(); ++i) {
-      channels[i].log_p_adjusted = family[k].log_p_adjusted[i];
-    }
-  }
 }
 
 }  // namespace assay::harness

@@ -3,6 +3,7 @@
 // Holm's adjusted p-values over the tests of one suite, run together or in shards. They are shown
 // and decide nothing: a verdict rests on its test's own share of alpha.
 
+#include <functional>
 #include <vector>
 
 #include "harness/run/evaluate.h"
@@ -15,11 +16,12 @@ struct FamilyMember {
   double weight = 0;               ///< of one channel
   std::size_t untested = 0;        ///< Channels without a p-value, which count as p = 1.
   std::vector<double> log_p = {};  ///< Of the other channels.
-  std::vector<double> log_p_adjusted = {};
+  /// Hears the adjusted p-value of each of them.
+  std::function<void(std::size_t channel, double log_p)> adjusted = {};
 };
 
-/// Fills in `log_p_adjusted` of all claims of a family. Invalid and error count as p = 1.
-void adjust_family(std::vector<FamilyMember>& family);
+/// Adjusts the p-values of all claims of a family. Invalid and error count as p = 1.
+void adjust_family(const std::vector<FamilyMember>& family);
 
 /// Fills in the adjusted p-values of a suite's tests inside the family.
 void adjust_p_values(std::vector<TestWork>& suite);

@@ -7,12 +7,11 @@
 
 #include "estimators/ready_made.h"
 #include "harness/base/parallel.h"
-#include "harness/plan/sizes.h"
 #include "harness/sampling/element_sums.h"
 #include "harness/sampling/pool.h"
 #include "harness/theta/ask.h"
 #include "stats/images/image_dependence.h"
-#include "stats/images/image_windows.h"
+#include "stats/images/image_family.h"
 #include "stats/tails/tails.h"
 
 namespace assay::harness {

@@ -33,14 +33,14 @@ class Claims final : public Progress {
 using Clocks = std::map<const Budget*, double>;
 
 Clocks read_clocks(const std::vector<TestWork*>& tests) {
-  std::map<const Budget*, std::set<const Pool*>> pools;
-  for (const TestWork* work : tests) {
-    if (work->suite_budget == nullptr || !work->suite_budget->seconds) continue;
-    for (const auto& pool : work->pools) pools[work->suite_budget].insert(pool.get());
-  }
+  std::set<std::pair<const Budget*, const Pool*>> counted;
   Clocks clocks;
-  for (const auto& [budget, drawn] : pools) {
-    for (const Pool* pool : drawn) clocks[budget] += pool->seconds();
+  for (const TestWork* work : tests) {
+    const Budget* const budget = work->suite_budget;
+    if (budget == nullptr || !budget->seconds) continue;
+    for (const auto& pool : work->pools) {
+      if (counted.emplace(budget, pool.get()).second) clocks[budget] += pool->seconds();
+    }
   }
   return clocks;
 }
@@ -109,9 +109,10 @@ void sample_in_looks(const std::vector<TestWork*>& tests,
   bool go_on = true;
   while (go_on && !open.empty()) {
     std::vector<TestWork*> next = open;
-    if (rounds.cheapest_first)
+    if (rounds.cheapest_first) {
       next = {*std::ranges::min_element(open, {},
                                         [](const TestWork* work) { return cost_of_look(*work); })};
+    }
     for (TestWork* work : next) {
       for (std::size_t i = 0; i < work->pools.size(); ++i) {
         work->pools[i]->request(work->outcome.secondaries(i));

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
+#include "harness/question/question.h"
 #include "harness/run/evaluate.h"
+#include "harness/sampling/pool.h"
 
 namespace assay::harness {
 
@@ -15,5 +18,10 @@ std::string unusable(const DrawnTest& test);
 
 /// The first draw that contradicts its sampler, as the end of a sentence; "" if none does.
 std::string first_contradiction(const DrawnTest& test);
+
+/// True if a mutant's defect changed something: an observation of the pool differs from its
+/// original's on the same stream. Declarations count too: another analytic mean or density. True
+/// for an estimator that is no mutant.
+bool was_activated(const Subject& subject, const Pool& pool, std::uint64_t observations);
 
 }  // namespace assay::harness

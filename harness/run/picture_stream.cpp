@@ -5,18 +5,19 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <functional>
+#include <limits>
 #include <stdexcept>
 
 #include "estimators/ready_made.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/parallel.h"
 #include "harness/image/image_pair.h"
-#include "harness/image/image_uniform.h"
-#include "harness/plan/image_plan.h"
-#include "stats/images/image_row_distance.h"
-#include "stats/images/image_sums.h"
-#include "stats/pyramids/image_row_pyramid.h"
+#include "harness/plan/sizes.h"
+#include "stats/images/image_equivalence.h"
+#include "stats/images/image_moments.h"
+#include "stats/pyramids/image_pyramid.h"
 
 namespace assay::harness {
 namespace {
@@ -301,20 +302,82 @@ bool is_about(const Question& question, const Subject& side) {
       question.subjects, [&](const Subject& other) { return other.estimator == side.estimator; });
 }
 
-}  // namespace
+// For each number of a picture: itself, and its share of a sum over a block of 4 x 4.
+constexpr double bytes_of_number = 4;
+constexpr double bytes_of_block = .5;
+// For each element: moments of pilot, test and blocks in flight, weights and maps. A streamed
+// picture takes less.
+constexpr double bytes_of_element = 143;
+constexpr double bytes_of_streamed_element = 43;
+constexpr double gigabyte = 1e9;
+
+constexpr double unknown = std::numeric_limits<double>::infinity();
 
 bool is_streamed(const Question& question) {
   return question.is().of_images && question.of_two() && question.factor == 1 &&
-         question.offset == 0 && !plans_replicates(question) && !question.test->secondaries &&
+         question.offset == 0 && !has_planned_size(question) && !question.test->secondaries &&
          !question.test->budget &&
          question.subjects[0].estimator != question.subjects[1].estimator &&
          is_streamed(question.subjects[0], question.subjects[1]) &&
          is_streamed(question.subjects[1], question.subjects[0]);
 }
 
-std::vector<const Question*> streamed(const std::vector<Question>& questions,
-                                      const std::vector<bool>& chosen) {
-  std::vector<const Question*> found;
+/// Bytes of one side's pictures at a time.
+double streamed_bytes(const Subject& side) {
+  const stats::ImageExtent extent = extent_of(*side.image);
+  const std::size_t pictures = pictures_of(side);
+  return static_cast<double>(pictures * rows_there(extent, 2 * pictures) * extent.row() *
+                             sizeof(float));
+}
+
+/// The side of a streamed claim that this estimator is, or null.
+const Subject* streamed_side(const PreparedEstimator& estimator, const StreamedClaims& streamed) {
+  for (const Question* const question : streamed) {
+    for (const Subject& side : question->subjects) {
+      if (side.estimator->name == estimator.name) return &side;
+    }
+  }
+  return nullptr;
+}
+
+double bytes_of(const PreparedEstimator& estimator, const StreamedClaims& streamed) {
+  const auto image = estimator.setup->image();
+  const auto pictures = estimator.setup->observations();
+  if (!image || !pictures || *pictures == 0) return 0;
+  const auto elements = static_cast<double>(image->elements());
+  const auto numbers = elements * static_cast<double>(*pictures);
+  if (const Subject* const side = streamed_side(estimator, streamed)) {
+    return streamed_bytes(*side) + numbers * bytes_of_block + elements * bytes_of_streamed_element;
+  }
+  return numbers * (bytes_of_number + bytes_of_block) + elements * bytes_of_element;
+}
+
+/// The number in a file that holds one.
+double number_in(const char* file) {
+  double value = unknown;
+  std::ifstream stream(file);
+  return stream >> value ? value : unknown;
+}
+
+double of_system() {
+  std::ifstream stream("/proc/meminfo");
+  for (std::string word; stream >> word;) {
+    double kibibytes = 0;
+    if (word == "MemAvailable:" && stream >> kibibytes) return 1024 * kibibytes;
+  }
+  return unknown;
+}
+
+double of_control_group() {
+  const double most = number_in("/sys/fs/cgroup/memory.max");
+  const double taken = number_in("/sys/fs/cgroup/memory.current");
+  return most < unknown && taken < unknown ? most - taken : unknown;
+}
+
+}  // namespace
+
+StreamedClaims streamed(const std::vector<Question>& questions, const std::vector<bool>& chosen) {
+  StreamedClaims found;
   for (std::size_t i = 0; i < questions.size(); ++i) {
     if (!chosen[i] || !is_streamed(questions[i])) continue;
     const bool alone = std::ranges::all_of(questions, [&](const Question& other) {
@@ -326,18 +389,41 @@ std::vector<const Question*> streamed(const std::vector<Question>& questions,
   return found;
 }
 
-double streamed_bytes(const Subject& side) {
-  const stats::ImageExtent extent = extent_of(*side.image);
-  const std::size_t pictures = pictures_of(side);
-  return static_cast<double>(pictures * rows_there(extent, 2 * pictures) * extent.row() *
-                             sizeof(float));
-}
-
 StreamedPictures stream_pictures(const Question& question, Progress& progress) {
   progress.begin({.name = "pictures", .total = 2 * pictures_of(question.subjects[0])});
   StreamedPictures found = Looking(question).take_all(progress);
   progress.end();
   return found;
+}
+
+double picture_bytes(const std::map<std::string, PreparedEstimator>& estimators,
+                     const StreamedClaims& streamed) {
+  double bytes = 0;
+  for (const auto& [name, estimator] : estimators) bytes += bytes_of(estimator, streamed);
+  return bytes;
+}
+
+double available_bytes() { return std::min(of_system(), of_control_group()); }
+
+void require_memory(const std::map<std::string, PreparedEstimator>& estimators,
+                    const StreamedClaims& streamed, double available, const std::string& fault) {
+  const double needed = picture_bytes(estimators, streamed);
+  if (needed <= available) return;
+  const auto largest =
+      std::max_element(estimators.begin(), estimators.end(), [&](const auto& a, const auto& b) {
+        return bytes_of(a.second, streamed) < bytes_of(b.second, streamed);
+      });
+  const PreparedEstimator& estimator = largest->second;
+  const ImageShape shape = *estimator.setup->image();
+  const std::string why = fault.empty() ? "" : fault + ", so that all are to be kept: ";
+  throw InputError(
+      estimator.where,
+      fmt::format(
+          "{}{} pictures of {} x {} pixels of {} components and those beside them take about "
+          "{:.1f} GB to test, and {:.1f} GB are free; take fewer pictures (16 a side or "
+          "more), one of their channels at a time, or smaller pictures",
+          why, *estimator.setup->observations(), shape.width, shape.height, shape.components.size(),
+          needed / gigabyte, available / gigabyte));
 }
 
 }  // namespace assay::harness

@@ -8,11 +8,8 @@
 #include "estimators/core/program_path.h"
 #include "estimators/ready_made.h"
 #include "harness/base/interrupt.h"
-#include "harness/pilot/pilot.h"
 #include "harness/plan/plan.h"
-#include "harness/run/image_memory.h"
 #include "harness/run/picture_stream.h"
-#include "harness/run/shards.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/methods.h"
 #include "stats/images/image.h"
@@ -66,17 +63,18 @@ bool is_about(const Question& question, const std::string& estimator) {
 
 /// True if estimators without a test are drawn for the suite's picture. Only the first shard draws
 /// them.
-bool draws_idle(const std::vector<Question>& questions, const RunOptions& options) {
+bool draws_idle(const SuiteRun& run, const RunOptions& options) {
   if (options.shard && options.shard->first != 1) return false;
-  return std::all_of(questions.begin(), questions.end(),
-                     [&](const Question& q) { return selects(options.selection, *q.test); });
+  return std::ranges::all_of(
+      run.questions, [&](const Question& each) { return selects(options.selection, *each.test); });
 }
 
-std::vector<const PreparedEstimator*> used_by(const std::vector<Question>& questions,
-                                              const std::vector<bool>& chosen, const SuiteRun& run,
-                                              const RunOptions& options) {
-  std::vector<const PreparedEstimator*> used;
-  const bool with_idle = draws_idle(questions, options);
+using Estimators = std::vector<const PreparedEstimator*>;
+
+Estimators used_by(const SuiteRun& run, const std::vector<bool>& chosen,
+                   const RunOptions& options) {
+  Estimators used;
+  const bool with_idle = draws_idle(run, options);
   for (const EstimatorEntry& entry : run.suite.estimators) {
     const auto prepared = run.estimators.find(entry.name);
     if (prepared == run.estimators.end()) continue;
@@ -84,8 +82,8 @@ std::vector<const PreparedEstimator*> used_by(const std::vector<Question>& quest
     if (recorded::is_reference(*estimator.setup)) continue;  // nothing to draw
     bool idle = true;
     bool wanted = false;
-    for (std::size_t i = 0; i < questions.size(); ++i) {
-      if (!is_about(questions[i], entry.name)) continue;
+    for (std::size_t i = 0; i < run.questions.size(); ++i) {
+      if (!is_about(run.questions[i], entry.name)) continue;
       idle = false;
       wanted = wanted || chosen[i];
     }
@@ -96,12 +94,12 @@ std::vector<const PreparedEstimator*> used_by(const std::vector<Question>& quest
   return used;
 }
 
-std::vector<const PreparedEstimator*> with_sweeps(std::vector<const PreparedEstimator*> estimators,
-                                                  const std::vector<Question>& questions,
-                                                  const std::vector<bool>& chosen) {
+/// The estimators, and those at the points of the chosen tests' sweeps.
+Estimators with_sweeps(Estimators estimators, const SuiteRun& run,
+                       const std::vector<bool>& chosen) {
   std::set<std::string> known;
-  for (std::size_t i = 0; i < questions.size(); ++i) {
-    for (const Subject& subject : questions[i].subjects) {
+  for (std::size_t i = 0; i < run.questions.size(); ++i) {
+    for (const Subject& subject : run.questions[i].subjects) {
       if (!chosen[i] || !subject.own || !known.insert(subject.own->name).second) continue;
       estimators.push_back(subject.own.get());
     }
@@ -109,35 +107,37 @@ std::vector<const PreparedEstimator*> with_sweeps(std::vector<const PreparedEsti
   return estimators;
 }
 
+PilotRun pilot_run(const SuiteRun& run, const std::vector<bool>& chosen,
+                   const RunOptions& options) {
+  return pilot_run_of(run.questions, chosen, run.seed, executor_of(options));
+}
+
 /// The pilots of a suite's estimators: first of pictures that are read row by row, then the others.
-Pilots piloted(const SuiteRun& run, const std::vector<Question>& questions,
-               const std::vector<bool>& chosen, std::vector<const PreparedEstimator*> used,
-               const RunOptions& options, Progress& progress) {
+Pilots piloted(const SuiteRun& run, const std::vector<bool>& chosen, const RunOptions& options,
+               Progress& progress) {
+  Estimators used = used_by(run, chosen, options);
   Pilots pilots;
-  for (const Question* const question : streamed(questions, chosen)) {
+  for (const Question* const question : streamed(run.questions, chosen)) {
     StreamedPictures taken = stream_pictures(*question, progress);
     stop_if_interrupted();
     if (taken.pilots.empty()) {
       require_memory(run.estimators, {}, available_bytes(), taken.fault);
-    }
-    if (!taken.pilots.empty()) {
+    } else {
       std::erase_if(
           used, [&](const PreparedEstimator* each) { return is_about(*question, each->listed); });
     }
     pilots.merge(std::move(taken.pilots));
   }
   if (used.empty()) return pilots;
-  pilots.merge(run_pilots(with_sweeps(used, questions, chosen),
-                          pilot_run_of(questions, chosen, run.seed, executor_of(options)),
-                          progress));
+  pilots.merge(run_pilots(with_sweeps(std::move(used), run, chosen),
+                          pilot_run(run, chosen, options), progress));
   return pilots;
 }
 
 /// The first of the streams that the suite's tests, selected or not, draw of an estimator.
-std::uint32_t first_copy(const std::vector<Question>& questions,
-                         const PreparedEstimator& estimator) {
+std::uint32_t first_copy(const SuiteRun& run, const PreparedEstimator& estimator) {
   std::optional<std::uint32_t> first;
-  for (const Question& question : questions) {
+  for (const Question& question : run.questions) {
     for (const Subject& subject : question.subjects) {
       if (subject.estimator != &estimator || !subject.purpose.empty()) continue;
       first = std::min(first.value_or(subject.copy), subject.copy);
@@ -146,9 +146,7 @@ std::uint32_t first_copy(const std::vector<Question>& questions,
   return first.value_or(0);
 }
 
-void plan_picture(SuiteRun& run, const std::vector<Question>& questions,
-                  const std::vector<const PreparedEstimator*>& used, const Primaries& primaries,
-                  const Pilots& pilots, Pools& pools) {
+void plan_picture(SuiteRun& run, const Estimators& used, const Primaries& primaries, Pools& pools) {
   for (const PreparedEstimator* estimator : used) {
     const auto found = primaries.find(estimator->name);
     const std::uint64_t automatic = !estimator->nature().averages ? 1
@@ -157,9 +155,9 @@ void plan_picture(SuiteRun& run, const std::vector<Question>& questions,
     const auto pool =
         pools.find_or_make({.estimator = estimator,
                             .setup = estimator->setup,
-                            .copy = first_copy(questions, *estimator),
+                            .copy = first_copy(run, *estimator),
                             .channels = {}},
-                           estimator->primaries.value_or(automatic), run.seed, pilots);
+                           estimator->primaries.value_or(automatic), run.seed, run.pilots);
     Picture picture{estimator, pool};
     if (shown_by(picture, run) == 0) {
       const bool image = estimator->setup->image().has_value();
@@ -186,10 +184,9 @@ Primaries plan_tests(SuiteRun& run, const RunOptions& options, Progress& progres
                 [&](const Untested& each) { return !selects(options.selection, *each.test); });
   const std::vector<Question>& questions = run.questions;
   const std::vector<bool> chosen = chosen_of(run, options);
-  if (std::none_of(chosen.begin(), chosen.end(), [](bool c) { return c; })) return {};
+  if (std::ranges::count(chosen, true) == 0) return {};
   const std::vector<FamilyPlace> place = places(run.suite, questions);
-  run.pilots =
-      piloted(run, questions, chosen, used_by(questions, chosen, run, options), options, progress);
+  run.pilots = piloted(run, chosen, options, progress);
   stop_if_interrupted();
   const Primaries primaries = choose_primaries(questions, place, run.pilots);
   for (std::size_t i = 0; i < questions.size(); ++i) {
@@ -213,8 +210,7 @@ void plan_pools(SuiteRun& run, const Primaries& primaries, const RunOptions& opt
   }
   std::vector<bool> chosen;
   for (const Question& each : run.questions) chosen.push_back(own.contains(each.test));
-  const auto used = used_by(run.questions, chosen, run, options);
-  plan_picture(run, run.questions, used, primaries, run.pilots, pools);
+  plan_picture(run, used_by(run, chosen, options), primaries, pools);
 }
 
 /// Why the suite's tests cannot run on this machine; "" if they can.
@@ -290,10 +286,6 @@ std::unique_ptr<SuiteRun> prepare_suite(const Suite& suite, const RunOptions& op
   return run;
 }
 
-}  // namespace
-
-namespace {
-
 using Missing = std::map<std::string, foreign::MissingFile>;  // by file
 
 /// Adds the missing files of the first `count` observations.
@@ -307,17 +299,29 @@ void add_missing(const Pool& pool, std::uint64_t count, Missing& missing) {
 
 Missing missing_in_pilots(const SuiteRun& run, const RunOptions& options) {
   const std::vector<bool> chosen = chosen_of(run, options);
-  const auto used =
-      with_sweeps(used_by(run.questions, chosen, run, options), run.questions, chosen);
+  const Estimators used = with_sweeps(used_by(run, chosen, options), run, chosen);
   Missing missing;
-  for (const auto& [name, pool] :
-       pilot_pools(used, pilot_run_of(run.questions, chosen, run.seed, executor_of(options)))) {
+  for (const auto& [name, pool] : pilot_pools(used, pilot_run(run, chosen, options))) {
     add_missing(*pool, pool->requested(), missing);
   }
   return missing;
 }
 
 }  // namespace
+
+std::uint64_t shown_by(const Picture& picture, const SuiteRun& run) {
+  if (picture.own) return *picture.own;
+  std::uint64_t most = 0;
+  for (const TestWork& work : run.tests) {
+    const std::vector<Subject>& subjects = work.outcome.question.subjects;
+    for (std::size_t i = 0; i < work.pools.size(); ++i) {
+      const bool its =
+          work.pools[i] == picture.pool && subjects[i].estimator->name == picture.estimator->name;
+      if (its) most = std::max(most, work.outcome.secondaries(i));
+    }
+  }
+  return most;
+}
 
 std::vector<foreign::MissingFile> missing_files(const std::vector<Suite>& suites,
                                                 const RunOptions& options, Progress& progress) {

@@ -1,17 +1,72 @@
 #pragma once
 
-// The common part of `run` and `plan`: suites prepared, piloted and planned, nothing sampled.
+// The suites of a run, and the common part of `run` and `plan`: suites are prepared, piloted and
+// planned, and nothing is sampled.
 
+#include <map>
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "estimators/rendered.h"
+#include "harness/pilot/pilot.h"
+#include "harness/run/evaluate.h"
 #include "harness/run/pools.h"
-#include "harness/run/suite_run.h"
 #include "harness/sampling/executor.h"
 #include "harness/suite/run_options.h"
 
 namespace assay::harness {
+
+struct Picture {
+  const PreparedEstimator* estimator;
+  std::shared_ptr<Pool> pool;
+  /// Observations drawn for the picture alone; nullopt: it shows those of the suite's tests.
+  std::optional<std::uint64_t> own = {};
+};
+
+/// A test without a question. It is skipped if a program that its suite needs is missing, and an
+/// error if a source cannot be prepared.
+struct Untested {
+  const TestEntry* test;
+  reports::Verdict verdict;
+  std::string message;
+};
+
+/// A selected test that another shard of the run takes.
+struct Elsewhere {
+  const TestEntry* test;
+  std::uint64_t shard;  ///< from 1
+};
+
+/// A suite in a run: its text, what was prepared from it, and its results.
+struct SuiteRun {
+  Suite suite;
+  std::uint64_t seed = 1;
+  std::map<std::string, PreparedEstimator> estimators;
+  std::vector<Question> questions = {};  ///< Questions of its tests, without untested ones.
+  Pilots pilots = {};                    ///< Pilots of the selected tests' estimators.
+  std::vector<TestWork> tests = {};      ///< The selected tests, in a shard its own.
+  std::vector<Untested> untested = {};   ///< Those of them without a question.
+  std::vector<Elsewhere> elsewhere = {};
+  std::vector<Picture> pictures = {};
+  bool adjusted = false;  ///< True if the whole family ran, so that its p-values are adjusted.
+};
+
+/// The number of observations that a picture shows: those of the test that drew most. It depends on
+/// the suite's tests alone.
+std::uint64_t shown_by(const Picture& picture, const SuiteRun& run);
+
+/// Leaves the planned tests of shard I of N, counted from 1; `elsewhere` names the others. Every
+/// shard draws the pilots of all selected tests and deals the tests in the same way, from the
+/// suites and the seed alone.
+///
+/// A test costs the expected observations of its streams, each by its rays and samples in the
+/// pilot. Tests of one stream share their observations: the longest prefix counts. The dearest test
+/// is dealt first (Graham 1969). It goes where it adds least, among the shards that stay near a
+/// fair part. If none does, it goes to the shard that has least to draw with it.
+void keep_shard(const std::vector<std::unique_ptr<SuiteRun>>& runs,
+                std::pair<unsigned, unsigned> shard);
 
 struct PlannedRun {
   std::vector<std::unique_ptr<SuiteRun>> suites;

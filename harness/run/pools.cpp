@@ -154,19 +154,16 @@ std::shared_ptr<Pool> Pools::for_subject(const Question& question, std::size_t s
                                          const Pilots& pilots) {
   const Subject& side = question.subjects[subject];
   const std::shared_ptr<Pool> pool = find_or_make(side, plan.primaries[subject], seed, pilots);
-  if (plan.method.keeps == Keeps::values || plan.method.keeps == Keeps::points) {
+  const std::uint64_t most = plan.most_secondaries();
+  const auto keep_values = [&](std::uint64_t count) {
     for (const std::size_t channel : side.channels) {
       std::uint64_t& keep = pool->plans()[channel].keep;
-      keep = std::max(keep, plan.most_secondaries());
+      keep = std::max(keep, count);
     }
-  }
-  if (plan.method.keeps == Keeps::images) pool->keep_observations(plan.most_secondaries());
-  if (shows_order(side)) {
-    for (const std::size_t channel : side.channels) {
-      std::uint64_t& keep = pool->plans()[channel].keep;
-      keep = std::max(keep, std::min(ordered_values, plan.most_secondaries()));
-    }
-  }
+  };
+  if (plan.method.keeps == Keeps::values || plan.method.keeps == Keeps::points) keep_values(most);
+  if (plan.method.keeps == Keeps::images) pool->keep_observations(most);
+  if (shows_order(side)) keep_values(std::min(ordered_values, most));
   // Keeps a mutant's first observations, which was_activated compares with its original's.
   if (side.estimator->original && side.purpose.empty()) pool->keep_observations(1);
   keep_for(plan.method, side, *pool);

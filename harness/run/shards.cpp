@@ -1,12 +1,10 @@
-#include "harness/run/shards.h"
-
 #include <algorithm>
 #include <map>
 #include <numeric>
 #include <tuple>
 
 #include "harness/plan/forecast.h"
-#include "harness/run/pools.h"
+#include "harness/run/planned_run.h"
 
 namespace assay::harness {
 namespace {
@@ -96,16 +94,9 @@ void keep_shard(const std::vector<std::unique_ptr<SuiteRun>>& runs,
       run->elsewhere.push_back({test, owner});
       return true;
     };
-    std::vector<TestWork> tests;
-    for (TestWork& work : run->tests) {
-      if (!is_elsewhere(work.outcome.question.test)) tests.push_back(std::move(work));
-    }
-    run->tests = std::move(tests);
-    std::vector<Untested> untested;
-    for (Untested& each : run->untested) {
-      if (!is_elsewhere(each.test)) untested.push_back(std::move(each));
-    }
-    run->untested = std::move(untested);
+    std::erase_if(run->tests,
+                  [&](const TestWork& work) { return is_elsewhere(work.outcome.question.test); });
+    std::erase_if(run->untested, [&](const Untested& each) { return is_elsewhere(each.test); });
   }
 }
 

@@ -10,31 +10,17 @@ namespace {
 
 constexpr std::uint64_t timed_primaries = 16384;
 
-struct Timed {
-  const Pool* of;
-  std::shared_ptr<Pool> pool;
-};
-
-class Timings {
- public:
-  void add(const Pool& pool, const PreparedEstimator& estimator, const std::string& purpose,
-           std::uint64_t seed) {
-    const auto same = [&](const Timed& timed) { return timed.of == &pool; };
-    if (pool.setup()->observations() || std::any_of(all_.begin(), all_.end(), same)) return;
-    const StreamKey key = key_of(estimator, seed, 0, purpose.empty() ? "cost" : purpose + "#cost");
-    all_.push_back({&pool, std::make_shared<Pool>(pool.setup(), key, pool.primaries())});
-    for (std::size_t i = 0; i < pool.plan().size(); ++i) {
-      all_.back().pool->plans()[i].cells = pool.plan()[i].cells;
-    }
-    const auto image = pool.setup()->image();
-    const std::uint64_t one = pool.primaries() * (image ? image->elements() : 1);
-    all_.back().pool->request(std::max<std::uint64_t>(1, timed_primaries / one));
+std::shared_ptr<Pool> timed_pool(const Pool& pool, const PreparedEstimator& estimator,
+                                 const std::string& purpose, std::uint64_t seed) {
+  const StreamKey key = key_of(estimator, seed, 0, purpose.empty() ? "cost" : purpose + "#cost");
+  auto timed = std::make_shared<Pool>(pool.setup(), key, pool.primaries());
+  for (std::size_t i = 0; i < pool.plan().size(); ++i) {
+    timed->plans()[i].cells = pool.plan()[i].cells;
   }
-  const std::vector<Timed>& all() const { return all_; }
-
- private:
-  std::vector<Timed> all_;
-};
+  const std::uint64_t one = primaries_of_observation(*pool.setup(), pool.primaries());
+  timed->request(std::max<std::uint64_t>(1, timed_primaries / one));
+  return timed;
+}
 
 UnitCost unit_cost(const Summary& summary) {
   const double n = static_cast<double>(summary.count);
@@ -56,8 +42,9 @@ const Summary* piloted(const Pool& pool, const PreparedEstimator& estimator,
 
 UnitCosts measure_costs(const PlannedRun& planned, const std::shared_ptr<Executor>& executor,
                         Progress& progress) {
-  Timings timings;
   UnitCosts costs;
+  std::vector<const Pool*> timed;
+  SomePools pools;
   for (const auto& run : planned.suites) {
     const auto add = [&](const Pool& pool, const PreparedEstimator& estimator,
                          const std::string& purpose) {
@@ -65,8 +52,9 @@ UnitCosts measure_costs(const PlannedRun& planned, const std::shared_ptr<Executo
         costs.emplace(&pool, unit_cost(*known));
       } else if (pool.fault()) {
         costs.emplace(&pool, *pool.fault());
-      } else {
-        timings.add(pool, estimator, purpose, run->seed);
+      } else if (!pool.setup()->observations() && !std::ranges::count(timed, &pool)) {
+        timed.push_back(&pool);
+        pools.push_back(timed_pool(pool, estimator, purpose, run->seed));
       }
     };
     for (const TestWork& work : run->tests) {
@@ -77,16 +65,14 @@ UnitCosts measure_costs(const PlannedRun& planned, const std::shared_ptr<Executo
     }
     for (const Picture& picture : run->pictures) add(*picture.pool, *picture.estimator, "");
   }
-  std::vector<std::shared_ptr<Pool>> pools;
-  for (const Timed& timed : timings.all()) pools.push_back(timed.pool);
   draw_all(pools, {.executor = executor, .phase = "costs"}, progress);
   stop_if_interrupted();
-  for (const Timed& timed : timings.all()) {
-    const Sample sample = timed.pool->sample(timed.pool->requested());
+  for (std::size_t i = 0; i < pools.size(); ++i) {
+    const Sample sample = pools[i]->sample(pools[i]->requested());
     if (sample.drawn() != nullptr) {
-      costs.emplace(timed.of, unit_cost(sample.drawn()->summary()));
+      costs.emplace(timed[i], unit_cost(sample.drawn()->summary()));
     } else {
-      costs.emplace(timed.of, *sample.fault());
+      costs.emplace(timed[i], *sample.fault());
     }
   }
   return costs;

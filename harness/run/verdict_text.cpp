@@ -8,9 +8,9 @@
 
 #include "harness/plan/gate_text.h"
 #include "harness/plan/independence.h"
+#include "harness/plan/looks.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/theta.h"
-#include "reports/words/effect.h"
 #include "reports/words/number.h"
 #include "reports/words/text.h"
 #include "stats/tails/tails.h"
@@ -78,17 +78,6 @@ double excluded_beyond(const ChannelOutcome& channel) {
       break;
   }
   return farther(low, high, channel.evidence);
-}
-
-/// A channel's index among the references; nullopt if channels have none.
-std::optional<std::size_t> reference_index(const TestOutcome& outcome,
-                                           const ChannelOutcome& channel) {
-  const Question& question = outcome.question;
-  if (question.references.size() != question.channel_count()) return {};
-  for (std::size_t i = 0; i < question.channel_count(); ++i) {
-    if (question.channel_name(i) == channel.name) return i;
-  }
-  return {};
 }
 
 /// A distance's interval reaches 0, unless even 0 is too large for these data.
@@ -216,10 +205,10 @@ Room room_of(const TestOutcome& outcome, const ChannelOutcome& channel) {
 
 /// The reference's standard error on theta's scale, which no number of samples reduces.
 double reference_error(const TestOutcome& outcome, const ChannelOutcome& channel) {
-  const auto index = reference_index(outcome, channel);
-  if (!index) return 0;
-  const Constant& reference = outcome.question.references[*index];
-  const bool relative = outcome.question.theta->is_relative(outcome.question, *index);
+  const Question& question = outcome.question;
+  if (question.references.size() != question.channel_count()) return 0;
+  const Constant& reference = question.references[channel.index];
+  const bool relative = question.theta->is_relative(question, channel.index);
   return reference.standard_error / (relative ? std::abs(reference.value) : 1);
 }
 

@@ -9,7 +9,7 @@
 #include "estimators/core/value.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/terminal.h"
-#include "harness/sampling/packed_block.h"
+#include "harness/sampling/packing.h"
 #include "reports/record/file.h"
 
 namespace assay::harness {
@@ -57,7 +57,7 @@ void Checkpoint::write() const {
   std::vector<std::pair<std::string, std::string>> entries(read_.begin(), read_.end());
   for (const auto& [recipe, pool] : pools_) {
     if (pool->drawn() == 0 || pool->fault()) continue;
-    entries.emplace_back(recipe, packed_block(pool->drawn_parts()));
+    entries.emplace_back(recipe, packed_block(pool->drawn_block()));
   }
   reports::write_whole(file_, packed(identity_, entries));
 }

@@ -16,16 +16,23 @@
 
 namespace assay::harness {
 
+/// Extremes over some elements.
+struct Extremes {
+  double minimum = std::numeric_limits<double>::infinity();
+  double maximum = -std::numeric_limits<double>::infinity();
+  std::uint64_t nonzero = 0;  ///< values that are not zero
+
+  void merge(const Extremes& other);
+};
+
 /// The moments of every element that maps show. All values are finite.
 struct ElementSums {
   std::uint64_t count = 0;  ///< number of pictures
   std::vector<double> mean = {};
   std::vector<double> m2 = {};
-  stats::Moments first = {};                                 ///< all moments of the first element
-  stats::Moments average = {};                               ///< moments of the pictures' averages
-  double minimum = std::numeric_limits<double>::infinity();  ///< over all elements
-  double maximum = -std::numeric_limits<double>::infinity();
-  std::uint64_t nonzero = 0;  ///< values, over all elements
+  stats::Moments first = {};    ///< all moments of the first element
+  stats::Moments average = {};  ///< moments of the pictures' averages
+  Extremes extremes = {};
 
   /// The moments of an element, or of the average, which follows the elements.
   stats::Moments moments(std::size_t channel) const;

@@ -2,10 +2,13 @@
 
 // Plain data between processes of one version of Assay. Numbers go by their bits, lists after their
 // lengths. A frame around the data tells their format and byte order, and ends with a checksum.
+//
+// A recipe lets another process draw blocks of a pool. It returns them as plain data.
 
 #include <concepts>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -13,6 +16,8 @@
 #include <type_traits>
 #include <utility>
 #include <vector>
+
+#include "harness/sampling/pool.h"
 
 namespace assay::harness {
 
@@ -178,5 +183,25 @@ void unpack(std::string_view frame, T&... values) {
   unpacker(values...);
   unpacker.end();
 }
+
+template <class Archive, maybe_const<ChannelPlan> T>
+void parts(Archive& a, T& plan) {
+  a(plan.histogram_low, plan.histogram_high, plan.keep, plan.cells, plan.powers);
+}
+
+template <class Archive, maybe_const<Recipe> T>
+void parts(Archive& a, T& recipe) {
+  a(recipe.key.bits, recipe.primaries, recipe.plan, recipe.grouped_channels,
+    recipe.kept_observations, recipe.marks);
+}
+
+/// A pool that draws by the recipe. Throws Unpackable if the set-up cannot.
+Pool pool_of(const Recipe& recipe, std::shared_ptr<const Setup> setup);
+
+/// Packs a block that was drawn, or all that a pool has drawn.
+std::string packed_block(const Pool::Block& block);
+/// Reads it as a block of the pool that begins at observation `first`. Throws Unpackable unless it
+/// has the shape that the pool's plan says, so that it can be folded.
+Pool::Block unpacked_block(std::string_view frame, const Pool& pool, std::uint64_t first);
 
 }  // namespace assay::harness

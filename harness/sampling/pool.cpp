@@ -2,18 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <iterator>
-#include <limits>
+#include <new>
 #include <stdexcept>
 
 #include "estimators/core/flush_denormals.h"
+#include "estimators/core/value.h"
 #include "estimators/ready_made.h"
 #include "harness/base/parallel.h"
-#include "harness/sampling/group_variance.h"
-#include "harness/sampling/kept_sums.h"
 #include "harness/sampling/recorded_run.h"
 #include "stats/gates/independence_gates.h"
 
@@ -104,6 +102,49 @@ class Intake {
 
 }  // namespace
 
+std::string sentence_of(const Fault& fault, const std::string& estimator, const std::string& when) {
+  const std::string at =
+      fault.observation ? fmt::format(" at observation {}", *fault.observation) : "";
+  return fmt::format("`{}` stopped{}{}: {}", estimator, when, at, fault.words);
+}
+
+std::string words_of(const std::exception_ptr& thrown) {
+  try {
+    std::rethrow_exception(thrown);
+  } catch (const InputError& error) {
+    const std::string place = assay::to_string(error.where());
+    return place.empty() ? error.message() : place + ": " + error.message();
+  } catch (const std::bad_alloc&) {
+    return "there is not enough memory (std::bad_alloc)";
+  } catch (const std::exception& error) {
+    const std::string words = error.what();
+    return words.empty() ? "it threw an exception without words" : words;
+  } catch (...) {
+    return "it threw something that is no std::exception";
+  }
+}
+
+std::span<const double> Drawn::values(std::size_t channel) const {
+  if (pool_->is_ready_made() || pool_->values_.empty()) return {};
+  const std::vector<double>& kept = pool_->values_.at(channel);
+  return {kept.data(), std::min<std::size_t>(kept.size(), count_)};
+}
+
+const std::vector<stats::Gate>& Drawn::order_gates(std::size_t channel) const {
+  std::span<const double> first = values(channel);
+  first = first.first(std::min<std::size_t>(first.size(), ordered_values));
+  const auto [found, added] = pool_->order_gates_.try_emplace({channel, first.size()});
+  const auto is_finite = [](double value) { return std::isfinite(value); };
+  if (added && std::ranges::all_of(first, is_finite)) {
+    found->second = stats::drawn_order_gates(first);
+  }
+  return found->second;
+}
+
+Observations Drawn::observations(std::uint64_t most) const {
+  return pool_->all_kept().range(0, std::min(count_, most));
+}
+
 std::uint64_t most_kept(std::span<const ChannelPlan> plan) {
   std::uint64_t most = 0;
   for (const ChannelPlan& channel : plan) most = std::max(most, channel.keep);
@@ -160,26 +201,6 @@ double Pool::seconds() const {
   return beyond == prefixes_.begin() ? 0 : std::prev(beyond)->second->seconds;
 }
 
-std::span<const double> Pool::values(std::size_t channel, std::uint64_t count) const {
-  if (is_ready_made()) return {};
-  if (values_.empty()) return {};
-  const std::vector<double>& kept = values_.at(channel);
-  return {kept.data(), std::min<std::size_t>(kept.size(), count)};
-}
-
-const std::vector<stats::Gate>& Pool::order_gates(std::size_t channel, std::uint64_t count) const {
-  std::span<const double> first = values(channel, count);
-  first = first.first(std::min<std::size_t>(first.size(), ordered_values));
-  const auto [found, added] = order_gates_.try_emplace({channel, first.size()});
-  const auto is_finite = [](double value) { return std::isfinite(value); };
-  if (added && std::ranges::all_of(first, is_finite)) {
-    found->second = stats::drawn_order_gates(first);
-  }
-  return found->second;
-}
-
-Observations Pool::observations(std::uint64_t count) const { return all_kept().range(0, count); }
-
 std::uint64_t Pool::block_end(std::uint64_t first) const {
   return std::min(
       {first + block_size_, most_marked(), setup_->observations().value_or(most_observations)});
@@ -188,7 +209,7 @@ std::uint64_t Pool::block_end(std::uint64_t first) const {
 /// Reads a picture to where it is kept.
 void Pool::keep_picture(Estimator& estimator, std::uint64_t index, Block& block) const {
   const std::size_t elements = channels_ - 1;
-  KeptObservations& kept = block.observations;
+  KeptObservations& kept = *block.observations;
   if (kept.texels.empty()) {
     kept.texels.push_back(std::make_unique_for_overwrite<float[]>(block.size * elements));
   }
@@ -216,9 +237,9 @@ std::span<const double> Pool::observe(Estimator& estimator, std::uint64_t index,
   } else {
     Stream random(key_, index);
     estimator.secondary(random, primaries_, out, block.whole.cost);
-    if (kept) drawn = block.observations.values.emplace_back(out.begin(), out.end());
+    if (kept) drawn = block.observations->values.emplace_back(out.begin(), out.end());
   }
-  if (kept) block.observations.costs.push_back(block.whole.cost - before);
+  if (kept) block.observations->costs.push_back(block.whole.cost - before);
   return drawn;
 }
 
@@ -227,9 +248,6 @@ Pool::Block Pool::draw(const std::function<Estimator&()>& estimator, std::uint64
   const std::uint64_t values_kept = sums_later_ ? 0 : most_kept(plan_);
   Block block{.whole = no_sums(),
               .values = std::vector<std::vector<double>>(values_kept > 0 ? channels_ : 0),
-              .observations = {},
-              .partial = {},
-              .fault = {},
               .size = last - first};
   std::vector<double> unsummed(sums_later_ && !recorded::unknown_channels(*setup_) ? channels_ : 0);
   Intake intake(block.whole.channels);
@@ -264,8 +282,9 @@ Pool::Block Pool::draw(const std::function<Estimator&()>& estimator, std::uint64
       ++block.whole.count;
       if (mark != prefixes_.end() && index + 1 == mark->first) {
         intake.take_waiting();
-        block.partial.emplace_back(mark->first, block.whole);
-        block.partial.back().second.seconds = seconds() - start;
+        auto partial = std::make_shared<Summary>(block.whole);
+        partial->seconds = seconds() - start;
+        block.partial.emplace_back(mark->first, std::move(partial));
         ++mark;
       }
     }
@@ -282,7 +301,7 @@ std::shared_ptr<const Summary> Pool::sums_of_first(std::uint64_t count, const Su
   const auto shared = all_kept().sums.find(count);
   if (shared != all_kept().sums.end()) return shared->second;
   auto summed = std::make_shared<Summary>(drawn);
-  summed->channels = sums_of_kept(observations(count));
+  summed->channels = sums_of_kept(all_kept().range(0, count));
   if (!known_) kept_->sums[count] = summed;
   return summed;
 }
@@ -356,18 +375,12 @@ bool Pool::can_be_drawn_elsewhere() const {
          !recorded::unknown_channels(*setup_) && !recorded::keeps_files(*setup_);
 }
 
-Pool::BlockParts Pool::parts_of(const Block& block) {
-  BlockParts parts{block.whole, block.values, block.observations, block.fault};
-  for (const auto& [count, sums] : block.partial) parts.partial.emplace_back(count, &sums);
-  return parts;
-}
-
-Pool::BlockParts Pool::drawn_parts() const {
-  BlockParts parts{running_, values_, *kept_, fault_};
+Pool::Block Pool::drawn_block() const {
+  Block block{.whole = running_, .values = values_, .observations = kept_, .fault = fault_};
   for (const auto& [count, sums] : prefixes_) {
-    if (count > 0 && count <= drawn()) parts.partial.emplace_back(count, sums.get());
+    if (count > 0 && count <= drawn()) block.partial.emplace_back(count, sums);
   }
-  return parts;
+  return block;
 }
 
 void Pool::keep_block(const Summary& block, std::uint64_t first) {
@@ -381,15 +394,14 @@ void Pool::keep_block(const Summary& block, std::uint64_t first) {
 }
 
 void Pool::fold(Block&& block) {
-  if (!started_) {
+  if (drawn() == 0) {
     running_ = no_sums();
     if (most_kept(plan_) > 0 && !sums_later_) values_.resize(channels_);
-    started_ = true;
   }
   if (fault_) return;
   for (auto& [count, partial] : block.partial) {
     auto prefix = std::make_shared<Summary>(running_);
-    prefix->append(partial);
+    prefix->append(*partial);
     prefixes_.at(count) = std::move(prefix);
   }
   const std::uint64_t before = running_.count;
@@ -397,7 +409,7 @@ void Pool::fold(Block&& block) {
   for (std::size_t c = 0; c < values_.size(); ++c) {
     values_[c].insert(values_[c].end(), block.values[c].begin(), block.values[c].end());
   }
-  kept_->append(std::move(block.observations));
+  kept_->append(std::move(*block.observations));
   if (keeps_blocks_) keep_block(block.whole, before);
   fault_ = std::move(block.fault);
 }

@@ -5,21 +5,47 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <exception>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "estimators/cost.h"
 #include "estimators/estimator.h"
 #include "harness/sampling/image_views.h"
-#include "harness/sampling/sample.h"
 #include "harness/sampling/summary.h"
+#include "stats/basics/moments.h"
+#include "stats/gates/assumption_gates.h"
 
 namespace assay::harness {
+
+/// The reason why a source yields no more numbers: it threw something.
+struct Fault {
+  std::optional<std::uint64_t> observation = {};  ///< The observation that could not be drawn, if
+                                                  ///< drawing began.
+  std::string words = "";                         ///< In the source's own words.
+};
+
+/// "`darts` stopped in the pilot at observation 17: the lamp burnt out" with `when` " in the
+/// pilot".
+std::string sentence_of(const Fault& fault, const std::string& estimator,
+                        const std::string& when = "");
+
+/// The words of an exception, never empty. An InputError's place stands before them.
+std::string words_of(const std::exception_ptr& thrown);
+
+struct BlockSums {
+  std::uint64_t count = 0;
+  std::vector<stats::Moments> channels = {};
+  double seconds = 0;
+};
 
 struct KeptObservations {
   std::vector<std::vector<double>> values = {};       ///< as they were drawn; empty for pictures
@@ -61,6 +87,8 @@ struct Recipe {
 
 /// Channels keep values of observations below it.
 std::uint64_t most_kept(std::span<const ChannelPlan> plan);
+
+class Sample;
 
 class Pool {
  public:
@@ -128,22 +156,13 @@ class Pool {
   struct Block {
     Summary whole;
     std::vector<std::vector<double>> values = {};  ///< of each channel, if kept
-    KeptObservations observations = {};            ///< if kept
-    std::vector<std::pair<std::uint64_t, Summary>> partial = {};
+    std::shared_ptr<KeptObservations> observations = std::make_shared<KeptObservations>();
+    std::vector<std::pair<std::uint64_t, std::shared_ptr<const Summary>>> partial = {};
     std::optional<Fault> fault = {};
     std::uint64_t size = 0;  ///< observations when complete
   };
-  /// A block consists of these.
-  struct BlockParts {
-    const Summary& whole;
-    const std::vector<std::vector<double>>& values;
-    const KeptObservations& observations;
-    const std::optional<Fault>& fault;
-    std::vector<std::pair<std::uint64_t, const Summary*>> partial = {};
-  };
-  static BlockParts parts_of(const Block& block);
   /// All that is drawn, as one block.
-  BlockParts drawn_parts() const;
+  Block drawn_block() const;
   /// Draws observations [first, last) of one block with a worker's estimator, made if needed.
   /// Thread-safe. An exception of the source becomes the block's fault.
   Block draw(const std::function<Estimator&()>& estimator, std::uint64_t first,
@@ -151,7 +170,7 @@ class Pool {
   /// Adds the next block, in order.
   void fold(Block&& block);
   /// Call it on one thread after the last block of a round. Pictures of files are summed here over
-  /// all of them, element by element (kept_sums.h).
+  /// all of them, element by element (sums_of_kept).
   void end_drawing();
   std::uint64_t drawn() const { return running_.count; }
   /// True for moments of an earlier run: nothing is drawn, and every prefix is the whole.
@@ -168,10 +187,6 @@ class Pool {
   bool sums_later_;
   std::vector<ChannelPlan> plan_;
   friend class Drawn;
-  std::span<const double> values(std::size_t channel, std::uint64_t count) const;
-  const std::vector<stats::Gate>& order_gates(std::size_t channel, std::uint64_t count) const;
-  Observations observations(std::uint64_t count) const;
-  std::span<const BlockSums> blocks() const { return blocks_; }
 
   Summary no_sums() const;
   const KeptObservations& all_kept() const { return known_ ? *known_ : *kept_; }
@@ -196,8 +211,48 @@ class Pool {
   std::uint64_t values_taken_ = 0;  ///< kept observations copied to `values_`
   bool keeps_blocks_ = false;
   std::vector<BlockSums> blocks_;
-  bool started_ = false;
   std::optional<Fault> fault_;
+};
+
+/// The observations of a pool up to a mark, all drawn. The pool must outlive it.
+class Drawn {
+ public:
+  const Pool& pool() const { return *pool_; }
+  const Summary& summary() const { return *summary_; }
+  std::shared_ptr<const Summary> shared_summary() const { return summary_; }
+  /// The kept values of a channel.
+  std::span<const double> values(std::size_t channel) const;
+  /// Gates on the order of a channel's first kept values (stats::drawn_order_gates). Values that
+  /// are not finite have no order.
+  const std::vector<stats::Gate>& order_gates(std::size_t channel) const;
+  /// The first kept observations, at most `most`, with all channels.
+  Observations observations(std::uint64_t most = std::numeric_limits<std::uint64_t>::max()) const;
+  /// All blocks drawn so far, also of later observations, if the pool keeps them.
+  std::span<const BlockSums> blocks() const { return pool_->blocks_; }
+
+ private:
+  friend class Pool;
+  Drawn(const Pool& pool, std::uint64_t count, std::shared_ptr<const Summary> summary)
+      : pool_(&pool), count_(count), summary_(std::move(summary)) {}
+
+  const Pool* pool_;
+  std::uint64_t count_;
+  std::shared_ptr<const Summary> summary_;
+};
+
+/// Drawn observations, or the fault that prevented them.
+class Sample {
+ public:
+  Sample(Drawn drawn) : either_(std::move(drawn)) {}  // NOLINT: converts on purpose
+  Sample(Fault fault) : either_(std::move(fault)) {}  // NOLINT: converts on purpose
+
+  /// Null if there is a fault.
+  const Drawn* drawn() const { return std::get_if<Drawn>(&either_); }
+  /// Null if all was drawn.
+  const Fault* fault() const { return std::get_if<Fault>(&either_); }
+
+ private:
+  std::variant<Drawn, Fault> either_;
 };
 
 std::vector<double> draw_observation(const Setup& setup, StreamKey key, std::uint64_t primaries,

@@ -11,6 +11,15 @@
 namespace assay::harness {
 namespace {
 
+/// The parameters on which an estimator's streams depend.
+std::vector<std::string> parameter_names(const Information& information) {
+  std::vector<std::string> names;
+  for (const ParameterInformation& parameter : information.parameters) {
+    if (parameter.shapes_draws) names.push_back(parameter.name);
+  }
+  return names;
+}
+
 std::shared_ptr<const Setup> set_up(const Entry& entry, Parameters& parameters) {
   const bool of_run = entry.information.name == "recorded" && parameters.given("run");
   std::shared_ptr<const Setup> setup =
@@ -23,9 +32,9 @@ std::shared_ptr<const Setup> set_up(const Entry& entry, Parameters& parameters) 
 /// The members of a mutant's parameters that its original knows.
 Value only(const Value& given, const std::vector<std::string>& names) {
   std::vector<Value::Member> kept;
-  for (const Value::Member& member : given.members()) {
-    if (std::find(names.begin(), names.end(), member.first) != names.end()) kept.push_back(member);
-  }
+  std::ranges::copy_if(given.members(), std::back_inserter(kept), [&](const auto& member) {
+    return std::ranges::count(names, member.first) > 0;
+  });
   return Value::map(std::move(kept), given.where());
 }
 
@@ -45,14 +54,6 @@ void use_recorded_run(const RecordedRun& run, PreparedEstimator& prepared) {
 Nature PreparedEstimator::nature() const {
   return setup->nature().value_or(
       Nature{.averages = entry->information.averages, .bias = entry->information.bias});
-}
-
-std::vector<std::string> parameter_names(const Information& information) {
-  std::vector<std::string> names;
-  for (const ParameterInformation& parameter : information.parameters) {
-    if (parameter.shapes_draws) names.push_back(parameter.name);
-  }
-  return names;
 }
 
 PreparedEstimator prepare(const EstimatorEntry& entry, const std::string& folder) {

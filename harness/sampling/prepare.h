@@ -31,9 +31,6 @@ struct PreparedEstimator {
   Nature nature() const;
 };
 
-/// The parameters on which an estimator's streams depend.
-std::vector<std::string> parameter_names(const Information&);
-
 /// InputError with plugin, parameter and place for anything that a plugin refuses.
 PreparedEstimator prepare(const EstimatorEntry& entry, const std::string& folder);
 

@@ -4,46 +4,40 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 #include <stdexcept>
 #include <tuple>
 
 #include "estimators/catalogue.h"
 #include "harness/base/record_file.h"
-#include "harness/sampling/prepare.h"
 #include "harness/suite/suite.h"
 #include "harness/suite/yaml.h"
-#include "reports/formats/read_json.h"
+#include "reports/report_formats.h"
 
 namespace assay::harness {
 namespace {
 
-struct Kept {
-  std::vector<const reports::Sample*> channels = {};
+/// The samples of a test that are kept, each of another channel.
+using Kept = std::vector<const reports::Sample*>;
 
-  auto worth() const {
-    return std::tuple(channels.size(), !channels[0]->with_cost.empty(), channels[0]->secondaries);
-  }
-};
+auto worth(const Kept& kept) {
+  return std::tuple(kept.size(), !kept[0]->with_cost.empty(), kept[0]->secondaries);
+}
 
-/// The samples of the estimator in a test. nullopt for a test of something else. Also nullopt if
-/// two sources share a name and cannot be told apart.
-std::optional<Kept> kept_in(const reports::Test& test, const std::string& estimator) {
-  if (!test.over.empty() || test.image) return std::nullopt;
+/// The samples of the estimator in a test. None for a test of something else, and if two sources
+/// share a name and cannot be told apart.
+Kept kept_in(const reports::Test& test, const std::string& estimator) {
+  if (!test.over.empty() || test.image) return {};
   const Claim claim = parse_claim(test.claim, {.file = test.file});
-  const std::vector<Source> sources = sources_of(claim);
-  const auto named = [&](const Source& source) { return source.estimator == estimator; };
-  if (!claim.left.row->told_by_moments || claim.left.slope) return std::nullopt;
-  if (std::count_if(sources.begin(), sources.end(), named) != 1) return std::nullopt;
+  if (!claim.left.row->told_by_moments || claim.left.slope) return {};
+  if (std::ranges::count(sources_of(claim), estimator, &Source::estimator) != 1) return {};
   Kept kept;
   std::set<std::string> channels;
   for (const reports::Sample& sample : test.samples) {
     if (sample.estimator != estimator) continue;
-    if (sample.nonfinite > 0 || !sample.mean || !sample.variance) return std::nullopt;
-    if (channels.insert(sample.channel).second) kept.channels.push_back(&sample);
+    if (sample.nonfinite > 0 || !sample.mean || !sample.variance) return {};
+    if (channels.insert(sample.channel).second) kept.push_back(&sample);
   }
-  if (kept.channels.empty()) return std::nullopt;
   return kept;
 }
 
@@ -89,13 +83,13 @@ std::optional<stats::JointMoments> joint_of(const reports::Sample& sample, Count
 }
 
 RecordedRun::Contents contents_of(const Kept& kept, const reports::Suite& suite) {
-  const reports::Sample& first = *kept.channels[0];
+  const reports::Sample& first = *kept[0];
   RecordedRun::Contents contents{.primaries = first.primaries};
   contents.knows_cost.fill(true);
   contents.summary.count = first.secondaries;
   contents.summary.cost = cost_of(first.cost);
   contents.summary.seconds = first.cost.seconds;
-  for (const reports::Sample* sample : kept.channels) {
+  for (const reports::Sample* sample : kept) {
     contents.channels.push_back(sample->channel);
     ChannelSummary& channel = contents.summary.channels.emplace_back();
     channel.moments = moments_of(*sample);
@@ -183,29 +177,29 @@ std::shared_ptr<const RecordedRun> read_recorded_run(Parameters& parameters) {
   }
   const reports::Record record = read(parameters);
   const std::string name = wanted_estimator(parameters, names_in(record));
-  std::optional<Kept> best;
+  Kept best;
   const reports::Suite* of = nullptr;
   for (const reports::Suite& suite : record.suites) {
     for (const reports::Test& test : suite.tests) {
-      std::optional<Kept> kept = kept_in(test, name);
-      if (!kept) continue;
+      Kept kept = kept_in(test, name);
+      if (kept.empty()) continue;
       if (of != nullptr && of != &suite) {
         parameters.refuse("estimator", fmt::format("`{}` stands in two suites of the run, `{}` and "
                                                    "`{}`; record them apart",
                                                    name, of->name, suite.name));
       }
       of = &suite;
-      if (!best || best->worth() < kept->worth()) best = std::move(kept);
+      if (best.empty() || worth(best) < worth(kept)) best = std::move(kept);
     }
   }
-  if (!best) {
+  if (best.empty()) {
     parameters.refuse(
         "estimator", fmt::format("`{}` has no moments in the run: they are kept by tests of a "
                                  "claim on its mean, variance, cost or efficiency, unless it is an "
                                  "image or not all its values were finite",
                                  name));
   }
-  RecordedRun::Contents contents = contents_of(*best, *of);
+  RecordedRun::Contents contents = contents_of(best, *of);
   contents.file = parameters.file("run");
   return std::make_shared<const RecordedRun>(std::move(contents));
 }

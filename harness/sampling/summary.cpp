@@ -1,16 +1,15 @@
 #include "harness/sampling/summary.h"
 
+#include <fmt/format.h>
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <stdexcept>
 
+#include "stats/images/image_moments.h"
+
 namespace assay::harness {
-
-void Histogram::merge(const Histogram& other) {
-  for (std::size_t bin = 0; bin < counts.size(); ++bin) counts[bin] += other.counts[bin];
-  below += other.below;
-  above += other.above;
-}
-
 namespace {
 
 void count_in(std::vector<std::uint64_t>& cells, double cell) {
@@ -20,7 +19,114 @@ void count_in(std::vector<std::uint64_t>& cells, double cell) {
   ++cells[static_cast<std::size_t>(cell)];
 }
 
+void merge(ChannelDetails& ours, const ChannelDetails& theirs) {
+  ours.histogram.merge(theirs.histogram);
+  for (std::size_t cell = 0; cell < ours.cells.size(); ++cell) {
+    ours.cells[cell] += theirs.cells[cell];
+  }
+  for (std::size_t k = 0; k < ours.joint.size(); ++k) ours.joint[k].merge(theirs.joint[k]);
+}
+
+/// A quick test that settles nearly all of an image's millions of elements.
+bool are_ordinary(const stats::Moments& moments) {
+  return moments.m2 > 1e-60 && moments.m2 < 1e60 && std::abs(moments.m3) < 1e90 &&
+         moments.m4 > 1e-120 && moments.m4 < 1e120;
+}
+
+// Denormal numbers have lost their digits.
+constexpr double least =
+    std::numeric_limits<double>::min() / std::numeric_limits<double>::epsilon();
+
+std::string refusal(const std::string& name, double spread, const char* power) {
+  return fmt::format(
+      "the observations of `{}` spread over {:.3g}, whose {} power is beyond the numbers that "
+      "a computer holds; give them in another unit",
+      name, spread, power);
+}
+
+constexpr std::size_t channels_at_a_time = 4096;
+
+/// Adds values one by one, as elsewhere; non-finite ones are counted apart.
+template <class Real>
+ChannelSummary one_by_one(const stats::ImageStack<Real>& stack, std::size_t channel) {
+  ChannelSummary summary;
+  for (std::size_t i = 0; i < stack.images.size(); ++i) {
+    add_observation(summary, *stack.at(i, channel), i);
+  }
+  return summary;
+}
+
+template <class Real>
+void take(const stats::ImageStack<Real>& stack, std::size_t first, std::span<ChannelSummary> out) {
+  std::vector<stats::Moments> moments(out.size());
+  stats::element_moments(stack, first, moments);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (std::isfinite(moments[i].m2)) {
+      out[i].moments = moments[i];
+    } else {
+      out[i] = one_by_one(stack, first + i);
+    }
+  }
+}
+
+/// Sums of a range of the elements.
+template <class Real>
+void take_all(const stats::ImageStack<Real>& stack, stats::ElementRange range,
+              std::span<ChannelSummary> out) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(range.first, range.last, channels_at_a_time),
+                    [&](const tbb::blocked_range<std::size_t>& some) {
+                      take(stack, some.begin(),
+                           out.subspan(some.begin() - range.first, some.size()));
+                    });
+}
+
+std::vector<ChannelSummary> sums_of(std::span<const std::vector<double>> observations) {
+  const std::size_t channels = observations.front().size();
+  std::vector<ChannelSummary> sums(channels);
+  take_all<double>({{.width = channels, .height = 1}, {observations.begin(), observations.end()}},
+                   {0, channels}, sums);
+  return sums;
+}
+
+std::vector<double> averages_of(std::span<const std::span<const float>> pictures) {
+  constexpr std::size_t at_a_time = 8;
+  const std::size_t elements = pictures.front().size();
+  std::vector<double> averages(pictures.size());
+  tbb::parallel_for(std::size_t{0}, pictures.size(), at_a_time, [&](std::size_t first) {
+    const auto some = pictures.subspan(first, std::min(at_a_time, pictures.size() - first));
+    const std::vector<double> sums = stats::image_sums(
+        stats::ImageStack<float>{{.width = elements, .height = 1}, {some.begin(), some.end()}});
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      averages[first + i] = sums[i] / static_cast<double>(elements);
+    }
+  });
+  return averages;
+}
+
+ChannelSummary sum_of(std::span<const double> averages) {
+  stats::ImageStack<double> stack{{.width = 1, .height = 1}, {}};
+  for (const double& average : averages) stack.images.emplace_back(&average, 1);
+  ChannelSummary sum;
+  take(stack, 0, {&sum, 1});
+  return sum;
+}
+
+std::vector<ChannelSummary> sums_of(std::span<const std::span<const float>> pictures) {
+  const std::size_t elements = pictures.front().size();
+  std::vector<ChannelSummary> sums(elements + 1);
+  take_all<float>({{.width = elements, .height = 1}, {pictures.begin(), pictures.end()}},
+                  {0, elements}, sums);
+  sums.back() = sum_of(averages_of(pictures));
+  return sums;
+}
+
 }  // namespace
+
+void Histogram::merge(const Histogram& other) {
+  for (std::size_t bin = 0; bin < counts.size(); ++bin) counts[bin] += other.counts[bin];
+  below += other.below;
+  above += other.above;
+}
 
 void add_details(ChannelDetails& details, double value, const ObservationCost& cost) {
   if (!details.histogram.counts.empty()) details.histogram.add(value);
@@ -51,18 +157,6 @@ Summary::Summary(std::size_t count_of_channels, std::span<const ChannelPlan> pla
   }
 }
 
-namespace {
-
-void merge(ChannelDetails& ours, const ChannelDetails& theirs) {
-  ours.histogram.merge(theirs.histogram);
-  for (std::size_t cell = 0; cell < ours.cells.size(); ++cell) {
-    ours.cells[cell] += theirs.cells[cell];
-  }
-  for (std::size_t k = 0; k < ours.joint.size(); ++k) ours.joint[k].merge(theirs.joint[k]);
-}
-
-}  // namespace
-
 void Summary::append(const Summary& next) {
   count += next.count;
   group_variances.merge(next.group_variances);
@@ -76,6 +170,29 @@ void Summary::append(const Summary& next) {
     ours.nonfinite += theirs.nonfinite;
     ours.first_nonfinite = std::min(ours.first_nonfinite, theirs.first_nonfinite);
   }
+}
+
+std::string beyond_doubles(const stats::JointMoments& powers, const std::string& name) {
+  const double highest = powers.sum(powers.known, 0);
+  const bool sound = highest > least && std::ranges::all_of(powers.sums, [](double sum) {
+                       return std::isfinite(sum);
+                     });
+  if (sound) return "";
+  return refusal(name, powers.of_x.maximum - powers.of_x.minimum, "eighth");
+}
+
+std::string beyond_doubles(const stats::Moments& moments, const std::string& name) {
+  if (moments.count < 2 || are_ordinary(moments)) return "";
+  const double spread = moments.maximum - moments.minimum;
+  const bool sound = moments.m2 * moments.m2 > least && std::isfinite(moments.m2) &&
+                     std::isfinite(moments.m4) && moments.m4 > least &&
+                     std::isfinite(moments.skewness()) && std::isfinite(moments.kurtosis());
+  if (sound) return "";
+  return refusal(name, spread, "fourth");
+}
+
+std::vector<ChannelSummary> sums_of_kept(const Observations& observations) {
+  return std::visit([](const auto& each) { return sums_of(each); }, observations);
 }
 
 }  // namespace assay::harness

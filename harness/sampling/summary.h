@@ -4,15 +4,19 @@
 // fixed size.
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "estimators/cost.h"
 #include "harness/sampling/element_sums.h"
+#include "harness/sampling/image_views.h"
 #include "reports/record/record.h"
 #include "stats/basics/joint_moments.h"
 #include "stats/basics/moments.h"
@@ -145,5 +149,57 @@ inline void add_observation(ChannelSummary& summary, double value, std::uint64_t
     if (summary.rare) add_details(summary.rare.made(), value, cost);
   }
 }
+
+/// An error message if the powers of what `name` drew cannot be computed with, else "".
+std::string beyond_doubles(const stats::JointMoments& powers, const std::string& name);
+
+/// An error message if moments of `name` cannot be computed with, else "". The fourth power of the
+/// spread may overflow, or underflow to nothing. The observations must not all be equal.
+std::string beyond_doubles(const stats::Moments& moments, const std::string& name);
+
+/// The summary of every channel over the observations, at least one; for pictures also of their
+/// average. It has moments of the finite values. It works on all threads of the caller's arena and
+/// gives the same bits for any number of threads.
+std::vector<ChannelSummary> sums_of_kept(const Observations& observations);
+
+/// Observations of a group (GroupVariance). Block sizes are multiples of it, so that no group spans
+/// two blocks.
+inline constexpr std::uint64_t variance_group = 8;
+
+/// Turns the variances of several channels, added, into observations. The value of a group is the
+/// sum over the channels of its sample variance. Groups are independent, and their expectation is
+/// exactly the total variance, whatever the covariance. Their mean and standard error need no
+/// covariance matrix, second pass or pilot mean. The price is one degree of freedom in 8.
+class GroupVariance {
+ public:
+  /// No channels: computes nothing.
+  explicit GroupVariance(std::vector<std::size_t> channels)
+      : channels_(std::move(channels)), means_(channels_.size()) {}
+
+  /// Takes the next observation. Returns the group's value if it is complete and all its values are
+  /// finite.
+  std::optional<double> add(std::span<const double> values) {
+    if (channels_.empty()) return {};
+    ++count_;
+    for (std::size_t i = 0; i < channels_.size(); ++i) {
+      const double delta = values[channels_[i]] - means_[i];
+      means_[i] += delta / static_cast<double>(count_);
+      squares_ += delta * (values[channels_[i]] - means_[i]);
+    }
+    if (count_ < variance_group) return {};
+    const double total = squares_ / static_cast<double>(variance_group - 1);
+    count_ = 0;
+    squares_ = 0;
+    means_.assign(means_.size(), 0);
+    if (!std::isfinite(total)) return {};
+    return total;
+  }
+
+ private:
+  std::vector<std::size_t> channels_;
+  std::vector<double> means_;
+  double squares_ = 0;  // sum over the channels
+  std::uint64_t count_ = 0;
+};
 
 }  // namespace assay::harness

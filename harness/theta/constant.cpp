@@ -60,6 +60,13 @@ std::string seeds(const Question& question) {
   return "";
 }
 
+/// The spread that rounding may hide, by the size of the values or as declared.
+double hidden_deviation(const Question& question, std::size_t channel, const ChannelData& data) {
+  const double size = std::abs(data.moments.mean) * question.subjects[0].averaged(data.primaries);
+  const double spacing = std::nextafter(size, std::numeric_limits<double>::infinity()) - size;
+  return std::max(spacing, 2 * rounding_of(question, 0, channel));
+}
+
 }  // namespace
 
 bool is_constant(const Question& question, std::size_t subject, std::size_t channel,
@@ -102,17 +109,6 @@ ConstantVerdict judge_constant(const Question& question, std::size_t channel,
                       "the range, or take more observations{}",
                       data[0].moments.mean, difference.value, seeds(question))};
 }
-
-namespace {
-
-/// The spread that rounding may hide, by the size of the values or as declared.
-double hidden_deviation(const Question& question, std::size_t channel, const ChannelData& data) {
-  const double size = std::abs(data.moments.mean) * question.subjects[0].averaged(data.primaries);
-  const double spacing = std::nextafter(size, std::numeric_limits<double>::infinity()) - size;
-  return std::max(spacing, 2 * rounding_of(question, 0, channel));
-}
-
-}  // namespace
 
 std::optional<ConstantVerdict> judge_constant_variance(const Question& question,
                                                        std::size_t channel, const ChannelData& data,

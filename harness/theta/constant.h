@@ -8,7 +8,7 @@
 
 #include "harness/theta/decision.h"
 #include "harness/theta/family.h"
-#include "harness/theta/method.h"
+#include "harness/theta/methods.h"
 #include "reports/record/record.h"
 
 namespace assay::harness {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "stats/means/equivalence.h"
+#include "stats/tails/test_result.h"
 
 namespace assay::harness {
 namespace {
@@ -48,7 +48,7 @@ double log_p_forbidden(const Evidence& evidence, const Regions& regions) {
   if (evidence.distance || !regions.bounds_below()) return evidence.at(allowed.high).log_p_lower;
   if (!regions.bounds_above()) return evidence.at(allowed.low).log_p_upper;
   // Two one-sided tests, each at the full level.
-  return stats::equivalence(evidence.at(allowed.low), evidence.at(allowed.high)).log_p;
+  return stats::log_p_equivalence(evidence.at(allowed.low), evidence.at(allowed.high));
 }
 
 std::string tail(const Regions& regions) {

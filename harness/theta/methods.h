@@ -2,12 +2,104 @@
 
 // The method table: the rows of all families.
 
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "harness/theta/method.h"
+#include "harness/question/question.h"
+#include "harness/sampling/image_views.h"
+#include "harness/sampling/summary.h"
+#include "harness/theta/evidence.h"
+#include "stats/cells/sampled_cells.h"
+#include "stats/means/power_exact.h"
+#include "stats/planning/looks.h"
 
 namespace assay::harness {
+
+/// A run of consecutive observations, and the time to draw it.
+struct Replicate {
+  std::uint64_t count = 0;
+  stats::Moments moments = {};
+  double seconds = 0;
+};
+
+/// One subject's data of one channel.
+struct ChannelData {
+  std::uint64_t primaries = 1;
+  stats::Moments moments = {};
+  std::span<const double> values = {};                   ///< Set if the method needs them.
+  std::vector<std::span<const double>> all_values = {};  ///< Every channel, for Keeps::points.
+  std::span<const std::uint64_t> cells = {};
+  std::vector<stats::JointMoments> joint = {};  ///< The channel's ChannelDetails::joint.
+  stats::Moments group_variances = {};
+  ImageViews images = {};  ///< The subject's elements of each observation.
+  std::vector<Replicate> replicates = {};
+};
+
+/// Data that a method needs kept. `points` are the values of all channels together.
+enum class Keeps { moments, values, points, cells, powers, costs, group_variances, blocks, images };
+
+inline Powers powers_of(Keeps keeps) {
+  if (keeps == Keeps::costs) return Powers::with_costs;
+  return keeps == Keeps::powers ? Powers::of_values : Powers::none;
+}
+
+/// Replicates of a method that keeps blocks: enough for Student's t to have near-normal tails.
+inline constexpr std::uint64_t replicate_count = 32;
+
+/// Factor on the variance of the mean of a recorded channel's rows.
+struct RowAllowance {
+  std::size_t subject;
+  std::size_t channel;
+  double factor;
+};
+
+/// Data that a method takes from the pilot, before the test's own are seen.
+struct Frozen {
+  std::shared_ptr<const stats::SampledCells> cells = nullptr;  ///< For chi-square-two-sample.
+  std::vector<RowAllowance> row_allowances = {};               ///< For means.
+};
+
+struct Method;
+
+/// Other properties of a method.
+struct MethodTraits {
+  bool exact = false;               ///< The level holds at every sample size.
+  bool in_range = false;            ///< Rests on a channel's declared range.
+  bool of_observations = false;     ///< The moments of an earlier run are too little.
+  bool of_batches = false;          ///< Tests means of consecutive observations.
+  bool corrects_skewness = false;   ///< Corrects for the skewness of the mean.
+  bool of_normal_values = false;    ///< Takes values for normal.
+  bool of_distinct_values = false;  ///< Coarsely rounded values break its level.
+  bool joins_channels = false;      ///< compares all channels of two estimators together
+  stats::LookLaw over_looks = stats::LookLaw::unknown;  ///< Of its p-values at several looks.
+  bool cells_of_pilots = false;                         ///< Counts in cells that the pilots choose.
+  const stats::ExactPlanning* plans = nullptr;          ///< Planning of an exact method of a mean.
+};
+
+/// A row of the method table (methods.h). Rows of different families of claims may share a name.
+struct MethodRow {
+  std::string name;     ///< Name in suites and records.
+  std::string summary;  ///< Hypothesis and range of validity, for `assay list methods`.
+  bool (*answers)(const Question&);
+  Keeps keeps;
+  /// Null if the family has evidence of its own (Theta::evidence).
+  Evidence (*evidence)(const Method&, const Question&, std::size_t channel,
+                       std::span<const ChannelData>);
+  MethodTraits is = {};
+};
+
+/// A row with what a test has frozen for it.
+struct Method : MethodRow {
+  Frozen frozen = {};
+};
+
+/// Evidence on theta of one channel. `data` has one entry a subject; for a slope, one a point.
+inline Evidence evidence_of(const Method& method, const Question& question, std::size_t channel,
+                            std::span<const ChannelData> data) {
+  return method.evidence(method, question, channel, data);
+}
 
 /// The table. A new method is a row in the file of its family, and a function for its evidence.
 const std::vector<MethodRow>& method_table();

@@ -15,7 +15,7 @@
 #include "harness/theta/decision.h"
 #include "harness/theta/family.h"
 #include "harness/theta/gate.h"
-#include "harness/theta/method.h"
+#include "harness/theta/methods.h"
 #include "stats/means/betting_mean.h"
 
 namespace assay::harness {

@@ -1,5 +1,3 @@
-#include "reports/formats/annotations.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,10 +5,10 @@
 #include <string_view>
 #include <vector>
 
+#include "reports/report_formats.h"
 #include "reports/words/describe.h"
-#include "reports/words/evidence.h"
+#include "reports/words/display.h"
 #include "reports/words/ledger.h"
-#include "reports/words/summary.h"
 #include "reports/words/text.h"
 
 namespace assay::reports {
@@ -48,12 +46,8 @@ double badness(const Test& test) {
 }
 
 std::vector<const Test*> tests_that_are(const Record& record, Outcome kind) {
-  std::vector<const Test*> tests;
-  for (const Suite& suite : record.suites) {
-    for (const Test& test : suite.tests) {
-      if (outcome(test) == kind) tests.push_back(&test);
-    }
-  }
+  std::vector<const Test*> tests = tests_of(record);
+  std::erase_if(tests, [kind](const Test* test) { return outcome(*test) != kind; });
   std::stable_sort(tests.begin(), tests.end(),
                    [](const Test* a, const Test* b) { return badness(*a) > badness(*b); });
   return tests;

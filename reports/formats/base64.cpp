@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 
 namespace assay::reports {
 namespace {
+
+static_assert(std::endian::native == std::endian::little, "floats are kept as they stand");
 
 constexpr std::string_view digits =
     "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -58,28 +61,13 @@ std::optional<std::vector<std::uint8_t>> from_base64(std::string_view text) {
   return bytes;
 }
 
-std::vector<std::uint8_t> bytes_of(std::span<const float> values) {
-  std::vector<std::uint8_t> bytes;
-  bytes.reserve(values.size() * sizeof(float));
-  for (const float value : values) {
-    const auto word = std::bit_cast<std::uint32_t>(value);
-    for (int shift = 0; shift < 32; shift += 8) {
-      bytes.push_back(static_cast<std::uint8_t>(word >> shift & 0xff));
-    }
-  }
-  return bytes;
+std::span<const std::uint8_t> bytes_of(std::span<const float> values) {
+  return {reinterpret_cast<const std::uint8_t*>(values.data()), values.size_bytes()};
 }
 
 std::vector<float> floats_of(std::span<const std::uint8_t> bytes) {
-  std::vector<float> values;
-  values.reserve(bytes.size() / sizeof(float));
-  for (std::size_t i = 0; i + 4 <= bytes.size(); i += 4) {
-    std::uint32_t word = 0;
-    for (std::size_t k = 0; k < 4; ++k) {
-      word |= static_cast<std::uint32_t>(bytes[i + k]) << (8 * k);
-    }
-    values.push_back(std::bit_cast<float>(word));
-  }
+  std::vector<float> values(bytes.size() / sizeof(float));
+  if (!values.empty()) std::memcpy(values.data(), bytes.data(), values.size() * sizeof(float));
   return values;
 }
 

@@ -16,8 +16,8 @@ std::string base64(std::span<const std::uint8_t> bytes);
 /// nullopt for anything but whole groups of four with their padding.
 std::optional<std::vector<std::uint8_t>> from_base64(std::string_view text);
 
-/// Floats as little-endian bytes, and back; the number of bytes is a multiple of four.
-std::vector<std::uint8_t> bytes_of(std::span<const float> values);
+/// The little-endian bytes of floats, and floats of bytes.
+std::span<const std::uint8_t> bytes_of(std::span<const float> values);
 std::vector<float> floats_of(std::span<const std::uint8_t> bytes);
 
 }  // namespace assay::reports

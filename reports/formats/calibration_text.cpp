@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "reports/record/calibration.h"
-#include "reports/words/columns.h"
 #include "reports/words/number.h"
 #include "reports/words/text.h"
 

@@ -1,22 +1,17 @@
-#include "reports/formats/console.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
-#include "reports/words/columns.h"
+#include "reports/report_formats.h"
 #include "reports/words/describe.h"
 #include "reports/words/display.h"
-#include "reports/words/effect.h"
-#include "reports/words/evidence.h"
 #include "reports/words/kill_matrix.h"
 #include "reports/words/ledger.h"
 #include "reports/words/number.h"
-#include "reports/words/statement_text.h"
-#include "reports/words/steps.h"
-#include "reports/words/summary.h"
+#include "reports/words/statements.h"
 #include "reports/words/text.h"
 
 namespace assay::reports {
@@ -205,35 +200,26 @@ class Screen {
   void end(const Record& record) {
     slowest(record);
     blank();
-    const Tally counts = tally(record);
-    const std::string alarm = alarm_count(record);
-    const bool failed = counts.failed > 0 || !alarm.empty();
-    const Outcome how = failed                    ? Outcome::failed
-                        : counts.inconclusive > 0 ? Outcome::inconclusive
-                        : counts.passed > 0       ? Outcome::passed
-                                                  : Outcome::skipped;
-    std::string text = mark(how) + " " + tally_sentence(counts);
-    if (!alarm.empty()) text += "; " + alarm;
+    const Outcome how = alarms(record.ledger) > 0 ? Outcome::failed : worst(tally(record));
+    std::string text = mark(how) + " " + run_sentence(record);
     if (record.seconds > 0) text += " in " + time(record.seconds);
     text += ".";
     if (const std::string rate = false_alarms(record); !rate.empty()) text += " " + rate;
-    for (const std::string& part : wrapped(text, options_.width)) line(part, colour_of(how));
+    paragraph(text, colour_of(how));
     if (!options_.report.empty()) out_ += "  " + plain(options_.report) + "\n";
   }
   std::string take() { return std::move(out_); }
 
  private:
-  void line(const std::string& text) { out_ += shorten(text, options_.width) + "\n"; }
-
-  void line(const std::string& text, const char* style) {
+  void line(const std::string& text, const char* style = "") {
     out_ += options_.colour && *style != '\0' ? style + shorten(text, options_.width) + "\x1b[0m\n"
                                               : shorten(text, options_.width) + "\n";
   }
 
   // Lines that are empty in the text say nothing on a terminal.
-  void paragraph(const std::string& text) {
+  void paragraph(const std::string& text, const char* style = "") {
     for (const std::string& part : wrapped(text, options_.width)) {
-      if (!part.empty()) line(part);
+      if (!part.empty()) line(part, style);
     }
   }
 
@@ -249,22 +235,23 @@ class Screen {
     return lines;
   }
 
-  // A label in a column of its own, then lines beside it.
-  void beside(const std::string& label, const std::vector<std::string>& lines) {
-    std::string first = pad_right("      " + label, label_width + 6);
-    for (const std::string& part : lines) {
-      line(first + part);
-      first.assign(static_cast<std::size_t>(label_width + 6), ' ');
+  // The lines, the first after the label, the others as far to the right.
+  static std::vector<std::string> beside(std::string label, std::vector<std::string> lines) {
+    for (std::string& part : lines) {
+      part.insert(0, label);
+      label.assign(static_cast<std::size_t>(columns(label)), ' ');
     }
+    return lines;
+  }
+
+  static std::string in_column(const std::string& label) {
+    return pad_right("      " + label, label_width + 6);
   }
 
   // A command is never cut, because it is meant to be pasted.
   void command(const std::string& label, const std::string& text) {
-    std::string first = pad_right("      " + label, label_width + 6);
-    for (const std::string& part : wrap_command(text, beside_width())) {
-      out_ += first + part + "\n";
-      first.assign(static_cast<std::size_t>(label_width + 6), ' ');
-    }
+    for (const std::string& part : beside(in_column(label), wrap_command(text, beside_width())))
+      out_ += part + "\n";
   }
 
   int beside_width() const { return options_.width - label_width - 6; }
@@ -272,7 +259,7 @@ class Screen {
   void fact(const std::string& label, const std::string& text) {
     std::vector<std::string> lines = wrapped(text, beside_width());
     std::erase(lines, "");
-    beside(label, lines);
+    for (const std::string& part : beside(in_column(label), lines)) line(part);
   }
 
   /// Seconds as a reader of a summary wants them: "0.4 s", "25 s".
@@ -319,10 +306,7 @@ class Screen {
       id.erase(id.find_last_not_of("'\\") + 1);  // no half of a quoted quote
       text = text.substr(0, at + 1) + id + end;
     }
-    std::vector<std::string> parts = wrap_command(text, room);
-    for (std::string& part : parts)
-      part = (&part == parts.data() ? label : std::string(label.size(), ' ')) + part;
-    return parts;
+    return beside(label, wrap_command(text, room));
   }
 
   void paste(const Step& step) {
@@ -354,8 +338,7 @@ class Screen {
     return text;
   }
 
-  static Outcome worst(const Suite& suite) {
-    const Tally counts = tally(suite);
+  static Outcome worst(const Tally& counts) {
     return counts.failed > 0         ? Outcome::failed
            : counts.inconclusive > 0 ? Outcome::inconclusive
            : counts.passed > 0       ? Outcome::passed
@@ -384,7 +367,7 @@ class Screen {
     const int name_width = std::min(room, longest);
     for (const Suite& suite : record.suites) {
       if (suite.tests.empty()) continue;
-      const Outcome how = worst(suite);
+      const Outcome how = worst(tally(suite));
       const bool marked = how == Outcome::failed || how == Outcome::inconclusive;
       std::string text = pad_right(shorten(plain(suite.name), name_width), name_width) + "  " +
                          (marked ? mark(how) : " ") + " " + standing_text(suite, in_short);
@@ -441,10 +424,8 @@ class Screen {
   /// Tests that were left out, those of one reason together.
   void left_out(const Record& record) {
     std::map<std::string, std::uint64_t> why;
-    for (const Suite& suite : record.suites) {
-      for (const Test& test : suite.tests) {
-        if (standing(test) == Standing::not_run) ++why[trouble(test)];
-      }
+    for (const Test* test : tests_of(record)) {
+      if (standing(*test) == Standing::not_run) ++why[trouble(*test)];
     }
     for (const auto& [reason, count] : why) {
       head(fmt::format("{} {} not run", mark(Outcome::skipped), counted(count, "claim", "claims")),
@@ -470,9 +451,7 @@ class Screen {
 
   void slowest(const Record& record) {
     std::vector<std::pair<double, const Test*>> all;
-    for (const Suite& suite : record.suites) {
-      for (const Test& test : suite.tests) all.emplace_back(total_cost(test).seconds, &test);
-    }
+    for (const Test* test : tests_of(record)) all.emplace_back(total_cost(*test).seconds, test);
     std::stable_sort(all.begin(), all.end(),
                      [](const auto& a, const auto& b) { return a.first > b.first; });
     all.resize(std::min<std::size_t>(all.size(), options_.slowest));
@@ -485,8 +464,7 @@ class Screen {
 
   void write(const Suite& suite, bool alone) {
     const std::string file = suite.file.empty() ? "" : " (" + suite.file + ")";
-    for (const std::string& part : wrapped(one_line(suite.name + file), options_.width))
-      line(part, "\x1b[1m");
+    paragraph(one_line(suite.name + file), "\x1b[1m");
     paragraph(suite.about);
     paragraph(levels_text(suite));
     const std::string confidence = common_confidence(suite);
@@ -529,11 +507,8 @@ class Screen {
                                                           : Outcome::passed;
     const std::vector<std::string> text =
         wrapped(one_line(statement.text + " (" + statement.source + ")"), beside_width());
-    std::string first = pad_right("  " + answer_text(given), label_width + 6);
-    for (const std::string& part : text) {
-      line(first + part, colour_of(outcome));
-      first.assign(static_cast<std::size_t>(label_width + 6), ' ');
-    }
+    const std::string label = pad_right("  " + answer_text(given), label_width + 6);
+    for (const std::string& part : beside(label, text)) line(part, colour_of(outcome));
     if (given == Answer::only_if) fact("only if", one_line(statement.condition));
     if (!statement.holds.empty()) fact("it holds", one_line(findings(suite, statement.holds)));
     if (!statement.fails.empty()) fact("it does not", one_line(findings(suite, statement.fails)));
@@ -543,10 +518,10 @@ class Screen {
   void kills(const Suite& suite) {
     const KillMatrix matrix = kill_matrix(suite);
     if (!is_worth_showing(matrix)) return;
-    for (const std::string& text : kill_lines(suite, matrix, options_.width)) line(plain(text));
+    for (const std::string& text : kill_lines(matrix, options_.width)) line(plain(text));
     blank();
-    paragraph(kill_totals(suite, matrix));
-    paragraph(kill_matrix_legend);
+    paragraph(matrix.totals);
+    paragraph(matrix.legend);
     blank();
   }
 
@@ -591,7 +566,8 @@ class Screen {
   }
 
   static std::string interval(const Estimate& estimate) {
-    const std::string value = data_text(estimate.value);
+    const bool known = estimate.value && !std::isnan(*estimate.value);
+    const std::string value = known ? human(*estimate.value) : "none";
     if (!estimate.low || !estimate.high) return value;
     return fmt::format("{} [{}, {}]", value, human(estimate.low), human(estimate.high));
   }
@@ -599,9 +575,7 @@ class Screen {
   void write(const Ledger& ledger) {
     blank();
     const Outcome result = alarms(ledger) > 0 ? Outcome::failed : Outcome::passed;
-    for (const std::string& part : wrapped(one_line(ledger_title(ledger)), options_.width)) {
-      line(part, colour_of(result));
-    }
+    paragraph(one_line(ledger_title(ledger)), colour_of(result));
     for (const LedgerSeries& series : ledger.series) {
       if (!series.alarm) continue;
       for (const std::string& part :

@@ -1,15 +1,11 @@
-#include "reports/formats/explain.h"
-
 #include <fmt/format.h>
 
-#include "reports/words/columns.h"
+#include <algorithm>
+
+#include "reports/report_formats.h"
 #include "reports/words/describe.h"
 #include "reports/words/display.h"
-#include "reports/words/effect.h"
-#include "reports/words/evidence.h"
 #include "reports/words/number.h"
-#include "reports/words/steps.h"
-#include "reports/words/summary.h"
 #include "reports/words/text.h"
 
 namespace assay::reports {
@@ -76,19 +72,10 @@ std::string how_sure(const Test& test, const TestDisplay& words, const std::stri
   return text;
 }
 
-/// The measured values of broken assumptions.
-std::string proof_of_break(const TestDisplay& words) {
-  for (const auto& [label, text] : words.facts) {
-    if (label == "assumptions") return sentence("Measured: " + text);
-  }
-  return "";
-}
-
-std::string what_was_drawn(const TestDisplay& words) {
-  for (const auto& [label, text] : words.facts) {
-    if (label == "observations") return sentence("These observations were drawn: " + text);
-  }
-  return "";
+/// The fact of this label as a sentence that begins with these words; "" without one.
+std::string fact_of(const TestDisplay& words, const std::string& label, const std::string& lead) {
+  const auto found = std::ranges::find(words.facts, label, &Fact::label);
+  return found == words.facts.end() ? "" : sentence(lead + found->text);
 }
 
 }  // namespace
@@ -109,8 +96,8 @@ std::string explain(const Suite& suite, const Test& test, int width) {
     if (!part.empty()) text += part + " ";
   }
   text += how_sure(test, words, found);
-  if (test.verdict == Verdict::invalid) text += proof_of_break(words) + " ";
-  text += what_was_drawn(words);
+  if (test.verdict == Verdict::invalid) text += fact_of(words, "assumptions", "Measured: ") + " ";
+  text += fact_of(words, "observations", "These observations were drawn: ");
   say(text);
   if (is_evidence(test) && test.verdict != Verdict::skipped && suite.alpha > 0) {
     say(false_alarms(suite.alpha) + " They are counted over all claims of the suite.");

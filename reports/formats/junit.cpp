@@ -1,5 +1,3 @@
-#include "reports/formats/junit.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
@@ -7,12 +5,11 @@
 #include <set>
 #include <utility>
 
+#include "reports/report_formats.h"
 #include "reports/words/describe.h"
-#include "reports/words/effect.h"
-#include "reports/words/evidence.h"
+#include "reports/words/display.h"
 #include "reports/words/ledger.h"
 #include "reports/words/number.h"
-#include "reports/words/summary.h"
 #include "reports/words/text.h"
 
 namespace assay::reports {
@@ -138,9 +135,12 @@ class UniqueNames {
   std::set<std::pair<std::string, std::string>> taken_;
 };
 
+std::string case_opening(const std::pair<std::string, std::string>& name) {
+  return "  <testcase" + attribute("classname", name.first) + attribute("name", name.second);
+}
+
 std::string test_case(const Suite& suite, const Test& test, UniqueNames& names) {
-  const auto [group, name] = names.of(suite, test);
-  std::string out = "  <testcase" + attribute("classname", group) + attribute("name", name);
+  std::string out = case_opening(names.of(suite, test));
   if (!test.file.empty()) out += attribute("file", test.file);
   if (test.line > 0) out += fmt::format(" line=\"{}\"", test.line);
   out += time_attribute(total_cost(test).seconds) + ">\n";
@@ -176,6 +176,15 @@ Counts ledger_counts(const Ledger& ledger) {
   return {.tests = static_cast<int>(ledger.series.size()), .failures = alarms(ledger)};
 }
 
+std::string suite_opening(const Record& record, const std::string& name, const std::string& file,
+                          const Counts& counts) {
+  std::string out = " <testsuite" + attribute("name", name);
+  if (!file.empty()) out += attribute("file", file);
+  out += counts.attributes();
+  if (!record.started.empty()) out += attribute("timestamp", record.started);
+  return out + ">\n";
+}
+
 std::string suite_properties(const Record& record, const Suite& suite) {
   std::string out;
   add(out, "seed", fmt::format("{}", suite.seed));
@@ -192,18 +201,15 @@ std::string suite_properties(const Record& record, const Suite& suite) {
 std::string test_suite(const Record& record, const Suite& suite, UniqueNames& names) {
   Counts counts;
   for (const Test& test : suite.tests) counts.add(test);
-  std::string out = " <testsuite" + attribute("name", suite.name.empty() ? "suite" : suite.name);
-  if (!suite.file.empty()) out += attribute("file", suite.file);
-  out += counts.attributes();
-  if (!record.started.empty()) out += attribute("timestamp", record.started);
-  out += ">\n" + suite_properties(record, suite);
+  std::string out =
+      suite_opening(record, suite.name.empty() ? "suite" : suite.name, suite.file, counts) +
+      suite_properties(record, suite);
   for (const Test& test : suite.tests) out += test_case(suite, test, names);
   return out + " </testsuite>\n";
 }
 
 std::string series_case(const Ledger& ledger, const LedgerSeries& series, UniqueNames& names) {
-  const auto [group, name] = names.of("ledger", series_name(ledger, series));
-  std::string out = "  <testcase" + attribute("classname", group) + attribute("name", name) +
+  std::string out = case_opening(names.of("ledger", series_name(ledger, series))) +
                     time_attribute(0) + ">\n   <properties>\n";
   add(out, "series", series.series);
   add(out, "nights", fmt::format("{}", series.nights.size()));
@@ -226,10 +232,7 @@ std::string series_case(const Ledger& ledger, const LedgerSeries& series, Unique
 std::string ledger_suite(const Record& record, UniqueNames& names) {
   const Ledger& ledger = record.ledger;
   if (ledger.file.empty()) return {};
-  std::string out =
-      " <testsuite" + attribute("name", ledger_title(ledger)) + ledger_counts(ledger).attributes();
-  if (!record.started.empty()) out += attribute("timestamp", record.started);
-  out += ">\n";
+  std::string out = suite_opening(record, ledger_title(ledger), "", ledger_counts(ledger));
   for (const LedgerSeries& series : ledger.series) out += series_case(ledger, series, names);
   return out + " </testsuite>\n";
 }
@@ -238,9 +241,7 @@ std::string ledger_suite(const Record& record, UniqueNames& names) {
 
 std::string junit(const Record& record) {
   Counts counts;
-  for (const Suite& suite : record.suites) {
-    for (const Test& test : suite.tests) counts.add(test);
-  }
+  for (const Test* test : tests_of(record)) counts.add(*test);
   const Counts nights = ledger_counts(record.ledger);
   counts.tests += nights.tests;
   counts.failures += nights.failures;

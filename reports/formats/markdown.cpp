@@ -1,15 +1,14 @@
-#include "reports/formats/markdown.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 
+#include "reports/report_formats.h"
 #include "reports/words/describe.h"
+#include "reports/words/display.h"
 #include "reports/words/kill_matrix.h"
 #include "reports/words/ledger.h"
 #include "reports/words/number.h"
-#include "reports/words/statement_text.h"
-#include "reports/words/summary.h"
+#include "reports/words/statements.h"
 #include "reports/words/text.h"
 
 namespace assay::reports {
@@ -62,9 +61,9 @@ std::string suite_heading(const Suite& suite) {
 std::string kill_section(const Suite& suite) {
   const KillMatrix matrix = kill_matrix(suite);
   if (!is_worth_showing(matrix)) return {};
-  std::string out = fmt::format("### Which method sees which defect\n\n{}\n\n{}\n\n| mutant |",
-                                cell(kill_totals(suite, matrix), paragraph_limit),
-                                cell(kill_matrix_legend, paragraph_limit));
+  std::string out =
+      fmt::format("### Which method sees which defect\n\n{}\n\n{}\n\n| mutant |",
+                  cell(matrix.totals, paragraph_limit), cell(matrix.legend, paragraph_limit));
   std::string rule = "|---|";
   for (const std::string& method : matrix.methods) {
     out += fmt::format(" {} |", cell(method));
@@ -72,9 +71,8 @@ std::string kill_section(const Suite& suite) {
   }
   out += "\n" + rule + "\n";
   for (const KillRow& row : matrix.rows) {
-    out += fmt::format("| {} |", cell(suite.estimators[row.mutant].name));
-    for (const auto& one : row.cells)
-      out += fmt::format(" {} |", one ? cell(short_text(suite, *one)) : "");
+    out += fmt::format("| {} |", cell(row.mutant));
+    for (const auto& one : row.cells) out += fmt::format(" {} |", one ? cell(one->text) : "");
     out += "\n";
   }
   return out + "\n";
@@ -100,9 +98,7 @@ class Page {
 };
 
 std::string title(const Record& record) {
-  const std::string alarm = alarm_count(record);
-  std::string out =
-      fmt::format("# {}{}{}\n\n", tally_sentence(tally(record)), alarm.empty() ? "" : "; ", alarm);
+  std::string out = fmt::format("# {}\n\n", run_sentence(record));
   out += cell(fmt::format("{} {} {}, seed {}, {}", record.tool.name, record.tool.version,
                           record.tool.commit, record.seed, record.started)) +
          "\n\n";
@@ -150,10 +146,8 @@ std::string statements_section(const Record& record) {
 
 int add_problems(const Record& record, Outcome kind, Page& page) {
   int missing = 0;
-  for (const Suite& suite : record.suites) {
-    for (const Test& test : suite.tests) {
-      if (outcome(test) == kind && !page.add(problem(test))) ++missing;
-    }
+  for (const Test* test : tests_of(record)) {
+    if (outcome(*test) == kind && !page.add(problem(*test))) ++missing;
   }
   return missing;
 }

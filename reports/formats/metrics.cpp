@@ -1,5 +1,3 @@
-#include "reports/formats/metrics.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
@@ -7,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "reports/report_formats.h"
 #include "reports/words/text.h"
 
 namespace assay::reports {

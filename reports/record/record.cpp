@@ -39,32 +39,28 @@ Outcome outcome(const Test& test) {
   return test.verdict == Verdict::inconclusive ? Outcome::inconclusive : Outcome::failed;
 }
 
+std::vector<const Test*> tests_of(const Record& record) {
+  std::vector<const Test*> tests;
+  for (const Suite& suite : record.suites) {
+    for (const Test& test : suite.tests) tests.push_back(&test);
+  }
+  return tests;
+}
+
 Tally tally(const Suite& suite) {
-  const auto count = [&](Outcome kind) {
-    return static_cast<int>(std::ranges::count(suite.tests, kind, outcome));
-  };
-  return {.passed = count(Outcome::passed),
-          .failed = count(Outcome::failed),
-          .inconclusive = count(Outcome::inconclusive),
-          .skipped = count(Outcome::skipped)};
+  Tally result;
+  for (const Test& test : suite.tests) result.add(outcome(test));
+  return result;
 }
 
 Tally tally(const Record& record) {
   Tally result;
-  for (const Suite& suite : record.suites) {
-    const Tally part = tally(suite);
-    result.passed += part.passed;
-    result.failed += part.failed;
-    result.inconclusive += part.inconclusive;
-    result.skipped += part.skipped;
-  }
+  for (const Test* test : tests_of(record)) result.add(outcome(*test));
   return result;
 }
 
 int alarms(const Ledger& ledger) {
-  int count = 0;
-  for (const LedgerSeries& series : ledger.series) count += series.alarm;
-  return count;
+  return static_cast<int>(std::ranges::count(ledger.series, true, &LedgerSeries::alarm));
 }
 
 Cost total_cost(const std::vector<Cost>& costs) {

@@ -4,16 +4,155 @@
 // is described by record.schema.json. A number that does not exist is std::nullopt (JSON null) and
 // `message` says why. Quantities carry the unit of the estimator's output unless stated.
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <tuple>
 #include <vector>
 
-#include "reports/record/record_effect.h"
-#include "reports/record/record_image.h"
-#include "reports/record/record_ledger.h"
-
 namespace assay::reports {
+
+/// Stands at the end of a struct: ASSAY_FIELDS(Tool, name, version). It lists the members that the
+/// JSON has, in their order; a key is the member's name. What writes, reads or compares the struct
+/// follows this list.
+#define ASSAY_FIELDS(Struct, ...)                               \
+  bool operator==(const Struct&) const = default;               \
+  static constexpr std::string_view field_names = #__VA_ARGS__; \
+  auto fields() { return std::tie(__VA_ARGS__); }               \
+  auto fields() const { return std::tie(__VA_ARGS__); }
+
+template <class T>
+concept has_fields = requires {
+  T::field_names;
+};
+
+/// Calls visit(key, member) for each field.
+template <has_fields T, class Visit>
+void for_each_field(T& value, Visit visit) {
+  std::string_view rest = T::field_names;
+  const auto next_key = [&rest] {
+    const std::string_view key = rest.substr(0, rest.find(','));
+    rest.remove_prefix(std::min(rest.size(), key.size() + std::string_view(", ").size()));
+    return key;
+  };
+  std::apply([&](auto&... member) { (visit(next_key(), member), ...); }, value.fields());
+}
+
+/// A number of the record that may not exist: JSON null.
+using Number = std::optional<double>;
+
+/// A number with its interval at `confidence`.
+struct Estimate {
+  Number value, low, high;
+  ASSAY_FIELDS(Estimate, value, low, high)
+};
+
+/// theta of the claim: its estimate, and the interval that the verdict rests on. A fail, and a pass
+/// that excludes nothing, have the confidence 1 - the share of alpha. It is 1 - 2 x the share of
+/// beta where a region is excluded, or should have been.
+struct Effect {
+  std::string quantity;  ///< "relative difference of means", "ln variance ratio", …
+  Number estimate, low, high;
+  double confidence = 0;
+  bool relative = false;  ///< in units of the reference: shown in per cent
+  ASSAY_FIELDS(Effect, quantity, estimate, low, high, confidence, relative)
+};
+
+/// A sum over part of an image, or over all of it, that speaks against equality.
+struct ImageFinding {
+  /// "window", "alternating" (signs); of laws what differs: "the mean is larger in a".
+  std::string statistic;
+  std::string place;                                  ///< where, and its z, in words
+  std::uint64_t x = 0, y = 0, width = 0, height = 0;  ///< the rectangle of pixels
+  std::string component;
+  Number z;  ///< positive where the first image is brighter
+  Number log10_p;
+  Number log10_p_adjusted;       ///< in the family of everything that was looked at in the image
+  std::optional<Effect> effect;  ///< difference of the means over the rectangle, of the winner
+  ASSAY_FIELDS(ImageFinding, statistic, place, x, y, width, height, component, z, log10_p,
+               log10_p_adjusted, effect)
+};
+
+/// A claim on all elements of an image together.
+struct Image {
+  std::uint64_t width = 0, height = 0;
+  std::vector<std::string> components;
+  std::uint64_t replicates = 0;
+  std::uint64_t tested = 0;          ///< Elements that vary.
+  std::uint64_t constant = 0;        ///< Elements that do not vary and equal the reference.
+  std::uint64_t unseen = 0;          ///< Elements that do not vary and differ from it.
+  ImageFinding winner;               ///< The least adjusted p.
+  std::vector<ImageFinding> groups;  ///< The best of each group of sums.
+  ASSAY_FIELDS(Image, width, height, components, replicates, tested, constant, unseen, winner,
+               groups)
+};
+
+/// Numbers of an image; in JSON base64 of little-endian 32-bit floats.
+struct Texels {
+  std::vector<float> values;
+  bool operator==(const Texels&) const = default;
+};
+
+/// One number an element: column x, row y and component c are at (y * width + x) * components + c.
+/// A map of a sampler's domain has a number a cell: `cells_observed`, `cells_expected`, `cells_z`.
+/// One sample has z = (observed - expected) / sqrt(expected). Two samples are expected to follow
+/// both together. `cells_z_close` enlarges the heaviest cells; it is 0 where fewer than 5 draws are
+/// expected.
+struct Map {
+  std::string name;    ///< `z`, `p_adjusted`, `mean`, `variance`, `reference`, `other_mean`, …
+  std::string source;  ///< The estimator of a mean or variance.
+  std::string file;    ///< The EXR beside the JSON, if written; `name` is its layer.
+  std::uint64_t width = 0, height = 0;
+  std::vector<std::string> components;
+  Texels texels;
+  ASSAY_FIELDS(Map, name, source, file, width, height, components, texels)
+};
+
+/// The evidence of one night, and of all nights up to it.
+struct LedgerNight {
+  std::string date;  ///< UTC, ISO 8601
+  std::string commit;
+  Number estimate, low, high;  ///< Theta by this night, with its own 95 % interval.
+  Number log_p;                ///< ln of the p-value of a night without an estimate.
+  Number log_e;                ///< ln of the e-value of all nights up to it.
+  ASSAY_FIELDS(LedgerNight, date, commit, estimate, low, high, log_p, log_e)
+};
+
+/// One channel of one claim in the ledger: what all nights with fresh seeds say together.
+struct LedgerSeries {
+  std::string test;  ///< id
+  std::string channel;
+  std::string series;    ///< hash of claim, margins and parameters: another one is another series
+  std::string quantity;  ///< theta, as in Effect; empty where nights have p-values
+  bool relative = false;
+  std::vector<LedgerNight> nights;   ///< In their order.
+  Number estimate, standard_error;   ///< Of theta, by all nights.
+  Number reference_error;            ///< The standard error of theta that all nights share.
+  Number limit;                      ///< The ln E that is an alarm.
+  bool alarm = false;                ///< ln E reached the limit after some night.
+  std::string since;                 ///< The first such night.
+  std::string moved;                 ///< The night at which theta most likely moved, of an alarm.
+  std::string moved_commit;          ///< The commit of that night.
+  std::string moved_from, moved_to;  ///< First and last of the nights that hold 90 % of it.
+  bool added = false;                ///< This run is one of the nights.
+  std::string note;                  ///< Why it is not, or that a new series began.
+
+  /// ln of the e-value of all nights.
+  Number log_e() const { return nights.empty() ? Number() : nights.back().log_e; }
+  ASSAY_FIELDS(LedgerSeries, test, channel, series, quantity, relative, nights, estimate,
+               standard_error, reference_error, limit, alarm, since, moved, moved_commit,
+               moved_from, moved_to, added, note)
+};
+
+/// The ledger that a run added to, of the tests it ran. An empty file name: none was kept.
+struct Ledger {
+  std::string file;
+  Number budget;  ///< of each suite, over all nights
+  std::vector<LedgerSeries> series;
+  ASSAY_FIELDS(Ledger, file, budget, series)
+};
 
 inline constexpr int schema_version = 3;
 
@@ -243,7 +382,7 @@ struct Comparison {
 };
 
 /// A sentence from elsewhere, and the names of the tests that answer it. The answer is not part of
-/// the record; it follows from the verdicts (reports/statements.h).
+/// the record; it follows from the verdicts (words/statements.h).
 struct Statement {
   std::string text;
   std::string source;              ///< Who says it, and where.
@@ -365,6 +504,9 @@ struct Record {
                shard)
 };
 
+/// Series with an alarm.
+int alarms(const Ledger&);
+
 /// The meaning of a test's verdict and expectation for the run.
 enum class Outcome {
   passed,        ///< ok
@@ -374,12 +516,20 @@ enum class Outcome {
 };
 Outcome outcome(const Test&);
 
+/// The tests of all suites.
+std::vector<const Test*> tests_of(const Record&);
+
 /// Tests by outcome: what the last line of the console and the exit code are made of.
 struct Tally {
   int passed = 0;
   int failed = 0;
   int inconclusive = 0;  ///< counted as skipped in the last line
   int skipped = 0;
+
+  void add(Outcome outcome) {
+    int* const counts[] = {&passed, &failed, &inconclusive, &skipped};
+    ++*counts[static_cast<int>(outcome)];
+  }
 };
 Tally tally(const Suite&);
 Tally tally(const Record&);

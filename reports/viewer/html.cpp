@@ -1,23 +1,119 @@
-#include "reports/viewer/html.h"
-
+#include <fmt/format.h>
 #include <zlib.h>
 
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
 #include <cstdint>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "reports/formats/base64.h"
-#include "reports/formats/markdown.h"
-#include "reports/record/calibration.h"
+#include "reports/report_formats.h"
 #include "reports/viewer/page.h"
-#include "reports/viewer/pictures.h"
-#include "reports/words/ledger.h"
-#include "reports/words/summary.h"
+#include "reports/words/describe.h"
+#include "reports/words/display.h"
 #include "reports/words/text.h"
 
 namespace assay::reports {
 namespace {
+
+constexpr std::size_t small = std::size_t{1} << 14;  // numbers of a map that is kept as it is
+constexpr int most = 32767;                          // of a code
+
+/// The way a map's numbers become codes.
+struct Coding {
+  const char* name;
+  double step;
+  bool differences;  ///< Codes are stored less their left neighbours, which are alike in pictures.
+  int (*code)(double value, double step);
+};
+
+int linear(double value, double step) {
+  if (std::isnan(value)) return 0;
+  return static_cast<int>(std::lround(std::clamp(value / step, -1.0 * most, 1.0 * most)));
+}
+
+/// 1 and above; 0 where there is no logarithm.
+int logarithmic(double value, double step) {
+  if (!(value > 0)) return 0;
+  const double code = std::log2(std::min(value, 1e38)) / step + most / 4.0;
+  return static_cast<int>(std::lround(std::clamp(code, 1.0, most / 2.0)));
+}
+
+constexpr std::array codings = {Coding{"linear", 0.125, false, linear},
+                                Coding{"logarithm", 1.0 / 24, true, logarithmic}};
+
+/// Small numbers of either sign as small numbers.
+std::uint16_t folded(int code) {
+  return static_cast<std::uint16_t>(code < 0 ? -2 * code - 1 : 2 * code);
+}
+
+/// The low bytes of all codes, then the high ones, component by component: both compress well.
+std::string plane(const Map& map, const Coding& coding) {
+  const std::size_t components = map.components.size();
+  const std::size_t pixels = map.texels.values.size() / components;
+  std::string bytes(2 * map.texels.values.size(), '\0');
+  for (std::size_t c = 0, at = 0; c < components; ++c) {
+    int before = 0;
+    for (std::size_t i = 0; i < pixels; ++i, ++at) {
+      const double value = static_cast<double>(map.texels.values[i * components + c]);
+      const int code = coding.code(value, coding.step);
+      const std::uint16_t stored = folded(coding.differences ? code - before : code);
+      before = code;
+      bytes[at] = static_cast<char>(stored & 255);
+      bytes[map.texels.values.size() + at] = static_cast<char>(stored >> 8);
+    }
+  }
+  return bytes;
+}
+
+/// Five significant digits: what is only drawn needs no more.
+void shorten(double& value) {
+  if (!std::isfinite(value)) return;
+  const std::string digits = fmt::format("{:.4e}", value);
+  std::from_chars(digits.data(), digits.data() + digits.size(), value);
+}
+void shorten(Number& value) {
+  if (value) shorten(*value);
+}
+
+void shorten(Test& test) {
+  for (Sample& sample : test.samples) {
+    for (QuantilePoint& point : sample.quantiles) {
+      shorten(point.normal);
+      shorten(point.observed);
+    }
+  }
+  for (Channel& channel : test.channels) {
+    for (EmpiricalLaw& law : channel.laws) {
+      for (LawPoint& point : law.points) {
+        for (double* value : {&point.value, &point.observed, &point.low, &point.high})
+          shorten(*value);
+        shorten(point.law);
+      }
+    }
+  }
+  for (Look& look : test.looks) {
+    if (!look.effect) continue;
+    for (Number* value : {&look.effect->estimate, &look.effect->low, &look.effect->high})
+      shorten(*value);
+  }
+}
+
+bool is_shown(const Map& map) {
+  return map.name != "p_adjusted" && map.name != "variance" && map.name != "other_variance";
+}
+
+std::string bytes_of_length(std::size_t length) {
+  std::string bytes;
+  for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>(length >> shift & 255);
+  return bytes;
+}
 
 /// The bytes as gzip without a date: the same bytes give the same file.
 std::vector<std::uint8_t> compressed(std::string_view bytes) {
@@ -57,10 +153,57 @@ std::string page_of(const std::string& title, const std::string& tables, std::st
 
 }  // namespace
 
+std::string packed(Record record) {
+  nlohmann::ordered_json pictures = nlohmann::ordered_json::array();
+  std::string planes;
+  for (Suite& suite : record.suites) {
+    for (Test& test : suite.tests) {
+      for (const Map& map : test.maps) {
+        if (!is_shown(map) || map.components.empty()) continue;
+        const bool whole = map.texels.values.size() <= small;
+        const Coding& coding = codings[map.name == "z" ? 0 : 1];
+        std::string bytes;
+        if (whole) {
+          const auto floats = bytes_of(map.texels.values);
+          bytes.assign(floats.begin(), floats.end());
+        } else {
+          bytes = plane(map, coding);
+        }
+        std::vector<std::string> components;
+        for (const std::string& name : map.components) components.push_back(clean(name));
+        pictures.push_back({{"test", clean(test.id)},
+                            {"name", clean(map.name)},
+                            {"title", clean(map_title(map))},
+                            {"width", map.width},
+                            {"height", map.height},
+                            {"components", components},
+                            {"coding", whole ? "float" : coding.name},
+                            {"step", coding.step},
+                            {"zero", most / 4.0},
+                            {"start", planes.size()},
+                            {"length", bytes.size()}});
+        planes += bytes;
+      }
+      test.maps.clear();
+      shorten(test);
+    }
+  }
+  record.shard.reset();
+  const std::string text =
+      "{\"record\":" + compact_json(record) + ",\"pictures\":" + pictures.dump() + "}";
+  return bytes_of_length(text.size()) + text + planes;
+}
+
+std::string packed(const Calibration& calibration) {
+  const std::string text =
+      fmt::format("{{\"calibration\":{},\"title\":{},\"sound\":{},\"text\":{}}}", json(calibration),
+                  nlohmann::json(clean(verdict_sentence(calibration))).dump(),
+                  defects(calibration) == 0, nlohmann::json(clean(console(calibration))).dump());
+  return bytes_of_length(text.size()) + text;
+}
+
 std::string html(const Record& record) {
-  const std::string alarm = alarm_count(record);
-  const std::string title = tally_sentence(tally(record)) + (alarm.empty() ? "" : "; " + alarm);
-  return page_of("Assay: " + title, markdown(record), packed(record));
+  return page_of("Assay: " + run_sentence(record), markdown(record), packed(record));
 }
 
 std::string html(const Calibration& calibration) {

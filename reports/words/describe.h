@@ -1,6 +1,6 @@
 #pragma once
 
-// A test's numbers in words, the same in every format.
+// A test in words, the same in every format: which p-value its verdict rests on, and its numbers.
 
 #include <cstdint>
 #include <string>
@@ -10,8 +10,55 @@
 
 namespace assay::reports {
 
+/// How a claim relates its sides: the relation outside all brackets; empty where there is none.
+std::string relation_of(const std::string& claim);
+
+/// True for <, > and within: the claim passes when its contrary is rejected, so that the p-value of
+/// the claim itself says little.
+bool is_proof(const Test&);
+
+/// "a >= b" for "a < b", "a not within x of b" for "a within x of b". Empty for a claim that is no
+/// proof.
+std::string contrary(const std::string& claim);
+
+/// A p-value with the name that tells of what: "p", "p(contrary)", "p(claim)".
+struct NamedP {
+  std::string name;
+  Number p, log10_p;
+  bool exists() const { return p || log10_p; }
+  std::string text() const;  ///< "p(contrary) = 1.5e-303"; empty where there is none
+};
+
+/// The worst channel's numbers, or those of an untested channel where nothing was tested.
+Channel worst_channel(const Test&);
+
+/// The channel that the verdict rests on. After a fail, or without a region to exclude, this is the
+/// channel most against the claim. Else it is the channel whose forbidden region is excluded least.
+Channel deciding_channel(const Test&);
+
+/// The p-value that the verdict rests on: of the claim; in a proof that did not fail, of its
+/// contrary, the largest over the channels.
+NamedP headline_p(const Test&);
+
+/// The other p-value: of an effect that must not pass, or of the claim that was not refuted.
+NamedP other_p(const Test&);
+
+/// Sentences on the two: how each was found and what it is held against.
+std::string evidence_text(const Test&);
+std::string exclusion_text(const Test&);
+
+/// "z", "adjusted p", "mean of luminaire/floor": a map for people.
+std::string map_title(const Map&);
+
 /// The samples of the worst channel, and those of estimators that have none of its name.
 std::vector<const Sample*> worst_samples(const Test&);
+
+/// ✓ ✗ ? – for ok, not ok, undecided and not run, in one column.
+std::string mark(Outcome);
+
+/// The verdict with what was expected of it, where that is not pass: "fail (as expected)",
+/// "pass, but fail expected".
+std::string verdict_text(const Test&);
 
 /// True unless an assumption of the test's numbers is violated.
 bool is_evidence(const Test&);
@@ -29,12 +76,6 @@ std::uint64_t rays(const Cost&);
 
 /// "suites/triangle.yaml:14".
 std::string place(const Test&);
-
-/// Canonical parameters for people, without the quotes that tell text from numbers.
-std::string parameters_text(const std::string& canonical);
-
-/// human(), or "none" for a number of data that were never finite.
-std::string data_text(const Number& value);
 
 /// The first sentence of the message, or what the verdict says by itself: a report's one line.
 std::string headline(const Test&);

@@ -6,18 +6,27 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <tuple>
 
-#include "reports/record/statements.h"
-#include "reports/words/effect.h"
-#include "reports/words/evidence.h"
+#include "reports/words/describe.h"
 #include "reports/words/kill_matrix.h"
 #include "reports/words/ledger.h"
 #include "reports/words/number.h"
-#include "reports/words/statement_text.h"
-#include "reports/words/summary.h"
+#include "reports/words/statements.h"
 
 namespace assay::reports {
 namespace {
+
+std::string of_claims(int some, int total) {
+  return fmt::format("{} of {}", some,
+                     counted(static_cast<std::uint64_t>(total), "claim", "claims"));
+}
+
+/// The rank of a test in lists that begin with what needs a look: not ok, undecided, not run, ok.
+int urgency(const Test& test) {
+  constexpr int ranks[] = {3, 0, 1, 2};  // in the order of outcomes
+  return ranks[static_cast<int>(outcome(test))];
+}
 
 bool is_finite(const Number& value) { return value && std::isfinite(*value); }
 
@@ -145,37 +154,91 @@ std::string one_in(const Number& log10_p) {
   return "1 in " + in_commas(std::round(count / step) * step);
 }
 
-std::optional<KillDisplay> kills(const Suite& suite) {
-  const KillMatrix matrix = kill_matrix(suite);
-  if (!is_worth_showing(matrix)) return std::nullopt;
-  KillDisplay shown{.methods = matrix.methods,
-                    .totals = kill_totals(suite, matrix),
-                    .legend = kill_matrix_legend};
-  for (const KillRow& row : matrix.rows) {
-    const EstimatorSummary& mutant = suite.estimators[row.mutant];
-    shown.rows.push_back({.mutant = mutant.name, .defect = mutant.defect});
-    for (const std::optional<KillCell>& cell : row.cells) {
-      if (!cell) {
-        shown.rows.back().cells.emplace_back();
-        continue;
-      }
-      shown.rows.back().cells.push_back(
-          KillCellDisplay{.test = suite.tests[cell->test].id,
-                          .text = short_text(suite, *cell),
-                          .sentence = sentence(suite, *cell),
-                          .killed = cell->fate == Fate::killed || cell->fate == Fate::broken});
-    }
-  }
-  return shown;
-}
-
 std::set<std::string> estimators_of(const Test& test) {
   std::set<std::string> names;
   for (const Sample& sample : test.samples) names.insert(sample.estimator);
   return names;
 }
 
+/// The text that a message asks to write; "" if it asks for nothing.
+std::string asked_for(const std::string& message) {
+  constexpr std::string_view lead = "write `";
+  const std::size_t at = message.rfind(lead);
+  if (at == std::string::npos) return "";
+  const std::size_t begin = at + lead.size();
+  return message.substr(begin, message.find('`', begin) - begin);
+}
+
 }  // namespace
+
+std::string tally_sentence(const Tally& tally) {
+  const int total = tally.passed + tally.failed + tally.inconclusive + tally.skipped;
+  if (total == 0) return "No claim was tested";
+  if (tally.failed > 0) return of_claims(tally.failed, total) + " broken";
+  if (tally.inconclusive > 0)
+    return of_claims(tally.inconclusive, total) + " undecided, none broken";
+  if (total == 1)
+    return tally.skipped > 0 ? "The claim was not tested" : "The claim is as it should be";
+  if (tally.skipped == total) return fmt::format("None of {} claims was tested", total);
+  if (tally.skipped > 0)
+    return fmt::format("{} as they should be, {} not tested", of_claims(tally.passed, total),
+                       tally.skipped);
+  return fmt::format("All {} claims are as they should be", total);
+}
+
+std::string run_sentence(const Record& record) {
+  const std::string alarm = alarm_count(record.ledger);
+  return tally_sentence(tally(record)) + (alarm.empty() ? "" : "; " + alarm);
+}
+
+std::string verdict_counts(const Record& record) {
+  // By urgency, the plain pass before what was expected to fail, then by their words.
+  std::map<std::tuple<int, bool, std::string>, int> counts;
+  for (const Test* test : tests_of(record))
+    ++counts[{urgency(*test), test->verdict != Verdict::pass, verdict_text(*test)}];
+  std::string out;
+  for (const auto& [key, count] : counts)
+    out += fmt::format("{}{}\u00A0{}", out.empty() ? "" : "; ", count, std::get<2>(key));
+  return out;
+}
+
+std::string error_rates(const Record& record) {
+  double alpha = 0, beta = 0;
+  bool planned = false;
+  for (const Suite& suite : record.suites) {
+    if (suite.tests.empty()) continue;
+    alpha += suite.alpha;
+    beta = std::max(beta, suite.beta);
+    for (const Test& test : suite.tests) planned = planned || test.detect.has_value();
+  }
+  if (!(alpha > 0)) return {};
+  std::string text = fmt::format(
+      "If every claim were true, some test would fail by chance with probability {} at most.",
+      human(std::min(alpha, 1.0)));
+  if (planned && beta > 0)
+    text += fmt::format(
+        " A claim that is off by its \"detect\" or more passes with probability {} at most.",
+        human(beta));
+  return text;
+}
+
+std::string false_alarms(double alpha) {
+  if (!(alpha > 0)) return {};
+  if (alpha >= 1) return "False alarms: in any run, as the suites' alphas add up to 1 or more.";
+  // The fewest runs, a power of ten, of which a whole number is meant; two digits are enough.
+  double runs = 100;
+  const auto whole = [&] { return std::abs(alpha * runs - std::round(alpha * runs)) < 1e-6; };
+  while (alpha * runs < 1 || (!whole() && alpha * runs < 10)) runs *= 10;
+  const double some = whole() ? std::round(alpha * runs) : std::ceil(alpha * runs);
+  return fmt::format("False alarms: at most {:.0f} run{} in {}.", some, some == 1 ? "" : "s",
+                     in_commas(runs));
+}
+
+std::string false_alarms(const Record& record) {
+  double alpha = 0;
+  for (const Suite& suite : record.suites) alpha += suite.tests.empty() ? 0 : suite.alpha;
+  return false_alarms(alpha);
+}
 
 const char* to_string(Standing standing) {
   constexpr const char* names[] = {"broken", "undecided", "holds", "caught", "not run"};
@@ -208,7 +271,9 @@ TestDisplay display(const Test& test) {
 }
 
 SuiteDisplay display(const Suite& suite) {
-  SuiteDisplay words{.levels = levels_text(suite), .kills = kills(suite)};
+  SuiteDisplay words{.levels = levels_text(suite)};
+  if (KillMatrix matrix = kill_matrix(suite); is_worth_showing(matrix))
+    words.kills = std::move(matrix);
   for (const Statement& statement : suite.statements) {
     words.statements.push_back({.answer = whole_answer(suite, statement),
                                 .holds = findings(suite, statement.holds),
@@ -257,12 +322,10 @@ std::vector<Suspect> suspects(const Suite& suite) {
 }
 
 RecordDisplay display(const Record& record) {
-  const std::string alarm = alarm_count(record);
-  RecordDisplay words{
-      .verdict = tally_sentence(tally(record)) + (alarm.empty() ? "" : "; " + alarm),
-      .counts = verdict_counts(record),
-      .rates = error_rates(record),
-      .seed = fmt::format("{}", record.seed)};
+  RecordDisplay words{.verdict = run_sentence(record),
+                      .counts = verdict_counts(record),
+                      .rates = error_rates(record),
+                      .seed = fmt::format("{}", record.seed)};
   for (const Suite& suite : record.suites) {
     for (Suspect& suspect : suspects(suite)) words.suspects.push_back(std::move(suspect));
   }
@@ -279,6 +342,37 @@ RecordDisplay display(const Record& record) {
                             .alarm = alarm_sentence(series)});
   }
   return words;
+}
+
+std::string trouble(const Test& test) {
+  const bool missed = test.expected == Verdict::fail && test.verdict == Verdict::pass;
+  if (missed) return "The planted bug was not caught. " + display(test).sentence;
+  if (test.verdict == Verdict::fail && test.expected == Verdict::pass)
+    return display(test).sentence;
+  return test.verdict == Verdict::skipped ? test.message : headline(test);
+}
+
+std::vector<Step> steps(const Test& test) {
+  std::vector<Step> all;
+  if (const std::string text = asked_for(test.message); !text.empty()) {
+    all.push_back({text.starts_with("--") ? "give the command" : "write into the test", text});
+  }
+  const bool missed = test.expected == Verdict::fail && test.verdict == Verdict::pass;
+  const Effect effect = deciding_channel(test).effect;
+  if (missed && test.detect && effect.relative)
+    all.push_back({"write into the test", fmt::format("detect: {:.2g}%", 50 * *test.detect)});
+  if (test.replay.empty()) return all;
+  if (test.verdict != Verdict::skipped) all.push_back({"again", test.replay});
+  if (test.verdict == Verdict::skipped) all.push_back({"then", test.replay});
+  if (test.image && test.verdict == Verdict::fail)
+    all.push_back({"see it", test.replay + " --report html=difference.html"});
+  return all;
+}
+
+Step explanation(const Test& test) {
+  std::string quoted = "'";
+  for (const char c : test.id) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return {"more", "assay explain " + quoted + "'"};
 }
 
 }  // namespace assay::reports

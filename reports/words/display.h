@@ -1,6 +1,7 @@
 #pragma once
 
-// Every report says the same of a record in words. The JSON record holds them as `display`.
+// What every report says of a record in the same words, and the steps to take about a claim that is
+// not as it should be. The JSON record holds the words as `display`.
 
 #include <optional>
 #include <string>
@@ -8,8 +9,28 @@
 
 #include "reports/record/record.h"
 #include "reports/words/describe.h"
+#include "reports/words/kill_matrix.h"
 
 namespace assay::reports {
+
+/// How many tests had which outcome, as a sentence for a title.
+std::string tally_sentence(const Tally&);
+
+/// The same of a run, with the alarms of its ledger: "5 of 126 claims broken; 1 ledger alarm".
+std::string run_sentence(const Record&);
+
+/// How many tests had which verdict, the urgent ones first: "1 pass, but fail expected; 57 pass; 20
+/// fail (as expected)".
+std::string verdict_counts(const Record&);
+
+/// The error rates of a run's verdicts.
+std::string error_rates(const Record&);
+
+/// "False alarms: at most 4 runs in 100." of a total alpha; empty if that is 0.
+std::string false_alarms(double alpha);
+
+/// The same of all suites with tests.
+std::string false_alarms(const Record&);
 
 /// The groups that a reader sorts claims by.
 enum class Standing { broken, undecided, holds, caught, not_run };
@@ -36,26 +57,6 @@ struct TestDisplay {
 };
 TestDisplay display(const Test&);
 
-struct KillCellDisplay {
-  std::string test;  ///< id
-  std::string text;
-  std::string sentence;
-  bool killed = false;
-  ASSAY_FIELDS(KillCellDisplay, test, text, sentence, killed)
-};
-struct KillRowDisplay {
-  std::string mutant;
-  std::string defect;
-  std::vector<std::optional<KillCellDisplay>> cells;
-  ASSAY_FIELDS(KillRowDisplay, mutant, defect, cells)
-};
-struct KillDisplay {
-  std::vector<std::string> methods;
-  std::vector<KillRowDisplay> rows;
-  std::string totals;
-  std::string legend;
-  ASSAY_FIELDS(KillDisplay, methods, rows, totals, legend)
-};
 struct StatementDisplay {
   std::string answer;
   std::string holds;
@@ -64,7 +65,7 @@ struct StatementDisplay {
 };
 struct SuiteDisplay {
   std::string levels;
-  std::optional<KillDisplay> kills;
+  std::optional<KillMatrix> kills;  ///< none: not worth showing
   std::vector<StatementDisplay> statements;
   ASSAY_FIELDS(SuiteDisplay, levels, kills, statements)
 };
@@ -101,5 +102,20 @@ struct RecordDisplay {
   ASSAY_FIELDS(RecordDisplay, verdict, counts, rates, seed, suspects, ledger, quiet, notes, series)
 };
 RecordDisplay display(const Record&);
+
+/// The trouble with a claim, without a p-value where it can be said so.
+std::string trouble(const Test&);
+
+/// Something to do, and a line to paste for it.
+struct Step {
+  std::string label;  ///< "again", "add to the test"
+  std::string paste;
+};
+/// The most useful first. A message that ends in "write `TEXT`" gives the text to paste. Empty if
+/// the words of trouble() are all there is to say.
+std::vector<Step> steps(const Test&);
+
+/// The command that tells more of a test.
+Step explanation(const Test&);
 
 }  // namespace assay::reports

@@ -10,10 +10,7 @@
 #include <set>
 #include <span>
 
-#include "reports/words/columns.h"
 #include "reports/words/describe.h"
-#include "reports/words/effect.h"
-#include "reports/words/evidence.h"
 #include "reports/words/number.h"
 #include "reports/words/text.h"
 
@@ -21,6 +18,13 @@ namespace assay::reports {
 namespace {
 
 constexpr std::array textbook = {"t", "Welch", "chi-square", "F", "KS", "fit", "image"};
+
+constexpr const char* legend =
+    "A number: killed by so many samples (primary estimates drawn of the mutant; of an image, a "
+    "pixel). < x: it survives, and an effect of x or more would have been found. Empty: not "
+    "tested by that method. t and Welch compare means with a number and with another estimator, "
+    "chi-square and F variances, KS laws of one coordinate, fit counts in cells, image all "
+    "pixels; the pilot may put a method in their place that keeps its level.";
 
 /// The word before the first bracket of a claim: "mean", "variance", "slope".
 std::string quantity_of(const std::string& claim) { return claim.substr(0, claim.find('(')); }
@@ -46,6 +50,14 @@ std::optional<std::size_t> mutant_of(const Suite& suite, const Test& test) {
   return std::nullopt;
 }
 
+/// The fate of a mutant under one method.
+enum class Fate {
+  killed,    ///< the claim was refuted
+  broken,    ///< an observation was not finite, which is seen as well
+  survived,  ///< no evidence against the claim
+  open       ///< undecided, or no valid test
+};
+
 Fate fate_of(const Test& test) {
   if (test.verdict == Verdict::fail) return Fate::killed;
   if (test.verdict == Verdict::error) return Fate::broken;
@@ -61,13 +73,23 @@ std::uint64_t samples_of(const Test& test, const std::string& mutant) {
 
 Number found_from(const Test& test) { return test.detectable ? test.detectable : test.detect; }
 
+/// What one test says of one mutant.
+struct Tested {
+  const Test* test;
+  std::size_t mutant;  ///< in the suite's estimators
+  std::string column;
+  Fate fate;
+  std::uint64_t samples;
+
+  bool kills() const { return fate == Fate::killed || fate == Fate::broken; }
+};
+
 /// True if the first says more of the method than the second.
-bool better(const Suite& suite, const KillCell& one, const KillCell& other) {
+bool better(const Tested& one, const Tested& other) {
   if (one.fate != other.fate) return one.fate < other.fate;
   if (one.fate != Fate::survived) return one.samples < other.samples;
   constexpr double none = std::numeric_limits<double>::infinity();
-  return found_from(suite.tests[one.test]).value_or(none) <
-         found_from(suite.tests[other.test]).value_or(none);
+  return found_from(*one.test).value_or(none) < found_from(*other.test).value_or(none);
 }
 
 std::string margin(const Test& test) {
@@ -79,40 +101,76 @@ std::string margin(const Test& test) {
 }
 
 /// Columns that hold something: the textbook's in their order, then others as they come.
-std::vector<std::string> columns_of(const std::vector<std::string>& found) {
+std::vector<std::string> columns_of(const std::vector<Tested>& all) {
   std::vector<std::string> columns;
   for (const char* name : textbook) {
-    if (std::find(found.begin(), found.end(), name) != found.end()) columns.emplace_back(name);
+    if (std::ranges::find(all, name, &Tested::column) != all.end()) columns.emplace_back(name);
   }
-  for (const std::string& name : found) {
-    if (std::find(columns.begin(), columns.end(), name) == columns.end()) columns.push_back(name);
+  for (const Tested& one : all) {
+    if (std::ranges::find(columns, one.column) == columns.end()) columns.push_back(one.column);
   }
   return columns;
 }
 
-struct Tested {
-  std::size_t mutant = 0;
-  std::string column;
-  KillCell cell;
-};
-
 std::vector<Tested> tested(const Suite& suite) {
   std::vector<Tested> all;
-  for (std::size_t t = 0; t < suite.tests.size(); ++t) {
-    const Test& test = suite.tests[t];
+  for (const Test& test : suite.tests) {
     const std::optional<std::size_t> mutant = mutant_of(suite, test);
     if (!mutant || test.verdict == Verdict::skipped) continue;
-    all.push_back({.mutant = *mutant,
+    all.push_back({.test = &test,
+                   .mutant = *mutant,
                    .column = column_of(test),
-                   .cell = {.test = t,
-                            .fate = fate_of(test),
-                            .samples = samples_of(test, suite.estimators[*mutant].name)}});
+                   .fate = fate_of(test),
+                   .samples = samples_of(test, suite.estimators[*mutant].name)});
   }
   return all;
 }
 
-bool is_kill(const std::optional<KillCell>& cell) {
-  return cell && (cell->fate == Fate::killed || cell->fate == Fate::broken);
+std::string short_text(const Tested& one) {
+  if (one.fate == Fate::killed) return count_text(one.samples);
+  if (one.fate == Fate::broken) return "not finite";
+  if (one.fate == Fate::open)
+    return one.test->verdict == Verdict::invalid ? "invalid" : "undecided";
+  const std::string least = margin(*one.test);
+  return least.empty() ? "survives" : "< " + least;
+}
+
+std::string sentence(const Tested& one) {
+  const std::string samples = counted(one.samples, "sample", "samples");
+  if (one.fate == Fate::killed) return "killed by " + samples;
+  if (one.fate == Fate::broken) return "not finite among " + samples;
+  if (one.fate == Fate::open)
+    return fmt::format("{} after {}", to_string(one.test->verdict), samples);
+  const std::string least = margin(*one.test);
+  return least.empty() ? "survives " + samples
+                       : fmt::format("survives {}: an effect of {} or more would have been found",
+                                     samples, least);
+}
+
+/// The best results by mutant, one a method.
+using Best = std::map<std::size_t, std::vector<const Tested*>>;
+
+std::string totals_of(const Suite& suite, const std::vector<std::string>& methods,
+                      const Best& best) {
+  std::set<std::string> mutants, killed;
+  std::vector<int> tested_by(methods.size()), killed_by(methods.size());
+  for (const auto& [mutant, cells] : best) {
+    const std::string& plugin = suite.estimators[mutant].plugin;
+    mutants.insert(plugin);
+    for (std::size_t m = 0; m < cells.size(); ++m) {
+      if (cells[m] == nullptr) continue;
+      ++tested_by[m];
+      if (!cells[m]->kills()) continue;
+      ++killed_by[m];
+      killed.insert(plugin);
+    }
+  }
+  std::string text = fmt::format(
+      "{} of {} mutants are killed. Rows that each method kills:", killed.size(), mutants.size());
+  for (std::size_t m = 0; m < methods.size(); ++m) {
+    text += fmt::format("{} {} {} of {}", m > 0 ? "," : "", methods[m], killed_by[m], tested_by[m]);
+  }
+  return text + ".";
 }
 
 // ---- Lines of a terminal
@@ -127,22 +185,15 @@ struct Column {
   int width = 0;
 };
 
-Column column_of(const Suite& suite, const KillMatrix& matrix, std::size_t method) {
+Column column_of(const KillMatrix& matrix, std::size_t method) {
   Column column{.heading = one_line(matrix.methods[method])};
   column.width = columns(column.heading);
   for (const KillRow& row : matrix.rows) {
     const auto& cell = row.cells[method];
-    column.cells.push_back(cell ? one_line(short_text(suite, *cell)) : std::string());
+    column.cells.push_back(cell ? one_line(cell->text) : std::string());
     column.width = std::max(column.width, columns(column.cells.back()));
   }
   return column;
-}
-
-std::vector<std::string> names_of(const Suite& suite, const KillMatrix& matrix) {
-  std::vector<std::string> names;
-  for (const KillRow& row : matrix.rows)
-    names.push_back(one_line(suite.estimators[row.mutant].name));
-  return names;
 }
 
 /// How many columns from the first on fit beside names of the least width, one at the least.
@@ -201,20 +252,28 @@ class Block {
 
 KillMatrix kill_matrix(const Suite& suite) {
   const std::vector<Tested> all = tested(suite);
-  std::vector<std::string> found;
-  for (const Tested& one : all) found.push_back(one.column);
-  KillMatrix matrix{.methods = columns_of(found)};
-  std::map<std::size_t, std::vector<std::optional<KillCell>>> rows;
+  KillMatrix matrix{.methods = columns_of(all), .legend = legend};
+  Best best;
   for (const Tested& one : all) {
-    std::vector<std::optional<KillCell>>& cells = rows[one.mutant];
+    std::vector<const Tested*>& cells = best[one.mutant];
     cells.resize(matrix.methods.size());
-    const auto column = std::find(matrix.methods.begin(), matrix.methods.end(), one.column);
-    std::optional<KillCell>& cell =
-        cells[static_cast<std::size_t>(column - matrix.methods.begin())];
-    if (!cell || better(suite, one.cell, *cell)) cell = one.cell;
+    const auto column = std::ranges::find(matrix.methods, one.column) - matrix.methods.begin();
+    const Tested*& cell = cells[static_cast<std::size_t>(column)];
+    if (cell == nullptr || better(one, *cell)) cell = &one;
   }
-  for (auto& [mutant, cells] : rows)
-    matrix.rows.push_back({.mutant = mutant, .cells = std::move(cells)});
+  for (const auto& [mutant, cells] : best) {
+    KillRow row{suite.estimators[mutant].name, suite.estimators[mutant].defect, {}};
+    for (const Tested* one : cells) {
+      if (one == nullptr) {
+        row.cells.emplace_back();
+      } else {
+        row.cells.push_back(
+            KillCell{one->test->id, short_text(*one), sentence(*one), one->kills()});
+      }
+    }
+    matrix.rows.push_back(std::move(row));
+  }
+  matrix.totals = totals_of(suite, matrix.methods, best);
   return matrix;
 }
 
@@ -225,62 +284,11 @@ bool is_worth_showing(const KillMatrix& matrix) {
   });
 }
 
-std::string short_text(const Suite& suite, const KillCell& cell) {
-  const Test& test = suite.tests[cell.test];
-  if (cell.fate == Fate::killed) return count_text(cell.samples);
-  if (cell.fate == Fate::broken) return "not finite";
-  if (cell.fate == Fate::open) return test.verdict == Verdict::invalid ? "invalid" : "undecided";
-  const std::string least = margin(test);
-  return least.empty() ? "survives" : "< " + least;
-}
-
-std::string sentence(const Suite& suite, const KillCell& cell) {
-  const Test& test = suite.tests[cell.test];
-  const std::string samples = counted(cell.samples, "sample", "samples");
-  if (cell.fate == Fate::killed) return "killed by " + samples;
-  if (cell.fate == Fate::broken) return "not finite among " + samples;
-  if (cell.fate == Fate::open) {
-    return fmt::format("{} after {}", to_string(test.verdict), samples);
-  }
-  const std::string least = margin(test);
-  return least.empty() ? "survives " + samples
-                       : fmt::format("survives {}: an effect of {} or more would have been found",
-                                     samples, least);
-}
-
-std::string kill_totals(const Suite& suite, const KillMatrix& matrix) {
-  std::set<std::string> mutants, killed;
-  std::vector<int> tested_by(matrix.methods.size()), killed_by(matrix.methods.size());
-  for (const KillRow& row : matrix.rows) {
-    const std::string& plugin = suite.estimators[row.mutant].plugin;
-    mutants.insert(plugin);
-    for (std::size_t m = 0; m < row.cells.size(); ++m) {
-      tested_by[m] += row.cells[m].has_value() ? 1 : 0;
-      killed_by[m] += is_kill(row.cells[m]) ? 1 : 0;
-      if (is_kill(row.cells[m])) killed.insert(plugin);
-    }
-  }
-  std::string text = fmt::format(
-      "{} of {} mutants are killed. Rows that each method kills:", killed.size(), mutants.size());
-  for (std::size_t m = 0; m < matrix.methods.size(); ++m) {
-    text += fmt::format("{} {} {} of {}", m > 0 ? "," : "", matrix.methods[m], killed_by[m],
-                        tested_by[m]);
-  }
-  return text + ".";
-}
-
-const char* const kill_matrix_legend =
-    "A number: killed by so many samples (primary estimates drawn of the mutant; of an image, a "
-    "pixel). < x: it survives, and an effect of x or more would have been found. Empty: not "
-    "tested by that method. t and Welch compare means with a number and with another estimator, "
-    "chi-square and F variances, KS laws of one coordinate, fit counts in cells, image all "
-    "pixels; the pilot may put a method in their place that keeps its level.";
-
-std::vector<std::string> kill_lines(const Suite& suite, const KillMatrix& matrix, int width) {
+std::vector<std::string> kill_lines(const KillMatrix& matrix, int width) {
   std::vector<Column> all;
-  for (std::size_t m = 0; m < matrix.methods.size(); ++m)
-    all.push_back(column_of(suite, matrix, m));
-  const std::vector<std::string> names = names_of(suite, matrix);
+  for (std::size_t m = 0; m < matrix.methods.size(); ++m) all.push_back(column_of(matrix, m));
+  std::vector<std::string> names;
+  for (const KillRow& row : matrix.rows) names.push_back(one_line(row.mutant));
   std::vector<std::string> lines;
   for (std::size_t first = 0; first < all.size();) {
     const std::size_t count = fitting(all, first, width);

@@ -2,8 +2,6 @@
 
 // Which method sees which defect: what a suite's tests say of its mutants, by mutant and method.
 
-#include <cstddef>
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,25 +10,26 @@
 
 namespace assay::reports {
 
-/// The fate of a mutant under one method.
-enum class Fate {
-  killed,    ///< the claim was refuted
-  broken,    ///< an observation was not finite, which is seen as well
-  survived,  ///< no evidence against the claim
-  open       ///< undecided, or no valid test
-};
-
 /// The best result of one method against one mutant. A kill by the fewest samples comes first, then
-/// the survival with the least detectable effect, then the first test.
+/// an observation that was not finite, then the survival with the least detectable effect, then the
+/// first test. Samples are the primary estimates drawn of the mutant (a pixel).
 struct KillCell {
-  std::size_t test = 0;  ///< in the suite
-  Fate fate = Fate::open;
-  std::uint64_t samples = 0;  ///< primary estimates that were drawn of the mutant (a pixel)
+  std::string test;  ///< id
+  /// "6400" or "1.05 M" samples killed a mutant. "< 0.36 %": it survived, and an effect of that
+  /// size would have been found. Else "not finite", "undecided" or "invalid".
+  std::string text;
+  /// The same as a sentence: "killed by 6400 samples". A survivor's samples are said too: "survives
+  /// 65.5 k samples: an effect of 0.36 % or more would have been found".
+  std::string sentence;
+  bool killed = false;
+  ASSAY_FIELDS(KillCell, test, text, sentence, killed)
 };
 
 struct KillRow {
-  std::size_t mutant = 0;                      ///< in the suite's estimators
+  std::string mutant;
+  std::string defect;
   std::vector<std::optional<KillCell>> cells;  ///< one a method; none: not tested by it
+  ASSAY_FIELDS(KillRow, mutant, defect, cells)
 };
 
 /// Rows are mutants and columns are methods of a suite. A method has the name of the claim's
@@ -39,6 +38,9 @@ struct KillRow {
 struct KillMatrix {
   std::vector<std::string> methods;
   std::vector<KillRow> rows;
+  std::string totals;  ///< "112 of 112 mutants are killed. …: t 90 of 105, …", plugins counted once
+  std::string legend;  ///< How to read the short texts.
+  ASSAY_FIELDS(KillMatrix, methods, rows, totals, legend)
 };
 
 /// The matrix of the tested mutants. An estimator is a mutant if the record names its original. A
@@ -49,23 +51,9 @@ KillMatrix kill_matrix(const Suite&);
 /// True if two methods or more tested some mutant.
 bool is_worth_showing(const KillMatrix&);
 
-/// "6400" or "1.05 M" samples killed a mutant. "< 0.36 %": it survived, and an effect of that size
-/// would have been found. Else "not finite", "undecided" or "invalid".
-std::string short_text(const Suite&, const KillCell&);
-
-/// The same as a sentence: "killed by 6400 samples". A survivor's samples are said too: "survives
-/// 65.5 k samples: an effect of 0.36 % or more would have been found".
-std::string sentence(const Suite&, const KillCell&);
-
-/// "112 of 112 mutants are killed by a method at least: t 90 of 105, …", plugins counted once.
-std::string kill_totals(const Suite&, const KillMatrix&);
-
-/// How to read the short texts.
-extern const char* const kill_matrix_legend;
-
 /// A heading and a line for each mutant, none wider than `width` columns: names are shortened where
 /// the numbers need the room, numbers never. Columns that do not fit stand in a second block, with
 /// the mutants that have something there.
-std::vector<std::string> kill_lines(const Suite& suite, const KillMatrix& matrix, int width);
+std::vector<std::string> kill_lines(const KillMatrix& matrix, int width);
 
 }  // namespace assay::reports

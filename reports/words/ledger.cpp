@@ -40,8 +40,8 @@ double distance(const LedgerSeries& series) {
 
 }  // namespace
 
-std::string alarm_count(const Record& record) {
-  const int count = alarms(record.ledger);
+std::string alarm_count(const Ledger& ledger) {
+  const int count = alarms(ledger);
   return count == 0 ? "" : plural(static_cast<std::uint64_t>(count), "ledger alarm");
 }
 

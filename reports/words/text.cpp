@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <span>
 
 namespace assay::reports {
@@ -62,6 +64,110 @@ std::string replace(std::string_view text, std::span<const Form> forms) {
     result.append(form == forms.end() ? std::string_view(&c, 1) : form->written);
   }
   return result;
+}
+
+struct Range {
+  char32_t first, last;
+};
+
+constexpr std::array<Range, 6> combining = {{{0x0300, 0x036F},
+                                             {0x1AB0, 0x1ACE},
+                                             {0x1DC0, 0x1DFF},
+                                             {0x200B, 0x200F},
+                                             {0x20D0, 0x20F0},
+                                             {0xFE00, 0xFE0F}}};
+
+// Supersets of Unicode's East Asian Width W and F: counting too many columns is harmless.
+constexpr std::array<Range, 11> wide = {{{0x1100, 0x115F},
+                                         {0x231A, 0x231B},
+                                         {0x2329, 0x232A},
+                                         {0x23E9, 0x23FF},
+                                         {0x25FD, 0x26FF},
+                                         {0x2705, 0x27BF},
+                                         {0x2B1B, 0x2B55},
+                                         {0x2E80, 0xA4CF},
+                                         {0xA960, 0xA97C},
+                                         {0xAC00, 0xD7FF},
+                                         {0xF900, 0xFAFF}}};
+
+constexpr std::array<Range, 5> wide_above = {
+    {{0xFE10, 0xFE6F}, {0xFF01, 0xFF60}, {0xFFE0, 0xFFE6}, {0x16FE0, 0x1FFFF}, {0x20000, 0x3FFFF}}};
+
+template <class Ranges>
+bool within(const Ranges& ranges, char32_t c) {
+  return std::any_of(ranges.begin(), ranges.end(),
+                     [c](Range r) { return c >= r.first && c <= r.last; });
+}
+
+// The marks of the verdicts lie in a range that is otherwise wide.
+bool narrow_mark(char32_t c) { return c == 0x2713 || c == 0x2717; }
+
+// The longest start of the text that fits, and its columns.
+std::size_t fitting(std::string_view text, int width) {
+  int used = 0;
+  std::size_t position = 0;
+  while (position < text.size()) {
+    std::size_t next = position;
+    used += columns(next_code_point(text, next));
+    if (used > width) break;
+    position = next;
+  }
+  return position;
+}
+
+// The last place up to `end` where a long word, such as a claim, may be parted. It may be parted
+// behind an opening bracket, comma, slash, or a dot that is not a decimal point. Returns `end` if
+// there is no such place.
+std::size_t joint(std::string_view text, std::size_t end) {
+  for (std::size_t i = end; i > end / 2; --i) {
+    const char last = text[i - 1];
+    const bool letter = std::isalpha(static_cast<unsigned char>(text[i])) != 0;
+    if (last == '(' || last == ',' || last == '/' || (last == '.' && letter)) return i;
+  }
+  return end;
+}
+
+// Takes the next line off the front of `rest`.
+std::string take_line(std::string_view& rest, int width) {
+  std::size_t end = fitting(rest, width);
+  std::size_t next = end;
+  if (end < rest.size() && rest[end] != ' ') {
+    const std::size_t space = rest.substr(0, end).rfind(' ');
+    if (space != std::string_view::npos && space > 0)
+      end = next = space;
+    else
+      end = next = joint(rest, end);
+  }
+  while (next < rest.size() && rest[next] == ' ') ++next;
+  std::string line(rest.substr(0, end));
+  rest.remove_prefix(next);
+  while (!line.empty() && line.back() == ' ') line.pop_back();
+  return line;
+}
+
+std::vector<std::string> words_outside_quotes(std::string_view command) {
+  std::vector<std::string> words(1);
+  char quote = 0;
+  bool escaped = false;  // by a backslash outside quotes
+  for (const char c : command) {
+    if (escaped || (quote == 0 && c == '\\')) {
+      escaped = !escaped;
+      words.back() += c;
+      continue;
+    }
+    if (quote == 0 && (c == '\'' || c == '"')) {
+      quote = c;
+    } else if (c == quote) {
+      quote = 0;
+    }
+    if (quote == 0 && c == ' ') {
+      words.emplace_back();
+    } else {
+      words.back() += c;
+    }
+  }
+  std::erase(words, "");
+  return words;
 }
 
 }  // namespace
@@ -143,6 +249,60 @@ std::string cap(std::string text, std::size_t bytes) {
   while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
   text.resize(end);
   return text + note.substr(0, bytes - end);
+}
+
+int columns(char32_t c) {
+  if (within(combining, c)) return 0;
+  if (narrow_mark(c)) return 1;
+  return within(wide, c) || within(wide_above, c) ? 2 : 1;
+}
+
+int columns(std::string_view text) {
+  int sum = 0;
+  for (std::size_t i = 0; i < text.size();) sum += columns(next_code_point(text, i));
+  return sum;
+}
+
+std::string shorten(std::string_view text, int width) {
+  if (columns(text) <= width) return std::string(text);
+  if (width < 1) return {};
+  return std::string(text.substr(0, fitting(text, width - 1))) + "…";
+}
+
+std::string pad_right(std::string text, int width) {
+  const int missing = width - columns(text);
+  if (missing > 0) text.append(static_cast<std::size_t>(missing), ' ');
+  return text;
+}
+
+std::vector<std::string> wrap(std::string_view text, int width) {
+  width = std::max(width, 2);
+  std::vector<std::string> lines;
+  for (std::size_t start = 0; start <= text.size();) {
+    const std::size_t end = std::min(text.find('\n', start), text.size());
+    std::string paragraph(text.substr(start, end - start));
+    std::replace(paragraph.begin(), paragraph.end(), '\t', ' ');
+    std::string_view rest = paragraph;
+    do lines.push_back(take_line(rest, width));
+    while (!rest.empty());
+    start = end + 1;
+  }
+  return lines;
+}
+
+std::vector<std::string> wrap_command(std::string_view command, int width) {
+  width = std::max(width, 4);
+  std::vector<std::string> lines(1);
+  for (const std::string& word : words_outside_quotes(command)) {
+    const int used = columns(lines.back());
+    if (used > 0 && used + 1 + columns(word) > width - 2) {
+      lines.back() += " \\";
+      lines.emplace_back();
+    }
+    if (!lines.back().empty()) lines.back() += ' ';
+    lines.back() += word;
+  }
+  return lines;
 }
 
 }  // namespace assay::reports

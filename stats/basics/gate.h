@@ -18,4 +18,9 @@ struct Gate {
   GateState state = GateState::green;
 };
 
+inline GateState state_of(const Gate& gate, double green_up_to) {
+  if (gate.value <= green_up_to) return GateState::green;
+  return gate.low > gate.limit ? GateState::red : GateState::amber;
+}
+
 }  // namespace assay::stats

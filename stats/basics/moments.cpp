@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "stats/basics/check.h"
-#include "stats/basics/errors.h"
 
 namespace assay::stats {
 
@@ -48,6 +47,13 @@ double Moments::kurtosis() const {
   check::at_least({"Moments::kurtosis", "count"}, count, 2);
   if (m2 == 0) throw ZeroVariance("Moments::kurtosis: zero variance");
   return static_cast<double>(count) * (m4 / m2) / m2;
+}
+
+double rounding_of_mean(const Moments& x) {
+  if (!(x.m2 > 0)) return 0;
+  const double size = std::abs(x.mean);
+  const double spacing = std::nextafter(size, std::numeric_limits<double>::infinity()) - size;
+  return spacing / std::sqrt(12.0);
 }
 
 }  // namespace assay::stats

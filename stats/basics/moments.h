@@ -3,8 +3,16 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <stdexcept>
 
 namespace assay::stats {
+
+// Thrown where a statistic would divide by a zero variance. A constant sample is an outcome of its
+// own, so callers can catch it by name. Every other bad argument is a plain std::domain_error.
+class ZeroVariance : public std::domain_error {
+ public:
+  using std::domain_error::domain_error;
+};
 
 // One-pass moments up to order four, with range and count of non-zero values. The members `m2`,
 // `m3` and `m4` are sums (not means) of powers of deviations from `mean`. Updating and merging
@@ -81,5 +89,10 @@ inline void Moments::add(double value) {
   maximum = std::max(maximum, value);
   nonzero += value != 0;
 }
+
+// Standard deviation of what rounding adds to x.mean: ulp / sqrt(12), ulp the spacing of doubles at
+// the mean. The values may be added and merged in any order. Moments keeps what each step loses, so
+// only the last rounding counts. 0 if the values do not vary.
+double rounding_of_mean(const Moments& x);
 
 }  // namespace assay::stats

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "stats/cells/halved_cells.h"
+#include "stats/cells/plane_cells.h"
 
 namespace assay::stats {
 

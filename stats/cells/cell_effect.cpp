@@ -2,14 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "stats/basics/check.h"
+#include "stats/basics/search.h"
 
 namespace assay::stats {
 namespace {
 
 // The data's direction is stretched at most this much to the null effect.
 constexpr double most_stretched = 2;
+
+// Larger than the reciprocal root of any cell's probability: counts as infinite.
+constexpr double largest_effect = 1e12;
 
 double variance_of(Noncentral law) { return 2 * (law.degrees + 2 * law.noncentrality); }
 
@@ -53,7 +58,7 @@ CellEffect::AtNull CellEffect::at_null(double null_effect) const {
           .third = 8 * (cells_ - 1 + 3 * n_ * squared) + excess};
 }
 
-/// U, moved so that it is as many standard deviations from that law's mean as from its own.
+// U, moved so that it is as many standard deviations from that law's mean as from its own.
 double CellEffect::moved(const AtNull& law, double null_effect, Noncentral to) const {
   const double z = (squared_ - null_effect * null_effect) / std::sqrt(law.variance);
   return std::max(0.0, to.degrees + to.noncentrality + z * std::sqrt(variance_of(to)));
@@ -75,6 +80,26 @@ LogTails CellEffect::tails(double null_effect) const {
       .lower = noncentral_chi_square_tails(moved(law, null_effect, plain), plain).lower,
       .upper = noncentral_chi_square_tails(moved(law, null_effect, skew), skew).upper,
   };
+}
+
+Interval effect_interval(const std::function<LogTails(double)>& tails, double start,
+                         double confidence) {
+  check::inside_unit({"effect_interval", "confidence"}, confidence);
+  const double log_tail = std::log((1 - confidence) / 2);
+  // Both tails are monotone in w. The low end is 0 when even w = 0 is not rejected from that side.
+  const auto end = [&](auto excess) {
+    if (excess(0.0) >= 0) return 0.0;
+    double high = start;
+    while (excess(high) < 0 && high < largest_effect) high *= 2;
+    if (high >= largest_effect) return std::numeric_limits<double>::infinity();
+    return root(excess, {0, high}, 44);
+  };
+  if (tails(0).lower < log_tail) {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    return {none, none, confidence};
+  }
+  return {end([&](double w) { return tails(w).upper - log_tail; }),
+          end([&](double w) { return log_tail - tails(w).lower; }), confidence};
 }
 
 }  // namespace assay::stats

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -59,5 +60,12 @@ class CellEffect {
   double sum_ = 0;          // Sum of d over the cells.
   double sum_squares_ = 0;  // Sum of d^2.
 };
+
+// Central interval of an effect w >= 0. `tails(w)` are the data's tails if w were the effect. The
+// upper one rises with w and the lower one falls. The low end is at least 0. The high end is sought
+// from `start` on, and infinite if no w is too large. Both ends are NaN if the lower tail rejects
+// even w = 0: such data are closer to the null law than chance allows.
+Interval effect_interval(const std::function<LogTails(double)>& tails, double start,
+                         double confidence);
 
 }  // namespace assay::stats

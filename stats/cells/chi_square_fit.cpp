@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include "stats/basics/check.h"
-#include "stats/cells/chi_square_effect.h"
 #include "stats/tails/special.h"
 #include "stats/tails/tails.h"
 

@@ -62,7 +62,7 @@ ChiSquareFit chi_square_fit(const CellCounts& counts, FitOptions options = {});
 // std::domain_error below 4 observations.
 TestResult chi_square_fit_effect(const ChiSquareFit& fit, double null_effect);
 
-// Central interval of w by effect_interval() of chi_square_effect.h. Both ends are NaN if no w is
+// Central interval of w by effect_interval(). Both ends are NaN if no w is
 // left.
 Interval chi_square_fit_interval(const ChiSquareFit& fit, double confidence);
 

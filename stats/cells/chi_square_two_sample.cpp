@@ -5,22 +5,24 @@
 #include <numeric>
 
 #include "stats/basics/check.h"
+#include "stats/cells/cell_effect.h"
 #include "stats/tails/tails.h"
 
 namespace assay::stats {
 namespace {
 
+constexpr double fewest_expected = 20;
+
 std::uint64_t total(const std::vector<std::uint64_t>& counts) {
   return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
 }
 
-void check_counts(const TwoSampleCounts& counts, double minimum_expected) {
+void check_counts(const TwoSampleCounts& counts) {
   check::at_least({"chi_square_two_sample", "cells"}, counts.x.size(), 1);
   if (counts.x.size() != counts.y.size()) {
     check::fail({"chi_square_two_sample", "number of counts of y"}, counts.y.size(),
                 "that of x, " + std::to_string(counts.x.size()));
   }
-  check::non_negative({"chi_square_two_sample", "minimum_expected"}, minimum_expected);
   check::at_least({"chi_square_two_sample", "values of x"}, total(counts.x), 1);
   check::at_least({"chi_square_two_sample", "values of y"}, total(counts.y), 1);
 }
@@ -31,8 +33,8 @@ void absorb(PooledPair& into, const PooledPair& from) {
   into.members.insert(into.members.end(), from.members.begin(), from.members.end());
 }
 
-/// Pools neighbours until the smaller sample expects enough of them. The rest at the end joins the
-/// last pool.
+// Pools neighbours until the smaller sample expects enough of them. The rest at the end joins the
+// last pool.
 std::vector<PooledPair> pooled(const TwoSampleCounts& counts, double enough) {
   std::vector<PooledPair> pools;
   PooledPair open;
@@ -52,14 +54,19 @@ std::vector<PooledPair> pooled(const TwoSampleCounts& counts, double enough) {
   return pools;
 }
 
+LogTails effect_tails(const ChiSquareStatistic& statistic, double effect) {
+  return noncentral_chi_square_tails(
+      statistic.value, {statistic.degrees_of_freedom, statistic.observations * effect * effect});
+}
+
 }  // namespace
 
-ChiSquareTwoSample chi_square_two_sample(const TwoSampleCounts& counts, double minimum_expected) {
-  check_counts(counts, minimum_expected);
+ChiSquareTwoSample chi_square_two_sample(const TwoSampleCounts& counts) {
+  check_counts(counts);
   const double m = static_cast<double>(total(counts.x));
   const double n = static_cast<double>(total(counts.y));
   ChiSquareTwoSample result;
-  result.cells = pooled(counts, minimum_expected * (m + n) / std::min(m, n));
+  result.cells = pooled(counts, fewest_expected * (m + n) / std::min(m, n));
   check::at_least({"chi_square_two_sample", "pooled cells"}, result.cells.size(), 2);
   double sum = 0;
   for (PooledPair& cell : result.cells) {
@@ -79,6 +86,26 @@ ChiSquareTwoSample chi_square_two_sample(const TwoSampleCounts& counts, double m
                  tails.upper,
                  Exactness::asymptotic};
   return result;
+}
+
+double ChiSquareStatistic::effect() const {
+  return std::sqrt(std::max(0.0, value - degrees_of_freedom) / observations);
+}
+
+TestResult chi_square_effect(const ChiSquareStatistic& statistic, double null_effect) {
+  check::non_negative({"chi_square_effect", "null_effect"}, null_effect);
+  const LogTails tails = effect_tails(statistic, null_effect);
+  return {statistic.value,
+          {"noncentral-chi-square",
+           {statistic.degrees_of_freedom, statistic.observations * null_effect * null_effect}},
+          tails.lower,
+          tails.upper,
+          Exactness::asymptotic};
+}
+
+Interval chi_square_effect_interval(const ChiSquareStatistic& statistic, double confidence) {
+  const double start = statistic.effect() + 1 / std::sqrt(statistic.observations);
+  return effect_interval([&](double w) { return effect_tails(statistic, w); }, start, confidence);
 }
 
 }  // namespace assay::stats

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "stats/cells/chi_square_effect.h"
 #include "stats/tails/test_result.h"
 
 namespace assay::stats {
@@ -23,6 +22,17 @@ struct PooledPair {
   std::vector<std::size_t> members;  // Indices of the caller's cells.
 };
 
+// X2 of two samples of m and n values in cells (below). Its noncentrality is observations w^2,
+// observations = m n / (m + n).
+struct ChiSquareStatistic {
+  double value = 0;
+  double degrees_of_freedom = 1;
+  double observations = 1;
+
+  // sqrt(max(0, X2 - nu) / observations), the estimate of w.
+  double effect() const;
+};
+
 struct ChiSquareTwoSample {
   TestResult test;  // log_p_upper is the p-value of "one law over the cells".
   ChiSquareStatistic statistic;
@@ -32,13 +42,19 @@ struct ChiSquareTwoSample {
 // Null hypothesis: both samples have the same probabilities over the cells.
 //   X2 = sum (sqrt(n/m) a - sqrt(m/n) b)^2 / (a + b),  m and n the sizes.
 // Chi-square with nu = pools - 1 (Pearson 1911). Cells are pooled in index order until both samples
-// are expected to have minimum_expected in each. Pooling looks at the totals a + b alone. Given
+// are expected to have 20 in each. Pooling looks at the totals a + b alone. Given
 // those the null law is hypergeometric, so the choice costs nothing. Cells without a value in
 // either sample do not count. The effect is
 //   w = sqrt(sum (p - q)^2 / pi),  pi = (m p + n q) / (m + n).
 // X2 is near noncentral chi-square of ncp = w^2 m n / (m + n). Asymptotic. Throws
 // std::domain_error: lengths differ, an empty sample, fewer than two pools.
-ChiSquareTwoSample chi_square_two_sample(const TwoSampleCounts& counts,
-                                         double minimum_expected = 20);
+ChiSquareTwoSample chi_square_two_sample(const TwoSampleCounts& counts);
+
+// X2 against the noncentral chi-square of ncp = observations null_effect^2: log_p_upper rejects
+// "w <= null_effect", log_p_lower rejects "w >= null_effect". Asymptotic.
+TestResult chi_square_effect(const ChiSquareStatistic& statistic, double null_effect);
+
+// Central interval of w: effect_interval of cell_effect.h.
+Interval chi_square_effect_interval(const ChiSquareStatistic& statistic, double confidence);
 
 }  // namespace assay::stats

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -29,5 +30,34 @@ void check_borders(const PlaneGrid& grid);
 // does, its sides are searched (CellQuadrature::beside_support). Throws std::domain_error when a
 // density is negative or not finite.
 std::vector<Integral> integrals_over(const PlaneGrid& grid, CellQuadrature& quadrature);
+
+// The cells of a grid, some of them halved, and some of their halves again. Together they are the
+// grid. They are numbered in the grid's order, the lower half first. So neighbours in number are
+// neighbours in place.
+struct HalvedCells {
+  // The number of a halved cell, or of a whole one.
+  struct Part {
+    bool whole = true;
+    std::size_t number = 0;
+  };
+  struct Halves {
+    bool along_x = true;
+    double border = 0;  // A point on it is in the upper half.
+    std::array<Part, 2> parts = {};
+  };
+
+  PlaneGrid grid;
+  std::vector<Part> parts;  // Each of the grid's cells.
+  std::vector<Halves> halves;
+  std::vector<PlaneCell> cells;         // The whole ones.
+  std::vector<std::size_t> grid_cells;  // The grid's cell around each.
+
+  std::size_t size() const { return cells.size(); }
+  // Throws std::domain_error outside the grid.
+  std::size_t index(double x, double y) const;
+};
+
+// Halves no cell. Throws std::domain_error if borders do not ascend.
+HalvedCells whole_cells(const PlaneGrid& grid);
 
 }  // namespace assay::stats

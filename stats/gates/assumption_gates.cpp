@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "stats/basics/check.h"
-#include "stats/basics/errors.h"
 #include "stats/tails/tails.h"
 
 namespace assay::stats {
@@ -18,11 +18,6 @@ constexpr double red_factor = 2;
 constexpr double kurtosis_limit = 0.2;
 constexpr double red_share = 0.5;
 constexpr double green_share = 0.25;
-
-GateState state_of(const Gate& gate, double green_up_to) {
-  if (gate.value <= green_up_to) return GateState::green;
-  return gate.low > gate.limit ? GateState::red : GateState::amber;
-}
 
 // ---- Normal-data quantiles of g1 and b2
 
@@ -121,14 +116,93 @@ double grubbs(double n, double probability) {
   return (n - 1) / std::sqrt(n) / std::sqrt(1 + (n - 2) / t / t);
 }
 
-std::uint64_t whole_up(const char* function, double value) {
-  if (!(value < 0x1p53)) check::fail({function, "primaries needed"}, value, "below 2^53");
-  return static_cast<std::uint64_t>(std::max(1.0, std::ceil(value)));
+// ---- Rounding
+
+constexpr double rounding_limit = 0.05;
+constexpr double most_steps = 0x1p20;
+// In steps. Values written with a fixed number of decimals are off their lattice by rounding.
+constexpr double tolerance = 0.01;
+
+double smallest_gap(std::span<const double> sorted) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < sorted.size(); ++i) {
+    const double gap = sorted[i] - sorted[i - 1];
+    if (gap > 0 && gap < smallest) smallest = gap;
+  }
+  return smallest;
 }
 
-void check_shape(const char* function, PrimaryShape shape) {
-  check::finite({function, "skewness"}, shape.skewness);
-  check::finite({function, "excess_kurtosis"}, shape.excess_kurtosis);
+bool is_lattice(std::span<const double> sorted) {
+  const double gap = smallest_gap(sorted);
+  const double range = sorted.back() - sorted.front();
+  if (!(range / gap <= most_steps)) return false;
+  // The mean step, because one gap alone is known to rounding only.
+  const double steps = std::round(range / gap);
+  for (const double value : sorted) {
+    const double position = (value - sorted.front()) / range * steps;
+    if (std::abs(position - std::round(position)) > tolerance) return false;
+  }
+  return true;
+}
+
+double tie_probability(std::span<const double> sorted) {
+  const double n = static_cast<double>(sorted.size());
+  double pairs = 0;
+  double count = 1;
+  for (std::size_t i = 1; i <= sorted.size(); ++i) {
+    if (i < sorted.size() && sorted[i] == sorted[i - 1]) {
+      ++count;
+      continue;
+    }
+    pairs += count * (count - 1);
+    count = 1;
+  }
+  return pairs / (n * (n - 1));
+}
+
+// ---- Means of primaries
+
+constexpr double false_red_of_averages = 1e-7;
+constexpr double false_amber_of_averages = 0.01;
+constexpr std::size_t fewest_means = 16;
+
+// Means of values that stand apart, so that neighbours that depend on each other do not meet.
+std::vector<double> means_of(std::span<const double> values, std::size_t each) {
+  const std::size_t groups = values.size() / each;
+  std::vector<double> means;
+  for (std::size_t group = 0; group < groups; ++group) {
+    double sum = 0;
+    for (std::size_t k = 0; k < each; ++k) sum += values[group + k * groups];
+    means.push_back(sum / static_cast<double>(each));
+  }
+  return means;
+}
+
+// Phi^-1 of the ranks, the mean rank for equal values.
+std::vector<double> normal_scores(std::span<const double> values) {
+  std::vector<double> sorted(values.begin(), values.end());
+  std::ranges::sort(sorted);
+  std::vector<double> scores;
+  for (const double value : values) {
+    const auto [first, last] = std::ranges::equal_range(sorted, value);
+    const auto below = static_cast<double>(first - sorted.begin());
+    const auto equal = static_cast<double>(last - first);
+    const double rank = (below + equal / 2) / static_cast<double>(values.size());
+    scores.push_back(normal_quantile({Tail::lower, std::log(rank)}));
+  }
+  return scores;
+}
+
+// |z| of the sum of the first scores, in a random order of all.
+double deviation_of_sum(std::span<const double> scores, std::size_t first) {
+  Moments all;
+  for (const double score : scores) all.add(score);
+  double sum = 0;
+  for (const double score : scores.first(first)) sum += score - all.mean;
+  const auto n = static_cast<double>(scores.size());
+  const auto k = static_cast<double>(first);
+  const double variance = k * (n - k) / (n * (n - 1)) * all.m2;
+  return variance > 0 ? std::abs(sum) / std::sqrt(variance) : 0;
 }
 
 }  // namespace
@@ -144,14 +218,13 @@ double normal_skewness_quantile(double n, double probability) {
   return y * std::sqrt(6 * (n - 2) / ((n + 1) * (n + 3)));
 }
 
-PrimaryShape primary_shape(const Moments& pilot) {
-  return {pilot.skewness(), pilot.kurtosis() - 3};
-}
-
-std::uint64_t primaries_for_variance(PrimaryShape shape, ShapeLimits limits) {
-  check_shape("primaries_for_variance", shape);
-  check::positive({"primaries_for_variance", "limit"}, limits.excess_kurtosis);
-  return whole_up("primaries_for_variance", shape.excess_kurtosis / limits.excess_kurtosis);
+std::uint64_t primaries_for_variance(double excess_kurtosis, double limit) {
+  constexpr const char* function = "primaries_for_variance";
+  check::finite({function, "excess_kurtosis"}, excess_kurtosis);
+  check::positive({function, "limit"}, limit);
+  const double needed = excess_kurtosis / limit;
+  if (!(needed < 0x1p53)) check::fail({function, "primaries needed"}, needed, "below 2^53");
+  return static_cast<std::uint64_t>(std::max(1.0, std::ceil(needed)));
 }
 
 Gate skewness_gate(const Moments& x, double critical_value) {
@@ -208,6 +281,40 @@ double kurtosis_upper_limit(const Moments& x) {
   const double excess = x.kurtosis() - 3;
   const double error = std::sqrt(24 / static_cast<double>(x.count));
   return std::max(0.0, excess + z * error * kurtosis_widening(std::max(0.0, excess)));
+}
+
+Gate quantisation_gate(std::span<const double> sorted, double level) {
+  check::at_least({"quantisation_gate", "count"}, sorted.size(), 2);
+  check::inside_unit({"quantisation_gate", "level"}, level);
+  check::finite({"quantisation_gate", "smallest value"}, sorted.front());
+  check::finite({"quantisation_gate", "largest value"}, sorted.back());
+  const double rejected = std::sqrt(std::log(2 / level) / (2 * static_cast<double>(sorted.size())));
+  const double ties = is_lattice(sorted) ? tie_probability(sorted) : 0;
+  Gate gate{.name = "rounding", .value = ties / (2 * rejected), .limit = rounding_limit};
+  gate.low = gate.value;
+  gate.state = state_of(gate, rounding_limit);
+  return gate;
+}
+
+Gate averages_gate(std::span<const double> values, std::span<const double> means,
+                   std::size_t each) {
+  check::at_least({"averages_gate", "each"}, each, 1);
+  for (const double value : values) check::finite({"averages_gate", "value"}, value);
+  for (const double mean : means) check::finite({"averages_gate", "mean"}, mean);
+  std::vector<double> pooled = means_of(values, each);
+  const std::size_t groups = pooled.size();
+  const auto limit = [](double chance) { return upper_normal_quantile(chance / 4); };
+  Gate gate{.name = "place and spread of means against those of primaries",
+            .limit = limit(false_red_of_averages)};
+  if (std::min(groups, means.size()) < fewest_means) return gate;
+  pooled.insert(pooled.end(), means.begin(), means.end());
+  std::vector<double> scores = normal_scores(pooled);
+  gate.value = deviation_of_sum(scores, groups);
+  for (double& score : scores) score *= score;
+  gate.value = std::max(gate.value, deviation_of_sum(scores, groups));
+  gate.low = gate.value;
+  gate.state = state_of(gate, limit(false_amber_of_averages));
+  return gate;
 }
 
 }  // namespace assay::stats

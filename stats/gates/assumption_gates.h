@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "stats/basics/gate.h"
 #include "stats/basics/moments.h"
@@ -9,19 +11,11 @@ namespace assay::stats {
 
 // ---- On the pilot's primaries: how many make a secondary
 
-// Shape of one primary. Means of m primaries have skewness / sqrt(m) and excess_kurtosis / m.
-struct PrimaryShape {
-  double skewness = 0;
-  double excess_kurtosis = 0;
-};
-PrimaryShape primary_shape(const Moments& pilot);
+// Smallest m at which means of m primaries have an excess kurtosis of at most the limit: excess / m
+// <= limit (1 for negative excess). At .2 the level of F and chi-square stays below .12 at nominal
+// .10.
+std::uint64_t primaries_for_variance(double excess_kurtosis, double limit = 0.2);
 
-struct ShapeLimits {
-  double excess_kurtosis = 0.2;  // For F and chi-square. At nominal .10 the level stays below .12.
-};
-
-// Smallest m with excess_kurtosis / m <= limits.excess_kurtosis (1 for negative excess).
-std::uint64_t primaries_for_variance(PrimaryShape shape, ShapeLimits limits = {});
 // ---- On the test's own data
 
 // Value: exp(2 |a| x^3), 2 |a| = |g1| / (3 sqrt n). The worse tail of a Studentised mean departs
@@ -51,5 +45,30 @@ Gate kurtosis_gate(const Moments& x);
 // variance is the delta method's at the gamma law of excess k (normal if k < 0). Throws
 // std::domain_error for fewer than 4 values, ZeroVariance.
 double kurtosis_upper_limit(const Moments& x);
+
+// Gate on the rounding of values that are held against a continuous law by Kolmogorov and Smirnov.
+// On a lattice the empirical distribution steps by the mass of a lattice point. That moves the
+// distance D by up to half of it.
+//
+// Value: C / (2 d), C = sum c (c - 1) / (n (n - 1)) over the distinct values with counts c. C
+// estimates sum p^2, the mean mass of a lattice point. The distance d = sqrt(ln(2 / level) / (2 n))
+// is the one rejected at `level` (Massart 1990). The value is 0 if the distinct values are not on
+// one lattice of at most 2^20 steps. Green up to the limit .05, red above. Throws std::domain_error
+// for fewer than 2 values, a non-finite value, or level outside (0, 1).
+Gate quantisation_gate(std::span<const double> sorted, double level);
+
+// ---- On means of primaries
+
+// Null hypothesis: `means` are independent means of `each` independent values of the law that
+// `values` come from. So the G = floor(n / each) means of values 0, G, 2G, ...; 1, G + 1, ...; and
+// the given ones are exchangeable. Their pooled ranks R = 0 ... N - 1, the mean rank for equal
+// ones, have the law of a random order, whatever the law and its tails. Their
+// normal scores are a = Phi^-1((R + 1/2) / N).
+//
+// The sum of a sees another place (van der Waerden 1952), the sum of a^2 another spread (Klotz
+// 1962). Both are held against their permutation means and variances, as z. Value: the larger |z|.
+// It is red with probability 1e-7, amber below .01. Near 0 and green if there are fewer than 16
+// means on either side. Throws std::domain_error for each = 0 and for values that are not finite.
+Gate averages_gate(std::span<const double> values, std::span<const double> means, std::size_t each);
 
 }  // namespace assay::stats

@@ -7,9 +7,7 @@
 #include <vector>
 
 #include "stats/basics/check.h"
-#include "stats/basics/errors.h"
 #include "stats/gates/dependence.h"
-#include "stats/gates/lagged_correlation.h"
 #include "stats/tails/tails.h"
 
 namespace assay::stats {
@@ -26,7 +24,7 @@ constexpr std::size_t most_lagged = 2048;
 constexpr std::size_t shortest_rank_batch = 8;
 constexpr std::size_t fewest_rank_batches = 8;
 
-GateState state_of(double value, double green_up_to, double limit) {
+GateState state_at(double value, double green_up_to, double limit) {
   if (value > limit) return GateState::red;
   return value > green_up_to ? GateState::amber : GateState::green;
 }
@@ -81,11 +79,11 @@ Gate gate_of_lags(const std::vector<LaggedCorrelation>& all, const char* name, d
   gate.value = worst.correlation;
   gate.low = worst.correlation;
   gate.limit = worst.z == 0 ? 0 : worst.correlation * limit(chance) / std::abs(worst.z);
-  gate.state = state_of(std::abs(worst.z), limit(false_amber), limit(chance));
+  gate.state = state_at(std::abs(worst.z), limit(false_amber), limit(chance));
   return gate;
 }
 
-/// H of independence_gates.h.
+// H of independence_gates.h.
 double rank_batch_statistic(std::span<const double> ranks, std::size_t length) {
   double sum = 0;
   for (std::size_t end = length; end <= ranks.size(); end += length) {
@@ -118,7 +116,7 @@ Gate gate_of_rank_batches(std::span<const double> values) {
     gate.limit =
         chi_square_quantile({Tail::upper, std::log(false_red_of_draws / tests)}, batches) / batches;
   }
-  gate.state = state_of(-least, -std::log(false_amber), -std::log(false_red_of_draws));
+  gate.state = state_at(-least, -std::log(false_amber), -std::log(false_red_of_draws));
   return gate;
 }
 
@@ -133,7 +131,7 @@ Gate lag_one_gate(std::span<const double> values) {
   const double sign = z < 0 ? -1 : 1;
   Gate gate{.name = "correlation of successive values", .value = r, .low = r};
   gate.limit = sign * upper_normal_quantile(false_red_of_dependence / 2) * deviation - 1 / n;
-  gate.state = state_of(std::abs(z), upper_normal_quantile(false_amber / 2),
+  gate.state = state_at(std::abs(z), upper_normal_quantile(false_amber / 2),
                         upper_normal_quantile(false_red_of_dependence / 2));
   return gate;
 }
@@ -142,7 +140,7 @@ Gate batch_gate(std::span<const double> values) {
   const BatchRatio batches = batch_ratio("batch_gate", values, default_batch(values.size()));
   Gate gate{.name = "variance of batch means", .value = batches.value, .low = batches.value};
   gate.limit = batches.quantile(false_red_of_dependence);
-  gate.state = state_of(batches.value, batches.quantile(false_amber), gate.limit);
+  gate.state = state_of(gate, batches.quantile(false_amber));
   return gate;
 }
 

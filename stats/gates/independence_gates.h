@@ -23,7 +23,7 @@ Gate lag_one_gate(std::span<const double> values);
 // and slow chains that lag one does not. Throws std::domain_error for n < 9; ZeroVariance.
 Gate batch_gate(std::span<const double> values);
 
-// Value: the rank correlation (lagged_correlation.h) that is farthest from 0, over lags 2 to K.
+// Value: the rank correlation (dependence.h) that is farthest from 0, over lags 2 to K.
 // Limit: its value at z of 5e-5 / (K - 1), two-sided. Sees chains that take turns in a file. Green
 // if there are no such lags.
 Gate lagged_gate(std::span<const double> values);
@@ -33,7 +33,7 @@ Gate lagged_gate(std::span<const double> values);
 // 1e-7 at most, and amber below .01. Below 8 values there are none.
 //
 // The first has the rank correlation r_k that is farthest from 0, over the lags k = 1 ... K of the
-// first 2048 values (lagged_correlation.h). The second has the largest H / B, over batches of
+// first 2048 values (dependence.h). The second has the largest H / B, over batches of
 // L = 8, 16, ... neighbours, B = floor(n / L) >= 8 of them. S_b is the sum of the ranks of batch b,
 // less their mean.
 //   H = 12 / (L n (n + 1)) sum S_b^2

@@ -20,6 +20,24 @@ void size_of(Argument argument, std::size_t size, const ImageExtent& extent) {
   }
 }
 
+void image_reference(const char* function, const ImageReference& reference) {
+  extent_of(function, reference.extent);
+  size_of({function, "size of the reference"}, reference.value.size(), reference.extent);
+  if (reference.standard_error.empty()) return;
+  size_of({function, "size of the standard errors"}, reference.standard_error.size(),
+          reference.extent);
+}
+
+void same_extent(const char* function, const ImageExtent& a, const ImageExtent& b) {
+  if (a == b) return;
+  const auto text = [](const ImageExtent& e) {
+    return std::to_string(e.width) + " x " + std::to_string(e.height) + " x " +
+           std::to_string(e.channels);
+  };
+  refuse({function, "extent of the second image"}, " = " + text(b),
+         "that of the first, " + text(a));
+}
+
 }  // namespace
 
 void replicates(const char* function, std::size_t count) {
@@ -47,14 +65,6 @@ void image_stack(const char* function, const ImageStack<Real>& stack) {
 template void image_stack(const char*, const ImageStack<float>&);
 template void image_stack(const char*, const ImageStack<double>&);
 
-void image_reference(const char* function, const ImageReference& reference) {
-  extent_of(function, reference.extent);
-  size_of({function, "size of the reference"}, reference.value.size(), reference.extent);
-  if (reference.standard_error.empty()) return;
-  size_of({function, "size of the standard errors"}, reference.standard_error.size(),
-          reference.extent);
-}
-
 double reference_error(const char* function, const ImageReference& reference, std::size_t element) {
   if (reference.standard_error.empty()) return 0;
   const double error = reference.standard_error[element];
@@ -62,14 +72,19 @@ double reference_error(const char* function, const ImageReference& reference, st
   return error;
 }
 
-void same_extent(const char* function, const ImageExtent& a, const ImageExtent& b) {
-  if (a == b) return;
-  const auto text = [](const ImageExtent& e) {
-    return std::to_string(e.width) + " x " + std::to_string(e.height) + " x " +
-           std::to_string(e.channels);
-  };
-  refuse({function, "extent of the second image"}, " = " + text(b),
-         "that of the first, " + text(a));
+template <class Real>
+void image_pair(const char* function, const ImagePair<Real>& pair) {
+  image_stack(function, pair.a);
+  if (pair.b != nullptr) {
+    image_stack(function, *pair.b);
+    same_extent(function, pair.a.extent, pair.b->extent);
+  } else {
+    image_reference(function, *pair.reference);
+    same_extent(function, pair.a.extent, pair.reference->extent);
+  }
 }
+
+template void image_pair(const char*, const ImagePair<float>&);
+template void image_pair(const char*, const ImagePair<double>&);
 
 }  // namespace assay::stats::check

@@ -89,14 +89,14 @@ ImagePair<Real> pair_of(const ImageStack<Real>& a, const ImageReference& b) {
 inline constexpr std::size_t least_replicates = 16;
 
 namespace check {
-// These throw std::domain_error: empty extent, wrong sizes, fewer than least_replicates images. A
-// stack's size must match what it says is there. reference_error is 0 without standard errors, and
-// throws if negative or not finite.
+// These throw std::domain_error: empty or unequal extents, wrong sizes, fewer than least_replicates
+// images. A stack's size must match what it says is there. reference_error is 0 without standard
+// errors, and throws if negative or not finite.
 template <class Real>
 void image_stack(const char* function, const ImageStack<Real>& stack);
-void image_reference(const char* function, const ImageReference& reference);
+template <class Real>
+void image_pair(const char* function, const ImagePair<Real>& pair);
 double reference_error(const char* function, const ImageReference& reference, std::size_t element);
-void same_extent(const char* function, const ImageExtent& a, const ImageExtent& b);
 void replicates(const char* function, std::size_t count);
 }  // namespace check
 

@@ -174,40 +174,34 @@ double correlation(const std::vector<float>& a, const std::vector<float>& b) {
   return sum / static_cast<double>(a.size());
 }
 
-// The mean of some pairs' correlations, if it departs from the others' by too many errors.
-std::optional<double> departure(const Moments& some, const Moments& others) {
-  if (some.count < 2 || others.count < 2) return {};
-  const double difference = some.mean - others.mean;
+// The mean correlation of pairs whose indices differ by `apart`, if it departs from that of pairs
+// that are a little further apart by too many errors.
+std::optional<double> departure(const Scores& a, const Scores& b, std::size_t apart) {
+  Moments near;
+  Moments others;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const std::size_t first = apart > 0 ? i + apart : i - std::min(i, most_apart);
+    for (std::size_t j = first; j < std::min(i + most_apart, b.size()); ++j) {
+      (j == i + apart ? near : others).add(correlation(a[i], b[j]));
+    }
+  }
+  if (near.count < 2 || others.count < 2) return {};
+  const double difference = near.mean - others.mean;
   const double error =
       others.standard_deviation() *
-      std::sqrt(1 / static_cast<double>(some.count) + 1 / static_cast<double>(others.count));
+      std::sqrt(1 / static_cast<double>(near.count) + 1 / static_cast<double>(others.count));
   if (std::abs(difference) < std::max(least_correlation, errors_beyond * error)) return {};
-  return some.mean;
+  return near.mean;
 }
 
 std::optional<AlikeImages> alike_in(const std::vector<Scores>& sides) {
   if (sides.empty() || sides[0].size() < least_replicates || sides[0][0].size() < fewest_sampled)
     return {};
   if (sides.size() == 2) {
-    Moments equal;
-    Moments others;
-    for (std::size_t i = 0; i < sides[0].size(); ++i) {
-      const std::size_t first = i - std::min(i, most_apart);
-      for (std::size_t j = first; j < std::min(i + most_apart, sides[1].size()); ++j) {
-        (i == j ? equal : others).add(correlation(sides[0][i], sides[1][j]));
-      }
-    }
-    if (const auto found = departure(equal, others)) return AlikeImages{true, 0, *found};
+    if (const auto found = departure(sides[0], sides[1], 0)) return AlikeImages{true, 0, *found};
   }
   for (std::size_t s = 0; s < sides.size(); ++s) {
-    Moments next;
-    Moments others;
-    for (std::size_t i = 0; i < sides[s].size(); ++i) {
-      for (std::size_t j = i + 1; j < std::min(i + most_apart, sides[s].size()); ++j) {
-        (j == i + 1 ? next : others).add(correlation(sides[s][i], sides[s][j]));
-      }
-    }
-    if (const auto found = departure(next, others)) return AlikeImages{false, s, *found};
+    if (const auto found = departure(sides[s], sides[s], 1)) return AlikeImages{false, s, *found};
   }
   return {};
 }
@@ -251,16 +245,7 @@ ImageDependence RowDependence<Real>::found() const {
   return {.repeated = repeated_, .alike = alike_in(scored(sampled_))};
 }
 
-template <class Real>
-ImageDependence image_dependence(const ImagePair<Real>& pair, const ForEach& for_each) {
-  RowDependence<Real> rows;
-  rows.take(pair, {0, pair.a.extent.height}, for_each);
-  return rows.found();
-}
-
 template class RowDependence<float>;
 template class RowDependence<double>;
-template ImageDependence image_dependence(const ImagePair<float>&, const ForEach&);
-template ImageDependence image_dependence(const ImagePair<double>&, const ForEach&);
 
 }  // namespace assay::stats

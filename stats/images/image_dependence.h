@@ -2,12 +2,11 @@
 
 #include <cstddef>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "stats/basics/for_each.h"
 #include "stats/images/image.h"
-#include "stats/images/image_windows.h"
+#include "stats/images/image_family.h"
 
 namespace assay::stats {
 
@@ -68,6 +67,11 @@ class RowDependence {
 };
 
 template <class Real>
-ImageDependence image_dependence(const ImagePair<Real>& pair, const ForEach& for_each = one_by_one);
+ImageDependence image_dependence(const ImagePair<Real>& pair,
+                                 const ForEach& for_each = one_by_one) {
+  RowDependence<Real> rows;
+  rows.take(pair, {0, pair.a.extent.height}, for_each);
+  return rows.found();
+}
 
 }  // namespace assay::stats

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <vector>
+
 #include "stats/basics/for_each.h"
 #include "stats/images/image.h"
 #include "stats/tails/test_result.h"
@@ -13,7 +16,7 @@ namespace assay::stats {
 // unbiased for ||E b||^2. Variances and covariance are the jackknife's over replicates, each
 // stack's left out in turn (Efron & Stein 1981: on average not too small). It allows for correlated
 // elements. Degrees: the smaller count of replicates, less one. A reference's own error is
-// subtracted, but the variance that it adds is not included; image_reference_error.h adds that.
+// subtracted, but the variance that it adds is not included; with_reference_error adds that.
 struct ImageDistance {
   double squared_bias = 0;
   double squared_norm = 0;
@@ -23,13 +26,37 @@ struct ImageDistance {
   double degrees = 0;
 };
 
-// These throw std::domain_error as welch_z does.
+// Internal: sums over elements of the terms of U and N, whole and without each replicate in turn.
+struct DistanceSums {
+  using Terms = std::array<double, 2>;
+  Terms whole = {};
+  std::vector<Terms> without_a = {};
+  std::vector<Terms> without_b = {};
+};
+
+// The distance of images that are read rows after rows.
 template <class Real>
-ImageDistance image_distance(const ImageStack<Real>& a, const ImageStack<Real>& b,
-                             const ForEach& for_each = one_by_one);
-template <class Real>
-ImageDistance image_distance(const ImageStack<Real>& a, const ImageReference& b,
-                             const ForEach& for_each = one_by_one);
+class RowDistance {
+ public:
+  // Takes rows that follow on those before. Throws std::domain_error for unequal extents and fewer
+  // than least_replicates images.
+  void take(const ImagePair<Real>& pair, RowRange rows, const ForEach& for_each = one_by_one);
+  // To be called after the last rows. Throws std::domain_error if a sum is not finite.
+  ImageDistance distance();
+
+ private:
+  DistanceSums sums_;
+  DistanceSums open_;  // Of a range of elements that is not complete.
+};
+
+// The same of whole images. Throws as above.
+template <class Real, class Second>
+ImageDistance image_distance(const ImageStack<Real>& a, const Second& b,
+                             const ForEach& for_each = one_by_one) {
+  RowDistance<Real> rows;
+  rows.take(pair_of(a, b), {0, a.extent.height}, for_each);
+  return rows.distance();
+}
 
 // The same with an exact norm: a margin in units of its root.
 ImageDistance with_norm(ImageDistance distance, double squared_norm);
@@ -37,6 +64,22 @@ ImageDistance with_norm(ImageDistance distance, double squared_norm);
 // The same with the norm of another image, of which `norm` is the distance from 0. Their errors
 // count as independent.
 ImageDistance relative_to(ImageDistance distance, const ImageDistance& norm);
+
+// Independent errors of a reference's elements, or errors of unknown dependence.
+enum class ElementErrors { independent, unknown };
+
+// The distance of a stack from a reference, with the variances that the reference's own errors se
+// add. Let d = mean a - b and va the squared error of mean a. An element adds three terms.
+//   Variance of U: 4 max(0, d^2 - va - se^2) se^2 + 4 va se^2 + 2 se^4.
+//   Variance of N: 4 max(0, b^2 - se^2) se^2 + 2 se^4.
+//   Covariance: -4 d b se^2 - 2 se^4.
+// This holds for normal errors, with unbiased squares of the means. Independent errors add up. For
+// unknown ones the squares of the sums of the roots are added, and the largest covariance. There
+// |d| plus two standard errors replaces the root of max(0, ...) in the first. An exact reference
+// adds nothing. Throws std::domain_error as image_distance does.
+template <class Real>
+ImageDistance with_reference_error(ImageDistance distance, const ImageStack<Real>& a,
+                                   const ImageReference& b, ElementErrors errors);
 
 // Null hypothesis: ||E a - E b||^2 >= squared_margin N. Statistic: (U - squared_margin N) / its
 // jackknife standard error; Student's t. log_p_lower is the p-value, small when the images are

@@ -7,6 +7,131 @@
 #include "stats/tails/tails.h"
 
 namespace assay::stats {
+namespace {
+
+constexpr double alternating_share = 0.025;
+
+std::uint32_t narrow(std::size_t value) { return static_cast<std::uint32_t>(value); }
+
+struct Side {
+  std::uint32_t start;
+  std::uint32_t length;
+};
+
+std::vector<Side> aligned_sides(std::uint32_t extent, std::uint32_t size) {
+  std::vector<Side> sides;
+  for (std::uint32_t x = 0; x < extent; x += size) sides.push_back({x, std::min(size, extent - x)});
+  return sides;
+}
+
+std::vector<Side> shifted_sides(std::uint32_t extent, std::uint32_t size) {
+  const std::uint32_t length = std::min(size, extent);
+  std::vector<Side> sides;
+  for (std::uint32_t x = 0; x + length <= extent; x += std::max(1U, size / 4)) {
+    sides.push_back({x, length});
+  }
+  return sides;
+}
+
+std::vector<Rectangle> product(const std::vector<Side>& rows, const std::vector<Side>& columns) {
+  std::vector<Rectangle> windows;
+  windows.reserve(rows.size() * columns.size());
+  for (const Side& row : rows) {
+    for (const Side& column : columns) {
+      windows.push_back({column.start, row.start, column.length, row.length});
+    }
+  }
+  return windows;
+}
+
+bool any_between(const std::vector<Side>& sides, std::uint32_t size) {
+  return std::ranges::any_of(sides, [&](const Side& side) { return side.start % size != 0; });
+}
+
+void add_level(std::vector<WindowGroup>& groups, const ImageExtent& extent, std::uint32_t size,
+               bool listed) {
+  const std::uint32_t width = narrow(extent.width);
+  const std::uint32_t height = narrow(extent.height);
+  const std::vector<Side> rows = shifted_sides(height, size);
+  const std::vector<Side> columns = shifted_sides(width, size);
+  groups.push_back({size, Grid::aligned, 0, {}});
+  if (listed)
+    groups.back().windows = product(aligned_sides(height, size), aligned_sides(width, size));
+  if (!any_between(rows, size) && !any_between(columns, size)) return;
+  groups.push_back({size, Grid::shifted, 0, {}});
+  if (!listed) return;
+  std::vector<Rectangle>& shifted = groups.back().windows;
+  shifted = product(rows, columns);
+  std::erase_if(shifted, [&](const Rectangle& w) { return w.x % size == 0 && w.y % size == 0; });
+}
+
+// The whole image has whole_share of the level, all other sizes have equal shares. A size's aligned
+// and shifted cells have equal parts of it.
+void share_out(std::vector<WindowGroup>& groups, std::size_t sizes, double share) {
+  const double whole_part = sizes == 1 ? share : whole_image_share;
+  const std::uint32_t whole = groups.back().size;
+  for (WindowGroup& group : groups) {
+    const auto parts = std::count_if(groups.begin(), groups.end(),
+                                     [&](const WindowGroup& g) { return g.size == group.size; });
+    const double of_size =
+        group.size == whole ? whole_part : (share - whole_part) / static_cast<double>(sizes - 1);
+    group.share = of_size / static_cast<double>(parts);
+  }
+}
+
+}  // namespace
+
+std::vector<WindowGroup> window_groups(const ImageExtent& extent, std::uint32_t listed) {
+  const std::uint32_t longest = narrow(std::max(extent.width, extent.height));
+  std::vector<std::uint32_t> sizes;
+  for (std::uint32_t size = 1; size < longest; size *= 2) sizes.push_back(size);
+  sizes.push_back(longest);
+  std::vector<WindowGroup> groups;
+  for (const std::uint32_t size : sizes)
+    add_level(groups, extent, size, size >= listed || size == longest);
+  if (longest == 1) {
+    share_out(groups, sizes.size(), 1);
+    return groups;
+  }
+  share_out(groups, sizes.size(), 1 - alternating_share);
+  const Rectangle whole{0, 0, narrow(extent.width), narrow(extent.height)};
+  groups.push_back({longest, Grid::alternating, alternating_share, {whole, whole, whole}});
+  return groups;
+}
+
+WindowSums::WindowSums(const ImageExtent& extent)
+    : width_(extent.width), table_((extent.width + 1) * (extent.height + 1)) {}
+
+void WindowSums::load(std::span<const double> values) {
+  const std::size_t stride = width_ + 1;
+  const std::size_t height = values.size() / width_;
+  std::fill_n(alternating_, 3, 0.0);
+  for (std::size_t y = 0; y < height; ++y) {
+    double row = 0;
+    double odd = 0;
+    for (std::size_t x = 0; x < width_; ++x) {
+      const double value = values[y * width_ + x];
+      row += value;
+      if (x % 2 != 0) odd += value;
+      table_[(y + 1) * stride + x + 1] = table_[y * stride + x + 1] + row;
+    }
+    const double by_column = row - 2 * odd;
+    alternating_[0] += by_column;
+    alternating_[1] += y % 2 == 0 ? row : -row;
+    alternating_[2] += y % 2 == 0 ? by_column : -by_column;
+  }
+}
+
+double WindowSums::of(const Rectangle& window) const {
+  const std::size_t stride = width_ + 1;
+  const double* const top = table_.data() + window.y * stride + window.x;
+  const double* const bottom = top + window.height * stride;
+  return (bottom[window.width] - bottom[0]) - (top[window.width] - top[0]);
+}
+
+double WindowSums::of(const WindowGroup& group, std::size_t index) const {
+  return group.grid == Grid::alternating ? alternating_[index] : of(group.windows[index]);
+}
 
 double adjusted(double log_p, GroupSize group) {
   // Below 1e-300 the union bound is the same number, and exp(log_p) may be zero.

@@ -2,11 +2,65 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "stats/images/image_windows.h"
+#include "stats/images/image.h"
 
 namespace assay::stats {
+
+struct Rectangle {
+  std::uint32_t x = 0;
+  std::uint32_t y = 0;
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+
+  friend bool operator==(const Rectangle&, const Rectangle&) = default;
+};
+
+// The sums of an image that are looked at. Level `size` has the cells of a grid of that size, the
+// last cut off at the edge (aligned). It also has all other whole cells at steps of size / 4
+// (shifted). A block of that size anywhere overlaps one of them by at least 49/64. Sizes are 1, 2,
+// 4, … and the whole image. Beside them stands the whole image with alternating signs, by column,
+// by row and as a checkerboard. Those find defects of interleaved samplers and threads, which every
+// even-sized cell cancels.
+enum class Grid { aligned, shifted, alternating };
+
+struct WindowGroup {
+  std::uint32_t size = 1;
+  Grid grid = Grid::aligned;
+  double share = 0;  // Share of the level.
+  std::vector<Rectangle> windows;
+};
+
+// Share of the level for the sum over the whole image, which finds a uniform difference.
+inline constexpr double whole_image_share = 0.4;
+
+// The groups and their shares, which sum to 1. The three alternating sums have .025, all sizes but
+// the whole image equal shares of the rest, halved between aligned and shifted cells. An image of
+// one element has one group. Windows of sizes below `listed`, but for the whole image, are not
+// listed: there are millions.
+std::vector<WindowGroup> window_groups(const ImageExtent& extent, std::uint32_t listed = 1);
+
+// Sums over rectangles of one channel by a summed-area table (Crow 1984), in double.
+class WindowSums {
+ public:
+  explicit WindowSums(const ImageExtent& extent);
+
+  // Takes values[y * width + x] of one channel.
+  void load(std::span<const double> values);
+
+  // The sum of window `index` of a group.
+  double of(const WindowGroup& group, std::size_t index) const;
+  double of_all() const { return table_.back(); }
+
+ private:
+  double of(const Rectangle& window) const;
+
+  std::size_t width_;
+  std::vector<double> table_;   // (width + 1) x (height + 1).
+  double alternating_[3] = {};  // By column, by row, checkerboard.
+};
 
 enum class ImageStatistic { window, alternating };
 

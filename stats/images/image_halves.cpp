@@ -112,16 +112,12 @@ Half half_of(const ImagePair<Real>& pair, std::size_t half, RowRange rows,
 
 }  // namespace
 
-RowRange with_neighbours(RowRange rows, const ImageExtent& extent) {
-  return {rows.first - std::min(rows.first, rows_beside),
-          std::min(rows.last + rows_beside, extent.height)};
-}
-
 template <class Real>
 std::array<Half, halves> halves_of(const ImagePair<Real>& pair, RowRange rows,
                                    const ForEach& for_each) {
   std::array<Half, halves> both;
-  const RowRange wider = with_neighbours(rows, pair.a.extent);
+  const RowRange wider{rows.first - std::min(rows.first, rows_beside),
+                       std::min(rows.last + rows_beside, pair.a.extent.height)};
   for_each(halves, [&](std::size_t half) { both[half] = half_of(pair, half, wider, for_each); });
   return both;
 }

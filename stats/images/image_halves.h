@@ -31,10 +31,9 @@ struct Half {
 
 // Steadying needs the variances of rows so far away.
 inline constexpr std::size_t rows_beside = 2;
-// These rows and rows_beside more at either side, as far as the image has them.
-RowRange with_neighbours(RowRange rows, const ImageExtent& extent);
 
-// Halves of the elements of with_neighbours(rows). Weights are right in `rows` alone.
+// Halves of the elements of these rows and of rows_beside more at either side, as far as the image
+// has them. Weights are right in `rows` alone.
 template <class Real>
 std::array<Half, halves> halves_of(const ImagePair<Real>& pair, RowRange rows,
                                    const ForEach& for_each = one_by_one);

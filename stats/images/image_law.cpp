@@ -13,7 +13,6 @@
 namespace assay::stats {
 namespace {
 
-constexpr const char* function_name = "image_law_test";
 constexpr std::size_t scores = 3;
 // Side of the tiles that threads take.
 constexpr std::size_t tile_side = 32;
@@ -297,16 +296,19 @@ Groups groups_of(const Pooled<Real>& pooled, const Labels& labels, const ForEach
   return all;
 }
 
+double adjusted_log_p(const Group& group, std::size_t labelling) {
+  return adjusted(log_p_two_sided(normal_tails(static_cast<double>(group.largest[labelling]))),
+                  {static_cast<double>(group.cells), 1});
+}
+
 // The smallest adjusted p-value of each labelling, over scores and sizes.
 std::vector<double> statistics_of(const Groups& groups, std::size_t labellings) {
   std::vector<double> least(labellings, 0);
   for (const std::vector<Group>& sizes : groups) {
     for (const Group& group : sizes) {
       if (group.cells == 0) continue;
-      const GroupSize size{static_cast<double>(group.cells), 1};
       for (std::size_t l = 0; l < labellings; ++l) {
-        const double log_p = log_p_two_sided(normal_tails(static_cast<double>(group.largest[l])));
-        least[l] = std::min(least[l], adjusted(log_p, size));
+        least[l] = std::min(least[l], adjusted_log_p(group, l));
       }
     }
   }
@@ -320,9 +322,7 @@ ImageLawFinding most_of(const Groups& groups, const ImageExtent& extent) {
   for (std::size_t s = 0; s < scores; ++s) {
     for (const Group& group : groups[s]) {
       if (group.cells == 0 || !(group.largest[0] > 0)) continue;
-      const double log_p =
-          adjusted(log_p_two_sided(normal_tails(static_cast<double>(group.largest[0]))),
-                   {static_cast<double>(group.cells), 1});
+      const double log_p = adjusted_log_p(group, 0);
       if (!(log_p < least)) continue;
       least = log_p;
       most = group.most;
@@ -342,9 +342,7 @@ ImageLawFinding most_of(const Groups& groups, const ImageExtent& extent) {
 template <class Real>
 ImageLawTest image_law_test(const ImageStack<Real>& a, const ImageStack<Real>& b,
                             const ImageLawOptions& options) {
-  check::image_stack(function_name, a);
-  check::image_stack(function_name, b);
-  check::same_extent(function_name, a.extent, b.extent);
+  check::image_pair("image_law_test", pair_of(a, b));
   const Pooled<Real> pooled(a, b);
   const std::size_t first = a.images.size();
   const std::size_t all = first + b.images.size();

@@ -3,35 +3,27 @@
 #include <algorithm>
 #include <array>
 
+#include "stats/basics/check.h"
 #include "stats/basics/vector_copies.h"
 
 namespace assay::stats {
 namespace {
 
-// The sums of this many elements stay in the first-level cache while the images pass by.
-constexpr std::size_t block_size = 1024;
+// ---- Mean and squares, four images a pass
 
-struct Sums {
-  double* sum;
-  double* squares;
-};
+// The sums of this many elements stay in the first-level cache while the images pass by.
+constexpr std::size_t elements_at_once = 1024;
 
 // Four images a pass: sums are loaded and stored once for all four.
 template <class Real>
-struct FourImages {
-  const Real* origin;
-  std::array<const Real*, 4> image;
-};
-
-template <class Real>
-inline void add_four(const FourImages<Real>& from, Sums to, std::size_t size) {
-  const Real* const origin = from.origin;
-  const Real* const a = from.image[0];
-  const Real* const b = from.image[1];
-  const Real* const c = from.image[2];
-  const Real* const d = from.image[3];
-  double* const __restrict sum = to.sum;
-  double* const __restrict squares = to.squares;
+ASSAY_VECTOR_COPIES void add_four(const Real* origin, const std::array<const Real*, 4>& image,
+                                  double* to_sum, double* to_squares, std::size_t size) {
+  const Real* const a = image[0];
+  const Real* const b = image[1];
+  const Real* const c = image[2];
+  const Real* const d = image[3];
+  double* const __restrict sum = to_sum;
+  double* const __restrict squares = to_squares;
   for (std::size_t i = 0; i < size; ++i) {
     const double zero = static_cast<double>(origin[i]);
     const double p = static_cast<double>(a[i]) - zero;
@@ -43,30 +35,22 @@ inline void add_four(const FourImages<Real>& from, Sums to, std::size_t size) {
   }
 }
 
-ASSAY_VECTOR_COPIES void add_four_images(const FourImages<float>& from, Sums to, std::size_t size) {
-  add_four(from, to, size);
-}
-ASSAY_VECTOR_COPIES void add_four_images(const FourImages<double>& from, Sums to,
-                                         std::size_t size) {
-  add_four(from, to, size);
-}
-
 // The origin itself, which adds nothing, fills up the last four images.
 template <class Real>
-std::size_t moments_of_block(const ImageStack<Real>& stack, std::size_t first, MomentArrays out,
-                             EveryImage which) {
-  std::array<double, block_size> sum{};
-  std::array<double, block_size> squares{};
+void two_moments_of_block(const ImageStack<Real>& stack, std::size_t first, MomentArrays out,
+                          EveryImage which) {
+  std::array<double, elements_at_once> sum{};
+  std::array<double, elements_at_once> squares{};
   const std::size_t size = out.mean.size();
   const auto& images = stack.images;
   const Real* const origin = stack.at(which.start, first);
   std::size_t count = 1;
   for (std::size_t i = which.start + which.step; i < images.size();) {
-    FourImages<Real> four{origin, {origin, origin, origin, origin}};
+    std::array<const Real*, 4> four{origin, origin, origin, origin};
     for (std::size_t k = 0; k < 4 && i < images.size(); ++k, i += which.step, ++count) {
-      four.image[k] = stack.at(i, first);
+      four[k] = stack.at(i, first);
     }
-    add_four_images(four, {sum.data(), squares.data()}, size);
+    add_four(origin, four, sum.data(), squares.data(), size);
   }
   const double inverse = 1 / static_cast<double>(count);
   for (std::size_t i = 0; i < size; ++i) {
@@ -74,7 +58,114 @@ std::size_t moments_of_block(const ImageStack<Real>& stack, std::size_t first, M
     out.mean[i] = static_cast<double>(origin[i]) + step;
     out.m2[i] = std::max(squares[i] - sum[i] * step, 0.0);
   }
-  return count;
+}
+
+// ---- Four moments in two passes
+
+// The sums of this many elements, and their values in a hundred images, stay in the cache.
+constexpr std::size_t block_size = 512;
+using Block = std::array<double, block_size>;
+
+struct Sums {
+  Block mean{};
+  Block m2{};
+  Block m3{};
+  Block m4{};
+  Block minimum{};
+  Block maximum{};
+  Block nonzero{};
+};
+
+template <class Real>
+ASSAY_VECTOR_COPIES void add_differences(const Real* values, const Real* origin, double* sum,
+                                         std::size_t size) {
+  for (std::size_t i = 0; i < size; ++i) {
+    sum[i] += static_cast<double>(values[i]) - static_cast<double>(origin[i]);
+  }
+}
+
+template <class Real>
+ASSAY_VECTOR_COPIES void add_powers(const Real* values, Sums& sums, std::size_t size) {
+  for (std::size_t i = 0; i < size; ++i) {
+    const double value = static_cast<double>(values[i]);
+    const double deviation = value - sums.mean[i];
+    const double square = deviation * deviation;
+    sums.m2[i] += square;
+    sums.m3[i] += square * deviation;
+    sums.m4[i] += square * square;
+    sums.minimum[i] = value < sums.minimum[i] ? value : sums.minimum[i];
+    sums.maximum[i] = value > sums.maximum[i] ? value : sums.maximum[i];
+    sums.nonzero[i] += value != 0 ? 1.0 : 0.0;
+  }
+}
+
+template <class Real>
+void moments_of_block(const ImageStack<Real>& stack, std::size_t first, std::span<Moments> out) {
+  Sums sums;
+  const double count = static_cast<double>(stack.images.size());
+  const Real* const origin = stack.at(0, first);
+  for (std::size_t r = 0; r < stack.images.size(); ++r) {
+    add_differences(stack.at(r, first), origin, sums.mean.data(), out.size());
+  }
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const double value = static_cast<double>(origin[i]);
+    sums.mean[i] = value + sums.mean[i] / count;
+    sums.minimum[i] = value;
+    sums.maximum[i] = value;
+  }
+  for (std::size_t r = 0; r < stack.images.size(); ++r) {
+    add_powers(stack.at(r, first), sums, out.size());
+  }
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i] = {.count = stack.images.size(),
+              .mean = sums.mean[i],
+              .m2 = sums.m2[i],
+              .m3 = sums.m3[i],
+              .m4 = sums.m4[i],
+              .minimum = sums.minimum[i],
+              .maximum = sums.maximum[i],
+              .nonzero = static_cast<std::uint64_t>(sums.nonzero[i])};
+  }
+}
+
+// ---- Sums of images
+
+constexpr std::size_t in_step = 8;
+
+// The last image, repeated, fills up the last eight.
+template <class Real>
+void add_in_step(std::span<double> sums, const ImageStack<Real>& stack, std::size_t first,
+                 ElementRange range) {
+  std::array<const Real*, in_step> image{};
+  std::array<double, in_step> sum{};
+  for (std::size_t k = 0; k < in_step; ++k) {
+    image[k] = stack.at(std::min(first + k, stack.images.size() - 1), range.first);
+  }
+  std::ranges::copy(sums, sum.begin());
+  for (std::size_t i = 0; i < range.size(); ++i) {
+    for (std::size_t k = 0; k < in_step; ++k) sum[k] += static_cast<double>(image[k][i]);
+  }
+  std::copy_n(sum.begin(), sums.size(), sums.begin());
+}
+
+// The number of channels is known at compile time, so their sums stay in registers.
+template <std::size_t channels, class Real>
+void add_channels(std::span<double> sums, std::span<const Real> elements) {
+  std::array<double, channels> sum{};
+  std::ranges::copy(sums, sum.begin());
+  for (std::size_t i = 0; i < elements.size(); i += channels) {
+    for (std::size_t c = 0; c < channels; ++c) sum[c] += static_cast<double>(elements[i + c]);
+  }
+  std::ranges::copy(sum, sums.begin());
+}
+
+template <class Real>
+void add_channels_of(std::span<double> sums, std::span<const Real> elements) {
+  if (sums.size() == 1) return add_channels<1>(sums, elements);
+  if (sums.size() == 3) return add_channels<3>(sums, elements);
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    sums[i % sums.size()] += static_cast<double>(elements[i]);
+  }
 }
 
 }  // namespace
@@ -82,14 +173,57 @@ std::size_t moments_of_block(const ImageStack<Real>& stack, std::size_t first, M
 template <class Real>
 void moments_of_range(const ImageStack<Real>& stack, std::size_t first, MomentArrays out,
                       EveryImage which) {
-  for (std::size_t done = 0; done < out.mean.size(); done += block_size) {
-    const std::size_t size = std::min(block_size, out.mean.size() - done);
-    moments_of_block(stack, first + done,
-                     {out.mean.subspan(done, size), out.m2.subspan(done, size)}, which);
+  for (std::size_t done = 0; done < out.mean.size(); done += elements_at_once) {
+    const std::size_t size = std::min(elements_at_once, out.mean.size() - done);
+    two_moments_of_block(stack, first + done,
+                         {out.mean.subspan(done, size), out.m2.subspan(done, size)}, which);
   }
+}
+
+template <class Real>
+void element_moments(const ImageStack<Real>& stack, std::size_t first, std::span<Moments> out) {
+  check::at_least({"element_moments", "images"}, stack.images.size(), 1);
+  for (const auto& image : stack.images) {
+    check::at_least({"element_moments", "size of an image"}, image.size() + stack.there.first,
+                    first + out.size());
+  }
+  for (std::size_t done = 0; done < out.size(); done += block_size) {
+    const std::size_t size = std::min(block_size, out.size() - done);
+    moments_of_block(stack, first + done, out.subspan(done, size));
+  }
+}
+
+template <class Real>
+void add_to_sums(std::vector<double>& sums, const ImageStack<Real>& stack, ElementRange range,
+                 const ForEach& for_each) {
+  for_each((sums.size() + in_step - 1) / in_step, [&](std::size_t i) {
+    const std::size_t first = i * in_step;
+    const std::size_t size = std::min(in_step, sums.size() - first);
+    add_in_step(std::span(sums).subspan(first, size), stack, first, range);
+  });
+}
+
+template <class Real>
+void add_to_channel_sums(std::vector<double>& sums, const ImageStack<Real>& stack,
+                         ElementRange range, const ForEach& for_each) {
+  const std::size_t channels = stack.extent.channels;
+  for_each(stack.images.size(), [&](std::size_t i) {
+    add_channels_of<Real>(std::span(sums).subspan(i * channels, channels),
+                          {stack.at(i, range.first), range.size()});
+  });
 }
 
 template void moments_of_range(const ImageStack<float>&, std::size_t, MomentArrays, EveryImage);
 template void moments_of_range(const ImageStack<double>&, std::size_t, MomentArrays, EveryImage);
+template void element_moments(const ImageStack<float>&, std::size_t, std::span<Moments>);
+template void element_moments(const ImageStack<double>&, std::size_t, std::span<Moments>);
+template void add_to_sums(std::vector<double>&, const ImageStack<float>&, ElementRange,
+                          const ForEach&);
+template void add_to_sums(std::vector<double>&, const ImageStack<double>&, ElementRange,
+                          const ForEach&);
+template void add_to_channel_sums(std::vector<double>&, const ImageStack<float>&, ElementRange,
+                                  const ForEach&);
+template void add_to_channel_sums(std::vector<double>&, const ImageStack<double>&, ElementRange,
+                                  const ForEach&);
 
 }  // namespace assay::stats

@@ -1,10 +1,16 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
+#include <vector>
 
+#include "stats/basics/for_each.h"
+#include "stats/basics/moments.h"
 #include "stats/images/image.h"
 
 namespace assay::stats {
+
+// ---- Moments of elements over images
 
 // Views of two arrays of one size that receive the moments of a range of elements.
 struct MomentArrays {
@@ -23,5 +29,43 @@ struct EveryImage {
 template <class Real>
 void moments_of_range(const ImageStack<Real>& stack, std::size_t first, MomentArrays out,
                       EveryImage which = {});
+
+// Moments up to order four of the elements [first, first + out.size()) over the images of a stack.
+// Two passes over pieces that stay in the cache: first the mean, then sums of powers of deviations
+// from it. An element that never varied has m2 = 0 exactly. Each element's moments depend on its
+// own values alone, so a caller may split the elements in any way. A non-finite value makes its
+// element's m2 non-finite.
+template <class Real>
+void element_moments(const ImageStack<Real>& stack, std::size_t first, std::span<Moments> out);
+
+// ---- Sums of images over their elements
+
+// Adds an image's elements to its sum in their order; they follow those in `sums`. Several images
+// are added up in step, so that no addition waits for the last. Each sum has the bits of adding up
+// that image alone.
+template <class Real>
+void add_to_sums(std::vector<double>& sums, const ImageStack<Real>& stack, ElementRange range,
+                 const ForEach& for_each = one_by_one);
+
+template <class Real>
+std::vector<double> image_sums(const ImageStack<Real>& stack,
+                               const ForEach& for_each = one_by_one) {
+  std::vector<double> sums(stack.images.size());
+  add_to_sums(sums, stack, {0, stack.extent.elements()}, for_each);
+  return sums;
+}
+
+// The same for whole pixels and the sums of each image's channels, those of an image together.
+template <class Real>
+void add_to_channel_sums(std::vector<double>& sums, const ImageStack<Real>& stack,
+                         ElementRange range, const ForEach& for_each = one_by_one);
+
+template <class Real>
+std::vector<double> image_channel_sums(const ImageStack<Real>& stack,
+                                       const ForEach& for_each = one_by_one) {
+  std::vector<double> sums(stack.images.size() * stack.extent.channels);
+  add_to_channel_sums(sums, stack, {0, stack.extent.elements()}, for_each);
+  return sums;
+}
 
 }  // namespace assay::stats

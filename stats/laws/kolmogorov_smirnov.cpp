@@ -1,13 +1,14 @@
 #include "stats/laws/kolmogorov_smirnov.h"
 
 #include <algorithm>
-#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <numeric>
 #include <stdexcept>
 
 #include "stats/basics/check.h"
-#include "stats/laws/supremum_bound.h"
+#include "stats/basics/search.h"
 #include "stats/tails/kolmogorov.h"
 #include "stats/tails/special.h"
 
@@ -26,26 +27,18 @@ void check_sorted(std::span<const double> values) {
   check::finite({"ks_distance", "largest value"}, values.back());
 }
 
-double law_value(const std::function<double(double)>& cdf, double x) {
-  const double value = cdf(x);
-  check::unit({"ks_distance", "cdf"}, value);
-  return value;
-}
-
-// The distance from a law with these probabilities up to each value, and these below it.
-OneSampleDistance largest_gap(std::span<const double> sorted, std::span<const double> at,
-                              std::span<const double> before) {
+// The distance from a law with these probabilities up to each value.
+OneSampleDistance largest_gap(std::span<const double> sorted, std::span<const double> at) {
   const double n = static_cast<double>(sorted.size());
-  OneSampleDistance result{0, sorted.size(), sorted.front()};
+  OneSampleDistance result{0, sorted.size()};
   for (std::size_t i = 0; i < sorted.size(); ++i) {
     const double x = sorted[i];
     const double above = static_cast<double>(i + 1) / n - at[i];
-    const double below = before[i] - static_cast<double>(i) / n;
+    const double below = at[i] - static_cast<double>(i) / n;
     // Within a run of equal values only the last step of F_n counts above, only the first below.
     const bool last = i + 1 == sorted.size() || sorted[i + 1] != x;
     const bool first = i == 0 || sorted[i - 1] != x;
-    const double here = std::max(last ? above : 0, first ? below : 0);
-    if (here > result.distance) result = {here, sorted.size(), x};
+    result.distance = std::max({result.distance, last ? above : 0, first ? below : 0});
   }
   result.distance = std::min(result.distance, 1.0);
   return result;
@@ -82,15 +75,6 @@ double effective_size(const LatticeDistance& lattice) {
   return m / (m + n) * n;
 }
 
-// Solves excess(delta) = 0 for an increasing excess that is negative at low and positive at high.
-template <class Function>
-double crossing(const Function& excess, double low, double high) {
-  std::uintmax_t iterations = 100;
-  const auto ends = boost::math::tools::toms748_solve(
-      excess, low, high, boost::math::tools::eps_tolerance<double>(40), iterations);
-  return std::midpoint(ends.first, ends.second);
-}
-
 template <class Distance>
 Interval interval(const Distance& distance, double observed, double confidence) {
   check::inside_unit({"ks_interval", "confidence"}, confidence);
@@ -103,9 +87,9 @@ Interval interval(const Distance& distance, double observed, double confidence) 
     return log_tail - ks_margin(distance, delta).log_p_lower;
   };
   const double top = std::nextafter(1.0, 0.0);
-  const double low = low_excess(0) >= 0 ? 0 : crossing(low_excess, 0, std::min(observed, top));
+  const double low = low_excess(0) >= 0 ? 0 : root(low_excess, {0, std::min(observed, top)}, 40);
   const double high =
-      high_excess(top) <= 0 ? 1 : crossing(high_excess, std::min(observed, top), top);
+      high_excess(top) <= 0 ? 1 : root(high_excess, {std::min(observed, top), top}, 40);
   return {low, high, confidence};
 }
 
@@ -115,25 +99,71 @@ void check_null(double null_distance) {
   }
 }
 
+// ---- Two samples with a frequent value
+
+struct Parts {
+  std::uint64_t common;
+  std::vector<double> rest;
+
+  std::uint64_t size() const { return common + rest.size(); }
+  double share() const { return static_cast<double>(common) / static_cast<double>(size()); }
+};
+
+Parts split(std::span<const double> sorted, double value) {
+  const auto [begin, end] = std::equal_range(sorted.begin(), sorted.end(), value);
+  Parts parts{static_cast<std::uint64_t>(end - begin), {sorted.begin(), begin}};
+  parts.rest.insert(parts.rest.end(), end, sorted.end());
+  return parts;
+}
+
+double log_binomial(double k, double trials, double probability) {
+  const double rest = trials - k;
+  if (rest < 0) return -std::numeric_limits<double>::infinity();
+  return std::lgamma(trials + 1) - std::lgamma(k + 1) - std::lgamma(rest + 1) +
+         k * std::log(probability) + rest * std::log1p(-probability);
+}
+
+// Two-sided: x has so many of the values that both have in common. The law is hypergeometric, as
+// the binomial counts of both samples are given their sum.
+double log_p_of_counts(const Parts& x, const Parts& y) {
+  const double m = static_cast<double>(x.size());
+  const double total = static_cast<double>(x.size() + y.size());
+  const double common = static_cast<double>(x.common + y.common);
+  if (common == total) return 0;
+  const double share = m / total;
+  const double seen = static_cast<double>(x.common);
+  const double at = log_binomial(seen, common, share) +
+                    log_binomial(m - seen, total - common, share) - log_binomial(m, total, share);
+  const auto ratio = [&](std::uint64_t count) {
+    const double k = static_cast<double>(count);
+    return (common - k) / (k + 1) * (m - k) / (total - common - (m - k) + 1);
+  };
+  const double median = std::round(m * (common / total));
+  double tail = 0;
+  for (const bool upwards : {false, true}) {
+    if (upwards ? seen < median : seen > median) continue;
+    tail = std::min(tail, special::log_tail_of_counts(at, x.common, x.size(), upwards, ratio));
+  }
+  return std::min(0.0, std::numbers::ln2 + tail);
+}
+
 }  // namespace
 
 std::vector<double> probabilities(std::span<const double> sorted, const ContinuousLaw& law) {
   std::vector<double> at;
   if (law.of_sorted) {
     at = law.of_sorted(sorted);
-    for (const double value : at) check::unit({"ks_distance", "cdf"}, value);
-    return at;
+  } else {
+    at.resize(sorted.size());
+    std::ranges::transform(sorted, at.begin(), law.cdf);
   }
-  at.reserve(sorted.size());
-  for (const double x : sorted) at.push_back(law_value(law.cdf, x));
+  for (const double value : at) check::unit({"ks_distance", "cdf"}, value);
   return at;
 }
 
 OneSampleDistance ks_distance(std::span<const double> sorted, const ContinuousLaw& law) {
   check_sorted(sorted);
-  const std::vector<double> at = probabilities(sorted, law);
-  if (!law.left_limit) return largest_gap(sorted, at, at);
-  return largest_gap(sorted, at, probabilities(sorted, {.cdf = law.left_limit}));
+  return largest_gap(sorted, probabilities(sorted, law));
 }
 
 OneSampleDistance ks_distance(std::span<const double> sorted, Probabilities at) {
@@ -143,7 +173,7 @@ OneSampleDistance ks_distance(std::span<const double> sorted, Probabilities at) 
                 static_cast<double>(at.of_values.size()), "that of the values");
   }
   for (const double value : at.of_values) check::unit({"ks_distance", "probability"}, value);
-  return largest_gap(sorted, at.of_values, at.of_values);
+  return largest_gap(sorted, at.of_values);
 }
 
 TwoSampleDistance ks_distance(std::span<const double> sorted_x, std::span<const double> sorted_y) {
@@ -161,7 +191,7 @@ TwoSampleDistance ks_distance(std::span<const double> sorted_x, std::span<const 
   std::size_t j = 0;
   std::int64_t gap = 0;
   std::int64_t largest = 0;
-  TwoSampleDistance result{.lattice = {0, m, n}, .location = sorted_x.front()};
+  TwoSampleDistance result{.lattice = {0, m, n}};
   while (i < m && j < n) {
     const double x = sorted_x[i];
     const double y = sorted_y[j];
@@ -177,10 +207,7 @@ TwoSampleDistance ks_distance(std::span<const double> sorted_x, std::span<const 
     while (j < n && sorted_y[j] == value) ++j, gap -= down;
     if (i + j > before + 1) add_run(value, {before, i + j - before}, result);
     const std::int64_t size = gap < 0 ? -gap : gap;
-    if (size > largest) {
-      largest = size;
-      result.location = value;
-    }
+    largest = std::max(largest, size);
   }
   // Beyond the end of one sample the gap only shrinks to zero. Its largest size was just seen.
   add_runs(i < m ? sorted_x.subspan(i) : sorted_y.subspan(j), i + j, result);
@@ -230,6 +257,30 @@ Interval ks_interval(const OneSampleDistance& distance, double confidence) {
 
 Interval ks_interval(const TwoSampleDistance& distance, double confidence) {
   return interval(distance, distance.distance(), confidence);
+}
+
+TwoLawsTest two_part_ks(std::span<const double> sorted_x, std::span<const double> sorted_y,
+                        const TwoSampleDistance& distance) {
+  const std::uint64_t total = sorted_x.size() + sorted_y.size();
+  const std::uint64_t common = distance.most_frequent.count;
+  if (static_cast<double>(common) < least_common_share * static_cast<double>(total) || common < 2) {
+    return {.result = kolmogorov_smirnov(distance)};
+  }
+  const double value = distance.most_frequent.value;
+  const Parts x = split(sorted_x, value);
+  const Parts y = split(sorted_y, value);
+  const double of_counts = log_p_of_counts(x, y);
+  TestResult rest{.statistic = 0, .distribution = {"bound", {}}};
+  if (!x.rest.empty() && !y.rest.empty()) rest = kolmogorov_smirnov(ks_distance(x.rest, y.rest));
+  const bool decides = of_counts < rest.log_p_upper;
+  const double smaller = std::min(of_counts, rest.log_p_upper);
+  return {.result = {.statistic = distance.distance(),
+                     .distribution = {"bound", {}},
+                     .log_p_lower = 0,
+                     .log_p_upper = std::min(0.0, std::numbers::ln2 + smaller),
+                     .exactness = rest.exactness},
+          .common = CommonValue{
+              .value = value, .difference = std::abs(x.share() - y.share()), .decides = decides}};
 }
 
 }  // namespace assay::stats

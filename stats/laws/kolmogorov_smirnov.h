@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,12 +11,10 @@
 
 namespace assay::stats {
 
-// The law that a sample is held against. `cdf(x)` is P(X <= x). If the law has atoms, `left_limit`
-// gives P(X < x); empty means no atoms. Values outside [0, 1] throw. `of_sorted`, if given,
-// computes the cdf at many ascending values at once.
+// The law that a sample is held against. `cdf(x)` is P(X <= x). Values outside [0, 1] throw.
+// `of_sorted`, if given, computes the cdf at many ascending values at once.
 struct ContinuousLaw {
   std::function<double(double)> cdf;
-  std::function<double(double)> left_limit = {};
   std::function<std::vector<double>(std::span<const double>)> of_sorted = {};
 };
 
@@ -30,7 +29,6 @@ std::vector<double> probabilities(std::span<const double> sorted, const Continuo
 struct OneSampleDistance {
   double distance = 0;
   std::uint64_t n = 0;
-  double location = 0;  // The value at which the distance is attained.
 };
 
 struct FrequentValue {
@@ -40,14 +38,13 @@ struct FrequentValue {
 
 struct TwoSampleDistance {
   LatticeDistance lattice;
-  double location = 0;
   std::vector<TiedRun> ties = {};    // Equal values of both samples together.
   FrequentValue most_frequent = {};  // Of both together; the first of several.
 
   double distance() const { return lattice.value(); }
 };
 
-// D = max over i of max(i/n - F(x_i), F(x_i-) - (i-1)/n). The values must be sorted ascending and
+// D = max over i of max(i/n - F(x_i), F(x_i) - (i-1)/n). The values must be sorted ascending and
 // finite. Throws std::domain_error: empty, unsorted, non-finite, cdf outside [0, 1].
 OneSampleDistance ks_distance(std::span<const double> sorted, const ContinuousLaw& law);
 // Also throws if the number of probabilities is not that of values.
@@ -58,7 +55,7 @@ TwoSampleDistance ks_distance(std::span<const double> sorted_x, std::span<const 
 
 // Null hypothesis: the sample follows the law (the two samples one law). The p-value is
 // log_p_upper; log_p_lower is 0, because a fit that is too good is not tested. One sample: exact
-// for continuous laws, conservative with atoms. Two samples: exact for every law, given the ties of
+// for continuous laws. Two samples: exact for every law, given the ties of
 // both together. smirnov.h says where a bound or the limit law has to serve.
 TestResult kolmogorov_smirnov(const OneSampleDistance& distance);
 TestResult kolmogorov_smirnov(const TwoSampleDistance& distance);
@@ -81,5 +78,32 @@ TestResult ks_margin(const TwoSampleDistance& distance, double null_distance);
 // neither direction at (1 - confidence) / 2 each.
 Interval ks_interval(const OneSampleDistance& distance, double confidence);
 Interval ks_interval(const TwoSampleDistance& distance, double confidence);
+
+// ---- Two samples with a frequent value
+
+// A value that many of both samples share: a black pixel, a clamped value.
+struct CommonValue {
+  double value = 0;
+  double difference = 0;  // The shares of the two samples differ by so much, without sign.
+  bool decides = false;   // True if p is that of its counts.
+};
+
+struct TwoLawsTest {
+  TestResult result;
+  std::optional<CommonValue> common = {};
+};
+
+// Share of both samples together from which on their most frequent value is tested apart.
+inline constexpr double least_common_share = 0.01;
+
+// Null hypothesis: two independent samples of one law, continuous or not. The test is a permutation
+// test given the values of both together, so a value may be chosen from them. If the most frequent
+// value makes up `least_common_share` or more, it is tested apart. Fisher's exact test (1935)
+// compares its counts. Given these, kolmogorov_smirnov compares the other values. The parts are
+// exact, and the smaller p-value counts twice (Bonferroni). Without such a value it is
+// kolmogorov_smirnov of all. Exact and conservative; exactness is that of kolmogorov_smirnov.
+// `distance` is that of the samples. Throws std::domain_error as ks_distance does.
+TwoLawsTest two_part_ks(std::span<const double> sorted_x, std::span<const double> sorted_y,
+                        const TwoSampleDistance& distance);
 
 }  // namespace assay::stats

@@ -1,12 +1,11 @@
 #include <algorithm>
-#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <numeric>
 #include <optional>
 #include <tuple>
 #include <utility>
 
-#include "stats/laws/supremum_bound.h"
+#include "stats/basics/search.h"
 #include "stats/planning/planning.h"
 #include "stats/planning/power.h"
 #include "stats/tails/kolmogorov.h"
@@ -44,10 +43,7 @@ double two_sample_margin_critical(double log_alpha, TwoSizes sizes) {
   const auto excess = [&](double gap) { return log_alpha - log_two_suprema_bound(gap, sizes); };
   double high = 1;
   while (excess(high) < 0) high *= 2;
-  std::uintmax_t iterations = 100;
-  return boost::math::tools::toms748_solve(
-             excess, 0.0, high, boost::math::tools::eps_tolerance<double>(30), iterations)
-      .second;
+  return root_bracket(excess, 0, high, 30).second;
 }
 
 // d_alpha: the distance above `allow` from which the test rejects.
@@ -74,9 +70,8 @@ double effective(const DistancePlan& plan, double n) {
   return plan.two_samples ? n * plan.allocation / (1 + plan.allocation) : n;
 }
 
-double check_distance_size(const char* function, double n) {
+void check_size(const char* function, double n) {
   if (!(n >= 1) || n > planning::most_samples) check::fail({function, "n"}, n, "in [1, 2^53]");
-  return std::floor(n);
 }
 
 double power_bound(const DistancePlan& plan, double n, double distance) {
@@ -129,21 +124,19 @@ class FitPower {
   double critical_;
 };
 
-void check_fit_size(const char* function, double n) {
-  if (!(n >= 1) || n > planning::most_samples) check::fail({function, "n"}, n, "in [1, 2^53]");
-}
-
 }  // namespace
 
 double ks_power_bound(const DistancePlan& plan, double n, double distance) {
   check_plan("ks_power_bound", plan);
   check::unit({"ks_power_bound", "distance"}, distance);
-  return power_bound(plan, check_distance_size("ks_power_bound", n), distance);
+  check_size("ks_power_bound", n);
+  return power_bound(plan, std::floor(n), distance);
 }
 
 double ks_detectable(const DistancePlan& plan, double n) {
   check_plan("ks_detectable", plan);
-  const double size = check_distance_size("ks_detectable", n);
+  check_size("ks_detectable", n);
+  const double size = std::floor(n);
   const double miss = std::sqrt(-std::log(plan.rates.beta) / (2 * effective(plan, size)));
   const double distance = plan.allow + critical_distance(plan, size) + miss;
   return distance <= 1 ? distance : std::numeric_limits<double>::infinity();
@@ -168,14 +161,14 @@ std::optional<std::uint64_t> ks_sample_size(const DistancePlan& plan, double det
 
 double chi_square_fit_power(const FitPlan& plan, double n, double effect) {
   check_plan("chi_square_fit_power", plan);
-  check_fit_size("chi_square_fit_power", n);
+  check_size("chi_square_fit_power", n);
   check::non_negative({"chi_square_fit_power", "effect"}, effect);
   return FitPower(plan, n).at(effect);
 }
 
 double chi_square_fit_detectable(const FitPlan& plan, double n) {
   check_plan("chi_square_fit_detectable", plan);
-  check_fit_size("chi_square_fit_detectable", n);
+  check_size("chi_square_fit_detectable", n);
   const FitPower power(plan, n);
   const auto enough = [&](double effect) { return power.at(effect) >= 1 - plan.rates.beta; };
   return planning::smallest_effect(enough, plan.allow, 1 / std::sqrt(n), power.about());

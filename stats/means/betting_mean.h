@@ -4,8 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "stats/means/range.h"
-#include "stats/means/welch_t.h"
+#include "stats/means/student_t.h"
 #include "stats/tails/test_result.h"
 
 namespace assay::stats {

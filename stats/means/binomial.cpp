@@ -1,17 +1,105 @@
 #include "stats/means/binomial.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "stats/basics/check.h"
+#include "stats/basics/search.h"
+#include "stats/tails/special.h"
 #include "stats/tails/tails.h"
 
 namespace assay::stats {
 namespace {
 
+double width_of(Range range) { return range.high - range.low; }
+
+void check_range(const char* function, Range range) {
+  check::finite({function, "low"}, range.low);
+  check::finite({function, "high"}, range.high);
+  check::positive({function, "high - low"}, width_of(range));
+}
+
 void check_counts(const char* function, Successes observed) {
   check::at_least({function, "trials"}, observed.trials, 1);
   if (observed.successes > observed.trials) {
     check::fail({function, "successes"}, observed.successes, "at most trials");
+  }
+}
+
+void check_sample(const char* function, const TwoValued& x) {
+  check_range(function, x.range);
+  check_counts(function, x.high);
+}
+
+double mean_of(const TwoValued& x) {
+  const double share = static_cast<double>(x.high.successes) / static_cast<double>(x.high.trials);
+  return x.range.low + width_of(x.range) * share;
+}
+
+// The same sample with the names of its two values exchanged, for values -high and -low.
+TwoValued mirrored(const TwoValued& x) {
+  return {{-x.range.high, -x.range.low}, {x.high.trials - x.high.successes, x.high.trials}};
+}
+
+Trials trials_at(Successes observed, double probability) {
+  return {observed.trials, std::clamp(probability, 0.0, 1.0)};
+}
+
+// The null line by the probability q of y. p = start + slope q lies inside [0, 1] for q in [first,
+// last].
+struct NullLine {
+  double start = 0;
+  double slope = 1;
+  double first = 0;
+  double last = 1;
+
+  bool empty() const { return first > last; }
+};
+
+NullLine null_line(const TwoValued& x, const TwoValued& y, Contrast null_value) {
+  const double width = width_of(x.range);
+  NullLine line;
+  line.start = (null_value.offset + null_value.scale * y.range.low - x.range.low) / width;
+  line.slope = null_value.scale * width_of(y.range) / width;
+  line.first = std::max(0.0, -line.start / line.slope);
+  line.last = std::min(1.0, (1 - line.start) / line.slope);
+  return line;
+}
+
+// ln(A B) at one point of the line.
+struct LogProduct {
+  Successes x;
+  Successes y;
+  NullLine line;
+
+  double operator()(double q) const {
+    const double log_a = binomial_lower(x.successes, trials_at(x, line.start + line.slope * q));
+    const double log_b = binomial_upper(y.successes, trials_at(y, q));
+    return std::max(special::lowest_log(), log_a + log_b);
+  }
+};
+
+// ln p of "E x - scale E y >= offset", small when x has few high values and y many.
+double log_p_lower(const TwoValued& x, const TwoValued& y, Contrast null_value) {
+  const NullLine line = null_line(x, y, null_value);
+  if (line.empty()) return line.start > 0 ? special::lowest_log() : 0;
+  // Concave on the line. A maximum missed by 1e-9 of it is missed by second order.
+  const double log_w =
+      golden_section(LogProduct{x.high, y.high, line}, line.first, line.last).largest;
+  return special::clamp_log(log_w + std::log1p(-log_w));
+}
+
+double log_p_upper(const TwoValued& x, const TwoValued& y, Contrast null_value) {
+  return log_p_lower(mirrored(x), mirrored(y), {null_value.scale, -null_value.offset});
+}
+
+// The farthest point that is not rejected, between one that is not and one that is.
+template <class Rejected>
+double last_kept(double kept, double out, const Rejected& rejected) {
+  while (true) {
+    const double middle = kept + (out - kept) / 2;
+    if (middle == kept || middle == out) return out;
+    (rejected(middle) ? out : kept) = middle;
   }
 }
 
@@ -38,6 +126,70 @@ Interval clopper_pearson(Successes observed, double confidence) {
   const bool all = observed.successes == observed.trials;
   return {none ? 0 : beta_quantile({Tail::lower, log_tail}, {k, n - k + 1}),
           all ? 1 : beta_quantile({Tail::upper, log_tail}, {k + 1, n - k}), confidence};
+}
+
+TwoValued two_valued(const Moments& x, Range range) {
+  check_range("two_valued", range);
+  check::at_least({"two_valued", "count"}, x.count, 1);
+  for (const double end : {x.minimum, x.maximum}) {
+    if (end != range.low && end != range.high) {
+      check::fail({"two_valued", "value"}, end, "one of the two values");
+    }
+  }
+  const double n = static_cast<double>(x.count);
+  const double hits = n * ((x.mean - range.low) / width_of(range));
+  const double whole = std::clamp(std::round(hits), 0.0, n);
+  if (!(std::abs(hits - whole) <= 0.25)) {
+    check::fail({"two_valued", "mean"}, x.mean,
+                "that of the two values alone: some lie between them");
+  }
+  return {range, {static_cast<std::uint64_t>(whole), x.count}};
+}
+
+TestResult two_valued_mean(const TwoValued& x, double null_mean) {
+  check_sample("two_valued_mean", x);
+  check::finite({"two_valued_mean", "null_mean"}, null_mean);
+  const double probability = (null_mean - x.range.low) / width_of(x.range);
+  TestResult result = binomial(x.high, std::clamp(probability, 0.0, 1.0));
+  if (probability < 0) {
+    result.log_p_lower = 0;
+    result.log_p_upper = special::lowest_log();
+  }
+  if (probability > 1) {
+    result.log_p_lower = special::lowest_log();
+    result.log_p_upper = 0;
+  }
+  return result;
+}
+
+TestResult two_valued_contrast(const TwoValued& x, const TwoValued& y, Contrast null_value) {
+  check_sample("two_valued_contrast", x);
+  check_sample("two_valued_contrast", y);
+  check::finite({"two_valued_contrast", "scale"}, null_value.scale);
+  check::finite({"two_valued_contrast", "offset"}, null_value.offset);
+  if (null_value.scale == 0) return two_valued_mean(x, null_value.offset);
+  if (null_value.scale < 0) {
+    return two_valued_contrast(x, mirrored(y), {-null_value.scale, null_value.offset});
+  }
+  return {mean_of(x) - null_value.scale * mean_of(y) - null_value.offset,
+          {"bound", {}},
+          log_p_lower(x, y, null_value),
+          log_p_upper(x, y, null_value),
+          Exactness::exact};
+}
+
+Interval two_valued_difference_interval(const TwoValued& x, const TwoValued& y, double confidence) {
+  check_sample("two_valued_difference_interval", x);
+  check_sample("two_valued_difference_interval", y);
+  check::inside_unit({"two_valued_difference_interval", "confidence"}, confidence);
+  const double log_error = std::log((1 - confidence) / 2);
+  const double centre = mean_of(x) - mean_of(y);
+  const double least = x.range.low - y.range.high;
+  const double most = x.range.high - y.range.low;
+  const auto too_low = [&](double d) { return log_p_upper(x, y, {1, d}) <= log_error; };
+  const auto too_high = [&](double d) { return log_p_lower(x, y, {1, d}) <= log_error; };
+  return {too_low(least) ? last_kept(centre, least, too_low) : least,
+          too_high(most) ? last_kept(centre, most, too_high) : most, confidence};
 }
 
 }  // namespace assay::stats

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "stats/basics/check.h"
-#include "stats/basics/golden_section.h"
+#include "stats/basics/search.h"
 #include "stats/tails/tails.h"
 
 namespace assay::stats {

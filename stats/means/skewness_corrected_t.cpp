@@ -121,22 +121,15 @@ Residue residue_of(const char* caller, const Moments& x, const Moments& y, doubl
   return residue;
 }
 
-double checked_factor(const char* caller, const Residue& residue, double critical_value) {
-  check::positive({caller, "critical_value"}, critical_value);
-  return factor_of(residue, critical_value);
-}
-
-constexpr const char* of_factor = "corrected_level_factor";
 constexpr const char* of_gate = "residual_skewness_gate";
 
 Gate gate_of(const Residue& seen, const Residue& least, double critical_value) {
-  const double value = checked_factor(of_gate, seen, critical_value);
-  const double low = factor_of(least, critical_value);
-  Gate gate{"level factor after correction", value, low, 2, GateState::amber};
-  if (value <= 1.25)
-    gate.state = GateState::green;
-  else if (low > gate.limit)
-    gate.state = GateState::red;
+  check::positive({of_gate, "critical_value"}, critical_value);
+  Gate gate{.name = "level factor after correction",
+            .value = factor_of(seen, critical_value),
+            .low = factor_of(least, critical_value),
+            .limit = 2};
+  gate.state = state_of(gate, 1.25);
   return gate;
 }
 
@@ -151,17 +144,6 @@ TestResult skewness_corrected_welch(const Moments& x, const Moments& y, Contrast
   check::finite({caller, "offset"}, null_value.offset);
   return result_of(caller, contrast_of_means(x, y, null_value),
                    law_of(caller, x, y, null_value.scale));
-}
-
-double corrected_level_factor(const Moments& x, Reference null_mean, double critical_value) {
-  return checked_factor(of_factor, residue_of(of_factor, x, null_mean, excess_or_zero),
-                        critical_value);
-}
-
-double corrected_level_factor(const Moments& x, const Moments& y, double scale,
-                              double critical_value) {
-  return checked_factor(of_factor, residue_of(of_factor, x, y, scale, excess_or_zero),
-                        critical_value);
 }
 
 Gate residual_skewness_gate(const Moments& x, Reference null_mean, double critical_value) {

@@ -3,13 +3,12 @@
 #include "stats/basics/moments.h"
 #include "stats/gates/assumption_gates.h"
 #include "stats/means/student_t.h"
-#include "stats/means/welch_t.h"
 #include "stats/tails/test_result.h"
 
 namespace assay::stats {
 
 // Student's and Welch's t with the first-order effect of skewness taken out. T and nu are those of
-// student_t.h and welch_t.h, and a is the skewness of the mean over 6. The influence values psi are
+// student_t.h, and a is the skewness of the mean over 6. The influence values psi are
 // (x_i - mean x) / nx and -scale (y_i - mean y) / ny. A reference's error adds to the variance
 // only.
 //   a   = sum psi^3 / (6 (sum psi^2 + standard_error^2)^1.5).
@@ -17,8 +16,8 @@ namespace assay::stats {
 // (Hall 1992, "On the removal of skewness by transformation", J. R. Statist. Soc. B 54.) For one
 // sample a = g1 / (6 sqrt n). T_H is referred to Student's t with nu degrees of freedom, not to
 // Hall's normal law. That exceeds the level .001 by a factor 1.9 for 50 normal values. T_H rises
-// with T, so an interval is its exact inversion. Asymptotic: use it where corrected_level_factor is
-// small. All throw as the tests they correct.
+// with T, so an interval is its exact inversion. Asymptotic: use it where residual_skewness_gate
+// is green. All throw as the tests they correct.
 
 // Null hypothesis: E x = null_mean.value.
 TestResult skewness_corrected_t(const Moments& x, Reference null_mean,
@@ -30,8 +29,8 @@ TestResult skewness_corrected_welch(const Moments& x, const Moments& y, Contrast
 
 // ---- Validity of the correction
 
-// Predicts at critical value x the factor by which the worse tail of T_H may exceed its nominal
-// level. Use the test where it is at most 1.25 (measurements.md). The factor is
+// The value is the factor by which the worse tail of T_H may exceed its nominal level at critical
+// value x (measurements.md). Limit 2, green up to 1.25. The factor is
 //   exp(max(0, x^4 (k/4 - 44 a^2 / 3)) + |a| x^3 (1 + x^2 / 24) (16.5 e + 121.5 a^2) + x^6 f / 3).
 // Each sample has a share p_j of the variance and excess kurtosis kappa_j. Then k = sum p_j^2
 // kappa_j / n_j, e = sum p_j^2 / n_j, f = sum p_j^3 / n_j^2.
@@ -40,13 +39,10 @@ TestResult skewness_corrected_welch(const Moments& x, const Moments& y, Contrast
 // 2 - y^4 ((kappa + 1) / 4 - 11 gamma^2 / 27); Student's law has the 1 / 4 already. The second is
 // the bias of g1 for a gamma law, with its growth in x as measured on the exponential law. The
 // third is the noise of g1 for normal data.
-double corrected_level_factor(const Moments& x, Reference null_mean, double critical_value);
-double corrected_level_factor(const Moments& x, const Moments& y, double scale,
-                              double critical_value);
-
-// Gates of the correction. Value as above, limit 2, green up to 1.25. `low` subtracts from the
-// kurtosis what normal data show by themselves (kurtosis_gate). The last term stays, because too
-// few values is no matter of chance: 50 values at x = 4.9 are red for any law.
+//
+// `low` subtracts from the kurtosis what normal data show by themselves (kurtosis_gate). The last
+// term stays, because too few values is no matter of chance: 50 values at x = 4.9 are red for any
+// law.
 Gate residual_skewness_gate(const Moments& x, Reference null_mean, double critical_value);
 Gate residual_skewness_gate(const Moments& x, const Moments& y, double scale,
                             double critical_value);

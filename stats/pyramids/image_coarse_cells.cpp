@@ -1,8 +1,6 @@
-#include "stats/pyramids/image_coarse_cells.h"
-
 #include <algorithm>
 
-#include "stats/pyramids/image_welch_cells.h"
+#include "stats/pyramids/image_cells.h"
 
 namespace assay::stats {
 namespace {
@@ -16,7 +14,7 @@ void add(WelchCells& cells, std::size_t window, double value, double inverse_cou
 using Groups = std::vector<WindowGroup>;
 
 // Cells of groups that are not fine, as rectangles of blocks
-// (image_fine_cells.h), all channels and images alike.
+// (image_cells.h), all channels and images alike.
 Groups coarse_groups(const Groups& groups) {
   Groups coarse = groups;
   const auto blocks = [](std::uint32_t end) { return static_cast<std::uint32_t>(blocks_of(end)); };

@@ -1,32 +1,130 @@
-#include "stats/pyramids/image_fine_cells.h"
-
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <optional>
 
 #include "stats/basics/vector_copies.h"
-#include "stats/pyramids/image_tile.h"
-#include "stats/pyramids/image_welch_cells.h"
+#include "stats/pyramids/image_cells.h"
 
 namespace assay::stats {
 namespace {
 
-ASSAY_VECTOR_COPIES void weigh(const float* value, const float* centre, const double* weight,
+// ---- Tiles
+
+// A tile of an image, and the sums over the squares that begin in it. All channels stand side by
+// side as in the image. Everything beyond the image's edge is zero, so a cell cut off by the edge
+// is a whole square here.
+struct Tile {
+  static constexpr std::size_t rows = 16;
+  static constexpr std::size_t columns = 128;
+  static constexpr std::size_t halo = 8;  // Rows and columns beyond, into which its squares reach.
+
+  static std::size_t padded(std::size_t count) { return (count + 7) / 8 * 8; }
+
+  ImageExtent extent;
+  std::size_t x = 0;
+  std::size_t y = 0;
+
+  // Columns and rows that begin here, in multiples of 8.
+  std::size_t width() const { return std::min(columns, padded(extent.width - x)); }
+  std::size_t height() const { return std::min(rows, padded(extent.height - y)); }
+  // Distance from one row of values to the next.
+  std::size_t stride() const { return (columns + halo) * extent.channels; }
+};
+
+// Sides of the squares, and distance from one square to the next.
+struct Squares {
+  std::uint32_t side;
+  std::uint32_t step;
+};
+constexpr std::array<Squares, 3> fine_squares{{{2, 1}, {4, 1}, {8, 2}}};
+
+ASSAY_VECTOR_COPIES void add(const std::array<const double*, 4>& from, double* to,
+                             std::size_t size) {
+  const auto [a, b, c, d] = from;
+  double* const __restrict sum = to;
+  for (std::size_t i = 0; i < size; ++i) sum[i] = (a[i] + b[i]) + (c[i] + d[i]);
+}
+
+// Sums squares of twice the side from squares that are `apart` numbers and `lines` rows from each
+// other.
+struct Doubling {
+  std::size_t rows;
+  std::size_t size;  // Length of a row of sums.
+  std::size_t stride;
+  std::size_t apart;
+  std::size_t lines;
+};
+
+void double_side(const std::vector<double>& from, std::vector<double>& to, const Doubling& by) {
+  for (std::size_t row = 0; row < by.rows; ++row) {
+    const double* const top = from.data() + row * by.stride;
+    const double* const bottom = top + by.lines * by.stride;
+    add({top, top + by.apart, bottom, bottom + by.apart}, to.data() + row * by.stride, by.size);
+  }
+}
+
+class TileSums {
+ public:
+  explicit TileSums(const ImageExtent& extent);
+
+  // Rows of Tile::stride() values, Tile::height() + halo of them. The caller fills them.
+  std::span<double> values() { return values_; }
+  void add_up(const Tile& tile);
+
+  // Sums by index in fine_squares, row after row of Tile::stride() / step.
+  const std::vector<double>& of(std::size_t squares) const { return sums_[squares]; }
+
+ private:
+  std::size_t channels_;
+  std::vector<double> values_;
+  std::vector<double> blocks_;  // Blocks of 2 x 2, at even columns and rows.
+  std::vector<double> fours_;   // Blocks of 2 x 2 of these, at each of them.
+  std::array<std::vector<double>, fine_squares.size()> sums_;
+};
+
+TileSums::TileSums(const ImageExtent& extent) : channels_(extent.channels) {
+  const std::size_t stride = Tile{extent}.stride();
+  const std::size_t size = (Tile::rows + Tile::halo) * stride;
+  values_.resize(size);
+  blocks_.resize(size / 4);
+  fours_.resize(size / 4);
+  for (std::size_t i = 0; i < sums_.size(); ++i) {
+    sums_[i].resize(size / (fine_squares[i].step * fine_squares[i].step));
+  }
+}
+
+void TileSums::add_up(const Tile& tile) {
+  const std::size_t c = channels_;
+  const std::size_t stride = tile.stride();
+  const std::size_t rows = tile.height();
+  const std::size_t width = tile.width();
+  std::vector<double>& twos = sums_[0];
+  // Side 2 as far as side 8 reaches: it begins at most 2 before the end and
+  // takes 8.
+  double_side(values_, twos, {rows + 7, (width + 7) * c, stride, c, 1});
+  double_side(twos, sums_[1], {rows, width * c, stride, 2 * c, 2});
+  const std::size_t half = stride / 2;
+  for (std::size_t row = 0; row < rows / 2 + 3; ++row) {
+    for (std::size_t block = 0; block < width / 2 + 3; ++block) {
+      const double* const from = twos.data() + 2 * row * stride + 2 * block * c;
+      std::copy(from, from + c, blocks_.data() + row * half + block * c);
+    }
+  }
+  double_side(blocks_, fours_, {rows / 2 + 2, (width / 2 + 2) * c, half, c, 1});
+  double_side(fours_, sums_[2], {rows / 2, width / 2 * c, half, 2 * c, 2});
+}
+
+// ---- Loops over elements
+
+template <class Real, class Centre>
+ASSAY_VECTOR_COPIES void weigh(const Real* value, const Centre* centre, const double* weight,
                                std::span<double> out) {
   for (std::size_t i = 0; i < out.size(); ++i) {
     out[i] = weight[i] * (static_cast<double>(value[i]) - static_cast<double>(centre[i]));
   }
-}
-ASSAY_VECTOR_COPIES void weigh(const float* value, const double* centre, const double* weight,
-                               std::span<double> out) {
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    out[i] = weight[i] * (static_cast<double>(value[i]) - centre[i]);
-  }
-}
-ASSAY_VECTOR_COPIES void weigh(const double* value, const double* centre, const double* weight,
-                               std::span<double> out) {
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = weight[i] * (value[i] - centre[i]);
 }
 
 // Calls fill(first element, where to) for each row of the tile that the image
@@ -87,9 +185,8 @@ struct RowPowers {
 };
 
 template <class Real>
-inline __attribute__((always_inline)) void deviate(const Real* value, const double* mean,
-                                                   const double* weight, const RowPowers& to,
-                                                   std::size_t size) {
+ASSAY_VECTOR_COPIES void add_powers(const Real* value, const double* mean, const double* weight,
+                                    const RowPowers& to, std::size_t size) {
   double* const __restrict squares = to.squares;
   double* const __restrict cubes = to.cubes;
   double* const __restrict sixths = to.sixths;
@@ -101,14 +198,6 @@ inline __attribute__((always_inline)) void deviate(const Real* value, const doub
     cubes[i] += cube;
     sixths[i] += cube * cube;
   }
-}
-ASSAY_VECTOR_COPIES void add_powers(const float* value, const double* mean, const double* weight,
-                                    const RowPowers& to, std::size_t size) {
-  deviate(value, mean, weight, to, size);
-}
-ASSAY_VECTOR_COPIES void add_powers(const double* value, const double* mean, const double* weight,
-                                    const RowPowers& to, std::size_t size) {
-  deviate(value, mean, weight, to, size);
 }
 
 // Asks for the rows of a tile before they are needed. A tile's rows are too short for the machine

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "stats/images/image.h"
-#include "stats/images/image_windows.h"
+#include "stats/images/image_family.h"
 
 namespace assay::stats {
 

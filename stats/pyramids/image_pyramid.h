@@ -1,16 +1,20 @@
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <span>
+#include <vector>
 
 #include "stats/basics/for_each.h"
 #include "stats/images/image.h"
 #include "stats/images/image_family.h"
+#include "stats/pyramids/image_cells.h"
 
 namespace assay::stats {
 
 // Are two images equal? Their difference is looked at on every scale at once. Cells have one
-// element to the whole image (image_windows.h); one more sum has alternating signs. A family
-// p-value covers all of it (image_family.h).
+// element to the whole image; one more sum has alternating signs. A family p-value covers all of it
+// (image_family.h).
 //
 // Replicates of two images, or of one against a reference. Null hypothesis: E a = E b at every
 // element. Asymptotic (Welch's law).
@@ -41,11 +45,48 @@ struct PyramidOptions {
   bool constants_decide = true;
 };
 
+// image_pyramid for images that are read rows after rows, with the same bits. It keeps z and a
+// weight for each element, and for each 4 x 4 elements one number a replicate.
 template <class Real>
-ImageFamily image_pyramid(const ImageStack<Real>& a, const ImageStack<Real>& b,
-                          const PyramidOptions& options = {});
-template <class Real>
-ImageFamily image_pyramid(const ImageStack<Real>& a, const ImageReference& b,
-                          const PyramidOptions& options = {});
+class RowPyramid {
+ public:
+  // Only the extent and the number of replicates of `pair` are read.
+  RowPyramid(const ImagePair<Real>& pair, const PyramidOptions& options);
+
+  // Takes rows that follow on those before, in multiples of row_unit but for the last. The pair
+  // must have `rows_before` and `rows_ahead` more, as far as the image has.
+  static constexpr std::size_t row_unit = fine_rows;
+  static constexpr std::size_t rows_before = rows_beside;
+  static constexpr std::size_t rows_ahead = fine_rows_ahead + rows_beside;
+  void take(const ImagePair<Real>& pair, RowRange rows);
+
+  // To be called after the last rows.
+  ImageFamily family();
+
+ private:
+  void offer_cells();
+  void add_best(ImageFamily& family) const;
+
+  ImageExtent extent_;
+  ForEach for_each_;
+  bool constants_decide_;
+  std::vector<double> own_z_;
+  std::vector<WindowGroup> groups_;
+  FineFindings found_;
+  std::vector<BestCell> best_;  // One per group.
+};
+
+template <class Real, class Second>
+ImageFamily image_pyramid(const ImageStack<Real>& a, const Second& b,
+                          const PyramidOptions& options = {}) {
+  // Intermediate data is not kept for all elements of a large image.
+  constexpr std::size_t rows_at_a_time = 512;
+  const ImagePair<Real> pair = pair_of(a, b);
+  RowPyramid<Real> pyramid(pair, options);
+  for (std::size_t row = 0; row < a.extent.height; row += rows_at_a_time) {
+    pyramid.take(pair, {row, std::min(row + rows_at_a_time, a.extent.height)});
+  }
+  return pyramid.family();
+}
 
 }  // namespace assay::stats

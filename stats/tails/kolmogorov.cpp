@@ -1,12 +1,12 @@
 #include "stats/tails/kolmogorov.h"
 
 #include <algorithm>
-#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
 #include "stats/basics/check.h"
+#include "stats/basics/search.h"
 #include "stats/basics/vector_copies.h"
 #include "stats/tails/special.h"
 
@@ -272,10 +272,7 @@ LogTails tails_by(Body by, double distance, std::uint64_t n) {
 /// log_probability.
 double solve_quantile(Body by, double log_probability, std::uint64_t n, double low, double high) {
   const auto excess = [&](double d) { return log_probability - tails_by(by, d, n).upper; };
-  std::uintmax_t iterations = 100;
-  return boost::math::tools::toms748_solve(
-             excess, low, high, boost::math::tools::eps_tolerance<double>(44), iterations)
-      .second;
+  return root_bracket(excess, low, high, 44).second;
 }
 
 }  // namespace

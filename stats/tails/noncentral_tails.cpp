@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "stats/basics/check.h"
-#include "stats/basics/golden_section.h"
+#include "stats/basics/search.h"
 #include "stats/tails/special.h"
 #include "stats/tails/tails.h"
 

@@ -13,6 +13,8 @@ using Slopes = TabulatedLaw::Slopes;
 
 constexpr std::size_t nodes = AdaptiveQuadrature::nodes;
 constexpr int places_compared = 7;
+constexpr double largest_departure = 1e-6;
+constexpr int deepest_bisection = 24;
 
 // P_0 to P_nodes at t, by Bonnet's recursion.
 std::array<double, nodes + 1> legendre(double t) {
@@ -109,8 +111,8 @@ struct Part {
 // Halves the worst part first, so that the evaluations go where they help most.
 class Table {
  public:
-  Table(const AdaptiveQuadrature::Function& density, AdaptiveQuadrature& rule, TableLimits limits)
-      : density_(density), rule_(rule), limits_(limits) {}
+  Table(const AdaptiveQuadrature::Function& density, AdaptiveQuadrature& rule)
+      : density_(density), rule_(rule) {}
 
   void add(Span span) { add(span, spread(span), {}); }
 
@@ -129,15 +131,15 @@ class Table {
     std::sort(parts_.begin(), parts_.end(),
               [](const Part& a, const Part& b) { return a.span.low < b.span.low; });
     TabulatedLaw law{.place = {parts_.front().span.low}, .cumulated = {0}};
-    double largest_departure = 0;
+    double departure = 0;
     for (const Part& part : parts_) {
       append(law, part.span.middle(), part.first);
       append(law, part.span.high, part.second);
       law.total_error += part.error;
-      largest_departure = std::max(largest_departure, part.departure);
+      departure = std::max(departure, part.departure);
     }
     check::positive({"tabulate", "mass"}, law.total());
-    law.error = (largest_departure + law.total_error) / law.total();
+    law.error = (departure + law.total_error) / law.total();
     return law;
   }
 
@@ -159,9 +161,9 @@ class Table {
     part.error = std::max(std::abs(sum.value - whole.mass.value), sum.error);
     const double seen = largest_distance(whole, part.first, part.second);
     part.departure = std::max(seen + part.first.unseen + part.second.unseen, from.departure);
-    if (part.depth < limits_.deepest_bisection) {
+    if (part.depth < deepest_bisection) {
       part.badness =
-          std::max(part.departure / limits_.departure, part.error / rule_.limits().tolerance);
+          std::max(part.departure / largest_departure, part.error / rule_.limits().tolerance);
     }
     parts_.push_back(part);
     std::push_heap(parts_.begin(), parts_.end());
@@ -175,7 +177,6 @@ class Table {
 
   const AdaptiveQuadrature::Function& density_;
   AdaptiveQuadrature& rule_;
-  TableLimits limits_;
   std::vector<Part> parts_;  // A heap, the worst first.
 };
 
@@ -253,9 +254,9 @@ std::vector<double> TabulatedLaw::of_sorted(std::span<const double> values) cons
 }
 
 TabulatedLaw tabulate(const AdaptiveQuadrature::Function& density, const std::vector<Span>& parts,
-                      AdaptiveQuadrature& rule, TableLimits limits) {
+                      AdaptiveQuadrature& rule) {
   check::at_least({"tabulate", "number of parts"}, parts.size(), 1);
-  Table table(density, rule, limits);
+  Table table(density, rule);
   for (const Span& part : parts) table.add(part);
   table.refine();
   return table.result();

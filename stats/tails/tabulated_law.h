@@ -34,15 +34,11 @@ struct TabulatedLaw {
   std::vector<double> of_sorted(std::span<const double> values) const;
 };
 
-struct TableLimits {
-  double departure = 1e-6;  // Parts are halved until the visible part of their error is less.
-  int deepest_bisection = 24;
-};
-
-// Halves parts where the mass is and where the density is no polynomial, the worst first. `parts`
-// are contiguous and ascending. It stops when the rule's evaluations are used up. Throws
-// std::domain_error when there is no mass, or a density is negative or not finite.
+// Halves parts where the mass is and where the density is no polynomial, the worst first, until the
+// visible part of their error is below 1e-6. `parts` are contiguous and ascending. It stops when
+// the rule's evaluations are used up. Throws std::domain_error when there is no mass, or a density
+// is negative or not finite.
 TabulatedLaw tabulate(const AdaptiveQuadrature::Function& density, const std::vector<Span>& parts,
-                      AdaptiveQuadrature& rule, TableLimits limits = {});
+                      AdaptiveQuadrature& rule);
 
 }  // namespace assay::stats

@@ -35,6 +35,11 @@ struct TestResult {
 // ln p of the point null: min(0, ln 2 + min(log_p_lower, log_p_upper)).
 double log_p_two_sided(const TestResult& result);
 
+// ln p of two one-sided tests (Schuirmann 1987). Null hypothesis: theta <= low or theta >= high. p
+// = max(p of "theta <= low", p of "theta >= high"), from any two results of one method at the two
+// null values. Two tests need no factor: P(p <= a) <= a.
+double log_p_equivalence(const TestResult& at_low, const TestResult& at_high);
+
 // A central interval: each of the two tails carries (1 - confidence) / 2. So two one-sided tests at
 // beta correspond to confidence = 1 - 2 beta. An end may be infinite.
 struct Interval {

@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "stats/basics/check.h"
-#include "stats/basics/errors.h"
 #include "stats/means/skewness_corrected_t.h"
 
 namespace assay::stats {

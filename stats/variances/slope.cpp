@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <boost/math/tools/minima.hpp>
-#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
 #include "stats/basics/check.h"
-#include "stats/basics/errors.h"
+#include "stats/basics/moments.h"
+#include "stats/basics/search.h"
 #include "stats/tails/tails.h"
 
 namespace assay::stats {
@@ -173,19 +173,9 @@ double degrees_of(const SlopeData& data) { return static_cast<double>(data.point
 
 double log_p(double misfit, double degrees) { return chi_square_tails(misfit, degrees).upper; }
 
-// The slope between one inside the set and one outside at which Q crosses the threshold.
-double crossing(const Misfit& misfit, double threshold, double a, double b) {
-  std::uintmax_t iterations = 200;
-  const auto [low, high] = std::minmax({a, b});
-  const auto ends = boost::math::tools::toms748_solve(
-      [&](double slope) { return misfit(slope) - threshold; }, low, high,
-      boost::math::tools::eps_tolerance<double>(50), iterations);
-  return std::midpoint(ends.first, ends.second);
-}
-
 }  // namespace
 
-SlopeTest slope_test(const SlopeData& unordered, double null_slope) {
+TestResult slope_test(const SlopeData& unordered, double null_slope) {
   check::finite({"slope_test", "null_slope"}, null_slope);
   const SlopeData data = ordered("slope_test", unordered);
   const Misfit misfit(data);
@@ -197,15 +187,14 @@ SlopeTest slope_test(const SlopeData& unordered, double null_slope) {
     double& least = node.slope <= null_slope ? below : above;
     least = std::min(least, node.misfit);
   }
-  return {log_p(here, degrees),
-          {here,
-           {"chi-square", {degrees}},
-           log_p(above, degrees),
-           log_p(below, degrees),
-           Exactness::asymptotic}};
+  return {here,
+          {"chi-square", {degrees}},
+          log_p(above, degrees),
+          log_p(below, degrees),
+          Exactness::asymptotic};
 }
 
-SlopeSet slope_set(const SlopeData& unordered, double confidence) {
+Interval slope_set(const SlopeData& unordered, double confidence) {
   check::inside_unit({"slope_set", "confidence"}, confidence);
   const SlopeData data = ordered("slope_set", unordered);
   const Misfit misfit(data);
@@ -214,22 +203,16 @@ SlopeSet slope_set(const SlopeData& unordered, double confidence) {
   const std::vector<Node> nodes = candidates(data, misfit);
   const auto inside = [&](const Node& node) { return node.misfit <= threshold; };
   const auto first = std::find_if(nodes.begin(), nodes.end(), inside);
-  SlopeSet set;
-  set.hull.confidence = confidence;
   if (first == nodes.end()) {
-    set.empty = true;
-    set.hull.low = set.hull.high = std::numeric_limits<double>::quiet_NaN();
-    return set;
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    return {none, none, confidence};
   }
   const auto last = std::find_if(nodes.rbegin(), nodes.rend(), inside).base() - 1;
-  set.connected = std::all_of(first, last, inside);
-  set.hull.low = first == nodes.begin()
-                     ? -infinity
-                     : crossing(misfit, threshold, (first - 1)->slope, first->slope);
-  set.hull.high = last + 1 == nodes.end()
-                      ? infinity
-                      : crossing(misfit, threshold, last->slope, (last + 1)->slope);
-  return set;
+  // Q crosses the threshold between a slope inside the set and one outside.
+  const auto excess = [&](double slope) { return misfit(slope) - threshold; };
+  return {first == nodes.begin() ? -infinity : root(excess, {(first - 1)->slope, first->slope}, 50),
+          last + 1 == nodes.end() ? infinity : root(excess, {last->slope, (last + 1)->slope}, 50),
+          confidence};
 }
 
 SlopeEstimate slope_estimate(const SlopeData& unordered) {
@@ -238,10 +221,7 @@ SlopeEstimate slope_estimate(const SlopeData& unordered) {
   const std::vector<Node> nodes = candidates(data, misfit);
   const auto best = std::min_element(
       nodes.begin(), nodes.end(), [](const Node& a, const Node& b) { return a.misfit < b.misfit; });
-  const double degrees = degrees_of(data) - 1;
-  SlopeEstimate estimate{.slope = best->slope,
-                         .log_p_fit = degrees > 0 ? log_p(best->misfit, degrees) : 0,
-                         .log_p_best = log_p(best->misfit, degrees + 1)};
+  SlopeEstimate estimate{.slope = best->slope, .log_p_best = log_p(best->misfit, degrees_of(data))};
   if (best == nodes.begin()) estimate.slope = -infinity;
   if (best + 1 == nodes.end()) estimate.slope = infinity;
   return estimate;

@@ -38,35 +38,24 @@ struct SlopeData {
   SlopeScale scale = SlopeScale::values;
 };
 
-struct SlopeTest {
-  // Null hypothesis: slope = null. ln P(chi-square >= Q(null)).
-  double log_p_equal = 0;
-  // log_p_upper rejects "slope <= null": the largest ln p over all slopes up to null. The mirror is
-  // log_p_lower. Their smaller one is log_p_equal if the estimate lies on one side. Doubling it
-  // (log_p_two_sided) is valid but wasteful, so use log_p_equal. The statistic is Q(null).
-  TestResult test;
-};
-SlopeTest slope_test(const SlopeData& data, double null_slope);
+// Null hypothesis: slope = null. log_p_upper rejects "slope <= null": the largest ln p over all
+// slopes up to null, where p is P(chi-square >= Q). The mirror is log_p_lower. Their smaller one is
+// that of the null if the estimate lies on one side. Doubling it (log_p_two_sided) is valid but
+// wasteful. The statistic is Q(null).
+TestResult slope_test(const SlopeData& data, double null_slope);
 
 // The smallest interval that holds every slope with p > 1 - confidence. Confidence is that of the
 // equality test, not split over two sides. Slopes outside are rejected at 1 - confidence each. So
-// the interval at confidence 1 - beta rejects "slope outside [low, high]" at beta.
-struct SlopeSet {
-  Interval hull;
-  bool empty = false;     // No power law fits the points; the hull is then NaN.
-  bool connected = true;  // False: inner slopes of the hull are rejected too.
-  // An unbounded set has an infinite end. The estimates at the small or the large sizes then cannot
-  // be told from zero, so no slope is too steep.
-};
-SlopeSet slope_set(const SlopeData& data, double confidence);
+// the interval at confidence 1 - beta rejects "slope outside [low, high]" at beta. Both ends are
+// NaN if no power law fits the points. An end is infinite where the estimates at the small or the
+// large sizes cannot be told from zero, so that no slope is too steep.
+Interval slope_set(const SlopeData& data, double confidence);
 
 struct SlopeEstimate {
   // argmin Q; +-infinity when the best fit has but one point different from 0.
   double slope = 0;
-  // ln P(chi-square, K - 2 degrees >= Q(slope)). Small if it is no power law at all.
-  double log_p_fit = 0;
   // ln P(chi-square, K - 1 degrees >= Q(slope)), the largest of any slope. Below ln(1 - confidence)
-  // slope_set() is empty. Under a power law that has probability at most 1 - confidence.
+  // slope_set() is NaN. Under a power law that has probability at most 1 - confidence.
   double log_p_best = 0;
 };
 SlopeEstimate slope_estimate(const SlopeData& data);

@@ -22,7 +22,7 @@
 
 #include "estimators/path_tracing/image.h"
 #include "stats/basics/moments.h"
-#include "stats/means/welch_t.h"
+#include "stats/means/student_t.h"
 #include "stats/pyramids/image_pyramid.h"
 #include "stats/tails/tails.h"
 

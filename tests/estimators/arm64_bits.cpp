@@ -16,7 +16,6 @@
 #include "stats/means/betting_mean.h"
 #include "stats/means/skewness_corrected_t.h"
 #include "stats/means/student_t.h"
-#include "stats/means/welch_t.h"
 #include "stats/tails/tails.h"
 
 namespace {

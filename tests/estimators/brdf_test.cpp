@@ -1,9 +1,7 @@
 // The reflectances against formulas written out again here and brute-force sums.
 
-#include "render/brdf/brdf_ashikhmin_shirley.h"
-#include "render/brdf/brdf_integrals.h"
-#include "render/brdf/brdf_ward.h"
-#include "render/rejection.h"
+#include "render/brdf.h"
+
 #include "tests/estimators/prelude.h"
 
 namespace assay {

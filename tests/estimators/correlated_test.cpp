@@ -1,4 +1,4 @@
-#include "correlated/area_pairs.h"
+#include "correlated/area.h"
 #include "correlated/estimators.h"
 #include "tests/estimators/prelude.h"
 #include "tests/estimators/scenes.h"

@@ -1,5 +1,4 @@
 #include "render/environment_map.h"
-#include "render/patch_integrals.h"
 #include "tests/estimators/prelude.h"
 #include "tests/estimators/sky.h"
 

@@ -21,7 +21,7 @@
 
 #include "estimators/catalogue.h"
 #include "estimators/core/flow.h"
-#include "paths/mesh_world.h"
+#include "paths/worlds.h"
 #include "render/hemisphere.h"
 #include "render/scene.h"
 #include "render/triangle_mesh.h"

@@ -1,4 +1,4 @@
-#include "recorded/seen_pictures.h"
+#include "recorded/picture_setup.h"
 
 #include "tests/prelude.h"
 

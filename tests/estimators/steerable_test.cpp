@@ -1,7 +1,5 @@
 #include "steerable/directions.h"
-#include "steerable/linear_triangle.h"
-#include "steerable/lobe.h"
-#include "steerable/sky_tree.h"
+#include "steerable/triangle.h"
 #include "tests/estimators/prelude.h"
 
 namespace assay {

@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "estimators/foreign/reply.h"
+#include "estimators/foreign/protocol.h"
 #include "tests/fuzz/case.h"
 
 namespace {

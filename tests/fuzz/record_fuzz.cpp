@@ -1,4 +1,4 @@
-// Records of runs (reports/read_json.h), and the reports made from them. All bytes are a record, or
+// Records of runs (reports/report_formats.h), and the reports made from them. All bytes are a record, or
 // are refused with the file's name. A record is written and read again as the same, and every
 // report can be made from it.
 
@@ -6,14 +6,7 @@
 // sources: reports/*.cpp reports/*/*.cpp build/reports/page.cpp
 // libraries: -lfmt -lz
 
-#include "reports/formats/annotations.h"
-#include "reports/formats/console.h"
-#include "reports/formats/json.h"
-#include "reports/formats/junit.h"
-#include "reports/formats/markdown.h"
-#include "reports/formats/metrics.h"
-#include "reports/formats/read_json.h"
-#include "reports/viewer/html.h"
+#include "reports/report_formats.h"
 #include "tests/fuzz/case.h"
 
 namespace {

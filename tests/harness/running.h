@@ -1,7 +1,7 @@
 #pragma once
 
 #include "harness/command/run.h"
-#include "reports/formats/json.h"
+#include "reports/report_formats.h"
 #include "tests/prelude.h"
 #include "tests/reports/without_times.h"
 

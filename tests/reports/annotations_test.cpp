@@ -1,5 +1,4 @@
-#include "reports/formats/annotations.h"
-
+#include "reports/report_formats.h"
 #include "tests/reports/prelude.h"
 
 namespace assay::reports {

@@ -1,6 +1,6 @@
 #include "reports/record/calibration.h"
 
-#include "reports/words/columns.h"
+#include "reports/words/text.h"
 #include "tests/reports/approved.h"
 #include "tests/reports/prelude.h"
 

@@ -1,5 +1,3 @@
-#include "reports/words/columns.h"
-
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 #include <wchar.h>

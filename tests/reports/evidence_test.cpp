@@ -1,5 +1,4 @@
-#include "reports/words/evidence.h"
-
+#include "reports/words/describe.h"
 #include "tests/reports/prelude.h"
 
 namespace assay::reports {

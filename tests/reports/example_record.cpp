@@ -3,7 +3,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "reports/formats/read_json.h"
+#include "reports/report_formats.h"
 
 namespace assay::reports {
 namespace {

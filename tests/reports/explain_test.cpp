@@ -1,6 +1,4 @@
-#include "reports/formats/explain.h"
-
-#include "reports/words/columns.h"
+#include "reports/report_formats.h"
 #include "reports/words/text.h"
 #include "tests/reports/prelude.h"
 

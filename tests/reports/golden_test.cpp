@@ -1,12 +1,6 @@
 // Every writer against an approved file.
 
-#include "reports/formats/annotations.h"
-#include "reports/formats/console.h"
-#include "reports/formats/explain.h"
-#include "reports/formats/json.h"
-#include "reports/formats/junit.h"
-#include "reports/formats/markdown.h"
-#include "reports/formats/metrics.h"
+#include "reports/report_formats.h"
 #include "tests/reports/approved.h"
 #include "tests/reports/prelude.h"
 

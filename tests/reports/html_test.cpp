@@ -1,12 +1,10 @@
-#include "reports/viewer/html.h"
-
 #include <zlib.h>
 
 #include <nlohmann/json.hpp>
 
 #include "reports/formats/base64.h"
-#include "reports/formats/read_json.h"
-#include "reports/viewer/pictures.h"
+#include "reports/report_formats.h"
+#include "reports/viewer/page.h"
 #include "reports/words/text.h"
 #include "tests/reports/large_records.h"
 #include "tests/reports/prelude.h"

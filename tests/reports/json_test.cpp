@@ -1,9 +1,6 @@
-#include "reports/formats/json.h"
-
 #include <nlohmann/json.hpp>
 
-#include "reports/formats/read_json.h"
-#include "reports/viewer/html.h"
+#include "reports/report_formats.h"
 #include "reports/words/text.h"
 #include "tests/reports/prelude.h"
 #include "tests/reports/without_times.h"

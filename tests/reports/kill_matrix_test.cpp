@@ -1,8 +1,7 @@
 #include "reports/words/kill_matrix.h"
 
-#include "reports/formats/console.h"
-#include "reports/formats/markdown.h"
-#include "reports/words/columns.h"
+#include "reports/report_formats.h"
+#include "reports/words/text.h"
 #include "tests/reports/prelude.h"
 
 namespace assay::reports {
@@ -46,7 +45,13 @@ Suite zoo() {
   return suite;
 }
 
-const KillCell& only_cell(const KillMatrix& matrix) { return *matrix.rows.at(0).cells.at(0); }
+/// The matrix of the tests, whose ids are their places.
+KillMatrix matrix_of(Suite& suite) {
+  for (std::size_t t = 0; t < suite.tests.size(); ++t) suite.tests[t].id = std::to_string(t);
+  return kill_matrix(suite);
+}
+
+KillCell only_cell(Suite& suite) { return *matrix_of(suite).rows.at(0).cells.at(0); }
 
 TEST(KillMatrix, ColumnsAreTheTextbooksTestsOfTheClaims) {
   Suite suite = zoo();
@@ -58,15 +63,15 @@ TEST(KillMatrix, ColumnsAreTheTextbooksTestsOfTheClaims) {
                  test_of({"mean(one) == mean(sound)", "skewness-corrected-t"}, {"one", "sound"}),
                  test_of({"mean(one) within 1% of analytic", "tost"}, {"one"}),
                  test_of({"mean(two) == analytic", "image"}, {"two"})};
-  const KillMatrix matrix = kill_matrix(suite);
+  const KillMatrix matrix = matrix_of(suite);
   EXPECT_EQ(matrix.methods, (std::vector<std::string>{"t", "Welch", "chi-square", "F", "KS", "fit",
                                                       "image", "slope"}));
   ASSERT_EQ(matrix.rows.size(), 2u);
-  EXPECT_EQ(matrix.rows[0].mutant, 1u);
-  EXPECT_EQ(matrix.rows[0].cells[0]->test, 6u);
+  EXPECT_EQ(matrix.rows[0].mutant, "one");
+  EXPECT_EQ(matrix.rows[0].cells[0]->test, "6");
   EXPECT_FALSE(matrix.rows[0].cells[6]);
   EXPECT_FALSE(matrix.rows[1].cells[0]);
-  EXPECT_EQ(matrix.rows[1].cells[6]->test, 7u);
+  EXPECT_EQ(matrix.rows[1].cells[6]->test, "7");
 }
 
 TEST(KillMatrix, SoundEstimatorsSkippedTestsAndTestsWithoutASampleHaveNoRow) {
@@ -84,8 +89,7 @@ TEST(KillMatrix, SamplesArePrimariesOfTheMutantAlone) {
       test_of({.claim = "mean(sound) == mean(one)", .method = "welch"}, {"sound", "one"})};
   suite.tests[0].samples[0].secondaries = 7;
   suite.tests[0].samples[1].secondaries = 50;
-  EXPECT_EQ(only_cell(kill_matrix(suite)).samples, 64u * 50);
-  EXPECT_EQ(short_text(suite, only_cell(kill_matrix(suite))), "3200");
+  EXPECT_EQ(only_cell(suite).text, "3200");  // 64 * 50
 }
 
 TEST(KillMatrix, TheKillOfFewestSamplesStandsForAMethod) {
@@ -94,7 +98,7 @@ TEST(KillMatrix, TheKillOfFewestSamplesStandsForAMethod) {
                  test_of({"mean(one) == 1", "t", Verdict::fail, 5000}, {"one"}),
                  test_of({"mean(one) == 1", "t", Verdict::fail, 40}, {"one"}),
                  test_of({"mean(one) == 1", "t", Verdict::error, 5}, {"one"})};
-  EXPECT_EQ(only_cell(kill_matrix(suite)).test, 2u);
+  EXPECT_EQ(only_cell(suite).test, "2");
 }
 
 TEST(KillMatrix, OfSurvivalsTheOneThatWouldHaveFoundLeastStandsForAMethod) {
@@ -103,10 +107,10 @@ TEST(KillMatrix, OfSurvivalsTheOneThatWouldHaveFoundLeastStandsForAMethod) {
                  test_of({"mean(one) == 1", "t", Verdict::pass, 500}, {"one"}),
                  test_of({"mean(one) == 1", "t", Verdict::pass, 100, 0.05}, {"one"}),
                  test_of({"mean(one) == 1", "t", Verdict::pass, 200, 0.01}, {"one"})};
-  EXPECT_EQ(only_cell(kill_matrix(suite)).test, 3u);
-  EXPECT_EQ(short_text(suite, only_cell(kill_matrix(suite))), "< 1\u00A0%");
+  EXPECT_EQ(only_cell(suite).test, "3");
+  EXPECT_EQ(only_cell(suite).text, "< 1\u00A0%");
   EXPECT_EQ(
-      sentence(suite, only_cell(kill_matrix(suite))),
+      only_cell(suite).sentence,
       "survives 12.8\u00A0k\u00A0samples: an effect of 1\u00A0% or more would have been found");
 }
 
@@ -114,8 +118,7 @@ TEST(KillMatrix, EveryVerdictHasItsWords) {
   Suite suite = zoo();
   const auto words = [&](const Case& what) {
     suite.tests = {test_of(what, {"one"})};
-    const KillMatrix matrix = kill_matrix(suite);
-    return short_text(suite, only_cell(matrix)) + "; " + sentence(suite, only_cell(matrix));
+    return only_cell(suite).text + "; " + only_cell(suite).sentence;
   };
   EXPECT_EQ(words({"mean(one) == 1", "t", Verdict::fail}), "6400; killed by 6400\u00A0samples");
   EXPECT_EQ(words({"mean(one) == 1", "t", Verdict::pass}), "survives; survives 6400\u00A0samples");
@@ -132,7 +135,7 @@ TEST(KillMatrix, ALogarithmOfARatioIsShownAsTheRatio) {
   suite.tests = {
       test_of({"variance(one) <= 1", "chi-square", Verdict::pass, 100, 0.0953101798}, {"one"})};
   suite.tests[0].channels[0].effect.quantity = "ln(variance over the reference)";
-  EXPECT_EQ(short_text(suite, only_cell(kill_matrix(suite))), "< ×1.1");
+  EXPECT_EQ(only_cell(suite).text, "< ×1.1");
 }
 
 TEST(KillMatrix, TotalsCountPluginsOnceAndRowsByMethod) {
@@ -141,7 +144,7 @@ TEST(KillMatrix, TotalsCountPluginsOnceAndRowsByMethod) {
   suite.tests = {test_of({"mean(one) == 1", "t", Verdict::pass, 10}, {"one"}),
                  test_of({"mean(two) == 1", "t", Verdict::fail, 10}, {"two"}),
                  test_of({"variance(two) <= 1", "chi-square", Verdict::pass, 10}, {"two"})};
-  EXPECT_EQ(kill_totals(suite, kill_matrix(suite)),
+  EXPECT_EQ(kill_matrix(suite).totals,
             "1 of 1 mutants are killed. Rows that each method kills: t 1 of 2, chi-square 0 of 1.");
 }
 
@@ -170,13 +173,12 @@ TEST(KillMatrix, NoLineOfTheConsoleIsWiderThanAskedForAndNoNumberIsCut) {
   const KillMatrix matrix = kill_matrix(suite);
   for (const int width : {60, 100}) {
     std::string all;
-    for (const std::string& line : kill_lines(suite, matrix, width)) {
+    for (const std::string& line : kill_lines(matrix, width)) {
       EXPECT_LE(columns(line), width) << line;
       all += line + "\n";
     }
     for (const KillRow& row : matrix.rows) {
-      for (const auto& cell : row.cells)
-        EXPECT_NE(all.find(short_text(suite, *cell)), std::string::npos) << all;
+      for (const auto& cell : row.cells) EXPECT_NE(all.find(cell->text), std::string::npos) << all;
     }
   }
 }

@@ -1,8 +1,6 @@
 #include "reports/words/ledger.h"
 
-#include "reports/formats/console.h"
-#include "reports/formats/junit.h"
-#include "reports/formats/markdown.h"
+#include "reports/report_formats.h"
 #include "tests/reports/prelude.h"
 
 namespace assay::reports {

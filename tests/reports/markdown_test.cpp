@@ -1,5 +1,4 @@
-#include "reports/formats/markdown.h"
-
+#include "reports/report_formats.h"
 #include "reports/words/text.h"
 #include "tests/reports/prelude.h"
 

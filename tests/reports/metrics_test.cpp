@@ -1,7 +1,6 @@
-#include "reports/formats/metrics.h"
-
 #include <charconv>
 
+#include "reports/report_formats.h"
 #include "tests/reports/prelude.h"
 
 namespace assay::reports {

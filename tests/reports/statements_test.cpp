@@ -1,11 +1,7 @@
-#include "reports/record/statements.h"
+#include "reports/words/statements.h"
 
-#include "reports/formats/console.h"
-#include "reports/formats/json.h"
-#include "reports/formats/markdown.h"
-#include "reports/formats/read_json.h"
-#include "reports/words/columns.h"
-#include "reports/words/statement_text.h"
+#include "reports/report_formats.h"
+#include "reports/words/text.h"
 #include "tests/reports/prelude.h"
 
 namespace assay::reports {

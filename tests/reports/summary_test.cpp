@@ -1,5 +1,4 @@
-#include "reports/words/summary.h"
-
+#include "reports/words/display.h"
 #include "tests/reports/prelude.h"
 
 namespace assay::reports {

@@ -1,13 +1,10 @@
 // Each line of tests/tables/words.txt.
 
 #include "reports/formats/base64.h"
-#include "reports/words/columns.h"
 #include "reports/words/describe.h"
-#include "reports/words/effect.h"
-#include "reports/words/evidence.h"
+#include "reports/words/display.h"
 #include "reports/words/ledger.h"
 #include "reports/words/number.h"
-#include "reports/words/summary.h"
 #include "reports/words/text.h"
 #include "tests/reports/prelude.h"
 
@@ -57,7 +54,6 @@ const std::map<std::string, std::string (*)(const Arguments&)> functions{
      [](auto& a) {
        return a.size() == 1 ? human(number(a[0])) : human(*number(a[0]), std::stoi(a[1]));
      }},
-    {"data", [](auto& a) { return data_text(number(a[0])); }},
     {"signed", [](auto& a) { return with_sign(*number(a[0]), false); }},
     {"signed per cent", [](auto& a) { return with_sign(*number(a[0]), true); }},
     {"p", [](auto& a) { return p_text(number(a[0]), number(a.at(1))); }},
@@ -85,7 +81,6 @@ const std::map<std::string, std::string (*)(const Arguments&)> functions{
        return tally_sentence({std::stoi(a[0]), std::stoi(a[1]), std::stoi(a[2]), std::stoi(a[3])});
      }},
     {"false alarms", [](auto& a) { return false_alarms(*number(a[0])); }},
-    {"parameters", [](auto& a) { return parameters_text(a[0]); }},
     {"clean", [](auto& a) { return clean(a[0]); }},
     {"xml", [](auto& a) { return escape_xml(a[0]); }},
     {"attribute", [](auto& a) { return escape_attribute(a[0]); }},

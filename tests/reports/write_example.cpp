@@ -4,7 +4,7 @@
 #include <iostream>
 
 #include "reports/record/file.h"
-#include "reports/viewer/html.h"
+#include "reports/report_formats.h"
 #include "tests/reports/example_record.h"
 #include "tests/reports/large_records.h"
 

@@ -4,12 +4,10 @@
 #include "stats/cells/chi_square_fit.h"
 #include "stats/laws/kolmogorov_smirnov.h"
 #include "stats/means/binomial.h"
-#include "stats/means/equivalence.h"
 #include "stats/means/student_t.h"
-#include "stats/means/welch_t.h"
 #include "stats/planning/holm.h"
-#include "stats/variances/chi_square_variance.h"
-#include "stats/variances/f_ratio.h"
+#include "stats/tails/test_result.h"
+#include "stats/variances/normal_variances.h"
 #include "tests/stats/prelude.h"
 
 namespace assay::stats {
@@ -70,15 +68,6 @@ TEST(Calibration, OneSampleKolmogorovSmirnovIsUniform) {
   }
 }
 
-TEST(Calibration, OneSampleKolmogorovSmirnovOnAtomsIsConservative) {
-  const ContinuousLaw clamped{[](double u) { return u < 1 ? u * .7 : 1.0; },
-                              [](double u) { return u * .7; }};
-  expect_calibrated({18, 20000, Shape::at_most_uniform}, [&](Philox& random) {
-    const auto values = sorted(sample_of(30, [&] { return std::min(1.0, random.uniform() / .7); }));
-    return kolmogorov_smirnov(ks_distance(values, clamped)).log_p_upper;
-  });
-}
-
 TEST(Calibration, TwoSampleKolmogorovSmirnovIsAtMostUniformWithAndWithoutTies) {
   const auto calibrated = [](std::uint32_t test_case, std::size_t m, std::size_t n, double least) {
     expect_calibrated({test_case, 20000, Shape::at_most_uniform}, [&](Philox& random) {
@@ -137,12 +126,12 @@ TAILS_CALIBRATED(Calibration, BinomialTailsAreAtMostUniform, 28, 20000, Shape::a
 TEST(Calibration, EquivalenceAtItsMarginIsAtMostUniform) {
   expect_calibrated({30, 20000, Shape::at_most_uniform}, [](Philox& random) {
     const Moments x = draw_moments(60, [&] { return .5 + random.normal(); });
-    return equivalence(student_t(x, {-.5}), student_t(x, {.5})).log_p;
+    return log_p_equivalence(student_t(x, {-.5}), student_t(x, {.5}));
   });
   expect_calibrated({31, 20000, Shape::at_most_uniform}, [](Philox& random) {
     const Moments x = draw_moments(40, [&] { return 11 + random.normal(); });
     const Moments y = draw_moments(25, [&] { return 10 + 2 * random.normal(); });
-    return equivalence(welch_t(x, y, {.9, 0}), welch_t(x, y, {1.1, 0})).log_p;
+    return log_p_equivalence(welch_t(x, y, {.9, 0}), welch_t(x, y, {1.1, 0}));
   });
 }
 

@@ -8,7 +8,7 @@
 
 #include "stats/basics/moments.h"
 #include "stats/images/image.h"
-#include "stats/means/welch_t.h"
+#include "stats/means/student_t.h"
 #include "tests/philox.h"
 
 namespace assay::tests {

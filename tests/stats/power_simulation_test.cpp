@@ -3,10 +3,9 @@
 
 #include "stats/cells/chi_square_fit.h"
 #include "stats/laws/kolmogorov_smirnov.h"
-#include "stats/means/equivalence.h"
 #include "stats/means/student_t.h"
-#include "stats/means/welch_t.h"
 #include "stats/planning/power.h"
+#include "stats/tails/test_result.h"
 #include "tests/stats/prelude.h"
 
 namespace assay::stats {
@@ -153,7 +152,7 @@ TEST(PowerSimulation, Equivalence) {
   constexpr std::size_t n = 70;
   const double rate = rate_of(210, 10000, [&](Philox& random) {
     const Moments x = draw_moments(n, [&] { return .1 + random.normal(); });
-    return equivalence(student_t(x, {-.5}), student_t(x, {.5})).log_p;
+    return log_p_equivalence(student_t(x, {-.5}), student_t(x, {.5}));
   });
   EXPECT_NEAR(rate, equivalence_power(plan, static_cast<double>(n), .1), bound(10000));
 }

@@ -1,25 +1,23 @@
 // Each function refuses arguments that it cannot take: tests/tables/refused_arguments.txt.
 
-#include "stats/basics/errors.h"
+#include "stats/basics/moments.h"
 #include "stats/cells/adaptive_cells.h"
 #include "stats/cells/cell_effect.h"
 #include "stats/cells/chi_square_fit.h"
 #include "stats/cells/chi_square_two_sample.h"
 #include "stats/cells/sampled_cells.h"
 #include "stats/gates/assumption_gates.h"
-#include "stats/gates/averages_gate.h"
 #include "stats/gates/dependence.h"
 #include "stats/gates/independence_gates.h"
-#include "stats/gates/quantisation_gate.h"
-#include "stats/images/image_element_moments.h"
 #include "stats/images/image_equivalence.h"
-#include "stats/laws/distribution_band.h"
+#include "stats/images/image_moments.h"
 #include "stats/laws/kolmogorov_smirnov.h"
 #include "stats/laws/quantile_test.h"
+#include "stats/laws/simultaneous_error.h"
+#include "stats/means/binomial.h"
 #include "stats/means/constant_sample.h"
 #include "stats/means/power_exact.h"
 #include "stats/means/skewness_corrected_t.h"
-#include "stats/means/two_valued.h"
 #include "stats/means/uncertain_reference.h"
 #include "stats/planning/boundary.h"
 #include "stats/planning/evidence_ledger.h"
@@ -30,9 +28,8 @@
 #include "stats/tails/kolmogorov.h"
 #include "stats/tails/tabulated_law.h"
 #include "stats/tails/tails.h"
-#include "stats/variances/chi_square_variance.h"
-#include "stats/variances/f_ratio.h"
 #include "stats/variances/influence.h"
+#include "stats/variances/normal_variances.h"
 #include "stats/variances/slope.h"
 #include "tests/stats/image_samples.h"
 #include "tests/stats/point_by_point.h"
@@ -113,7 +110,7 @@ TEST(Refusals, OfGates) {
   REFUSED(dominance_gate(constant));
   REFUSED(kurtosis_gate(constant));
   REFUSED(skewness_gate(x, -1));
-  REFUSED(primaries_for_variance({0, nan}));
+  REFUSED(primaries_for_variance(nan));
   REFUSED(averages_gate(values, values, 0));
   REFUSED(averages_gate(Values(600, 1.0), Values(16, nan), 32));
   REFUSED(autocorrelation(values, 6));
@@ -135,7 +132,7 @@ TEST(Refusals, OfLaws) {
   const Values with_nan{1, nan};
   const ContinuousLaw exponential{[](double v) { return -std::expm1(-v); }};
   const ContinuousLaw beyond{[](double v) { return v; }};
-  const OneSampleDistance distance{.1, 5, 0};
+  const OneSampleDistance distance{.1, 5};
   REFUSED(ks_distance(Values{}, exponential));
   REFUSED(ks_distance(falling, exponential));
   REFUSED(ks_distance(Values{nan}, exponential));
@@ -146,9 +143,9 @@ TEST(Refusals, OfLaws) {
   REFUSED(ks_distance(good, Probabilities{Values{.5}}));
   REFUSED(ks_distance(good, Probabilities{Values{.5, 1.5}}));
   REFUSED(ks_margin(distance, 1));
-  REFUSED(ecdf_band(0, 10, .9));
-  REFUSED(ecdf_band(10, 1, .9));
-  REFUSED(ecdf_band(10, 10, 1));
+  REFUSED(simultaneous_error(0, 10, .9));
+  REFUSED(simultaneous_error(10, 1, .9));
+  REFUSED(simultaneous_error(10, 10, 1));
   REFUSED(quantile_test({0, 0, 0}, .5));
   REFUSED(quantile_test({5, 4, 9}, .5));
   REFUSED(quantile_test({5, 10, 9}, .5));
@@ -175,7 +172,7 @@ TEST(Refusals, OfMeans) {
   REFUSED(skewness_corrected_t(constant, {0}));
   REFUSED(skewness_corrected_welch(x, x, {1, nan}));
   REFUSED(skewness_corrected_welch(constant, constant, {}));
-  REFUSED(corrected_level_factor(x, {0}, 0));
+  REFUSED(residual_skewness_gate(x, {0}, 0));
   EXPECT_NO_THROW(skewness_corrected_welch(x, constant, {}));
   const ValueCells cells(Values{.1, .9});
   REFUSED(betting_mean(cells, {0, .5}, .3));

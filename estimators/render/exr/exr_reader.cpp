@@ -10,17 +10,11 @@
 
 #include "estimators/core/value.h"
 #include "render/environment_map.h"
-#include "render/exr/exr_header.h"
+#include "render/picture_kinds.h"
 
 namespace assay::render {
 
 namespace {
-
-constexpr std::size_t most_texels = std::size_t{1} << 27;
-
-[[noreturn]] void refuse(const std::string& file, const std::string& why) {
-  throw InputError({.file = file}, why);
-}
 
 // The channels to read as red, green and blue; grey stands for all three.
 std::array<std::string, 3> channel_names(const Imf::ChannelList& channels,
@@ -32,21 +26,21 @@ std::array<std::string, 3> channel_names(const Imf::ChannelList& channels,
   for (auto i = channels.begin(); i != channels.end(); ++i) {
     found += std::string(found.empty() ? "" : ", ") + i.name();
   }
-  refuse(file, "the picture needs the channels R, G and B, or Y; it has " +
-                   (found.empty() ? "none" : found));
+  refuse_picture(file, "the picture needs the channels R, G and B, or Y; it has " +
+                           (found.empty() ? "none" : found));
 }
 
 Resolution resolution(const Imf::Header& header, const std::string& file) {
   const Imath::Box2i window = header.dataWindow();
   if (window != header.displayWindow()) {
-    refuse(file, "the picture is cropped: its data window must be its display window");
+    refuse_picture(file, "the picture is cropped: its data window must be its display window");
   }
   const auto width = std::int64_t{window.max.x} - window.min.x + 1;
   const auto height = std::int64_t{window.max.y} - window.min.y + 1;
-  if (width <= 0 || height <= 0) refuse(file, "the picture has no texels");
+  if (width <= 0 || height <= 0) refuse_picture(file, "the picture has no texels");
   const Resolution size{static_cast<std::size_t>(width), static_cast<std::size_t>(height)};
-  if (size.width > most_texels / size.height) {
-    refuse(file, "the picture has more than 2^27 texels; scale it down");
+  if (size.width > most_pixels / size.height) {
+    refuse_picture(file, "the picture has more than 2^27 texels; scale it down");
   }
   return size;
 }
@@ -55,7 +49,7 @@ std::vector<float> read_channel(Imf::InputFile& input, const std::string& name,
                                 const std::string& file) {
   const Imf::Channel& channel = input.header().channels()[name.c_str()];
   if (channel.xSampling != 1 || channel.ySampling != 1) {
-    refuse(file, "channel " + name + " is sub-sampled; store it at full resolution");
+    refuse_picture(file, "channel " + name + " is sub-sampled; store it at full resolution");
   }
   const Resolution size = resolution(input.header(), file);
   std::vector<float> texels(size.width * size.height);
@@ -74,7 +68,7 @@ void check(const std::vector<Rgb>& texels, std::size_t width, const std::string&
       std::ostringstream why;
       why << "the texel in row " << i / width << ", column " << i % width << " is " << value
           << "; radiance must be finite and not negative";
-      refuse(file, why.str());
+      refuse_picture(file, why.str());
     }
   }
 }
@@ -101,7 +95,7 @@ EnvironmentMap read_environment(const std::string& file) {
   } catch (const InputError&) {
     throw;
   } catch (const std::exception& error) {
-    refuse(file, std::string("the picture cannot be read as OpenEXR: ") + error.what());
+    refuse_picture(file, std::string("the picture cannot be read as OpenEXR: ") + error.what());
   }
 }
 

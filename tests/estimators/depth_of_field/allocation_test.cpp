@@ -1,8 +1,7 @@
 // Counts of lens samples against an independent table, and what they must keep to.
 
-#include "depth_of_field/allocation.h"
-
 #include "depth_of_field/exact.h"
+#include "depth_of_field/image.h"
 #include "tests/estimators/table.h"
 #include "tests/prelude.h"
 

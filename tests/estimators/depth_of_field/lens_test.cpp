@@ -1,6 +1,5 @@
 // Lens integration at a pixel against independent quadrature, and the transport of frequencies.
 
-#include "depth_of_field/covariance.h"
 #include "depth_of_field/exact.h"
 #include "depth_of_field/spectrum.h"
 #include "tests/estimators/prelude.h"

@@ -2,8 +2,8 @@
 
 #include "depth_of_field/prediction.h"
 
-#include "depth_of_field/allocation.h"
 #include "depth_of_field/exact.h"
+#include "depth_of_field/image.h"
 #include "estimators/core/flow.h"
 #include "tests/prelude.h"
 

@@ -1,7 +1,6 @@
 // Scattered samples and the images that tents make of them.
 
-#include "depth_of_field/splat.h"
-
+#include "depth_of_field/reconstruction.h"
 #include "tests/prelude.h"
 
 namespace assay::depth_of_field {

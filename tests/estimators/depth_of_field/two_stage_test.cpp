@@ -1,7 +1,6 @@
 // How many lens samples follow a pilot, and which are averaged.
 
-#include "depth_of_field/two_stage.h"
-
+#include "depth_of_field/pixel.h"
 #include "tests/prelude.h"
 
 namespace assay::depth_of_field {

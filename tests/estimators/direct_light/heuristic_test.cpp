@@ -1,5 +1,4 @@
-#include "direct_light/heuristic.h"
-
+#include "direct_light/combination.h"
 #include "tests/estimators/prelude.h"
 
 namespace assay {

@@ -3,7 +3,7 @@
 #include <mutex>
 
 #include "estimators/core/waiting.h"
-#include "estimators/foreign/render_seed.h"
+#include "estimators/foreign/renderings.h"
 #include "estimators/ready_made.h"
 #include "tests/estimators/exr_kinds.h"
 #include "tests/estimators/prelude.h"

@@ -1,9 +1,8 @@
 // Samplers inside another program, of Python so that it can do whatever a test wants; those of
 // libraries are driven through the program, by tests/cli/sampler_test.sh.
 
-#include "estimators/foreign/isolated_sampler.h"
-
 #include "estimators/core/flush_denormals.h"
+#include "estimators/foreign/dialogue.h"
 #include "tests/estimators/foreign/foreign.h"
 #include "tests/prelude.h"
 

@@ -1,5 +1,4 @@
-#include "estimators/foreign/reply.h"
-
+#include "estimators/foreign/protocol.h"
 #include "tests/estimators/table.h"
 #include "tests/prelude.h"
 

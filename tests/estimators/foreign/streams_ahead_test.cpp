@@ -1,5 +1,4 @@
-#include "estimators/foreign/streams_ahead.h"
-
+#include "estimators/foreign/shared_library.h"
 #include "tests/prelude.h"
 
 namespace assay::foreign {

@@ -1,6 +1,5 @@
 #include "metropolis/chain.h"
-#include "metropolis/parameters.h"
-#include "metropolis/product_target.h"
+#include "metropolis/target.h"
 #include "tests/estimators/prelude.h"
 #include "tests/stats/calibration.h"
 

@@ -1,6 +1,5 @@
-#include "metropolis/lazy_coordinates.h"
-
-#include "metropolis/rules.h"
+#include "metropolis/chain.h"
+#include "metropolis/coordinates.h"
 #include "tests/estimators/prelude.h"
 
 namespace assay {

@@ -1,9 +1,9 @@
 // The geometry that paths walk in.
 
+#include "paths/worlds.h"
+
 #include "estimators/core/flow.h"
-#include "paths/closed_mesh.h"
-#include "paths/mesh_world.h"
-#include "paths/sphere_world.h"
+#include "paths/scene_description.h"
 #include "tests/prelude.h"
 
 namespace assay::paths {

@@ -1,5 +1,4 @@
-#include "render/gauss_legendre.h"
-
+#include "render/quadrature.h"
 #include "tests/prelude.h"
 
 namespace assay::render {

@@ -1,5 +1,3 @@
-#include "render/patch_integrals.h"
-
 #include "render/environment_map.h"
 #include "tests/prelude.h"
 

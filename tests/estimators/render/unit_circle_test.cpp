@@ -1,6 +1,5 @@
-#include "render/unit_circle.h"
-
 #include "estimators/stream.h"
+#include "render/hemisphere.h"
 #include "tests/prelude.h"
 
 namespace assay::render {

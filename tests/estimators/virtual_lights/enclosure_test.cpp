@@ -1,6 +1,5 @@
-#include "virtual_lights/enclosure.h"
-
 #include "tests/prelude.h"
+#include "virtual_lights/room.h"
 
 namespace assay::virtual_lights {
 namespace {

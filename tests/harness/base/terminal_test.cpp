@@ -1,6 +1,6 @@
 #include "harness/base/terminal.h"
 
-#include "reports/words/columns.h"
+#include "reports/words/text.h"
 #include "tests/prelude.h"
 
 namespace assay::harness {

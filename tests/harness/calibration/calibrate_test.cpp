@@ -1,6 +1,6 @@
 #include "harness/calibration/calibrate.h"
 
-#include "harness/calibration/calibration_runs.h"
+#include "harness/calibration/calibration_cases.h"
 #include "tests/prelude.h"
 
 namespace assay::harness {

@@ -5,8 +5,7 @@
 #include "harness/command/commands.h"
 #include "harness/record/image_record.h"
 #include "harness/record/replay.h"
-#include "reports/formats/json.h"
-#include "reports/formats/read_json.h"
+#include "reports/report_formats.h"
 #include "tests/estimators/exr.h"
 #include "tests/harness/prelude.h"
 

@@ -4,7 +4,7 @@
 
 #include "harness/command/commands.h"
 #include "harness/record/replay.h"
-#include "reports/formats/json.h"
+#include "reports/report_formats.h"
 #include "tests/harness/pictures.h"
 #include "tests/harness/prelude.h"
 #include "tests/philox.h"

@@ -2,7 +2,7 @@
 // tests/tables/verdicts.txt, and levels in levels.txt.
 
 #include "harness/draws/consistency_setup.h"
-#include "harness/sampling/group_variance.h"
+#include "harness/sampling/summary.h"
 #include "stats/basics/moments.h"
 #include "tests/harness/prelude.h"
 #include "tests/harness/table.h"
@@ -145,18 +145,29 @@ TEST(CellsOfADensity, AreCountedWhoeverElseDrawsOfThePool) {
 TEST(InconsistencyClaim, OfADrawIsTheLargerOfTwoRelativeDifferences) {
   class One final : public Sampler {
    public:
+    explicit One(const SamplerDraw& draw) : draw_(draw) {}
     Domain domain() const override { return Domain::interval; }
-    SamplerDraw sample(Stream&) const override { return {}; }
+    SamplerDraw sample(Stream&) const override { return draw_; }
     double density(const Point&) const override { return 2; }
     double evaluate(const Point&) const override { return 3; }
+
+   private:
+    SamplerDraw draw_;
   };
-  const One sampler;
-  EXPECT_EQ(inconsistency(sampler, {.density = 2, .weight = 1.5}), 0);
-  EXPECT_NEAR(inconsistency(sampler, {.density = 2.2, .weight = 1.5}), 0.2 / 2.2, 1e-15);
-  EXPECT_NEAR(inconsistency(sampler, {.density = 2, .weight = 3}), 0.5, 1e-15);
-  EXPECT_EQ(inconsistency(sampler, {.weight = 0, .valid = false}), 0);
-  EXPECT_TRUE(std::isinf(inconsistency(sampler, {.weight = 1, .valid = false})));
-  EXPECT_TRUE(std::isnan(inconsistency(sampler, {.density = 2, .weight = std::nan("")})));
+  const auto difference = [](const SamplerDraw& draw) {
+    const ConsistencySetup setup({.name = "one", .sampler = std::make_shared<One>(draw)});
+    std::vector<double> out(2);
+    Stream random({}, 0);
+    Cost cost;
+    setup.make()->secondary(random, 1, out, cost);
+    return out[1];
+  };
+  EXPECT_EQ(difference({.density = 2, .weight = 1.5}), 0);
+  EXPECT_NEAR(difference({.density = 2.2, .weight = 1.5}), 0.2 / 2.2, 1e-15);
+  EXPECT_NEAR(difference({.density = 2, .weight = 3}), 0.5, 1e-15);
+  EXPECT_EQ(difference({.weight = 0, .valid = false}), 0);
+  EXPECT_TRUE(std::isinf(difference({.weight = 1, .valid = false})));
+  EXPECT_TRUE(std::isnan(difference({.density = 2, .weight = std::nan("")})));
 }
 
 TEST(EmpiricalLaws, AreInTheRecordOfEveryTestOfValues) {

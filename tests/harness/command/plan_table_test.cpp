@@ -3,7 +3,7 @@
 #include "harness/command/run.h"
 #include "harness/plan/forecast.h"
 #include "harness/run/looks.h"
-#include "reports/words/columns.h"
+#include "reports/words/text.h"
 #include "tests/harness/prelude.h"
 
 namespace assay::harness {

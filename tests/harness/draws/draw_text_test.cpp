@@ -1,5 +1,4 @@
-#include "harness/draws/draw_text.h"
-
+#include "harness/draws/sampler_setup.h"
 #include "tests/harness/prelude.h"
 #include "tests/harness/questions.h"
 

@@ -1,6 +1,6 @@
 #include "harness/families/law_evidence.h"
 
-#include "stats/means/two_valued.h"
+#include "stats/means/binomial.h"
 #include "tests/philox.h"
 #include "tests/prelude.h"
 
@@ -15,9 +15,7 @@ Points uniform_points(std::uint64_t draws, std::uint64_t missing, tests::Philox&
 }
 
 DeclaredLaw uniform_law(double missing, double error = 0) {
-  return {.law = {.cdf = [](double x) { return x; }, .left_limit = {}},
-          .error = error,
-          .missing = missing};
+  return {.law = {.cdf = [](double x) { return x; }}, .error = error, .missing = missing};
 }
 
 double p_of(const Evidence& evidence) { return std::exp(evidence.at(0).log_p_upper); }
@@ -88,9 +86,8 @@ TEST(LawEvidence, AnIntervalReachesAsFarAsThatOfEitherPart) {
 TEST(LawEvidence, TheTablesErrorCountsAgainstEveryConclusion) {
   tests::Philox random(1);
   const Points points = uniform_points(10000, 0, random);
-  const DeclaredLaw off{
-      .law = {.cdf = [](double x) { return std::clamp(x + 0.03, 0.0, 1.0); }, .left_limit = {}},
-      .error = 0.03};
+  const DeclaredLaw off{.law = {.cdf = [](double x) { return std::clamp(x + 0.03, 0.0, 1.0); }},
+                        .error = 0.03};
   const Evidence evidence = points_against_law(points, off);
   EXPECT_GT(p_of(evidence), 1e-4);
   DeclaredLaw exact = off;

@@ -1,5 +1,4 @@
-#include "harness/image/image_uniform.h"
-
+#include "harness/image/image_pair.h"
 #include "tests/prelude.h"
 
 namespace assay::harness {

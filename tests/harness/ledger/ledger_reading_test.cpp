@@ -1,5 +1,4 @@
-#include "harness/ledger/ledger_reading.h"
-
+#include "harness/ledger/night_evidence.h"
 #include "tests/prelude.h"
 
 namespace assay::harness {

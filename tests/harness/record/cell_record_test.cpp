@@ -1,5 +1,4 @@
-#include "harness/record/cell_record.h"
-
+#include "harness/record/law_record.h"
 #include "tests/harness/prelude.h"
 #include "tests/harness/questions.h"
 

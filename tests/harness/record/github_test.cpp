@@ -1,6 +1,5 @@
-#include "harness/record/github.h"
-
-#include "reports/formats/markdown.h"
+#include "harness/record/output.h"
+#include "reports/report_formats.h"
 #include "tests/harness/prelude.h"
 
 namespace assay::harness {

@@ -1,8 +1,7 @@
 #include "harness/record/merge.h"
 
 #include "harness/suite/run_options.h"
-#include "reports/formats/json.h"
-#include "reports/formats/read_json.h"
+#include "reports/report_formats.h"
 #include "tests/harness/prelude.h"
 
 namespace assay::harness {

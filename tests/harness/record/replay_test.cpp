@@ -6,7 +6,7 @@
 #include "harness/command/commands.h"
 #include "harness/sampling/pool.h"
 #include "harness/sampling/prepare.h"
-#include "reports/formats/json.h"
+#include "reports/report_formats.h"
 #include "tests/harness/prelude.h"
 
 namespace assay::harness {

@@ -1,7 +1,7 @@
 #include "harness/command/run.h"
 
 #include "harness/record/output.h"
-#include "reports/formats/json.h"
+#include "reports/report_formats.h"
 #include "tests/harness/prelude.h"
 
 namespace assay::harness {

@@ -4,7 +4,7 @@
 
 #include "harness/plan/looks.h"
 #include "harness/suite/run_options.h"
-#include "reports/words/effect.h"
+#include "reports/words/number.h"
 #include "tests/harness/prelude.h"
 #include "tests/harness/questions.h"
 #include "tests/harness/recorded_rows.h"

@@ -1,7 +1,6 @@
-#include "harness/sampling/kept_sums.h"
-
 #include <oneapi/tbb/global_control.h>
 
+#include "harness/sampling/summary.h"
 #include "tests/philox.h"
 #include "tests/prelude.h"
 

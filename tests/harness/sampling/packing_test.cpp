@@ -4,7 +4,6 @@
 #include <rapidcheck/gtest.h>
 
 #include "harness/sampling/executor.h"
-#include "harness/sampling/packed_block.h"
 #include "tests/prelude.h"
 
 namespace assay::harness {
@@ -76,11 +75,11 @@ void draw_all_of(const std::shared_ptr<Pool>& pool) {
 
 /// All that is drawn, without the seconds.
 std::string contents_of(const Pool& pool) {
-  std::string bytes = packed_block(pool.drawn_parts());
+  std::string bytes = packed_block(pool.drawn_block());
   Pool::Block block = unpacked_block(bytes, pool, 0);
   block.whole.seconds = 0;
-  for (auto& [count, sums] : block.partial) sums.seconds = 0;
-  return packed_block(Pool::parts_of(block));
+  for (auto& [count, sums] : block.partial) std::const_pointer_cast<Summary>(sums)->seconds = 0;
+  return packed_block(block);
 }
 
 /// Draws the blocks in another process's way: by an unpacked recipe, and packed.
@@ -92,8 +91,8 @@ std::vector<std::string> blocks_elsewhere(const Recipe& recipe, const OddSetup& 
   Workers workers(pools);
   std::vector<std::string> blocks;
   for (std::uint64_t first = 0; first < 200; first = pool->block_end(first)) {
-    blocks.push_back(packed_block(
-        Pool::parts_of(workers.draw({.pool = 0, .first = first, .last = pool->block_end(first)}))));
+    blocks.push_back(
+        packed_block(workers.draw({.pool = 0, .first = first, .last = pool->block_end(first)})));
   }
   return blocks;
 }
@@ -112,8 +111,8 @@ RC_GTEST_PROP(Packing, GivesThePoolThatIsDrawnHere, ()) {
   RC_ASSERT(folded->fault().has_value() == here->fault().has_value());
   // All that is drawn is one block, too.
   const std::shared_ptr<Pool> again = fresh(recipe, setup);
-  again->fold(unpacked_block(packed_block(here->drawn_parts()), *again, 0));
-  RC_ASSERT(packed_block(again->drawn_parts()) == packed_block(here->drawn_parts()));
+  again->fold(unpacked_block(packed_block(here->drawn_block()), *again, 0));
+  RC_ASSERT(packed_block(again->drawn_block()) == packed_block(here->drawn_block()));
 }
 
 /// Nothing but Unpackable may come of bytes that are not a block.
@@ -121,7 +120,7 @@ bool folds_or_is_refused(const std::string& frame, const Recipe& recipe) {
   const std::shared_ptr<Pool> pool = fresh(recipe, OddSetup());
   return thrown<Unpackable>([&] {
            pool->fold(unpacked_block(frame, *pool, 0));
-           packed_block(pool->drawn_parts());
+           packed_block(pool->drawn_block());
          }).size() > 5;
 }
 

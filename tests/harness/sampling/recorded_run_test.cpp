@@ -2,8 +2,8 @@
 
 #include "harness/command/commands.h"
 #include "harness/record/replay.h"
-#include "reports/formats/json.h"
 #include "reports/record/file.h"
+#include "reports/report_formats.h"
 #include "tests/harness/prelude.h"
 
 namespace assay::harness {

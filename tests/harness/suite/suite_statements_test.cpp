@@ -1,5 +1,5 @@
 #include "harness/suite/suite_entries.h"
-#include "reports/record/statements.h"
+#include "reports/words/statements.h"
 #include "tests/harness/prelude.h"
 
 namespace assay::harness {

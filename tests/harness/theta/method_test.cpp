@@ -1,4 +1,3 @@
-#include "harness/theta/method.h"
 
 #include "harness/theta/ask.h"
 #include "harness/theta/methods.h"

@@ -1,7 +1,7 @@
 #include "stats/gates/independence_gates.h"
 
 #include "stats/gates/dependence.h"
-#include "stats/means/welch_t.h"
+#include "stats/means/student_t.h"
 #include "tests/stats/prelude.h"
 
 namespace assay::stats {

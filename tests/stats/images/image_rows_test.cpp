@@ -1,9 +1,8 @@
 // Functions that take images rows after rows give the bits of those that take them whole.
 
-#include "stats/images/image_halves.h"
-#include "stats/images/image_row_distance.h"
-#include "stats/images/image_sums.h"
-#include "stats/pyramids/image_row_pyramid.h"
+#include "stats/images/image_equivalence.h"
+#include "stats/images/image_moments.h"
+#include "stats/pyramids/image_pyramid.h"
 #include "tests/prelude.h"
 #include "tests/stats/image_samples.h"
 

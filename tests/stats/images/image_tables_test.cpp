@@ -1,7 +1,6 @@
 // The methods on images against numpy and scipy: tests/tables/make_images.py.
 
 #include "stats/images/image_equivalence.h"
-#include "stats/tails/t_to_z.h"
 #include "stats/tails/tails.h"
 #include "tests/prelude.h"
 #include "tests/stats/image_samples.h"

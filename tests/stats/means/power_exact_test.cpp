@@ -1,6 +1,6 @@
 #include "stats/means/power_exact.h"
 
-#include "stats/means/two_valued.h"
+#include "stats/means/binomial.h"
 #include "tests/stats/prelude.h"
 
 namespace assay::stats {

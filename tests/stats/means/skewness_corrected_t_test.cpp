@@ -48,8 +48,8 @@ TEST(SkewnessCorrectedT, TheStatisticFallsWithTheNullValueThroughTheFlatPoint) {
 TEST(ResidualSkewness, AnExactReferenceSampleIsAConstantOne) {
   const Moments x = skewed(4, 300);
   const Moments constant = moments_of(std::vector<double>(10, 1.0));
-  EXPECT_NEAR(corrected_level_factor(x, constant, 1, 3.1), corrected_level_factor(x, {1}, 3.1),
-              1e-12);
+  EXPECT_NEAR(residual_skewness_gate(x, constant, 1, 3.1).value,
+              residual_skewness_gate(x, {1}, 3.1).value, 1e-12);
 }
 
 TEST(ResidualSkewness, TheGateKnowsWhatIsTooSmallAndTooSkewed) {
@@ -113,7 +113,7 @@ double factor_of(const LawShape& shape, std::size_t n, double critical_value) {
   x.m2 = count;
   x.m3 = count * shape.skewness;
   x.m4 = count * (shape.excess_kurtosis + 3);
-  return corrected_level_factor(x, {0}, critical_value);
+  return residual_skewness_gate(x, {0}, critical_value).value;
 }
 
 const std::vector<ShapedLaw> shaped{

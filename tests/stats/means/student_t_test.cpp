@@ -21,5 +21,31 @@ TEST(StudentT, TheIntervalEndsAreJustRejected) {
   EXPECT_NEAR(std::exp(student_t(x, {1 + interval.high, .1}).log_p_lower), .005, 1e-12);
 }
 
+TEST(WelchT, IntervalEndsAreJustRejected) {
+  const Moments x = moments_of(golden_x);
+  const Moments y = moments_of(golden_y);
+  const Interval difference = welch_t_interval(x, y, .95);
+  EXPECT_NEAR(std::exp(welch_t(x, y, {1, difference.low}).log_p_upper), .025, 1e-12);
+  EXPECT_NEAR(std::exp(welch_t(x, y, {1, difference.high}).log_p_lower), .025, 1e-12);
+  const Interval ratio = welch_ratio_interval(x, y, .95);
+  EXPECT_NEAR(std::exp(welch_t(x, y, {1 + ratio.low, 0}).log_p_upper), .025, 1e-10);
+  EXPECT_NEAR(std::exp(welch_t(x, y, {1 + ratio.high, 0}).log_p_lower), .025, 1e-10);
+}
+
+TEST(WelchT, ARatioToAMeanNearZeroIsUnbounded) {
+  const Moments x = moments_of(golden_x);
+  const Moments y = moments_of(std::vector<double>{-1, 1, .2, -.3});
+  const Interval ratio = welch_ratio_interval(x, y, .95);
+  EXPECT_EQ(ratio.low, -std::numeric_limits<double>::infinity());
+  EXPECT_EQ(ratio.high, std::numeric_limits<double>::infinity());
+}
+
+TEST(WelchT, OneConstantSampleCountsAsExactlyKnown) {
+  const TestResult result =
+      welch_t(moments_of(golden_x), moments_of(std::vector<double>{1, 1, 1}), {});
+  EXPECT_NEAR(result.statistic, -.7040427405942026, 1e-14);
+  EXPECT_DOUBLE_EQ(result.distribution.parameters.at(0), 9);
+}
+
 }  // namespace
 }  // namespace assay::stats

@@ -1,10 +1,7 @@
 // Compares the cells of image_pyramid, tile by tile and from blocks, with sums over each rectangle
 // by itself.
-#include "stats/pyramids/image_fine_cells.h"
-
 #include "stats/basics/moments.h"
-#include "stats/images/image_family.h"
-#include "stats/pyramids/image_coarse_cells.h"
+#include "stats/pyramids/image_cells.h"
 #include "tests/prelude.h"
 #include "tests/stats/image_samples.h"
 #include "tests/stats/samples.h"

@@ -1,7 +1,6 @@
 #include "stats/gates/assumption_gates.h"
 #include "stats/tails/tails.h"
-#include "stats/variances/chi_square_variance.h"
-#include "stats/variances/f_ratio.h"
+#include "stats/variances/normal_variances.h"
 #include "tests/stats/prelude.h"
 
 namespace assay::stats {

@@ -1,0 +1,254 @@
+// The teaching estimators of I = (e^3 - 1) / 3, the integral of f(x) = e^(3x) over [0, 1].
+
+#include "analytic/exponential.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "estimators/estimator.h"
+
+namespace assay::plugins {
+
+namespace {
+
+using namespace analytic;
+
+// The integral of e^(3x) over [0, 1] at uniform points: X = e^(3u).
+// E[X] = (e^3 - 1) / 3, Var X = (e^6 - 1) / 6 - E[X]^2.
+
+std::shared_ptr<const Setup> uniform(Parameters&) {
+  const double mean = integral();
+  return averaging(Channel{.mean = mean,
+                           .variance = integral_of_square() - mean * mean,
+                           .low = 1,
+                           .high = std::exp(3)},
+                   [](Stream& random) { return integrand(random.uniform()); });
+}
+
+// The integral of f(x) = e^(3x) over [0, 1] by antithetic pairs: X = (f(u) + f(1 - u)) / 2.
+// E[X] = (e^3 - 1) / 3; f(u) f(1 - u) = e^3, so E[X^2] = ((e^6 - 1) / 6 + e^3) / 2. One primary
+// costs two samples.
+
+double antithetic_pair(Stream& random, Cost& cost) {
+  const double x = random.uniform();
+  cost.samples += 1;  // the other is counted as the primary itself
+  return (integrand(x) + integrand(1 - x)) / 2;
+}
+
+std::shared_ptr<const Setup> antithetic(Parameters&) {
+  const double mean = integral();
+  const double square = (integral_of_square() + std::exp(3)) / 2;
+  // The pair is smallest at x = 1/2 and largest at the ends.
+  return averaging(Channel{.mean = mean,
+                           .variance = square - mean * mean,
+                           .low = integrand(0.5),
+                           .high = (1 + std::exp(3)) / 2},
+                   antithetic_pair);
+}
+
+// The integral of f(x) = e^(3x) over [0, 1] with a control variate. It is f's Taylor polynomial
+// g(x) = 1 + 3x + 9x^2 / 2, of integral 4.
+//   X = f(u) - c (g(u) - 4). E[X] = (e^3 - 1) / 3 for any c.
+//   Var X = Var f - 2 c Cov(f, g) + c^2 Var g.
+// The integral of f g is (11 e^3 - 2) / 6, that of g^2 is 104 / 5. The best c is Cov / Var g =
+// 2.3006.
+
+double control(double x) { return 1 + x * (3 + 4.5 * x); }
+constexpr double control_integral = 4;
+
+double controlled_variance(double c) {
+  const double mean = integral();
+  const double of_f = integral_of_square() - mean * mean;
+  const double of_g = 104.0 / 5 - control_integral * control_integral;
+  const double covariance = (11 * std::exp(3) - 2) / 6 - mean * control_integral;
+  return of_f - 2 * c * covariance + c * c * of_g;
+}
+
+std::shared_ptr<const Setup> control_variate(Parameters& parameters) {
+  const double c = parameters.number("coefficient");
+  // f runs from 1 to e^3, g - 4 from -3 to 4.5.
+  return averaging(Channel{.mean = integral(),
+                           .variance = controlled_variance(c),
+                           .low = 1 - std::max(4.5 * c, -3 * c),
+                           .high = std::exp(3) + std::max(3 * c, -4.5 * c)},
+                   [c](Stream& random) {
+                     const double x = random.uniform();
+                     return integrand(x) - c * (control(x) - control_integral);
+                   });
+}
+
+// The integral of e^(3x) over [0, 1] by importance sampling from q(x) = 5 (1 + x)^4 / 31.
+//
+// X = e^(3x) / q(x) at x = (1 + 31 u)^(1/5) - 1. E[X] = (e^3 - 1) / 3. By parts, from t = 1 to 2,
+//   E[X^2] = (31 / 5) e^-6 [-e^(6t) (1 / 3t^3 + 1 / t^2 + 6 / t) + 36 Ei(6t)].
+
+class NearDensitySampler final : public Sampler {
+ public:
+  Domain domain() const override { return Domain::interval; }
+  SamplerDraw sample(Stream& random) const override {
+    // The fifth root may round to 2 and beyond.
+    const double x = std::min(std::pow(1 + 31 * random.uniform(), 0.2) - 1, 1.0);
+    const double density = near_density(x);
+    return {.point = {x}, .density = density, .weight = integrand(x) / density};
+  }
+  double density(const Point& p) const override { return near_density(p[0]); }
+  double evaluate(const Point& p) const override { return integrand(p[0]); }
+};
+
+double antiderivative(double t) {
+  return -std::exp(6 * t) * (1 / (3 * t * t * t) + 1 / (t * t) + 6 / t) + 36 * std::expint(6 * t);
+}
+
+std::shared_ptr<const Setup> importance(Parameters&) {
+  const double mean = integral();
+  const double square = 31 * std::exp(-6) / 5 * (antiderivative(2) - antiderivative(1));
+  const auto sampler = std::make_shared<NearDensitySampler>();
+  // X is smallest at x = 1/3, where (ln f)' = (ln q)' = 3, and largest at x = 1.
+  return averaging(Channel{.mean = mean,
+                           .variance = square - mean * mean,
+                           .low = integrand(1.0 / 3) / near_density(1.0 / 3),
+                           .high = integrand(1) / near_density(1)},
+                   [](Stream& random) { return NearDensitySampler().sample(random).weight; },
+                   {{"x", sampler}});
+}
+
+// The integral of f(x) = e^(3x) over [0, 1] with k strata, one point in each:
+// X = (1/k) sum_j f((j + u_j) / k). E[X] = (e^3 - 1) / 3, Var X = (1/k^2) sum_j Var_j, Var_j that
+// of f at a uniform point of stratum j. One primary costs k samples.
+
+// Var f(x), x uniform in [a, b].
+double variance_between(double a, double b) {
+  const double mean = std::exp(3 * a) * std::expm1(3 * (b - a)) / (3 * (b - a));
+  const double square = std::exp(6 * a) * std::expm1(6 * (b - a)) / (6 * (b - a));
+  return square - mean * mean;
+}
+
+double stratified_variance(std::uint64_t strata) {
+  const double k = static_cast<double>(strata);
+  double sum = 0;
+  for (std::uint64_t j = 0; j < strata; ++j) {
+    sum += variance_between(static_cast<double>(j) / k, static_cast<double>(j + 1) / k);
+  }
+  return sum / (k * k);
+}
+
+double stratified_mean(std::uint64_t strata, Stream& random, Cost& cost) {
+  const double k = static_cast<double>(strata);
+  double sum = 0;
+  for (std::uint64_t j = 0; j < strata; ++j) {
+    sum += integrand((static_cast<double>(j) + random.uniform()) / k);
+  }
+  cost.samples += strata - 1;  // the first is counted as the primary itself
+  return sum / k;
+}
+
+std::shared_ptr<const Setup> stratified(Parameters& parameters) {
+  const std::uint64_t strata = parameters.count("strata");
+  return averaging(
+      Channel{.mean = integral(),
+              .variance = stratified_variance(strata),
+              .low = 1,
+              .high = std::exp(3)},
+      [strata](Stream& random, Cost& cost) { return stratified_mean(strata, random, cost); });
+}
+
+// The integral of f(x) = e^(3x) over [0, 1] by importance sampling from f / I itself: X = f(x) /
+// (f(x) / I) = I at x = ln(1 + u (e^3 - 1)) / 3, whatever is drawn. The variance is zero but for
+// rounding, which a t test mistakes for a scale.
+
+double by_perfect_density(Stream& random) {
+  const double x = std::log1p(random.uniform() * std::expm1(3)) / 3;
+  const double density = integrand(x) / integral();
+  return integrand(x) / density;
+}
+
+std::shared_ptr<const Setup> zero_variance(Parameters&) {
+  const double mean = integral();
+  // Two roundings, and those of the sum of primaries.
+  constexpr double rounding = 0x1p-40;
+  return averaging(Channel{.mean = mean,
+                           .variance = 0,
+                           .low = mean * (1 - rounding),
+                           .high = mean * (1 + rounding),
+                           .rounding = 2 * mean * rounding},
+                   by_perfect_density);
+}
+
+// The integral of f(x) = e^(3x) over [0, 1] by weighted importance sampling.
+//
+// I^ = sum f(x_i) / sum g(x_i), x uniform and g(x) = 5 (1 + x)^4 / 31, whose integral is 1. It is a
+// ratio of means: biased and consistent. The reference is I = (e^3 - 1) / 3.
+//   n (E[I^] - I) -> I Var g - Cov(f, g) = -0.50012,  n Var I^ -> Var(f - I g).
+// Jackknifed, the bias falls like 1 / n^2.
+
+std::shared_ptr<const Setup> ratio(Parameters&) {
+  // A ratio of sums lies between the extremes of f / g, at x = 1/3 and x = 1.
+  return ratio_setup<SamePoint, RatioOfSums>(
+      Channel{.mean = integral(),
+              .low = integrand(1.0 / 3) / near_density(1.0 / 3),
+              .high = integrand(1) / near_density(1)});
+}
+
+std::shared_ptr<const Setup> jackknifed(Parameters&) {
+  return ratio_setup<SamePoint, Jackknife<BothLeftOut>>(Channel{.mean = integral()});
+}
+
+}  // namespace
+
+std::vector<Entry> analytic_exponential() {
+  return {
+      {{.name = "analytic/exponential_uniform",
+        .summary = "The integral of e^(3x) over [0, 1] at uniform points.",
+        .description = "Estimates (e^3 - 1) / 3 = 6.361846 by e^(3u). Variance (e^6 - 1) / 6 - "
+                       "6.361846^2 = 26.5984."},
+       uniform},
+      {{.name = "analytic/antithetic",
+        .summary = "The integral of e^(3x) over [0, 1] by antithetic pairs.",
+        .description = "Estimates (e^3 - 1) / 3 = 6.361846 by (e^(3u) + e^(3 - 3u)) / 2. One "
+                       "primary is one pair and costs two samples. Variance 3.1055."},
+       antithetic},
+      {{.name = "analytic/control_variate",
+        .summary = "The integral of e^(3x) over [0, 1] with a control variate.",
+        .description = "Estimates (e^3 - 1) / 3 = 6.361846 by e^(3u) - c (1 + 3u + 9u^2/2 - 4). "
+                       "The variance, 1.194 at the default c, is smallest at c = 2.3006.",
+        .parameters = {number_parameter("coefficient",
+                                        "c, how much of the control variate is subtracted", "2.3",
+                                        {-1000, 1000})}},
+       control_variate},
+      {{.name = "analytic/exponential_importance",
+        .summary = "The integral of e^(3x) over [0, 1] by importance sampling.",
+        .description = "Estimates (e^3 - 1) / 3 = 6.361846 by e^(3x) / q(x), x of density q(x) = 5 "
+                       "(1 + x)^4 / 31 by inversion. Variance 0.3858."},
+       importance},
+      {{.name = "analytic/stratified",
+        .summary = "The integral of e^(3x) over [0, 1] by stratified sampling.",
+        .description = "Estimates (e^3 - 1) / 3 = 6.361846 by the mean of e^(3x) at one uniform "
+                       "point in each of k equal strata. One primary is one such mean and costs k "
+                       "samples. The variance falls like k^-3.",
+        .parameters = {count_parameter("strata", "k, the number of strata", "16", {1, 10000})}},
+       stratified},
+      {{.name = "analytic/zero_variance",
+        .summary = "The integral of e^(3x) over [0, 1] from the perfect density.",
+        .description = "Estimates (e^3 - 1) / 3 = 6.361846 by f(x) / p(x) with p = f / I: every "
+                       "observation is the integral, to rounding."},
+       zero_variance},
+      {{.name = "analytic/ratio",
+        .summary = "The integral of e^(3x) over [0, 1] by weighted importance sampling.",
+        .description =
+            "Estimates (e^3 - 1) / 3 = 6.361846 by sum e^(3x) / sum g(x), g(x) = 5 (1 + x)^4 / 31 "
+            "of integral 1, x uniform. The bias times the number of primaries tends to -0.50012.",
+        .bias = BiasClass::inverse_primaries,
+        .averages = false},
+       ratio},
+      {{.name = "analytic/jackknifed_ratio",
+        .summary = "The same, with the first term of the bias taken away.",
+        .description =
+            "analytic/ratio, R, jackknifed: M R - (M - 1) mean of the M ratios with one point left "
+            "out (Quenouille 1956). The bias falls like 1 / M^2 where that of R falls like 1 / M; "
+            "the variance is that of R but for terms 1 / M^2. From one point it is R.",
+        .bias = BiasClass::inverse_primaries,
+        .averages = false},
+       jackknifed}};
+}
+
+}  // namespace assay::plugins

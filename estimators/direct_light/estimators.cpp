@@ -1,0 +1,303 @@
+// Light reflected towards a viewer: by sampling the luminaire, the BRDF, or both (multiple
+// importance sampling), and the directions of these as samplers.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include "direct_light/family.h"
+#include "estimators/parameters.h"
+#include "luminaire/solid_angle.h"
+
+namespace assay::plugins {
+
+namespace {
+
+using namespace direct_light;
+
+using luminaire::direction_of;
+using luminaire::LitTriangle;
+using luminaire::point_of;
+using render::Vector3;
+using std::numbers::pi;
+
+// Directions in which f is the integrand of direct lighting.
+class Directions : public Sampler {
+ public:
+  explicit Directions(SharedTechniques techniques)
+      : techniques_(std::move(techniques)),
+        triangles_(luminaire::lit_triangles(techniques_->setting())) {}
+
+  Domain domain() const override {
+    const bool above = std::ranges::all_of(triangles_, [](const LitTriangle& t) {
+      return t.seen.a().z >= 0 && t.seen.b().z >= 0 && t.seen.c().z >= 0;
+    });
+    return above ? Domain::hemisphere : Domain::sphere;
+  }
+
+  double evaluate(const Point& point) const override {
+    const Vector3 w = direction_of(point);
+    const LitTriangle* triangle = containing(w);
+    if (!triangle) return 0;
+    Cost uncounted;
+    return techniques_->setting().received(
+        {luminaire::shadow_ray(triangle->distance(w) * w), techniques_->integrand(w)}, uncounted);
+  }
+
+  // Parts as narrow as a quarter of the lobe, and thirty nodes across the luminaire.
+  Panels panels() const override {
+    double omega = 0;
+    for (const LitTriangle& triangle : triangles_) omega += triangle.seen.solid_angle();
+    const double outline = omega > 0 ? std::clamp(2 * pi / std::sqrt(omega), 32.0, 128.0) : 1;
+    const double lobe = pi / 2 / (4 * techniques_->reflectance().width());
+    const double parts = std::ceil(std::max(outline, lobe));
+    return {.first = static_cast<std::size_t>(parts),
+            .second = static_cast<std::size_t>(2 * parts)};
+  }
+
+ protected:
+  const LitTriangle* containing(const Vector3& w) const {
+    const auto found =
+        std::ranges::find_if(triangles_, [&](const LitTriangle& t) { return t.seen.contains(w); });
+    return found == triangles_.end() ? nullptr : &*found;
+  }
+  // All triangles of a planar luminaire lie in the plane of the first.
+  double light_density(const Vector3& w) const {
+    if (!containing(w)) return 0;
+    return techniques_->light_sampling().density(techniques_->setting().triangles()[0], w);
+  }
+  double brdf_density(const Vector3& w) const {
+    return w.z > 0 ? techniques_->reflectance().density(w) : 0;
+  }
+  SamplerDraw draw(const Vector3& w, double declared, int lobe) const {
+    const Point point = point_of(w);
+    return {
+        .point = point, .density = declared, .weight = evaluate(point) / declared, .lobe = lobe};
+  }
+  const Techniques& techniques() const { return *techniques_; }
+
+ private:
+  SharedTechniques techniques_;
+  std::vector<LitTriangle> triangles_;
+};
+
+class LightDirections final : public Directions {
+ public:
+  using Directions::Directions;
+
+  SamplerDraw sample(Stream& random) const override {
+    const auto point = techniques().light_sampling().sample(random);
+    if (!point) return {.valid = false};
+    return draw(normalised(point->to_light), point->density, 0);
+  }
+  double density(const Point& point) const override { return light_density(direction_of(point)); }
+};
+
+class BrdfDirections final : public Directions {
+ public:
+  using Directions::Directions;
+
+  SamplerDraw sample(Stream& random) const override {
+    const Vector3 w = techniques().reflectance().sample(random);
+    return w.z > 0 ? draw(w, brdf_density(w), 0) : SamplerDraw{.valid = false};
+  }
+  double density(const Point& point) const override { return brdf_density(direction_of(point)); }
+};
+
+class MixtureDirections final : public Directions {
+ public:
+  MixtureDirections(SharedTechniques techniques, const Pair& probabilities)
+      : Directions(std::move(techniques)), probabilities_(probabilities) {}
+
+  SamplerDraw sample(Stream& random) const override {
+    if (random.uniform() < probabilities_.light) {
+      const auto point = techniques().light_sampling().sample(random);
+      if (!point) return {.lobe = 0, .valid = false};
+      const Vector3 w = normalised(point->to_light);
+      return draw(w, probabilities_.light * point->density + probabilities_.brdf * brdf_density(w),
+                  0);
+    }
+    const Vector3 w = techniques().reflectance().sample(random);
+    if (w.z <= 0) return {.lobe = 1, .valid = false};
+    return draw(w, density(point_of(w)), 1);
+  }
+  double density(const Point& point) const override {
+    return lobe_density(0, point) + lobe_density(1, point);
+  }
+  int lobes() const override { return 2; }
+  double lobe_density(int lobe, const Point& point) const override {
+    const Vector3 w = direction_of(point);
+    return lobe == 0 ? probabilities_.light * light_density(w)
+                     : probabilities_.brdf * brdf_density(w);
+  }
+
+ private:
+  Pair probabilities_;
+};
+
+bool has_directions(const Techniques& techniques) {
+  const luminaire::Setting& setting = techniques.setting();
+  return setting.planar() && setting.triangles()[0].emits;
+}
+
+/// `light`: of a planar luminaire that emits towards the receiver, else nothing.
+std::vector<NamedSampler> light_samplers(const SharedTechniques& techniques) {
+  if (!has_directions(*techniques)) return {};
+  return {{"light", std::make_shared<LightDirections>(techniques)}};
+}
+
+/// `brdf`, with directions below the horizon as invalid draws.
+std::vector<NamedSampler> brdf_samplers(const SharedTechniques& techniques) {
+  return {{"brdf", std::make_shared<BrdfDirections>(techniques)}};
+}
+
+/// `mixture` of both with these probabilities, a lobe each; where there is `light`.
+std::vector<NamedSampler> mixture_samplers(const SharedTechniques& techniques,
+                                           const Pair& probabilities) {
+  if (!has_directions(*techniques)) return {};
+  return {{"mixture", std::make_shared<MixtureDirections>(techniques, probabilities)}};
+}
+
+std::shared_ptr<const Setup> prepare_light(Parameters& given) {
+  const SharedTechniques techniques = read_techniques(given);
+  const WeightedByHeuristic alone(Heuristic::balance(), {1, 0});
+  KnownPrimary primary{.high = std::numeric_limits<double>::infinity()};
+  if (const auto known = moments(*techniques, alone)) {
+    primary.mean = known->radiance();
+    primary.variance = known->one_sample_variance({1, 0});
+  }
+  return averaging(
+      radiance_channel(*techniques, primary),
+      [techniques, alone](Stream& random, Cost& cost) {
+        return from_light(alone, techniques->light(random, cost));
+      },
+      light_samplers(techniques));
+}
+
+std::shared_ptr<const Setup> prepare_brdf(Parameters& given) {
+  const luminaire::SharedSetting setting = luminaire::read_setting(given);
+  const auto techniques = std::make_shared<const Techniques>(setting, read_reflectance(given),
+                                                             solid_angle_sampling(setting));
+  const WeightedByHeuristic alone(Heuristic::balance(), {0, 1});
+  KnownPrimary primary{.high = highest_of_brdf(*techniques)};
+  if (const auto known = moments(*techniques, alone)) {
+    primary.mean = known->radiance();
+    primary.variance = known->one_sample_variance({0, 1});
+  }
+  return averaging(
+      radiance_channel(*techniques, primary),
+      [techniques, alone](Stream& random, Cost& cost) {
+        return from_brdf(alone, techniques->brdf(random, cost));
+      },
+      brdf_samplers(techniques));
+}
+
+// For every heuristic of exponent 1 or more a weighted draw brings f / q_b at most, q_b = n_b p_b.
+//   Balance: w_i f / q_i = f / (q_l + q_b).
+//   Power: f q_i^(e-1) / (q_l^e + q_b^e) <= f / q_b, since x^(e-1) <= 1 + x^e.
+//   Maximum and cutoff: f / q_i with q_i the larger, if the other is left out.
+double highest(const Techniques& techniques, const Counts& counts) {
+  const Pair n = counts.shares();
+  return highest_of_brdf(techniques) * (n.light + n.brdf) / n.brdf;
+}
+
+std::shared_ptr<const Setup> prepare_multi_sample(Parameters& given) {
+  const SharedTechniques techniques = read_techniques(given);
+  const Counts counts = read_counts(given);
+  const Heuristic heuristic = read_heuristic(given);
+  const WeightedByHeuristic combination(heuristic, counts.shares());
+  KnownPrimary primary{.high = highest(*techniques, counts)};
+  if (heuristic.smooth()) {
+    if (const auto known = moments(*techniques, combination)) {
+      primary.mean = known->radiance();
+      primary.variance = known->multi_sample_variance(counts);
+    }
+  }
+  std::vector<NamedSampler> samplers = light_samplers(techniques);
+  samplers.push_back(brdf_samplers(techniques)[0]);
+  return averaging(radiance_channel(*techniques, primary),
+                   MultiSamplePrimary<>(techniques, counts, combination), std::move(samplers));
+}
+
+std::shared_ptr<const Setup> prepare_one_sample(Parameters& given) {
+  const SharedTechniques techniques = read_techniques(given);
+  const Pair probabilities = read_probabilities(given);
+  const Heuristic heuristic = read_heuristic(given);
+  const WeightedByHeuristic combination(heuristic, probabilities);
+  // The bound of the multi-sample model, with one draw.
+  KnownPrimary primary{.high = highest_of_brdf(*techniques) / probabilities.brdf};
+  if (heuristic.smooth()) {
+    if (const auto known = moments(*techniques, combination)) {
+      primary.mean = known->radiance();
+      primary.variance = known->one_sample_variance(probabilities);
+    }
+  }
+  return averaging(radiance_channel(*techniques, primary),
+                   OneSamplePrimary<>(techniques, probabilities, combination),
+                   mixture_samplers(techniques, probabilities));
+}
+
+}  // namespace
+
+std::vector<Entry> direct_light_estimators() {
+  return {
+      {{.name = "direct_light/light",
+        .summary = "Light reflected towards a viewer, by sampling the luminaire.",
+        .description =
+            "Estimates L_r = integral of L(w) f(w, viewer) cos+ dw, what a surface reflects "
+            "towards a viewer of the light that arrives from a luminaire past occluders, by X "
+            "= L f cos+ [visible] / p at points of the luminaire. p is per solid angle: 1 / "
+            "Omega of directions uniform in the solid angle, distance^2 / (A cos') of points "
+            "uniform in area. One shadow ray a primary, none below the horizon. Varies much "
+            "where the BRDF has a narrow lobe and the luminaire is large. Mean and variance "
+            "are known by adaptive quadrature for polygons past up to eight convex polygons; "
+            "of a Lambertian surface the mean is f times Lambert's formula. Sampler: light "
+            "(of a polygon).",
+        .parameters = parameters_with({})},
+       prepare_light},
+      {{.name = "direct_light/brdf",
+        .summary = "Light reflected towards a viewer, by sampling the BRDF.",
+        .description =
+            "Estimates L_r = integral of L(w) f(w, viewer) cos+ dw, as direct_light/light "
+            "does, by X = L f cos / p where a ray along a direction of the BRDF's sampler, of "
+            "density p, first hits the side of the luminaire that emits, else 0. One closest "
+            "hit a primary, none below the horizon. Varies much where the luminaire is small "
+            "beside the lobe. X is never above L times the bound of f cos / p. Mean and "
+            "variance as of direct_light/light. Sampler: brdf.",
+        .parameters = common_parameters()},
+       prepare_brdf},
+
+      {{.name = "direct_light/multi_sample",
+        .summary = "Light reflected towards a viewer, by multiple importance sampling.",
+        .description =
+            "Estimates L_r = integral of L(w) f(w, viewer) cos+ dw by X = 1/n_l sum w_l f/p_l + "
+            "1/n_b sum w_b f/p_b over n_l samples of the luminaire and n_b of the BRDF (Veach "
+            "1997, eq. 9.4), as direct_light/light and direct_light/brdf draw them. Weights sum "
+            "to 1 at every direction, so X is unbiased. With q = n p they are, by `heuristic`: "
+            "balance q_i / sum q; power q_i^e / sum q^e; cutoff: 0 where q_i is below t times the "
+            "larger, else as balance; maximum: 1 for the larger. By balance V[X] <= V[any other "
+            "weights] + (1 / min n_i - 1 / sum n_i) L_r^2 (theorem 9.2). n_l shadow rays and n_b "
+            "closest hits a primary, none below the horizon. Means are known as for "
+            "direct_light/light, variances for balance and power. Samplers: light (of a polygon), "
+            "brdf.",
+        .parameters = parameters_with(joined(count_parameters(), {heuristic_parameter()}))},
+       prepare_multi_sample},
+
+      {{.name = "direct_light/one_sample",
+        .summary = "Light reflected towards a viewer, by one-sample multiple importance sampling.",
+        .description =
+            "Estimates L_r = integral of L(w) f(w, viewer) cos+ dw by X = w_i f / (c_i p_i) with "
+            "the technique i drawn, the luminaire with `light_probability` c_l, else the BRDF "
+            "(Veach 1997, section 9.2.4, eq. 9.15). Weights as of direct_light/multi_sample with "
+            "q = c p. By balance X = f / (c_l p_l + c_b p_b): importance sampling of the mixture, "
+            "and no weights have less variance. Two such primaries with c = 1/2 have no less "
+            "variance than one of the multi-sample model with a sample each. One ray a primary at "
+            "most. Mean and variance as of direct_light/multi_sample. Sampler: mixture (of a "
+            "polygon), a lobe for each technique.",
+        .parameters = parameters_with({probability_parameter(), heuristic_parameter()})},
+       prepare_one_sample}};
+}
+
+}  // namespace assay::plugins

@@ -1,0 +1,440 @@
+#include "estimators/foreign/shared_library.h"
+
+#include <dlfcn.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+
+#include "estimators/foreign/words.h"
+#include "estimators/parameters.h"
+
+namespace assay::foreign {
+
+namespace {
+
+/// A struct as a library of any age has it: members beyond its `size` are zero.
+template <class Struct>
+Struct as_known(const Struct* theirs) {
+  Struct ours{};
+  std::memcpy(&ours, theirs, theirs->size < sizeof ours ? theirs->size : sizeof ours);
+  ours.size = sizeof ours;
+  return ours;
+}
+
+/// An array of such structs, each as large as the first says.
+template <class Struct>
+std::vector<Struct> all_known(const Struct* first, std::size_t count) {
+  std::vector<Struct> all;
+  const char* at = reinterpret_cast<const char*>(first);
+  for (std::size_t i = 0; i < count; ++i, at += first->size) {
+    all.push_back(as_known(reinterpret_cast<const Struct*>(at)));
+  }
+  return all;
+}
+
+constexpr const char* symbol = "assay_library";
+
+// The members of the first published version: less cannot be.
+constexpr std::size_t least_library =
+    offsetof(AssayLibrary, estimator_count) + sizeof(AssayLibrary::estimator_count);
+constexpr std::size_t least_estimator =
+    offsetof(AssayEstimator, secondary) + sizeof(AssayEstimator::secondary);
+
+[[noreturn]] void refuse(const std::string& file, const std::string& why) {
+  throw LibraryError("`" + file + "` " + why);
+}
+
+/// dlopen's messages repeat the file's name.
+std::string reason(const std::string& file) {
+  const char* const text = dlerror();
+  std::string why = text != nullptr ? text : "no reason is given";
+  if (why.starts_with(file + ": ")) why.erase(0, file.size() + 2);
+  return why;
+}
+
+std::shared_ptr<void> opened(const std::string& file) {
+  struct stat status {};
+  if (stat(file.c_str(), &status) != 0) {
+    refuse(file, std::string("cannot be opened: ") + std::strerror(errno) +
+                     "; a file is sought in the suite's folder");
+  }
+  // With a slash the name is a file, not one to be sought in the system's folders.
+  const std::string path = file.find('/') == std::string::npos ? "./" + file : file;
+  void* const handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (handle == nullptr) {
+    refuse(file, "is no shared library that can be loaded: " + reason(path) +
+                     "; compile it with -shared -fPIC");
+  }
+  return {handle, [](void* open) { dlclose(open); }};
+}
+
+/// Throws LibraryError where a function is missing or a domain is none.
+void require_whole(const AssaySampler& sampler) {
+  const std::string name = sampler.name != nullptr ? sampler.name : "";
+  if (name.empty() || sampler.sample == nullptr || sampler.density == nullptr ||
+      sampler.evaluate == nullptr) {
+    throw LibraryError("the sampler `" + name +
+                       "` lacks its name, sample(), density() or evaluate()");
+  }
+  if (sampler.domain > ASSAY_SPHERE) {
+    throw LibraryError("the sampler `" + name + "` has the domain " +
+                       std::to_string(sampler.domain) + ", which is none");
+  }
+  if (sampler.domain == ASSAY_INTERVAL && !(sampler.low < sampler.high)) {
+    throw LibraryError("the sampler `" + name + "` has an empty interval: set `low` and `high`");
+  }
+}
+
+/// The sampler's facts. require_whole() has passed.
+SamplerNote note_of(const AssaySampler& sampler) {
+  constexpr std::array<Domain, 5> domains{Domain::interval, Domain::square, Domain::triangle,
+                                          Domain::hemisphere, Domain::sphere};
+  SamplerNote note{.name = sampler.name, .domain = domains[sampler.domain]};
+  if (note.domain == Domain::interval) note.bounds = {sampler.low, sampler.high};
+  if (sampler.rounding > 0) note.rounding = sampler.rounding;
+  return note;
+}
+
+constexpr std::size_t message_size = 512;
+using Message = std::array<char, message_size>;
+
+std::string text_of(const Message& message) {
+  const std::string text(message.data(), strnlen(message.data(), message.size()));
+  return text.empty() ? "it says no reason" : text;
+}
+
+std::string or_empty(const char* text) { return text != nullptr ? text : ""; }
+
+bool has(std::uint32_t flags, int flag) { return (flags & static_cast<unsigned>(flag)) != 0; }
+
+ParameterType type_of(const AssayParameter& parameter, const std::string& library) {
+  switch (parameter.type) {
+    case ASSAY_NUMBER:
+      return ParameterType::number;
+    case ASSAY_COUNT:
+      return ParameterType::count;
+    case ASSAY_BOOLEAN:
+      return ParameterType::boolean;
+    case ASSAY_TEXT:
+      return ParameterType::string;
+    default:
+      throw LibraryError(library + " declares a parameter of type " +
+                         std::to_string(parameter.type) + ", which is none");
+  }
+}
+
+std::vector<ParameterInformation> declared(const AssayEstimator& estimator,
+                                           const std::string& library) {
+  std::vector<ParameterInformation> all;
+  if (estimator.parameter_count == 0) return all;
+  for (const AssayParameter& p : all_known(estimator.parameters, estimator.parameter_count)) {
+    ParameterInformation parameter{.name = or_empty(p.name),
+                                   .type = type_of(p, library),
+                                   .summary = or_empty(p.summary),
+                                   .fallback = or_empty(p.fallback)};
+    if (has(p.flags, ASSAY_LOW)) parameter.low = p.low;
+    if (has(p.flags, ASSAY_HIGH)) parameter.high = p.high;
+    all.push_back(std::move(parameter));
+  }
+  return all;
+}
+
+/// The values as the library gets them, with the texts that they point to.
+struct Values {
+  std::vector<std::string> texts;
+  std::vector<AssayValue> values;
+};
+
+double read(Parameters& given, const ParameterInformation& parameter, std::string& text) {
+  double number = 0;
+  switch (parameter.type) {
+    case ParameterType::number:
+      number = given.number(parameter.name);
+      break;
+    case ParameterType::count:
+      number = static_cast<double>(given.count(parameter.name));
+      break;
+    case ParameterType::boolean:
+      number = given.boolean(parameter.name) ? 1 : 0;
+      text = number == 1 ? "true" : "false";
+      return number;
+    default:
+      text = given.string(parameter.name);
+      return 0;
+  }
+  text = foreign::text_of(number);
+  return number;
+}
+
+Values values_of(const std::vector<ParameterInformation>& declared, Parameters& given) {
+  Values all;
+  all.texts.resize(declared.size());
+  for (std::size_t i = 0; i < declared.size(); ++i) {
+    const double number = read(given, declared[i], all.texts[i]);
+    all.values.push_back({.size = sizeof(AssayValue),
+                          .name = declared[i].name.c_str(),
+                          .text = all.texts[i].c_str(),
+                          .number = number});
+  }
+  return all;
+}
+
+Channel channel_of(const AssayChannel& theirs) {
+  Channel channel{.name = or_empty(theirs.name), .mean_error = theirs.mean_error};
+  if (has(theirs.flags, ASSAY_MEAN)) channel.mean = theirs.mean;
+  if (has(theirs.flags, ASSAY_VARIANCE)) channel.variance = theirs.variance;
+  if (has(theirs.flags, ASSAY_LOW)) channel.low = theirs.low;
+  if (has(theirs.flags, ASSAY_HIGH)) channel.high = theirs.high;
+  channel.rounding = theirs.rounding;
+  channel.diagnostic = has(theirs.flags, ASSAY_DIAGNOSTIC);
+  return channel;
+}
+
+ImageShape shape_of(const AssayImage& theirs) {
+  ImageShape shape{.width = theirs.width,
+                   .height = theirs.height,
+                   .independent = has(theirs.flags, ASSAY_INDEPENDENT)};
+  if (theirs.components == nullptr) return shape;
+  shape.components.clear();
+  for (std::size_t i = 0; i < theirs.component_count; ++i) {
+    shape.components.push_back(or_empty(theirs.components[i]));
+  }
+  return shape;
+}
+
+/// The facts that all elements share.
+Channel element_of(const AssayImage& theirs) {
+  Channel element;
+  if (has(theirs.flags, ASSAY_LOW)) element.low = theirs.low;
+  if (has(theirs.flags, ASSAY_HIGH)) element.high = theirs.high;
+  return element;
+}
+
+std::optional<BiasClass> bias_of(std::uint32_t theirs) {
+  switch (theirs) {
+    case ASSAY_BIAS_UNKNOWN:
+      return std::nullopt;
+    case ASSAY_UNBIASED:
+      return BiasClass::unbiased;
+    case ASSAY_BIAS_PRIMARIES:
+      return BiasClass::inverse_primaries;
+    case ASSAY_BIAS_BOOTSTRAP:
+      return BiasClass::inverse_bootstrap;
+    case ASSAY_BIAS_START_UP:
+      return BiasClass::start_up;
+    case ASSAY_BIAS_RECONSTRUCTION:
+      return BiasClass::reconstruction;
+    default:
+      throw LibraryError("declares the bias " + std::to_string(theirs) + ", which is none");
+  }
+}
+
+std::vector<AssaySampler> samplers_of(const AssayPreparation& prepared) {
+  if (prepared.sampler_count == 0) return {};
+  std::vector<AssaySampler> all = all_known(prepared.samplers, prepared.sampler_count);
+  for (const AssaySampler& sampler : all) require_whole(sampler);
+  return all;
+}
+
+/// The library's facts in the words of a program, so that the same rules read both.
+std::string hello_text(const AssayEstimator& estimator, const AssayPreparation& prepared,
+                       const std::vector<AssaySampler>& samplers) {
+  std::string text = "assay " + std::to_string(protocol_version) + " binary\n";
+  if (prepared.image != nullptr) {
+    const AssayImage image = as_known(prepared.image);
+    text += image_lines(shape_of(image), element_of(image));
+  }
+  if (prepared.channel_count > 0) {
+    for (const AssayChannel& c : all_known(prepared.channels, prepared.channel_count)) {
+      text += channel_line(channel_of(c));
+    }
+  }
+  if (has(estimator.flags, ASSAY_AVERAGES)) text += "averages\n";
+  if (has(estimator.flags, ASSAY_RAYS)) text += "rays\n";
+  for (const AssaySampler& sampler : samplers) text += sampler_line(note_of(sampler));
+  return text + bias_line(bias_of(estimator.bias)) + "ready\n";
+}
+
+bool is_whole(const SamplerDraw& draw) {
+  return !std::isnan(draw.density) && !std::isnan(draw.weight) &&
+         std::ranges::none_of(draw.point, [](double x) { return std::isnan(x); });
+}
+
+}  // namespace
+
+SharedObject::SharedObject(const std::string& file) : file_(file), handle_(opened(file)) {
+  void* const found = dlsym(handle_.get(), symbol);
+  if (found == nullptr) {
+    refuse(file, std::string("does not export ") + symbol +
+                     "(); estimators/plugin_abi.h declares it, and a C++ library needs it there");
+  }
+  const auto table = reinterpret_cast<const AssayLibrary* (*)()>(found);
+  read_table(table());
+}
+
+void SharedObject::read_table(const AssayLibrary* table) {
+  if (table == nullptr || table->size < least_library) {
+    refuse(file_, std::string("returns no table from ") + symbol + "()");
+  }
+  if (table->version != ASSAY_ABI_VERSION) {
+    refuse(file_, "was compiled for version " + std::to_string(table->version) +
+                      " of the interface, this is version " + std::to_string(ASSAY_ABI_VERSION) +
+                      "; compile it again with this version's plugin_abi.h");
+  }
+  const AssayLibrary known = as_known(table);
+  if (known.estimators == nullptr || known.estimator_count == 0) {
+    refuse(file_, "has no estimators in its table");
+  }
+  if (known.estimators->size < least_estimator) {
+    refuse(file_,
+           "has an estimator whose `size` is not the size of its struct; set it to "
+           "sizeof(AssayEstimator)");
+  }
+  estimators_ = all_known(known.estimators, known.estimator_count);
+  for (const AssayEstimator& estimator : estimators_) {
+    if (estimator.name == nullptr || estimator.secondary == nullptr) {
+      refuse(file_, "has an estimator without a name or without secondary()");
+    }
+  }
+}
+
+const AssayEstimator& SharedObject::find(const std::string& name) const {
+  std::vector<std::string> names;
+  for (const AssayEstimator& estimator : estimators_) {
+    if (estimator.name == name) return estimator;
+    names.emplace_back(estimator.name);
+  }
+  if (name.empty() && estimators_.size() == 1) return estimators_.front();
+  if (name.empty())
+    refuse(file_, "has several estimators; set `estimator` to one of " + quoted(names));
+  refuse(file_, "has no estimator `" + name + "`" +
+                    did_you_mean(name, names, "there is " + quoted(names)));
+}
+
+PreparedLibrary::PreparedLibrary(const LibraryChoice& choice)
+    : object_(choice.file), estimator_(object_.find(choice.estimator)) {
+  AssayPreparation preparation{.size = sizeof preparation,
+                               .channels = estimator_.channels,
+                               .channel_count = estimator_.channel_count,
+                               .image = estimator_.image,
+                               .samplers = estimator_.samplers,
+                               .sampler_count = estimator_.sampler_count};
+  prepare(choice, preparation);
+  try {
+    samplers_ = samplers_of(preparation);
+    hello_ = parse_hello(hello_text(estimator_, preparation, samplers_));
+  } catch (...) {
+    if (estimator_.release != nullptr) estimator_.release(state_);
+    throw;
+  }
+}
+
+PreparedLibrary::~PreparedLibrary() {
+  if (estimator_.release != nullptr) estimator_.release(state_);
+}
+
+void PreparedLibrary::prepare(const LibraryChoice& choice, AssayPreparation& preparation) {
+  const std::string name = "`" + choice.file + "`, estimator `" + estimator_.name + "`";
+  const std::vector<ParameterInformation> known = declared(estimator_, name);
+  std::vector<Value::Member> members;
+  for (const auto& [key, text] : choice.parameters) members.emplace_back(key, Value::scalar(text));
+  Parameters given(name, known, Value::map(std::move(members)), choice.folder);
+  const Values values = values_of(known, given);
+  if (estimator_.prepare == nullptr) return;
+  Message message{};
+  const std::string folder = std::filesystem::absolute(choice.folder).string();
+  preparation.values = values.values.data();
+  preparation.value_count = values.values.size();
+  preparation.folder = folder.c_str();
+  preparation.message = message.data();
+  preparation.message_size = message.size();
+  const int status = estimator_.prepare(&preparation);
+  if (status != 0) {
+    throw LibraryError(name + " refuses: " + text_of(message) + " (status " +
+                       std::to_string(status) + " of prepare())");
+  }
+  state_ = preparation.setup;
+}
+
+std::uint64_t PreparedLibrary::observe(AssayStream& random, std::uint64_t primaries,
+                                       std::span<double> out) const {
+  Message message;
+  message[0] = '\0';
+  AssayCall call{.size = sizeof call,
+                 .setup = state_,
+                 .random = &random,
+                 .primaries = primaries,
+                 .out = out.data(),
+                 .out_count = out.size(),
+                 .message = message.data(),
+                 .message_size = message.size(),
+                 .rays = 0};
+  const int status = estimator_.secondary(&call);
+  if (status == 0) return call.rays;
+  throw LibraryError("`" + object_.file() + "`, estimator `" + estimator_.name + "`: " +
+                     text_of(message) + " (status " + std::to_string(status) + " of secondary())");
+}
+
+LibrarySampler::LibrarySampler(std::shared_ptr<const PreparedLibrary> library,
+                               const AssaySampler& sampler)
+    : library_(std::move(library)), sampler_(sampler), note_(note_of(sampler)) {}
+
+SamplerDraw LibrarySampler::sample(Stream& random) const {
+  const std::uint64_t key = random();
+  return draw(key, random());
+}
+
+SamplerDraw LibrarySampler::draw(std::uint64_t key, std::uint64_t observation) const {
+  AssayStream theirs = assay_stream(key, observation);
+  AssayDraw drawn{.size = sizeof drawn};
+  const int status = sampler_.sample(library_->state(), &theirs, &drawn);
+  if (status != 0) {
+    throw LibraryError("sampler `" + note_.name + "`: status " + std::to_string(status) +
+                       " of sample()");
+  }
+  const SamplerDraw draw{.point = {drawn.point[0], drawn.point[1], drawn.point[2]},
+                         .density = drawn.density,
+                         .weight = drawn.weight,
+                         .valid = drawn.no_point == 0};
+  if (!draw.valid || is_whole(draw)) return draw;
+  throw LibraryError("sampler `" + note_.name + "`: sample() gave the point " +
+                     text_of(draw.point, note_.domain) + ", density " + text_of(draw.density) +
+                     " and weight " + text_of(draw.weight));
+}
+
+double LibrarySampler::number(double value, const char* function, const Point& point) const {
+  if (!std::isnan(value)) return value;
+  throw LibraryError("sampler `" + note_.name + "`: " + function + " is " + text_of(value) +
+                     " at " + text_of(point, note_.domain));
+}
+
+double LibrarySampler::density(const Point& point) const {
+  return number(sampler_.density(library_->state(), point.data()), "density()", point);
+}
+
+double LibrarySampler::evaluate(const Point& point) const {
+  return number(sampler_.evaluate(library_->state(), point.data()), "evaluate()", point);
+}
+
+double LibrarySampler::rounding() const {
+  return note_.rounding > 0 ? note_.rounding : Sampler::rounding();
+}
+
+AssayStream StreamsAhead::of(StreamKey key, std::uint64_t observation) {
+  AssayStream stream = assay_stream(key.bits, observation);
+  if (!ahead_.has(key, observation)) return stream;
+  ahead_.reach(observation);
+  // The state that assay_refill() leaves.
+  FirstWords words = ahead_.words()[ahead_.place(observation)];
+  stream.words[0] = words();
+  stream.words[1] = words();
+  stream.counter[0] = 1;
+  stream.next = 0;
+  return stream;
+}
+
+}  // namespace assay::foreign

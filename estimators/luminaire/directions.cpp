@@ -1,0 +1,111 @@
+#include <numbers>
+
+#include "luminaire/solid_angle.h"
+#include "render/hemisphere.h"
+
+// X = weight(w) L [the ray along w hits the luminaire], w of a density about the receiver's normal.
+
+namespace assay::plugins {
+
+namespace {
+
+using namespace luminaire;
+
+constexpr double pi = std::numbers::pi;
+constexpr double two_pi = 2 * pi;
+
+/// Uniform in the projected hemisphere: the cosines cancel. X is pi L times a Bernoulli variable of
+/// mean E / (pi L), so its variance is E (pi L - E).
+struct CosineDirections {
+  static constexpr double most = pi;
+  render::Vector3 operator()(double u, double v) const { return render::cosine_hemisphere(u, v); }
+  double density(const render::Vector3& w) const { return std::max(0.0, w.z) / pi; }
+  static double value(double radiance, const render::Vector3&) { return pi * radiance; }
+  static double second_moment(const ExactIntegrals& exact) { return pi * exact.irradiance; }
+};
+
+/// Uniform in the hemisphere: E[X] is the integral of L cos+ over it, E[X^2] = 2 pi L^2 times the
+/// integral of cos+^2 over what is seen.
+struct UniformDirections {
+  static constexpr double most = two_pi;
+  render::Vector3 operator()(double u, double v) const { return render::uniform_hemisphere(u, v); }
+  double density(const render::Vector3&) const { return 1 / two_pi; }
+  static double value(double radiance, const render::Vector3& w) { return two_pi * radiance * w.z; }
+  static double second_moment(const ExactIntegrals& exact) { return two_pi * exact.squared_cosine; }
+};
+
+template <class Directions>
+class DirectionSampler final : public Sampler {
+ public:
+  explicit DirectionSampler(SharedSetting setting) : setting_(std::move(setting)) {}
+
+  Domain domain() const override { return Domain::hemisphere; }
+
+  SamplerDraw sample(Stream& random) const override {
+    const double u = random.uniform();
+    const double v = random.uniform();
+    const Point point = point_of(directions_(u, v));
+    const double declared = density(point);
+    const double value = evaluate(point);
+    return {point, declared, value == 0 ? 0 : value / declared};
+  }
+
+  double density(const Point& point) const override {
+    return directions_.density(direction_of(point));
+  }
+
+  double evaluate(const Point& point) const override {
+    Cost uncounted;
+    const bool lit = setting_->sees_light(setting_->ray(direction_of(point)), uncounted);
+    return lit ? setting_->radiance() * point[2] : 0;
+  }
+
+ private:
+  SharedSetting setting_;
+  Directions directions_;
+};
+
+template <class Directions>
+struct Primary {
+  SharedSetting setting;
+
+  LightSample draw(Stream& random) const {
+    const double u = random.uniform();
+    const double v = random.uniform();
+    const render::Vector3 w = Directions{}(u, v);
+    return {setting->ray(w), Directions::value(setting->radiance(), w)};
+  }
+  double value(const LightSample& sample, Cost& cost) const {
+    return setting->sees_light(sample.ray, cost) ? sample.value : 0;
+  }
+};
+
+template <class Directions>
+std::shared_ptr<const Setup> prepare(Parameters& parameters) {
+  const SharedSetting setting = read_setting(parameters);
+  return averaging(irradiance_channel(*setting, Directions::second_moment,
+                                      Directions::most * setting->radiance()),
+                   Primary<Directions>{setting},
+                   {{"direction", std::make_shared<DirectionSampler<Directions>>(setting)}});
+}
+
+}  // namespace
+
+std::vector<Entry> luminaire_directions() {
+  return {
+      {information("luminaire/cosine",
+                   "Irradiance from a luminaire by directions of density cos(theta) / pi.",
+                   "X = pi L where a ray along a direction uniform in the projected hemisphere "
+                   "first hits the emitting side of the luminaire, else 0: a Bernoulli variable "
+                   "of variance E (pi L - E). One closest-hit ray a sample. Sampler: "
+                   "direction."),
+       prepare<CosineDirections>},
+      {information("luminaire/hemisphere",
+                   "Irradiance from a luminaire by directions uniform in the hemisphere.",
+                   "X = 2 pi L cos(theta) where a ray along a uniform direction (density "
+                   "1 / (2 pi)) first hits the emitting side of the luminaire, else 0. One "
+                   "closest-hit ray a sample. Sampler: direction."),
+       prepare<UniformDirections>}};
+}
+
+}  // namespace assay::plugins

@@ -1,0 +1,353 @@
+#include "metropolis/target.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+
+#include "estimators/core/flow.h"
+#include "estimators/core/value_checks.h"
+#include "luminaire/scene_description.h"
+#include "paths/path.h"
+#include "paths/worlds.h"
+
+namespace assay::metropolis {
+
+namespace {
+
+using luminaire::require_keys;
+using luminaire::required_key;
+
+double value(const Linear& f, double u) { return f.constant + f.slope * u; }
+double value(const Gaussian& f, double u) {
+  const double x = (u - f.centre) / f.width;
+  return std::exp(-x * x / 2);
+}
+double value(const Decay& f, double u) { return std::exp(-f.rate * u); }
+
+double integral(const Linear& f, double low, double high) {
+  return (high - low) * (f.constant + f.slope * (low + high) / 2);
+}
+double integral(const Gaussian& f, double low, double high) {
+  const double scale = f.width * std::numbers::sqrt2;
+  // Tails on the side of the interval: a difference of numbers near 1 would lose them.
+  const double sign = low > f.centre ? -1 : 1;
+  const double from = sign * (low - f.centre) / scale;
+  const double to = sign * (high - f.centre) / scale;
+  return sign * f.width * std::sqrt(std::numbers::pi / 2) * (std::erfc(-to) - std::erfc(-from));
+}
+double integral(const Decay& f, double low, double high) {
+  return std::exp(-f.rate * low) * -std::expm1(-f.rate * (high - low)) / f.rate;
+}
+
+std::size_t pixel_of(double u, std::size_t width) {
+  return static_cast<std::size_t>(u * static_cast<double>(width));
+}
+
+std::vector<Spectrum> row_of_colours(std::size_t width, bool coloured) {
+  std::vector<Spectrum> colours(width, Spectrum::grey(1));
+  for (std::size_t p = 0; coloured && p < width; ++p) {
+    const double t = static_cast<double>(p) / static_cast<double>(width - 1);
+    colours[p] = {1 - 0.8 * t, 0.5, 0.2 + 0.8 * t};
+  }
+  return colours;
+}
+
+std::vector<Product> checked(std::vector<Product> sum) {
+  if (sum.empty() || sum.size() > most_terms) {
+    throw std::invalid_argument("ProductTarget: there must be from 1 to 32 products");
+  }
+  const std::size_t dimensions = sum.front().factors.size();
+  if (dimensions == 0 || dimensions > most_terms) {
+    throw std::invalid_argument("ProductTarget: there must be from 1 to 32 factors");
+  }
+  for (const Product& product : sum) {
+    if (product.factors.size() != dimensions) {
+      throw std::invalid_argument("ProductTarget: all products must have as many factors");
+    }
+  }
+  return sum;
+}
+
+/// Paths of two lengths. The first coordinate crosses 32 stripes a pixel, of pixel 0, 1, 2 ... in
+/// turn. Those of even pixels bring `level`, whatever else; those of odd ones look at a second
+/// coordinate and bring `lobe` of it.
+class BranchingTarget final : public Target {
+ public:
+  struct Form {
+    std::size_t width;
+    double level;
+    Product lobe;  ///< of one factor
+  };
+  explicit BranchingTarget(Form form) : form_(std::move(form)) {}
+
+  ImageShape shape() const override { return {.width = form_.width, .height = 1}; }
+  Contribution at(Coordinates& point, Cost&) const override {
+    constexpr std::size_t stripes = 32;
+    const std::size_t pixel = pixel_of(point.uniform(), stripes * form_.width) % form_.width;
+    const double f = pixel % 2 == 0
+                         ? form_.level
+                         : form_.lobe.height * value(form_.lobe.factors[0], point.uniform());
+    return {pixel, Spectrum::grey(f), f};
+  }
+  std::vector<double> means() const override {
+    std::vector<double> all;
+    for (std::size_t p = 0; p < form_.width; ++p) {
+      all.push_back(p % 2 == 0 ? form_.level
+                               : form_.lobe.height * integral(form_.lobe.factors[0], 0, 1));
+    }
+    return all;
+  }
+
+ private:
+  Form form_;
+};
+
+/// Light transport to a row of receivers inside a sphere, by Embree's rays. Pixel p is the wall
+/// between two heights of the unit sphere, one of `width` bands of equal area. Its element is the
+/// mean radiance that leaves the band, Le + a (mean Le) / (1 - mean a) averaged over its area. A
+/// path is that of paths/plain. It starts at a uniform point of the wall (two coordinates). At each
+/// vertex it goes on with probability `survival` (one coordinate) in a cosine-distributed direction
+/// (two). It brings what is emitted where it arrives.
+class SphereTarget final : public Target {
+ public:
+  struct Form {
+    paths::SphereScene scene;
+    bool grey;
+    std::size_t width;
+    double survival;
+  };
+  /// The camera is of no account: paths start at the wall.
+  explicit SphereTarget(Form form)
+      : form_(std::move(form)),
+        world_(std::make_shared<const paths::SphereWorld>(form_.scene,
+                                                          paths::Camera{{0, 0, 0}, {0, 0, 1}})) {}
+
+  ImageShape shape() const override {
+    ImageShape shape{.width = form_.width, .height = 1};
+    if (!form_.grey) shape.components = {"red", "green", "blue"};
+    return shape;
+  }
+  Contribution at(Coordinates& point, Cost& cost) const override {
+    const double u = point.uniform();
+    const render::Vector3 position = render::direction_at(2 * u - 1, point.uniform());
+    paths::Tally tally;
+    paths::walk(*world_, world_->zones().vertex(position), form_.survival, point, tally, cost);
+    return {pixel_of(u, form_.width), tally.value,
+            form_.grey ? tally.value.red : paths::luminance(tally.value)};
+  }
+  std::vector<double> means() const override {
+    const paths::ZonedScene& law = world_->zones().law();
+    std::vector<double> all;
+    for (std::size_t p = 0; p < form_.width; ++p) {
+      const auto width = static_cast<double>(form_.width);
+      const double low = 2 * static_cast<double>(p) / width - 1;
+      const double high = 2 * static_cast<double>(p + 1) / width - 1;
+      Spectrum sum;
+      double below = -1;
+      for (std::size_t z = 0; z < law.zones.size(); ++z) {
+        const double top = form_.scene.zones[z].top;
+        const double common = std::max(0.0, std::min(high, top) - std::max(low, below));
+        const paths::Surface& surface = law.zones[z].surface;
+        sum += common / (high - low) * (surface.emission + surface.diffuse * law.mean_radiance());
+        below = top;
+      }
+      for (std::size_t c = 0; c < (form_.grey ? 1 : 3); ++c) all.push_back(component(sum, c));
+    }
+    return all;
+  }
+
+ private:
+  Form form_;
+  std::shared_ptr<const paths::SphereWorld> world_;
+};
+
+std::size_t dimensions_of(const Value& value) {
+  const std::uint64_t count = value.count("`dimensions`");
+  if (count < 1 || count > most_terms) {
+    throw InputError(value.where(), "`dimensions` must be from 1 to 32");
+  }
+  return count;
+}
+
+/// A number for all coordinates, or a list with one for each.
+std::vector<double> centre_of(const Value& value, std::size_t dimensions) {
+  if (value.kind() != Value::Kind::list) {
+    return std::vector<double>(dimensions, finite_number(value, "a lobe's centre"));
+  }
+  if (value.items().size() != dimensions) {
+    throw InputError(value.where(), "a lobe's centre must have a number for each of the " +
+                                        std::to_string(dimensions) + " dimensions");
+  }
+  std::vector<double> centre;
+  for (const Value& item : value.items()) centre.push_back(finite_number(item, "a lobe's centre"));
+  return centre;
+}
+
+Product lobe_of(const Value& value, std::size_t dimensions) {
+  require_keys(value, "a lobe", {"height", "centre", "width"});
+  const double width = above_zero(required_key(value, "a lobe", "width"), "a lobe's width");
+  Product lobe{at_least_zero(required_key(value, "a lobe", "height"), "a lobe's height"), {}};
+  for (const double centre : centre_of(required_key(value, "a lobe", "centre"), dimensions)) {
+    lobe.factors.emplace_back(Gaussian{centre, width});
+  }
+  return lobe;
+}
+
+SharedTarget mixture_of(const Value& value, std::size_t pixels) {
+  require_keys(value, "the mixture", {"dimensions", "base", "lobes"});
+  const std::size_t dimensions = dimensions_of(required_key(value, "the mixture", "dimensions"));
+  const Value& base = required_key(value, "the mixture", "base");
+  const Value& lobes = required_key(value, "the mixture", "lobes");
+  if (lobes.kind() != Value::Kind::list || lobes.items().size() >= most_terms) {
+    throw InputError(lobes.where(), "`lobes` must be a list of fewer than 32");
+  }
+  std::vector<Product> sum = {
+      {at_least_zero(base, "the mixture's base"), std::vector<Factor>(dimensions, Linear{})}};
+  double largest = sum[0].height;
+  for (const Value& item : lobes.items()) {
+    sum.push_back(lobe_of(item, dimensions));
+    largest = std::max(largest, sum.back().height);
+  }
+  if (largest == 0) throw InputError(base.where(), "the mixture must not be 0 everywhere");
+  return std::make_shared<ProductTarget>(std::move(sum), pixels, false);
+}
+
+SharedTarget peak(std::size_t pixels, bool coloured) {
+  return std::make_shared<ProductTarget>(
+      std::vector<Product>{{1, {Linear{0.05, 0.5}, Linear{}}},
+                           {40, {Gaussian{0.3, 0.02}, Gaussian{0.7, 0.02}}}},
+      pixels, coloured);
+}
+
+SharedTarget sphere_of(const paths::SceneDescription& scene, double survival, std::size_t pixels) {
+  return std::make_shared<SphereTarget>(
+      SphereTarget::Form{.scene = std::get<paths::SphereScene>(scene.form),
+                         .grey = scene.grey,
+                         .width = pixels,
+                         .survival = survival});
+}
+
+/// The zones as a scene of paths, whose camera nobody looks through here.
+paths::SceneDescription zones_of(const Value& zones, const std::string& folder) {
+  const Value camera = parse_flow("{position: [0, 0, 0], direction: [0, 0, 1]}");
+  return paths::read_scene(Value::map({{"zones", zones}, {"camera", camera}}, zones.where()),
+                           folder);
+}
+
+SharedTarget read_sphere(const Value& value, std::size_t pixels, const std::string& folder) {
+  require_keys(value, "the sphere", {"zones", "survival"});
+  const Value& survival = required_key(value, "the sphere", "survival");
+  const double q = above_zero(survival, "the sphere's survival");
+  if (q >= 1) throw InputError(survival.where(), "the sphere's survival must be below 1");
+  return sphere_of(zones_of(required_key(value, "the sphere", "zones"), folder), q, pixels);
+}
+
+SharedTarget named(Parameters& given, const std::string& name, std::size_t pixels) {
+  if (name == "constant") {
+    return std::make_shared<ProductTarget>(std::vector<Product>{{1, {Linear{}, Linear{}}}}, pixels,
+                                           false);
+  }
+  if (name == "peak" || name == "coloured_peak") return peak(pixels, name != "peak");
+  if (name == "boundary") {
+    return std::make_shared<ProductTarget>(
+        std::vector<Product>{{0.02, {Linear{}}}, {1, {Decay{20}}}}, pixels, false);
+  }
+  if (name == "mixture") {
+    return mixture_of(parse_flow("{dimensions: 4, base: 0.02, lobes: [{height: 30, centre: 0.3, "
+                                 "width: 0.1}, {height: 60, centre: 0.7, width: 0.08}]}"),
+                      pixels);
+  }
+  if (name == "branches") {
+    return std::make_shared<BranchingTarget>(
+        BranchingTarget::Form{pixels, 1, {100, {Gaussian{0.5, 0.004}}}});
+  }
+  if (name == "sphere" || name == "coloured_sphere") {
+    return sphere_of(paths::read_scene(Value::scalar(name), given.folder()), 0.8, pixels);
+  }
+  given.refuse("target", "there is no target `" + name + "`" +
+                             luminaire::alternatives(
+                                 name, {"constant", "peak", "coloured_peak", "boundary", "mixture",
+                                        "branches", "sphere", "coloured_sphere"}));
+}
+
+}  // namespace
+
+double value(const Factor& factor, double u) {
+  return std::visit([u](const auto& f) { return value(f, u); }, factor);
+}
+
+double integral(const Factor& factor, double low, double high) {
+  return std::visit([=](const auto& f) { return integral(f, low, high); }, factor);
+}
+
+ProductTarget::ProductTarget(std::vector<Product> sum, std::size_t width, bool coloured)
+    : sum_(checked(std::move(sum))),
+      dimensions_(sum_.front().factors.size()),
+      colours_(row_of_colours(width, coloured)),
+      coloured_(coloured) {}
+
+ImageShape ProductTarget::shape() const {
+  ImageShape shape{.width = colours_.size(), .height = 1};
+  if (coloured_) shape.components = {"red", "green", "blue"};
+  return shape;
+}
+
+Contribution ProductTarget::at(Coordinates& point, Cost&) const {
+  std::array<double, most_terms> products;
+  for (std::size_t k = 0; k < sum_.size(); ++k) products[k] = sum_[k].height;
+  std::size_t pixel = 0;
+  for (std::size_t d = 0; d < dimensions_; ++d) {
+    const double u = point.uniform();
+    if (d == 0) pixel = pixel_of(u, colours_.size());
+    for (std::size_t k = 0; k < sum_.size(); ++k) products[k] *= value(sum_[k].factors[d], u);
+  }
+  double f = 0;
+  for (std::size_t k = 0; k < sum_.size(); ++k) f += products[k];
+  const Spectrum value = f * colours_[pixel];
+  return {pixel, value, coloured_ ? paths::luminance(value) : f};
+}
+
+std::vector<double> ProductTarget::means() const {
+  const auto width = static_cast<double>(colours_.size());
+  std::vector<double> all;
+  for (std::size_t p = 0; p < colours_.size(); ++p) {
+    const auto left = static_cast<double>(p);
+    double sum = 0;
+    for (const Product& term : sum_) {
+      double product =
+          term.height * width * integral(term.factors[0], left / width, (left + 1) / width);
+      for (std::size_t d = 1; d < dimensions_; ++d) product *= integral(term.factors[d], 0, 1);
+      sum += product;
+    }
+    for (std::size_t c = 0; c < (coloured_ ? 3 : 1); ++c) {
+      all.push_back(sum * component(colours_[p], c));
+    }
+  }
+  return all;
+}
+
+std::vector<ParameterInformation> target_parameters() {
+  return {structure_parameter(
+              "target",
+              "the integrand: constant, peak, coloured_peak, boundary, mixture, branches, "
+              "sphere or coloured_sphere, or a map with the key mixture or sphere",
+              "peak"),
+          count_parameter("pixels", "pixels of the row that the first coordinate runs along", "8",
+                          {2, 4096})};
+}
+
+SharedTarget read_target(Parameters& given) {
+  const Value& target = given.structure("target");
+  const std::size_t pixels = given.count("pixels");
+  if (target.kind() == Value::Kind::scalar) return named(given, target.text(), pixels);
+  if (target.kind() != Value::Kind::map || target.members().size() != 1) {
+    given.refuse("target", "must be a name or a map with one key: mixture or sphere");
+  }
+  require_keys(target, "the target", {"mixture", "sphere"});
+  const auto& [kind, value] = target.members()[0];
+  return kind == "mixture" ? mixture_of(value, pixels) : read_sphere(value, pixels, given.folder());
+}
+
+}  // namespace assay::metropolis

@@ -1,0 +1,141 @@
+#include "reports/words/statements.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "reports/words/describe.h"
+#include "reports/words/number.h"
+
+namespace assay::reports {
+namespace {
+
+std::optional<std::size_t> place_of(const Suite& suite, const std::string& name) {
+  for (std::size_t t = 0; t < suite.tests.size(); ++t) {
+    if (suite.tests[t].name == name) return t;
+  }
+  return std::nullopt;
+}
+
+/// A test's effect on the answer. A test that decided nothing is silent, whatever was expected. So
+/// is a test that is not ok although its verdict is the expected one.
+enum class Voice { contradicts, silent, speaks };
+
+Voice voice_of(const Suite& suite, const std::optional<std::size_t>& place) {
+  if (!place) return Voice::silent;
+  const Test& test = suite.tests[*place];
+  if (test.verdict != Verdict::pass && test.verdict != Verdict::fail) return Voice::silent;
+  if (test.verdict != test.expected) return Voice::contradicts;
+  return test.ok ? Voice::speaks : Voice::silent;
+}
+
+constexpr std::size_t findings_shown = 2;
+
+std::string evidence_of(const Test& test) {
+  if (!is_evidence(test)) return {};
+  const Effect effect = deciding_channel(test).effect;
+  const std::string interval = named_effect_text(effect);
+  const std::string text =
+      interval.empty() ? headline_p(test).text() : effect_name(effect) + " " + interval;
+  // A pass that rests on a margin must not read as one without.
+  const double allowed = test.allow.value_or(0);
+  return allowed == 0 ? text : text + ", " + margin_text(allowed, effect) + " allowed";
+}
+
+}  // namespace
+
+const char* to_string(Answer answer) {
+  constexpr const char* names[] = {"yes", "only if", "no", "open", "contradicted"};
+  return names[static_cast<int>(answer)];
+}
+
+Answer answer(const Suite& suite, const Statement& statement) {
+  bool silent = statement.holds.empty() && statement.fails.empty();
+  for (const std::vector<std::string>* names : {&statement.holds, &statement.fails}) {
+    for (const std::string& name : *names) {
+      const Voice voice = voice_of(suite, place_of(suite, name));
+      if (voice == Voice::contradicts) return Answer::contradicted;
+      silent = silent || voice == Voice::silent;
+    }
+  }
+  if (silent) return Answer::open;
+  if (statement.fails.empty()) return Answer::yes;
+  return statement.holds.empty() ? Answer::no : Answer::only_if;
+}
+
+std::vector<std::string> answers(const Suite& suite) {
+  std::vector<std::string> all;
+  for (const Statement& statement : suite.statements)
+    all.emplace_back(to_string(answer(suite, statement)));
+  return all;
+}
+
+std::vector<Witness> witnesses(const Suite& suite, const std::vector<std::string>& names) {
+  std::vector<Witness> all;
+  for (const std::string& name : names) all.push_back({name, place_of(suite, name)});
+  std::stable_sort(all.begin(), all.end(), [&](const Witness& a, const Witness& b) {
+    return voice_of(suite, a.test) < voice_of(suite, b.test);
+  });
+  return all;
+}
+
+std::size_t statement_count(const Record& record) {
+  std::size_t sum = 0;
+  for (const Suite& suite : record.suites) sum += suite.statements.size();
+  return sum;
+}
+
+std::string answer_text(Answer answer) {
+  if (answer == Answer::open) return mark(Outcome::inconclusive) + " open";
+  if (answer == Answer::contradicted) return mark(Outcome::failed) + " contradicted";
+  return to_string(answer);
+}
+
+std::string whole_answer(const Suite& suite, const Statement& statement) {
+  const Answer given = answer(suite, statement);
+  return answer_text(given) + (given == Answer::only_if ? " " + statement.condition : "");
+}
+
+std::string statement_totals(const Record& record) {
+  std::map<Answer, std::size_t> counts;
+  for (const Suite& suite : record.suites) {
+    for (const Statement& statement : suite.statements) ++counts[answer(suite, statement)];
+  }
+  constexpr Answer order[] = {Answer::yes, Answer::only_if, Answer::no, Answer::open,
+                              Answer::contradicted};
+  std::string text;
+  for (const Answer given : order) {
+    if (counts[given] > 0)
+      text +=
+          fmt::format("{}{}\u00A0{}", text.empty() ? "" : ", ", counts[given], to_string(given));
+  }
+  return fmt::format("{}: {}.", counted(statement_count(record), "statement", "statements"), text);
+}
+
+const char* const statement_legend =
+    "The answer follows from the verdicts of the tests beside it. Yes: all have the verdict that "
+    "the statement asks for. No: they show the contrary. Only if: some show where it holds, the "
+    "others where it does not. Open: a test was undecided, invalid or not run. Contradicted: a "
+    "test came out otherwise than the suite expects.";
+
+std::string finding(const Suite& suite, const Witness& witness) {
+  if (!witness.test) return "not run";
+  const Test& test = suite.tests[*witness.test];
+  const std::string evidence = evidence_of(test);
+  if (test.ok && !evidence.empty()) return evidence;
+  const std::string verdict = mark(outcome(test)) + " " + verdict_text(test);
+  return evidence.empty() ? verdict : verdict + "; " + evidence;
+}
+
+std::string findings(const Suite& suite, const std::vector<std::string>& names) {
+  std::string text;
+  const std::vector<Witness> all = witnesses(suite, names);
+  for (std::size_t i = 0; i < all.size() && i < findings_shown; ++i)
+    text += fmt::format("{}{}: {}", i > 0 ? "; " : "", all[i].name, finding(suite, all[i]));
+  if (all.size() > findings_shown)
+    text += fmt::format("; and {} more", all.size() - findings_shown);
+  return text;
+}
+
+}  // namespace assay::reports

@@ -1,0 +1,169 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "stats/basics/for_each.h"
+#include "stats/images/image_family.h"
+#include "stats/images/image_halves.h"
+#include "stats/pyramids/image_noise.h"
+#include "stats/tails/tails.h"
+
+namespace assay::stats {
+
+// Internal to image_pyramid: its cells.
+
+// ---- Statistics of cells
+
+// Welch's statistic of the mean difference of many cells. Replicates come in parts, the halves of
+// either side. Each part has means and variances of its own. The difference is the sum over the
+// parts of factor * mean.
+struct WelchCells {
+  // The current part: mean and sum of squared deviations of each cell's sums (Welford 1962).
+  std::vector<double> mean;
+  std::vector<double> m2;
+  // The parts that are done.
+  std::vector<double> effect;                               // Estimate of a - b.
+  std::array<std::vector<double>, sides_of_pair> variance;  // Its squared error, by side.
+  std::vector<double> reciprocal_degrees;       // Sum of variance_g^2 / (n_g - 1) over the parts.
+  std::vector<unsigned char> halves_that_vary;  // A bit each.
+
+  void start(std::size_t cells);
+  // The replicates since the last call are a part of that half and side. Its mean enters with this
+  // factor.
+  void finish_part(std::size_t half, std::size_t side, double count, double factor);
+
+  // Sums that did not vary in both halves are too little known to be tested.
+  bool varied(std::size_t cell) const { return halves_that_vary[cell] == 3; }
+  // Sets effect, variance and degrees.
+  void put(std::size_t cell, CellNoise& noise) const;
+};
+
+// A cell whose neighbours are not known yet. finding.z is its own.
+struct Candidate {
+  ImageFinding finding;
+  CellNoise noise;
+};
+
+// The cells of one group in a tile that are farthest from zero by their own noise. It counts the
+// cells that they were chosen from.
+class Candidates {
+ public:
+  // Counts a cell with this value. True if it may be one of those that are kept.
+  bool wants(StudentValue value);
+  // finding.z must be set.
+  void keep(const Candidate& candidate);
+  const std::vector<Candidate>& kept() const { return kept_; }
+  double windows() const { return windows_; }
+
+ private:
+  static constexpr std::size_t most = 4;
+  std::vector<Candidate> kept_;
+  double windows_ = 0;
+};
+
+// The cell of a group that is farthest from zero once its neighbours are heard, so far. Among
+// equals the first by channel, row and column wins, in whichever order they come.
+struct BestCell {
+  ImageFinding finding;
+  StudentValue value{.t = 0, .degrees = 0};  // degrees 0: none yet.
+  double windows = 0;
+};
+// False if a cell cannot beat it by its own noise. Neighbours only take away.
+bool beats(const ImageFinding& finding, const BestCell& best);
+void offer(BestCell& best, const Candidate& candidate, const NoisePyramid& noise);
+
+// The value that a cell's own noise gives.
+StudentValue own_value(const CellNoise& noise);
+
+// ---- Fine cells
+
+// Nearly all cells are small, and an image has many replicates. So elements and cells of sides 2, 4
+// and 8 are tested tile by tile over all replicates, which keeps a tile in the cache. Larger cells
+// are summed from blocks of 4 x 4, which this pass leaves behind.
+
+inline constexpr std::size_t alternations = 3;  // By column, by row, checkerboard.
+inline constexpr std::uint32_t block_side = 4;
+// Blocks that cover so many elements of a row or column.
+inline std::size_t blocks_of(std::size_t count) { return (count + block_side - 1) / block_side; }
+
+// The smallest size that is not fine, but for a whole image.
+inline constexpr std::uint32_t coarse_size = 16;
+// True if the cells of a group are tested here.
+bool is_fine(const WindowGroup& group);
+
+// One image's weighted sums over blocks of 4 x 4 elements, the last cut off at the edge. Beside
+// them its sums with alternating signs, `alternations` a channel.
+struct BlockSums {
+  std::vector<double> blocks;
+  std::vector<double> alternating;
+};
+
+struct CoarseImages {
+  ImageExtent extent;  // In blocks.
+  // [half][side][replicate of the half]
+  std::array<std::array<std::vector<BlockSums>, sides_of_pair>, halves> images;
+  std::array<BlockSums, halves> varied;  // Number of elements that vary and have a weight.
+  BlockSums squared_error;               // Of a reference, weighted; empty if it has none.
+  BlockSums weights;                     // The elements', averaged over the halves.
+  BlockSums squared_weights;
+  std::vector<double> third;  // Third cumulants of the effects of elements, by block.
+};
+
+struct ElementCounts {
+  std::size_t tested = 0;
+  std::size_t equal_constants = 0;
+  std::size_t different_constants = 0;
+  std::size_t first_different = 0;  // An element, if there is any.
+  double difference = 0;            // Its own.
+  void merge(const ElementCounts& other);
+};
+
+// Input of the test of fine cells: replicates, halves with the weights that each gives the other,
+// groups of cells, and whether constants that differ are a finding.
+template <class Real>
+struct FineCells {
+  const ImagePair<Real>& pair;
+  const std::array<Half, halves>& half;
+  const std::vector<WindowGroup>& groups;
+  bool constants_decide;
+};
+
+struct FineFindings {
+  CoarseImages coarse;
+  NoisePyramid noise;
+  std::vector<std::vector<Candidates>> tiles;  // A group's candidates, in every tile.
+  ElementCounts counts;
+  std::vector<float> weights;  // Every element's, averaged over the halves.
+  std::span<double> z;         // Every element's alone, by its own noise.
+};
+
+// Nothing found yet; z has room for every element.
+template <class Real>
+FineFindings empty_findings(const ImagePair<Real>& pair, std::span<double> z);
+
+// Rows are taken in multiples of fine_rows, but for the image's last. Cells that begin in them
+// reach fine_rows_ahead rows further. The images and halves must have those rows.
+inline constexpr std::size_t fine_rows = 64;
+inline constexpr std::size_t fine_rows_ahead = 8;
+
+// Collects the candidates among the fine cells that begin in these rows, and fills in their blocks
+// and noise.
+template <class Real>
+void offer_fine_cells(const FineCells<Real>& cells, RowRange rows, FineFindings& found,
+                      const ForEach& for_each = one_by_one);
+
+// To be called after the last rows.
+void add_up_alternating(CoarseImages& coarse);
+
+// ---- Coarse cells
+
+// Offers one channel's coarse cells and alternating sums to the best of
+// their groups, from the sums over blocks.
+void offer_coarse_cells(const CoarseImages& coarse, const std::vector<WindowGroup>& groups,
+                        std::size_t channel, const NoisePyramid& noise,
+                        std::vector<BestCell>& best);
+
+}  // namespace assay::stats

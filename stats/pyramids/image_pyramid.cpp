@@ -1,0 +1,122 @@
+#include "stats/pyramids/image_pyramid.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "stats/basics/check.h"
+#include "stats/tails/tails.h"
+
+namespace assay::stats {
+namespace {
+
+constexpr const char* function_name = "image_pyramid";
+
+LogTails tails_of(StudentValue value) {
+  return std::isinf(value.degrees) ? normal_tails(value.t)
+                                   : student_t_tails(value.t, value.degrees);
+}
+
+// Turns a sum of weighted differences into their mean.
+void divide_by_weights(ImageFinding& finding, const std::vector<float>& weights,
+                       const ImageExtent& extent) {
+  double sum = 0;
+  const Rectangle& window = finding.window;
+  for (std::size_t y = window.y; y < window.y + window.height; ++y) {
+    for (std::size_t x = window.x; x < window.x + window.width; ++x) {
+      sum += weights[(y * extent.width + x) * extent.channels + finding.channel];
+    }
+  }
+  if (!(sum > 0)) return;
+  finding.effect.estimate /= sum;
+  finding.effect.standard_error /= sum;
+}
+
+}  // namespace
+
+template <class Real>
+RowPyramid<Real>::RowPyramid(const ImagePair<Real>& pair, const PyramidOptions& options)
+    : extent_(pair.a.extent),
+      for_each_(options.for_each),
+      constants_decide_(options.constants_decide) {
+  check::image_pair(function_name, pair);
+  if (!options.z.empty() && options.z.size() != extent_.elements()) {
+    check::fail({function_name, "z.size()"}, options.z.size(), "that of the elements");
+  }
+  if (options.z.empty()) own_z_.resize(extent_.elements());
+  groups_ = window_groups(extent_, coarse_size);
+  found_ = empty_findings(pair, options.z.empty() ? std::span(own_z_) : options.z);
+  best_.resize(groups_.size());
+}
+
+template <class Real>
+void RowPyramid<Real>::take(const ImagePair<Real>& pair, RowRange rows) {
+  const RowRange reached{rows.first, std::min(rows.last + fine_rows_ahead, extent_.height)};
+  const std::array<Half, halves> half = halves_of(pair, reached, for_each_);
+  for (const Half& each : half) {
+    const auto wrong = std::ranges::find_if_not(
+        each.variance, [](double variance) { return std::isfinite(variance); });
+    if (wrong == each.variance.end()) continue;
+    check::fail({function_name,
+                 "element " + std::to_string(each.first + static_cast<std::size_t>(
+                                                              wrong - each.variance.begin()))},
+                *wrong, "a finite difference with a finite variance");
+  }
+  offer_fine_cells<Real>({pair, half, groups_, constants_decide_}, rows, found_, for_each_);
+}
+
+template <class Real>
+void RowPyramid<Real>::offer_cells() {
+  found_.noise.build();
+  for (const std::vector<Candidates>& tile : found_.tiles) {
+    for (std::size_t g = 0; g < tile.size(); ++g) {
+      best_[g].windows += tile[g].windows();
+      for (const Candidate& candidate : tile[g].kept()) offer(best_[g], candidate, found_.noise);
+    }
+  }
+  add_up_alternating(found_.coarse);
+  for (std::size_t c = 0; c < extent_.channels; ++c) {
+    offer_coarse_cells(found_.coarse, groups_, c, found_.noise, best_);
+  }
+}
+
+template <class Real>
+void RowPyramid<Real>::add_best(ImageFamily& family) const {
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    const BestCell& best = best_[g];
+    if (best.windows == 0) continue;
+    ImageFinding finding = best.finding;
+    finding.log_p = log_p_two_sided(tails_of(best.value));
+    finding.adjusted_log_p = adjusted(finding.log_p, {best.windows, groups_[g].share});
+    divide_by_weights(finding, found_.weights, extent_);
+    family.groups.push_back(finding);
+  }
+}
+
+template <class Real>
+ImageFamily RowPyramid<Real>::family() {
+  const ElementCounts& counts = found_.counts;
+  ImageFamily family{.log_p = 0,
+                     .winner = {},
+                     .groups = {},
+                     .tested = counts.tested,
+                     .equal_constants = counts.equal_constants,
+                     .different_constants = counts.different_constants,
+                     .weights = {},
+                     .hidden_squares = found_.noise.hidden_squares()};
+  if (counts.different_constants > 0) {
+    family.groups.push_back(certain_finding(extent_, counts.first_different, counts.difference));
+  } else {
+    offer_cells();
+    add_best(family);
+  }
+  family.weights = std::move(found_.weights);
+  decide(family);
+  return family;
+}
+
+template class RowPyramid<float>;
+template class RowPyramid<double>;
+
+}  // namespace assay::stats

@@ -1,0 +1,72 @@
+#include "stats/variances/normal_variances.h"
+
+#include <cmath>
+
+#include "stats/basics/check.h"
+#include "stats/tails/tails.h"
+
+namespace assay::stats {
+namespace {
+
+void check_sample(const char* function, const Moments& x) {
+  check::at_least({function, "count"}, x.count, 2);
+  check::finite({function, "sum of squared deviations"}, x.m2);
+  if (x.m2 == 0) throw ZeroVariance(std::string(function) + ": zero variance");
+}
+
+void check_samples(const char* function, const Moments& x, const Moments& y) {
+  check::at_least({function, "count of x"}, x.count, 2);
+  check::at_least({function, "count of y"}, y.count, 2);
+  check::finite({function, "squared deviations of x"}, x.m2);
+  check::finite({function, "squared deviations of y"}, y.m2);
+  if (x.m2 == 0 || y.m2 == 0) throw ZeroVariance(std::string(function) + ": zero variance");
+}
+
+FDegrees degrees_of(const Moments& x, const Moments& y) {
+  return {static_cast<double>(x.count - 1), static_cast<double>(y.count - 1)};
+}
+
+}  // namespace
+
+TestResult chi_square_variance(const Moments& x, double null_variance) {
+  check_sample("chi_square_variance", x);
+  check::positive({"chi_square_variance", "null_variance"}, null_variance);
+  const double degrees = static_cast<double>(x.count - 1);
+  const double statistic = x.m2 / null_variance;
+  const LogTails tails = chi_square_tails(statistic, degrees);
+  return {statistic, {"chi-square", {degrees}}, tails.lower, tails.upper, Exactness::exact};
+}
+
+Interval chi_square_variance_interval(const Moments& x, double confidence) {
+  check_sample("chi_square_variance_interval", x);
+  check::inside_unit({"chi_square_variance_interval", "confidence"}, confidence);
+  const double degrees = static_cast<double>(x.count - 1);
+  const double log_tail = std::log((1 - confidence) / 2);
+  return {x.m2 / chi_square_quantile({Tail::upper, log_tail}, degrees),
+          x.m2 / chi_square_quantile({Tail::lower, log_tail}, degrees), confidence};
+}
+
+TestResult f_ratio(const Moments& x, const Moments& y, double null_ratio) {
+  check_samples("f_ratio", x, y);
+  check::positive({"f_ratio", "null_ratio"}, null_ratio);
+  const FDegrees degrees = degrees_of(x, y);
+  const double f = x.variance() / y.variance() / null_ratio;
+  const LogTails tails = f_tails(f, degrees);
+  return {f,
+          {"F", {degrees.numerator, degrees.denominator}},
+          tails.lower,
+          tails.upper,
+          Exactness::exact};
+}
+
+Interval f_ratio_interval(const Moments& x, const Moments& y, double confidence) {
+  check_samples("f_ratio_interval", x, y);
+  check::inside_unit({"f_ratio_interval", "confidence"}, confidence);
+  const FDegrees degrees = degrees_of(x, y);
+  const double ratio = x.variance() / y.variance();
+  const double log_tail = std::log((1 - confidence) / 2);
+  return {ratio / f_quantile({Tail::upper, log_tail}, degrees),
+          ratio / f_quantile({Tail::lower, log_tail}, degrees), confidence};
+}
+
+}  // namespace assay::stats
