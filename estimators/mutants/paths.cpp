@@ -142,7 +142,7 @@ std::shared_ptr<const Setup> paths_by(const Scene& scene, const auto& roulette, 
   });
 }
 
-// Where a path goes on from every albedo of `limit` or more, some surface must have a lower one.
+// A path goes on from every albedo of `limit` or more: some surface must have a lower one.
 void require_darker(const Parameters& parameters, const Scene& scene, double limit,
                     const char* why) {
   const auto dark = [&](const ZonedScene::Zone& zone) {

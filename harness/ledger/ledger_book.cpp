@@ -80,8 +80,8 @@ std::string with_check(std::string_view line, std::uint64_t hash) {
   return fmt::format("{} | {:08x}", line, hash & 0xffffffffU);
 }
 
-/// A pattern of a line, in which a blank is one or more. % stands for a text in quotes, # for
-/// another word; both are fields.
+/// A pattern of a line. A blank is one or more. The fields are %, a text in quotes, and #, another
+/// word.
 std::regex pattern_of(std::string pattern) {
   boost::replace_all(pattern, " ", " +");
   boost::replace_all(pattern, "%", R"(("(?:[^"\\]|\\["\\ntr])*"))");

@@ -225,7 +225,7 @@ struct Property {
   const char* mend;
 };
 
-/// What is told of each item, with blanks between.
+/// Joins what is told of each item by blanks.
 template <class List, class Tell>
 std::string all_of(const List& list, const Tell& tell) {
   std::vector<std::string> texts;

@@ -1,7 +1,7 @@
 #pragma once
 
-// What every report says of a record in the same words, and the steps to take about a claim that is
-// not as it should be. The JSON record holds the words as `display`.
+// These words all reports share, and the steps to take about a claim that is not as it should be.
+// The JSON record holds them as `display`.
 
 #include <optional>
 #include <string>

@@ -73,7 +73,7 @@ std::uint64_t samples_of(const Test& test, const std::string& mutant) {
 
 Number found_from(const Test& test) { return test.detectable ? test.detectable : test.detect; }
 
-/// What one test says of one mutant.
+/// A test's word on one mutant.
 struct Tested {
   const Test* test;
   std::size_t mutant;  ///< in the suite's estimators

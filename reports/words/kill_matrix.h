@@ -10,9 +10,9 @@
 
 namespace assay::reports {
 
-/// The best result of one method against one mutant. A kill by the fewest samples comes first, then
-/// an observation that was not finite, then the survival with the least detectable effect, then the
-/// first test. Samples are the primary estimates drawn of the mutant (a pixel).
+/// The best result of one method against one mutant. A kill by the fewest samples comes first. An
+/// observation that was not finite comes next, then the survival with the least detectable effect,
+/// then the first test. Samples are the primary estimates drawn of the mutant (a pixel).
 struct KillCell {
   std::string test;  ///< id
   /// "6400" or "1.05 M" samples killed a mutant. "< 0.36 %": it survived, and an effect of that

@@ -174,8 +174,8 @@ double correlation(const std::vector<float>& a, const std::vector<float>& b) {
   return sum / static_cast<double>(a.size());
 }
 
-// The mean correlation of pairs whose indices differ by `apart`, if it departs from that of pairs
-// that are a little further apart by too many errors.
+// The mean correlation of pairs whose indices differ by `apart`, if it departs by too many errors
+// from that of pairs a little further apart.
 std::optional<double> departure(const Scores& a, const Scores& b, std::size_t apart) {
   Moments near;
   Moments others;

@@ -46,7 +46,7 @@ class RowDistance {
 
  private:
   DistanceSums sums_;
-  DistanceSums open_;  // Of a range of elements that is not complete.
+  DistanceSums open_;  // The sums of a range of elements that is not complete.
 };
 
 // The same of whole images. Throws as above.
