@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/algorithm/string/replace.hpp>
 #include <charconv>
 #include <cmath>
-#include <regex>
 
 #include "harness/base/text_file.h"
 #include "harness/base/text_hash.h"
@@ -66,36 +64,12 @@ bool same_place(const LedgerSeries& a, const LedgerSeries& b) {
 constexpr std::string_view escaped = "\"\\\n\t\r";
 constexpr std::string_view letters = "\"\\ntr";
 
-/// The text that stands in quotes.
-std::string unquoted(std::string_view quoted) {
-  std::string text;
-  for (std::size_t i = 1; i + 1 < quoted.size(); ++i) {
-    text += quoted[i] == '\\' ? escaped[letters.find(quoted[++i])] : quoted[i];
-  }
-  return text;
-}
-
-/// "line | 1a2b3c4d": the low 32 bits of a hash.
-std::string with_check(std::string_view line, std::uint64_t hash) {
-  return fmt::format("{} | {:08x}", line, hash & 0xffffffffU);
-}
-
-/// A pattern of a line. A blank is one or more. The fields are %, a text in quotes, and #, another
-/// word.
-std::regex pattern_of(std::string pattern) {
-  boost::replace_all(pattern, " ", " +");
-  boost::replace_all(pattern, "%", R"(("(?:[^"\\]|\\["\\ntr])*"))");
-  boost::replace_all(pattern, "#", R"(([^ "]\S*))");
-  return std::regex(pattern + " *");
-}
-
-/// A number in one word; nullopt if it is none, or not finite.
 template <class Value>
-std::optional<Value> number_in(const std::csub_match& word) {
+std::optional<Value> whole(std::string_view word) {
   Value value{};
-  const auto [end, error] = std::from_chars(word.first, word.second, value);
-  const bool whole = error == std::errc() && end == word.second;
-  return whole && std::isfinite(static_cast<double>(value)) ? std::optional(value) : std::nullopt;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc() || end != word.data() + word.size()) return std::nullopt;
+  return value;
 }
 
 }  // namespace
@@ -184,8 +158,11 @@ class LedgerReader {
           "this is no ledger of this version: its first line must be `assay-ledger 2 budget B`; "
           "name another file for the ledger");
     }
-    const auto budget = is(lines_[0], header_line_) ? number_in<double>(field_[1]) : std::nullopt;
-    if (!budget || !is_error_rate(*budget)) refuse("the budget must be a number from 1e-9 to 0.5");
+    LineFields fields(lines_[0].substr(std::string_view(version_words).size()));
+    const std::optional<double> budget = fields.number();
+    if (!budget || !fields.at_end() || !is_error_rate(*budget)) {
+      refuse("the budget must be a number from 1e-9 to 0.5");
+    }
     book_ = LedgerBook(*budget);
     book_.lines_ = {std::string(lines_[0])};
     book_.check_ = text_hash(lines_[0]);
@@ -212,99 +189,122 @@ class LedgerReader {
         mend());
   }
 
-  /// Reads the line's fields, if it has the pattern.
-  bool is(std::string_view line, const std::regex& pattern) {
-    return std::regex_match(line.data(), line.data() + line.size(), field_, pattern);
-  }
-  template <class Value = double>
-  Value number(std::size_t field) const {
-    const std::optional<Value> value = number_in<Value>(field_[field]);
-    if (!value) changed();
-    return *value;
-  }
-
   void take(std::string_view line) {
     if (line.empty() || line.starts_with("#")) return book_.keep(std::string(line));
     if (line.starts_with("begin ")) return take_begin(line);
     if (ended_) refuse("`end` must be the last line" + mend());
     if (line.starts_with("end ")) return take_end(line);
-    const std::string_view checked = line.substr(0, line.rfind(" | "));
-    const std::uint64_t check = text_hash(checked, book_.check_);
-    if (with_check(checked, check) != line) changed();
-    if (is(checked, series_line_)) {
-      take_series();
-    } else if (is(checked, night_line_)) {
-      take_night();
+    const auto [checked, check] = split_check(line);
+    const std::uint64_t wanted = text_hash(checked, book_.check_);
+    if (with_check(std::string(checked), wanted) != line) changed();
+    LineFields fields(checked);
+    if (line.starts_with("series ")) {
+      take_series(fields);
     } else {
-      changed();
+      take_night(fields);
     }
-    book_.check_ = check;
+    if (!fields.at_end()) changed();
+    book_.check_ = wanted;
     book_.keep(std::string(line));
   }
 
   void take_begin(std::string_view line) {
-    if (!is(line, begin_line_)) {
+    LineFields fields(line);
+    fields.word("begin");
+    const std::optional<std::string> test = fields.text();
+    if (!test || !fields.at_end()) {
       refuse("after `begin` stands the test's id in double quotes, as in the lines of its nights");
     }
-    const std::string test = unquoted(field_.str(1));
-    if (!std::ranges::count(book_.series_, test, &LedgerSeries::test)) {
-      refuse(fmt::format("the ledger has no test {} before this line", in_quotes(test)));
+    const auto known = [&](const LedgerSeries& series) { return series.test == *test; };
+    if (std::none_of(book_.series_.begin(), book_.series_.end(), known)) {
+      refuse(fmt::format("the ledger has no test {} before this line", in_quotes(*test)));
     }
-    book_.begin(test);
+    book_.begin(*test);
   }
 
   void take_end(std::string_view line) {
-    ended_ = is(line, end_line_) && number_in<std::size_t>(field_[1]) == book_.nights_.size();
-    if (ended_) return;
-    refuse(fmt::format("the ledger has {} nights before this line: lines were added or taken out",
-                       book_.nights_.size()) +
-           mend());
+    LineFields fields(line);
+    fields.word("end");
+    const std::optional<std::uint64_t> count = fields.count();
+    if (!count || !fields.at_end() || *count != book_.nights_.size()) {
+      refuse(fmt::format("the ledger has {} nights before this line: lines were added or taken out",
+                         book_.nights_.size()) +
+             mend());
+    }
+    ended_ = true;
   }
 
-  void take_series() {
-    LedgerSeries series{.hash = field_.str(1),
-                        .weight = number(3),
-                        .test = unquoted(field_.str(4)),
-                        .channel = unquoted(field_.str(5))};
-    if (field_[2].matched) series.reference_error = number(2);
-    book_.series_.push_back(std::move(series));
+  template <class Value>
+  Value required(std::optional<Value> value) const {
+    if (!value) changed();
+    return *value;
+  }
+  double named(LineFields& fields, const char* name) const {
+    if (!fields.word(name)) changed();
+    return required(fields.number());
+  }
+
+  void take_series(LineFields& fields) {
+    LedgerSeries series;
+    fields.word("series");
+    series.hash = required(fields.any_word());
+    if (fields.word("estimates")) {
+      series.reference_error = named(fields, "reference");
+      if (!(*series.reference_error >= 0)) changed();
+    } else if (!fields.word("p-values")) {
+      changed();
+    }
+    series.weight = named(fields, "weight");
+    if (!(series.weight > 0 && series.weight <= 1)) changed();
+    series.test = required(fields.text());
+    series.channel = required(fields.text());
+    book_.series_.push_back(series);
     book_.closed_.push_back(false);
   }
 
-  void take_night() {
-    const LedgerSeries* series = book_.open_series({.hash = field_.str(4),
-                                                    .test = unquoted(field_.str(10)),
-                                                    .channel = unquoted(field_.str(11))});
-    if (series == nullptr) refuse("no open series above has this night's hash and test" + mend());
-    if (series->has_estimates() == field_[5].matched) changed();
-    LedgerNight night{.date = field_.str(1),
-                      .seed = number<std::uint64_t>(2),
-                      .commit = field_.str(3),
-                      .series = static_cast<std::size_t>(series - book_.series_.data())};
-    if (field_[5].matched) {
-      night.value = NightPValue{.log_p = number(5)};
-    } else {
-      night.value = stats::NightEstimate{.difference = number(6),
-                                         .standard_error = number(7),
-                                         .observations = number(8),
-                                         .effective = number(9)};
+  NightValue value(LineFields& fields) const {
+    if (fields.word("log-p")) {
+      const NightPValue night{.log_p = required(fields.number())};
+      if (!(night.log_p <= 0)) changed();
+      return night;
     }
-    book_.nights_.push_back(std::move(night));
+    stats::NightEstimate night;
+    night.difference = named(fields, "estimate");
+    night.standard_error = named(fields, "error");
+    night.observations = named(fields, "observations");
+    night.effective = named(fields, "effective");
+    const bool possible =
+        night.standard_error >= 0 && night.observations > 0 && night.effective >= 1;
+    if (!possible) changed();
+    return night;
+  }
+
+  void take_night(LineFields& fields) {
+    LedgerNight night;
+    if (!fields.word("night")) changed();
+    night.date = required(fields.any_word());
+    if (!fields.word("seed")) changed();
+    night.seed = required(fields.count());
+    if (!fields.word("commit")) changed();
+    night.commit = required(fields.any_word());
+    if (!fields.word("series")) changed();
+    LedgerSeries of{.hash = required(fields.any_word())};
+    night.value = value(fields);
+    of.test = required(fields.text());
+    of.channel = required(fields.text());
+    const LedgerSeries* series = book_.open_series(of);
+    if (series == nullptr) refuse("no open series above has this night's hash and test" + mend());
+    if (series->has_estimates() != std::holds_alternative<stats::NightEstimate>(night.value)) {
+      changed();
+    }
+    night.series = static_cast<std::size_t>(series - book_.series_.data());
+    book_.nights_.push_back(night);
   }
 
   std::string file_;
   std::vector<std::string_view> lines_;
   std::size_t number_ = 0;
   bool ended_ = false;
-  const std::regex header_line_ = pattern_of("assay-ledger 2 budget #");
-  const std::regex series_line_ =
-      pattern_of("series # (?:estimates reference #|p-values) weight # % %");
-  const std::regex night_line_ = pattern_of(
-      "night # seed # commit # series # "
-      "(?:log-p #|estimate # error # observations # effective #) % %");
-  const std::regex begin_line_ = pattern_of("begin %");
-  const std::regex end_line_ = pattern_of("end #");
-  std::cmatch field_;  ///< of the line that was read last
   LedgerBook book_;
 };
 
@@ -323,6 +323,76 @@ std::string in_quotes(std::string_view text) {
     }
   }
   return out + "\"";
+}
+
+std::string with_check(const std::string& line, std::uint64_t hash) {
+  return fmt::format("{} | {:08x}", line, hash & 0xffffffffU);
+}
+
+std::pair<std::string_view, std::string_view> split_check(std::string_view line) {
+  const std::size_t bar = line.rfind(" | ");
+  if (bar == std::string_view::npos) return {line, {}};
+  return {line.substr(0, bar), line.substr(bar + 3)};
+}
+
+void LineFields::skip_blanks() {
+  rest_.remove_prefix(std::min(rest_.find_first_not_of(' '), rest_.size()));
+}
+
+std::string_view LineFields::next() {
+  skip_blanks();
+  return rest_.substr(0, rest_.find(' '));
+}
+
+bool LineFields::word(std::string_view wanted) {
+  if (next() != wanted) return false;
+  rest_.remove_prefix(wanted.size());
+  return true;
+}
+
+std::optional<std::string> LineFields::any_word() {
+  const std::string_view found = next();
+  if (found.empty() || found.front() == '"') return std::nullopt;
+  rest_.remove_prefix(found.size());
+  return std::string(found);
+}
+
+std::optional<std::uint64_t> LineFields::count() {
+  const std::string_view found = next();
+  rest_.remove_prefix(found.size());
+  return whole<std::uint64_t>(found);
+}
+
+std::optional<double> LineFields::number() {
+  const std::string_view found = next();
+  rest_.remove_prefix(found.size());
+  const std::optional<double> value = whole<double>(found);
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+std::optional<std::string> LineFields::text() {
+  skip_blanks();
+  if (!rest_.starts_with('"')) return std::nullopt;
+  std::string out;
+  for (std::size_t i = 1; i < rest_.size(); ++i) {
+    if (rest_[i] == '"') {
+      rest_.remove_prefix(i + 1);
+      return out;
+    }
+    if (rest_[i] != '\\') {
+      out += rest_[i];
+      continue;
+    }
+    const std::size_t at = ++i < rest_.size() ? letters.find(rest_[i]) : std::string_view::npos;
+    if (at == std::string_view::npos) return std::nullopt;
+    out += escaped[at];
+  }
+  return std::nullopt;
+}
+
+bool LineFields::at_end() {
+  skip_blanks();
+  return rest_.empty();
 }
 
 }  // namespace assay::harness
