@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "harness/draws/sampler_setup.h"
 #include "harness/families/families.h"
