@@ -23,11 +23,6 @@ void PooledNoise::add(const Powers& powers) {
   common_.sixths += powers.sixths;
 }
 
-void PooledNoise::add_element(bool noisier) {
-  elements_ += 1;
-  noisier_ += noisier ? 1 : 0;
-}
-
 PooledNoise::Powers PooledNoise::powers_of(std::size_t direction, const Bin& bin) {
   return stats::powers_of((direction == 0 ? 1.0 : -1.0) * bin.sum / bin.count, bin.count);
 }
@@ -61,7 +56,6 @@ void PooledNoise::add_rare(double deviation) {
 void PooledNoise::merge(const PooledNoise& other) {
   add(other.common_);
   elements_ += other.elements_;
-  noisier_ += other.noisier_;
   if (other.top_ == no_octave) return;
   raise(other.top_);
   for (std::size_t d = 0; d < rare_.size(); ++d) {
@@ -98,6 +92,16 @@ PooledNoise::Moments PooledNoise::cut_off(int octave) const {
           .squared_error = all.sixths / square(all.count)};
 }
 
+double PooledNoise::rare(int octave) const {
+  double count = 0;
+  for (const Tail& tail : rare_) {
+    for (int i = 0; i <= std::min(top_ - octave, octaves - 1); ++i) {
+      count += static_cast<double>(tail[static_cast<std::size_t>(i)].count);
+    }
+  }
+  return count;
+}
+
 double PooledNoise::hidden_squares(double replicates) const {
   const Moments all = cut_off(top_);
   if (!(all.third > 0)) return 0;
@@ -115,6 +119,7 @@ NoisePyramid::NoisePyramid(const ImageExtent& extent,
   level.channels = extent.channels;
   for (std::size_t s = 0; s < sides_of_pair; ++s) {
     replicates_[s] = static_cast<double>(replicates[s]);
+    inverse_[s] = replicates[s] > 0 ? 1 / replicates_[s] : 0;
     level.noise[s].resize(level.width * level.height * level.channels);
   }
 }
@@ -142,49 +147,73 @@ void NoisePyramid::build() {
   }
 }
 
-NoisePyramid::Kept NoisePyramid::kept(const CellNoise& cell, const Rectangle& window,
-                                      std::size_t channel) const {
+NoisePyramid::Around NoisePyramid::around(const Rectangle& window, std::size_t channel) const {
   constexpr std::size_t sides_around = 4;
-  constexpr double errors_of_signs = 6;
   const std::uint32_t size = std::max(window.width, window.height);
   const std::size_t x = window.x + window.width / 2;
   const std::size_t y = window.y + window.height / 2;
-  const double direction = cell.effect < 0 ? 1 : -1;
-  const double toward = cell.weight < 0 ? -direction : direction;
-  const double variance = cell.variance[0] + cell.variance[1];
-  bool alike = true;
-  double whole = 0;
-  double beyond_error = 0;
+  Around found{.blocks = {}, .first = -PooledNoise::no_octave, .last = PooledNoise::no_octave};
   for (const Level& level : levels_) {
     if (level.side < sides_around * size && &level != &levels_.back()) continue;
     const std::size_t block_of = level.index(x / level.side, y / level.side, channel);
-    const PooledNoise& a = level.noise[0][block_of];
-    const PooledNoise& b = level.noise[1][block_of];
-    if (replicates_[1] > 0) {
-      const double more = std::abs(a.noisier() - b.noisier());
-      alike = alike && more <= errors_of_signs * std::sqrt(a.noisier() + b.noisier());
-    }
-    const int top = std::max(a.top(), b.top());
-    for (int octave = top; octave > top - PooledNoise::octaves; --octave) {
-      double second = 0;
-      double third = 0;
-      double squared_error = 0;
-      for (std::size_t s = 0; s < sides_of_pair; ++s) {
-        const double n = replicates_[s];
-        if (n == 0) continue;
-        const PooledNoise::Moments moments = level.noise[s][block_of].cut_off(octave);
-        second += moments.second / n;
-        third += (s == 0 ? toward : -toward) * moments.third / (n * n);
-        squared_error += moments.squared_error / square(n * n);
-      }
-      if (!(second > 0)) continue;
-      whole = std::max(whole, third / second);
-      beyond_error = std::max(beyond_error, (third - std::sqrt(squared_error)) / second);
+    found.blocks.push_back({&level.noise[0][block_of], &level.noise[1][block_of]});
+    for (const PooledNoise* side : found.blocks.back()) {
+      if (side->top() == PooledNoise::no_octave) continue;
+      found.last = std::max(found.last, side->top());
+      found.first = std::min(found.first, side->top() - PooledNoise::octaves + 1);
     }
   }
-  const double growth = std::max({0.0, direction * cell.third / variance,
-                                  std::abs(cell.weight) * (alike ? beyond_error : whole)});
-  const double standard_error = std::sqrt(variance + std::abs(cell.effect) * growth);
+  // Without rare values every octave is the same.
+  if (found.last == PooledNoise::no_octave) found.first = found.last;
+  return found;
+}
+
+double NoisePyramid::rare_difference(const Sides& here, int octave) const {
+  constexpr double errors = 3;
+  const double a = here[0]->rare(octave) * inverse_[0];
+  const double b = here[1]->rare(octave) * inverse_[1];
+  if (!(a + b > 0)) return 0;
+  const double error = std::sqrt(a * inverse_[0] + b * inverse_[1]);
+  const double least = std::max(0.0, std::abs(a - b) - errors * error);
+  return std::copysign(least, a - b) / (a + b);
+}
+
+double NoisePyramid::growth(const Sides& here, int octave, double toward, double dealt) const {
+  const PooledNoise::Moments a = here[0]->cut_off(octave);
+  const PooledNoise::Moments b = here[1]->cut_off(octave);
+  const double second = a.second * inverse_[0] + b.second * inverse_[1];
+  if (!(second > 0)) return 0;
+  const double a2 = square(inverse_[0]);
+  const double b2 = square(inverse_[1]);
+  const double error = std::sqrt(a.squared_error * square(a2) + b.squared_error * square(b2));
+  const double seen = toward * (a.third * a2 - b.third * b2) - error;
+  const double part = replicates_[0] / (replicates_[0] + replicates_[1]);
+  const double of_all = part * a.third + (1 - part) * b.third;
+  const double both = toward * of_all * ((1 + dealt) * a2 - (1 - dealt) * b2) /
+                      (part * (1 + dealt) + (1 - part) * (1 - dealt));
+  return std::max(seen, both) / second;
+}
+
+NoisePyramid::Kept NoisePyramid::kept(const CellNoise& cell, const Rectangle& window,
+                                      std::size_t channel) const {
+  const double direction = cell.effect < 0 ? 1 : -1;
+  const double toward = cell.weight < 0 ? -direction : direction;
+  const Around near = around(window, channel);
+  double largest = 0;
+  double dealt = 0;
+  for (int octave = near.first; octave <= near.last; ++octave) {
+    for (const Sides& here : near.blocks) {
+      const double difference = rare_difference(here, octave);
+      if (toward * difference > toward * dealt) dealt = difference;
+    }
+    for (const Sides& here : near.blocks) {
+      largest = std::max(largest, growth(here, octave, toward, dealt));
+    }
+  }
+  const double variance = cell.variance[0] + cell.variance[1];
+  const double own = direction * cell.third / variance;
+  const double standard_error = std::sqrt(
+      variance + std::abs(cell.effect) * std::max(std::abs(cell.weight) * largest, own));
   return {.t = cell.effect / standard_error, .standard_error = standard_error};
 }
 

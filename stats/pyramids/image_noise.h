@@ -32,8 +32,8 @@ class PooledNoise {
   void add(const Powers& powers);
   // Takes a deviation, not 0, that is among those that are added.
   void add_rare(double deviation);
-  // Takes an element that varies; `noisier` if it has more relative variance than the other side's.
-  void add_element(bool noisier);
+  // Takes an element that varies.
+  void add_element() { elements_ += 1; }
   void merge(const PooledNoise& other);
 
   // Mean square and mean cube of the deviations cut off at +-2^octave, and the cube's squared
@@ -45,8 +45,10 @@ class PooledNoise {
   };
   Moments cut_off(int octave) const;
   static constexpr int octaves = 16;
+  static constexpr int no_octave = -100'000;  // top() without any.
   int top() const { return top_; }  // No rare deviation is beyond +-2^top.
-  double noisier() const { return noisier_; }
+  // Number of rare deviations in this octave or beyond it.
+  double rare(int octave) const;
 
   // The square, summed over the elements, of the mean that each lacks if it missed the values that
   // carry the skewness in so many replicates. Those are taken to be of one size, as in a law of two
@@ -65,8 +67,6 @@ class PooledNoise {
 
   Powers common_;  // Without the rare, but for their count.
   double elements_ = 0;
-  double noisier_ = 0;
-  static constexpr int no_octave = -100'000;
   int top_ = no_octave;
   std::array<Tail, 2> rare_ = {};  // Upward, downward; from the top down.
 };
@@ -102,9 +102,10 @@ class NoisePyramid {
   // its side up to the whole image. A block's deviations are cut off at every octave, so that the
   // rarest do not drown the others.
   //
-  // Two sides of one law have k3 = 0, and a block's k3 counts beyond its error. It counts whole
-  // where the sides have different laws: one is noisier for its mean in too many elements (sign
-  // test).
+  // A block's k3 is what the sides show beyond its error. Few rare values do not tell whose they
+  // are, but less rare ones may. So k3 is also what all values of the block give if a and b have
+  // them at rates of 1 + r to 1 - r. For r stands the largest such difference, less 3 standard
+  // errors, of the counts beyond this octave or a smaller one in the blocks around.
   struct Kept {
     double t = 0;
     double standard_error = 0;
@@ -126,7 +127,19 @@ class NoisePyramid {
       return (y * width + x) * channels + channel;
     }
   };
+  using Sides = std::array<const PooledNoise*, sides_of_pair>;
+  // The blocks around a cell, and the octaves that any of them tells apart.
+  struct Around {
+    std::vector<Sides> blocks;
+    int first = 0;
+    int last = 0;
+  };
+  Around around(const Rectangle& window, std::size_t channel) const;
+  double rare_difference(const Sides& here, int octave) const;
+  double growth(const Sides& here, int octave, double toward, double dealt) const;
+
   std::array<double, sides_of_pair> replicates_ = {};  // 0: no side, but a reference.
+  std::array<double, sides_of_pair> inverse_ = {};     // 1 / replicates_, 0 of a reference.
   std::vector<Level> levels_;
 };
 

@@ -161,6 +161,28 @@ CALIBRATED(ImagePyramid, RarerLightOfOneSideKeepsTheLevel, 846, tests::repetitio
   return image_pyramid(a.view(), smooth_stack(random).view()).log_p;
 }
 
+// Four highlights of 4 x 4 in a dull picture. One side has their light in one of 75 values, of sizes
+// up to 200 times the least. The other side is smooth there.
+constexpr double largest_over_least = 200;
+OwnedStack highlight_stack(Philox& random, bool rare) {
+  constexpr double least = 0.5;
+  const double mean_size = least * (largest_over_least - 1) / std::log(largest_over_least);
+  return draw_stack(lit, 16, [&](std::size_t e) {
+    const std::size_t x = e % lit.width % 12;
+    const std::size_t y = e / lit.width % 8;
+    const bool highlight = x >= 4 && x < 8 && y >= 2 && y < 6;
+    if (!highlight) return 0.05 * std::abs(1 + 0.3 * random.normal());
+    if (!rare) return 0.25 * (1 + 0.002 * random.normal());
+    const double size = least * std::pow(largest_over_least, random.uniform());
+    return random.uniform() < 0.25 / mean_size ? size : 0;
+  });
+}
+CALIBRATED(ImagePyramid, RareHighlightsOfOneSideKeepTheLevel, 850, tests::repetitions(2000),
+           Shape::at_most_uniform) {
+  const OwnedStack a = highlight_stack(random, true);
+  return image_pyramid(a.view(), highlight_stack(random, false).view()).log_p;
+}
+
 // Welch's test of every element, which knows no neighbours.
 CAUGHT(ImagePyramid, ElementsWithoutTheirNeighboursAreCaughtOnRareLight, 846, 200,
        Shape::at_most_uniform) {
