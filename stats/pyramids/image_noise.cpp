@@ -212,8 +212,8 @@ NoisePyramid::Kept NoisePyramid::kept(const CellNoise& cell, const Rectangle& wi
   }
   const double variance = cell.variance[0] + cell.variance[1];
   const double own = direction * cell.third / variance;
-  const double standard_error = std::sqrt(
-      variance + std::abs(cell.effect) * std::max(std::abs(cell.weight) * largest, own));
+  const double standard_error =
+      std::sqrt(variance + std::abs(cell.effect) * std::max(std::abs(cell.weight) * largest, own));
   return {.t = cell.effect / standard_error, .standard_error = standard_error};
 }
 

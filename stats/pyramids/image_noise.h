@@ -46,7 +46,7 @@ class PooledNoise {
   Moments cut_off(int octave) const;
   static constexpr int octaves = 16;
   static constexpr int no_octave = -100'000;  // top() without any.
-  int top() const { return top_; }  // No rare deviation is beyond +-2^top.
+  int top() const { return top_; }            // No rare deviation is beyond +-2^top.
   // Number of rare deviations in this octave or beyond it.
   double rare(int octave) const;
 
@@ -103,9 +103,9 @@ class NoisePyramid {
   // rarest do not drown the others.
   //
   // A block's k3 is what the sides show beyond its error. Few rare values do not tell whose they
-  // are, but less rare ones may. So k3 is also what all values of the block give if a and b have
-  // them at rates of 1 + r to 1 - r. For r stands the largest such difference, less 3 standard
-  // errors, of the counts beyond this octave or a smaller one in the blocks around.
+  // are, but less rare ones may. So all values of a block are also dealt to a and b at rates of
+  // 1 + r to 1 - r. Counts of values beyond an octave have such an r, less 3 standard errors. The
+  // largest of this octave and smaller ones, in all these blocks, is taken.
   struct Kept {
     double t = 0;
     double standard_error = 0;

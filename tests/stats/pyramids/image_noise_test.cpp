@@ -99,15 +99,16 @@ TEST(NoisePyramid, HasTheVarianceOfEqualMeans) {
   const std::vector<double> rare = with_rare(40);
   const double alone = -3 / std::sqrt(2.0 / 16);
   EXPECT_NEAR(pyramid_of({clean, normal_values(random)}).kept(dark, pixel, 0).t, alone, 0.3);
-  // k3 is that of `more` values of 50 on one side and `fewer` on the other, of 1024 values each. k2
-  // is theirs and the normal values', in means of 16.
+  // Of 1024 values one side has `more` of 50 and the other `fewer`. Their squares and those of the
+  // normal values are k2, in means of 16.
   const auto t = [](double more, double fewer, double k3_values) {
     const double k3 = k3_values / 1024 * 125000;
     const double k2 = (more + fewer) / 1024 * 2499 + 2;
     return -3 / std::sqrt(2.0 / 16 + 3 * k3 / (16 * k2));
   };
   // Few rare values: their difference less its error.
-  EXPECT_NEAR(pyramid_of({with_rare(8), with_rare(1)}).kept(dark, pixel, 0).t, t(8, 1, 7 - 3), 0.02);
+  EXPECT_NEAR(pyramid_of({with_rare(8), with_rare(1)}).kept(dark, pixel, 0).t, t(8, 1, 7 - 3),
+              0.02);
   // Many of one side alone: all of them, but for 3 errors of their rates' difference.
   EXPECT_NEAR(pyramid_of({rare, clean}).kept(dark, pixel, 0).t, t(40, 0, 40 - std::sqrt(40)), 0.02);
   // One giant, whose side is told by the 40.
