@@ -406,8 +406,7 @@ class FineTiles {
             return;
           }
           ++counts_.tested;
-          found_.noise.at(0, x, y, c).add_element();
-          found_.noise.at(1, x, y, c).add_element();
+          note_noisier(i, element, x, y, c);
           Candidate candidate;
           candidate.finding.window = {static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
                                       1, 1};
@@ -427,6 +426,16 @@ class FineTiles {
     if (side == 1 && cells_.pair.b == nullptr) return cells_.pair.reference->value[element];
     const std::size_t here = element - cells_.half[0].first;
     return std::midpoint(cells_.half[0].mean[side][here], cells_.half[1].mean[side][here]);
+  }
+
+  // Which side has the larger variance over its squared mean?
+  void note_noisier(std::size_t i, std::size_t element, std::size_t x, std::size_t y,
+                    std::size_t c) {
+    const auto noise = [&](std::size_t side) {
+      return elements_.variance[side][i] * std::pow(mean_of(1 - side, element), 2);
+    };
+    found_.noise.at(0, x, y, c).add_element(noise(0) > noise(1));
+    if (cells_.pair.b != nullptr) found_.noise.at(1, x, y, c).add_element(noise(1) > noise(0));
   }
 
   double weight_of(std::size_t element) const {

@@ -23,6 +23,11 @@ void PooledNoise::add(const Powers& powers) {
   common_.sixths += powers.sixths;
 }
 
+void PooledNoise::add_element(bool noisier) {
+  elements_ += 1;
+  noisier_ += noisier ? 1 : 0;
+}
+
 PooledNoise::Powers PooledNoise::powers_of(std::size_t direction, const Bin& bin) {
   return stats::powers_of((direction == 0 ? 1.0 : -1.0) * bin.sum / bin.count, bin.count);
 }
@@ -56,6 +61,7 @@ void PooledNoise::add_rare(double deviation) {
 void PooledNoise::merge(const PooledNoise& other) {
   add(other.common_);
   elements_ += other.elements_;
+  noisier_ += other.noisier_;
   if (other.top_ == no_octave) return;
   raise(other.top_);
   for (std::size_t d = 0; d < rare_.size(); ++d) {
@@ -168,17 +174,25 @@ NoisePyramid::Around NoisePyramid::around(const Rectangle& window, std::size_t c
   return found;
 }
 
-double NoisePyramid::rare_difference(const Sides& here, int octave) const {
-  constexpr double errors = 3;
-  const double a = here[0]->rare(octave) * inverse_[0];
-  const double b = here[1]->rare(octave) * inverse_[1];
-  if (!(a + b > 0)) return 0;
-  const double error = std::sqrt(a * inverse_[0] + b * inverse_[1]);
-  const double least = std::max(0.0, std::abs(a - b) - errors * error);
-  return std::copysign(least, a - b) / (a + b);
+bool NoisePyramid::of_one_law(const Around& near) const {
+  constexpr double errors_of_signs = 6;
+  constexpr double errors_of_rates = 3;
+  constexpr double least_part = 0.15;  // Of both rates: a brighter side has some more.
+  if (inverse_[1] == 0) return false;
+  return std::ranges::all_of(near.blocks, [&](const Sides& here) {
+    const double more = std::abs(here[0]->noisier() - here[1]->noisier());
+    if (more > errors_of_signs * std::sqrt(here[0]->noisier() + here[1]->noisier())) return false;
+    for (int octave = near.first; octave <= near.last; ++octave) {
+      const double a = here[0]->rare(octave) * inverse_[0];
+      const double b = here[1]->rare(octave) * inverse_[1];
+      const double error = std::sqrt(a * inverse_[0] + b * inverse_[1]);
+      if (std::abs(a - b) > std::max(errors_of_rates * error, least_part * (a + b))) return false;
+    }
+    return true;
+  });
 }
 
-double NoisePyramid::growth(const Sides& here, int octave, double toward, double dealt) const {
+double NoisePyramid::growth(const Sides& here, int octave, double toward, bool one_law) const {
   const PooledNoise::Moments a = here[0]->cut_off(octave);
   const PooledNoise::Moments b = here[1]->cut_off(octave);
   const double second = a.second * inverse_[0] + b.second * inverse_[1];
@@ -186,12 +200,7 @@ double NoisePyramid::growth(const Sides& here, int octave, double toward, double
   const double a2 = square(inverse_[0]);
   const double b2 = square(inverse_[1]);
   const double error = std::sqrt(a.squared_error * square(a2) + b.squared_error * square(b2));
-  const double seen = toward * (a.third * a2 - b.third * b2) - error;
-  const double part = replicates_[0] / (replicates_[0] + replicates_[1]);
-  const double of_all = part * a.third + (1 - part) * b.third;
-  const double both = toward * of_all * ((1 + dealt) * a2 - (1 - dealt) * b2) /
-                      (part * (1 + dealt) + (1 - part) * (1 - dealt));
-  return std::max(seen, both) / second;
+  return (toward * (a.third * a2 - b.third * b2) - (one_law ? error : 0)) / second;
 }
 
 NoisePyramid::Kept NoisePyramid::kept(const CellNoise& cell, const Rectangle& window,
@@ -199,21 +208,17 @@ NoisePyramid::Kept NoisePyramid::kept(const CellNoise& cell, const Rectangle& wi
   const double direction = cell.effect < 0 ? 1 : -1;
   const double toward = cell.weight < 0 ? -direction : direction;
   const Around near = around(window, channel);
+  const bool one_law = of_one_law(near);
   double largest = 0;
-  double dealt = 0;
   for (int octave = near.first; octave <= near.last; ++octave) {
     for (const Sides& here : near.blocks) {
-      const double difference = rare_difference(here, octave);
-      if (toward * difference > toward * dealt) dealt = difference;
-    }
-    for (const Sides& here : near.blocks) {
-      largest = std::max(largest, growth(here, octave, toward, dealt));
+      largest = std::max(largest, growth(here, octave, toward, one_law));
     }
   }
   const double variance = cell.variance[0] + cell.variance[1];
   const double own = direction * cell.third / variance;
-  const double standard_error =
-      std::sqrt(variance + std::abs(cell.effect) * std::max(std::abs(cell.weight) * largest, own));
+  const double growing = std::max(std::abs(cell.weight) * largest, own);
+  const double standard_error = std::sqrt(variance + std::abs(cell.effect) * growing);
   return {.t = cell.effect / standard_error, .standard_error = standard_error};
 }
 

@@ -32,8 +32,8 @@ class PooledNoise {
   void add(const Powers& powers);
   // Takes a deviation, not 0, that is among those that are added.
   void add_rare(double deviation);
-  // Takes an element that varies.
-  void add_element() { elements_ += 1; }
+  // Takes an element that varies; `noisier` if it has more relative variance than the other side's.
+  void add_element(bool noisier);
   void merge(const PooledNoise& other);
 
   // Mean square and mean cube of the deviations cut off at +-2^octave, and the cube's squared
@@ -47,6 +47,7 @@ class PooledNoise {
   static constexpr int octaves = 16;
   static constexpr int no_octave = -100'000;  // top() without any.
   int top() const { return top_; }            // No rare deviation is beyond +-2^top.
+  double noisier() const { return noisier_; }
   // Number of rare deviations in this octave or beyond it.
   double rare(int octave) const;
 
@@ -67,6 +68,7 @@ class PooledNoise {
 
   Powers common_;  // Without the rare, but for their count.
   double elements_ = 0;
+  double noisier_ = 0;
   int top_ = no_octave;
   std::array<Tail, 2> rare_ = {};  // Upward, downward; from the top down.
 };
@@ -102,10 +104,10 @@ class NoisePyramid {
   // its side up to the whole image. A block's deviations are cut off at every octave, so that the
   // rarest do not drown the others.
   //
-  // A block's k3 is what the sides show beyond its error. Few rare values do not tell whose they
-  // are, but less rare ones may. So all values of a block are also dealt to a and b at rates of
-  // 1 + r to 1 - r. Counts of values beyond an octave have such an r, less 3 standard errors. The
-  // largest of this octave and smaller ones, in all these blocks, is taken.
+  // Two sides of one law have k3 = 0, and a block's k3 counts beyond its error. It counts whole
+  // where the sides have different laws. One is noisier for its mean in too many elements (sign
+  // test), or has too many rare values beyond an octave, in one of these blocks. A reference has a
+  // law of its own.
   struct Kept {
     double t = 0;
     double standard_error = 0;
@@ -135,8 +137,8 @@ class NoisePyramid {
     int last = 0;
   };
   Around around(const Rectangle& window, std::size_t channel) const;
-  double rare_difference(const Sides& here, int octave) const;
-  double growth(const Sides& here, int octave, double toward, double dealt) const;
+  bool of_one_law(const Around& near) const;
+  double growth(const Sides& here, int octave, double toward, bool one_law) const;
 
   std::array<double, sides_of_pair> replicates_ = {};  // 0: no side, but a reference.
   std::array<double, sides_of_pair> inverse_ = {};     // 1 / replicates_, 0 of a reference.

@@ -76,10 +76,16 @@ TEST(PooledNoise, IsTheSameInOnePieceOrTwo) {
   }
 }
 
+// One block of 64 elements, of which the first `noisier` have more noise on side 0.
 NoisePyramid pyramid_of(const std::array<std::vector<double>, sides_of_pair>& values,
-                        std::array<std::size_t, sides_of_pair> replicates = {16, 16}) {
+                        std::array<std::size_t, sides_of_pair> replicates = {16, 16},
+                        int noisier = 32) {
   NoisePyramid noise({8, 8, 1}, replicates);
-  for (std::size_t s = 0; s < sides_of_pair; ++s) noise.at(s, 0, 0, 0).merge(pooled(values[s]));
+  for (std::size_t s = 0; s < sides_of_pair; ++s) {
+    PooledNoise& here = noise.at(s, 0, 0, 0);
+    here.merge(pooled(values[s]));
+    for (int i = 0; i < 64; ++i) here.add_element((s == 0) == (i < noisier));
+  }
   noise.build();
   return noise;
 }
@@ -106,23 +112,25 @@ TEST(NoisePyramid, HasTheVarianceOfEqualMeans) {
     const double k2 = (more + fewer) / 1024 * 2499 + 2;
     return -3 / std::sqrt(2.0 / 16 + 3 * k3 / (16 * k2));
   };
-  // Few rare values: their difference less its error.
-  EXPECT_NEAR(pyramid_of({with_rare(8), with_rare(1)}).kept(dark, pixel, 0).t, t(8, 1, 7 - 3),
-              0.02);
-  // Many of one side alone: all of them, but for 3 errors of their rates' difference.
-  EXPECT_NEAR(pyramid_of({rare, clean}).kept(dark, pixel, 0).t, t(40, 0, 40 - std::sqrt(40)), 0.02);
-  // One giant, whose side is told by the 40.
-  std::vector<double> giant = rare;
+  // Counts that may be of one law: k3 less its error.
+  const double k3_of_8_and_1 = 8 - 1 - std::sqrt(8 + 1);
+  EXPECT_NEAR(pyramid_of({with_rare(8), with_rare(1)}).kept(dark, pixel, 0).t,
+              t(8, 1, k3_of_8_and_1), 0.02);
+  // Sides of different laws: by their rare values, or as 60 of 64 elements are noisier.
+  EXPECT_NEAR(pyramid_of({rare, clean}).kept(dark, pixel, 0).t, t(40, 0, 40), 0.02);
+  EXPECT_NEAR(pyramid_of({with_rare(8), with_rare(1)}, {16, 16}, 60).kept(dark, pixel, 0).t,
+              t(8, 1, 7), 0.02);
+  EXPECT_NEAR(pyramid_of({with_rare(8), with_rare(1)}, {16, 16}, 4).kept(dark, pixel, 0).t,
+              t(8, 1, 7), 0.02);
+  // Many rare values a tenth more often are of a brighter side of the same law.
+  EXPECT_NEAR(pyramid_of({with_rare(550), with_rare(450)}).kept(dark, pixel, 0).t,
+              t(550, 450, 100 - std::sqrt(1000)), 0.02);
+  // A giant tells no laws apart.
+  std::vector<double> giant = clean;
   giant[999] = 1e5;
-  const double told = 1 - 3 / std::sqrt(41);
-  EXPECT_NEAR(pyramid_of({giant, clean}).kept(dark, pixel, 0).t,
-              -3 / std::sqrt(2.0 / 16 + 3 * told * 1e5 / 16), 0.02);
-  // A giant among values that do not differ is of either side.
-  std::vector<double> one_giant = clean;
-  one_giant[999] = 1e5;
-  EXPECT_NEAR(pyramid_of({one_giant, clean}).kept(dark, pixel, 0).t, alone, 0.3);
+  EXPECT_NEAR(pyramid_of({giant, clean}).kept(dark, pixel, 0).t, alone, 0.3);
   // A reference is of another law than the pictures.
-  EXPECT_NEAR(pyramid_of({one_giant, {}}, {16, 0}).kept(dark, pixel, 0).t,
+  EXPECT_NEAR(pyramid_of({giant, {}}, {16, 0}).kept(dark, pixel, 0).t,
               -3 / std::sqrt(2.0 / 16 + 3 * 1e5 / 16), 0.02);
   // The brighter side misses the same.
   EXPECT_NEAR(pyramid_of({rare, rare}).kept(dark, pixel, 0).t, alone, 0.3);
@@ -146,7 +154,7 @@ TEST(NoisePyramid, HidesWhatAnElementMissed) {
   std::vector<double> values(1000, -0.5);
   for (std::size_t i = 0; i < 50; ++i) values[i] = 9.5;
   PooledNoise noise = pooled(values);
-  for (int i = 0; i < 10; ++i) noise.add_element();
+  for (int i = 0; i < 10; ++i) noise.add_element(false);
   const double variance = 0.05 * 0.95 * 100;
   const double size = 10 * (1 - 2 * 0.05);
   const double probability = variance / (size * size);
