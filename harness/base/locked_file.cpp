@@ -17,7 +17,7 @@
 
 #include "harness/base/interrupt.h"
 #include "harness/base/terminal.h"
-#include "reports/record/file.h"
+#include "harness/base/whole_file.h"
 
 namespace assay::harness {
 namespace {
@@ -74,6 +74,6 @@ LockedFile::LockedFile(std::string path) : path_(std::move(path)), descriptor_(l
 
 LockedFile::~LockedFile() { ::close(descriptor_); }
 
-void LockedFile::replace(const std::string& text) const { reports::write_whole(path_, text); }
+void LockedFile::replace(const std::string& text) const { write_whole(path_, text); }
 
 }  // namespace assay::harness

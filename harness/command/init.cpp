@@ -7,10 +7,10 @@
 
 #include "estimators/core/quoting.h"
 #include "estimators/core/value.h"
+#include "harness/base/whole_file.h"
 #include "harness/command/files.h"
 #include "harness/command/options.h"
 #include "harness/suite/suite_keys.h"
-#include "reports/record/file.h"
 
 namespace assay::harness {
 namespace {
@@ -87,7 +87,7 @@ int write_example(const InitArguments& arguments) {
     }
     const std::filesystem::path path = folder / file.path;
     std::filesystem::create_directories(path.parent_path());
-    reports::write_whole(path, file.text);
+    write_whole(path, file.text);
     fmt::print("wrote {}\n", (arguments.folder == "." ? path.lexically_normal() : path).string());
   }
   fmt::print("{}", steps);

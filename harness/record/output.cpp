@@ -11,10 +11,10 @@
 #include "estimators/core/quoting.h"
 #include "estimators/parameters.h"
 #include "harness/base/terminal.h"
+#include "harness/base/whole_file.h"
 #include "harness/record/image_record.h"
 #include "harness/sampling/pool.h"
 #include "harness/suite/files_read.h"
-#include "reports/record/file.h"
 #include "reports/report_formats.h"
 
 namespace assay::harness {
@@ -104,7 +104,7 @@ void write_reports(const Output& output, const ReportWriter& written) {
       if (standard) {
         to_stdout += text;
       } else {
-        reports::write_whole(request.path, text);
+        write_whole(request.path, text);
       }
     } catch (...) {  // a full disk does not stop the other reports
       failures += (failures.empty() ? "" : "\n") + words_of(std::current_exception());
@@ -178,7 +178,7 @@ void keep_last_run(reports::Record record, bool says_failure) {
   }
   try {
     std::filesystem::create_directories(file.parent_path());
-    reports::write_whole(file, reports::compact_json(record));
+    write_whole(file, reports::compact_json(record));
   } catch (...) {
     if (says_failure) {
       say_beside_progress("the run is not kept for `assay explain`: " +

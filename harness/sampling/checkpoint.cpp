@@ -9,8 +9,8 @@
 #include "estimators/core/value.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/terminal.h"
+#include "harness/base/whole_file.h"
 #include "harness/sampling/packing.h"
-#include "reports/record/file.h"
 
 namespace assay::harness {
 namespace {
@@ -59,7 +59,7 @@ void Checkpoint::write() const {
     if (pool->drawn() == 0 || pool->fault()) continue;
     entries.emplace_back(recipe, packed_block(pool->drawn_block()));
   }
-  reports::write_whole(file_, packed(identity_, entries));
+  write_whole(file_, packed(identity_, entries));
 }
 
 void Checkpoint::write_if_due() {

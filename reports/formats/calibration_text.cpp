@@ -151,27 +151,8 @@ std::string console(const Calibration& calibration) {
 }
 
 std::string markdown(const Calibration& calibration) {
-  std::string out = fmt::format("# Calibration: {}\n\n{} runs a cell, seeds from {}\n",
-                                verdict_sentence(calibration), calibration.runs, calibration.seed);
-  double alpha = 0;
-  for (const CalibrationCell& cell : calibration.cells) {
-    if (cell.alpha != alpha) {
-      alpha = cell.alpha;
-      out += fmt::format("\n## alpha {:g}\n\n| method | question | law |", alpha);
-      for (const Column& column : table_columns()) out += fmt::format(" {} |", column.heading);
-      out += "\n|---|---|---|";
-      for (std::size_t i = 0; i < table_columns().size(); ++i) out += "---|";
-      out += "\n";
-    }
-    for (const ClaimLine& line : lines_of(cell)) {
-      out += fmt::format("| {}{} | {} | {} |", mark_of(calibration, cell),
-                         escape_markdown(cell.method), escape_markdown(cell.question),
-                         escape_markdown(cell.law));
-      for (const Column& column : table_columns()) out += fmt::format(" {} |", column.text(line));
-      out += "\n";
-    }
-  }
-  return out + "\n```\n" + legend + wrapped_detect(calibration) + "```\n";
+  return fmt::format("# Calibration: {}\n\n```\n{}```\n", verdict_sentence(calibration),
+                     console(calibration));
 }
 
 }  // namespace assay::reports

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -22,10 +22,20 @@ constexpr int label_width = 17;
 constexpr std::size_t most_channels = 24;
 constexpr int block_lines = 5;  // of a claim that is not as it should be
 constexpr int block_indent = 4;
+constexpr int unlimited = std::numeric_limits<int>::max();
 
 /// One test alone, as of `check`.
 bool is_single(const Record& record) {
   return record.suites.size() == 1 && record.suites[0].tests.size() == 1;
+}
+
+bool is_trouble(const Test& test) {
+  const Outcome how = outcome(test);
+  return how == Outcome::failed || how == Outcome::inconclusive;
+}
+
+std::string spaces(int count) {
+  return std::string(static_cast<std::size_t>(std::max(0, count)), ' ');
 }
 
 std::string plain(const std::string& text) { return plain_spaces(one_line(text)); }
@@ -37,99 +47,17 @@ const char* colour_of(Outcome outcome) {
 
 /// One test as text, clean and without line feeds; no-break spaces keep numbers whole.
 struct TestRow {
-  std::string verdict;  ///< with its mark
   std::string name;
   std::string number;
   std::string cost;
 };
 
-/// Columns of a suite's table. If names have too little room, the cost goes first (width 0; the
-/// suite's totals have it). Then the number moves below the name.
-struct RowLayout {
-  int verdict = 0;
-  int name = 0;
-  int number = 0;
-  int cost = 0;
-  bool number_below = false;
-};
-
-constexpr int row_indent = 2;
-constexpr int row_gap = 2;
-constexpr int least_row_name = 30;
-
-template <class Member>
-int widest(const std::vector<TestRow>& rows, Member member) {
-  int result = 0;
-  for (const TestRow& row : rows) result = std::max(result, columns(row.*member));
-  return result;
-}
-
-int with_gap(int width) { return width > 0 ? width + row_gap : 0; }
-
-int name_room(const RowLayout& layout, int width) {
-  return width - row_indent - with_gap(layout.verdict) - with_gap(layout.cost) -
-         (layout.number_below ? 0 : with_gap(layout.number));
-}
-
-std::string trimmed(std::string text) {
-  text.erase(text.find_last_not_of(' ') + 1);
-  return text;
-}
-
-RowLayout layout_of(const std::vector<TestRow>& rows, int width) {
-  RowLayout layout{.verdict = widest(rows, &TestRow::verdict),
-                   .number = widest(rows, &TestRow::number),
-                   .cost = widest(rows, &TestRow::cost)};
-  if (name_room(layout, width) < least_row_name) layout.cost = 0;
-  layout.number_below = name_room(layout, width) < least_row_name;
-  layout.name = name_room(layout, width);
-  return layout;
-}
-
-/// The lines of one row, none wider than the width that the layout was made for.
-std::vector<std::string> row_lines(const TestRow& row, const RowLayout& layout) {
-  const std::string margin(static_cast<std::size_t>(row_indent + with_gap(layout.verdict)), ' ');
-  const std::vector<std::string> name = wrap(row.name, layout.name);
-  std::string first = std::string(row_indent, ' ') +
-                      pad_right(row.verdict, with_gap(layout.verdict)) +
-                      pad_right(name.front(), with_gap(layout.name));
-  if (!layout.number_below) first += pad_right(row.number, with_gap(layout.number));
-  if (layout.cost > 0) first += row.cost;
-  std::vector<std::string> lines = {trimmed(first)};
-  for (std::size_t i = 1; i < name.size(); ++i) lines.push_back(margin + name[i]);
-  if (layout.number_below && !row.number.empty()) {
-    for (const std::string& part : wrap(row.number, layout.name)) lines.push_back(margin + part);
-  }
-  return lines;
-}
-
-/// The confidence of most of a suite's intervals, as "99.98 %": it is said once, above the table.
-std::string common_confidence(const Suite& suite) {
-  std::map<std::string, int> counts;
-  for (const Test& test : suite.tests) {
-    const Effect effect = deciding_channel(test).effect;
-    if (is_evidence(test) && effect.estimate && !interval_text(effect).empty())
-      ++counts[confidence_text(effect.confidence)];
-  }
-  const auto most =
-      std::max_element(counts.begin(), counts.end(),
-                       [](const auto& a, const auto& b) { return a.second < b.second; });
-  return most == counts.end() ? std::string() : most->first;
-}
-
-/// The row of a test in a suite whose common confidence is given.
-TestRow row_of(const Test& test, const std::string& common) {
-  const Effect effect = deciding_channel(test).effect;
-  std::string number = is_evidence(test) ? effect_text(effect) : std::string();
-  if (!is_evidence(test)) {
-    // The number rests on a violated assumption; the record has it.
-  } else if (number.empty()) {
-    number = headline_p(test).text();
-  } else if (!interval_text(effect).empty() && confidence_text(effect.confidence) != common) {
-    number += fmt::format(" at {}", confidence_text(effect.confidence));
-  }
-  return {.verdict = mark(outcome(test)) + " " + verdict_text(test),
-          .name = one_line(test.name),
+/// The numbers are those of the page.
+TestRow row_of(const Test& test) {
+  const TestDisplay words = display(test);
+  std::string number = words.effect.empty() ? words.verdict : words.effect;
+  if (!words.interval.empty()) number += fmt::format(" ({})", words.interval);
+  return {.name = one_line(test.name),
           .number = one_line(number),
           .cost = one_line(cost_text(total_cost(test)))};
 }
@@ -140,19 +68,9 @@ class Screen {
     options_.width = std::max(options_.width, least_width);
   }
 
-  void all(const Record& record) {
-    for (const Suite& suite : record.suites) write(suite, is_single(record));
-    if (!record.note.empty()) paragraph(record.note);
-    statements(record);
-    if (!record.ledger.file.empty()) write(record.ledger);
-    blank();
-    if (const std::string verdicts = verdict_counts(record); !verdicts.empty())
-      paragraph("Verdicts: " + verdicts + ".");
-    paragraph(error_rates(record));
-  }
-
-  void brief(const Record& record, const std::set<std::string>& told) {
-    if (is_single(record)) {
+  /// Each level of detail adds to the one below it.
+  void all(const Record& record, const std::set<std::string>& told) {
+    if (is_single(record) && !in_full()) {
       alone(record.suites[0]);
     } else {
       suites(record);
@@ -160,9 +78,7 @@ class Screen {
     blank();
     for (const Suite& suite : record.suites) {
       for (const Test& test : suite.tests) {
-        const Standing how = standing(test);
-        const bool shown = how == Standing::broken || how == Standing::undecided;
-        if (shown && !told.contains(test.id)) block(suite.name, test);
+        if (is_trouble(test) && !told.contains(test.id) && !in_full()) block(suite.name, test);
       }
     }
     left_out(record);
@@ -170,7 +86,10 @@ class Screen {
     for (const Suite& suite : record.suites) retries += suite.retries.size();
     if (retries > 0)
       paragraph(fmt::format("Programs that failed and were started again: {}.", retries));
-    if (!record.ledger.file.empty()) alarms_of(record);
+    if (in_full()) statements(record);
+    const bool of_nights = !record.ledger.file.empty();
+    if (of_nights) write(record.ledger);
+    if (!record.note.empty() && (in_full() || of_nights)) paragraph(record.note + ".");
   }
 
   /// A claim that is not as it should be: where, what, and what to do. If that takes too many
@@ -200,20 +119,26 @@ class Screen {
   void end(const Record& record) {
     slowest(record);
     blank();
+    if (in_full()) paragraph("Verdicts: " + verdict_counts(record) + ".");
     const Outcome how = alarms(record.ledger) > 0 ? Outcome::failed : worst(tally(record));
     std::string text = mark(how) + " " + run_sentence(record);
     if (record.seconds > 0) text += " in " + time(record.seconds);
     text += ".";
-    if (const std::string rate = false_alarms(record); !rate.empty()) text += " " + rate;
+    const std::string rates = in_full() ? error_rates(record) : false_alarms(record);
+    if (!rates.empty()) text += " " + rates;
     paragraph(text, colour_of(how));
     if (!options_.report.empty()) out_ += "  " + plain(options_.report) + "\n";
   }
   std::string take() { return std::move(out_); }
 
  private:
-  void line(const std::string& text, const char* style = "") {
-    out_ += options_.colour && *style != '\0' ? style + shorten(text, options_.width) + "\x1b[0m\n"
-                                              : shorten(text, options_.width) + "\n";
+  /// All numbers are asked for.
+  bool in_full() const { return options_.detail > 1; }
+
+  void line(std::string text, const char* style = "") {
+    text.erase(text.find_last_not_of(' ') + 1);
+    text = shorten(text, options_.width);
+    out_ += options_.colour && *style != '\0' ? style + text + "\x1b[0m\n" : text + "\n";
   }
 
   // Lines that are empty in the text say nothing on a terminal.
@@ -276,7 +201,7 @@ class Screen {
     const bool beside = !where.empty() && room >= std::min(least, columns(plain(name)));
     const std::string left = beside ? shorten(plain(name), room) : plain(name);
     line(beside ? pad_right(left, room + 2) + plain(where) : left, colour_of(how));
-    if (!beside && !where.empty()) line(std::string(block_indent, ' ') + plain(where));
+    if (!beside && !where.empty()) line(spaces(block_indent) + plain(where));
     return beside || where.empty() ? 1 : 2;
   }
 
@@ -287,9 +212,9 @@ class Screen {
       text.resize(static_cast<std::size_t>(most));
       text.back() = shorten(text.back() + "…", options_.width - block_indent);
     }
-    for (const std::string& part : text) line(std::string(block_indent, ' ') + part);
+    for (const std::string& part : text) line(spaces(block_indent) + part);
   }
-  void indented(const std::string& text, int most) {
+  void indented(const std::string& text, int most = unlimited) {
     indented(wrapped(text, options_.width - block_indent), most);
   }
 
@@ -310,32 +235,7 @@ class Screen {
   }
 
   void paste(const Step& step) {
-    for (const std::string& part : step_lines(step))
-      out_ += std::string(block_indent, ' ') + part + "\n";
-  }
-
-  /// "72 hold, 2 planted bugs caught", "14 as they should be, 1 broken", in short "14 ok, 1
-  /// broken".
-  static std::string standing_text(const Suite& suite, bool in_short) {
-    std::map<Standing, std::uint64_t> count;
-    for (const Test& test : suite.tests) ++count[standing(test)];
-    const std::uint64_t held = count[Standing::holds], caught = count[Standing::caught];
-    std::string text;
-    const auto add = [&](std::uint64_t some, const char* words) {
-      if (some > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", some, words);
-    };
-    if (held + caught == suite.tests.size()) {
-      add(held, held == 1 ? "holds" : "hold");
-      add(caught, caught == 1 ? "planted bug caught" : "planted bugs caught");
-      return text;
-    }
-    add(held + caught, in_short             ? "ok"
-                       : held + caught == 1 ? "as it should be"
-                                            : "as they should be");
-    add(count[Standing::broken], "broken");
-    add(count[Standing::undecided], "undecided");
-    add(count[Standing::not_run], "not run");
-    return text;
+    for (const std::string& part : step_lines(step)) out_ += spaces(block_indent) + part + "\n";
   }
 
   static Outcome worst(const Tally& counts) {
@@ -345,48 +245,49 @@ class Screen {
                                      : Outcome::skipped;
   }
 
-  /// A line a suite; beside it the CPU time of its draws.
+  /// A line a suite; beside it the CPU time of its draws, if there is room.
   void suites(const Record& record) {
     constexpr int gap = 4;  // two columns before the mark, two with it
     constexpr int least_name = 12;
     const auto spent = [](const Suite& suite) {
-      return time(total_cost(costs_of_draws(suite)).seconds) + " CPU";
+      return "  " + time(total_cost(suite).seconds) + " CPU";
     };
-    int longest = 0, text_width = 0, short_width = 0, time_width = 0;
+    int name = 0, text = 0, cost = 0;
     for (const Suite& suite : record.suites) {
-      longest = std::max(longest, columns(plain(suite.name)));
-      text_width = std::max(text_width, columns(standing_text(suite, false)));
-      short_width = std::max(short_width, columns(standing_text(suite, true)));
-      time_width = std::max(time_width, columns(spent(suite)) + 2);
+      name = std::max(name, columns(plain(suite.name)));
+      text = std::max(text, columns(counts_text(suite)));
+      cost = std::max(cost, columns(spent(suite)));
     }
-    constexpr int usual_name = 20;
-    const bool in_short = std::min(longest, usual_name) + gap + text_width > options_.width;
-    if (in_short) text_width = short_width;
-    if (longest + gap + text_width + time_width > options_.width) time_width = 0;
-    const int room = std::max(least_name, options_.width - gap - text_width);
-    const int name_width = std::min(room, longest);
+    if (name + gap + text + cost > options_.width) cost = 0;
+    name = std::min(name, std::max(least_name, options_.width - gap - text));
     for (const Suite& suite : record.suites) {
       if (suite.tests.empty()) continue;
       const Outcome how = worst(tally(suite));
       const bool marked = how == Outcome::failed || how == Outcome::inconclusive;
-      std::string text = pad_right(shorten(plain(suite.name), name_width), name_width) + "  " +
-                         (marked ? mark(how) : " ") + " " + standing_text(suite, in_short);
-      if (time_width > 0) {
-        const int before = name_width + gap + text_width + time_width - columns(spent(suite));
-        text = pad_right(text, before) + spent(suite);
-      }
-      line(text, marked ? colour_of(how) : "");
+      const std::string left =
+          fmt::format("{}  {} {}", pad_right(shorten(plain(suite.name), name), name),
+                      marked ? mark(how) : " ", counts_text(suite));
+      const std::string right = cost > 0 ? spent(suite) : std::string();
+      line(pad_right(left, name + gap + text + cost - columns(right)) + right,
+           marked ? colour_of(how) : "");
+      if (in_full()) about(suite);
       if (options_.detail > 0) rows(suite);
+      if (in_full()) kills(suite);
     }
   }
 
-  /// A line a test.
+  void about(const Suite& suite) {
+    indented(suite.about);
+    indented(levels_text(suite) + (suite.file.empty() ? "" : ", file " + suite.file));
+    if (suite.tests.size() == 1) estimators(suite);
+  }
+
+  /// A line a test. In full the names are whole, and claims that need a look have all their facts.
   void rows(const Suite& suite) {
-    const std::string confidence = common_confidence(suite);
     std::vector<TestRow> all;
     int name = 0, number = 0, cost = 0;
     for (const Test& test : suite.tests) {
-      all.push_back(row_of(test, confidence));
+      all.push_back(row_of(test));
       name = std::max(name, columns(all.back().name));
       number = std::max(number, columns(all.back().number));
       cost = std::max(cost, columns(all.back().cost));
@@ -396,18 +297,19 @@ class Screen {
     const int end =
         std::min(options_.width, margin + name + gap + number + (cost > 0 ? gap + cost : 0));
     for (std::size_t i = 0; i < all.size(); ++i) {
+      const Test& test = suite.tests[i];
       std::string right = all[i].number;
-      if (cost > 0)
-        right += std::string(static_cast<std::size_t>(gap + cost - columns(all[i].cost)), ' ') +
-                 all[i].cost;
+      if (cost > 0) right += spaces(gap + cost - columns(all[i].cost)) + all[i].cost;
       const int room = end - margin - gap - columns(right);
-      const Outcome how = outcome(suite.tests[i]);
-      const std::string left = shorten(all[i].name, room);
-      line(fmt::format("  {} {}", mark(how),
-                       right.empty() ? left : pad_right(left, room + gap) + plain_spaces(right)),
-           colour_of(how));
+      const std::vector<std::string> left =
+          in_full() ? wrap(all[i].name, room) : std::vector{shorten(all[i].name, room)};
+      const std::string first = pad_right(left[0], room + gap) + right;
+      const char* const style = colour_of(outcome(test));
+      line(fmt::format("  {} {}", mark(outcome(test)), plain_spaces(first)), style);
+      for (std::size_t part = 1; part < left.size(); ++part)
+        line(spaces(margin) + plain_spaces(left[part]), style);
+      if (in_full() && (is_trouble(test) || all.size() == 1)) explain(test);
     }
-    if (!confidence.empty()) line(fmt::format("  Brackets: {} intervals.", plain(confidence)));
     blank();
   }
 
@@ -435,18 +337,19 @@ class Screen {
     }
   }
 
-  void alarms_of(const Record& record) {
-    const Ledger& ledger = record.ledger;
+  void write(const Ledger& ledger) {
     for (const LedgerSeries& series : ledger.series) {
       if (!series.alarm) continue;
       head(fmt::format("{} ledger alarm: {}", mark(Outcome::failed), series_name(ledger, series)),
            ledger.file, Outcome::failed);
-      indented(alarm_sentence(series), block_lines - 2);
+      indented(alarm_sentence(series), in_full() ? unlimited : block_lines - 2);
+      if (in_full()) indented(series_sentence(series));
       blank();
     }
     paragraph(one_line(ledger_title(ledger)) + ".");
+    if (const std::string text = quiet_sentence(ledger); in_full() && !text.empty())
+      paragraph(one_line(text) + ".");
     for (const std::string& note : ledger_notes(ledger)) paragraph(one_line(note) + ".");
-    if (!record.note.empty()) paragraph(record.note + ".");
   }
 
   void slowest(const Record& record) {
@@ -462,81 +365,45 @@ class Screen {
       line(fmt::format("{:>12}  {}", time(seconds), plain(test->id)));
   }
 
-  void write(const Suite& suite, bool alone) {
-    const std::string file = suite.file.empty() ? "" : " (" + suite.file + ")";
-    paragraph(one_line(suite.name + file), "\x1b[1m");
-    paragraph(suite.about);
-    paragraph(levels_text(suite));
-    const std::string confidence = common_confidence(suite);
-    if (!confidence.empty())
-      paragraph(
-          fmt::format("Brackets are {} intervals unless another confidence is given.", confidence));
-    blank();
-    if (alone) estimators(suite);
-    std::vector<TestRow> rows;
-    for (const Test& test : suite.tests) rows.push_back(row_of(test, confidence));
-    const RowLayout layout = layout_of(rows, options_.width);
-    for (std::size_t i = 0; i < rows.size(); ++i)
-      write(suite.tests[i], row_lines(rows[i], layout), alone);
-    blank();
-    if (layout.cost == 0 && !rows.empty()) cost_of(suite);
-    kills(suite);
-  }
-
-  void write(const Test& test, const std::vector<std::string>& lines, bool alone) {
-    const Outcome result = outcome(test);
-    for (const std::string& part : lines) line(plain_spaces(part), colour_of(result));
-    if (result == Outcome::failed || result == Outcome::inconclusive || alone) explain(test);
-  }
-
   // The answers stand in a column, with the statement and its tests beside them.
   void statements(const Record& record) {
     if (statement_count(record) == 0) return;
     blank();
     line("Statements", "\x1b[1m");
     for (const Suite& suite : record.suites) {
-      for (const Statement& statement : suite.statements) write(suite, statement);
+      for (const Statement& statement : suite.statements) {
+        fact(answer_text(answer(suite, statement)),
+             one_line(statement.text + " (" + statement.source + ")"));
+        fact("only if", one_line(statement.condition));
+        fact("it holds", one_line(findings(suite, statement.holds)));
+        fact("it does not", one_line(findings(suite, statement.fails)));
+      }
     }
     paragraph(statement_totals(record));
+    blank();
   }
 
-  void write(const Suite& suite, const Statement& statement) {
-    const Answer given = answer(suite, statement);
-    const Outcome outcome = given == Answer::contradicted ? Outcome::failed
-                            : given == Answer::open       ? Outcome::inconclusive
-                                                          : Outcome::passed;
-    const std::vector<std::string> text =
-        wrapped(one_line(statement.text + " (" + statement.source + ")"), beside_width());
-    const std::string label = pad_right("  " + answer_text(given), label_width + 6);
-    for (const std::string& part : beside(label, text)) line(part, colour_of(outcome));
-    if (given == Answer::only_if) fact("only if", one_line(statement.condition));
-    if (!statement.holds.empty()) fact("it holds", one_line(findings(suite, statement.holds)));
-    if (!statement.fails.empty()) fact("it does not", one_line(findings(suite, statement.fails)));
-  }
-
-  // Which method sees which defect.
+  /// Which method sees which defect: a line a mutant.
   void kills(const Suite& suite) {
     const KillMatrix matrix = kill_matrix(suite);
     if (!is_worth_showing(matrix)) return;
-    for (const std::string& text : kill_lines(matrix, options_.width)) line(plain(text));
+    for (const KillRow& row : matrix.rows) {
+      std::string text;
+      for (std::size_t m = 0; m < row.cells.size(); ++m) {
+        if (row.cells[m])
+          text += fmt::format("{} {} {}", text.empty() ? ":" : ",", matrix.methods[m],
+                              row.cells[m]->text);
+      }
+      indented(one_line(row.mutant + text));
+    }
     blank();
     paragraph(matrix.totals);
     paragraph(matrix.legend);
     blank();
   }
 
-  // The table had no room for what each test cost.
-  void cost_of(const Suite& suite) {
-    if (const std::string cost = cost_text(costs_of_draws(suite)); !cost.empty()) {
-      paragraph("All observations of the suite: " + cost + ".");
-      blank();
-    }
-  }
-
   void explain(const Test& test) {
     for (const auto& [label, sentence] : facts(test)) fact(label, sentence);
-    fact("cost", cost_text(total_cost(test)));
-    fact("where", place(test));
     if (!test.replay.empty()) command("replay", plain(test.replay));
     blank();
   }
@@ -572,24 +439,6 @@ class Screen {
     return fmt::format("{} [{}, {}]", value, human(estimate.low), human(estimate.high));
   }
 
-  void write(const Ledger& ledger) {
-    blank();
-    const Outcome result = alarms(ledger) > 0 ? Outcome::failed : Outcome::passed;
-    paragraph(one_line(ledger_title(ledger)), colour_of(result));
-    for (const LedgerSeries& series : ledger.series) {
-      if (!series.alarm) continue;
-      for (const std::string& part :
-           wrapped(one_line("ALARM " + series_name(ledger, series)), options_.width - 2)) {
-        line("  " + part);
-      }
-      fact("nights", series_sentence(series));
-      fact("alarm", alarm_sentence(series));
-    }
-    if (const std::string text = quiet_sentence(ledger); !text.empty())
-      paragraph(one_line(text) + ".");
-    for (const std::string& note : ledger_notes(ledger)) paragraph(one_line(note) + ".");
-  }
-
   ConsoleOptions options_;
   std::string out_;
 };
@@ -605,11 +454,7 @@ std::string Console::broken(const Suite& suite, const Test& test) {
 
 std::string Console::rest(const Record& record) const {
   Screen screen(options_);
-  if (options_.detail > 1) {
-    screen.all(record);
-  } else {
-    screen.brief(record, told_);
-  }
+  screen.all(record, told_);
   screen.end(record);
   return screen.take();
 }

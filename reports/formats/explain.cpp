@@ -19,27 +19,6 @@ std::string sentence(std::string text) {
   return text.empty() || text.ends_with('.') ? text : text + ".";
 }
 
-/// The meaning of the verdict.
-std::string meaning(const Test& test) {
-  if (test.expected == Verdict::fail && test.verdict == Verdict::pass) return "";
-  if (standing(test) == Standing::caught) return "This is as the suite expects.";
-  switch (test.verdict) {
-    case Verdict::pass:
-      return is_proof(test) ? "The claim is shown." : "Nothing speaks against the claim.";
-    case Verdict::fail:
-      return "The claim is wrong.";
-    case Verdict::inconclusive:
-      return "Too few samples were drawn to say whether the claim holds.";
-    case Verdict::invalid:
-      return "Nothing was decided, because the data break what the test relies on.";
-    case Verdict::error:
-      return "There are no numbers to judge, because drawing them failed.";
-    case Verdict::skipped:
-      break;
-  }
-  return "The claim was not tested.";
-}
-
 std::string what_was_found(const Test& test, const TestDisplay& words) {
   if (test.verdict == Verdict::inconclusive || !is_evidence(test) ||
       test.verdict == Verdict::skipped || test.expected != Verdict::pass) {
@@ -92,11 +71,11 @@ std::string explain(const Suite& suite, const Test& test, int width) {
   out += "\n";
   std::string text = fmt::format("The claim is `{}`. ", one_line(test.claim));
   const std::string found = what_was_found(test, words);
-  for (const std::string& part : {meaning(test), sentence(found)}) {
+  for (const std::string& part : {words.meaning, sentence(found)}) {
     if (!part.empty()) text += part + " ";
   }
   text += how_sure(test, words, found);
-  if (test.verdict == Verdict::invalid) text += fact_of(words, "assumptions", "Measured: ") + " ";
+  if (test.verdict == Verdict::invalid) text += fact_of(words, "assumptions", "Assumptions ") + " ";
   text += fact_of(words, "observations", "These observations were drawn: ");
   say(text);
   if (is_evidence(test) && test.verdict != Verdict::skipped && suite.alpha > 0) {

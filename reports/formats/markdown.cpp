@@ -37,8 +37,6 @@ std::string problem(const Test& test) {
       fmt::format("### {} {}: {}\n\n", mark(outcome(test)), verdict_text(test), cell(test.name));
   for (const auto& [label, sentence] : facts(test))
     out += fmt::format("- {}: {}\n", label, cell(sentence, paragraph_limit));
-  if (const std::string where = place(test); !where.empty())
-    out += fmt::format("- where: {}\n", cell(where));
   if (!test.replay.empty())
     out += fmt::format("\n{}", code_block(cap(one_line(test.replay), paragraph_limit)));
   return out + "\n";
@@ -112,10 +110,10 @@ std::string ledger_section(const Ledger& ledger) {
   std::string out = fmt::format("## {}\n\n", cell(ledger_title(ledger)));
   for (const LedgerSeries& series : ledger.series) {
     if (!series.alarm) continue;
-    out += fmt::format("- {} **alarm** {}: {}; {}\n", mark(Outcome::failed),
+    out += fmt::format("- {} **alarm** {}: {} {}.\n", mark(Outcome::failed),
                        cell(series_name(ledger, series)),
-                       cell(series_sentence(series), paragraph_limit),
-                       cell(alarm_sentence(series), paragraph_limit));
+                       cell(alarm_sentence(series), paragraph_limit),
+                       cell(series_sentence(series), paragraph_limit));
   }
   if (const std::string text = quiet_sentence(ledger); !text.empty())
     out += fmt::format("- {}\n", cell(text, paragraph_limit));

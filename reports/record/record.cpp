@@ -17,10 +17,16 @@ class Draws {
     if (source.secondaries >= longest.secondaries) longest = {source.secondaries, source.cost};
   }
 
-  std::vector<Cost> costs() const {
-    std::vector<Cost> costs;
-    for (const auto& [draws, longest] : longest_) costs.push_back(longest.cost);
-    return costs;
+  Cost total() const {
+    Cost sum;
+    for (const auto& [draws, longest] : longest_) {
+      sum.camera_rays += longest.cost.camera_rays;
+      sum.closest_hit_rays += longest.cost.closest_hit_rays;
+      sum.shadow_rays += longest.cost.shadow_rays;
+      sum.samples += longest.cost.samples;
+      sum.seconds += longest.cost.seconds;
+    }
+    return sum;
   }
 
  private:
@@ -63,31 +69,19 @@ int alarms(const Ledger& ledger) {
   return static_cast<int>(std::ranges::count(ledger.series, true, &LedgerSeries::alarm));
 }
 
-Cost total_cost(const std::vector<Cost>& costs) {
-  Cost sum;
-  for (const Cost& cost : costs) {
-    sum.camera_rays += cost.camera_rays;
-    sum.closest_hit_rays += cost.closest_hit_rays;
-    sum.shadow_rays += cost.shadow_rays;
-    sum.samples += cost.samples;
-    sum.seconds += cost.seconds;
-  }
-  return sum;
-}
-
 Cost total_cost(const Test& test) {
   Draws draws;
   for (const Sample& sample : test.samples) draws.add(sample);
-  return total_cost(draws.costs());
+  return draws.total();
 }
 
-std::vector<Cost> costs_of_draws(const Suite& suite) {
+Cost total_cost(const Suite& suite) {
   Draws draws;
   for (const EstimatorSummary& estimator : suite.estimators) draws.add(estimator);
   for (const Test& test : suite.tests) {
     for (const Sample& sample : test.samples) draws.add(sample);
   }
-  return draws.costs();
+  return draws.total();
 }
 
 }  // namespace assay::reports

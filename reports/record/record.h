@@ -537,9 +537,8 @@ Tally tally(const Record&);
 /// The cost of a test. The same draws count once, though each of their channels has a sample.
 Cost total_cost(const Test&);
 
-/// The costs of the suite's tests and of its estimators' rows, without pilots. The same draws count
+/// The cost of the suite's tests and of its estimators' rows, without pilots. The same draws count
 /// once.
-std::vector<Cost> costs_of_draws(const Suite&);
-Cost total_cost(const std::vector<Cost>&);
+Cost total_cost(const Suite&);
 
 }  // namespace assay::reports

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
@@ -72,37 +72,47 @@ std::string plane(const Map& map, const Coding& coding) {
   return bytes;
 }
 
-/// Five significant digits: what is only drawn needs no more.
-void shorten(double& value) {
-  if (!std::isfinite(value)) return;
-  const std::string digits = fmt::format("{:.4e}", value);
-  std::from_chars(digits.data(), digits.data() + digits.size(), value);
-}
-void shorten(Number& value) {
-  if (value) shorten(*value);
+/// The record's JSON with six significant digits: the viewer shows no more.
+nlohmann::ordered_json brief(const Record& record) {
+  using Json = nlohmann::ordered_json;
+  return Json::parse(compact_json(record), [](int, Json::parse_event_t, Json& value) {
+    if (value.is_number_float()) {
+      const std::string digits = fmt::format("{:.6g}", value.get<double>());
+      value = std::strtod(digits.c_str(), nullptr);
+    }
+    return true;
+  });
 }
 
-void shorten(Test& test) {
-  for (Sample& sample : test.samples) {
-    for (QuantilePoint& point : sample.quantiles) {
-      shorten(point.normal);
-      shorten(point.observed);
-    }
+/// How many pixels a side become one, so that a page stays small.
+std::uint64_t reduction(const Map& map) {
+  constexpr std::uint64_t most_pixels = std::uint64_t{1} << 21;
+  std::uint64_t factor = 1;
+  while (map.width * map.height > most_pixels * factor * factor) ++factor;
+  return factor;
+}
+
+/// Means over squares of pixels, cut at the edges. A mean of z is scaled to have z's own spread.
+Map reduced(const Map& map, std::uint64_t factor) {
+  if (factor == 1) return map;
+  Map means = map;
+  means.width = (map.width + factor - 1) / factor;
+  means.height = (map.height + factor - 1) / factor;
+  const std::size_t components = map.components.size();
+  std::vector<double> sums(means.width * means.height * components), counts(sums.size());
+  for (std::size_t i = 0; i < map.texels.values.size(); ++i) {
+    const std::size_t pixel = i / components;
+    const std::size_t x = pixel % map.width / factor, y = pixel / map.width / factor;
+    const std::size_t at = (y * means.width + x) * components + i % components;
+    sums[at] += static_cast<double>(map.texels.values[i]);
+    ++counts[at];
   }
-  for (Channel& channel : test.channels) {
-    for (EmpiricalLaw& law : channel.laws) {
-      for (LawPoint& point : law.points) {
-        for (double* value : {&point.value, &point.observed, &point.low, &point.high})
-          shorten(*value);
-        shorten(point.law);
-      }
-    }
+  means.texels.values.resize(sums.size());
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    const double divisor = map.name == "z" ? std::sqrt(counts[i]) : counts[i];
+    means.texels.values[i] = static_cast<float>(sums[i] / divisor);
   }
-  for (Look& look : test.looks) {
-    if (!look.effect) continue;
-    for (Number* value : {&look.effect->estimate, &look.effect->low, &look.effect->high})
-      shorten(*value);
-  }
+  return means;
 }
 
 bool is_shown(const Map& map) {
@@ -158,8 +168,10 @@ std::string packed(Record record) {
   std::string planes;
   for (Suite& suite : record.suites) {
     for (Test& test : suite.tests) {
-      for (const Map& map : test.maps) {
-        if (!is_shown(map) || map.components.empty()) continue;
+      for (const Map& whole_map : test.maps) {
+        if (!is_shown(whole_map) || whole_map.components.empty()) continue;
+        const std::uint64_t factor = reduction(whole_map);
+        const Map map = reduced(whole_map, factor);
         const bool whole = map.texels.values.size() <= small;
         const Coding& coding = codings[map.name == "z" ? 0 : 1];
         std::string bytes;
@@ -176,6 +188,7 @@ std::string packed(Record record) {
                             {"title", clean(map_title(map))},
                             {"width", map.width},
                             {"height", map.height},
+                            {"reduced", factor},
                             {"components", components},
                             {"coding", whole ? "float" : coding.name},
                             {"step", coding.step},
@@ -185,12 +198,11 @@ std::string packed(Record record) {
         planes += bytes;
       }
       test.maps.clear();
-      shorten(test);
     }
   }
   record.shard.reset();
   const std::string text =
-      "{\"record\":" + compact_json(record) + ",\"pictures\":" + pictures.dump() + "}";
+      "{\"record\":" + brief(record).dump() + ",\"pictures\":" + pictures.dump() + "}";
   return bytes_of_length(text.size()) + text + planes;
 }
 

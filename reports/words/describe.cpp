@@ -14,26 +14,6 @@
 namespace assay::reports {
 namespace {
 
-struct Relation {
-  std::size_t at = std::string::npos;
-  std::string_view text;
-};
-
-// The first relation that stands outside all brackets: a source may have one in its parameters.
-Relation find_relation(std::string_view claim) {
-  static constexpr std::string_view relations[] = {"==", "<=", ">=", "<", ">", " within "};
-  int depth = 0;
-  for (std::size_t i = 0; i < claim.size(); ++i) {
-    if (claim[i] == '(') ++depth;
-    if (claim[i] == ')') --depth;
-    if (depth != 0) continue;
-    for (const std::string_view relation : relations) {
-      if (claim.substr(i).starts_with(relation)) return {i, relation};
-    }
-  }
-  return {};
-}
-
 // The logarithm orders p-values that underflowed too.
 double order(const Channel& channel) {
   return channel.log10_p_pass ? *channel.log10_p_pass : std::log10(channel.p_pass.value_or(0));
@@ -151,14 +131,14 @@ std::string estimate_fact(const Effect& effect) {
 
 // The meaning of `detect` depends on the claim.
 const char* detect_words(const Test& test) {
-  const std::string relation = relation_of(test.claim);
+  const std::string relation = sides_of(test.claim).relation;
   if (relation == "within") return "must be less than";
   return is_proof(test) ? "planned for an advantage of" : "must be noticed from";
 }
 
 // A margin of a ratio is a factor up or down: 20 % up is 17 % down.
 std::string both_ends(const Test& test, const Effect& effect, double margin) {
-  const std::string relation = relation_of(test.claim);
+  const std::string relation = sides_of(test.claim).relation;
   constexpr double small = 0.02;  // up is down but for the last digit shown
   if (!is_ratio(effect) || std::abs(margin) < small || (relation != "within" && relation != "=="))
     return {};
@@ -203,18 +183,22 @@ std::string channels_fact(const Test& test) {
   return text;
 }
 
+/// "violated: tail index 0.41 (limit 0.25)"; then what is allowed for.
 std::string gates_fact(const Test& test) {
   constexpr int most = 6;
   std::string text;
   int named = 0;
-  for (const Gate& gate : test.gates) {
-    if (gate.state == "green" || ++named > most) continue;
-    if (!text.empty()) text += "; ";
-    text += fmt::format("{} is {} ({}, limit {})", gate.name, gate.state, human(gate.value),
-                        human(gate.limit));
+  for (const char* state : {"red", "amber"}) {
+    const char* lead = *state == 'r' ? "violated: " : "allowed for: ";
+    for (const Gate& gate : test.gates) {
+      if (gate.state != state || ++named > most) continue;
+      text += fmt::format("{}{}{} {} (limit {})", text.empty() ? "" : "; ", lead, gate.name,
+                          gate.value ? human(*gate.value, 3) : no_number,
+                          gate.limit ? human(*gate.limit, 3) : no_number);
+      lead = "";
+    }
   }
-  if (named > most) text += fmt::format("; {} more are not green", named - most);
-  return text;
+  return named > most ? text + fmt::format("; {} more", named - most) : text;
 }
 
 std::string expectation_fact(const Test& test) {
@@ -254,24 +238,39 @@ Channel deciding_channel(const Test& test) {
   return least != nullptr ? *least : worst_channel(test);
 }
 
-std::string relation_of(const std::string& claim) {
-  const std::string_view text = find_relation(claim).text;
-  return text == " within " ? "within" : std::string(text);
+Sides sides_of(const std::string& claim) {
+  static constexpr std::string_view relations[] = {"==", "<=", ">=", "<", ">", " within "};
+  const auto trimmed = [](std::string_view text) {
+    const std::size_t first = std::min(text.find_first_not_of(' '), text.size());
+    return std::string(text.substr(first, text.find_last_not_of(' ') + 1 - first));
+  };
+  const std::string_view text = claim;
+  int depth = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '(') ++depth;
+    if (text[i] == ')') --depth;
+    if (depth != 0) continue;
+    for (const std::string_view relation : relations) {
+      if (!text.substr(i).starts_with(relation)) continue;
+      return {trimmed(text.substr(0, i)), trimmed(relation),
+              trimmed(text.substr(i + relation.size()))};
+    }
+  }
+  return {.left = claim};
 }
 
 bool is_proof(const Test& test) {
-  const std::string relation = relation_of(test.claim);
+  const std::string relation = sides_of(test.claim).relation;
   return relation == "<" || relation == ">" || relation == "within";
 }
 
 std::string contrary(const std::string& claim) {
-  const Relation found = find_relation(claim);
-  const auto with = [&](const char* relation) {
-    return claim.substr(0, found.at) + relation + claim.substr(found.at + found.text.size());
-  };
-  if (found.text == "<") return with(">=");
-  if (found.text == ">") return with("<=");
-  return found.text == " within " ? with(" not within ") : std::string();
+  const auto [left, relation, right] = sides_of(claim);
+  const char* const other = relation == "<"        ? ">="
+                            : relation == ">"      ? "<="
+                            : relation == "within" ? "not within"
+                                                   : nullptr;
+  return other == nullptr ? std::string() : fmt::format("{} {} {}", left, other, right);
 }
 
 std::string NamedP::text() const {
@@ -369,15 +368,6 @@ std::string cost_text(const Cost& cost) {
   return cost.samples > 0 ? counted(cost.samples, "sample", "samples") : std::string();
 }
 
-std::string cost_text(std::vector<Cost> costs) {
-  const auto traced =
-      std::partition(costs.begin(), costs.end(), [](const Cost& cost) { return rays(cost) == 0; });
-  const std::string with = cost_text(total_cost({traced, costs.end()}));
-  const std::string without = cost_text(total_cost({costs.begin(), traced}));
-  if (with.empty() || without.empty()) return with + without;
-  return fmt::format("{} and {} without rays", with, without);
-}
-
 std::string place(const Test& test) {
   if (test.file.empty()) return {};
   return test.line > 0 ? fmt::format("{}:{}", test.file, test.line) : test.file;
@@ -415,19 +405,15 @@ std::vector<Fact> facts(const Test& test) {
   }
   add("assumptions", gates_fact(test));
   add("observations", observations_fact(test));
+  add("cost", cost_text(total_cost(test)));
+  add("where", place(test));
   return result;
 }
 
 std::string plain_text(const Test& test) {
   std::string text;
-  const auto add = [&text](const std::string& label, const std::string& sentence) {
-    if (!sentence.empty()) text += label + ": " + clean(sentence) + "\n";
-  };
-  for (const auto& [label, sentence] : facts(test)) add(label, sentence);
-  add("cost", cost_text(total_cost(test)));
-  add("where", place(test));
-  add("replay", test.replay);
-  return text;
+  for (const auto& [label, sentence] : facts(test)) text += label + ": " + clean(sentence) + "\n";
+  return test.replay.empty() ? text : text + "replay: " + clean(test.replay) + "\n";
 }
 
 std::string levels_text(const Suite& suite) {

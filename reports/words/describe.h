@@ -10,8 +10,12 @@
 
 namespace assay::reports {
 
-/// How a claim relates its sides: the relation outside all brackets; empty where there is none.
-std::string relation_of(const std::string& claim);
+/// A claim about the relation that stands outside all brackets: a source may have one in its
+/// parameters. Without a relation all of the claim is on the left.
+struct Sides {
+  std::string left, relation, right;
+};
+Sides sides_of(const std::string& claim);
 
 /// True for <, > and within: the claim passes when its contrary is rejected, so that the p-value of
 /// the claim itself says little.
@@ -69,9 +73,6 @@ std::string key_number(const Test&);
 
 /// "1.05 M rays", or samples where no ray was traced.
 std::string cost_text(const Cost&);
-/// The same of many draws, with the samples of those that traced none: "64.0 k rays and 40.0 M
-/// samples without rays".
-std::string cost_text(std::vector<Cost>);
 std::uint64_t rays(const Cost&);
 
 /// "suites/triangle.yaml:14".
@@ -87,12 +88,11 @@ struct Fact {
 };
 
 /// Everything that a reader of a verdict needs, in reading order: claim, null hypothesis, estimate,
-/// p-values, margins, expectation, channels, assumptions, message. Without place and replay
-/// command.
+/// p-values, margins, expectation, channels, assumptions, message, cost, place.
 std::vector<Fact> facts(const Test&);
 
-/// The same facts as lines "label: sentence", with place and replay command: for formats that show
-/// plain text.
+/// The same facts as lines "label: sentence", with the replay command: for formats that show plain
+/// text.
 std::string plain_text(const Test&);
 
 /// "alpha 0.01 (false alarms), beta 0.01 (misses), seed 1".

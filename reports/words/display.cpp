@@ -44,24 +44,15 @@ std::string bracket(const Effect& effect) {
   return text.empty() ? text : fmt::format(" ({})", text);
 }
 
-/// The sides of a claim about its relation; the second is empty where there is no relation.
-std::pair<std::string, std::string> sides(const std::string& claim) {
-  const std::string relation = relation_of(claim);
-  const std::string between = " " + relation + " ";
-  const std::size_t at = relation.empty() ? std::string::npos : claim.find(between);
-  if (at == std::string::npos) return {claim, ""};
-  return {claim.substr(0, at), claim.substr(at + between.size())};
-}
-
 /// "mean(area) is 1.07 % above analytic (+0.06 % to +2.1 %)".
 std::string found(const Test& test, const Effect& effect) {
   const double theta = *effect.estimate;
-  const auto [left, right] = sides(test.claim);
+  const auto [left, relation, right] = sides_of(test.claim);
   const bool signed_effect =
       is_ratio(effect) || effect.quantity.find("difference") != std::string::npos;
   const bool of_image = test.image.has_value();
   const std::string size = size_text(theta, effect);
-  if (right.empty() || !signed_effect || of_image || relation_of(test.claim) == "within" ||
+  if (right.empty() || !signed_effect || of_image || relation == "within" ||
       !std::isfinite(theta)) {
     return fmt::format("{} is {}{}", effect_name(effect), theta_text(theta, effect),
                        bracket(effect));
@@ -116,8 +107,9 @@ std::string found_in_image(const Image& image) {
 /// True where the interval leaves out all that is claimed or allowed.
 bool leaves_claim_out(const Test& test, const Effect& effect) {
   const double allow = test.allow.value_or(0);
-  return relation_of(test.claim) == "==" && ((is_finite(effect.low) && *effect.low > allow) ||
-                                             (is_finite(effect.high) && *effect.high < -allow));
+  return sides_of(test.claim).relation == "==" &&
+         ((is_finite(effect.low) && *effect.low > allow) ||
+          (is_finite(effect.high) && *effect.high < -allow));
 }
 
 /// True where the interval lies within the margin on both sides.
@@ -160,6 +152,15 @@ std::set<std::string> estimators_of(const Test& test) {
   return names;
 }
 
+/// "4 runs in 100": a rate in two digits, of the fewest runs that a whole number is meant of.
+std::string in_many(double rate, const char* noun) {
+  double runs = 100;
+  const auto whole = [&] { return std::abs(rate * runs - std::round(rate * runs)) < 1e-6; };
+  while (rate * runs < 1 || (!whole() && rate * runs < 10)) runs *= 10;
+  const double some = whole() ? std::round(rate * runs) : std::ceil(rate * runs);
+  return fmt::format("{:.0f} {}{} in {}", some, noun, some == 1 ? "" : "s", in_commas(runs));
+}
+
 /// The text that a message asks to write; "" if it asks for nothing.
 std::string asked_for(const std::string& message) {
   constexpr std::string_view lead = "write `";
@@ -169,26 +170,72 @@ std::string asked_for(const std::string& message) {
   return message.substr(begin, message.find('`', begin) - begin);
 }
 
+std::vector<Suspect> suspects(const Suite& suite, Standing how) {
+  std::map<std::string, int> claims;
+  std::vector<const Test*> broken;
+  for (const Test& test : suite.tests) {
+    for (const std::string& name : estimators_of(test)) ++claims[name];
+    if (standing(test) == how) broken.push_back(&test);
+  }
+  std::vector<Suspect> all;
+  while (!broken.empty()) {
+    std::map<std::string, int> count;
+    for (const Test* test : broken) {
+      for (const std::string& name : estimators_of(*test)) ++count[name];
+    }
+    // A tie goes to the estimator whose claims are broken most often.
+    const auto worst =
+        std::max_element(count.begin(), count.end(), [&](const auto& a, const auto& b) {
+          return std::pair(a.second, -claims[a.first]) < std::pair(b.second, -claims[b.first]);
+        });
+    Suspect suspect{.suite = suite.name, .standing = to_string(how)};
+    if (worst == count.end()) {
+      suspect.name = broken.front()->name;
+      suspect.tests = {broken.front()->id};
+      broken.erase(broken.begin());
+    } else {
+      suspect.name = worst->first;
+      std::erase_if(broken, [&](const Test* test) {
+        const bool shared = estimators_of(*test).contains(suspect.name);
+        if (shared) suspect.tests.push_back(test->id);
+        return shared;
+      });
+      suspect.sentence =
+          fmt::format("{} of its {} {}", worst->second,
+                      counted(static_cast<std::uint64_t>(claims[suspect.name]), "claim", "claims"),
+                      how == Standing::broken ? "broken" : "without a verdict");
+    }
+    all.push_back(std::move(suspect));
+  }
+  return all;
+}
+
 }  // namespace
 
-std::string tally_sentence(const Tally& tally) {
-  const int total = tally.passed + tally.failed + tally.inconclusive + tally.skipped;
+std::string tally_sentence(std::map<Standing, int> count) {
+  int total = 0;
+  for (const auto& [standing, some] : count) total += some;
+  const int broken = count[Standing::broken], none = count[Standing::no_verdict];
+  const int undecided = count[Standing::undecided], skipped = count[Standing::not_run];
   if (total == 0) return "No claim was tested";
-  if (tally.failed > 0) return of_claims(tally.failed, total) + " broken";
-  if (tally.inconclusive > 0)
-    return of_claims(tally.inconclusive, total) + " undecided, none broken";
-  if (total == 1)
-    return tally.skipped > 0 ? "The claim was not tested" : "The claim is as it should be";
-  if (tally.skipped == total) return fmt::format("None of {} claims was tested", total);
-  if (tally.skipped > 0)
-    return fmt::format("{} as they should be, {} not tested", of_claims(tally.passed, total),
-                       tally.skipped);
+  if (broken > 0)
+    return of_claims(broken, total) + " broken" +
+           (none > 0 ? fmt::format(", {} without a verdict", none) : "");
+  if (none > 0) return of_claims(none, total) + " without a verdict, none broken";
+  if (undecided > 0) return of_claims(undecided, total) + " undecided, none broken";
+  if (total == 1) return skipped > 0 ? "The claim was not tested" : "The claim is as it should be";
+  if (skipped == total) return fmt::format("None of {} claims was tested", total);
+  if (skipped > 0)
+    return fmt::format("{} as they should be, {} not tested", of_claims(total - skipped, total),
+                       skipped);
   return fmt::format("All {} claims are as they should be", total);
 }
 
 std::string run_sentence(const Record& record) {
+  std::map<Standing, int> count;
+  for (const Test* test : tests_of(record)) ++count[standing(*test)];
   const std::string alarm = alarm_count(record.ledger);
-  return tally_sentence(tally(record)) + (alarm.empty() ? "" : "; " + alarm);
+  return tally_sentence(std::move(count)) + (alarm.empty() ? "" : "; " + alarm);
 }
 
 std::string verdict_counts(const Record& record) {
@@ -202,36 +249,10 @@ std::string verdict_counts(const Record& record) {
   return out;
 }
 
-std::string error_rates(const Record& record) {
-  double alpha = 0, beta = 0;
-  bool planned = false;
-  for (const Suite& suite : record.suites) {
-    if (suite.tests.empty()) continue;
-    alpha += suite.alpha;
-    beta = std::max(beta, suite.beta);
-    for (const Test& test : suite.tests) planned = planned || test.detect.has_value();
-  }
-  if (!(alpha > 0)) return {};
-  std::string text = fmt::format(
-      "If every claim were true, some test would fail by chance with probability {} at most.",
-      human(std::min(alpha, 1.0)));
-  if (planned && beta > 0)
-    text += fmt::format(
-        " A claim that is off by its \"detect\" or more passes with probability {} at most.",
-        human(beta));
-  return text;
-}
-
 std::string false_alarms(double alpha) {
   if (!(alpha > 0)) return {};
   if (alpha >= 1) return "False alarms: in any run, as the suites' alphas add up to 1 or more.";
-  // The fewest runs, a power of ten, of which a whole number is meant; two digits are enough.
-  double runs = 100;
-  const auto whole = [&] { return std::abs(alpha * runs - std::round(alpha * runs)) < 1e-6; };
-  while (alpha * runs < 1 || (!whole() && alpha * runs < 10)) runs *= 10;
-  const double some = whole() ? std::round(alpha * runs) : std::ceil(alpha * runs);
-  return fmt::format("False alarms: at most {:.0f} run{} in {}.", some, some == 1 ? "" : "s",
-                     in_commas(runs));
+  return fmt::format("False alarms: at most {}.", in_many(alpha, "run"));
 }
 
 std::string false_alarms(const Record& record) {
@@ -240,16 +261,75 @@ std::string false_alarms(const Record& record) {
   return false_alarms(alpha);
 }
 
+std::string error_rates(const Record& record) {
+  double beta = 0;
+  for (const Suite& suite : record.suites) {
+    for (const Test& test : suite.tests) beta = std::max(beta, test.detect ? suite.beta : 0);
+  }
+  if (!(beta > 0 && beta < 1)) return false_alarms(record);
+  return fmt::format("{} Misses: at most {} of those that are off by what must be caught.",
+                     false_alarms(record), in_many(beta, "claim"));
+}
+
+std::string counts_text(const Suite& suite) {
+  std::map<Standing, std::uint64_t> count;
+  for (const Test& test : suite.tests) ++count[standing(test)];
+  const std::uint64_t held = count[Standing::holds], caught = count[Standing::caught];
+  std::string text;
+  const auto add = [&](std::uint64_t some, const char* words) {
+    if (some > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", some, words);
+  };
+  if (held + caught == suite.tests.size()) {
+    add(held, held == 1 ? "holds" : "hold");
+    add(caught, caught == 1 ? "planted bug caught" : "planted bugs caught");
+    return text;
+  }
+  add(count[Standing::broken], "broken");
+  add(count[Standing::no_verdict], "without a verdict");
+  add(count[Standing::undecided], "undecided");
+  add(count[Standing::not_run], "not run");
+  add(held + caught, "ok");
+  return text;
+}
+
 const char* to_string(Standing standing) {
-  constexpr const char* names[] = {"broken", "undecided", "holds", "caught", "not run"};
+  constexpr const char* names[] = {"broken", "no verdict", "undecided",
+                                   "holds",  "caught",     "not run"};
   return names[static_cast<int>(standing)];
 }
 
 Standing standing(const Test& test) {
-  // In the order of outcomes.
-  const Standing standings[] = {test.expected == Verdict::pass ? Standing::holds : Standing::caught,
-                                Standing::broken, Standing::undecided, Standing::not_run};
-  return standings[static_cast<int>(outcome(test))];
+  switch (outcome(test)) {
+    case Outcome::passed:
+      return test.expected == Verdict::pass ? Standing::holds : Standing::caught;
+    case Outcome::failed:
+      return is_evidence(test) ? Standing::broken : Standing::no_verdict;
+    case Outcome::inconclusive:
+      return Standing::undecided;
+    case Outcome::skipped:
+      break;
+  }
+  return Standing::not_run;
+}
+
+std::string meaning(const Test& test) {
+  if (test.expected == Verdict::fail && test.verdict == Verdict::pass) return "";
+  if (standing(test) == Standing::caught) return "This is as the suite expects.";
+  switch (test.verdict) {
+    case Verdict::pass:
+      return is_proof(test) ? "The claim is shown." : "Nothing speaks against the claim.";
+    case Verdict::fail:
+      return "The claim is wrong.";
+    case Verdict::inconclusive:
+      return "Too few samples were drawn to say whether the claim holds.";
+    case Verdict::invalid:
+      return "Nothing was decided, because the data break what the test relies on.";
+    case Verdict::error:
+      return "There are no numbers to judge, because drawing them failed.";
+    case Verdict::skipped:
+      break;
+  }
+  return "The claim was not tested.";
 }
 
 TestDisplay display(const Test& test) {
@@ -257,8 +337,9 @@ TestDisplay display(const Test& test) {
   const bool shown = is_evidence(test) && effect.estimate.has_value();
   TestDisplay words{.standing = to_string(standing(test)),
                     .verdict = verdict_text(test),
+                    .meaning = meaning(test),
                     .place = place(test),
-                    .cost = cost_text(total_cost(test)),
+                    .steps = steps(test),
                     .facts = facts(test)};
   if (test.detect) words.margin = margin_text(*test.detect, effect);
   words.sentence = sentence_of(test, effect, words.margin);
@@ -271,7 +352,7 @@ TestDisplay display(const Test& test) {
 }
 
 SuiteDisplay display(const Suite& suite) {
-  SuiteDisplay words{.levels = levels_text(suite)};
+  SuiteDisplay words{.counts = counts_text(suite), .levels = levels_text(suite)};
   if (KillMatrix matrix = kill_matrix(suite); is_worth_showing(matrix))
     words.kills = std::move(matrix);
   for (const Statement& statement : suite.statements) {
@@ -283,40 +364,9 @@ SuiteDisplay display(const Suite& suite) {
 }
 
 std::vector<Suspect> suspects(const Suite& suite) {
-  std::map<std::string, int> claims;
-  std::vector<const Test*> broken;
-  for (const Test& test : suite.tests) {
-    for (const std::string& name : estimators_of(test)) ++claims[name];
-    if (standing(test) == Standing::broken) broken.push_back(&test);
-  }
   std::vector<Suspect> all;
-  while (!broken.empty()) {
-    std::map<std::string, int> count;
-    for (const Test* test : broken) {
-      for (const std::string& name : estimators_of(*test)) ++count[name];
-    }
-    // A tie goes to the estimator whose claims are broken most often.
-    const auto worst =
-        std::max_element(count.begin(), count.end(), [&](const auto& a, const auto& b) {
-          return std::pair(a.second, -claims[a.first]) < std::pair(b.second, -claims[b.first]);
-        });
-    Suspect suspect{.suite = suite.name};
-    if (worst == count.end()) {
-      suspect.name = broken.front()->name;
-      suspect.tests = {broken.front()->id};
-      broken.erase(broken.begin());
-    } else {
-      suspect.name = worst->first;
-      std::erase_if(broken, [&](const Test* test) {
-        const bool shared = estimators_of(*test).contains(suspect.name);
-        if (shared) suspect.tests.push_back(test->id);
-        return shared;
-      });
-      suspect.sentence =
-          fmt::format("{} of its {} broken", worst->second,
-                      counted(static_cast<std::uint64_t>(claims[suspect.name]), "claim", "claims"));
-    }
-    all.push_back(std::move(suspect));
+  for (const Standing how : {Standing::broken, Standing::no_verdict}) {
+    for (Suspect& suspect : suspects(suite, how)) all.push_back(std::move(suspect));
   }
   return all;
 }
@@ -329,9 +379,11 @@ RecordDisplay display(const Record& record) {
   for (const Suite& suite : record.suites) {
     for (Suspect& suspect : suspects(suite)) words.suspects.push_back(std::move(suspect));
   }
-  std::stable_sort(
-      words.suspects.begin(), words.suspects.end(),
-      [](const Suspect& a, const Suspect& b) { return a.tests.size() > b.tests.size(); });
+  // What is broken comes first, then what breaks the most.
+  std::ranges::stable_sort(words.suspects, {}, [](const Suspect& suspect) {
+    return std::pair(suspect.standing != to_string(Standing::broken),
+                     -static_cast<std::ptrdiff_t>(suspect.tests.size()));
+  });
   if (record.ledger.file.empty()) return words;
   words.ledger = ledger_title(record.ledger);
   words.quiet = quiet_sentence(record.ledger);
@@ -339,7 +391,9 @@ RecordDisplay display(const Record& record) {
   for (const LedgerSeries& series : record.ledger.series) {
     words.series.push_back({.name = series_name(record.ledger, series),
                             .sentence = series_sentence(series),
-                            .alarm = alarm_sentence(series)});
+                            .alarm = alarm_sentence(series),
+                            .changes = changes(series),
+                            .running = running_means(series)});
   }
   return words;
 }

@@ -3,6 +3,7 @@
 // These words all reports share, and the steps to take about a claim that is not as it should be.
 // The JSON record holds them as `display`.
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,9 +14,6 @@
 
 namespace assay::reports {
 
-/// How many tests had which outcome, as a sentence for a title.
-std::string tally_sentence(const Tally&);
-
 /// The same of a run, with the alarms of its ledger: "5 of 126 claims broken; 1 ledger alarm".
 std::string run_sentence(const Record&);
 
@@ -23,37 +21,58 @@ std::string run_sentence(const Record&);
 /// fail (as expected)".
 std::string verdict_counts(const Record&);
 
-/// The error rates of a run's verdicts.
-std::string error_rates(const Record&);
-
 /// "False alarms: at most 4 runs in 100." of a total alpha; empty if that is 0.
 std::string false_alarms(double alpha);
 
 /// The same of all suites with tests.
 std::string false_alarms(const Record&);
 
-/// The groups that a reader sorts claims by.
-enum class Standing { broken, undecided, holds, caught, not_run };
+/// The same, and how often a claim passes that is off by what must be caught.
+std::string error_rates(const Record&);
 
-/// "broken", "undecided", "holds", "caught", "not run".
+/// The groups that a reader sorts claims by. A claim without a verdict was to have one, but its
+/// data break an assumption, or drawing them failed.
+enum class Standing { broken, no_verdict, undecided, holds, caught, not_run };
+
+/// "broken", "no verdict", "undecided", "holds", "caught", "not run".
 const char* to_string(Standing);
 
 /// A planted bug is caught where the test is ok and its expected verdict is not pass.
 Standing standing(const Test&);
 
+/// How many claims stand how, as a sentence for a title.
+std::string tally_sentence(std::map<Standing, int> count);
+
+/// Something to do, and a line to paste for it.
+struct Step {
+  std::string label;  ///< "again", "add to the test"
+  std::string paste;
+  ASSAY_FIELDS(Step, label, paste)
+};
+/// The most useful first. A message that ends in "write `TEXT`" gives the text to paste. Empty if
+/// the words of trouble() are all there is to say.
+std::vector<Step> steps(const Test&);
+
+/// The meaning of a verdict: "Nothing speaks against the claim."; empty where a bug was missed.
+std::string meaning(const Test&);
+
+/// "72 hold, 2 planted bugs caught"; where not all is well "1 broken, 2 undecided, 14 ok".
+std::string counts_text(const Suite&);
+
 struct TestDisplay {
   std::string standing;
   std::string verdict;   ///< "pass", "fail (as expected)"
   std::string sentence;  ///< what was found, without a p-value
+  std::string meaning;
   std::string effect;    ///< "+1.07 %"; empty where there is none
   std::string interval;  ///< "+0.06 % to +2.1 %"
   std::string margin;    ///< "0.5 %": what must be caught
   std::string chance;    ///< "1 in 17,000": the chance of such data if nothing is wrong
   std::string place;
-  std::string cost;
+  std::vector<Step> steps;
   std::vector<Fact> facts;
-  ASSAY_FIELDS(TestDisplay, standing, verdict, sentence, effect, interval, margin, chance, place,
-               cost, facts)
+  ASSAY_FIELDS(TestDisplay, standing, verdict, sentence, meaning, effect, interval, margin, chance,
+               place, steps, facts)
 };
 TestDisplay display(const Test&);
 
@@ -64,30 +83,34 @@ struct StatementDisplay {
   ASSAY_FIELDS(StatementDisplay, answer, holds, fails)
 };
 struct SuiteDisplay {
+  std::string counts;
   std::string levels;
   std::optional<KillMatrix> kills;  ///< none: not worth showing
   std::vector<StatementDisplay> statements;
-  ASSAY_FIELDS(SuiteDisplay, levels, kills, statements)
+  ASSAY_FIELDS(SuiteDisplay, counts, levels, kills, statements)
 };
 SuiteDisplay display(const Suite&);
 
 /// The estimator that the most broken claims share, with these claims. A broken claim without a
-/// sample is a suspect by itself.
+/// sample is a suspect by itself. Claims without a verdict have suspects of their own.
 struct Suspect {
   std::string suite;
   std::string name;
+  std::string standing;            ///< of its claims
   std::vector<std::string> tests;  ///< ids of its broken claims
   std::string sentence;            ///< "4 of its 17 claims broken"
-  ASSAY_FIELDS(Suspect, suite, name, tests, sentence)
+  ASSAY_FIELDS(Suspect, suite, name, standing, tests, sentence)
 };
-/// Every broken claim belongs to one suspect. Suspects with more broken claims come first.
+/// Every broken claim, and every one without a verdict, belongs to one suspect.
 std::vector<Suspect> suspects(const Suite&);
 
 struct SeriesDisplay {
   std::string name;
   std::string sentence;
-  std::string alarm;  ///< empty without one
-  ASSAY_FIELDS(SeriesDisplay, name, sentence, alarm)
+  std::string alarm;            ///< empty without one
+  std::string changes;          ///< command that lists the commits of the night it moved
+  std::vector<Number> running;  ///< theta by all nights up to each
+  ASSAY_FIELDS(SeriesDisplay, name, sentence, alarm, changes, running)
 };
 struct RecordDisplay {
   std::string verdict;  ///< "5 of 126 claims broken; 1 ledger alarm"
@@ -105,15 +128,6 @@ RecordDisplay display(const Record&);
 
 /// The trouble with a claim, without a p-value where it can be said so.
 std::string trouble(const Test&);
-
-/// Something to do, and a line to paste for it.
-struct Step {
-  std::string label;  ///< "again", "add to the test"
-  std::string paste;
-};
-/// The most useful first. A message that ends in "write `TEXT`" gives the text to paste. Empty if
-/// the words of trouble() are all there is to say.
-std::vector<Step> steps(const Test&);
 
 /// The command that tells more of a test.
 Step explanation(const Test&);

@@ -51,9 +51,4 @@ KillMatrix kill_matrix(const Suite&);
 /// True if two methods or more tested some mutant.
 bool is_worth_showing(const KillMatrix&);
 
-/// A heading and a line for each mutant, none wider than `width` columns: names are shortened where
-/// the numbers need the room, numbers never. Columns that do not fit stand in a second block, with
-/// the mutants that have something there.
-std::vector<std::string> kill_lines(const KillMatrix& matrix, int width);
-
 }  // namespace assay::reports

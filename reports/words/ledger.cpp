@@ -11,11 +11,15 @@
 namespace assay::reports {
 namespace {
 
-std::string plural(std::uint64_t count, const char* noun) {
-  return fmt::format("{} {}{}", count, noun, count == 1 || *noun == 's' ? "" : "s");
-}
-
 std::string day(const std::string& date) { return date.substr(0, date.find('T')); }
+
+/// "2026-11-18 02:00 UTC" of ISO 8601.
+std::string minute(std::string date) {
+  constexpr std::size_t length = 16;
+  if (date.size() < length || date[10] != 'T') return date;
+  date[10] = ' ';
+  return date.substr(0, length) + " UTC";
+}
 
 /// theta and its standard error from the sums.
 std::string theta_sentence(const LedgerSeries& series) {
@@ -42,13 +46,14 @@ double distance(const LedgerSeries& series) {
 
 std::string alarm_count(const Ledger& ledger) {
   const int count = alarms(ledger);
-  return count == 0 ? "" : plural(static_cast<std::uint64_t>(count), "ledger alarm");
+  return count == 0 ? ""
+                    : counted(static_cast<std::uint64_t>(count), "ledger alarm", "ledger alarms");
 }
 
 std::string ledger_title(const Ledger& ledger) {
   return fmt::format("Ledger {}, budget {} a suite: {} in {}", ledger.file, human(ledger.budget),
-                     plural(static_cast<std::uint64_t>(alarms(ledger)), "alarm"),
-                     plural(ledger.series.size(), "series"));
+                     counted(static_cast<std::uint64_t>(alarms(ledger)), "alarm", "alarms"),
+                     counted(ledger.series.size(), "series", "series"));
 }
 
 std::string series_name(const Ledger& ledger, const LedgerSeries& series) {
@@ -66,20 +71,43 @@ std::string e_text(const Number& log_e) {
 std::string series_sentence(const LedgerSeries& series) {
   if (series.nights.empty()) return "no night yet";
   return fmt::format("{} since {}: {}e-value E = {}, alarm at {}",
-                     plural(series.nights.size(), "night"), day(series.nights.front().date),
-                     theta_sentence(series), e_text(series.log_e()), e_text(series.limit));
+                     counted(series.nights.size(), "night", "nights"),
+                     day(series.nights.front().date), theta_sentence(series),
+                     e_text(series.log_e()), e_text(series.limit));
 }
 
 std::string alarm_sentence(const LedgerSeries& series) {
   if (!series.alarm) return {};
-  std::string text = fmt::format(
-      "the nights together refute the claim since {}; it moved most likely on the night "
-      "of {}, commit {}",
-      series.since, series.moved, series.moved_commit);
-  if (series.moved_from != series.moved_to) {
-    text += fmt::format(" (90 %: {} to {})", series.moved_from, series.moved_to);
+  const std::string range = series.moved_from == series.moved_to
+                                ? std::string()
+                                : fmt::format(" (90\u00A0%: {} to {})", minute(series.moved_from),
+                                              minute(series.moved_to));
+  return fmt::format(
+      "The nights together refute the claim since {}. It moved most likely on the night of {}, "
+      "commit {}{}.",
+      minute(series.since), minute(series.moved), series.moved_commit, range);
+}
+
+std::string changes(const LedgerSeries& series) {
+  const auto moved = std::ranges::find(series.nights, series.moved, &LedgerNight::date);
+  if (!series.alarm || moved == series.nights.end() || moved == series.nights.begin()) return {};
+  const std::string& before = std::prev(moved)->commit;
+  if (before.empty() || before == moved->commit) return {};
+  return fmt::format("git log --oneline {}..{}", before, moved->commit);
+}
+
+std::vector<Number> running_means(const LedgerSeries& series) {
+  std::vector<Number> means;
+  double weights = 0, sum = 0;
+  for (const LedgerNight& night : series.nights) {
+    const double width = night.high.value_or(0) - night.low.value_or(0);
+    if (night.estimate && width > 0) {
+      weights += 1 / (width * width);
+      sum += *night.estimate / (width * width);
+    }
+    means.push_back(weights > 0 ? Number(sum / weights) : Number());
   }
-  return text;
+  return means;
 }
 
 std::string quiet_sentence(const Ledger& ledger) {
@@ -96,8 +124,8 @@ std::string quiet_sentence(const Ledger& ledger) {
   return fmt::format(
       "{} of up to {} without an alarm; nearest to one is {}, e-value "
       "E = {}, alarm at {}",
-      plural(count, "series"), plural(nights, "night"), series_name(ledger, *highest),
-      e_text(highest->log_e()), e_text(highest->limit));
+      counted(count, "series", "series"), counted(nights, "night", "nights"),
+      series_name(ledger, *highest), e_text(highest->log_e()), e_text(highest->limit));
 }
 
 std::vector<std::string> ledger_notes(const Ledger& ledger) {

@@ -25,9 +25,16 @@ std::string e_text(const Number& log_e);
 /// 667".
 std::string series_sentence(const LedgerSeries&);
 
-/// The first night of an alarm, and the night at which theta most likely moved. Empty without an
-/// alarm.
+/// Sentences on the first night of an alarm, and the night at which theta most likely moved. Empty
+/// without an alarm.
 std::string alarm_sentence(const LedgerSeries&);
+
+/// The command that lists the commits between the night before theta moved and that night. Empty
+/// where they are one commit.
+std::string changes(const LedgerSeries&);
+
+/// theta by all nights up to each, weighted by the widths of their intervals.
+std::vector<Number> running_means(const LedgerSeries&);
 
 /// One sentence for all series without an alarm: their number, and which stands highest.
 std::string quiet_sentence(const Ledger&);

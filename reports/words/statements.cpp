@@ -113,12 +113,6 @@ std::string statement_totals(const Record& record) {
   return fmt::format("{}: {}.", counted(statement_count(record), "statement", "statements"), text);
 }
 
-const char* const statement_legend =
-    "The answer follows from the verdicts of the tests beside it. Yes: all have the verdict that "
-    "the statement asks for. No: they show the contrary. Only if: some show where it holds, the "
-    "others where it does not. Open: a test was undecided, invalid or not run. Contradicted: a "
-    "test came out otherwise than the suite expects.";
-
 std::string finding(const Suite& suite, const Witness& witness) {
   if (!witness.test) return "not run";
   const Test& test = suite.tests[*witness.test];

@@ -52,9 +52,6 @@ std::string whole_answer(const Suite&, const Statement&);
 /// "31 statements: 14 yes, 12 only if, 5 no."
 std::string statement_totals(const Record&);
 
-/// How to read the answers.
-extern const char* const statement_legend;
-
 /// The finding of a test: "ratio of variances ×0.0717 [×0.07, ×0.0734] (99 % interval)". Without an
 /// effect it is the p-value, without that the verdict; "not run" if the test is not in the record.
 std::string finding(const Suite&, const Witness&);

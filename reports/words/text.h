@@ -46,8 +46,8 @@ std::string escape_markdown(std::string_view text);
 /// At most `bytes` of the text, cut between characters; what is missing is said at the end.
 std::string cap(std::string text, std::size_t bytes);
 
-/// Columns that a character of clean text takes: 0 (combining), 1, or 2 (East Asian wide, emoji). Never fewer
-/// than a terminal takes; doubtful ones count as 2.
+/// Columns that a character of clean text takes: 0 (combining), 1, or 2 (East Asian wide, emoji).
+/// Never fewer than a terminal takes; doubtful ones count as 2.
 int columns(char32_t character);
 
 /// Columns of a text without line feeds.

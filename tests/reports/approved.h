@@ -1,6 +1,7 @@
 #pragma once
 
-#include "reports/record/file.h"
+#include <fstream>
+
 #include "tests/prelude.h"
 
 namespace assay::tests {
@@ -9,7 +10,7 @@ namespace assay::tests {
 /// in the environment (reports/README.md).
 inline void expect_approved(const std::string& name, const std::string& written) {
   const std::filesystem::path file = std::filesystem::path(ASSAY_SOURCE_DIR "/tests/golden") / name;
-  if (std::getenv("ASSAY_APPROVE") != nullptr) reports::write_whole(file, written);
+  if (std::getenv("ASSAY_APPROVE") != nullptr) std::ofstream(file, std::ios::binary) << written;
   const std::string wanted = bytes_in(file);
   const auto at = static_cast<std::size_t>(
       std::mismatch(written.begin(), written.end(), wanted.begin(), wanted.end()).first -

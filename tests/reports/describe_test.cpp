@@ -11,10 +11,6 @@ TEST(Describe, OneIsSingular) {
   EXPECT_EQ(cost_text(cost), "1\u00A0sample");
   cost.shadow_rays = 1;
   EXPECT_EQ(cost_text(cost), "1\u00A0ray");
-  EXPECT_EQ(cost_text({cost, Cost{.samples = 2}, Cost{.samples = 3}}),
-            "1\u00A0ray and 5\u00A0samples without rays");
-  EXPECT_EQ(cost_text({Cost{.samples = 2}}), "2\u00A0samples");
-  EXPECT_EQ(cost_text(std::vector<Cost>{}), "");
 }
 
 // A claim on two coordinates together has a channel of neither's name.

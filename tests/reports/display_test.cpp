@@ -91,7 +91,8 @@ RC_GTEST_PROP(Suspects, HoldEveryBrokenClaimOnce, ()) {
   for (const Suite& suite : random_record().suites) {
     std::multiset<std::string> broken, named;
     for (const reports::Test& test : suite.tests) {
-      if (standing(test) == Standing::broken) broken.insert(test.id);
+      const Standing how = standing(test);
+      if (how == Standing::broken || how == Standing::no_verdict) broken.insert(test.id);
     }
     for (const Suspect& suspect : suspects(suite)) {
       named.insert(suspect.tests.begin(), suspect.tests.end());

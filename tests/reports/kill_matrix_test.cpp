@@ -163,25 +163,5 @@ TEST(KillMatrix, ReportsShowItOnlyWhereAMutantWasTestedByTwoMethods) {
   EXPECT_THAT(console(record, {.detail = 2}), Not(HasSubstr("mutants are killed")));
 }
 
-TEST(KillMatrix, NoLineOfTheConsoleIsWiderThanAskedForAndNoNumberIsCut) {
-  Suite suite = two_methods();
-  suite.estimators[1].name = std::string(90, 'w') + "光線追跡";
-  for (auto& test : suite.tests) test.samples[0].estimator = suite.estimators[1].name;
-  for (const char* claim : {"a(x)", "b(x)", "cost(x)", "efficiency(x)", "inconsistency(x)"}) {
-    suite.tests.push_back(test_of({claim, "x", Verdict::fail, 123}, {suite.estimators[1].name}));
-  }
-  const KillMatrix matrix = kill_matrix(suite);
-  for (const int width : {60, 100}) {
-    std::string all;
-    for (const std::string& line : kill_lines(matrix, width)) {
-      EXPECT_LE(columns(line), width) << line;
-      all += line + "\n";
-    }
-    for (const KillRow& row : matrix.rows) {
-      for (const auto& cell : row.cells) EXPECT_NE(all.find(cell->text), std::string::npos) << all;
-    }
-  }
-}
-
 }  // namespace
 }  // namespace assay::reports

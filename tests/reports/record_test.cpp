@@ -61,7 +61,7 @@ TEST(Cost, OfASuiteCountsSharedDrawsAsFarAsTheLongestReaches) {
   suite.estimators[0].primaries = 4;
   suite.estimators[0].secondaries = 200;
   suite.estimators[0].cost.samples = 800;
-  EXPECT_EQ(total_cost(costs_of_draws(suite)).samples, 4u * 300 + 4u * 50 + 8u * 10);
+  EXPECT_EQ(total_cost(suite).samples, 4u * 300 + 4u * 50 + 8u * 10);
 }
 
 }  // namespace

@@ -71,14 +71,18 @@ const std::map<std::string, std::string (*)(const Arguments&)> functions{
     {"size of low end", [](auto& a) { return size_text(*effect_of(a).low, effect_of(a)); }},
     {"size of high end", [](auto& a) { return size_text(*effect_of(a).high, effect_of(a)); }},
     {"margin", [](auto& a) { return margin_text(*number(a[0]), effect_of(a, 1)); }},
-    {"relation", [](auto& a) { return relation_of(a[0]); }},
+    {"relation", [](auto& a) { return sides_of(a[0]).relation; }},
     {"is proof", [](auto& a) { return yes_if(is_claim_a_proof(a[0])); }},
     {"contrary", [](auto& a) { return contrary(a[0]); }},
     {"verdict",
      [](auto& a) { return verdict_text(judged(verdict_of(a[0]), verdict_of(a.at(1)))); }},
     {"tally",
      [](auto& a) {
-       return tally_sentence({std::stoi(a[0]), std::stoi(a[1]), std::stoi(a[2]), std::stoi(a[3])});
+       return tally_sentence({{Standing::holds, std::stoi(a[0])},
+                              {Standing::broken, std::stoi(a[1])},
+                              {Standing::no_verdict, std::stoi(a[2])},
+                              {Standing::undecided, std::stoi(a[3])},
+                              {Standing::not_run, std::stoi(a[4])}});
      }},
     {"false alarms", [](auto& a) { return false_alarms(*number(a[0])); }},
     {"clean", [](auto& a) { return clean(a[0]); }},

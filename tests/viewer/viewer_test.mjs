@@ -140,6 +140,27 @@ const tests = {
     }
   },
 
+  async "a claim without a verdict says why, and what to do"() {
+    const page = await opened("example", { hash: "#show=no+verdict" });
+    assert.equal(await rows(page), 2);
+    await page.locator(".suite li .row", { hasText: "variance(heavy)" }).click();
+    const detail = await plain(page.locator(".detail"));
+    for (const part of [/Nothing was decided/, /Reason\s+the fourth moment/, /tail index 0.41, limit 0.25/, /assay replay run.json/])
+      assert.match(detail, part);
+    await closed(page);
+  },
+
+  async "an alarm of nights shows when it moved and what changed"() {
+    const page = await opened("example");
+    const card = page.locator(".card", { hasText: "drifted" });
+    assert.match(await plain(card), /most likely on the night of 2026-11-13 02:00 UTC, commit 14467a0bbe61/);
+    assert.match(await plain(card), /git log --oneline \w+\.\.14467a0bbe61/);
+    assert.equal(await card.locator("figure circle").count(), 12);
+    assert.equal(await card.locator('figure path[stroke-dasharray], figure [stroke-dasharray] path').count(), 1);
+    assert.doesNotMatch(await plain(card), /e-value/);
+    await closed(page);
+  },
+
   async "claims are filtered by keyboard within three tabs"() {
     const page = await opened("many");
     for (let tabs = 1; tabs <= 3; ++tabs) {

@@ -1,5 +1,5 @@
 // The results of `assay calibrate`: how often each method errs on each law, over alpha.
-import { dot, ruleX } from "@observablehq/plot";
+import { dot, ruleX, ruleY } from "@observablehq/plot";
 import { Chart } from "./charts";
 
 interface Rate {
@@ -49,18 +49,17 @@ function Rates({ data, alpha }: { data: Calibration["calibration"]; alpha: numbe
   return (
     <Chart
       label={`Rates of mistakes at alpha ${alpha}`}
-      caption={`Mistakes of the whole procedure over alpha ${alpha}, with exact limits. Dashed: what is tolerated.`}
+      caption={`How often each method errs, as a multiple of the promised rate, with its exact interval cut at 4. 1: as promised. Dashed: tolerated.`}
       options={{
         width: 900,
-        height: 40 + 16 * points.length,
+        height: 50 + 18 * points.length,
         marginLeft: 430,
         x: { label: null, domain: [0, 4], clamp: true },
         y: { label: null, domain: places },
         marks: [
           ruleX([1], { stroke: "var(--muted)" }),
           ruleX([data.tolerance], { stroke: "var(--muted)", strokeDasharray: "5 3" }),
-          dot(points, { x: "low", y: "place", symbol: "times", r: 2.5, stroke: "var(--muted)" }),
-          dot(points, { x: "high", y: "place", symbol: "times", r: 2.5, stroke: "var(--muted)" }),
+          ruleY(points, { x1: "low", x2: "high", y: "place", stroke: (point) => (point.bad ? "var(--bad)" : "var(--mark)") }),
           dot(points, { x: "value", y: "place", fill: (point) => (point.bad ? "var(--bad)" : "var(--mark)"), r: 3.5 }),
         ],
       }}
@@ -80,7 +79,7 @@ export function CalibrationPage({ calibration: data, title, sound, text }: Calib
       <main>
         {alphas.map((alpha) => (
           <section key={alpha} aria-label={`alpha ${alpha}`}>
-            <h2>alpha {alpha}</h2>
+            <h2>Promised: at most {Number((100 * alpha).toPrecision(3))} mistakes in 100</h2>
             <div class="scroll" tabIndex={0} role="region" aria-label={`Rates at alpha ${alpha}`}>
               <Rates data={data} alpha={alpha} />
             </div>

@@ -1,11 +1,12 @@
 // Cards show what broke: a card a suspect, and a card a ledger's alarm.
 import { useContext } from "preact/hooks";
 import { NightsChart } from "./charts";
-import { Copy } from "./claims";
+import { Copy, NoVerdict, Steps } from "./claims";
 import { ImageViewer } from "./image";
 import { PageContext } from "./page";
 import type { Suspect, Test } from "./record";
 import { link } from "./state";
+import { Fold } from "./suites";
 
 const most = 12; // cards; the list of claims has the rest
 
@@ -18,22 +19,27 @@ function Card({ suspect }: { suspect: Suspect }) {
   return (
     <article class="card">
       <h3>
-        {suspect.name} <span class="quiet">{suspect.sentence}</span>
+        {suspect.name}{" "}
+        <span class="quiet">
+          {suspect.sentence && `${suspect.sentence} · `}
+          <a href={link({ open: [first.id] })}>Details</a>
+        </span>
       </h3>
-      <p class="sentence">{first.display.sentence}</p>
+      {suspect.standing === "no verdict" ? <NoVerdict test={first} /> : <p class="sentence">{first.display.sentence}</p>}
       {first.image && <ImageViewer test={first} pictures={page.pictures.get(first.id) ?? []} />}
-      <p class="quiet">
-        <a href={link({ open: [first.id] })}>Details</a>
-        {others.length > 0 && " · Also: "}
-        {others.slice(0, 8).map((test, i) => (
-          <span key={test.id}>
-            {i > 0 && ", "}
-            <a href={link({ open: [test.id] })}>{test.name}</a>
-          </span>
-        ))}
-        {others.length > 8 && ` and ${others.length - 8} more`}
-      </p>
-      <Copy command={first.replay} />
+      {others.length > 0 && (
+        <p class="quiet">
+          Also:{" "}
+          {others.slice(0, 8).map((test, i) => (
+            <span key={test.id}>
+              {i > 0 && ", "}
+              <a href={link({ open: [test.id] })}>{test.name}</a>
+            </span>
+          ))}
+          {others.length > 8 && ` and ${others.length - 8} more`}
+        </p>
+      )}
+      <Steps test={first} />
     </article>
   );
 }
@@ -45,7 +51,7 @@ export function WhatBroke() {
   if (suspects.length === 0 && alarms.length === 0) return null;
   return (
     <section aria-label="What broke">
-      <h2>What broke</h2>
+      <h2>{alarms.length > 0 || suspects.some(({ standing }) => standing === "broken") ? "What broke" : "What has no verdict"}</h2>
       {suspects.slice(0, most).map((suspect) => (
         <Card key={`${suspect.suite} ${suspect.name}`} suspect={suspect} />
       ))}
@@ -59,9 +65,10 @@ export function WhatBroke() {
           <h3>
             {words?.name} <span class="quiet">drifted</span>
           </h3>
-          <p class="sentence">{words?.alarm}.</p>
-          <NightsChart series={series} />
-          <p class="quiet">{words?.sentence}</p>
+          <p class="sentence">{words?.alarm}</p>
+          <NightsChart series={series} running={words?.running ?? []} />
+          <Copy label="what changed" command={words?.changes ?? ""} />
+          <Fold title="Statistics">{() => <p class="quiet">{words?.sentence}</p>}</Fold>
         </article>
       ))}
     </section>

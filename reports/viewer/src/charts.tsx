@@ -1,7 +1,7 @@
 // Charts by Observable Plot, drawn when they are looked at.
 import { areaY, dot, line, plot, rectY, ruleX, ruleY, text, type PlotOptions } from "@observablehq/plot";
 import { useEffect, useRef } from "preact/hooks";
-import { finite, type Channel, type Estimator, type Sample, type Series, type Test } from "./record";
+import { finite, type Channel, type Estimator, type Num, type Sample, type Series, type Test } from "./record";
 
 const percent = new Intl.NumberFormat("en", { style: "percent", maximumSignificantDigits: 3 });
 const short = new Intl.NumberFormat("en", { notation: "compact", maximumSignificantDigits: 3 });
@@ -9,13 +9,16 @@ const short = new Intl.NumberFormat("en", { notation: "compact", maximumSignific
 export function Chart({ options, label, caption }: { options: PlotOptions; label: string; caption: string }) {
   const place = useRef<HTMLDivElement>(null);
   useEffect(() => {
+    // Letters keep their size on a phone; a chart with long names scrolls instead.
+    const wanted = options.width ?? 340;
+    const width = options.marginLeft ? wanted : Math.min(wanted, innerWidth - 70);
     const drawn = plot({
-      width: 340,
       height: 190,
       marginLeft: 52,
       className: "plot",
       ariaLabel: label,
       ...options,
+      width,
     });
     // The page's policy forbids Plot's own style element; style.css holds its rules.
     for (const style of drawn.querySelectorAll("style")) style.remove();
@@ -149,30 +152,32 @@ export function LawsChart({ channel }: { channel: Channel }) {
   );
 }
 
-export function NightsChart({ series }: { series: Series }) {
-  const nights = series.nights.flatMap((night) => {
+export function NightsChart({ series, running }: { series: Series; running: Num[] }) {
+  const nights = series.nights.flatMap((night, i) => {
     const value = finite(night.estimate);
     if (value === null) return [];
     const date = new Date(night.date);
-    return [{ date, value, low: finite(night.low) ?? value, high: finite(night.high) ?? value }];
+    const words = `${night.date}, commit ${night.commit}`;
+    return [{ date, value, words, low: finite(night.low) ?? value, high: finite(night.high) ?? value, mean: finite(running[i]) }];
   });
   if (nights.length === 0) return null;
-  const all = finite(series.estimate);
+  const means = nights.filter((night) => night.mean !== null);
   const moved = series.moved ? [new Date(series.moved)] : [];
   return (
     <Chart
       label={`Nights of ${series.test}`}
-      caption={`A point a night with its interval. Dashed: all nights together.${moved.length ? ` Upright: the night it moved, commit ${series.moved_commit}.` : ""}`}
+      caption={`A point a night with its interval: ${series.quantity || "the claim"}, claimed 0. Dashed: the mean of all nights so far.${moved.length ? ` Upright: the night it moved, commit ${series.moved_commit}.` : ""}`}
       options={{
-        width: 640,
+        width: 900,
+        height: 240,
         x: { type: "utc", label: null },
         y: { label: null, tickFormat: series.relative ? (n: number) => percent.format(n) : undefined },
         marks: [
           ruleY([0], { stroke: "var(--muted)" }),
           ruleX(moved, { stroke: "var(--bad)", strokeWidth: 2 }),
-          ...(all === null ? [] : [ruleY([all], { stroke: "var(--ink)", strokeDasharray: "5 3" })]),
+          line(means, { x: "date", y: "mean", stroke: "var(--ink)", strokeDasharray: "5 3" }),
           ruleX(nights, { x: "date", y1: "low", y2: "high", stroke: "var(--mark)" }),
-          dot(nights, { x: "date", y: "value", fill: "var(--mark)", r: 3 }),
+          dot(nights, { x: "date", y: "value", fill: "var(--mark)", r: 3, title: "words" }),
         ],
       }}
     />

@@ -9,6 +9,7 @@ import { link, matches, type State } from "./state";
 
 export const words: { [standing in Standing]: { mark: string; one: string; style: string } } = {
   broken: { mark: "✗", one: "Broken", style: "bad" },
+  "no verdict": { mark: "✗", one: "No verdict", style: "bad" },
   undecided: { mark: "?", one: "Undecided", style: "open" },
   holds: { mark: "✓", one: "Holds", style: "good" },
   caught: { mark: "✓", one: "Caught", style: "good" },
@@ -16,7 +17,7 @@ export const words: { [standing in Standing]: { mark: string; one: string; style
 };
 const at_a_time = 100;
 
-export function Copy({ command }: { command: string }) {
+export function Copy({ command, label = "" }: { command: string; label?: string }) {
   const [done, setDone] = useState(false);
   if (command === "") return null;
   const copy = async () => {
@@ -26,11 +27,45 @@ export function Copy({ command }: { command: string }) {
   };
   return (
     <div class="command">
-      <code>{command}</code>
+      {label && <span class="quiet">{label}</span>}
+      <code title={command}>{command}</code>
       <button type="button" onClick={copy}>
         {done ? "Copied" : "Copy"}
       </button>
     </div>
+  );
+}
+
+/// What to do about a claim: a line to paste each.
+export function Steps({ test }: { test: Test }) {
+  const steps = test.display.steps.filter(({ label }) => label !== "see it"); // this page shows it
+  return <>{steps.map(({ label, paste }) => <Copy key={paste} label={label} command={paste} />)}</>;
+}
+
+/// Why a claim has no verdict: what that means, the reason, and what the checks measured.
+export function NoVerdict({ test }: { test: Test }) {
+  const violated = test.gates.filter((gate) => gate.state === "red");
+  return (
+    <dl class="reason">
+      <div>
+        <dt>No verdict</dt>
+        <dd>{test.display.meaning}</dd>
+      </div>
+      <div>
+        <dt>Reason</dt>
+        <dd class="sentence">{test.message}</dd>
+      </div>
+      {violated.length > 0 && (
+        <div>
+          <dt>Measured</dt>
+          <dd>
+            {violated.map((gate, i) => (
+              <span key={i} class="measured">{gate.name} <b>{number(finite(gate.value))}</b>, limit {number(finite(gate.limit))}</span>
+            ))}
+          </dd>
+        </div>
+      )}
+    </dl>
   );
 }
 
@@ -48,12 +83,6 @@ function Statistics({ test }: { test: Test }) {
             <dd>{text}</dd>
           </div>
         ))}
-        {test.display.cost && (
-          <div>
-            <dt>cost</dt>
-            <dd>{test.display.cost}</dd>
-          </div>
-        )}
       </dl>
       {test.gates.length > 0 && (
         <table>
@@ -95,18 +124,18 @@ function Gates({ test }: { test: Test }) {
 export function Detail({ test }: { test: Test }) {
   const page = useContext(PageContext);
   const [statistics, setStatistics] = useState(false);
-  const amber = test.gates.some((gate) => gate.state !== "green");
-  const [quantiles, setQuantiles] = useState(amber);
+  const notGreen = test.gates.some((gate) => gate.state !== "green");
+  const [quantiles, setQuantiles] = useState(notGreen);
   const pictures = page.pictures.get(test.id) ?? [];
   const channel = test.channels[0];
   const samples = test.samples.filter((sample) => !channel || sample.channel === channel.name || test.samples.length <= 2);
   const { sentence, chance, standing } = test.display;
   return (
     <div class="detail">
-      <p class="sentence">{sentence}</p>
-      {standing === "broken" && test.message && test.message !== sentence && <p>{test.message}</p>}
+      {standing === "no verdict" ? <NoVerdict test={test} /> : <p class="sentence">{sentence}</p>}
+      {standing === "undecided" && <p>{test.message}</p>}
       {chance && standing !== "holds" && <p class="quiet">Chance of this if nothing is wrong: {chance}.</p>}
-      <Copy command={test.replay} />
+      <Steps test={test} />
       {test.image && <ImageViewer test={test} pictures={pictures} />}
       <div class="charts">
         {pictures.filter((picture) => picture.about.name.startsWith("cells")).map((picture) => (
@@ -159,31 +188,31 @@ function Row({ test, open, toggle }: RowProps) {
   );
 }
 
-function counted(suite: Suite): string {
-  const broken = suite.tests.filter((test) => test.display.standing === "broken").length;
-  const open = suite.tests.filter((test) => test.display.standing === "undecided").length;
-  const fine = suite.tests.filter((test) => ["holds", "caught"].includes(test.display.standing)).length;
-  return [broken && `${broken} broken`, open && `${open} undecided`, `${fine} as they should be`].filter(Boolean).join(", ");
+const order: { [standing in Standing]: number } = { broken: 0, "no verdict": 1, undecided: 2, "not run": 3, holds: 4, caught: 5 };
+
+interface SuiteProps {
+  suite: Suite;
+  state: State;
+  toggle: (id: string) => void;
+  few: boolean;
 }
 
-const order: { [standing in Standing]: number } = { broken: 0, undecided: 1, "not run": 2, holds: 3, caught: 4 };
-
-function SuiteClaims({ suite, state, toggle }: { suite: Suite; state: State; toggle: (id: string) => void }) {
+function SuiteClaims({ suite, state, toggle, few }: SuiteProps) {
   const [folded, setFolded] = useState<boolean | null>(null);
   const [shown, setShown] = useState(at_a_time);
   const chosen = suite.tests.filter((test) => matches(test, state)).sort((a, b) => order[a.display.standing] - order[b.display.standing]);
   if (chosen.length === 0) return null;
   const narrowed = state.show !== "all" || state.find !== "";
   const opened = new Set(state.open);
-  const urgent = chosen.filter((test) => order[test.display.standing] < 2 || opened.has(test.id));
-  const isFolded = folded ?? !narrowed;
+  const urgent = chosen.filter((test) => order[test.display.standing] < 3 || opened.has(test.id));
+  const isFolded = folded ?? !(narrowed || few);
   const rows = isFolded ? urgent : chosen;
   const visible = rows.slice(0, shown);
   return (
     <section class="suite" aria-label={suite.name}>
       <h3>
         <button type="button" aria-expanded={!isFolded} onClick={() => setFolded(!isFolded)}>
-          <span aria-hidden="true">{isFolded ? "▸" : "▾"}</span> {suite.name} <span class="quiet">{counted(suite)}</span>
+          <span aria-hidden="true">{isFolded ? "▸" : "▾"}</span> {suite.name} <span class="quiet">{suite.display.counts}</span>
         </button>
       </h3>
       <ul>
@@ -203,6 +232,7 @@ function SuiteClaims({ suite, state, toggle }: { suite: Suite; state: State; tog
 export function Claims({ suites, state, change }: { suites: Suite[]; state: State; change: (part: Partial<State>) => void }) {
   const toggle = (id: string) =>
     change({ open: state.open.includes(id) ? state.open.filter((other) => other !== id) : [...state.open, id] });
+  const few = suites.reduce((sum, suite) => sum + suite.tests.length, 0) <= at_a_time;
   const none = suites.every((suite) => suite.tests.every((test) => !matches(test, state)));
   return (
     <section class="claims" aria-label="All claims">
@@ -211,10 +241,10 @@ export function Claims({ suites, state, change }: { suites: Suite[]; state: Stat
         <span>result</span>
         <span>claim</span>
         <span>measured, plausible range</span>
-        <span>1: what must be caught<Axis /></span>
+        <span>1 is what must be caught<Axis /></span>
       </div>
       {suites.map((suite) => (
-        <SuiteClaims key={`${suite.name} ${suite.file} ${state.show}`} suite={suite} state={state} toggle={toggle} />
+        <SuiteClaims key={`${suite.name} ${suite.file} ${state.show}`} suite={suite} state={state} toggle={toggle} few={few} />
       ))}
       {none && (
         <p>

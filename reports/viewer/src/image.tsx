@@ -76,7 +76,8 @@ class Painter {
     this.component = Math.max(0, z.about.components.indexOf(finding.component));
     // A finding all over the image has no size to average over.
     const local = finding.width * finding.height * 4 <= this.size.width * this.size.height;
-    this.window = local && finding.width > 0 ? finding : { width: 1, height: 1 };
+    const whole = (extent: number) => Math.max(1, Math.round(extent));
+    this.window = local && finding.width > 0 ? { width: whole(finding.width), height: whole(finding.height) } : { width: 1, height: 1 };
     this.level = this.bright();
   }
 
@@ -145,7 +146,8 @@ class Painter {
     const i = y * this.size.width + x;
     const list = (picture: Picture | undefined) =>
       picture?.components().map((plane) => Number((plane[i] ?? 0).toPrecision(3))).join(" ");
-    const parts = [`x ${x}, y ${y}`, `${list(this.z)} standard errors`];
+    const { reduced } = this.z.about;
+    const parts = [`x ${x * reduced}, y ${y * reduced}`, `${list(this.z)} standard errors`];
     if (this.fresh) parts.push(`new ${list(this.fresh)}`);
     if (this.old) parts.push(`old ${list(this.old)}`);
     return parts.join(" · ");
@@ -153,12 +155,14 @@ class Painter {
 }
 
 const legends: { [mode in Mode]: string } = {
-  where: "Orange: new is brighter. Blue: darker. Full colour at 8 standard errors, averaged over the size of the finding.",
-  much: "Orange: new is brighter. Blue: darker. Full colour at 10 %, averaged over the size of the finding.",
+  where: "Orange: new is brighter. Blue: darker. In standard errors, averaged over the size of the finding.",
+  much: "Orange: new is brighter. Blue: darker. Averaged over the size of the finding.",
   new: "The new picture.",
   old: "What it is compared with, at the same exposure.",
   wipe: "Left: old. Right: new. Move to shift the edge.",
 };
+
+const scales: { [mode in Mode]?: string } = { where: "8 errors", much: "10 %" };
 
 interface View {
   scale: number; // canvas pixels a picture pixel
@@ -171,13 +175,17 @@ export function ImageViewer({ test, pictures }: { test: Test; pictures: Picture[
     const named = (name: string) => pictures.find((picture) => picture.about.name === name);
     const z = named("z");
     if (!z || !test.image) return null;
-    return new Painter(z, named("mean"), named("other_mean") ?? named("reference"), test.image.winner);
+    const { reduced } = z.about;
+    const { x, y, width, height, ...rest } = test.image.winner;
+    const finding = { ...rest, x: x / reduced, y: y / reduced, width: width / reduced, height: height / reduced };
+    return new Painter(z, named("mean"), named("other_mean") ?? named("reference"), finding);
   }, [test, pictures]);
   return painter && <Viewer painter={painter} name={test.name} />;
 }
 
 function Viewer({ painter, name }: { painter: Painter; name: string }) {
   const { width, height } = painter.size;
+  const { reduced } = painter.z.about;
   const shown = useRef<HTMLCanvasElement>(null);
   const [mode, setMode] = useState<Mode>("where");
   const [stops, setStops] = useState(0);
@@ -205,15 +213,16 @@ function Viewer({ painter, name }: { painter: Painter; name: string }) {
       context.clip();
       context.drawImage(painter.canvas("new", stops), 0, 0);
       context.restore();
+      context.fillStyle = "#fff";
+      context.fillRect(from, view.y, 2 / view.scale, canvasSize.height / view.scale);
     } else {
       context.drawImage(painter.canvas(mode, stops), 0, 0);
     }
-    outline(context, painter.finding, view);
   }, [painter, mode, stops, edge, view]);
 
   const zoomToFinding = () => {
     const { x, y, width: w, height: h } = painter.finding;
-    const scale = Math.max(fit.scale, Math.min(canvasSize.width / (4 * w), canvasSize.height / (4 * h), 40 * pixels));
+    const scale = Math.max(fit.scale, Math.min(canvasSize.width / (2 * w), canvasSize.height / (2 * h), 40 * pixels));
     setView(kept({
       scale,
       x: x + w / 2 - canvasSize.width / scale / 2,
@@ -276,6 +285,7 @@ function Viewer({ painter, name }: { painter: Painter; name: string }) {
   };
   return (
     <div class="viewer" role="group" aria-label={`Pictures of ${name}`} onKeyDown={key}>
+      <div class="picture" style={{ width: `min(100%, ${(70 * width) / height}vh)` }}>
       <canvas
         ref={shown}
         width={canvasSize.width}
@@ -296,6 +306,8 @@ function Viewer({ painter, name }: { painter: Painter; name: string }) {
           zoom(event.deltaY < 0 ? 1.25 : 0.8, px, py);
         }}
       />
+      <Frame finding={painter.finding} view={view} canvas={canvasSize} />
+      </div>
       <div class="controls">
         <div class="buttons">
           {modes.map(({ mode: one, name: words }, i) => (
@@ -314,25 +326,34 @@ function Viewer({ painter, name }: { painter: Painter; name: string }) {
             <input type="range" min="-8" max="8" step="0.5" value={stops} onInput={(event) => setStops(Number(event.currentTarget.value))} />
           </label>
         )}
-        <p class="quiet">{legends[mode]}</p>
+        {scales[mode] && (
+          <div class="scale" aria-hidden="true">
+            <i />
+            <span>-{scales[mode]}</span>
+            <span>0</span>
+            <span>+{scales[mode]}</span>
+          </div>
+        )}
+        <p class="quiet">
+          {legends[mode]}
+          {reduced > 1 && ` Each pixel here is the mean of ${reduced} by ${reduced}. An EXR file beside the record of --report json=FILE has them all.`}
+        </p>
         <p class="code">{pixel}</p>
       </div>
     </div>
   );
 }
 
-/// A frame around the finding that is seen at any zoom.
-function outline(context: CanvasRenderingContext2D, finding: Finding, view: View) {
-  if (finding.width === 0) return;
-  const least = 14 / view.scale;
-  const grow = (extent: number) => Math.max(0, least - extent) / 2;
-  const gx = grow(finding.width);
-  const gy = grow(finding.height);
-  for (const [colour, width] of [["#fff", 4], ["#111", 2]] as const) {
-    context.strokeStyle = colour;
-    context.lineWidth = width / view.scale;
-    context.strokeRect(finding.x - gx, finding.y - gy, finding.width + 2 * gx, finding.height + 2 * gy);
-  }
+/// A frame around the finding that is seen at any zoom and on any screen.
+function Frame({ finding, view, canvas }: { finding: Finding; view: View; canvas: Size }) {
+  if (finding.width === 0) return null;
+  const middle = (from: number, extent: number, all: number) => `${(100 * (from + extent / 2) * view.scale) / all}%`;
+  const part = (extent: number, all: number) => `${(100 * extent * view.scale) / all}%`;
+  const left = middle(finding.x - view.x, finding.width, canvas.width);
+  const top = middle(finding.y - view.y, finding.height, canvas.height);
+  const width = part(finding.width, canvas.width);
+  const height = part(finding.height, canvas.height);
+  return <div class="frame" style={{ left, top, width, height }} />;
 }
 
 /// The cells of a sampler's domain, a number a cell.

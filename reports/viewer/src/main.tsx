@@ -11,6 +11,7 @@ import { Estimators, Fold, KillMatrix, Statements } from "./suites";
 const chips: { choice: Choice; mark: string; words: string; style: string }[] = [
   { choice: "all", mark: "", words: "All", style: "" },
   { choice: "broken", mark: "✗ ", words: "Broken", style: "bad" },
+  { choice: "no verdict", mark: "✗ ", words: "Without a verdict", style: "bad" },
   { choice: "undecided", mark: "? ", words: "Undecided", style: "open" },
   { choice: "holds", mark: "✓ ", words: "Hold", style: "good" },
   { choice: "caught", mark: "✓ ", words: "Planted bugs caught", style: "good" },
@@ -34,8 +35,8 @@ function App({ page }: { page: Page }) {
   const [state, change] = useAddress();
   const search = useRef<HTMLInputElement>(null);
   const counts = useCounts(page);
-  const broken = (counts.get("broken") ?? 0) > 0 || record.ledger.series.some((series) => series.alarm);
-  const open = !broken && ((counts.get("undecided") ?? 0) > 0 || page.test.size === 0);
+  const broken = counts.has("broken") || counts.has("no verdict") || record.ledger.series.some((series) => series.alarm);
+  const open = !broken && (counts.has("undecided") || page.test.size === 0);
   const style = broken ? "bad" : open ? "open" : "good";
   useEffect(() => {
     const key = (event: KeyboardEvent) => {
@@ -67,7 +68,7 @@ function App({ page }: { page: Page }) {
           </h1>
           <nav aria-label="Filter">
             {chips
-              .filter(({ choice }) => choice !== "not run" || counts.has(choice))
+              .filter(({ choice }) => choice === state.show || counts.has(choice))
               .map(({ choice, mark, words, style }) => (
                 <button key={choice} type="button" class={`chip ${style}`} aria-pressed={state.show === choice} onClick={() => change({ show: choice })}>
                   {mark}
@@ -85,11 +86,10 @@ function App({ page }: { page: Page }) {
           />
         </div>
         <p class="quiet about">
-          seed <b>{record.display.seed}</b> · commit <b>{record.tool.commit || "unknown"}</b> · {record.seconds.toPrecision(3)} s · {record.display.rates.split(". ")[0]}
+          seed <b>{record.display.seed}</b> · commit <b>{record.tool.commit || "unknown"}</b> · {record.seconds.toPrecision(3)} s · {record.display.rates.split(/\.(?: |$)/)[0]}
         </p>
       </header>
       <main>
-        {record.note && <p>{record.note}</p>}
         {state.show === "all" && state.find === "" && <WhatBroke />}
         <Claims suites={record.suites} state={state} change={change} />
         <section aria-label="More" class="more-sections">
@@ -118,6 +118,7 @@ function App({ page }: { page: Page }) {
             {() => (
               <>
                 <p>{record.display.counts}.</p>
+                {record.note && <p>{record.note}.</p>}
                 <p>{record.display.rates}</p>
                 <ul>
                   {record.suites.map((suite) => (

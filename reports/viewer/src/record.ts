@@ -1,4 +1,4 @@
-// The record as the page holds it (reports/viewer/pictures.h).
+// The record as the page holds it (reports/viewer/page.h).
 
 export type Num = number | "NaN" | "Infinity" | "-Infinity" | null;
 
@@ -85,16 +85,17 @@ export interface Test {
     standing: Standing;
     verdict: string;
     sentence: string;
+    meaning: string;
     effect: string;
     interval: string;
     margin: string;
     chance: string;
     place: string;
-    cost: string;
+    steps: { label: string; paste: string }[];
     facts: { label: string; text: string }[];
   };
 }
-export type Standing = "broken" | "undecided" | "holds" | "caught" | "not run";
+export type Standing = "broken" | "no verdict" | "undecided" | "holds" | "caught" | "not run";
 export interface Estimate {
   value: Num;
   low: Num;
@@ -130,6 +131,7 @@ export interface Suite {
   tests: Test[];
   statements: { text: string; source: string; holds: string[]; fails: string[] }[];
   display: {
+    counts: string;
     levels: string;
     kills: Kills | null;
     statements: { answer: string; holds: string; fails: string }[];
@@ -145,15 +147,23 @@ export interface Night {
 export interface Series {
   test: string;
   alarm: boolean;
+  quantity: string;
   relative: boolean;
-  estimate: Num;
   moved: string;
   moved_commit: string;
   nights: Night[];
 }
+export interface SeriesDisplay {
+  name: string;
+  sentence: string;
+  alarm: string;
+  changes: string;
+  running: Num[];
+}
 export interface Suspect {
   suite: string;
   name: string;
+  standing: Standing;
   tests: string[];
   sentence: string;
 }
@@ -174,7 +184,7 @@ export interface Record {
     ledger: string;
     quiet: string;
     notes: string[];
-    series: { name: string; sentence: string; alarm: string }[];
+    series: SeriesDisplay[];
   };
 }
 
@@ -184,6 +194,7 @@ interface PackedPicture {
   title: string;
   width: number;
   height: number;
+  reduced: number; // pixels of the record a side of one here
   components: string[];
   coding: "float" | "linear" | "logarithm";
   step: number;

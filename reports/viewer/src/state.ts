@@ -8,7 +8,7 @@ export interface State {
   find: string;
   open: string[];
 }
-const choices: Choice[] = ["all", "broken", "undecided", "holds", "caught", "not run"];
+const choices: Choice[] = ["all", "broken", "no verdict", "undecided", "holds", "caught", "not run"];
 
 function read(): State {
   const given = new URLSearchParams(location.hash.slice(1));

@@ -1,8 +1,8 @@
 #include "harness/sampling/recorded_run.h"
 
+#include "harness/base/whole_file.h"
 #include "harness/command/commands.h"
 #include "harness/record/replay.h"
-#include "reports/record/file.h"
 #include "reports/report_formats.h"
 #include "tests/harness/prelude.h"
 
@@ -33,7 +33,7 @@ class RecordedRunTest : public testing::Test {
 
   void SetUp() override {
     if (!record_) record_ = run_files({place_.write("baseline.yaml", baseline)}, {.seed = 5});
-    reports::write_whole(place_.file("run.json"), reports::json(*record_));
+    write_whole(place_.file("run.json"), reports::json(*record_));
   }
 
   /// A suite whose estimators are these lines and whose only test is `test`.
@@ -122,7 +122,7 @@ TEST_F(RecordedRunTest, OfMeansThatAreFlatterThanNormalAnswers) {
       run_files({suite("  mean: {plugin: analytic/law, law: 'uniform(0, 1)', primaries: 64}\n",
                        "claim: mean(mean) == 0.5, secondaries: 1000")});
   flat.suites[0].tests[0].samples[0].kurtosis = 2.9;
-  reports::write_whole(place_.file("run.json"), reports::json(flat));
+  write_whole(place_.file("run.json"), reports::json(flat));
   const reports::Test test =
       tested(old("mean") + "  new: {plugin: analytic/law, law: 'uniform(0, 1)', primaries: 64}\n",
              "claim: mean(new) == mean(old)");
@@ -153,7 +153,7 @@ TEST_F(RecordedRunTest, OfAProgramSharesNoStreamWithTheNewRun) {
                "done\n");
   const std::string mine = "  mine: {plugin: process, command: [sh, mine.sh]}\n";
   const std::string claim = "claim: mean(mine) > 1, secondaries: 200";
-  reports::write_whole(place_.file("run.json"), reports::json(run_files({suite(mine, claim)})));
+  write_whole(place_.file("run.json"), reports::json(run_files({suite(mine, claim)})));
   const reports::Test test =
       tested(old("mine") + mine, "claim: mean(mine) == mean(old), secondaries: 200");
   ASSERT_EQ(test.samples.size(), 2) << test.message;
@@ -173,7 +173,7 @@ TEST_F(RecordedRunTest, OfASecondSourceLeavesTheFirstStreamToTheNewRun) {
   const std::string twin = "  twin: {plugin: analytic/normal, mean: 2, primaries: 1}\n";
   const reports::Record pair =
       run_files({suite(new_normal + twin, "claim: mean(new) == mean(twin), secondaries: 900")});
-  reports::write_whole(place_.file("run.json"), reports::json(pair));
+  write_whole(place_.file("run.json"), reports::json(pair));
   const reports::Test test = tested(old("twin") + new_normal, "claim: mean(new) == mean(old)");
   EXPECT_EQ(test.samples[0].mean, pair.suites[0].tests[0].samples[0].mean);
   EXPECT_EQ(test.samples[1].mean, pair.suites[0].tests[0].samples[1].mean);
@@ -183,7 +183,7 @@ TEST_F(RecordedRunTest, OfAMutantKnowsThatItsStreamIsTheOriginals) {
   const std::string mutant = "  bad: {plugin: mutants/no_cosine, scene: triangle, primaries: 64}\n";
   const reports::Record run =
       run_files({suite(mutant, "claim: mean(bad) == analytic, secondaries: 200, expect: fail")});
-  reports::write_whole(place_.file("run.json"), reports::json(run));
+  write_whole(place_.file("run.json"), reports::json(run));
   const std::string area = "  new: {plugin: luminaire/area, scene: triangle, primaries: 64}\n";
   const std::string other = "  other: {plugin: luminaire/area, scene: triangle, primaries: 64}\n";
   const reports::Test test = tested(old("bad") + area, "claim: mean(new) == mean(old)");
@@ -197,7 +197,7 @@ TEST_F(RecordedRunTest, CanBeReplayed) {
       run_files({suite(old("uniform") + "  new: {plugin: analytic/exponential_uniform}\n",
                        "name: both, claim: mean(new) == mean(old)")});
   const std::string file = place_.file("next.json");
-  reports::write_whole(file, reports::json(run));
+  write_whole(file, reports::json(run));
   EXPECT_EQ(replay({.record = file, .test = "both"}), 0);
   EXPECT_EQ(replay({.record = file, .test = "both", .observation = 3}), 0);
 }
@@ -222,7 +222,7 @@ TEST_F(RecordedRunTest, RefusesWhatMomentsDoNotTell) {
 TEST_F(RecordedRunTest, RefusesCostsThatTheRunDoesNotTell) {
   reports::Record uneven = *record_;
   uneven.suites[0].tests[0].samples[0].cost.samples += 1;
-  reports::write_whole(place_.file("run.json"), reports::json(uneven));
+  write_whole(place_.file("run.json"), reports::json(uneven));
   EXPECT_THAT(refused(old("normal") + new_normal,
                       "claim: efficiency(new) >= efficiency(old), cost: samples"),
               HasSubstr("does not tell how its costs vary"));
@@ -249,7 +249,7 @@ TEST_F(RecordedRunTest, NamesWhatIsWrongWithTheRunOrTheEstimator) {
 }
 
 TEST_F(RecordedRunTest, RefusesTwoRunsOfOneStream) {
-  reports::write_whole(place_.file("again.json"), reports::json(*record_));
+  write_whole(place_.file("again.json"), reports::json(*record_));
   EXPECT_THAT(
       refused(old("normal") + "  older: {plugin: recorded, run: again.json, estimator: normal}\n",
               "claim: mean(old) == mean(older)"),

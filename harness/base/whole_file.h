@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string_view>
 
-namespace assay::reports {
+namespace assay::harness {
 
 /// Writes the text to `path`, whole or not at all. A temporary file in the same folder is flushed
 /// to disk and renamed over `path`. Permissions follow the process's mask. A symbolic link is
@@ -14,4 +14,4 @@ namespace assay::reports {
 /// leaves nothing behind.
 void write_whole(const std::filesystem::path& path, std::string_view text);
 
-}  // namespace assay::reports
+}  // namespace assay::harness

@@ -1,10 +1,10 @@
-#include "reports/record/file.h"
+#include "harness/base/whole_file.h"
 
 #include <sys/stat.h>
 
-#include "tests/reports/prelude.h"
+#include "tests/harness/prelude.h"
 
-namespace assay::reports {
+namespace assay::harness {
 namespace {
 
 namespace fs = std::filesystem;
@@ -84,4 +84,4 @@ TEST_F(WriteWhole, LeavesTheOldFileWhenTheFolderIsReadOnly) {
 }
 
 }  // namespace
-}  // namespace assay::reports
+}  // namespace assay::harness

@@ -1,4 +1,4 @@
-#include "reports/record/file.h"
+#include "harness/base/whole_file.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -11,7 +11,7 @@
 #include <system_error>
 #include <utility>
 
-namespace assay::reports {
+namespace assay::harness {
 namespace {
 
 namespace fs = std::filesystem;
@@ -99,4 +99,4 @@ void write_whole(const fs::path& path, std::string_view text) {
   output.rename();
 }
 
-}  // namespace assay::reports
+}  // namespace assay::harness
