@@ -13,6 +13,8 @@ done
 work=$(mktemp -d)
 processes=()
 stop() {
+  # shellcheck disable=SC2046  # one word a process
+  kill -KILL $(processes_of n1) $(processes_of n2) 2>/dev/null || true
   kill "${processes[@]}" 2>/dev/null || true
   wait
   rm -rf "$work"
@@ -93,13 +95,14 @@ await() {
 has_nodes() { [ "$(sinfo -h -t idle -o %D)" = 2 ]; }
 runs() { [ "$(state_of_job)" = RUNNING ]; }
 is_over() { [ -z "$(state_of_job)" ]; }
+waits() { [ "$(state_of_job)" = PENDING ]; }
 lost() { [ "$(state_of_job)" != RUNNING ]; }
 
-"$assay" run "$suite" --coarsen .5 --quiet --threads 1 --report json="$work/one/run.json" \
+"$assay" run "$suite" --quiet --threads 1 --report json="$work/one/run.json" \
   --report console=/dev/null || [ $? -le 3 ]
 await 60 has_nodes
 job=$(sbatch --parsable --requeue -N 2 -n 4 -o "$work/out" --wrap "srun --mpi=pmix $assay run $suite \
-  --coarsen .5 --quiet --checkpoint $work/kept --checkpoint-every .1 --report json=$work/ranks/run.json")
+  --quiet --checkpoint $work/kept --checkpoint-every .1 --report json=$work/ranks/run.json")
 await 60 runs
 await 60 test -s "$work/kept"
 # shellcheck disable=SC2046  # one word a process
@@ -108,6 +111,9 @@ kill -KILL "$node" $(processes_of n2)
 await 60 lost
 rm -rf "$work"/spool.n2 "$work"/tmp.n2/*  # as a node that starts anew
 start_node n2
+await 60 waits
+# Slurm would start it two minutes later.
+scontrol update JobId="$job" StartTime=now
 await 300 is_over
 diff <(jq -S 'del(.. | .seconds?, .started?, .threads?)' "$work/one/run.json") \
   <(jq -S 'del(.. | .seconds?, .started?, .threads?)' "$work/ranks/run.json") ||

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -21,21 +22,46 @@ namespace fs = std::filesystem;
       fmt::format("cannot write {}: {}", path.string(), std::generic_category().message(error)));
 }
 
-// An open file; a temporary one is removed unless it was kept.
+constexpr std::string_view temporary_begin = ".assay-";
+constexpr std::string_view temporary_end = ".tmp";
+
+// False if another process holds the lock. Where there are no locks, nobody does.
+bool lock(int descriptor) {
+  return ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+}
+
+// A temporary file is locked while its process lives. Those of killed processes are removed.
+void remove_left_overs(const fs::path& folder) {
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename();
+    if (!name.starts_with(temporary_begin) || !name.ends_with(temporary_end)) continue;
+    const int descriptor = ::open(entry.path().c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK);
+    if (descriptor < 0) continue;
+    if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) ::unlink(entry.path().c_str());
+    ::close(descriptor);
+  }
+}
+
+// An open file; a temporary one is locked, and removed unless it was kept.
 class Output {
  public:
   Output(fs::path file, int flags, fs::path target)
-      : file_(std::move(file)),
-        target_(std::move(target)),
-        descriptor_(::open(file_.c_str(), flags | O_WRONLY | O_CLOEXEC, 0666)),
-        temporary_((flags & O_EXCL) != 0) {
-    if (descriptor_ < 0) fail(target_, errno);
+      : file_(std::move(file)), target_(std::move(target)), temporary_((flags & O_EXCL) != 0) {
+    do {
+      if (descriptor_ >= 0) ::close(descriptor_);
+      if (temporary_) ::unlink(file_.c_str());
+      descriptor_ = ::open(file_.c_str(), flags | O_WRONLY | O_CLOEXEC, 0666);
+      if (descriptor_ < 0) fail(target_, errno);
+    } while (temporary_ && !is_ours());
+    if (temporary_) lock_ = ::dup(descriptor_);
   }
   Output(const Output&) = delete;
   Output& operator=(const Output&) = delete;
   ~Output() {
     if (descriptor_ >= 0) ::close(descriptor_);
     if (temporary_) ::unlink(file_.c_str());
+    if (lock_ >= 0) ::close(lock_);
   }
 
   void write(std::string_view text) {
@@ -59,18 +85,24 @@ class Output {
   }
 
  private:
+  // False if another process took the new file for a left-over.
+  bool is_ours() const {
+    struct stat status {};
+    return lock(descriptor_) && ::fstat(descriptor_, &status) == 0 && status.st_nlink > 0;
+  }
+
   fs::path file_;
   fs::path target_;
-  int descriptor_;
+  int descriptor_ = -1;
+  int lock_ = -1;  // shares the lock, which outlives the descriptor until the file is renamed
   bool temporary_;
 };
 
-// A name that no other process takes; a left-over of a killed process with our id is replaced.
+// A name that no other process takes.
 fs::path temporary_beside(const fs::path& target) {
   const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
-  fs::path name = folder / fmt::format(".assay-{}.tmp", ::getpid());
-  ::unlink(name.c_str());
-  return name;
+  remove_left_overs(folder);
+  return folder / fmt::format("{}{}{}", temporary_begin, ::getpid(), temporary_end);
 }
 
 fs::path behind_links(const fs::path& path) {

@@ -50,10 +50,13 @@ int run_suites(const std::vector<Suite>& suites, const RunOptions& options, cons
   std::string ledger_fault;
   RunReports console(output);
   RunOptions drawn = options;
+  std::shared_ptr<const Ranks> ranks;
   if (options.ranks != nullptr) {
     drawn.threads = threads_of_rank(options);
-    drawn.executor = std::make_shared<Ranks>(*options.ranks, options.seed,
+    const auto all = std::make_shared<Ranks>(*options.ranks, options.seed,
                                              identity_of(suites, options), drawn.threads);
+    drawn.executor = all;
+    ranks = all;
   }
   std::shared_ptr<Checkpoint> checkpoint;
   if (!options.checkpoint.empty()) {
@@ -68,6 +71,7 @@ int run_suites(const std::vector<Suite>& suites, const RunOptions& options, cons
       &ledger_fault);
   console.write_and_annotate(record);
   if (output.kept) keep_last_run(record, output.detail > 0);
+  if (ranks && output.detail > 1) say_beside_progress(ranks->window_text());
   if (checkpoint) checkpoint->remove();
   if (!ledger_fault.empty()) throw std::runtime_error(ledger_fault);
   const int code = exit_code(record, output.inconclusive);

@@ -31,10 +31,7 @@ enum class Kind : std::uint8_t { begin, batch, forget, end, hello, reply, failed
 constexpr std::size_t most_batches = 2;
 constexpr double seconds_of_batch = .005;
 constexpr double most_blocks = 64;
-// Blocks that are handed out and not yet folded, for each worker, and their bytes at most.
-constexpr std::size_t window_of_worker = 32;
-constexpr double window_bytes = 512e6;
-constexpr double bytes_of_channel = 96;
+constexpr double megabyte = 1e6;
 // Limits in seconds, and how many times the usual time a rank may take.
 constexpr double patience = 60;
 constexpr double least_wait = 1;
@@ -79,93 +76,114 @@ void parts(Archive& a, T& named) {
 
 }  // namespace
 
-/// The blocks of a round that are handed out and not yet folded.
+/// Blocks of a round from their hand-out to their fold. Ranks keep what they drew while too many
+/// bytes wait here: only the next block's holder may then send.
 class Ranks::Window {
  public:
+  /// A block that came in a message, which others may share.
+  struct Packed {
+    std::shared_ptr<const std::string> message = {};
+    std::string_view block = {};
+  };
   struct Slot {
     Task task;
-    std::optional<Pool::Block> block = {};
+    int holder = 0;
     Clock::time_point given = {};
+    std::unique_ptr<Pool::Block> drawn = {};
+    Packed packed = {};
+    std::size_t bytes = 0;
+
+    bool is_there() const { return drawn || packed.message; }
   };
 
-  Window(Round& round, const std::map<const Setup*, std::string>& names)
-      : round_(round), workers_(round.pools()), usual_(round.pools().size()) {
+  Window(Round& round, const std::map<const Setup*, std::string>& names, std::size_t most_bytes)
+      : round_(round),
+        most_bytes_(most_bytes),
+        workers_(round.pools()),
+        usual_(round.pools().size()) {
     for (const auto& pool : round.pools()) {
       elsewhere_.push_back(pool->can_be_drawn_elsewhere() && names.contains(pool->setup().get()));
-      widest_ = std::max(widest_, bytes_of_channel * static_cast<double>(pool->channels()));
     }
   }
 
   bool empty() const { return slots_.empty(); }
   const Slot& at(std::uint64_t number) const { return slots_[number - front_]; }
   const Pool& pool(const Slot& slot) const { return *round_.pools()[slot.task.pool]; }
-
-  void fill(unsigned workers) {
-    const auto fitting = static_cast<std::size_t>(window_bytes / widest_);
-    const std::size_t most =
-        std::clamp<std::size_t>(fitting, workers + 1, window_of_worker * workers);
-    while (slots_.size() < most) {
-      const std::optional<Task> task = round_.next();
-      if (!task) break;
-      (elsewhere_[task->pool] ? open_ : own_).push_back(front_ + slots_.size());
-      slots_.push_back({*task});
-    }
+  /// The rank that has the next block.
+  int holder() const { return slots_.front().holder; }
+  const Waiting& most_waiting() const { return most_waiting_; }
+  bool is_full(std::size_t arriving) const {
+    return !empty() && waiting_.bytes + arriving >= most_bytes_;
   }
 
   /// Takes slots for a rank with so many threads, of `workers` in all.
-  std::vector<std::uint64_t> some_for(unsigned threads, unsigned workers) {
+  std::vector<std::uint64_t> some_for(int rank, unsigned threads, unsigned workers) {
     std::vector<std::uint64_t> some;
     std::size_t most = 1;
-    while (some.size() < most && skip_failed(open_)) {
+    while (some.size() < most) {
+      const std::optional<std::uint64_t> number = next_elsewhere();
+      if (!number) break;
       if (some.empty()) {
-        const double seconds = usual_[at(open_.front()).task.pool].block;
+        const double seconds = usual_[at(*number).task.pool].block;
         const double blocks =
             seconds > 0 ? std::clamp(seconds_of_batch / seconds, 1.0, most_blocks) : 1;
         most = std::max<std::size_t>(threads, std::min(static_cast<std::size_t>(threads * blocks),
-                                                       open_.size() / (2 * workers)));
+                                                       round_.blocks_left() / (2 * workers)));
       }
-      some.push_back(taken(open_));
+      give_to(rank, *number);
+      some.push_back(*number);
     }
     return some;
   }
 
   /// Takes a reply's block, unless it was drawn again meanwhile.
-  void put(std::uint64_t number, std::string_view frame, double block_seconds, double waited) {
+  void put(std::uint64_t number, const Packed& packed, double block_seconds, double waited) {
     if (number < front_) return;
     Slot& slot = slots_[number - front_];
-    if (slot.block) return;
+    if (slot.is_there()) return;
     Usual& usual = usual_[slot.task.pool];
     usual = {block_seconds, std::max(usual.wait, waited)};
-    widest_ = std::max(widest_, static_cast<double>(frame.size()));
-    slot.block = unpacked_block(frame, pool(slot), slot.task.first);
-    Unpacker::require(
-        slot.block->fault || slot.block->whole.count == slot.task.last - slot.task.first,
-        "a block of another length");
+    slot.packed = packed;
+    wait_with(slot, packed.block.size());
   }
 
   /// Draws blocks on this rank's threads; false if there are none to draw.
-  bool draw_some(unsigned threads) {
+  bool draw_some(unsigned threads, std::size_t arriving) {
     std::vector<std::uint64_t> some;
-    while (some.size() < threads && skip_failed(own_)) some.push_back(taken(own_));
-    while (some.size() < threads && skip_failed(open_)) some.push_back(taken(open_));
+    while (some.size() < threads && skip_failed()) {
+      if (is_full(arriving) && own_.front() != front_) break;
+      some.push_back(own_.front());
+      own_.pop_front();
+    }
+    while (some.size() < threads && !is_full(arriving)) {
+      const std::optional<std::uint64_t> number = next();
+      if (!number) break;
+      some.push_back(*number);
+    }
     if (some.empty()) some = overdue();
+    for (const std::uint64_t number : some) give_to(0, number);
     const Clock::time_point start = Clock::now();
     tbb::parallel_for(std::size_t{0}, some.size(), [&](std::size_t i) {
       Slot& slot = slots_[some[i] - front_];
-      slot.block = workers_.draw(slot.task);
+      slot.drawn = std::make_unique<Pool::Block>(workers_.draw(slot.task));
     });
     const double seconds = seconds_since(start);
     for (const std::uint64_t number : some) {
-      Usual& usual = usual_[at(number).task.pool];
+      Slot& slot = slots_[number - front_];
+      Usual& usual = usual_[slot.task.pool];
       usual = {seconds, std::max(usual.wait, seconds)};
+      wait_with(slot, bytes_of(*slot.drawn));
     }
     return !some.empty();
   }
 
+  /// Folds the blocks that are next. Throws Unpackable for one that its holder packed wrongly.
   bool fold() {
     bool folded = false;
-    for (; !slots_.empty() && slots_.front().block; slots_.pop_front(), ++front_) {
-      round_.fold(slots_.front().task, std::move(*slots_.front().block));
+    for (; !empty() && slots_.front().is_there(); slots_.pop_front(), ++front_) {
+      Slot& slot = slots_.front();
+      round_.fold(slot.task, slot.drawn ? std::move(*slot.drawn) : unpacked(slot));
+      waiting_ = {waiting_.blocks - 1, waiting_.bytes - slot.bytes};
       folded = true;
     }
     return folded;
@@ -178,24 +196,62 @@ class Ranks::Window {
     double wait = 0;
   };
 
-  std::uint64_t taken(std::deque<std::uint64_t>& queue) {
-    const std::uint64_t number = queue.front();
-    queue.pop_front();
-    slots_[number - front_].given = Clock::now();
-    return number;
+  static std::size_t bytes_of(const Pool::Block& block) {
+    std::size_t bytes = block.whole.channels.size() * sizeof(ChannelSummary);
+    for (const auto& values : block.observations->values) bytes += values.size() * sizeof(double);
+    for (const auto& values : block.values) bytes += values.size() * sizeof(double);
+    return bytes;
   }
 
-  /// Drops the next blocks of pools that failed; false if no block remains.
-  bool skip_failed(std::deque<std::uint64_t>& queue) {
-    for (; !queue.empty() && pool(at(queue.front())).fault(); queue.pop_front()) {
-      slots_[queue.front() - front_].block.emplace();
+  Pool::Block unpacked(const Slot& slot) const {
+    Pool::Block block = unpacked_block(slot.packed.block, pool(slot), slot.task.first);
+    Unpacker::require(block.fault || block.whole.count == slot.task.last - slot.task.first,
+                      "a block of another length");
+    return block;
+  }
+
+  void wait_with(Slot& slot, std::size_t bytes) {
+    slot.bytes = bytes;
+    waiting_ = {waiting_.blocks + 1, waiting_.bytes + bytes};
+    most_waiting_ = {std::max(most_waiting_.blocks, waiting_.blocks),
+                     std::max(most_waiting_.bytes, waiting_.bytes)};
+  }
+
+  void give_to(int rank, std::uint64_t number) {
+    Slot& slot = slots_[number - front_];
+    slot.holder = rank;
+    slot.given = Clock::now();
+  }
+
+  std::optional<std::uint64_t> next() {
+    const std::optional<Task> task = round_.next();
+    if (!task) return std::nullopt;
+    slots_.push_back({*task});
+    return front_ + slots_.size() - 1;
+  }
+
+  /// The next block that another rank can draw. Those before it are left to this one.
+  std::optional<std::uint64_t> next_elsewhere() {
+    while (const std::optional<std::uint64_t> number = next()) {
+      if (elsewhere_[at(*number).task.pool]) return number;
+      own_.push_back(*number);
     }
-    return !queue.empty();
+    return std::nullopt;
   }
 
-  /// The first block, if a rank has had it for much longer than usual.
+  /// Drops this rank's next blocks of pools that failed; false if no block remains.
+  bool skip_failed() {
+    for (; !own_.empty() && pool(at(own_.front())).fault(); own_.pop_front()) {
+      Slot& slot = slots_[own_.front() - front_];
+      slot.drawn = std::make_unique<Pool::Block>();
+      wait_with(slot, 0);
+    }
+    return !own_.empty();
+  }
+
+  /// The next block, if a rank has had it for much longer than usual.
   std::vector<std::uint64_t> overdue() const {
-    if (slots_.empty() || slots_.front().block) return {};
+    if (empty() || slots_.front().is_there()) return {};
     const double usual = usual_[slots_.front().task.pool].wait;
     const double limit = usual > 0 ? std::max(least_wait, usual_waits * usual) : unknown_wait;
     if (seconds_since(slots_.front().given) < limit) return {};
@@ -203,21 +259,23 @@ class Ranks::Window {
   }
 
   Round& round_;
+  std::size_t most_bytes_;
   Workers workers_;
   std::vector<bool> elsewhere_;
   std::vector<Usual> usual_;
   std::deque<Slot> slots_;
-  std::uint64_t front_ = 0;         ///< number of the first slot
-  std::deque<std::uint64_t> open_;  ///< not yet given to anybody
-  std::deque<std::uint64_t> own_;   ///< the same of pools that this rank alone can draw
-  double widest_ = 1;               ///< bytes of a block
+  std::uint64_t front_ = 0;        ///< number of the first slot
+  std::deque<std::uint64_t> own_;  ///< not begun, of pools that this rank alone can draw
+  Waiting waiting_ = {};
+  Waiting most_waiting_ = {};
 };
 
 Ranks::Ranks(Messages& messages, std::optional<std::uint64_t> seed, Identity identity,
-             unsigned threads)
+             unsigned threads, std::size_t window_bytes)
     : messages_(messages),
       identity_(std::move(identity)),
       threads_(threads),
+      window_bytes_(window_bytes),
       ranks_(static_cast<std::size_t>(messages.size())) {
   for (int rank = 1; rank < messages.size(); ++rank) messages.send(rank, packed(Kind::begin, seed));
 }
@@ -225,6 +283,11 @@ Ranks::Ranks(Messages& messages, std::optional<std::uint64_t> seed, Identity ide
 std::string Ranks::name_of(int rank) const {
   const std::string& host = ranks_[static_cast<std::size_t>(rank)].host;
   return fmt::format("rank {}{}", rank, host.empty() ? "" : " on " + host);
+}
+
+void Ranks::refuse_bytes(int rank, const Unpackable& refusal) const {
+  throw std::runtime_error(
+      fmt::format("{} sent what cannot be read: {}", name_of(rank), refusal.what()));
 }
 
 unsigned Ranks::workers() const {
@@ -265,7 +328,7 @@ void Ranks::introduce(const NamedSetups& setups) {
   Pause pause;
   for (std::size_t missing = ranks_.size() - 1; missing > 0;) {
     stop_if_interrupted();
-    if (const auto message = messages_.receive()) {
+    if (const auto message = messages_.receive(Messages::anyone)) {
       try {
         greet(*message, names);
       } catch (const Unpackable& refusal) {
@@ -283,8 +346,9 @@ void Ranks::introduce(const NamedSetups& setups) {
   }
 }
 
-void Ranks::take_reply(const Messages::Message& message, Window& window) {
-  Unpacker unpack(unframed(message.bytes));
+void Ranks::take_reply(Messages::Message message, Window& window) {
+  const auto bytes = std::make_shared<const std::string>(std::move(message.bytes));
+  Unpacker unpack(unframed(*bytes));
   Kind kind{};
   unpack(kind);
   if (kind == Kind::failed) {
@@ -294,7 +358,7 @@ void Ranks::take_reply(const Messages::Message& message, Window& window) {
   }
   std::uint64_t number = 0;
   double seconds = 0;
-  std::vector<std::string> blocks;
+  std::vector<std::string_view> blocks;
   unpack(number, seconds, blocks);
   unpack.end();
   const auto found = batches_.find(number);
@@ -307,23 +371,34 @@ void Ranks::take_reply(const Messages::Message& message, Window& window) {
   --ranks_[static_cast<std::size_t>(message.from)].batches;
   if (batch.round != round_) return;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
-    window.put(batch.slots[i], blocks[i], seconds / static_cast<double>(blocks.size()),
+    window.put(batch.slots[i], {bytes, blocks[i]}, seconds / static_cast<double>(blocks.size()),
                seconds_since(batch.sent));
   }
 }
 
-bool Ranks::take_replies(Window& window) {
-  bool taken = false;
-  while (const auto message = messages_.receive()) {
-    taken = true;
-    try {
-      take_reply(*message, window);
-    } catch (const Unpackable& refusal) {
-      throw std::runtime_error(
-          fmt::format("{} sent what cannot be read: {}", name_of(message->from), refusal.what()));
-    }
+bool Ranks::fold(Window& window) {
+  try {
+    return window.fold();
+  } catch (const Unpackable& refusal) {
+    refuse_bytes(window.holder(), refusal);
   }
-  return taken;
+}
+
+bool Ranks::take_replies(Window& window) {
+  bool taken = fold(window);
+  for (;;) {
+    const bool full = window.is_full(messages_.arriving());
+    auto message = messages_.receive(full ? window.holder() : Messages::anyone);
+    if (!message) return taken;
+    const int from = message->from;
+    try {
+      take_reply(std::move(*message), window);
+    } catch (const Unpackable& refusal) {
+      refuse_bytes(from, refusal);
+    }
+    fold(window);
+    taken = true;
+  }
 }
 
 void Ranks::send_batch(int rank, std::vector<std::uint64_t> slots, const Window& window) {
@@ -347,7 +422,7 @@ void Ranks::give(Window& window) {
     for (int rank = 1; rank < messages_.size(); ++rank) {
       const Rank& to = ranks_[static_cast<std::size_t>(rank)];
       if (to.threads == 0 || to.batches >= room) continue;
-      std::vector<std::uint64_t> slots = window.some_for(to.threads, workers());
+      std::vector<std::uint64_t> slots = window.some_for(rank, to.threads, workers());
       if (slots.empty()) return;
       send_batch(rank, std::move(slots), window);
     }
@@ -357,21 +432,22 @@ void Ranks::give(Window& window) {
 void Ranks::draw(Round& round) {
   ++round_;
   with_threads(threads_, [&] {
-    Window window(round, names_);
+    Window window(round, names_, window_bytes_);
     Pause pause;
     for (;;) {
       const bool taken = take_replies(window);
-      const bool folded = window.fold();
       if (interrupted()) break;
-      window.fill(workers());
-      if (window.empty()) break;
       give(window);
-      if (window.draw_some(threads_) || taken || folded) {
+      const bool drawn = window.draw_some(threads_, messages_.arriving());
+      if (window.empty()) break;
+      if (drawn || taken) {
         pause.reset();
       } else {
         pause.wait();
       }
     }
+    most_waiting_ = {std::max(most_waiting_.blocks, window.most_waiting().blocks),
+                     std::max(most_waiting_.bytes, window.most_waiting().bytes)};
     for (const auto& pool : round.pools()) pool->end_drawing();
   });
   for (int rank = 1; rank < messages_.size(); ++rank) {
@@ -381,12 +457,20 @@ void Ranks::draw(Round& round) {
   }
 }
 
+std::string Ranks::window_text() const {
+  return fmt::format(
+      "at most {} blocks, {:.3g} MB, waited on rank 0 for an earlier one; its window closes at "
+      "{:.3g} MB",
+      most_waiting_.blocks, static_cast<double>(most_waiting_.bytes) / megabyte,
+      static_cast<double>(window_bytes_) / megabyte);
+}
+
 bool dismiss(Messages& messages) try {
   for (int rank = 1; rank < messages.size(); ++rank) messages.send(rank, packed(Kind::end));
   const Clock::time_point start = Clock::now();
   Pause pause;
   for (int present = messages.size() - 1; present > 0;) {
-    if (const auto message = messages.receive()) {  // late answers go unread
+    if (const auto message = messages.receive(Messages::anyone)) {  // late answers go unread
       Unpacker unpack(unframed(message->bytes));
       Kind kind{};
       unpack(kind);
@@ -507,7 +591,7 @@ void serve(Messages& messages,
   Servant servant(messages, prepare);
   Pause pause;
   for (bool present = true; present;) {
-    const auto message = messages.receive();
+    const auto message = messages.receive(Messages::anyone);
     if (!message) {
       pause.wait();
       continue;

@@ -19,6 +19,8 @@
 
 namespace assay::harness {
 
+class Unpackable;
+
 /// Messages between the ranks of a job: processes of one command that a launcher such as mpirun
 /// started. Those of one sender arrive in their order.
 class Messages {
@@ -28,13 +30,18 @@ class Messages {
     std::string bytes;
   };
 
+  static constexpr int anyone = -1;
+
   virtual ~Messages() = default;
   virtual int rank() const = 0;  ///< of this process, from 0
   virtual int size() const = 0;
   /// Does not wait for the receiver.
   virtual void send(int to, std::string bytes) = 0;
-  /// The next message that is there; nullopt if none is.
-  virtual std::optional<Message> receive() = 0;
+  /// The next message that is there; nullopt if none is. Nothing begins to arrive from others than
+  /// `from`: they keep what they sent.
+  virtual std::optional<Message> receive(int from) = 0;
+  /// Bytes of messages that have begun to arrive.
+  virtual std::size_t arriving() const = 0;
 };
 
 /// Every rank makes this of the suites by itself.
@@ -49,12 +56,18 @@ struct PreparedRank {
 /// rank keeps for too long are drawn again here.
 class Ranks final : public Executor {
  public:
+  /// Bytes of blocks that may wait on rank 0 for an earlier one.
+  static constexpr std::size_t usual_window = 128'000'000;
+
   /// Other ranks begin to prepare, with this seed.
-  Ranks(Messages& messages, std::optional<std::uint64_t> seed, Identity identity, unsigned threads);
+  Ranks(Messages& messages, std::optional<std::uint64_t> seed, Identity identity, unsigned threads,
+        std::size_t window_bytes = usual_window);
 
   /// Waits for the ranks. Refuses by name one of another run, and one that could not prepare.
   void introduce(const NamedSetups& setups) override;
   void draw(Round& round) override;
+  /// The most that the window had to hold, for `-vv`.
+  std::string window_text() const;
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -72,23 +85,33 @@ class Ranks final : public Executor {
     Clock::time_point sent;
   };
 
+  /// Blocks that wait for an earlier one.
+  struct Waiting {
+    std::size_t blocks = 0;
+    std::size_t bytes = 0;
+  };
+
   std::string name_of(int rank) const;
+  [[noreturn]] void refuse_bytes(int rank, const Unpackable& refusal) const;
   unsigned workers() const;
   void greet(const Messages::Message& message, const std::set<std::string>& names);
+  bool fold(Window& window);
   bool take_replies(Window& window);
-  void take_reply(const Messages::Message& message, Window& window);
+  void take_reply(Messages::Message message, Window& window);
   void give(Window& window);
   void send_batch(int rank, std::vector<std::uint64_t> slots, const Window& window);
 
   Messages& messages_;
   Identity identity_;
   unsigned threads_;
+  std::size_t window_bytes_;
   Clock::time_point begun_ = Clock::now();
   std::vector<Rank> ranks_;
   std::map<const Setup*, std::string> names_;
   std::map<std::uint64_t, Batch> batches_;  ///< by number; may be of earlier rounds
   std::uint64_t next_batch_ = 0;
   std::uint64_t round_ = 0;
+  Waiting most_waiting_ = {};
 };
 
 /// Rank 0 says that nothing more is to be drawn. False if a rank does not answer.

@@ -94,6 +94,15 @@ std::optional<std::size_t> Round::next_pool() const {
   return last;
 }
 
+std::uint64_t Round::blocks_left() const {
+  std::uint64_t blocks = 0;
+  for (std::size_t i = 0; i < pools_.size(); ++i) {
+    const std::uint64_t end = pools_[i]->requested(), size = pools_[i]->block_size();
+    if (!in_trouble_[i] && next_[i] < end) blocks += (end - next_[i] + size - 1) / size;
+  }
+  return blocks;
+}
+
 double Round::share_of(std::size_t pool) const {
   return static_cast<double>(next_[pool] - begun_[pool]) /
          static_cast<double>(pools_[pool]->requested() - begun_[pool]);

@@ -41,6 +41,8 @@ class Round {
   const SomePools& pools() const { return pools_; }
   /// The next block to draw; nullopt after the last, and when the user interrupts.
   std::optional<Task> next();
+  /// How many blocks next() will give.
+  std::uint64_t blocks_left() const;
   /// Adds a drawn block to its pool. Blocks come in the order of next().
   void fold(const Task& task, Pool::Block&& block);
   /// Called after each fold.

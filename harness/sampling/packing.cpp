@@ -1,15 +1,18 @@
 #include "harness/sampling/packing.h"
 
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 
-#include "harness/base/text_hash.h"
+#include "estimators/core/flush_denormals.h"
 
 namespace assay::harness {
 namespace {
 
 constexpr std::string_view magic = "assay ";
-constexpr char format = '1';  // Another one for each change of what is packed.
+constexpr char format = '2';  // Another one for each change of what is packed.
 
 struct Head {
   std::array<char, 8> name{'a', 's', 's', 'a', 'y', ' ', format, '\n'};
@@ -18,6 +21,55 @@ struct Head {
 };
 
 constexpr std::size_t most_cells = std::size_t{1} << 24;
+
+/// Takes words of 8 bytes. Data that differ in one word have another checksum.
+std::uint64_t checksum_of(std::string_view bytes) {
+  constexpr std::uint64_t odd = 0x9e3779b97f4a7c15U;
+  std::uint64_t sum = bytes.size();
+  while (!bytes.empty()) {
+    std::uint64_t word = 0;
+    const std::size_t size = std::min(bytes.size(), sizeof word);
+    std::memcpy(&word, bytes.data(), size);
+    bytes.remove_prefix(size);
+    sum = (sum ^ word) * odd;
+    sum ^= sum >> 32;
+  }
+  return sum;
+}
+
+/// True of one drawn block whose sums follow from its observations.
+bool keeps_all(const Pool::Block& block) {
+  const std::size_t kept = block.observations->values.size();
+  return block.size > 0 && kept > 0 && kept == block.whole.count;
+}
+
+constexpr std::size_t channels_at_a_time = 4096;
+
+/// Sums up kept observations as they were drawn: one by one, from `first` on.
+void add_sums(Pool::Block& block, const std::vector<std::shared_ptr<Summary>>& partial,
+              std::span<const ChannelPlan> plan, std::uint64_t first) {
+  const KeptObservations& kept = *block.observations;
+  const bool with_costs = counts_costs(plan);
+  const auto take = [&](std::size_t channel) {
+    auto next = partial.begin();
+    ChannelSummary& sums = block.whole.channels[channel];
+    for (std::size_t i = 0; i < kept.values.size(); ++i) {
+      add_observation(sums, kept.values[i][channel], first + i,
+                      with_costs ? counted(kept.costs[i]) : ObservationCost{});
+      if (next == partial.end() || (*next)->count != i + 1) continue;
+      (*next++)->channels[channel] = sums;
+    }
+  };
+  const tbb::blocked_range<std::size_t> all(0, block.whole.channels.size(), channels_at_a_time);
+  try {
+    tbb::parallel_for(all, [&](const tbb::blocked_range<std::size_t>& some) {
+      const FlushDenormals flush;
+      for (std::size_t channel = some.begin(); channel < some.end(); ++channel) take(channel);
+    });
+  } catch (const std::logic_error& outside) {
+    throw Unpackable(outside.what());
+  }
+}
 
 /// The number of observations [first, first + count) that lie below `end`.
 std::uint64_t below(std::uint64_t end, std::uint64_t first, std::uint64_t count) {
@@ -48,7 +100,7 @@ void require_shape(const Pool::Block& block, const Recipe& recipe, const Pool& p
 
 std::string framed(std::string_view bytes) {
   const Head head{.size = bytes.size()};
-  const std::uint64_t checksum = text_hash(bytes);
+  const std::uint64_t checksum = checksum_of(bytes);
   std::string frame;
   frame.reserve(sizeof head + bytes.size() + sizeof checksum);
   frame.append(reinterpret_cast<const char*>(&head), sizeof head);
@@ -76,7 +128,7 @@ std::string_view unframed(std::string_view frame) {
   }
   std::memcpy(&checksum, frame.data() + head.size, sizeof checksum);
   frame.remove_suffix(sizeof checksum);
-  if (checksum != text_hash(frame)) throw Unpackable("it is damaged: its checksum differs");
+  if (checksum != checksum_of(frame)) throw Unpackable("it is damaged: its checksum differs");
   return frame;
 }
 
@@ -128,9 +180,9 @@ void parts(Archive& a, T& channel) {
 }
 
 template <class Archive, maybe_const<Summary> T>
-void parts(Archive& a, T& summary) {
+void summary_parts(Archive& a, T& summary, bool with_channels) {
   a(summary.count, summary.group_variances, summary.cost, summary.seconds);
-  a.fixed(summary.channels);
+  if (with_channels) a.fixed(summary.channels);
 }
 
 template <class Archive, maybe_const<Fault> T>
@@ -154,40 +206,57 @@ Pool pool_of(const Recipe& recipe, std::shared_ptr<const Setup> setup) {
   pool.plan(recipe.plan);
   pool.keep_group_variances(recipe.grouped_channels);
   pool.keep_observations(recipe.kept_observations);
-  for (const std::uint64_t mark : recipe.marks) pool.mark(mark);
+  for (const std::uint64_t mark : recipe.marks) {
+    Unpacker::require(mark > 0, "a mark at no observation");
+    pool.mark(mark);
+  }
   return pool;
 }
 
 std::string packed_block(const Pool::Block& block) {
   Packer pack;
-  pack(block.whole, block.fault, block.values, block.observations->values,
+  const bool with_channels = !keeps_all(block);
+  pack(with_channels, block.fault, block.values, block.observations->values,
        block.observations->costs);
+  summary_parts(pack, block.whole, with_channels);
   pack(static_cast<std::uint64_t>(block.partial.size()));
-  for (const auto& [count, sums] : block.partial) pack(count, *sums);
-  return framed(pack.bytes());
+  for (const auto& [count, sums] : block.partial) {
+    pack(count);
+    summary_parts(pack, *sums, with_channels);
+  }
+  return std::move(pack).bytes();
 }
 
-Pool::Block unpacked_block(std::string_view frame, const Pool& pool, std::uint64_t first) {
-  Unpacker unpack(unframed(frame));
+Pool::Block unpacked_block(std::string_view bytes, const Pool& pool, std::uint64_t first) {
+  Unpacker unpack(bytes);
   const Recipe recipe = pool.recipe();
   Pool::Block block{.whole = Summary(pool.channels(), recipe.plan)};
-  unpack(block.whole, block.fault, block.values, block.observations->values,
+  bool with_channels = true;
+  unpack(with_channels, block.fault, block.values, block.observations->values,
          block.observations->costs);
+  summary_parts(unpack, block.whole, with_channels);
   require_shape(block, recipe, pool, first);
+  Unpacker::require(with_channels || block.observations->values.size() == block.whole.count,
+                    "sums that do not follow from its observations");
   const std::uint64_t end = first + block.whole.count;
   const auto begin = std::ranges::upper_bound(recipe.marks, first);
   const std::vector<std::uint64_t> marks(begin, std::ranges::upper_bound(recipe.marks, end));
   std::uint64_t partials = 0;
   unpack(partials);
-  unpack.require(partials == marks.size(), "other marks than its plan says");
+  Unpacker::require(partials == marks.size(), "other marks than its plan says");
+  std::vector<std::shared_ptr<Summary>> partial;
   for (const std::uint64_t mark : marks) {
     std::uint64_t count = 0;
-    auto sums = std::make_shared<Summary>(pool.channels(), recipe.plan);
-    unpack(count, *sums);
-    unpack.require(count == mark && sums->count == mark - first, "other marks than its plan says");
-    block.partial.emplace_back(mark, std::move(sums));
+    const auto& sums =
+        partial.emplace_back(std::make_shared<Summary>(pool.channels(), recipe.plan));
+    unpack(count);
+    summary_parts(unpack, *sums, with_channels);
+    Unpacker::require(count == mark && sums->count == mark - first,
+                      "other marks than its plan says");
+    block.partial.emplace_back(mark, sums);
   }
   unpack.end();
+  if (!with_channels) add_sums(block, partial, recipe.plan, first);
   return block;
 }
 

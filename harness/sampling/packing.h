@@ -52,17 +52,18 @@ class Packer {
       for (const auto& each : list) put(each);
     }
   }
-  const std::string& bytes() const { return bytes_; }
+  std::string bytes() && { return std::move(bytes_); }
 
  private:
   template <PlainNumber T>
   void put(const T& number) {
     bytes_.append(reinterpret_cast<const char*>(&number), sizeof number);
   }
-  void put(const std::string& text) {
+  void put(std::string_view text) {
     put(static_cast<std::uint64_t>(text.size()));
     bytes_ += text;
   }
+  void put(const std::string& text) { put(std::string_view(text)); }
   template <class T>
   void put(const std::vector<T>& list) {
     fixed(list);
@@ -139,6 +140,7 @@ class Unpacker {
     require(byte <= 1, "a yes or no is neither");
     value = byte == 1;
   }
+  void get(std::string_view& text) { text = taken(length(1)); }  ///< of the reader's bytes
   void get(std::string& text) { text = taken(length(1)); }
   template <class T>
   void get(std::vector<T>& list) {
@@ -174,7 +176,7 @@ template <class... T>
 std::string packed(const T&... values) {
   Packer pack;
   pack(values...);
-  return framed(pack.bytes());
+  return framed(std::move(pack).bytes());
 }
 
 template <class... T>
@@ -198,10 +200,12 @@ void parts(Archive& a, T& recipe) {
 /// A pool that draws by the recipe. Throws Unpackable if the set-up cannot.
 Pool pool_of(const Recipe& recipe, std::shared_ptr<const Setup> setup);
 
-/// Packs a block that was drawn, or all that a pool has drawn.
+/// Packs a block that was drawn, or all that a pool has drawn, to stand in a frame. A drawn block
+/// whose observations are all kept goes without its sums, which follow from them.
 std::string packed_block(const Pool::Block& block);
 /// Reads it as a block of the pool that begins at observation `first`. Throws Unpackable unless it
-/// has the shape that the pool's plan says, so that it can be folded.
-Pool::Block unpacked_block(std::string_view frame, const Pool& pool, std::uint64_t first);
+/// has the shape that the pool's plan says, so that it can be folded. Sums on all threads of the
+/// caller's arena.
+Pool::Block unpacked_block(std::string_view bytes, const Pool& pool, std::uint64_t first);
 
 }  // namespace assay::harness

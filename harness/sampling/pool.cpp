@@ -45,10 +45,6 @@ std::size_t channels_of(const Setup& setup) {
   return unknown ? *unknown : setup.channels().size();
 }
 
-ObservationCost counted(const Cost& cost) {
-  return {static_cast<double>(cost.rays()), static_cast<double>(cost.samples)};
-}
-
 /// Sums up the observations of a block, in order. It buffers some, then takes a few channels of all
 /// of them. Drawing does not wait for sums, and the sums of a picture stay in the cache. Each
 /// channel's sums are the same as if values were taken one by one.
@@ -149,6 +145,11 @@ std::uint64_t most_kept(std::span<const ChannelPlan> plan) {
   std::uint64_t most = 0;
   for (const ChannelPlan& channel : plan) most = std::max(most, channel.keep);
   return most;
+}
+
+bool counts_costs(std::span<const ChannelPlan> plan) {
+  return std::ranges::any_of(
+      plan, [](const ChannelPlan& each) { return each.powers == Powers::with_costs; });
 }
 
 std::uint64_t primaries_of_observation(const Setup& setup, std::uint64_t primaries) {
@@ -259,9 +260,7 @@ Pool::Block Pool::draw(const std::function<Estimator&()>& estimator, std::uint64
   double start = seconds();
   std::uint64_t index = first;
   GroupVariance groups(sums_later_ ? std::vector<std::size_t>() : grouped_channels_);
-  const bool counts_costs = !sums_later_ && std::ranges::any_of(plan_, [](const ChannelPlan& each) {
-    return each.powers == Powers::with_costs;
-  });
+  const bool with_costs = !sums_later_ && counts_costs(plan_);
   ObservationCost cost{};
   const FlushDenormals flush;
   try {
@@ -270,10 +269,10 @@ Pool::Block Pool::draw(const std::function<Estimator&()>& estimator, std::uint64
     source->announce({.key = key_, .first = first, .last = last});
     for (; index < last; ++index) {
       Cost before;
-      if (counts_costs) before = block.whole.cost;
+      if (with_costs) before = block.whole.cost;
       const std::span<double> out = sums_later_ ? std::span(unsummed) : intake.row();
       const std::span<const double> drawn = observe(*source, index, out, block);
-      if (counts_costs) cost = counted(block.whole.cost - before);
+      if (with_costs) cost = counted(block.whole.cost - before);
       if (!sums_later_) intake.take(drawn, index, cost);
       for (std::size_t c = 0; index < values_kept && c < drawn.size(); ++c) {
         if (index < plan_[c].keep) block.values[c].push_back(drawn[c]);

@@ -109,6 +109,9 @@ struct ChannelSummary {
 /// A kind of cost of an observation, the index of a channel's joint moments.
 enum CountedCost : std::size_t { rays_cost, samples_cost, counted_costs };
 using ObservationCost = std::array<double, counted_costs>;
+inline ObservationCost counted(const Cost& cost) {
+  return {static_cast<double>(cost.rays()), static_cast<double>(cost.samples)};
+}
 
 /// Observations [0, count) of a pool, or those of one block.
 struct Summary {

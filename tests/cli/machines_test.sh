@@ -103,26 +103,46 @@ test_ranks_that_stall_are_done_without() {
   local suite=$source_folder/suites/luminaire.yaml signal
   of_one_thread "$suite" --coarsen 4
   for signal in STOP TERM; do
-    ranks 3 run "$suite" --coarsen 4 --quiet --report json=other/run.json &
-    sleep .7
+    rm -f kept
+    ranks 3 run "$suite" --coarsen 4 --quiet --checkpoint kept --checkpoint-every .01 --report json=other/run.json &
+    until [ "$(stat -c %s kept 2>/dev/null)0" -gt 40000 ]; do sleep .01; done  # all ranks draw
     signal_rank $signal 2 $! || fail 'no rank'
     wait $!
     same_as_of_one_thread "SIG$signal"
   done
 }
 
+# A signal to rank 2, or to all of the job, at random times; then the same command goes on.
+#   go_on_after COUNT SIGNAL 2|all
+go_on_after() {
+  local hits=0 begun=$EPOCHREALTIME whole job
+  local arguments=(run "$source_folder/tests/suites/kinds.yaml" --quiet --checkpoint kept
+                   --checkpoint-every .05 --report json=other/run.json)
+  ranks 3 "${arguments[@]}"
+  whole=$(/usr/bin/python3 -c "print($EPOCHREALTIME - $begun)")
+  while [ $hits -lt "$1" ]; do
+    ranks 3 "${arguments[@]}" &
+    job=$!
+    sleep "$(/usr/bin/python3 -c "import random; print(random.uniform(0, $whole))")"
+    # shellcheck disable=SC2046  # one word a process
+    if [ "$3" = all ]; then kill "-$2" $(descendants $job) 2>/dev/null; else signal_rank "$2" "$3" $job; fi &&
+      hits=$((hits + 1))
+    wait $job
+    ranks 3 "${arguments[@]}"
+    [ $? -le 3 ] || fail "SIG$2 to $3, time $hits: it does not go on"
+    same_as_of_one_thread "SIG$2 to $3, time $hits"
+    [ -z "$(find . -name '.assay-*' -o -name kept)" ] || fail "SIG$2 to $3 leaves files"
+  done
+}
+
 test_ranks_that_are_killed_go_on_from_a_checkpoint() {
   require_mpi
-  local suite=$source_folder/suites/luminaire.yaml kills=0 rank
-  of_one_thread "$suite" --coarsen 4
-  for rank in 2 ${long:+1 0} none; do
-    ranks 3 run "$suite" --coarsen 4 --quiet --checkpoint kept --checkpoint-every .05 --report json=other/run.json &
-    sleep "$(/usr/bin/python3 -c 'import random; print(random.uniform(.4, 1))')"
-    [ $rank = none ] || ! signal_rank KILL $rank $! || kills=$((kills + 1))
-    wait $!
-  done
-  same_as_of_one_thread "after $kills kills"
-  [ $kills -gt 0 ] || fail 'nothing was killed'
+  local counts=(2 2 1)
+  [ -z "$long" ] || counts=(20 50 5)
+  of_one_thread "$source_folder/tests/suites/kinds.yaml"
+  go_on_after "${counts[0]}" KILL 2
+  go_on_after "${counts[1]}" KILL all
+  go_on_after "${counts[2]}" TERM all
 }
 
 test_ranks_refuse_shards_and_end_with_one_message() {

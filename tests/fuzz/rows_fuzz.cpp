@@ -3,8 +3,8 @@
 // whole.
 
 // sources: estimators/recorded/table.cpp estimators/recorded/byte_source.cpp
-// sources: estimators/recorded/npy.cpp estimators/recorded/foreign_formats.cpp
-// sources: estimators/recorded/fields.cpp estimators/core/quoting.cpp estimators/core/waiting.cpp
+// sources: estimators/recorded/npy.cpp
+// sources: estimators/core/quoting.cpp estimators/core/waiting.cpp
 // sources: estimators/core/value.cpp
 // libraries: -lz
 

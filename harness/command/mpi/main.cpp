@@ -39,13 +39,14 @@ class MpiMessages final : public Messages {
     }
   }
 
-  std::optional<Message> receive() override {
+  std::optional<Message> receive(int from) override {
     forget_sent();
     int there = 0;
     MPI_Message message{};
     MPI_Status status{};
     const auto probe = [&] {
-      MPI_Improbe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &there, &message, &status);
+      MPI_Improbe(from == anyone ? MPI_ANY_SOURCE : from, MPI_ANY_TAG, MPI_COMM_WORLD, &there,
+                  &message, &status);
     };
     probe();
     // A large message moves on only while MPI is called.
@@ -62,6 +63,13 @@ class MpiMessages final : public Messages {
       MPI_Imrecv(part.bytes.data(), size, MPI_BYTE, &message, &part.request);
     }
     return received();
+  }
+
+  std::size_t arriving() const override {
+    std::size_t bytes = 0;
+    for (const Receiving& part : receiving_) bytes += part.bytes.size();
+    for (const auto& [from, part] : parts_) bytes += part.size();
+    return bytes;
   }
 
   void wait_until_sent() {

@@ -1,5 +1,7 @@
 #include "harness/base/whole_file.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 
 #include "tests/harness/prelude.h"
@@ -24,6 +26,17 @@ TEST_F(WriteWhole, WritesAndReplaces) {
   write_whole(path, second);
   EXPECT_EQ(bytes_in(path), second);
   EXPECT_EQ(entries(), 1);
+}
+
+TEST_F(WriteWhole, RemovesWhatKilledProcessesLeft) {
+  std::ofstream(folder_ / ".assay-1.tmp") << "half";
+  const fs::path used = folder_ / ".assay-2.tmp";
+  const int living = ::open(used.c_str(), O_CREAT | O_WRONLY, 0600);
+  ASSERT_EQ(::flock(living, LOCK_EX), 0);
+  write_whole(folder_ / "report.json", "text");
+  EXPECT_FALSE(fs::exists(folder_ / ".assay-1.tmp"));
+  EXPECT_TRUE(fs::exists(used));
+  ::close(living);
 }
 
 TEST_F(WriteWhole, FollowsALinkInsteadOfReplacingIt) {

@@ -18,13 +18,16 @@ class Post {
     const std::scoped_lock lock(mutex_);
     boxes_[static_cast<std::size_t>(to)].push_back(std::move(message));
   }
-  std::optional<Messages::Message> receive(int rank) {
+  std::optional<Messages::Message> receive(int rank, int from) {
     const std::scoped_lock lock(mutex_);
     auto& box = boxes_[static_cast<std::size_t>(rank)];
-    if (box.empty()) return std::nullopt;
-    Messages::Message first = std::move(box.front());
-    box.pop_front();
-    return first;
+    const auto first = std::ranges::find_if(box, [&](const Messages::Message& each) {
+      return from == Messages::anyone || each.from == from;
+    });
+    if (first == box.end()) return std::nullopt;
+    Messages::Message message = std::move(*first);
+    box.erase(first);
+    return message;
   }
 
  private:
@@ -35,7 +38,7 @@ class Post {
 /// The bytes that arrive of the k-th message of a rank, from 0; none: it is lost.
 using Fate = std::function<std::optional<std::string>(int rank, std::size_t k, std::string bytes)>;
 
-class Posted final : public Messages {
+class Posted : public Messages {
  public:
   Posted(Post& post, int rank, Fate fate = {}) : post_(post), rank_(rank), fate_(std::move(fate)) {}
   int rank() const override { return rank_; }
@@ -45,7 +48,8 @@ class Posted final : public Messages {
     if (fate_) arrives = fate_(rank_, sent_++, std::move(*arrives));
     if (arrives) post_.send(to, {rank_, std::move(*arrives)});
   }
-  std::optional<Message> receive() override { return post_.receive(rank_); }
+  std::optional<Message> receive(int from) override { return post_.receive(rank_, from); }
+  std::size_t arriving() const override { return 0; }
 
  private:
   Post& post_;
@@ -54,12 +58,30 @@ class Posted final : public Messages {
   std::size_t sent_ = 0;
 };
 
+/// Rank 0's box. After the greetings, letters of rank 1 come only if they are asked for by name.
+class Reluctant final : public Posted {
+ public:
+  explicit Reluctant(Post& post) : Posted(post, 0) {}
+  std::optional<Message> receive(int from) override {
+    if (from == 1) ++asked_;
+    auto message = Posted::receive(from == anyone && greetings_ >= 2 ? 2 : from);
+    if (message) ++greetings_;
+    return message;
+  }
+  int asked() const { return asked_; }
+
+ private:
+  int greetings_ = 0;
+  int asked_ = 0;
+};
+
 struct Job {
   int ranks = 3;
   unsigned threads = 1;
   Fate fate = {};
   Identity identity_there = {};
   std::string suite_there = "";  ///< "": the same
+  std::size_t window = Ranks::usual_window;
 };
 
 PreparedRank prepared(const std::string& suite, const Job& job) {
@@ -68,27 +90,32 @@ PreparedRank prepared(const std::string& suite, const Job& job) {
   return {job.identity_there, setups_of(*run), job.threads, run};
 }
 
-/// The record of rank 0.
-reports::Record run_in_ranks(const std::string& suite, const Job& job) {
-  Post post(job.ranks);
+/// The record of rank 0, which has these messages.
+reports::Record run_in_ranks(const std::string& suite, const Job& job, Post& post,
+                             Messages& messages) {
   std::vector<std::jthread> others;
   for (int rank = 1; rank < job.ranks; ++rank) {
     others.emplace_back([&, rank] {
-      Posted messages(post, rank, job.fate);
-      serve(messages, [&](std::optional<std::uint64_t>) {
+      Posted theirs(post, rank, job.fate);
+      serve(theirs, [&](std::optional<std::uint64_t>) {
         return prepared(job.suite_there.empty() ? suite : job.suite_there, job);
       });
     });
   }
-  Posted messages(post, 0);
   struct AtEnd {
-    Messages& messages;
+    Posted messages;
     ~AtEnd() { EXPECT_TRUE(dismiss(messages)); }
-  } const at_end{messages};
-  return run_files({suite},
-                   {.threads = 1,
-                    .executor = std::make_shared<Ranks>(messages, std::nullopt, Identity{}, 1U),
-                    .coarsen = 8});
+  } at_end{Posted(post, 0)};
+  return run_files({suite}, {.threads = 1,
+                             .executor = std::make_shared<Ranks>(messages, std::nullopt, Identity{},
+                                                                 1U, job.window),
+                             .coarsen = 8});
+}
+
+reports::Record run_in_ranks(const std::string& suite, const Job& job) {
+  Post post(job.ranks);
+  Posted messages(post, 0);
+  return run_in_ranks(suite, job, post, messages);
 }
 
 const std::string kinds = ASSAY_SOURCE_DIR "/tests/suites/kinds.yaml";
@@ -105,6 +132,14 @@ TEST(Ranks, GiveTheRecordOfOneProcess) {
     EXPECT_EQ(numbers_of(run_in_ranks(suite, {.ranks = 3})), one);
     EXPECT_EQ(numbers_of(run_in_ranks(suite, {.ranks = 2, .threads = 2})), one);
   }
+}
+
+TEST(Ranks, KeepWhatTheyDrewWhileTheWindowIsFull) {
+  Post post(3);
+  Reluctant messages(post);
+  const reports::Record record = run_in_ranks(kinds, {.window = 1}, post, messages);
+  EXPECT_EQ(numbers_of(record), alone(kinds));
+  EXPECT_GT(messages.asked(), 0);
 }
 
 // The greeting and four answers arrive, and what the rank says at the end.
@@ -140,7 +175,7 @@ TEST(Ranks, OfAnotherRunAreRefusedByName) {
 // They cannot read that the run ends.
 TEST(Ranks, ThatCannotBeReadAreNotDismissed) {
   Post post(2);
-  post.send(0, {.from = 1, .bytes = "assay 2"});
+  post.send(0, {.from = 1, .bytes = "assay 1"});
   Posted messages(post, 0);
   EXPECT_FALSE(dismiss(messages));
 }

@@ -75,8 +75,7 @@ void draw_all_of(const std::shared_ptr<Pool>& pool) {
 
 /// All that is drawn, without the seconds.
 std::string contents_of(const Pool& pool) {
-  std::string bytes = packed_block(pool.drawn_block());
-  Pool::Block block = unpacked_block(bytes, pool, 0);
+  Pool::Block block = unpacked_block(packed_block(pool.drawn_block()), pool, 0);
   block.whole.seconds = 0;
   for (auto& [count, sums] : block.partial) std::const_pointer_cast<Summary>(sums)->seconds = 0;
   return packed_block(block);
@@ -91,8 +90,8 @@ std::vector<std::string> blocks_elsewhere(const Recipe& recipe, const OddSetup& 
   Workers workers(pools);
   std::vector<std::string> blocks;
   for (std::uint64_t first = 0; first < 200; first = pool->block_end(first)) {
-    blocks.push_back(
-        packed_block(workers.draw({.pool = 0, .first = first, .last = pool->block_end(first)})));
+    const Task task{.pool = 0, .first = first, .last = pool->block_end(first)};
+    blocks.push_back(framed(packed_block(workers.draw(task))));
   }
   return blocks;
 }
@@ -105,7 +104,7 @@ RC_GTEST_PROP(Packing, GivesThePoolThatIsDrawnHere, ()) {
   const std::shared_ptr<Pool> folded = fresh(recipe, setup);
   for (const std::string& block : blocks_elsewhere(recipe, setup)) {
     if (folded->fault()) break;
-    folded->fold(unpacked_block(block, *folded, folded->drawn()));
+    folded->fold(unpacked_block(unframed(block), *folded, folded->drawn()));
   }
   RC_ASSERT(contents_of(*folded) == contents_of(*here));
   RC_ASSERT(folded->fault().has_value() == here->fault().has_value());
@@ -119,13 +118,13 @@ RC_GTEST_PROP(Packing, GivesThePoolThatIsDrawnHere, ()) {
 bool folds_or_is_refused(const std::string& frame, const Recipe& recipe) {
   const std::shared_ptr<Pool> pool = fresh(recipe, OddSetup());
   return thrown<Unpackable>([&] {
-           pool->fold(unpacked_block(frame, *pool, 0));
+           pool->fold(unpacked_block(unframed(frame), *pool, 0));
            packed_block(pool->drawn_block());
          }).size() > 5;
 }
 
 bool is_refused(const std::string& frame, const Pool& pool) {
-  return thrown<Unpackable>([&] { unpacked_block(frame, pool, 0); }) != nothing;
+  return thrown<Unpackable>([&] { unpacked_block(unframed(frame), pool, 0); }) != nothing;
 }
 
 RC_GTEST_PROP(Packing, RefusesWhatIsCutShortOrDamaged, ()) {
@@ -164,6 +163,11 @@ RC_GTEST_PROP(Packing, OfADamagedRecipeDoesNotCrash, ()) {
     unpack(framed(bytes), recipe);
     pool_of(recipe, std::make_shared<OddSetup>());
   });
+}
+
+TEST(Packing, RefusesAMarkAtNoObservation) {
+  const auto make = [] { pool_of({.marks = {0}}, std::make_shared<OddSetup>()); };
+  EXPECT_EQ(thrown<Unpackable>(make), "a mark at no observation");
 }
 
 std::string refusal_of(std::string frame, std::size_t at, char byte) {

@@ -1,0 +1,82 @@
+// Blocks and recipes of other processes (harness/sampling/packing.h). All bytes are unpacked or
+// refused. A block that was unpacked can be folded, and is packed and read again as the same.
+
+// sources: harness/sampling/packing.cpp harness/sampling/pool.cpp harness/sampling/summary.cpp
+// sources: stats/basics/moments.cpp stats/basics/joint_moments.cpp stats/basics/check.cpp
+// sources: stats/basics/search.cpp stats/images/image_moments.cpp stats/tails/tails.cpp
+// sources: stats/tails/quantiles.cpp stats/tails/special.cpp stats/tails/noncentral_tails.cpp
+// sources: estimators/core/value.cpp estimators/estimator.cpp
+// libraries: -lfmt -ltbb -fno-sanitize=vptr
+
+#include "estimators/ready_made.h"
+#include "harness/sampling/packing.h"
+#include "harness/sampling/recorded_run.h"
+#include "stats/gates/independence_gates.h"
+#include "tests/fuzz/case.h"
+
+// Nothing here is of files, and no order is judged.
+namespace assay::recorded {
+std::optional<std::size_t> unknown_channels(const Setup&) { return std::nullopt; }
+void read_picture(Estimator&, std::uint64_t, std::span<float>, Cost&) {}
+double average_of(std::span<const float>) { return 0; }
+bool keeps_files(const Setup&) { return false; }
+}  // namespace assay::recorded
+namespace assay::harness {
+const RecordedRun* as_recorded_run(const Setup&) { return nullptr; }
+}  // namespace assay::harness
+namespace assay::stats {
+std::vector<Gate> drawn_order_gates(std::span<const double>) { return {}; }
+}  // namespace assay::stats
+
+namespace {
+
+using namespace assay;
+using namespace assay::harness;
+using assay::fuzz::require;
+
+/// Nothing is drawn of it.
+class ThreeSums final : public Setup {
+ public:
+  std::vector<Channel> channels() const override {
+    return {{.name = "one"}, {.name = "two"}, {.name = "three"}};
+  }
+  std::unique_ptr<Estimator> make() const override { return nullptr; }
+};
+
+// Large enough to matter; small enough not to test the memory alone.
+bool is_modest(const Recipe& recipe) {
+  for (const ChannelPlan& channel : recipe.plan) {
+    if (channel.cells > 1024) return false;
+  }
+  return true;
+}
+
+void block(std::string_view bytes, const Recipe& recipe) {
+  Pool pool = pool_of(recipe, std::make_shared<ThreeSums>());
+  const std::string packed = packed_block(unpacked_block(bytes, pool, 0));
+  const Pool::Block again = unpacked_block(packed, pool, 0);
+  require(packed_block(again) == packed);
+  pool.fold(unpacked_block(packed, pool, 0));
+  require(pool.drawn() == again.whole.count);
+}
+
+}  // namespace
+
+/// The bytes are a frame, or a recipe and a block.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view bytes = assay::fuzz::text_of(data, size);
+  try {
+    require(framed(unframed(bytes)) == bytes);
+  } catch (const Unpackable&) {
+  }
+  try {
+    Unpacker unpack(bytes);
+    Recipe recipe;
+    std::string_view rest;
+    unpack(recipe, rest);
+    unpack.end();
+    if (is_modest(recipe)) block(rest, recipe);
+  } catch (const Unpackable&) {
+  }
+  return 0;
+}
