@@ -28,13 +28,22 @@ Evidence added_evidence(const Method&, const Question&, std::size_t channel,
 """,
     "harness/families/added_method.cpp": """#include "harness/families/added_method.h"
 
-#include "harness/families/mean_evidence.h"
+#include "harness/question/question.h"
+#include "stats/means/student_t.h"
 
 namespace assay::harness {
 
-Evidence added_evidence(const Method& method, const Question& question, std::size_t channel,
+Evidence added_evidence(const Method&, const Question& question, std::size_t channel,
                         std::span<const ChannelData> data) {
-  return mean_by_t(method, question, channel, data);
+  const stats::Moments x = data[0].moments;
+  const double null = question.references[channel].value;
+  return {.estimate = x.mean - null,
+          .at = [=](double t) { return stats::student_t(x, {.value = null + t}); },
+          .interval =
+              [=](double confidence) {
+                return stats::student_t_interval(x, {.value = null}, confidence);
+              },
+          .quantity = "difference"};
 }
 
 }  // namespace assay::harness
@@ -162,7 +171,7 @@ REPORT_ROW = """      {"added", "added", "an added report",
 """
 EDITS = {
     "harness/families/mean.cpp": (
-        '#include "harness/families/mean_evidence.h"\n',
+        '#include "harness/families/families.h"\n',
         '#include "harness/families/added_method.h"\n', '      {"batch-means",\n', METHOD_ROW),
     "harness/families/quantities.cpp": (
         '#include <algorithm>\n', '#include "harness/families/added_quantity.h"\n',

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdlib>
 #include <functional>
 #include <string>
 
@@ -8,6 +9,9 @@ namespace assay::harness {
 /// The value of a variable; "" where it is not set.
 using Environment = std::function<std::string(const std::string&)>;
 
-std::string system_environment(const std::string& variable);
+inline std::string system_environment(const std::string& variable) {
+  const char* value = std::getenv(variable.c_str());
+  return value == nullptr ? "" : value;
+}
 
 }  // namespace assay::harness

@@ -1,13 +1,12 @@
 #include "harness/base/record_file.h"
 
-#include <fmt/format.h>
-
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
 #include "estimators/core/quoting.h"
 #include "estimators/parameters.h"
+#include "harness/base/refuse.h"
 #include "reports/report_formats.h"
 
 namespace assay::harness {
@@ -15,20 +14,19 @@ namespace assay::harness {
 reports::Record read_record(const std::string& file) {
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) {
-    throw InputError({.file = file},
-                     "there is no such file; `--report json=FILE` saves a run that can be read");
+    refuse({.file = file},
+           "there is no such file; `--report json=FILE` saves a run that can be read");
   }
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream text;
   text << stream.rdbuf();
-  if (!stream) throw InputError({.file = file}, "cannot be read; give a report of kind json");
+  if (!stream) refuse({.file = file}, "cannot be read; give a report of kind json");
   for (const char* extension : {".yaml", ".yml"}) {
     if (!file.ends_with(extension)) continue;
-    throw InputError(
-        {.file = file},
-        fmt::format("this is no saved run but a suite, it seems: `assay run {} --report "
-                    "json=run.json` saves one",
-                    shell_quoted(file)));
+    refuse({.file = file},
+           "this is no saved run but a suite, it seems: `assay run {} --report json=run.json` "
+           "saves one",
+           shell_quoted(file));
   }
   return reports::read_json(text.str(), file);
 }

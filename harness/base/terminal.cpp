@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <mutex>
 
+#include "harness/base/environment_variables.h"
 #include "reports/words/text.h"
 
 namespace assay::harness {
@@ -35,11 +36,6 @@ double fraction(const Phase& phase, std::uint64_t done) {
              : std::min(1.0, static_cast<double>(done) / static_cast<double>(phase.total));
 }
 
-bool environment_has(const char* name) {
-  const char* value = std::getenv(name);
-  return value && *value;
-}
-
 void wipe_bar() {
   if (bar_on != nullptr) *bar_on << wipe << std::flush;
 }
@@ -50,8 +46,7 @@ int terminal_width(std::FILE* stream) {
   winsize size{};
   if (ioctl(fileno(stream), TIOCGWINSZ, &size) == 0 && size.ws_col > 0) return size.ws_col;
   constexpr int usual = 80;
-  const char* const columns = std::getenv("COLUMNS");
-  const int given = columns == nullptr ? 0 : std::atoi(columns);
+  const int given = std::atoi(system_environment("COLUMNS").c_str());
   return given > 0 ? given : usual;
 }
 
@@ -112,9 +107,8 @@ void write_beside_progress(const std::string& text, std::FILE* stream) {
 }
 
 std::unique_ptr<Progress> make_progress(bool quiet) {
-  const char* term = std::getenv("TERM");
-  const bool dumb = term && std::string_view(term) == "dumb";
-  if (quiet || dumb || environment_has("CI") || !isatty(STDERR_FILENO)) {
+  const bool dumb = system_environment("TERM") == "dumb";
+  if (quiet || dumb || !system_environment("CI").empty() || !isatty(STDERR_FILENO)) {
     return std::make_unique<Silence>();
   }
   return std::make_unique<ProgressBar>(std::cerr);

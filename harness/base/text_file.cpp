@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "harness/base/refuse.h"
 #include "reports/words/text.h"
 
 namespace assay::harness {
@@ -19,23 +20,6 @@ constexpr std::size_t largest_file = std::size_t{16} << 20;
 constexpr std::size_t shown_bytes = 72;
 
 bool continues(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80; }
-
-/// The length in bytes of the UTF-8 sequence at the start of `text`; 0 if it is invalid by RFC
-/// 3629.
-std::size_t sequence_length(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned first = byte(0);
-  if (first < 0x80) return 1;
-  const std::size_t length = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
-  if (first < 0xC2 || first > 0xF4 || text.size() < length) return 0;
-  for (std::size_t i = 1; i < length; ++i) {
-    if (!continues(text[i])) return 0;
-  }
-  const unsigned second = byte(1);
-  const bool overlong = (first == 0xE0 && second < 0xA0) || (first == 0xF0 && second < 0x90);
-  const bool outside = (first == 0xED && second > 0x9F) || (first == 0xF4 && second > 0x8F);
-  return overlong || outside ? 0 : length;
-}
 
 bool forbidden_control(char c) {
   const auto byte = static_cast<unsigned char>(c);
@@ -60,22 +44,20 @@ std::string near_file(const std::string& file) {
 }  // namespace
 
 std::string read_text_file(const std::string& file) {
-  const auto refuse = [&](const std::string& why) {
-    throw InputError({}, fmt::format("cannot read `{}`: {}", file, why));
-  };
+  const auto fail = [&](const std::string& why) { refuse({}, "cannot read `{}`: {}", file, why); };
   std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored)) refuse("it is a folder; name the files in it");
+  if (std::filesystem::is_directory(file, ignored)) fail("it is a folder; name the files in it");
   errno = 0;
   std::ifstream in(file, std::ios::binary);
-  if (!in && errno == ENOENT) refuse("there is no such file" + near_file(file));
-  if (!in) refuse(errno ? std::strerror(errno) : "it cannot be opened");
+  if (!in && errno == ENOENT) fail("there is no such file" + near_file(file));
+  if (!in) fail(errno ? std::strerror(errno) : "it cannot be opened");
   std::string text;
   std::array<char, 65536> chunk{};
   while (text.size() <= largest_file && (in.read(chunk.data(), chunk.size()) || in.gcount() > 0)) {
     text.append(chunk.data(), static_cast<std::size_t>(in.gcount()));
   }
-  if (in.bad()) refuse("reading it failed");
-  if (text.size() > largest_file) refuse("it is larger than 16 MiB");
+  if (in.bad()) fail("reading it failed");
+  if (text.size() > largest_file) fail("it is larger than 16 MiB");
   return text;
 }
 
@@ -95,14 +77,16 @@ void require_utf8(std::string_view text, const std::string& file) {
   int line = 1;
   std::size_t start = 0;
   for (std::size_t i = 0; i < text.size();) {
-    const std::size_t length = sequence_length(text.substr(i));
-    if (length == 0 || forbidden_control(text[i])) {
+    std::size_t next = i;
+    const char32_t read = reports::next_code_point(text, next);
+    const bool invalid = read == reports::replacement_character && next == i + 1;
+    if (invalid || forbidden_control(text[i])) {
       const unsigned byte = static_cast<unsigned char>(text[i]);
-      const char* why = length == 0 ? "is not UTF-8" : "is a control character";
-      throw InputError({file, line, static_cast<int>(i - start) + 1},
-                       fmt::format("the byte 0x{:02x} {}; save the file as UTF-8 text", byte, why));
+      const char* why = invalid ? "is not UTF-8" : "is a control character";
+      refuse({file, line, static_cast<int>(i - start) + 1},
+             "the byte 0x{:02x} {}; save the file as UTF-8 text", byte, why);
     }
-    i += length;
+    i = next;
     if (text[i - 1] == '\n') {
       ++line;
       start = i;

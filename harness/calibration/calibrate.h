@@ -25,6 +25,9 @@ struct CalibrateArguments {
   unsigned threads = 0;
 };
 
+/// The default laws, as `analytic/law` reads them.
+const std::vector<std::string>& calibration_laws();
+
 /// Cells by alpha, method, question, law. InputError for an unknown method or law.
 reports::Calibration calibration(const CalibrateArguments& arguments, Progress& progress);
 

@@ -6,40 +6,34 @@
 #include <memory>
 
 #include "estimators/catalogue.h"
-#include "harness/command/files.h"
+#include "harness/command/describe.h"
+#include "harness/command/init.h"
 #include "harness/command/option_values.h"
 #include "harness/command/options.h"
-#include "harness/command/tables.h"
 #include "harness/language/quantities.h"
-#include "harness/suite/suite_keys.h"
+#include "harness/suite/yaml.h"
 #include "reports/report_formats.h"
 
 namespace assay::harness {
 
 namespace {
 
-Texts names_of(const std::string& plural) {
-  Texts names;
-  for (const TableRow& row : std::ranges::find(tables(), plural, &Table::plural)->rows) {
-    names.push_back(row.name);
-  }
-  return names;
+Texts rows_of(const std::string& plural) {
+  return names_of(std::ranges::find(tables(), plural, &Table::plural)->rows, &TableRow::name);
 }
 
 Texts plugin_names() {
-  Texts names;
-  for (const Entry& entry : catalogue()) names.push_back(entry.information.name);
-  return names;
+  return names_of(catalogue(), [](const Entry& entry) { return entry.information.name; });
 }
 
 std::string read_suite(const std::string& text, const std::string& /*option*/) {
   if (!text.ends_with(".json")) return text;
-  usage_error("a suite is a YAML file; a saved run is shown by `assay report " + text + "`");
+  refuse({}, "a suite is a YAML file; a saved run is shown by `assay report " + text + "`");
 }
 
 std::string read_claim(const std::string& text, const std::string& /*option*/) {
   if (!text.ends_with(".yaml")) return text;
-  usage_error("`assay check` tests one claim; a suite is run by `assay run " + text + "`");
+  refuse({}, "`assay check` tests one claim; a suite is run by `assay run " + text + "`");
 }
 
 /// Reads a report that goes to another place than those before it.
@@ -47,22 +41,22 @@ auto report_beside(const std::vector<ReportRequest>& others) {
   return [&others](const std::string& text, const std::string& option) {
     ReportRequest report = read_report(text, option);
     if (std::ranges::find(others, report.path, &ReportRequest::path) == others.end()) return report;
-    usage_error(report.path == "-" ? "two reports to standard output"
-                                   : fmt::format("two reports to `{}`", report.path));
+    refuse({}, report.path == "-" ? "two reports to standard output"
+                                  : fmt::format("two reports to `{}`", report.path));
   };
 }
 
 // Rows of several commands.
 
 void add_report(Options& options, Output& output, const std::string& kinds) {
-  Texts words = names_of("reports");
+  Texts words = rows_of("reports");
   for (std::string& word : words) word += '=';
-  options.add({"--report", "KIND=PATH", Replay::nowhere, "", words}, output.reports,
-              report_beside(output.reports),
-              kinds +
-                  " to a file, - is standard output; one or more; default console=-, which goes "
-                  "to standard error where another report has standard output; console=/dev/null "
-                  "silences it");
+  options.add(
+      {"--report", "KIND=PATH", Replay::nowhere, "", words}, output.reports,
+      report_beside(output.reports),
+      kinds +
+          " to a file, - is standard output; one or more; default console=-, which goes to "
+          "standard error where another report has standard output; console=/dev/null silences it");
 }
 
 void add_output(Options& options, Output& output) {
@@ -195,11 +189,10 @@ Examples:
   assay plan suites/cycles.yaml --list-renders      what another machine may render
 )");
   add_suites(options, command);
-  options.flag(
-      "--list-renders",
-      "print the renders that are missing instead, one a line: command, seed and file with "
-      "tabs between; the pilots' first, then the tests'; default the plan",
-      command.list_renders);
+  options.flag("--list-renders",
+               "print the renders that are missing instead, one a line: command, seed and file "
+               "with tabs between; the pilots' first, then the tests'; default the plan",
+               command.list_renders);
   add_sampling(options, command.options, command.output, of_suites);
 }
 
@@ -278,9 +271,9 @@ Examples:
   options.add({"--channels", "GLOB"}, given.channels,
               "the channels to test, as 'ViewLayer.DiffInd.*'; commas between several; default R, "
               "G and B, or what stands for them, and an alpha that is not 1");
-  options.add({"--ignore", "KIND"}, given.ignores_nonfinite, OneOf<bool>{{{"nonfinite", true}}},
-              "nonfinite: leave out pixels that are no number in one of the pictures; default an "
-              "error");
+  options.add(
+      {"--ignore", "KIND"}, given.ignores_nonfinite, OneOf<bool>{{{"nonfinite", true}}},
+      "nonfinite: leave out pixels that are no number in one of the pictures; default an error");
   options.add({"--mask", "FILE", Replay::middle, "", {"*"}}, given.mask,
               "a picture; pixels where it is 0 are left out; default none");
   options.add({"--pixels", "KIND"}, given.independent_pixels,
@@ -291,25 +284,24 @@ Examples:
               "that counts them; default its own word");
   options.choice("--means", given.question, ImageQuestion::means,
                  "are the means equal? the default");
-  options.choice(
-      "--paired", given.question, ImageQuestion::paired,
-      "are the means of differences 0? finds much less; two pictures have one seed if their names "
-      "say the same where the names of a side differ");
+  options.choice("--paired", given.question, ImageQuestion::paired,
+                 "are the means of differences 0? finds much less; two pictures have one seed if "
+                 "their names say the same where the names of a side differ");
   options.choice(
       "--law", given.question, ImageQuestion::law,
       "do pictures have one law, as of one renderer with other seeds? exact for any noise");
-  options.add({"--detect", "X"}, given.detect,
-              "the difference over the whole picture that must not pass, as 0.5% or 0.002; default "
-              "none");
+  options.add(
+      {"--detect", "X"}, given.detect,
+      "the difference over the whole picture that must not pass, as 0.5% or 0.002; default none");
   options.add({"--allow", "X"}, given.allow,
               "the difference that may be there, as 0.5% or 0.002; default 0");
-  options.add({"--within", "X"}, given.within,
-              "prove that the pictures differ by less, as 1% or 0.002; default test that they are "
-              "equal");
-  add_running(options, command.options, command.output,
-              {.seed = "seed of the signs that are flipped where pixels depend on each other; "
-                       "default 1",
-               .alpha = "probability that equal pictures fail, in [1e-9, 0.5]; default 0.01"});
+  options.add(
+      {"--within", "X"}, given.within,
+      "prove that the pictures differ by less, as 1% or 0.002; default test that they are equal");
+  add_running(
+      options, command.options, command.output,
+      {.seed = "seed of the signs that are flipped where pixels depend on each other; default 1",
+       .alpha = "probability that equal pictures fail, in [1e-9, 0.5]; default 0.01"});
 }
 
 void define_sample(Options& options, SampleArguments& given) {
@@ -360,7 +352,7 @@ Examples:
   options.afterwards([&output] {
     for (const ReportRequest& report : output.reports) {
       if (reports::report_format(report.kind).of_calibration != nullptr) continue;
-      usage_error(fmt::format("a calibration has no {} report", report.kind));
+      refuse({}, "a calibration has no {} report", report.kind);
     }
   });
 }
@@ -389,11 +381,11 @@ Examples:
     const std::string list = "`assay list " + command.what + "`";
     if (command.what == "tests") {
       if (!command.suites.empty() && !command.suites[0].empty()) return;
-      usage_error("`assay list` needs a suite file; see `assay list --help`");
+      refuse({}, "`assay list` needs a suite file; see `assay list --help`");
     }
-    if (!command.suites.empty()) usage_error(list + " takes no suite");
+    if (!command.suites.empty()) refuse({}, list + " takes no suite");
     if (command.selection.empty()) return;
-    usage_error(list + " takes no --filter and no --tag; they select tests");
+    refuse({}, list + " takes no --filter and no --tag; they select tests");
   });
 }
 
@@ -408,7 +400,7 @@ Examples:
 )");
   Texts words = plugin_names();
   for (const Table& table : tables())
-    std::ranges::copy(names_of(table.plural), std::back_inserter(words));
+    std::ranges::copy(names_of(table.rows, &TableRow::name), std::back_inserter(words));
   options.add({.name = "NAME", .needed = "a plugin, a method, a quantity or a law", .words = words},
               command.name,
               "a plugin, a method, a quantity, a law or a report, as `assay list` prints them");
@@ -458,7 +450,7 @@ Examples:
   assay merge 1.json 2.json --report json=run.json html=run.html
 )");
   options.add({.name = "SHARD.json", .needed = "the records of all shards", .words = {"*.json"}},
-              command.arguments.records, "the records of all shards, in any order");
+              command.records, "the records of all shards, in any order");
   add_inconclusive(options, command.output);
   add_output(options, command.output);
 }

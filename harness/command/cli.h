@@ -11,7 +11,7 @@
 #include "harness/command/init.h"
 #include "harness/record/merge.h"
 #include "harness/record/replay.h"
-#include "harness/suite/suite_images.h"
+#include "harness/suite/suite.h"
 
 namespace assay::harness {
 
@@ -59,7 +59,7 @@ struct ReportCommand {
 };
 
 struct MergeCommand {
-  MergeArguments arguments;
+  std::vector<std::string> records;
   Output output;
 };
 

@@ -1,23 +1,26 @@
 #include "harness/command/commands.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 
 #include "estimators/catalogue.h"
 #include "harness/base/record_file.h"
 #include "harness/base/terminal.h"
+#include "harness/base/text_hash.h"
+#include "harness/command/describe.h"
 #include "harness/command/plan_table.h"
 #include "harness/command/run.h"
-#include "harness/command/run_identity.h"
-#include "harness/command/tables.h"
 #include "harness/ranks/ranks.h"
 #include "harness/record/output.h"
+#include "harness/record/record_of.h"
 #include "harness/record/replay.h"
 #include "harness/run/unit_cost.h"
 #include "harness/sampling/checkpoint.h"
-#include "harness/suite/files_read.h"
+#include "harness/suite/suite.h"
 #include "reports/report_formats.h"
 
 namespace assay::harness {
@@ -43,7 +46,7 @@ int run_suites(const std::vector<Suite>& suites, const RunOptions& options, cons
   }
   require_writable(output, kept);
   if (options.ranks != nullptr && options.shard) {
-    throw InputError({}, "ranks draw one run together, and --shard makes several: leave one out");
+    refuse({}, "ranks draw one run together, and --shard makes several: leave one out");
   }
   if (selects_nothing(suites, options.selection)) return nothing_ran;
   const std::unique_ptr<Progress> progress = make_progress(output.quiet);
@@ -118,12 +121,12 @@ int list_tests(const std::vector<Suite>& suites, const Selection& selection) {
 
 int explain(const ExplainArguments& arguments) {
   const std::vector<std::string>& words = arguments.words;
-  if (words.size() > 2) throw InputError({}, "`assay explain` takes a saved run and one test");
+  if (words.size() > 2) refuse({}, "`assay explain` takes a saved run and one test");
   const std::string file = words.size() > 1 ? words.front() : last_run_file();
   if (words.size() < 2 && !std::filesystem::exists(file)) {
-    throw InputError({},
-                     "there is no last run; `assay run SUITE` makes one, or give a saved run "
-                     "before the test");
+    refuse(
+        {},
+        "there is no last run; `assay run SUITE` makes one, or give a saved run before the test");
   }
   const reports::Record record = read_record(file);
   const Recorded found = find_test(record, {file, words.back()}, true);
@@ -137,6 +140,40 @@ int report_saved_run(const std::string& file, const Output& output) {
   reports::Record record = read_record(file);
   RunReports(output).write(record);
   return 0;
+}
+
+namespace {
+
+std::string digest_of(const std::string& file) {
+  std::string text(std::size_t{1} << 20, '\0');
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  std::error_code ignored;
+  return fmt::format("{:x} of {} bytes", text_hash(text),
+                     std::filesystem::file_size(file, ignored));
+}
+
+}  // namespace
+
+Identity identity_of(const std::vector<Suite>& suites, const RunOptions& options) {
+  const reports::Tool tool = this_tool();
+  const reports::Environment environment = this_environment(1);
+  Identity identity{{"the version", fmt::format("{} ({})", tool.version, tool.commit)},
+                    {"the compiler", environment.compiler},
+                    {"the instruction set", environment.isa},
+                    {"the seed", options.seed ? fmt::format("{}", *options.seed) : "the suite's"},
+                    {"the command", options.command},
+                    {"--filter", fmt::format("{}", options.selection.filters)},
+                    {"--tag", fmt::format("{}", options.selection.tags)},
+                    {"the shard", options.shard ? fmt::format("{}/{}", options.shard->first,
+                                                              options.shard->second)
+                                                : "the whole"},
+                    {"--fail-fast", options.fail_fast ? "on" : "off"}};
+  for (const std::string& file : files_read(suites)) {
+    identity.emplace_back(fmt::format("the content of `{}`", file), digest_of(file));
+  }
+  return identity;
 }
 
 }  // namespace assay::harness

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/base/identity.h"
 #include "harness/record/output.h"
 #include "harness/suite/run_options.h"
 #include "harness/suite/suite.h"
@@ -45,5 +46,9 @@ int list_table(const std::string& plural);
 int list_tests(const std::vector<Suite>& suites, const Selection& selection);
 /// The page of a plugin, or those of the tables' rows of that name.
 int describe(const std::string& name);
+
+/// All that decides the numbers of a run: version, machine code, seed, options, and the files that
+/// suites name. Of a file it takes the size and the first mebibyte.
+Identity identity_of(const std::vector<Suite>& suites, const RunOptions& options);
 
 }  // namespace assay::harness

@@ -23,13 +23,12 @@ constexpr std::size_t list_column = 14;  // of the summaries of commands
 constexpr std::array<std::pair<const char*, const char*>, 7> exit_codes{{
     {"0", "every test came out as expected"},
     {"1",
-     "at least one did not: it failed, was invalid or could not be tested; or the ledger "
-     "alarms"},
+     "at least one did not: it failed, was invalid or could not be tested; or the ledger alarms"},
     {"2", "a mistake in what was asked for, or trouble"},
     {"3", "none of these, but at least one is inconclusive"},
     {"4",
-     "no test ran: --filter, --tag or --shard selected none (0 where the environment asked "
-     "for a shard)"},
+     "no test ran: --filter, --tag or --shard selected none (0 where the environment asked for a "
+     "shard)"},
     {"77", "all tests were skipped"},
     {"130", "interrupted"},
 }};

@@ -8,9 +8,8 @@
 #include "estimators/core/quoting.h"
 #include "estimators/core/value.h"
 #include "harness/base/whole_file.h"
-#include "harness/command/files.h"
 #include "harness/command/options.h"
-#include "harness/suite/suite_keys.h"
+#include "harness/suite/yaml.h"
 
 namespace assay::harness {
 namespace {
@@ -58,15 +57,14 @@ void read_kind(InitArguments& arguments) {
     kind += (count == 1 ? "" : " ") + words[count - 1];
     std::ranges::replace(kind, '-', ' ');
     if (std::ranges::find(kinds, kind) == kinds.end()) continue;
-    if (words.size() > count + 1)
-      usage_error(fmt::format("`{}` is one argument too many", words[count + 1]));
+    if (words.size() > count + 1) refuse({}, "`{}` is one argument too many", words[count + 1]);
     arguments.kind = kind;
     std::ranges::replace(arguments.kind, ' ', '-');
     if (words.size() > count) arguments.folder = words[count];
     return;
   }
-  usage_error(fmt::format("there is no example `{}`{}; there is {}", kind, suggestion(kind, kinds),
-                          listed(kinds)));
+  refuse({}, "there is no example `{}`{}; there is {}", kind, suggestion(kind, kinds),
+         listed(kinds));
 }
 
 int write_example(const InitArguments& arguments) {
@@ -75,9 +73,7 @@ int write_example(const InitArguments& arguments) {
   for (const CarriedFile& file : files) {
     const std::filesystem::path path = folder / file.path;
     if (file.path == next_steps || !std::filesystem::exists(path)) continue;
-    throw InputError({}, fmt::format("`{}` exists already, so nothing is written; name another "
-                                     "folder",
-                                     path.string()));
+    refuse({}, "`{}` exists already, so nothing is written; name another folder", path.string());
   }
   std::string steps;
   for (const CarriedFile& file : files) {

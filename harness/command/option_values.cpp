@@ -52,43 +52,39 @@ std::uint64_t read_seed(const std::string& text, const std::string& option) {
   try {
     return at_least(0)(text, option);
   } catch (const InputError&) {
-    throw InputError(
-        {}, fmt::format("{} must be a whole number from 0 to {}, or `random`, but it is `{}`",
-                        option, std::numeric_limits<std::uint64_t>::max(), text));
+    refuse({}, "{} must be a whole number from 0 to {}, or `random`, but it is `{}`", option,
+           std::numeric_limits<std::uint64_t>::max(), text);
   }
 }
 
 std::pair<unsigned, unsigned> read_shard(const std::string& text, const std::string& option) {
   const std::size_t slash = text.find('/');
   if (slash == std::string::npos) {
-    throw InputError({}, fmt::format("{} must be I/N, as in 2/5, but it is `{}`", option, text));
+    refuse({}, "{} must be I/N, as in 2/5, but it is `{}`", option, text);
   }
   const auto number = [&](const std::string& digits) {
     const std::uint64_t read = at_least(1)(digits, fmt::format("each number of {} I/N", option));
     if (read <= std::numeric_limits<unsigned>::max()) return static_cast<unsigned>(read);
-    throw InputError({}, option + " is too large");
+    refuse({}, option + " is too large");
   };
   const unsigned index = number(text.substr(0, slash));
   const unsigned shards = number(text.substr(slash + 1));
   if (index <= shards) return {index, shards};
-  throw InputError({},
-                   fmt::format("{} {}: there is no shard {} of {}", option, text, index, shards));
+  refuse({}, "{} {}: there is no shard {} of {}", option, text, index, shards);
 }
 
 ReportRequest read_report(const std::string& text, const std::string& option) {
   const std::size_t equals = text.find('=');
   if (text == "console") return {text, "-"};  // the kind for reading at once
   if (equals == std::string::npos || equals + 1 == text.size()) {
-    throw InputError({}, fmt::format("{0} must be KIND=PATH, but it is `{1}`; write `{0} {2}`, "
-                                     "where the path - is standard output",
-                                     option, text, meant_report(text)));
+    refuse({},
+           "{0} must be KIND=PATH, but it is `{1}`; write `{0} {2}`, where the path - is standard "
+           "output",
+           option, text, meant_report(text));
   }
   const std::string kind = text.substr(0, equals);
-  std::vector<std::string> kinds;
-  for (const reports::ReportFormat& format : reports::report_formats()) {
-    kinds.push_back(format.kind);
-  }
-  choice(Value::scalar(kind), "the kind of " + option, kinds);
+  choice(Value::scalar(kind), "the kind of " + option,
+         names_of(reports::report_formats(), &reports::ReportFormat::kind));
   return {kind, text.substr(equals + 1)};
 }
 

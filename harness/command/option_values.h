@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "harness/record/output.h"
-#include "harness/suite/suite_keys.h"
+#include "harness/suite/yaml.h"
 
 namespace assay::harness {
 

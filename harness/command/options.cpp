@@ -9,7 +9,7 @@
 #include "estimators/core/quoting.h"
 #include "harness/base/version.h"
 #include "harness/language/quantities.h"
-#include "harness/suite/suite_keys.h"
+#include "harness/suite/yaml.h"
 
 namespace assay::harness {
 
@@ -24,9 +24,7 @@ Texts option_names(const CLI::App& app) {
 }
 
 Texts subcommand_names(const CLI::App& app) {
-  Texts names;
-  for (const CLI::App* sub : app.get_subcommands({})) names.push_back(sub->get_name());
-  return names;
+  return names_of(app.get_subcommands({}), [](const CLI::App* sub) { return sub->get_name(); });
 }
 
 /// The suite's key that does the same as an option of `check`.
@@ -46,7 +44,7 @@ void refuse_extras(const CLI::App& sub) {
       std::string mend = help;
       if (extra.ends_with(".exr")) mend = "quote a pattern, so that the shell leaves it alone";
       if (sub.get_name() == "check") mend = "quote the claim: `assay check 'mean(a) == 3'`";
-      usage_error(fmt::format("`{}` is one argument too many; {}", extra, mend));
+      refuse({}, "`{}` is one argument too many; {}", extra, mend);
     }
     const std::string name = extra.substr(0, extra.find('='));
     const std::string near = nearest(name, option_names(sub));
@@ -54,7 +52,7 @@ void refuse_extras(const CLI::App& sub) {
     if (const std::string key = key_of_a_suite(sub, name); !key.empty()) {
       mend = fmt::format("write it into the suite, as the key `{}`", key);
     }
-    usage_error(fmt::format("`assay {}` has no option `{}`; {}", sub.get_name(), name, mend));
+    refuse({}, "`assay {}` has no option `{}`; {}", sub.get_name(), name, mend);
   }
 }
 
@@ -72,14 +70,11 @@ std::string command_meant(const std::string& word, const CLI::App& app) {
 const CLI::App& chosen(const CLI::App& app) {
   for (const std::string& extra : app.remaining()) {
     if (extra.starts_with("-")) {
-      usage_error(
-          fmt::format("unknown option `{}`; options stand after the command, see `assay "
-                      "--help`",
-                      extra));
+      refuse({}, "unknown option `{}`; options stand after the command, see `assay --help`", extra);
     }
-    usage_error(fmt::format("unknown command `{}`{}", extra, command_meant(extra, app)));
+    refuse({}, "unknown command `{}`{}", extra, command_meant(extra, app));
   }
-  if (app.get_subcommands().empty()) usage_error("no command; see `assay --help`");
+  if (app.get_subcommands().empty()) refuse({}, "no command; see `assay --help`");
   return *app.get_subcommands().front();
 }
 
@@ -129,8 +124,6 @@ std::string in_words(const CLI::ParseError& error) {
 
 }  // namespace
 
-void usage_error(const std::string& why) { throw InputError({}, why); }
-
 void Options::about(const std::string& text) { about_ = text; }
 
 Texts Options::Row::given() const {
@@ -174,7 +167,7 @@ void Options::read_values() const {
     const Texts texts = row.given();
     const std::string& needed = row.name.needed;
     if (!needed.empty() && (texts.empty() || texts.front().empty())) {
-      usage_error(fmt::format("`assay {0}` needs {1}; see `assay {0} --help`", command, needed));
+      refuse({}, "`assay {0}` needs {1}; see `assay {0} --help`", command, needed);
     }
     for (const std::string& text : texts) row.take(text);
   }
@@ -235,7 +228,7 @@ Command parsed(const Texts& arguments, const std::vector<CommandRow>& commands) 
     if (asked.empty()) return TextCommand{overview(texts_of(commands))};
     return TextCommand{help_of(options.at(asked.front()->get_name()).text(""))};
   } catch (const CLI::ParseError& e) {
-    usage_error(in_words(e));
+    refuse({}, in_words(e));
   }
   if (version_asked) return TextCommand{fmt::format("assay {} ({})\n", version(), commit())};
   const CLI::App& sub = chosen(app);

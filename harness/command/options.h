@@ -19,8 +19,6 @@ namespace assay::harness {
 
 using Texts = std::vector<std::string>;
 
-[[noreturn]] void usage_error(const std::string& why);
-
 /// The place of an option in the line that repeats a test. What changes no number is `nowhere`. So
 /// are suites, seed and selection, since the record adds each test's own.
 enum class Replay { first, middle, last, nowhere };

@@ -65,15 +65,9 @@ void add_last_look(const TestWork& work, const UnitCosts& costs, Total& total) {
   }
 }
 
-Total total_of(const TestWork& work, const UnitCosts& costs) {
-  Total total;
-  add_last_look(work, costs, total);
-  return total;
-}
-
 /// One number, both if the subjects differ, or a sweep's least and most.
 std::string primaries_text(const Plan& plan) {
-  const auto [least, most] = std::minmax_element(plan.primaries.begin(), plan.primaries.end());
+  const auto [least, most] = std::ranges::minmax_element(plan.primaries);
   const auto text = [](std::uint64_t primaries) {
     return count_of(static_cast<double>(primaries));
   };
@@ -168,7 +162,8 @@ std::string trouble_of(const TestWork& work, const UnitCosts& costs) {
 Row row_of(const TestWork& work, const Pilots& pilots, const UnitCosts& costs) {
   const TestOutcome& test = work.outcome;
   const Plan& plan = test.plan;
-  const Total total = total_of(work, costs);
+  Total total;
+  add_last_look(work, costs, total);
   const Forecast expected = forecast(test, pilots);
   Row row{.name = test.question.test->name, .notes = gate_notes(plan.gates)};
   row.cells = {plan.method.name,
@@ -272,11 +267,10 @@ void write(Page& page, const SuiteRun& run, const UnitCosts& costs) {
   double not_ok = 0;
   for (const Row& row : rows) not_ok += row.not_ok;
   page.blank();
-  page.paragraph(
-      fmt::format("Not ok with probability about {} if every claim holds exactly and every "
-                  "expected failure is off by its effect. A test without a forecast counts with "
-                  "its alpha and beta.",
-                  per_cent(std::min(1.0, not_ok))));
+  page.paragraph(fmt::format(
+      "Not ok with probability about {} if every claim holds exactly and every expected failure is "
+      "off by its effect. A test without a forecast counts with its alpha and beta.",
+      per_cent(std::min(1.0, not_ok))));
   page.blank();
 }
 
@@ -332,9 +326,8 @@ void write_totals(Page& page, const PlannedRun& planned, const UnitCosts& costs)
       total_text(total_of(planned, costs)), total_text(expected_total(planned, costs))));
   page.paragraph(
       "primaries: of one secondary estimate. last: secondaries of each source at the last look, of "
-      "a file all its rows where these are fewer. in all, rays, CPU time: primaries of "
-      "all sources up to the last look, of images those of every pixel and component, and what "
-      "they cost. "
+      "a file all its rows where these are fewer. in all, rays, CPU time: primaries of all sources "
+      "up to the last look, of images those of every pixel and component, and what they cost. "
       "effect: what the last look finds (or shows, of within and of < and >) with probability 1 - "
       "beta. holds, is off: probabilities if the claim holds exactly, or is off by the effect, and "
       "the mean part of the last look that is drawn; by the normal law and the pilot's spread, "

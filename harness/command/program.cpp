@@ -3,24 +3,81 @@
 #include <fmt/format.h>
 #include <malloc.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <map>
 #include <stdexcept>
 
+#include "estimators/core/line_error.h"
 #include "estimators/core/waiting.h"
 #include "estimators/library_host.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/terminal.h"
+#include "harness/base/text_file.h"
 #include "harness/command/cli.h"
-#include "harness/command/failure.h"
-#include "harness/command/run_identity.h"
-#include "harness/command/shard_environment.h"
+#include "harness/command/commands.h"
+#include "harness/command/environment.h"
 #include "harness/ranks/ranks.h"
 #include "harness/record/replay.h"
 #include "harness/run/planned_run.h"
+#include "harness/suite/suite.h"
+#include "reports/words/text.h"
 
 namespace assay::harness {
+namespace {
+
+constexpr int message_width = 80;
+
+/// The end of the piece that begins at `begin`: the next blank outside backticks.
+std::size_t end_of_piece(const std::string& text, std::size_t begin) {
+  std::size_t end = begin;
+  for (bool quoted = false; end < text.size() && (quoted || text[end] != ' '); ++end) {
+    // A backtick that is never closed does not quote.
+    if (text[end] == '`') quoted = !quoted && text.find('`', end + 1) != std::string::npos;
+  }
+  return end;
+}
+
+/// The text after `lead`; further lines are indented as deep.
+std::string wrapped_message(const std::string& text, const std::string& lead) {
+  std::string out;
+  std::string line = lead;
+  bool is_new = true;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = end_of_piece(text, begin);
+    const std::string piece = text.substr(begin, end - begin);
+    if (!is_new && reports::columns(line + " " + piece) > message_width) {
+      out += line + "\n";
+      line = std::string(lead.size(), ' ');
+      is_new = true;
+    }
+    line += (is_new ? "" : " ") + piece;
+    is_new = false;
+    begin = end + 1;
+  }
+  return out + line + "\n";
+}
+
+}  // namespace
+
+std::string in_lines(const std::string& sentence) {
+  const std::size_t end = std::min(sentence.find('\n'), sentence.size());
+  std::string out = wrapped_message(sentence.substr(0, end), "assay: ");
+  // Text that already has lines, such as another program's, keeps them.
+  if (end < sentence.size()) out += sentence.substr(end + 1) + "\n";
+  return out;
+}
+
+std::string failure_text(const InputError& error, const std::string& claim) {
+  const Location& where = error.where();
+  const bool in_claim = where.file == "claim" && where.line == 1 && !claim.empty();
+  const auto* const with_line = dynamic_cast<const LineError*>(&error);
+  return in_lines(reports::clean(error.what())) +
+         (with_line != nullptr ? caret_below(with_line->line(), where.column)
+          : in_claim           ? caret_below(claim, where.column)
+                               : excerpt(where));
+}
 
 namespace {
 
@@ -35,10 +92,9 @@ std::vector<Suite> load(const std::vector<std::string>& files,
     suites.push_back(load_suite(file));
     const auto [first, is_new] = seen.emplace(std::filesystem::weakly_canonical(file), file);
     if (is_new) continue;
-    throw InputError(
-        {}, file == first->second
-                ? fmt::format("the suite `{}` is given twice", file)
-                : fmt::format("`{}` and `{}` are one suite; give it once", first->second, file));
+    refuse({}, file == first->second
+                   ? fmt::format("the suite `{}` is given twice", file)
+                   : fmt::format("`{}` and `{}` are one suite; give it once", first->second, file));
   }
   for (const std::string& assignment : assignments) set_parameter(suites, assignment);
   return suites;
@@ -98,7 +154,7 @@ int act(const DescribeCommand& command) { return describe(command.name); }
 int act(const ReplayArguments& arguments) { return replay(arguments); }
 int act(const ExplainArguments& arguments) { return explain(arguments); }
 int act(const ReportCommand& command) { return report_saved_run(command.file, command.output); }
-int act(const MergeCommand& command) { return merge_shards(command.arguments, command.output); }
+int act(const MergeCommand& command) { return merge_shards(command.records, command.output); }
 int act(const CalibrateCommand& command) { return calibrate(command.arguments, command.output); }
 int act(const InitArguments& arguments) { return write_example(arguments); }
 

@@ -37,9 +37,9 @@ void note_ledger(reports::Record& record, const std::vector<std::unique_ptr<Suit
     for (const TestWork& work : run->tests) outside += work.outcome.place.inside ? 0 : 1;
   }
   if (outside > 0) {
-    add_note(record, fmt::format("{} of the tests {} outside the ledger: mutants and expected "
-                                 "failures",
-                                 outside, outside == 1 ? "stands" : "stand"));
+    add_note(record,
+             fmt::format("{} of the tests {} outside the ledger: mutants and expected failures",
+                         outside, outside == 1 ? "stands" : "stand"));
   }
   if (!options.seed) {
     add_note(record,
@@ -108,11 +108,10 @@ reports::Record run_in_arena(const std::vector<Suite>& suites, const RunOptions&
   const std::string started = utc_now();
   if (!options.ledger.empty()) require_ledger(options.ledger, suites);
   if (!options.ledger.empty() && options.shard) {
-    throw InputError({},
-                     "--ledger takes whole runs: leave --shard and the environment's shards out");
+    refuse({}, "--ledger takes whole runs: leave --shard and the environment's shards out");
   }
   if (options.fail_fast && (!options.ledger.empty() || options.shard)) {
-    throw InputError({}, "--fail-fast ends a run early: leave --ledger and --shard out");
+    refuse({}, "--fail-fast ends a run early: leave --ledger and --shard out");
   }
   const PlannedRun planned = plan_run(suites, options, progress);
   std::vector<TestWork*> tests;

@@ -57,7 +57,7 @@ void ask_for_cells(const Sampled& sampled, const Source& source) {
   try {
     draws->density_cells();
   } catch (const std::domain_error& error) {
-    throw InputError(source.where, error.what());
+    refuse(source.where, error.what());
   }
 }
 
@@ -81,9 +81,8 @@ Sampled sampled_by(const PreparedEstimator& estimator, const Source& source, std
     ask_for_cells(sampled, source);
     return sampled;
   }
-  throw InputError(source.where,
-                   fmt::format("`{}` has no part `{}`; `assay describe {}` lists them",
-                               source.estimator, source.part, estimator.entry->information.name));
+  refuse(source.where, "`{}` has no part `{}`; `assay describe {}` lists them", source.estimator,
+         source.part, estimator.entry->information.name);
 }
 
 }  // namespace
@@ -96,16 +95,14 @@ int sample(const SampleArguments& arguments) {
   const Sampled sampled = sampled_by(estimator, source, arguments.seed);
   const auto rows = sampled.setup->observations();
   if (recorded::is_reference(*sampled.setup)) {
-    throw InputError(source.where, fmt::format("`{}` is a reference, a mean without observations",
-                                               source.estimator));
+    refuse(source.where, "`{}` is a reference, a mean without observations", source.estimator);
   }
   if (as_recorded_run(*sampled.setup) != nullptr) {
-    throw InputError(
-        {}, fmt::format("`{}` has the moments of a run, not its observations", source.estimator));
+    refuse({}, "`{}` has the moments of a run, not its observations", source.estimator);
   }
   if (rows && arguments.secondaries.value_or(0) > *rows) {
-    throw InputError({}, fmt::format("--secondaries {}: `{}` has {} rows", *arguments.secondaries,
-                                     source.estimator, *rows));
+    refuse({}, "--secondaries {}: `{}` has {} rows", *arguments.secondaries, source.estimator,
+           *rows);
   }
   const std::uint64_t count = arguments.secondaries.value_or(std::min(usual, rows.value_or(usual)));
   const StreamKey key = key_of(estimator, arguments.seed, 0, sampled.purpose);

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "harness/draws/domain_chart.h"
+#include "harness/draws/draw_cells.h"
 #include "harness/draws/sound_draw.h"
 
 namespace assay::harness {

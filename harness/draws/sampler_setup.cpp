@@ -175,14 +175,10 @@ void require_sound(const NamedSampler& named, const Location& where) {
   const Sampler& sampler = *named.sampler;
   const auto [low, high] = sampler.bounds();
   if (on_interval(sampler) && !(std::isfinite(low) && std::isfinite(high) && low < high)) {
-    throw InputError(where,
-                     fmt::format("sampler `{}` draws on [{}, {}]: no interval to divide into "
-                                 "cells",
-                                 named.name, low, high));
+    refuse(where, "sampler `{}` draws on [{}, {}]: no interval to divide into cells", named.name,
+           low, high);
   }
-  if (sampler.lobes() < 1) {
-    throw InputError(where, fmt::format("sampler `{}` has no lobe to draw from", named.name));
-  }
+  if (sampler.lobes() < 1) refuse(where, "sampler `{}` has no lobe to draw from", named.name);
 }
 
 double no_point(const Marginal& marginal) { return marginal.low - 1; }

@@ -126,10 +126,9 @@ SamplerDraw sound(const NamedSampler& named, SamplerDraw draw) {
 
 double sound_density(const NamedSampler& named, const Point& point, double density) {
   if (density >= 0 && std::isfinite(density)) return density;
-  throw std::domain_error(
-      fmt::format("sampler `{}` declares the density {} at {}: a density must "
-                  "be non-negative and finite",
-                  named.name, reports::human(density, 3), in_words(*named.sampler, point)));
+  throw std::domain_error(fmt::format(
+      "sampler `{}` declares the density {} at {}: a density must be non-negative and finite",
+      named.name, reports::human(density, 3), in_words(*named.sampler, point)));
 }
 
 }  // namespace assay::harness

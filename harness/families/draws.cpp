@@ -80,8 +80,7 @@ Evidence integral(const Method&, const Question& question, std::size_t,
        .error = cells.tolerance()});
   evidence.quantity = fmt::format(
       "integral of the density ({:.10g}, quadrature error {:.1g}) and the mass without a point, "
-      "less "
-      "{:g},",
+      "less {:g},",
       cells.mass.total, cells.tolerance(), question.references[0].value);
   return evidence;
 }
@@ -215,10 +214,8 @@ void require_whole_sampler(const Source& source, const Estimators& estimators) {
   const Subject marginal = draws(source, estimators, Draws::cells);
   const std::vector<Channel> channels = marginal.setup->channels();
   if (channels[marginal.channels[0]].name == cell_channel) return;
-  throw InputError(source.where,
-                   fmt::format("`integral` and `inconsistency` are about a whole sampler: name "
-                               "`{}.{}`",
-                               source.estimator, marginal.purpose));
+  refuse(source.where, "`integral` and `inconsistency` are about a whole sampler: name `{}.{}`",
+         source.estimator, marginal.purpose);
 }
 
 Question bind_draws(const TestEntry& test, const Estimators& estimators, const Theta& theta,

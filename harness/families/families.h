@@ -44,6 +44,13 @@ const Theta& theta_of_inconsistencies();
 const Theta& theta_of_slopes();
 const Theta& theta_of_variance_slopes();
 
+/// Values with their cost, in rays or samples. Throws std::domain_error if nothing was counted.
+const stats::JointMoments& counted_cost(const Question& question, const ChannelData& data);
+/// The powers of a channel's values, as far as they are kept: a cost means nothing.
+stats::JointMoments powers_of_values(const ChannelData& data);
+/// The truth of a subject's mean: its number, or the mean of the drawn reference.
+Constant truth_of(const Question& question, std::size_t subject, std::size_t channel,
+                  std::span<const ChannelData> data);
 /// The known reference of a bias: ", reference 2.5"; "" if it is sampled.
 std::string reference_text(const Question& question);
 /// ", red" if the question has several channels.

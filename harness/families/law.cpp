@@ -1,14 +1,18 @@
+#include "harness/families/law.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <numbers>
 #include <numeric>
 
 #include "harness/draws/sampler_setup.h"
 #include "harness/families/families.h"
-#include "harness/families/law_evidence.h"
+#include "harness/language/laws.h"
 #include "harness/language/quantities.h"
 #include "harness/plan/independence.h"
 #include "harness/plan/pilot_shape.h"
@@ -17,13 +21,358 @@
 #include "harness/run/evaluate.h"
 #include "stats/basics/sorted.h"
 #include "stats/cells/chi_square_fit.h"
+#include "stats/cells/chi_square_two_sample.h"
 #include "stats/gates/assumption_gates.h"
+#include "stats/laws/kolmogorov_smirnov.h"
+#include "stats/means/binomial.h"
 #include "stats/planning/power.h"
 
 namespace assay::harness {
 namespace {
 
-// ---- Evidence
+using stats::Interval;
+using stats::TestResult;
+
+constexpr const char* distance_of_laws = "largest distance of distribution functions";
+constexpr const char* masses_without_a_point = "the masses without a point";
+constexpr const char* distance_of_parts =
+    "largest distance of distribution functions, or of the masses without a point";
+
+/// Says which part p belongs to: the estimate may be another's.
+std::string p_is_of(const std::string& part, double difference) {
+  return fmt::format("; p is that of {}, {:.4g} apart", part, difference);
+}
+
+/// Evidence from a sup distance that the law's table leaves uncertain by `error`.
+Evidence from_distance(const stats::OneSampleDistance& measured, double error) {
+  stats::OneSampleDistance least = measured;
+  stats::OneSampleDistance most = measured;
+  least.distance = std::max(0.0, measured.distance - error);
+  most.distance = std::min(1.0, measured.distance + error);
+  // Computed once: it is slow.
+  const TestResult at_none = stats::kolmogorov_smirnov(least);
+  const auto at = [least, most, at_none](double theta) {
+    if (theta <= 0) return at_none;
+    TestResult result = stats::ks_margin(least, theta);
+    result.log_p_lower = stats::ks_margin(most, theta).log_p_lower;
+    return result;
+  };
+  const auto interval = [least, most](double confidence) -> Interval {
+    return {stats::ks_interval(least, confidence).low, stats::ks_interval(most, confidence).high,
+            confidence};
+  };
+  return {.estimate = measured.distance,
+          .at = at,
+          .interval = interval,
+          .quantity = distance_of_laws,
+          .distance = true};
+}
+
+Evidence from_distance(std::span<const double> x, std::span<const double> y) {
+  const stats::TwoSampleDistance distance = stats::ks_distance(x, y);
+  const stats::TwoLawsTest at_none = stats::two_part_ks(x, y, distance);
+  Evidence evidence{
+      .estimate = distance.distance(),
+      .at = [distance, at_none = at_none.result](
+                double theta) { return theta <= 0 ? at_none : stats::ks_margin(distance, theta); },
+      .interval =
+          [distance](double confidence) { return stats::ks_interval(distance, confidence); },
+      .quantity = distance_of_laws,
+      .distance = true};
+  if (at_none.common && at_none.common->decides) {
+    const std::string of_value = p_is_of(fmt::format("the values at {:.6g}", at_none.common->value),
+                                         at_none.common->difference);
+    evidence.most_against = [of_value](double theta) { return theta <= 0 ? of_value : ""; };
+  }
+  return evidence;
+}
+
+double clamp_unit(double p) { return std::clamp(p, 0.0, 1.0); }
+
+/// theta = |P(no point) - declared|; exact binomial at both ends of the declared error.
+Evidence from_proportion(stats::Successes missing, const DeclaredLaw& declared) {
+  const double low = declared.missing - declared.missing_error;
+  const double high = declared.missing + declared.missing_error;
+  const auto at = [=](double theta) {
+    // "at most theta": the mass lies within [low - theta, high + theta].
+    const TestResult above = stats::binomial(missing, clamp_unit(high + theta));
+    const TestResult below = stats::binomial(missing, clamp_unit(low - theta));
+    TestResult result = above;
+    result.log_p_upper =
+        std::min(0.0, std::numbers::ln2 + std::min(above.log_p_upper, below.log_p_lower));
+    // "at least theta": it lies beyond one of the nearer ends, if probabilities reach there.
+    const double upper_end = low + theta;
+    const double lower_end = high - theta;
+    const double not_above =
+        upper_end > 1 ? -HUGE_VAL : stats::binomial(missing, clamp_unit(upper_end)).log_p_lower;
+    const double not_below =
+        lower_end < 0 ? -HUGE_VAL : stats::binomial(missing, clamp_unit(lower_end)).log_p_upper;
+    result.log_p_lower = std::max({not_above, not_below, std::numeric_limits<double>::lowest()});
+    return result;
+  };
+  const auto interval = [=](double confidence) -> Interval {
+    const Interval p = stats::clopper_pearson(missing, confidence);
+    return {std::max({0.0, p.low - high, low - p.high}), std::max(p.high - low, high - p.low),
+            confidence};
+  };
+  const double share = static_cast<double>(missing.successes) / static_cast<double>(missing.trials);
+  return {.estimate = std::abs(share - declared.missing), .at = at, .interval = interval};
+}
+
+stats::TwoValued no_point_or_point(const Points& points) {
+  return {.range = {0, 1}, .high = {.successes = points.missing(), .trials = points.draws}};
+}
+
+/// theta = |difference of the probabilities of no point|.
+Evidence from_proportions(const Points& x, const Points& y) {
+  const stats::TwoValued one = no_point_or_point(x);
+  const stats::TwoValued other = no_point_or_point(y);
+  const auto at = [=](double theta) {
+    const TestResult above = stats::two_valued_contrast(one, other, {.scale = 1, .offset = theta});
+    const TestResult below = stats::two_valued_contrast(one, other, {.scale = 1, .offset = -theta});
+    TestResult result = above;
+    result.log_p_upper =
+        std::min(0.0, std::numbers::ln2 + std::min(above.log_p_upper, below.log_p_lower));
+    result.log_p_lower = std::max(above.log_p_lower, below.log_p_upper);
+    return result;
+  };
+  const auto interval = [=](double confidence) -> Interval {
+    const Interval d = stats::two_valued_difference_interval(one, other, confidence);
+    return {std::max({0.0, d.low, -d.high}), std::max(std::abs(d.low), std::abs(d.high)),
+            confidence};
+  };
+  const auto share = [](const Points& p) {
+    return static_cast<double>(p.missing()) / static_cast<double>(p.draws);
+  };
+  return {.estimate = std::abs(share(x) - share(y)), .at = at, .interval = interval};
+}
+
+// Bound on the rounding of ln p.
+constexpr double rounding_of_log_p = 1e-6;
+
+/// True if an interval at this confidence may begin above theta, or end beyond it. This takes one
+/// test, where an exact interval of two proportions takes some hundred.
+bool may_begin_above(double theta, const Evidence& evidence, double confidence) {
+  return evidence.at(theta).log_p_upper <= std::log(1 - confidence) + rounding_of_log_p;
+}
+bool may_end_beyond(double theta, const Evidence& evidence, double confidence) {
+  return evidence.at(theta).log_p_lower >= std::log((1 - confidence) / 2) - rounding_of_log_p;
+}
+
+struct Part {
+  Evidence evidence;
+  std::string name;
+};
+
+/// theta = the larger distance. Bonferroni rejects "at most" if either part does at half the level.
+/// Intersection of unions rejects "at least" if both do.
+Evidence larger_of(const Evidence& points, const Part& masses) {
+  const Evidence& missing = masses.evidence;
+  const auto at = [points, missing](double theta) {
+    const TestResult one = points.at(theta);
+    const TestResult other = missing.at(theta);
+    TestResult result = other.log_p_upper < one.log_p_upper ? other : one;
+    result.log_p_upper = std::min(0.0, result.log_p_upper + std::numbers::ln2);
+    result.log_p_lower = std::max(one.log_p_lower, other.log_p_lower);
+    return result;
+  };
+  const auto interval = [points, missing](double confidence) -> Interval {
+    const double halved = 1 - (1 - confidence) / 2;
+    Interval both{points.interval(halved).low, points.interval(confidence).high, confidence};
+    if (may_begin_above(both.low, missing, halved)) {
+      both.low = std::max(both.low, missing.interval(halved).low);
+    }
+    if (may_end_beyond(both.high, missing, confidence)) {
+      both.high = std::max(both.high, missing.interval(confidence).high);
+    }
+    return both;
+  };
+  return {.estimate = std::max(points.estimate, missing.estimate),
+          .at = at,
+          .interval = interval,
+          .most_against = [points, masses](double theta) -> std::string {
+            const double of_masses = masses.evidence.at(theta).log_p_upper;
+            return of_masses < points.at(theta).log_p_upper
+                       ? p_is_of(masses.name, masses.evidence.estimate)
+                       : "";
+          },
+          .quantity = distance_of_parts,
+          .distance = true};
+}
+
+void require_points(const Points& points) {
+  if (points.sorted.empty()) {
+    throw std::domain_error("no draw yielded a point: there is nothing to compare");
+  }
+}
+
+constexpr const char* effect_over_cells = "effect size w over the cells";
+
+std::string range_text(const std::string& name, const std::vector<double>& borders,
+                       std::size_t part) {
+  if (borders.empty()) return "any " + name;
+  if (part == 0) return fmt::format("{} below {:.3g}", name, borders.front());
+  if (part == borders.size()) return fmt::format("{} from {:.3g} on", name, borders.back());
+  return fmt::format("{} {:.3g} to {:.3g}", name, borders[part - 1], borders[part]);
+}
+
+std::string describe(const stats::SampledCells& cells, const Subject& side, std::size_t cell) {
+  if (cell == cells.size()) return "the draws without a point";
+  const std::vector<Channel> channels = side.setup->channels();
+  const auto after = std::ranges::upper_bound(cells.before, cell);
+  const auto band = static_cast<std::size_t>(after - cells.before.begin()) - 1;
+  const std::string first = range_text(channels[side.channels[0]].name, cells.band_borders, band);
+  if (side.channels.size() == 1) return first;
+  return first + ", " +
+         range_text(channels[side.channels[1]].name, cells.cut_borders[band],
+                    cell - cells.before[band]);
+}
+
+const stats::PooledPair& farthest(const stats::ChiSquareTwoSample& fit) {
+  return *std::ranges::max_element(fit.cells,
+                                   [](const auto& a, const auto& b) { return a.part < b.part; });
+}
+
+/// Name of a tested cell, or of sparse cells that were pooled.
+std::string pool_text(const std::vector<std::size_t>& members,
+                      const std::function<std::string(std::size_t)>& describe) {
+  if (members.size() == 1) return describe(members.front());
+  return fmt::format("{} sparse cells together (the first of them {})", members.size(),
+                     describe(members.front()));
+}
+
+std::string worst_of(const stats::ChiSquareFit& fit, const SamplerSetup& draws) {
+  const auto part = [](const stats::PooledCell& cell) {
+    const double difference = static_cast<double>(cell.observed) - cell.expected;
+    return difference * difference / cell.expected;
+  };
+  const auto worst = std::ranges::max_element(
+      fit.cells, [&](const auto& a, const auto& b) { return part(a) < part(b); });
+  const auto describe = [&](std::size_t cell) {
+    return draws.density_cells().cells.describe(cell);
+  };
+  std::string text;
+  if (fit.impossible > 0) text = fmt::format("; {} draws where the density is 0", fit.impossible);
+  return text + fmt::format("; farthest off in {}, {} draws where {:.4g} are expected",
+                            pool_text(worst->members, describe), worst->observed, worst->expected);
+}
+
+}  // namespace
+
+Points points_of(const Question& question, std::size_t subject, std::size_t channel,
+                 std::span<const double> values) {
+  Points points{.sorted = {values.begin(), values.end()}, .draws = values.size()};
+  const Subject& side = question.subjects[subject];
+  if (const auto* draws = dynamic_cast<const SamplerSetup*>(side.setup.get())) {
+    points.of_a_sampler = true;
+    std::erase(points.sorted, no_point(draws->marginals()[side.channels[channel]]));
+  }
+  points.sorted = stats::sorted(std::move(points.sorted));
+  return points;
+}
+
+DeclaredLaw declared_law(const Question& question, std::size_t channel) {
+  const auto* draws = dynamic_cast<const SamplerSetup*>(question.subjects[0].setup.get());
+  DeclaredLaw declared;
+  if (!question.law.name.empty()) {
+    declared.law = {.cdf = law_cdf(question.law)};
+  } else {
+    const stats::TabulatedLaw& table = draws->marginal_law(question.channel_name(channel));
+    declared.law = {.cdf = std::cref(table),
+                    .of_sorted = [&table](auto values) { return table.of_sorted(values); }};
+    declared.error = table.error;
+  }
+  if (draws != nullptr) {
+    declared.missing = draws->density_cells().without_density();
+    declared.missing_error = draws->density_cells().tolerance();
+  }
+  return declared;
+}
+
+Evidence points_against_law(const Points& points, const DeclaredLaw& declared) {
+  require_points(points);
+  const std::vector<double> values = stats::probabilities(points.sorted, declared.law);
+  const Evidence rest = from_distance(
+      stats::ks_distance(points.sorted, stats::Probabilities{values}), declared.error);
+  if (declared.missing == 0 && points.missing() == 0) return rest;
+  const stats::Successes missing{.successes = points.missing(), .trials = points.draws};
+  return larger_of(rest, {from_proportion(missing, declared), masses_without_a_point});
+}
+
+Evidence points_against_points(const Points& x, const Points& y) {
+  require_points(x);
+  require_points(y);
+  const Evidence rest = from_distance(x.sorted, y.sorted);
+  if (!x.of_a_sampler && !y.of_a_sampler) return rest;
+  return larger_of(rest, {from_proportions(x, y), masses_without_a_point});
+}
+
+std::vector<std::uint64_t> counts_in(const stats::SampledCells& cells, const Subject& side,
+                                     const ChannelData& data) {
+  std::vector<std::uint64_t> counts(cells.size() + 1);
+  const std::span<const double> first = data.all_values[0];
+  const bool plane = data.all_values.size() > 1;
+  const std::optional<double> none = no_point_of(side);
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const bool point = first[i] != none;
+    ++counts[point ? cells.index({first[i], plane ? data.all_values[1][i] : 0}) : cells.size()];
+  }
+  return counts;
+}
+
+namespace {
+
+/// A sampler's draws against its declared density.
+Evidence cells_against_density(const Method&, const Question& question, std::size_t,
+                               std::span<const ChannelData> data) {
+  const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
+  const stats::CellProbabilities& mass = draws.density_cells().mass;
+  stats::CellCounts counts{.observed = draws.density_cells().in_cells(data[0].cells),
+                           .probability = mass.probability,
+                           .error = mass.error};
+  counts.probability.push_back(draws.density_cells().missing());
+  counts.error.push_back(mass.total_error);
+  const stats::ChiSquareFit fit =
+      stats::chi_square_fit(counts, {.probability_tolerance = draws.density_cells().tolerance()});
+  const auto at = [fit](double theta) {
+    return theta == 0 ? fit.test : stats::chi_square_fit_effect(fit, std::max(0.0, theta));
+  };
+  const auto interval = [fit](double confidence) {
+    return stats::chi_square_fit_interval(fit, confidence);
+  };
+  return {.estimate = fit.effect,
+          .at = at,
+          .interval = interval,
+          .most_against = always(worst_of(fit, draws)),
+          .quantity = effect_over_cells,
+          .distance = true};
+}
+
+/// Two samples against each other in the method's cells. One more cell counts draws without a
+/// point. Throws std::domain_error if there are no cells.
+Evidence cells_against_cells(const Method& method, const Question& question, std::size_t,
+                             std::span<const ChannelData> data) {
+  if (!method.frozen.cells) throw std::domain_error("the pilots gave no cells to count in");
+  const stats::SampledCells& cells = *method.frozen.cells;
+  const stats::ChiSquareTwoSample fit =
+      stats::chi_square_two_sample({.x = counts_in(cells, question.subjects[0], data[0]),
+                                    .y = counts_in(cells, question.subjects[1], data[1])});
+  const auto at = [fit](double theta) {
+    return theta <= 0 ? fit.test : stats::chi_square_effect(fit.statistic, theta);
+  };
+  const auto interval = [fit](double confidence) {
+    return stats::chi_square_effect_interval(fit.statistic, confidence);
+  };
+  const stats::PooledPair& worst = farthest(fit);
+  const auto place = [&](std::size_t cell) { return describe(cells, question.subjects[0], cell); };
+  return {.estimate = fit.statistic.effect(),
+          .at = at,
+          .interval = interval,
+          .most_against = always(fmt::format("; farthest apart in {}, {} against {}",
+                                             pool_text(worst.members, place), worst.x, worst.y)),
+          .quantity = effect_over_cells,
+          .distance = true};
+}
 
 Evidence law_against_law(const Method&, const Question& question, std::size_t channel,
                          std::span<const ChannelData> data) {
@@ -107,14 +456,47 @@ double worth(const Question& question, const TestSize& size) {
   return question.of_two() ? sizes.x / (1 + sizes.x / sizes.y) : sizes.x;
 }
 
+bool of_one_law(const Question& question) {
+  return !question.of_two() && (!question.law.name.empty() || !of_whole_draws(question));
+}
+
 /// Theta is a distance between two laws: of their distribution functions, or Cohen's effect size
 /// over cells.
 class LawTheta : public Theta {
  public:
   using Theta::Theta;
 
-  const std::vector<MethodRow>& methods() const override { return rows(); }
+  const std::vector<MethodRow>& methods() const override {
+    static const std::vector<MethodRow> table{
+        {"ks",
+         "Kolmogorov-Smirnov: values against a law",
+         of_one_law,
+         Keeps::values,
+         values_against_law,
+         {.of_distinct_values = true}},
+        {"ks", "Kolmogorov-Smirnov: values of two, a frequent one apart",
+         [](const Question& q) { return q.of_two() && !q.is().joins_channels; }, Keeps::values,
+         law_against_law},
+        {"chi-square-two-sample",
+         "chi-square of two: one or two coordinates together, in cells",
+         [](const Question& q) { return q.of_two(); },
+         Keeps::points,
+         cells_against_cells,
+         {.joins_channels = true, .cells_of_pilots = true}},
+        {"chi-square-fit", "chi-square: draws against their declared density, in cells",
+         [](const Question& q) { return !q.of_two() && q.law.name.empty() && of_whole_draws(q); },
+         Keeps::cells, cells_against_density}};
+    return table;
+  }
   const Theta* of_images() const override { return &theta_of_image_laws(); }
+
+  std::string channel_name(const Question& question, std::size_t channel) const override {
+    return is.joins_channels ? "cells" : Theta::channel_name(question, channel);
+  }
+
+  std::string claimed_value(const Question& question, std::size_t channel) const override {
+    return question.of_two() ? Theta::claimed_value(question, channel) : to_string(question.law);
+  }
 
   void check_margin(const Question& question, const Margin& margin) const override {
     require_absolute(margin, "a distance between laws is a probability");
@@ -178,9 +560,6 @@ class LawTheta : public Theta {
     return {gate_of(stats::quantisation_gate(sorted, outcome.share().alpha),
                     channel_suffix(question, channel))};
   }
-
- private:
-  static const std::vector<MethodRow>& rows();
 };
 
 /// A sampler's draws against its declared density.
@@ -198,12 +577,11 @@ class DensityTheta final : public LawTheta {
     const std::uint64_t all = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
     if (all == 0) return std::nullopt;
     const auto most = static_cast<std::size_t>(std::ranges::max_element(counts) - counts.begin());
-    return ConstantVerdict{
-        reports::Verdict::fail,
-        fmt::format("{} of {} draws lie where the declared density is 0, {} of them in {}: no "
-                    "sampler of this density draws there",
-                    all, data[0].moments.count, counts[most],
-                    draws.density_cells().cells.describe(most))};
+    return ConstantVerdict{reports::Verdict::fail,
+                           fmt::format("{} of {} draws lie where the declared density is 0, {} of "
+                                       "them in {}: no sampler of this density draws there",
+                                       all, data[0].moments.count, counts[most],
+                                       draws.density_cells().cells.describe(most))};
   }
 
   std::string claimed_value(const Question&, std::size_t) const override {
@@ -227,59 +605,13 @@ class DensityTheta final : public LawTheta {
   }
 };
 
-/// Values against a law's distribution function.
-class NamedLawTheta final : public LawTheta {
- public:
-  using LawTheta::LawTheta;
-  std::string claimed_value(const Question& question, std::size_t) const override {
-    return to_string(question.law);
-  }
-};
-
-/// Values of two subjects.
-class TwoLawsTheta final : public LawTheta {
- public:
-  using LawTheta::LawTheta;
-
-  std::string channel_name(const Question& question, std::size_t channel) const override {
-    return is.joins_channels ? "cells" : Theta::channel_name(question, channel);
-  }
-};
-
 const DensityTheta density_theta({.of_single_values = true, .of_a_law = true});
-const NamedLawTheta named_law_theta({.of_single_values = true, .of_a_law = true});
-const TwoLawsTheta two_laws_theta({.of_single_values = true, .of_a_law = true});
+/// Values against a law's distribution function, or of two subjects.
+const LawTheta values_theta({.of_single_values = true, .of_a_law = true});
 /// All channels together, in cells.
-const TwoLawsTheta two_planes_theta({.joins_channels = true,
-                                     .of_single_values = true,
-                                     .pilots_draws = true});
-
-bool of_one_law(const Question& question) {
-  return !question.of_two() && (!question.law.name.empty() || !of_whole_draws(question));
-}
-
-const std::vector<MethodRow>& LawTheta::rows() {
-  static const std::vector<MethodRow> table{
-      {"ks",
-       "Kolmogorov-Smirnov: values against a law",
-       of_one_law,
-       Keeps::values,
-       values_against_law,
-       {.of_distinct_values = true}},
-      {"ks", "Kolmogorov-Smirnov: values of two, a frequent one apart",
-       [](const Question& q) { return q.of_two() && !q.is().joins_channels; }, Keeps::values,
-       law_against_law},
-      {"chi-square-two-sample",
-       "chi-square of two: one or two coordinates together, in cells",
-       [](const Question& q) { return q.of_two(); },
-       Keeps::points,
-       cells_against_cells,
-       {.joins_channels = true, .cells_of_pilots = true}},
-      {"chi-square-fit", "chi-square: draws against their declared density, in cells",
-       [](const Question& q) { return !q.of_two() && q.law.name.empty() && of_whole_draws(q); },
-       Keeps::cells, cells_against_density}};
-  return table;
-}
+const LawTheta planes_theta({.joins_channels = true,
+                             .of_single_values = true,
+                             .pilots_draws = true});
 
 // ---- Binding
 
@@ -288,10 +620,10 @@ void require_plane(const Question& question) {
   const std::size_t first = question.subjects[0].channels.size();
   const std::size_t second = question.subjects[1].channels.size();
   if (first == second && first <= 2) return;
-  throw InputError(question.test->place_of("test"),
-                   fmt::format("`{}` counts in cells of one or two coordinates, the same of both "
-                               "sides, which have {} and {}; name one channel of each",
-                               *question.test->method, first, second));
+  refuse(question.test->place_of("test"),
+         "`{}` counts in cells of one or two coordinates, the same of both sides, which have {} "
+         "and {}; name one channel of each",
+         *question.test->method, first, second);
 }
 
 /// The compared marginals, as "u, v".
@@ -314,9 +646,10 @@ void require_same_marginals(const Question& question, const Location& where) {
   const std::string names = channel_names(first);
   const std::string others = channel_names(second);
   if (names == others) return;
-  throw InputError(where, fmt::format("the first sampler's points are {}, the second's {}: name "
-                                      "one marginal of each to compare them all the same",
-                                      names, others));
+  refuse(where,
+         "the first sampler's points are {}, the second's {}: name one marginal of each to compare "
+         "them all the same",
+         names, others);
 }
 
 }  // namespace
@@ -328,7 +661,7 @@ Question bind_distribution(const TestEntry& test, const Estimators& estimators) 
     const bool cells = test.method && joins_channels(*test.method);
     Question question{
         .test = &test,
-        .theta = cells ? &two_planes_theta : &two_laws_theta,
+        .theta = cells ? &planes_theta : &values_theta,
         .subjects = {values(source, estimators), values(other->quantity.source, estimators)}};
     require_same_marginals(question, other->quantity.where);
     if (cells) require_plane(question);
@@ -340,10 +673,8 @@ Question bind_distribution(const TestEntry& test, const Estimators& estimators) 
             .theta = &density_theta,
             .subjects = {draws(source, estimators, Draws::cells)}};
   }
-  return {.test = &test,
-          .theta = &named_law_theta,
-          .subjects = {values(source, estimators)},
-          .law = law};
+  return {
+      .test = &test, .theta = &values_theta, .subjects = {values(source, estimators)}, .law = law};
 }
 
 const Theta& theta_of_laws() { return density_theta; }

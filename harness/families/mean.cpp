@@ -2,23 +2,31 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <memory>
 
 #include "estimators/ready_made.h"
 #include "harness/families/families.h"
-#include "harness/families/mean_evidence.h"
 #include "harness/plan/pilot_shape.h"
 #include "harness/plan/sizes.h"
 #include "harness/question/question_sources.h"
 #include "harness/run/evaluate.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/constant.h"
+#include "harness/theta/evidence.h"
 #include "harness/theta/methods.h"
 #include "harness/theta/theta.h"
+#include "stats/basics/moments.h"
 #include "stats/gates/assumption_gates.h"
+#include "stats/means/betting_mean.h"
+#include "stats/means/binomial.h"
 #include "stats/means/power_exact.h"
 #include "stats/means/skewness_corrected_t.h"
+#include "stats/means/student_t.h"
+#include "stats/means/uncertain_reference.h"
 #include "stats/planning/power.h"
 #include "stats/tails/tails.h"
 
@@ -26,6 +34,285 @@ namespace assay::harness {
 namespace {
 
 using stats::GateState;
+using stats::Interval;
+using stats::Moments;
+using stats::TestResult;
+
+// ---- Evidence
+
+/// Tests "E x = value".
+using OneMeanTest = std::function<TestResult(const stats::Reference&)>;
+/// Tests "E x - scale E y = offset".
+using ContrastTest = std::function<TestResult(const stats::Contrast&)>;
+
+/// One subject's data of a channel, with its declared range and rounding.
+struct Side {
+  const ChannelData& data;
+  stats::Range range;
+  double rounding = 0;
+};
+
+/// A test of one mean and of two. Without closed intervals, `at` is inverted.
+struct MeanTest {
+  OneMeanTest (*of_one)(const Side& x);
+  ContrastTest (*of_two)(const Side& x, const Side& y);
+  bool closed_interval = false;
+};
+
+OneMeanTest t_of_one(const Side& x) {
+  return [x = x.data.moments](const stats::Reference& null) { return stats::student_t(x, null); };
+}
+
+ContrastTest t_of_two(const Side& x, const Side& y) {
+  return [x = x.data.moments, y = y.data.moments](const stats::Contrast& null) {
+    return stats::welch_t(x, y, null);
+  };
+}
+
+OneMeanTest corrected_of_one(const Side& x) {
+  return [x = x.data.moments](const stats::Reference& null) {
+    return stats::skewness_corrected_t(x, null);
+  };
+}
+
+ContrastTest corrected_of_two(const Side& x, const Side& y) {
+  return [x = x.data.moments, y = y.data.moments](const stats::Contrast& null) {
+    return stats::skewness_corrected_welch(x, y, null);
+  };
+}
+
+/// An exact test of "E x = value" where the value is known up to an error.
+OneMeanTest over_reference(std::function<TestResult(double)> at) {
+  return [at = std::move(at)](const stats::Reference& null) {
+    TestResult result = at(null.value);
+    const std::array<stats::UncertainReference, 1> references{{{null, null.value}}};
+    result.log_p_lower = stats::log_p_over_references(
+        [&](auto values) { return at(values[0]).log_p_lower; }, references);
+    result.log_p_upper = stats::log_p_over_references(
+        [&](auto values) { return at(values[0]).log_p_upper; }, references);
+    return result;
+  };
+}
+
+OneMeanTest binomial_of_one(const Side& x) {
+  return over_reference([x = stats::two_valued(x.data.moments, x.range)](double value) {
+    return stats::two_valued_mean(x, value);
+  });
+}
+
+ContrastTest binomial_of_two(const Side& x, const Side& y) {
+  return [x = stats::two_valued(x.data.moments, x.range),
+          y = stats::two_valued(y.data.moments, y.range)](const stats::Contrast& null) {
+    return stats::two_valued_contrast(x, y, null);
+  };
+}
+
+using Cells = std::shared_ptr<const stats::ValueCells>;
+
+Cells cells_of(const Side& side) {
+  return std::make_shared<const stats::ValueCells>(side.data.values);
+}
+
+/// Values are exact to `rounding`: each tail is that of the nearest null.
+TestResult within_rounding(const std::function<TestResult(double)>& at, double rounding) {
+  if (rounding == 0) return at(0);
+  TestResult result = at(0);
+  result.log_p_upper = at(rounding).log_p_upper;
+  result.log_p_lower = at(-rounding).log_p_lower;
+  return result;
+}
+
+OneMeanTest bets_of_one(const Side& x) {
+  return over_reference([cells = cells_of(x), range = x.range,
+                         rounding = x.rounding](double value) {
+    return within_rounding(
+        [&](double shift) { return stats::betting_mean(*cells, range, value + shift); }, rounding);
+  });
+}
+
+ContrastTest bets_of_two(const Side& x, const Side& y) {
+  return [cells_of_x = cells_of(x), cells_of_y = cells_of(y), of_x = x.range, of_y = y.range,
+          rounding = x.rounding, other = y.rounding](const stats::Contrast& null) {
+    const auto at = [&](double shift) {
+      return stats::betting_contrast(*cells_of_x, of_x, *cells_of_y, of_y,
+                                     {null.scale, null.offset + shift});
+    };
+    return within_rounding(at, rounding + std::abs(null.scale) * other);
+  };
+}
+
+constexpr MeanTest by_t{t_of_one, t_of_two, true};
+constexpr MeanTest by_corrected_t{corrected_of_one, corrected_of_two};
+constexpr MeanTest by_counts{binomial_of_one, binomial_of_two};
+constexpr MeanTest by_bets{bets_of_one, bets_of_two};
+
+Side side_of(const Question& question, std::size_t channel, std::span<const ChannelData> data,
+             std::size_t subject) {
+  return {data[subject], range_of(question, subject, channel, data[subject].moments),
+          rounding_of(question, subject, channel)};
+}
+
+/// A first step from an estimate of theta. Without a spread it is what one more value could add.
+double step_of(const Side& side, double factor) {
+  const Moments& x = side.data.moments;
+  const double count = static_cast<double>(x.count);
+  double step = std::sqrt(x.variance() / count);
+  for (const double end : {side.range.low, side.range.high}) {
+    if (!(x.m2 > 0) && std::isfinite(end)) step = std::max(step, std::abs(end - x.mean) / count);
+  }
+  return std::abs(factor) * step;
+}
+
+/// Natural logarithm of the p-value of "E y = 0"; a constant y shows its sign.
+double log_p_of_no_sign(const Moments& y, const OneMeanTest& test) {
+  if (y.m2 == 0) return y.mean == 0 ? 0 : -std::numeric_limits<double>::infinity();
+  return stats::log_p_two_sided(test({.value = 0}));
+}
+
+Evidence difference_of_means(const MeanTest& mean, const Question& question, const Side& first,
+                             const Side& second) {
+  const ContrastTest test = mean.of_two(first, second);
+  const Moments x = first.data.moments;
+  const Moments y = second.data.moments;
+  const double factor = question.factor;
+  const double offset = question.offset;
+  const double estimate = stats::contrast_of_means(x, y, {.scale = factor, .offset = offset});
+  const auto at = [=](double theta) { return test({.scale = factor, .offset = offset + theta}); };
+  const double step = std::hypot(step_of(first, 1), step_of(second, factor));
+  const auto interval = [=](double confidence) {
+    if (!mean.closed_interval) {
+      return interval_by_inversion(at, {.estimate = estimate, .step = step}, confidence);
+    }
+    // Only count, mean and m2 enter. The difference stands for x, with y's mean at 0.
+    Moments moved = x;
+    moved.mean = estimate;
+    Moments scaled = y;
+    scaled.mean = 0;
+    scaled.m2 *= factor * factor;
+    moved.rest = scaled.rest = 0;
+    return stats::welch_t_interval(moved, scaled, confidence);
+  };
+  return {.estimate = estimate, .at = at, .interval = interval, .quantity = "difference of means"};
+}
+
+Evidence ratio_of_means(const MeanTest& mean, const Question& question, const Side& first,
+                        const Side& second) {
+  const ContrastTest test = mean.of_two(first, second);
+  const OneMeanTest test_of_y = mean.of_one(second);
+  const Moments x = first.data.moments;
+  const Moments y = second.data.moments;
+  const double factor = question.factor;
+  const double offset = question.offset;
+  const double other = factor * y.mean;
+  const double sign = std::copysign(1, other);
+  const double estimate =
+      stats::contrast_of_means(x, y, {.scale = factor, .offset = offset}) / std::abs(other);
+  const auto contrast = [=](double theta) {
+    return test({.scale = factor * (1 + sign * theta), .offset = offset});
+  };
+  const auto at = [=](double theta) {
+    TestResult result = contrast(theta);
+    if (theta == 0) return result;
+    // The sign of E y decides which contrast a relative margin is, so y must show it too.
+    const double log_p_sign = log_p_of_no_sign(y, test_of_y);
+    result.log_p_lower = std::max(result.log_p_lower, log_p_sign);
+    result.log_p_upper = std::max(result.log_p_upper, log_p_sign);
+    return result;
+  };
+  const double step = std::hypot(step_of(first, 1), step_of(second, factor)) / std::abs(other);
+  const auto interval = [=](double confidence) {
+    if (!mean.closed_interval || offset != 0) {
+      return interval_by_inversion(at, {.estimate = estimate, .step = step}, confidence);
+    }
+    return map_ends(stats::welch_ratio_interval(x, y, confidence),
+                    [=](double ratio) { return sign * ((1 + ratio) / factor - 1); });
+  };
+  return {.estimate = estimate,
+          .at = at,
+          .interval = interval,
+          .quantity = "relative difference of means",
+          .relative = true};
+}
+
+Evidence mean_against_number(const MeanTest& mean, const Question& question, std::size_t channel,
+                             const Side& side) {
+  const Moments x = side.data.moments;
+  const Constant& reference = question.references[channel];
+  const bool relative = question.theta->is_relative(question, channel);
+  const double unit = relative ? std::abs(reference.value) : 1;
+  const double slope = relative ? std::copysign(1, reference.value) : 0;
+  const double null = reference.value + question.offset;
+  const double estimate = x.mean_less(null) / unit;
+  const OneMeanTest test = mean.of_one(side);
+  const auto at = [=](double theta) {
+    return test({.value = null + theta * unit,
+                 .standard_error = reference.standard_error * std::abs(1 + slope * theta)});
+  };
+  const double step = std::hypot(step_of(side, 1), reference.standard_error) / unit;
+  const auto interval = [=](double confidence) {
+    // Theta also scales the reference's error, so `at` is inverted.
+    if ((relative && reference.standard_error > 0) || !mean.closed_interval) {
+      return interval_by_inversion(at, {.estimate = estimate, .step = step}, confidence);
+    }
+    return map_ends(stats::student_t_interval(x, {null, reference.standard_error}, confidence),
+                    [=](double d) { return d / unit; });
+  };
+  return {.estimate = estimate,
+          .at = at,
+          .interval = interval,
+          .quantity =
+              relative ? "relative difference from the reference" : "difference from the reference",
+          .relative = relative};
+}
+
+/// Theta's evidence by this test, with x and y the sides of the claim.
+template <const MeanTest& mean>
+Evidence evidence_of_means(const Method&, const Question& question, std::size_t channel,
+                           std::span<const ChannelData> data) {
+  const Side x = side_of(question, channel, data, 0);
+  if (!question.of_two()) return mean_against_number(mean, question, channel, x);
+  const Side y = side_of(question, channel, data, 1);
+  return question.theta->is_relative(question, channel) ? ratio_of_means(mean, question, x, y)
+                                                        : difference_of_means(mean, question, x, y);
+}
+
+// A shift of so many standard errors moves a tail of one per cent by a third at most.
+constexpr double tolerated_shift = 0.1;
+
+/// Errors of one side, on the scale of the first mean.
+struct RoundedPart {
+  double rounding = 0;
+  double standard_error = 0;
+};
+
+RoundedPart part_of(const Question& question, std::size_t subject, const ChannelData& data) {
+  if (data.moments.count < 2) return {};
+  const double factor = subject == 0 ? 1 : std::abs(question.factor);
+  return {.rounding = factor * stats::rounding_of_mean(data.moments),
+          .standard_error = factor * data.moments.standard_error()};
+}
+
+/// Why means cannot be compared: rounding adds more than the tolerated shift; "" if it adds less.
+std::string lost_to_rounding(const Question& question, std::size_t channel,
+                             std::span<const ChannelData> data) {
+  std::size_t worst = 0;
+  double most = 0;
+  double rounding = 0;
+  double error = question.of_two() ? 0 : question.references[channel].standard_error;
+  for (std::size_t subject = 0; subject < data.size(); ++subject) {
+    const RoundedPart part = part_of(question, subject, data[subject]);
+    if (part.rounding > most) worst = subject;
+    most = std::max(most, part.rounding);
+    rounding = std::hypot(rounding, part.rounding);
+    error = std::hypot(error, part.standard_error);
+  }
+  if (!(rounding > tolerated_shift * error)) return "";
+  return fmt::format(
+      "the mean of `{}` is {:.6g}: numbers of that size are rounded so coarsely that their mean is "
+      "off by about {:.2g} where the standard error is {:.2g}; take a constant near the mean off "
+      "the observations",
+      question.subjects[worst].estimator->name, data[worst].moments.mean, rounding, error);
+}
 
 // ---- Binding
 
@@ -45,12 +332,10 @@ std::vector<Constant> recorded_means(const Question& question, const Subject& re
                          (subject.image->width == reference.image->width &&
                           subject.image->components.size() == reference.image->components.size()));
   if (!one_size) {
-    throw InputError(
+    refuse(
         question.test->claim.left.where,
-        fmt::format("`{}` has {} and `{}` has {}: only what is of one size can be compared, "
-                    "element by element",
-                    subject.estimator->name, size_of(subject), reference.estimator->name,
-                    size_of(reference)));
+        "`{}` has {} and `{}` has {}: only what is of one size can be compared, element by element",
+        subject.estimator->name, size_of(subject), reference.estimator->name, size_of(reference));
   }
   std::vector<Constant> means;
   const std::vector<Channel> channels = reference.setup->channels();
@@ -66,7 +351,7 @@ std::vector<Constant> recorded_means(const Question& question, const Subject& re
 // Normal quantile: one pilot in a thousand exceeds the upper limit of its variance.
 constexpr double pilot_quantile = 3.09;
 
-double upper_variance(const stats::Moments& pilot) {
+double upper_variance(const Moments& pilot) {
   const double n = static_cast<double>(pilot.count);
   const double error = std::sqrt(std::max(0.0, pilot.kurtosis() - 1) / n);
   return pilot.variance() * std::exp(pilot_quantile * error);
@@ -237,14 +522,14 @@ bool are_two_valued(const Question& question, const std::vector<Known>& channels
                     const Plan& plan) {
   if (question.of_two() && question.factor <= 0) return false;
   return channels.size() == question.subjects.size() * question.channel_count() &&
-         std::all_of(channels.begin(), channels.end(), [&](const Known& known) {
+         std::ranges::all_of(channels, [&](const Known& known) {
            const stats::Range range =
                range_of(question, known.subject, known.channel, known.pilot.moments);
            // Rows declare no range: only 0 and 1 are surely a count of successes.
            if (known.rows && (range.low != 0 || range.high != 1)) return false;
            return plan.primaries[known.subject] == 1 && !known.pilot.values.empty() &&
-                  std::all_of(known.pilot.values.begin(), known.pilot.values.end(),
-                              [&](double v) { return v == range.low || v == range.high; });
+                  std::ranges::all_of(known.pilot.values,
+                                      [&](double v) { return v == range.low || v == range.high; });
          });
 }
 
@@ -284,9 +569,6 @@ std::uint64_t choose_for_mean(const Question& question, const FamilyPlace& place
 }
 
 // ---- Data
-
-// A shift of a tenth of a standard error raises a tail of one per cent by a third.
-constexpr double tolerated_shift = 0.1;
 
 /// Why two means cannot be compared if one is constant and its unseen values could decide; "" if
 /// they can.
@@ -337,7 +619,56 @@ class MeanTheta : public Theta {
  public:
   MeanTheta() : Theta({.of_moments = true, .batches_serve = true}) {}
 
-  const std::vector<MethodRow>& methods() const override { return rows(); }
+  const std::vector<MethodRow>& methods() const override {
+    static const std::vector<MethodRow> table{
+        {"t",
+         "Student's t: a mean against a number",
+         [](const Question& q) { return !q.of_two() && !is_within(q); },
+         Keeps::moments,
+         evidence_of_means<by_t>,
+         {.over_looks = stats::LookLaw::independent_increments}},
+        {"welch",
+         "Welch's t: two means, whatever their variances",
+         [](const Question& q) { return q.of_two() && !is_within(q); },
+         Keeps::moments,
+         evidence_of_means<by_t>,
+         {.over_looks = stats::LookLaw::independent_increments}},
+        {"tost",
+         "two one-sided t tests: a mean lies within a margin",
+         [](const Question& q) { return is_within(q); },
+         Keeps::moments,
+         evidence_of_means<by_t>,
+         {.over_looks = stats::LookLaw::independent_increments}},
+        {"skewness-corrected-t",
+         "t or Welch with Hall's correction for the skewness of the values",
+         any_question,
+         Keeps::moments,
+         evidence_of_means<by_corrected_t>,
+         {.corrects_skewness = true, .over_looks = stats::LookLaw::independent_increments}},
+        {"binomial",
+         "exact: a mean of values that are the two ends of a range",
+         any_question,
+         Keeps::moments,
+         evidence_of_means<by_counts>,
+         {.exact = true, .of_observations = true, .plans = &stats::binomial_planning}},
+        {"betting",
+         "exact at every look: means of values in declared ranges, by bets",
+         any_question,
+         Keeps::values,
+         evidence_of_means<by_bets>,
+         {.exact = true,
+          .in_range = true,
+          .of_observations = true,
+          .over_looks = stats::LookLaw::anytime_valid,
+          .plans = &stats::betting_planning}},
+        {"batch-means",
+         "t of batch means: a mean of observations that depend on their neighbours",
+         [](const Question& q) { return !is_within(q); },
+         Keeps::values,
+         evidence_of_means<by_t>,
+         {.of_observations = true, .of_batches = true}}};
+    return table;
+  }
   const Theta* of_images() const override { return &theta_of_images(); }
 
   std::optional<double> known_size(const Question& question) const override {
@@ -365,7 +696,7 @@ class MeanTheta : public Theta {
     ThetaError error;
     double squares = 0;  // of the observations' parts of the variance
     for (std::size_t i = 0; i < data.size(); ++i) {
-      const stats::Moments& x = data[i].moments;
+      const Moments& x = data[i].moments;
       const double factor = i == 0 ? 1 : std::abs(question.factor);
       const double own = factor * x.standard_error() / unit;
       if (question.subjects[i].setup->observations()) {
@@ -406,7 +737,7 @@ class MeanTheta : public Theta {
     if (pilot == nullptr) return "";
     double size = 0;
     for (std::size_t channel = 0; channel < second.channels.size(); ++channel) {
-      const stats::Moments moments = pilot_channel(second, *pilot, channel).moments;
+      const Moments moments = pilot_channel(second, *pilot, channel).moments;
       if (moments.count > 1 && exceeds_its_error(moments.mean, moments.standard_error())) {
         size = std::max(size, std::abs(question.factor * moments.mean));
       }
@@ -509,7 +840,7 @@ class MeanTheta : public Theta {
                                                      : skewness_gate(question, data, x),
                             name));
     for (std::size_t subject = 0; subject < data.size(); ++subject) {
-      const stats::Moments& moments = data[subject].moments;
+      const Moments& moments = data[subject].moments;
       // Two values cannot show an outlier.
       if (!(moments.m2 > 0) || moments.count <= 2) continue;
       gates.push_back(gate_of(stats::dominance_gate(moments),
@@ -525,10 +856,8 @@ class MeanTheta : public Theta {
   }
 
  private:
-  static const std::vector<MethodRow>& rows();
-
-  static void note_range(const Question& question, std::size_t channel,
-                         const stats::Moments& moments, PlannedChannel& planned) {
+  static void note_range(const Question& question, std::size_t channel, const Moments& moments,
+                         PlannedChannel& planned) {
     if (question.of_two()) return;
     planned.range = range_of(question, 0, channel, moments);
     planned.null_value = question.references[channel].value + question.offset;
@@ -538,7 +867,7 @@ class MeanTheta : public Theta {
   /// what it missed.
   static std::optional<PlannedChannel> from_pilots(const Question& question, std::size_t channel,
                                                    const Pilots& pilots, const Plan& plan) {
-    const stats::Moments& first = pilot_channel(question, 0, channel, pilots).moments;
+    const Moments& first = pilot_channel(question, 0, channel, pilots).moments;
     PlannedChannel planned{.regions = plan.regions[channel]};
     const bool constant = is_constant(question, 0, channel, first);
     note_range(question, channel, first, planned);
@@ -552,7 +881,7 @@ class MeanTheta : public Theta {
     }
     double other_mean = 0;
     if (question.of_two()) {
-      const stats::Moments& second = pilot_channel(question, 1, channel, pilots).moments;
+      const Moments& second = pilot_channel(question, 1, channel, pilots).moments;
       other_mean = second.mean;
       if (is_constant(question, 1, channel, second)) {
         if (constant) return std::nullopt;
@@ -569,8 +898,7 @@ class MeanTheta : public Theta {
       if (!planned.regions.has_margin()) return std::nullopt;
       throw std::domain_error(
           "the other mean is 0 in the pilot, and a margin in per cent of it means nothing; give "
-          "the "
-          "margin as a number");
+          "the margin as a number");
     }
     if (bets) {
       const PilotChannel pilot = pilot_channel(question, 0, channel, pilots);
@@ -646,57 +974,6 @@ class MeanTheta : public Theta {
   }
 };
 
-const std::vector<MethodRow>& MeanTheta::rows() {
-  static const std::vector<MethodRow> table{
-      {"t",
-       "Student's t: a mean against a number",
-       [](const Question& q) { return !q.of_two() && !is_within(q); },
-       Keeps::moments,
-       mean_by_t,
-       {.over_looks = stats::LookLaw::independent_increments}},
-      {"welch",
-       "Welch's t: two means, whatever their variances",
-       [](const Question& q) { return q.of_two() && !is_within(q); },
-       Keeps::moments,
-       mean_by_t,
-       {.over_looks = stats::LookLaw::independent_increments}},
-      {"tost",
-       "two one-sided t tests: a mean lies within a margin",
-       [](const Question& q) { return is_within(q); },
-       Keeps::moments,
-       mean_by_t,
-       {.over_looks = stats::LookLaw::independent_increments}},
-      {"skewness-corrected-t",
-       "t or Welch with Hall's correction for the skewness of the values",
-       any_question,
-       Keeps::moments,
-       mean_by_corrected_t,
-       {.corrects_skewness = true, .over_looks = stats::LookLaw::independent_increments}},
-      {"binomial",
-       "exact: a mean of values that are the two ends of a range",
-       any_question,
-       Keeps::moments,
-       mean_of_two_values,
-       {.exact = true, .of_observations = true, .plans = &stats::binomial_planning}},
-      {"betting",
-       "exact at every look: means of values in declared ranges, by bets",
-       any_question,
-       Keeps::values,
-       mean_by_bets,
-       {.exact = true,
-        .in_range = true,
-        .of_observations = true,
-        .over_looks = stats::LookLaw::anytime_valid,
-        .plans = &stats::betting_planning}},
-      {"batch-means",
-       "t of batch means: a mean of observations that depend on their neighbours",
-       [](const Question& q) { return !is_within(q); },
-       Keeps::values,
-       mean_by_t,
-       {.of_observations = true, .of_batches = true}}};
-  return table;
-}
-
 /// The mean less the truth. Its margins are numbers unless one is in per cent.
 class BiasTheta final : public MeanTheta {
  public:
@@ -749,14 +1026,12 @@ Question bind_mean(const TestEntry& test, const Estimators& estimators) {
 Question bind_bias(const TestEntry& test, const Estimators& estimators) {
   const Claim& claim = test.claim;
   if (other_side(claim) != nullptr) {
-    throw InputError(claim.left.where,
-                     "a bias is compared with a number; to compare two estimators, claim their "
-                     "means");
+    refuse(claim.left.where,
+           "a bias is compared with a number; to compare two estimators, claim their means");
   }
   const Constant number = std::get<Constant>(claim.right);
   if (claim.relation == Relation::within && claim.margin.relative && number.value != 0) {
-    throw InputError(claim.left.where,
-                     "per cent of what? a margin on a bias other than 0 is a number");
+    refuse(claim.left.where, "per cent of what? a margin on a bias other than 0 is a number");
   }
   Question question{.test = &test,
                     .theta = &bias_theta,
@@ -770,7 +1045,7 @@ Question bind_bias(const TestEntry& test, const Estimators& estimators) {
     return question;
   }
   if (number.standard_error > 0) {
-    throw InputError(claim.left.where, "with a `reference` that is sampled, `+-` has no method");
+    refuse(claim.left.where, "with a `reference` that is sampled, `+-` has no method");
   }
   question.subjects.push_back(estimates(*test.reference, estimators));
   return question;

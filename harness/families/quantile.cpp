@@ -81,7 +81,7 @@ double normal_density(double z) { return std::exp(-z * z / 2) / std::sqrt(2 * st
 double slope_beside(std::span<const double> distances, double distance, double total) {
   constexpr std::size_t fewest = 64;
   if (distances.size() < fewest) return 0;
-  const auto beyond = std::upper_bound(distances.begin(), distances.end(), distance);
+  const auto beyond = std::ranges::upper_bound(distances, distance);
   const auto within = static_cast<std::size_t>(beyond - distances.begin());
   const double count = static_cast<double>(std::max(within, fewest));
   const double reach = std::max(distance, distances[fewest - 1]);
@@ -204,11 +204,9 @@ Question bind_quantile(const TestEntry& test, const Estimators& estimators) {
   const ScaledQuantity* other = other_side(claim);
   if (other == nullptr) return question;
   if (other->quantity.arguments != claim.left.arguments) {
-    throw InputError(other->quantity.where, "both quantiles must be of the same probability");
+    refuse(other->quantity.where, "both quantiles must be of the same probability");
   }
-  if (other->factor < 0) {
-    throw InputError(other->quantity.where, "the factor of a quantile must be above 0");
-  }
+  if (other->factor < 0) refuse(other->quantity.where, "the factor of a quantile must be above 0");
   return question;
 }
 

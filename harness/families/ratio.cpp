@@ -1,19 +1,577 @@
+// Families whose theta is the logarithm of a ratio of positive quantities: variances, costs,
+// efficiencies. Each quantity is known by its influence values (stats/variances/influence.h).
+
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <span>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
-#include "harness/families/log_theta.h"
+#include "harness/families/families.h"
+#include "harness/plan/independence.h"
+#include "harness/plan/outcome.h"
+#include "harness/plan/pilot_shape.h"
+#include "harness/plan/sizes.h"
 #include "harness/question/question_sources.h"
 #include "harness/run/evaluate.h"
 #include "harness/theta/constant.h"
+#include "harness/theta/evidence.h"
+#include "harness/theta/methods.h"
+#include "stats/gates/assumption_gates.h"
+#include "stats/means/skewness_corrected_t.h"
 #include "stats/means/student_t.h"
+#include "stats/means/uncertain_reference.h"
+#include "stats/planning/power.h"
+#include "stats/variances/influence.h"
+#include "stats/variances/normal_variances.h"
 
 namespace assay::harness {
 namespace {
 
+using stats::Influence;
+using stats::Interval;
 using stats::JointMoments;
 using stats::Moments;
+using stats::TestResult;
+
+/// One side of a ratio.
+struct RatioSide {
+  std::function<Influence(double truth)> influence;
+  /// The truth of a mean squared error; other quantities have none.
+  stats::UncertainReference truth = {};
+};
+
+/// A side that no truth enters.
+RatioSide without_truth(const Influence& influence) {
+  return {.influence = [influence](double) { return influence; }};
+}
+
+/// The words for a quantity: "cost" and "costs".
+struct RatioWords {
+  const char* one;
+  const char* many;
+};
+
+/// A pilot of single primaries.
+struct PilotMoments {
+  const Moments& values;
+  std::vector<JointMoments> joint;
+};
+
+// ---- Evidence
+
+/// Theta is ln(first / second / null), or ln(first / null), or minus that.
+struct LogRatio {
+  std::vector<RatioSide> sides;
+  double log_null = 0;
+  double sign = 1;  ///< -1 if the sides are inverses of the quantities.
+
+  bool uncertain() const {
+    return std::ranges::any_of(
+        sides, [](const RatioSide& side) { return side.truth.known.standard_error > 0; });
+  }
+  /// True if one truth, with one error, serves both sides.
+  bool shares_truth() const {
+    const auto known = [&](std::size_t i) {
+      return std::pair(sides[i].truth.known.value, sides[i].truth.known.standard_error);
+    };
+    return sides.size() == 2 && known(0) == known(1);
+  }
+};
+
+TestResult test(const LogRatio& ratio, std::span<const Influence> sides, double theta) {
+  const double log_ratio = ratio.sign * (theta + ratio.log_null);
+  TestResult result = sides.size() == 1 ? stats::influence_t(sides[0], log_ratio)
+                                        : stats::influence_t(sides[0], sides[1], log_ratio);
+  if (ratio.sign > 0) return result;
+  result.statistic = -result.statistic;
+  std::swap(result.log_p_lower, result.log_p_upper);
+  return result;
+}
+
+TestResult over_truths(const LogRatio& ratio, TestResult as_known, double theta) {
+  std::vector<stats::UncertainReference> references;
+  for (const RatioSide& side : ratio.sides) references.push_back(side.truth);
+  const bool shared = ratio.shares_truth();
+  if (shared) references.resize(1);
+  const auto at = [&](std::span<const double> truths) {
+    std::vector<Influence> sides;
+    for (std::size_t i = 0; i < ratio.sides.size(); ++i) {
+      sides.push_back(ratio.sides[i].influence(truths[shared ? 0 : i]));
+    }
+    return test(ratio, sides, theta);
+  };
+  as_known.log_p_lower = stats::log_p_over_references(
+      [&](std::span<const double> truths) { return at(truths).log_p_lower; }, references);
+  as_known.log_p_upper = stats::log_p_over_references(
+      [&](std::span<const double> truths) { return at(truths).log_p_upper; }, references);
+  return as_known;
+}
+
+// ---- Plans
+
+// Fewer observations do not show how heavy the tail of their squares is.
+constexpr std::uint64_t fewest_for_a_variance = usual_secondaries;
+
+bool varies(const PlannedChannel& channel) {
+  return channel.standard_deviation > 0 || channel.other_deviation > 0;
+}
+
+/// Chi-square and F take flatter data for normal ones and find as little as in those.
+double deviation_for(const Method& method, double deviation) {
+  return method.is.of_normal_values && deviation > 0 ? std::max(std::numbers::sqrt2, deviation)
+                                                     : deviation;
+}
+
+/// One mean as uncertain as theta, of as many observations as the smaller side.
+struct PlannedMean {
+  stats::MeanPlan plan;
+  double count;
+};
+
+PlannedMean mean_plan(const Method& method, const stats::ErrorRates& rates,
+                      const PlannedChannel& channel, const stats::SampleSizes& sizes) {
+  const double n = std::min(sizes.x, sizes.y);
+  const double x = deviation_for(method, channel.standard_deviation) * std::sqrt(n / sizes.x);
+  const double y = deviation_for(method, channel.other_deviation) * std::sqrt(n / sizes.y);
+  return {.plan = {.standard_deviation = std::hypot(x, y),
+                   .allow = channel.regions.allow,
+                   .rates = rates},
+          .count = n};
+}
+
+/// The variance of one observation's influence values of a variance, over its square. It is 2 for a
+/// normal law. A mean's excess kurtosis falls like 1 / its size.
+double averaged_spread(double of_one, double averaged) { return 2 + (of_one - 2) / averaged; }
+
+class LogTheta : public Theta {
+ public:
+  LogTheta(ThetaTraits traits, RatioWords named) : Theta(with_logarithm(traits)), words(named) {}
+
+  void check_margin(const Question& question, const Margin& margin) const override {
+    Theta::check_margin(question, margin);
+    if (margin.relative || !question.of_two()) return;
+    refuse(margin.where, "a margin on a ratio of {} is relative; give it in per cent", words.many);
+  }
+
+  std::optional<ThetaError> error(const Question& question, std::size_t channel,
+                                  std::span<const ChannelData> data) const override {
+    ThetaError error;
+    for (std::size_t i = 0; i < question.compared(); ++i) {
+      const std::optional<double> spread = this->spread(question, i, channel, data);
+      if (!spread) return std::nullopt;
+      double& part = question.subjects[i].setup->observations() ? error.fixed : error.drawn;
+      const double count = static_cast<double>(data[i].moments.count);
+      part = std::hypot(part, std::sqrt(*spread / count));
+      // A drawn reference is new in every run.
+      double& of_truth = question.has_reference_subject ? error.drawn : error.fixed;
+      of_truth =
+          std::hypot(of_truth, std::sqrt(spread_of_truth(question, i, channel, data) / count));
+    }
+    if (!question.references.empty()) {
+      error.fixed = std::hypot(error.fixed, question.references[channel].standard_error);
+    }
+    return error;
+  }
+
+  std::uint64_t choose(const Question& question, const FamilyPlace&, const Pilots&, std::uint64_t,
+                       Plan& plan) const override {
+    return std::max(usual_secondaries, secondaries_of_floor(question, plan));
+  }
+
+  std::optional<std::uint64_t> secondaries(const Question& question, const ErrorShare& share,
+                                           const Pilots& pilots, const Plan& plan) const override {
+    if (!all_piloted(question, pilots)) return std::nullopt;
+    return most_of_channels(question, [&](std::size_t i) -> std::optional<std::uint64_t> {
+      const Regions& regions = plan.regions[i];
+      const auto channel = from_pilots(question, i, regions, pilots, plan);
+      if (!channel || !regions.detect) return std::nullopt;
+      const PlannedMean mean = mean_plan(plan.method, planned_rates(share, regions), *channel, {});
+      return stats::student_t_sample_size(mean.plan, *regions.detect)
+          .value_or(impossible_secondaries);
+    });
+  }
+
+  std::optional<PlannedChannel> planned(const Question& question, const Regions& regions,
+                                        const Pilots& pilots, const Plan& plan) const override {
+    for (const Subject& side : question.subjects) {
+      if (side.setup->observations()) return std::nullopt;
+    }
+    return from_pilots(question, std::nullopt, regions, pilots, plan);
+  }
+
+  PlannedChannel observed(const Question& question, const Regions& regions, std::size_t channel,
+                          std::span<const ChannelData> data) const override {
+    PlannedChannel observed{.regions = regions};
+    for (std::size_t i = 0; i < question.compared(); ++i) {
+      double& deviation = i == 0 ? observed.standard_deviation : observed.other_deviation;
+      deviation = std::sqrt(spread(question, i, channel, data).value_or(0) +
+                            spread_of_truth(question, i, channel, data));
+    }
+    return observed;
+  }
+
+  std::optional<double> detectable(const Question& question, const TestSize& size, const Plan& plan,
+                                   const PlannedChannel& channel) const override {
+    if (!varies(channel)) return std::nullopt;
+    const PlannedMean mean = mean_plan(plan.method, planned_rates(size.share, channel.regions),
+                                       channel, sizes_of(question, size.secondaries));
+    return stats::student_t_detectable(mean.plan, mean.count);
+  }
+
+  std::optional<double> power(const Question& question, const TestSize& size, const Plan& plan,
+                              const PlannedChannel& channel, double effect) const override {
+    if (!varies(channel)) return std::nullopt;
+    const bool within = channel.regions.within();
+    const PlannedMean mean = mean_plan(plan.method, planned_rates(size.share, channel.regions),
+                                       channel, sizes_of(question, size.secondaries));
+    const double one_margin =
+        stats::student_t_power(mean.plan, mean.count, within ? *channel.regions.detect : effect);
+    return within ? std::max(0.0, 2 * one_margin - 1) : one_margin;
+  }
+
+  std::string lack_of_numbers(const DrawnTest& test, std::size_t channel,
+                              std::span<const ChannelData> data) const override {
+    const std::string reason = Theta::lack_of_numbers(test, channel, data);
+    const bool of_one_variance = is.of_spread && !is.joins_channels;
+    return reason.empty() && of_one_variance
+               ? lack_of_variance(test.outcome.question, channel, data)
+               : reason;
+  }
+
+  std::vector<Gate> gates(const TestOutcome& outcome, std::size_t channel,
+                          std::span<const ChannelData> data, double critical) const override {
+    const Question& question = outcome.question;
+    std::vector<Gate> gates;
+    if (outcome.plan.method.keeps == Keeps::blocks) return gates;
+    const std::string name = channel_suffix(question, channel);
+    std::vector<Influence> sides;
+    for (std::size_t i = 0; i < question.compared(); ++i) {
+      const std::string mine = name + " of " + question.subjects[i].estimator->name;
+      const std::uint64_t count = data[i].moments.count;
+      if (is.of_spread && count < fewest_for_a_variance) {
+        gates.push_back(gate_of(reports::Gate{.name = "observations of a variance",
+                                              .value = static_cast<double>(count),
+                                              .limit = static_cast<double>(fewest_for_a_variance),
+                                              .state = "red"},
+                                mine));
+      }
+      const std::optional<Influence> influence = this->influence(question, i, channel, data);
+      if (!influence) return gates;
+      sides.push_back(*influence);
+      if (influence->relative.m2 > 0) {
+        gates.push_back(gate_of(stats::dominance_gate(influence->relative), mine));
+      }
+    }
+    const auto& x = sides[0].relative;
+    if (sides.size() == 1 && x.m2 > 0) {
+      gates.push_back(gate_of(stats::residual_skewness_gate(x, {.value = 1}, critical), name));
+    } else if (sides.size() == 2 && x.m2 + sides[1].relative.m2 > 0) {
+      gates.push_back(
+          gate_of(stats::residual_skewness_gate(x, sides[1].relative, 1, critical), name));
+    }
+    return gates;
+  }
+
+  /// A subject's side of the ratio. Throws std::domain_error if it has none.
+  virtual RatioSide side(const Question&, std::size_t subject, std::size_t channel,
+                         std::span<const ChannelData>) const = 0;
+  /// True if the data tell a subject's influence values.
+  virtual bool tells(const ChannelData&) const = 0;
+  /// ln of the ratio, or of the one quantity, where theta is 0.
+  virtual double log_null(const Question& question, std::size_t channel,
+                          std::span<const ChannelData>) const {
+    return std::log(question.of_two() ? question.factor : question.references[channel].value);
+  }
+
+  /// True if sides are inverses of the quantities.
+  virtual bool is_inverse() const { return false; }
+
+  /// The variance of an observation's influence values over the quantity's square, for observations
+  /// of `averaged` of the pilot's primaries; by default that of a variance.
+  virtual std::optional<double> predicted_spread(const Question&, const PilotMoments& pilot,
+                                                 double averaged) const {
+    if (!(pilot.values.m2 > 0)) return std::nullopt;
+    return averaged_spread(pilot.values.kurtosis() - 1, averaged);
+  }
+
+  /// The same from the test's own data.
+  virtual std::optional<double> spread(const Question& question, std::size_t subject,
+                                       std::size_t channel,
+                                       std::span<const ChannelData> data) const {
+    const std::optional<Influence> influence = this->influence(question, subject, channel, data);
+    if (!influence) return std::nullopt;
+    const double error = influence->relative.standard_error();
+    return static_cast<double>(data[subject].moments.count) * error * error;
+  }
+
+  /// Count times the variance that the truth's own error makes.
+  virtual double spread_of_truth(const Question&, std::size_t, std::size_t,
+                                 std::span<const ChannelData>) const {
+    return 0;
+  }
+
+  const RatioWords words;
+
+ private:
+  static ThetaTraits with_logarithm(ThetaTraits traits) {
+    traits.logarithm = true;
+    return traits;
+  }
+
+  /// A subject's influence values, with the truth as known; nullopt if the data do not tell.
+  std::optional<Influence> influence(const Question& question, std::size_t subject,
+                                     std::size_t channel, std::span<const ChannelData> data) const {
+    if (!tells(data[subject])) return std::nullopt;
+    const RatioSide side = this->side(question, subject, channel, data);
+    return side.influence(side.truth.known.value);
+  }
+
+  std::optional<double> pilot_spread(const Question& question, std::size_t subject,
+                                     std::optional<std::size_t> channel, const Pilots& pilots,
+                                     const Plan& plan) const {
+    const Subject& side = question.subjects[subject];
+    const Pilot& pilot = *pilot_of(side, pilots);
+    const double averaged = side.averaged(plan.primaries[subject]);
+    std::optional<double> most;
+    for (std::size_t i = 0; i < side.channels.size(); ++i) {
+      if (channel && !is.joins_channels && i != *channel) continue;
+      const std::size_t index = side.channels[i];
+      const Moments values = pilot.moments(index);
+      const PilotMoments seen{.values = values, .joint = joint_moments(pilot.sums->details(index))};
+      const auto spread = predicted_spread(question, seen, averaged);
+      if (spread) most = std::max(most.value_or(0), *spread);
+    }
+    return most;
+  }
+
+  /// The plan of one channel, or of the worst; nullopt if a pilot has no spread there.
+  std::optional<PlannedChannel> from_pilots(const Question& question,
+                                            std::optional<std::size_t> channel,
+                                            const Regions& regions, const Pilots& pilots,
+                                            const Plan& plan) const {
+    if (!all_piloted(question, pilots)) return std::nullopt;
+    PlannedChannel planned{.regions = regions};
+    for (std::size_t i = 0; i < question.compared(); ++i) {
+      const std::optional<double> spread = pilot_spread(question, i, channel, pilots, plan);
+      if (!spread) return std::nullopt;
+      (i == 0 ? planned.standard_deviation : planned.other_deviation) = std::sqrt(*spread);
+    }
+    if (!varies(planned)) return std::nullopt;
+    return planned;
+  }
+};
+
+/// The name of theta before its logarithm: "ratio of costs", "cost over the reference".
+std::string quantity_of(const Question& question) {
+  const RatioWords& words = dynamic_cast<const LogTheta&>(*question.theta).words;
+  return question.of_two() ? fmt::format("ratio of {}", words.many)
+                           : fmt::format("{} over the reference", words.one);
+}
+
+Evidence by_influence(const Method&, const Question& question, std::size_t channel,
+                      std::span<const ChannelData> data) {
+  const auto& family = dynamic_cast<const LogTheta&>(*question.theta);
+  LogRatio ratio{.log_null = family.log_null(question, channel, data),
+                 .sign = family.is_inverse() ? -1.0 : 1.0};
+  std::vector<Influence> known;
+  double variance = 0;
+  for (std::size_t i = 0; i < question.compared(); ++i) {
+    ratio.sides.push_back(family.side(question, i, channel, data));
+    known.push_back(ratio.sides[i].influence(ratio.sides[i].truth.known.value));
+    variance += std::pow(known.back().relative.standard_error(), 2);
+  }
+  const double second = known.size() == 1 ? 0 : known[1].log_value;
+  const double estimate = ratio.sign * (known[0].log_value - second) - ratio.log_null;
+  const auto at = [=](double theta) {
+    const TestResult as_known = test(ratio, known, theta);
+    return ratio.uncertain() ? over_truths(ratio, as_known, theta) : as_known;
+  };
+  const double error = std::sqrt(variance);
+  const auto interval = [=](double confidence) {
+    if (error == 0) return Interval{estimate, estimate, confidence};
+    return interval_by_inversion(at, {.estimate = estimate, .step = error}, confidence);
+  };
+  return {.estimate = estimate,
+          .at = at,
+          .interval = interval,
+          .quantity = quantity_of(question),
+          .ratio = true,
+          .exact = error == 0};
+}
+
+/// The row of the one method of influence values, for a family that keeps them so.
+MethodRow influence_row(bool (*answers)(const Question&), Keeps keeps) {
+  return {"influence-t",
+          "Student's t of influence values with Hall's correction: variances, costs, efficiencies",
+          answers,
+          keeps,
+          by_influence,
+          {.over_looks = stats::LookLaw::independent_increments}};
+}
+
+// ---- Variances
+
+/// The variance of the first over that of the second, or over the number, where theta is 0.
+double null_of(const Question& question, std::size_t channel, std::span<const ChannelData> data) {
+  const double x = question.subjects[0].averaged(data[0].primaries);
+  if (!question.of_two()) return question.references[channel].value / x;
+  return question.factor * question.subjects[1].averaged(data[1].primaries) / x;
+}
+
+/// By chi-square or F, for normal values.
+Evidence of_normal_values(const Method&, const Question& question, std::size_t channel,
+                          std::span<const ChannelData> data) {
+  const Moments x = data[0].moments;
+  const Moments y = question.of_two() ? data[1].moments : Moments{};
+  const bool two = question.of_two();
+  const double null = null_of(question, channel, data);
+  const auto at = [=](double theta) {
+    const double value = null * std::exp(theta);
+    return two ? stats::f_ratio(x, y, value) : stats::chi_square_variance(x, value);
+  };
+  const auto interval = [=](double confidence) {
+    return map_ends(two ? stats::f_ratio_interval(x, y, confidence)
+                        : stats::chi_square_variance_interval(x, confidence),
+                    [=](double value) { return std::log(value / null); });
+  };
+  return {.estimate = std::log(x.variance() / (two ? y.variance() : 1) / null),
+          .at = at,
+          .interval = interval,
+          .quantity = quantity_of(question),
+          .ratio = true};
+}
+
+/// True if the pilot leaves no doubt that F and chi-square keep their level. Adds a gate for each
+/// channel.
+bool are_near_normal(const Question& question, const std::vector<Known>& channels, double critical,
+                     std::vector<stats::Gate>& gates) {
+  const double limit = kurtosis_limit(critical);
+  bool normal = channels.size() == question.subjects.size() * question.channel_count();
+  for (const Known& known : channels) {
+    constexpr std::uint64_t fewest_with_kurtosis = 4;
+    const bool shows = known.pilot.moments.count >= fewest_with_kurtosis;
+    const double upper = shows ? stats::kurtosis_upper_limit(known.pilot.moments) / known.averaged
+                               : std::numeric_limits<double>::infinity();
+    const bool green = upper <= limit;
+    normal = normal && !known.rows && green;
+    gates.push_back({.name = "upper limit of the excess kurtosis",
+                     .value = upper,
+                     .low = upper,
+                     .limit = limit,
+                     .state = green ? stats::GateState::green : stats::GateState::amber});
+  }
+  return normal;
+}
+
+/// Says that a row is held against a primary, if one side of two is a file; else "".
+std::string rows_beside_primaries(const Question& question) {
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Subject& rows = question.subjects[i];
+    const Subject& other = question.subjects[1 - i];
+    if (!is_recorded(rows) || !other.averages) continue;
+    return fmt::format(
+        "; a row of `{}` is held against a single primary of `{}`: rows that are means of n have a "
+        "variance n times less, and the claim on them a factor n",
+        rows.estimator->name, other.estimator->name);
+  }
+  return "";
+}
+
+/// theta = ln(Var x / v0), or ln(Var x / (c Var y)), each of one primary if the estimator averages.
+class VarianceTheta final : public LogTheta {
+ public:
+  VarianceTheta() : LogTheta({.of_moments = true, .of_spread = true}, {"variance", "variances"}) {}
+
+  const std::vector<MethodRow>& methods() const override {
+    static const std::vector<MethodRow> table{
+        {"F",
+         "F: two variances of near-normal values",
+         [](const Question& q) { return q.of_two(); },
+         Keeps::moments,
+         of_normal_values,
+         {.of_normal_values = true, .over_looks = stats::LookLaw::independent_increments}},
+        {"chi-square",
+         "chi-square: a variance of near-normal values",
+         [](const Question& q) { return !q.of_two(); },
+         Keeps::moments,
+         of_normal_values,
+         {.of_normal_values = true, .over_looks = stats::LookLaw::independent_increments}},
+        influence_row(any_question, Keeps::powers)};
+    return table;
+  }
+
+  std::uint64_t choose(const Question& question, const FamilyPlace& place, const Pilots& pilots,
+                       std::uint64_t most, Plan& plan) const override {
+    const auto channels = known_channels(question, pilots, plan);
+    const double x = critical_value(smallest_level(question, place),
+                                    is_two_sided(question.test->claim.relation));
+    std::vector<stats::Gate> gates;
+    const bool normal = are_near_normal(question, channels, x, gates);
+    if (!question.test->method && !normal) plan.method = find_method(question, "influence-t");
+    if (!plan.method.is.of_normal_values) {
+      return LogTheta::choose(question, place, pilots, most, plan);
+    }
+    for (std::size_t i = 0; i < channels.size(); ++i) note(plan, channels[i], gates[i]);
+    return least_secondaries;
+  }
+
+  std::string hint(const Question& question) const override {
+    return question.of_two() ? rows_beside_primaries(question) : "";
+  }
+
+  std::optional<ConstantVerdict> settled(const Question& question, std::size_t channel,
+                                         std::span<const ChannelData> data, const Regions& regions,
+                                         const ErrorShare&) const override {
+    if (question.of_two()) return std::nullopt;
+    return judge_constant_variance(question, channel, data[0], regions);
+  }
+
+  std::vector<Gate> gates(const TestOutcome& outcome, std::size_t channel,
+                          std::span<const ChannelData> data, double critical) const override {
+    if (!outcome.plan.method.is.of_normal_values) {
+      return LogTheta::gates(outcome, channel, data, critical);
+    }
+    std::vector<Gate> gates;
+    const Question& question = outcome.question;
+    for (std::size_t subject = 0; subject < data.size(); ++subject) {
+      const Moments& moments = data[subject].moments;
+      // Three values cannot show a kurtosis.
+      if (!(moments.m2 > 0) || moments.count <= 3) continue;
+      gates.push_back(gate_of(
+          stats::kurtosis_gate(moments),
+          channel_suffix(question, channel) + " of " + question.subjects[subject].estimator->name));
+    }
+    return gates;
+  }
+
+ private:
+  RatioSide side(const Question&, std::size_t subject, std::size_t,
+                 std::span<const ChannelData> data) const override {
+    return without_truth(stats::influence_of_variance(powers_of_values(data[subject])));
+  }
+  // Fewer do not tell a kurtosis.
+  bool tells(const ChannelData& data) const override { return data.moments.count >= 4; }
+  double log_null(const Question& question, std::size_t channel,
+                  std::span<const ChannelData> data) const override {
+    return std::log(null_of(question, channel, data));
+  }
+};
+
+const VarianceTheta variance_theta;
+
+// ---- Costs, efficiencies and total variances
+
+/// The values with the cost that the test counts, rays or samples.
+const JointMoments& by_its_cost(const Question& question, std::span<const JointMoments> joint) {
+  return joint[question.test->cost == CostKind::samples ? samples_cost : rays_cost];
+}
 
 /// Count times the variance of ln(mean squared error) that the truth's own error makes, to first
 /// and second order. More observations do not reduce it.
@@ -26,19 +584,19 @@ double spread_of_truth(const Moments& x, const Constant& truth) {
   return n * of_truth * of_truth;
 }
 
-stats::Influence cost_of(const Question& question, std::size_t subject, const ChannelData& data) {
-  stats::Influence cost = stats::influence_of_mean(counted_cost(question, data).cost());
+Influence cost_of(const Question& question, std::size_t subject, const ChannelData& data) {
+  Influence cost = stats::influence_of_mean(counted_cost(question, data).cost());
   cost.log_value -= std::log(question.subjects[subject].averaged(data.primaries));
   return cost;
 }
 
-stats::Influence total_variance_of(const Question& question, std::size_t subject,
-                                   const ChannelData& data) {
+Influence total_variance_of(const Question& question, std::size_t subject,
+                            const ChannelData& data) {
   if (!(data.group_variances.mean > 0)) {
     throw std::domain_error("no channel of `" + question.subjects[subject].estimator->name +
                             "` varies: it has no total variance");
   }
-  stats::Influence total = stats::influence_of_mean(data.group_variances);
+  Influence total = stats::influence_of_mean(data.group_variances);
   total.log_value += std::log(question.subjects[subject].averaged(data.primaries));
   return total;
 }
@@ -224,13 +782,65 @@ bool is_biased(const Subject& subject) {
 /// it.
 void require_primaries(const Subject& subject) {
   if (!subject.averages || subject.estimator->primaries) return;
-  throw InputError(subject.estimator->where,
-                   fmt::format("the mean squared error of `{}` depends on how many primaries it "
-                               "averages: give it `primaries`",
-                               subject.estimator->name));
+  refuse(subject.estimator->where,
+         "the mean squared error of `{}` depends on how many primaries it averages: give it "
+         "`primaries`",
+         subject.estimator->name);
 }
 
 }  // namespace
+
+const JointMoments& counted_cost(const Question& question, const ChannelData& data) {
+  const JointMoments& sample = by_its_cost(question, data.joint);
+  if (sample.of_cost.mean > 0) return sample;
+  throw std::domain_error(
+      "no cost was counted: an estimator that traces no rays counts its `samples`; say `cost: "
+      "samples`");
+}
+
+JointMoments powers_of_values(const ChannelData& data) {
+  return data.joint.empty() ? stats::joint_of_four(data.moments) : data.joint.front();
+}
+
+Constant truth_of(const Question& question, std::size_t subject, std::size_t channel,
+                  std::span<const ChannelData> data) {
+  if (!question.has_reference_subject) return question.truths[subject][channel];
+  const Moments& reference = data.back().moments;
+  return {reference.mean, reference.standard_error()};
+}
+
+Question bind_variance(const TestEntry& test, const Estimators& estimators) {
+  const Claim& claim = test.claim;
+  Question question{.test = &test,
+                    .theta = &variance_theta,
+                    .subjects = {estimates(claim.left.source, estimators)}};
+  if (const ScaledQuantity* const other = other_side(claim)) {
+    question.factor = other->factor;
+    question.subjects.push_back(estimates(other->quantity.source, estimators));
+  } else {
+    const auto* const number = std::get_if<Constant>(&claim.right);
+    if (number != nullptr && number->standard_error > 0) {
+      refuse(claim.left.where,
+             "a variance is tested against an exact number: `+-` has no method here");
+    }
+    question.references = references_of(claim, question.subjects[0], analytic_variance);
+  }
+  return question;
+}
+
+Question bind_worst_variance(const TestEntry& test, const Estimators& estimators) {
+  const Claim& claim = test.claim;
+  const Subject subject = estimates(claim.left.source, estimators);
+  const bool bounded = claim.relation == Relation::at_most || claim.relation == Relation::less;
+  const bool number = std::holds_alternative<Constant>(claim.right);
+  if (subject.channels.size() == 1 || (bounded && number)) return bind_variance(test, estimators);
+  refuse(claim.left.where,
+         "`worst_variance` of {} channels is bounded by a number from above (`<=` or `<`): that "
+         "every channel's variance is; there is no method for another claim",
+         subject.channels.size());
+}
+
+const Theta& theta_of_variances() { return variance_theta; }
 
 Question bind_cost(const TestEntry& test, const Estimators& estimators) {
   Question question = one_or_two(test, cost_theta, estimators);
@@ -254,8 +864,7 @@ Question bind_efficiency(const TestEntry& test, const Estimators& estimators) {
                                         : truths_of(test, subject, sources[i]);
   }
   if (any && test.cost == CostKind::seconds) {
-    throw InputError(test.where,
-                     "a mean squared error per second has no method; count `rays` or `samples`");
+    refuse(test.where, "a mean squared error per second has no method; count `rays` or `samples`");
   }
   add_reference(question, estimators);
   return question;

@@ -1,4 +1,4 @@
-#include "harness/families/slope.h"
+#include "stats/variances/slope.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -8,37 +8,226 @@
 #include <limits>
 
 #include "harness/families/families.h"
-#include "harness/families/log_theta.h"
 #include "harness/plan/sizes.h"
 #include "harness/question/question_sources.h"
 #include "harness/run/evaluate.h"
+#include "harness/suite/suite.h"
 #include "harness/theta/constant.h"
 #include "stats/gates/assumption_gates.h"
 #include "stats/variances/influence.h"
-#include "stats/variances/slope.h"
 
 namespace assay::harness {
 namespace {
+
+// ---- Evidence
+
+using stats::Moments;
+using stats::SlopeData;
+using stats::SlopePoint;
+
+// The gate is red below this p, however small the test's level.
+constexpr double least_p_of_fit = 1e-5;
+
+bool of_costs(const Question& question) { return question.test->claim.left.row->counts_cost; }
+
+/// Each point of a bias has a truth.
+bool of_biases(const Question& question) { return !question.truths.empty(); }
+
+bool of_logarithms(const Question& question) {
+  return question.is().of_spread || of_costs(question);
+}
+
+/// The cost or the variance of a primary at point i.
+stats::Influence influence_of(const Question& question, std::size_t i, const ChannelData& data) {
+  const double averaged = std::log(question.subjects[i].averaged(data.primaries));
+  stats::Influence influence = of_costs(question)
+                                   ? stats::influence_of_mean(counted_cost(question, data).cost())
+                                   : stats::influence_of_variance(powers_of_values(data));
+  influence.log_value += of_costs(question) ? -averaged : averaged;
+  return influence;
+}
+
+/// True if one reference serves all points: its error shifts them together.
+bool reference_is_shared(const Question& question) {
+  return question.has_reference_subject || question.test->reference_number ||
+         question.test->over->parameter == "primaries";
+}
+
+SlopeData biases(const Question& question, std::size_t channel, std::span<const ChannelData> data) {
+  SlopeData slope;
+  for (std::size_t i = 0; i < question.compared(); ++i) {
+    const Moments& x = data[i].moments;
+    SlopePoint point{
+        .size = question.sizes[i], .estimate = x.mean, .standard_error = x.standard_error()};
+    if (of_biases(question)) {
+      const Constant truth = truth_of(question, i, channel, data);
+      point.estimate -= truth.value;
+      if (reference_is_shared(question)) {
+        slope.reference_error = truth.standard_error;
+      } else {
+        point.standard_error = std::hypot(point.standard_error, truth.standard_error);
+      }
+    }
+    slope.points.push_back(point);
+  }
+  return slope;
+}
+
+SlopeData points_of(const Question& question, std::size_t channel,
+                    std::span<const ChannelData> data) {
+  if (!of_logarithms(question)) return biases(question, channel, data);
+  SlopeData slope{.scale = stats::SlopeScale::logarithms};
+  for (std::size_t i = 0; i < question.compared(); ++i) {
+    const stats::Influence influence = influence_of(question, i, data[i]);
+    slope.points.push_back({.size = question.sizes[i],
+                            .estimate = influence.log_value,
+                            .standard_error = influence.relative.standard_error()});
+  }
+  return slope;
+}
+
+bool is_exact(const SlopeData& data) {
+  return std::ranges::all_of(data.points,
+                             [](const SlopePoint& point) { return point.standard_error == 0; });
+}
+
+/// Least and largest slope between neighbours, without error.
+struct Slopes {
+  double least = std::numeric_limits<double>::infinity();
+  double most = -std::numeric_limits<double>::infinity();
+};
+
+Slopes exact_slopes(const SlopeData& data) {
+  Slopes slopes;
+  for (std::size_t i = 1; i < data.points.size(); ++i) {
+    const SlopePoint& a = data.points[i - 1];
+    const SlopePoint& b = data.points[i];
+    const double slope = (b.estimate - a.estimate) / std::log(b.size / a.size);
+    slopes.least = std::min(slopes.least, slope);
+    slopes.most = std::max(slopes.most, slope);
+  }
+  return slopes;
+}
+
+// Bound on the rounding of quotients of logarithms of whole numbers.
+constexpr double exact_tolerance = 1e-12;
+
+/// Distance of a slope from the claimed one; 0 within rounding.
+double beyond(double slope, double null) {
+  const double difference = slope - null;
+  return std::abs(difference) <= exact_tolerance ? 0 : difference;
+}
+
+/// Costs that never vary have exact slopes.
+Evidence exact_evidence(const SlopeData& data, double null) {
+  const Slopes slopes = exact_slopes(data);
+  constexpr double impossible = std::numeric_limits<double>::lowest();
+  const auto at = [=](double theta) {
+    const double slope = null + theta;
+    stats::TestResult result{.statistic = (slopes.least + slopes.most) / 2 - slope,
+                             .distribution = {"bound", {}}};
+    if (slopes.most > slope + exact_tolerance) result.log_p_upper = impossible;
+    if (slopes.least < slope - exact_tolerance) result.log_p_lower = impossible;
+    return result;
+  };
+  const auto interval = [=](double confidence) {
+    return stats::Interval{beyond(slopes.least, null), beyond(slopes.most, null), confidence};
+  };
+  return {.estimate = beyond((slopes.least + slopes.most) / 2, null),
+          .at = at,
+          .interval = interval,
+          .quantity = "difference from the claimed slope"};
+}
+
+/// Theta is the exponent minus the claimed one. Biases and means are fitted as they are, variances
+/// and costs by their logarithms (stats/variances/slope.h). Costs that never vary are exact.
+Evidence slope(const Method&, const Question& question, std::size_t channel,
+               std::span<const ChannelData> data) {
+  const SlopeData points = points_of(question, channel, data);
+  const double null = question.references[channel].value;
+  if (is_exact(points)) return exact_evidence(points, null);
+  const auto at = [=](double theta) { return stats::slope_test(points, null + theta); };
+  const auto interval = [=](double confidence) {
+    // The set takes each end at the whole level (stats/variances/slope.h).
+    const stats::Interval hull = stats::slope_set(points, (1 + confidence) / 2);
+    return stats::Interval{hull.low - null, hull.high - null, confidence};
+  };
+  return {.estimate = stats::slope_estimate(points).slope - null,
+          .at = at,
+          .interval = interval,
+          .quantity = "difference from the claimed slope"};
+}
+
+/// Gates of the points whose logarithms are fitted, on the skewness of their influence values.
+std::vector<Gate> skewness_gates(const Question& question, std::size_t channel,
+                                 std::span<const ChannelData> data, double critical) {
+  std::vector<Gate> gates;
+  // Channels share their costs: the first has the gates.
+  if (!of_logarithms(question) || (of_costs(question) && channel != 0)) return gates;
+  for (std::size_t i = 0; i < question.compared(); ++i) {
+    Moments relative = influence_of(question, i, data[i]).relative;
+    if (!(relative.m2 > 0)) continue;
+    // The bend of the logarithm takes 3/2 of their standard deviation off the skewness g1.
+    relative.m3 -= 1.5 * relative.m2 * relative.m2 / static_cast<double>(relative.count);
+    gates.push_back(gate_of(stats::skewness_gate(relative, critical),
+                            " of " + question.subjects[i].estimator->name));
+  }
+  return gates;
+}
+
+/// Checks that the points lie on a power law, by p of the slope that fits best. The gate is red up
+/// to max(`level`, 1e-5); `level` is the largest at which a verdict rejects a slope. A red gate
+/// leaves no slope: to reject all others neither shows nor refutes a claim. Under a power law it is
+/// red with at most this probability.
+Gate power_law_gate(const Question& question, std::size_t channel,
+                    std::span<const ChannelData> data, double level) {
+  const SlopeData points = points_of(question, channel, data);
+  double log_p = 0;
+  if (is_exact(points)) {
+    const Slopes slopes = exact_slopes(points);
+    if (slopes.most - slopes.least > 2 * exact_tolerance) log_p = std::log(0.0);
+  } else {
+    log_p = stats::slope_estimate(points).log_p_best;
+  }
+  const double limit = std::max(least_p_of_fit, level);
+  return gate_of(reports::Gate{.name = "p of a power law",
+                               .value = std::exp(log_p),
+                               .limit = limit,
+                               .state = log_p <= std::log(limit) ? "red" : "green"});
+}
+
+/// Why the points of a sweep cannot be fitted: one has no spread, so its error is unknown. Empty if
+/// all have. Costs that never vary are exact.
+std::string point_without_spread(const Question& question, std::size_t channel,
+                                 std::span<const ChannelData> data) {
+  if (of_costs(question)) return "";
+  for (std::size_t i = 0; i < question.compared(); ++i) {
+    if (!is_constant(question, i, channel, data[i].moments)) continue;
+    return fmt::format(
+        "every observation of `{}` is {:.10g} but for rounding: of a point without spread no error "
+        "is known, and a rare value may be unseen, so that no exponent is fitted",
+        question.subjects[i].estimator->name, data[i].moments.mean);
+  }
+  return "";
+}
 
 // ---- Sizes
 
 // Standard errors that the fitted constant must exceed: a fainter power law cannot be planned.
 constexpr double least_visibility = 3;
 
-stats::Moments moments_of(const Question& question, std::size_t subject, std::size_t channel,
-                          const Pilots& pilots) {
+Moments moments_of(const Question& question, std::size_t subject, std::size_t channel,
+                   const Pilots& pilots) {
   return pilot_channel(question, subject, channel, pilots).moments;
 }
 
 /// The variance of b, or of ln b, at size i from one observation.
 double point_variance(const Question& question, std::size_t i, std::size_t channel,
                       const Pilots& pilots, const Plan& plan) {
-  const stats::Moments& pilot = moments_of(question, i, channel, pilots);
+  const Moments& pilot = moments_of(question, i, channel, pilots);
   const double n = question.subjects[i].averaged(plan.primaries[i]);
   if (!(pilot.m2 > 0)) return 0;
-  if (question.is().of_spread) {
-    return 2 + (pilot.kurtosis() - 3) / n;
-  }
+  if (question.is().of_spread) return 2 + (pilot.kurtosis() - 3) / n;
   return pilot.variance() / n;
 }
 
@@ -53,7 +242,7 @@ Fit fit_constant(const Question& question, std::size_t channel, const Pilots& pi
   double weight = 0;
   double sum = 0;
   for (std::size_t i = 0; i < question.compared(); ++i) {
-    const stats::Moments& pilot = moments_of(question, i, channel, pilots);
+    const Moments& pilot = moments_of(question, i, channel, pilots);
     const double shape = std::pow(question.sizes[i], exponent);
     double truth = 0;
     if (question.has_reference_subject) {
@@ -69,12 +258,10 @@ Fit fit_constant(const Question& question, std::size_t channel, const Pilots& pi
 }
 
 /// Points of one observation each, expected if the claim held with this exponent.
-std::optional<stats::SlopeData> expected_points(const Question& question, std::size_t channel,
-                                                const Pilots& pilots, const Plan& plan,
-                                                double exponent) {
+std::optional<SlopeData> expected_points(const Question& question, std::size_t channel,
+                                         const Pilots& pilots, const Plan& plan, double exponent) {
   const bool logarithms = question.is().of_spread;
-  stats::SlopeData data{.scale =
-                            logarithms ? stats::SlopeScale::logarithms : stats::SlopeScale::values};
+  SlopeData data{.scale = logarithms ? stats::SlopeScale::logarithms : stats::SlopeScale::values};
   Fit fit{.constant = 1, .standard_error = 0};
   if (!logarithms) {
     fit = fit_constant(question, channel, pilots, question.references[channel].value);
@@ -118,11 +305,6 @@ std::optional<std::uint64_t> slope_channel(const Question& question, std::size_t
 /// The level at which the verdict rejects theta: a pass beyond its margin, a fail elsewhere.
 double largest_level(const ErrorShare& share, const Regions& regions) {
   return regions.has_forbidden() ? std::max(share.alpha, share.beta) : share.alpha;
-}
-
-Evidence slope(const Method&, const Question& question, std::size_t channel,
-               std::span<const ChannelData> data) {
-  return evidence_of_slope(question, channel, data);
 }
 
 /// theta = s - the claimed exponent, where the quantity goes like (swept parameter)^s.
@@ -189,15 +371,6 @@ const SlopeTheta variance_slope_theta({.of_spread = true, .fit_decides = true});
 
 // ---- Binding
 
-Value with(const Value& parameters, const std::string& name, const Value& value) {
-  std::vector<Value::Member> members;
-  for (const Value::Member& member : parameters.members()) {
-    if (member.first != name) members.push_back(member);
-  }
-  members.emplace_back(name, value);
-  return Value::map(std::move(members), parameters.where());
-}
-
 /// The estimator at one value of the sweep.
 PreparedEstimator swept(const PreparedEstimator& estimator, const std::string& parameter,
                         const Value& value) {
@@ -207,7 +380,7 @@ PreparedEstimator swept(const PreparedEstimator& estimator, const std::string& p
   } else {
     point = prepare({.name = estimator.name,
                      .plugin = estimator.entry->information.name,
-                     .parameters = with(estimator.given, parameter, value),
+                     .parameters = with_member(estimator.given, parameter, value),
                      .primaries = estimator.primaries,
                      .where = value.where()},
                     estimator.folder);
@@ -225,14 +398,13 @@ void require_slope(const Claim& claim) {
   }
   const std::string last = words.back();
   words.pop_back();
-  throw InputError(claim.left.where,
-                   fmt::format("`slope` takes a {} or {}, not `{}`", fmt::join(words, ", "), last,
-                               claim.left.row->word));
+  refuse(claim.left.where, "`slope` takes a {} or {}, not `{}`", fmt::join(words, ", "), last,
+         claim.left.row->word);
 }
 
 void require_counted(const TestEntry& test) {
   if (test.cost != CostKind::seconds) return;
-  throw InputError(test.where, "a slope of seconds has no method; count `rays` or `samples`");
+  refuse(test.where, "a slope of seconds has no method; count `rays` or `samples`");
 }
 
 /// Variance and cost of an averaging estimator are those of one primary and do not depend on
@@ -241,126 +413,10 @@ void require_slope_of_something(const TestEntry& test, const Subject& subject) {
   const QuantityRow& quantity = *test.claim.left.row;
   const bool of_one = quantity.tested_as_a_ratio;
   if (!of_one || !subject.averages || test.over->parameter != "primaries") return;
-  throw InputError(test.claim.left.where,
-                   fmt::format("`{}` is that of one primary of `{}`, which averages: it does not "
-                               "change with `primaries`, and its slope is 0; sweep a parameter",
-                               quantity.word, test.claim.left.source.estimator));
-}
-
-using stats::Moments;
-using stats::SlopeData;
-using stats::SlopePoint;
-
-// The gate is red below this p, however small the test's level.
-constexpr double least_p_of_fit = 1e-5;
-
-/// Each point of a bias has a truth.
-bool of_biases(const Question& question) { return !question.truths.empty(); }
-
-bool of_logarithms(const Question& question) {
-  return question.is().of_spread || of_costs(question);
-}
-
-/// The cost or the variance of a primary at point i.
-stats::Influence influence_of(const Question& question, std::size_t i, const ChannelData& data) {
-  const double averaged = std::log(question.subjects[i].averaged(data.primaries));
-  stats::Influence influence = of_costs(question)
-                                   ? stats::influence_of_mean(counted_cost(question, data).cost())
-                                   : stats::influence_of_variance(powers_of_values(data));
-  influence.log_value += of_costs(question) ? -averaged : averaged;
-  return influence;
-}
-
-/// True if one reference serves all points: its error shifts them together.
-bool reference_is_shared(const Question& question) {
-  return question.has_reference_subject || question.test->reference_number ||
-         question.test->over->parameter == "primaries";
-}
-
-SlopeData biases(const Question& question, std::size_t channel, std::span<const ChannelData> data) {
-  SlopeData slope;
-  for (std::size_t i = 0; i < question.compared(); ++i) {
-    const Moments& x = data[i].moments;
-    SlopePoint point{
-        .size = question.sizes[i], .estimate = x.mean, .standard_error = x.standard_error()};
-    if (of_biases(question)) {
-      const Constant truth = truth_of(question, i, channel, data);
-      point.estimate -= truth.value;
-      if (reference_is_shared(question)) {
-        slope.reference_error = truth.standard_error;
-      } else {
-        point.standard_error = std::hypot(point.standard_error, truth.standard_error);
-      }
-    }
-    slope.points.push_back(point);
-  }
-  return slope;
-}
-
-SlopeData points_of(const Question& question, std::size_t channel,
-                    std::span<const ChannelData> data) {
-  if (!of_logarithms(question)) return biases(question, channel, data);
-  SlopeData slope{.scale = stats::SlopeScale::logarithms};
-  for (std::size_t i = 0; i < question.compared(); ++i) {
-    const stats::Influence influence = influence_of(question, i, data[i]);
-    slope.points.push_back({.size = question.sizes[i],
-                            .estimate = influence.log_value,
-                            .standard_error = influence.relative.standard_error()});
-  }
-  return slope;
-}
-
-bool is_exact(const SlopeData& data) {
-  return std::all_of(data.points.begin(), data.points.end(),
-                     [](const SlopePoint& point) { return point.standard_error == 0; });
-}
-
-/// Least and largest slope between neighbours, without error.
-struct Slopes {
-  double least = std::numeric_limits<double>::infinity();
-  double most = -std::numeric_limits<double>::infinity();
-};
-
-Slopes exact_slopes(const SlopeData& data) {
-  Slopes slopes;
-  for (std::size_t i = 1; i < data.points.size(); ++i) {
-    const SlopePoint& a = data.points[i - 1];
-    const SlopePoint& b = data.points[i];
-    const double slope = (b.estimate - a.estimate) / std::log(b.size / a.size);
-    slopes.least = std::min(slopes.least, slope);
-    slopes.most = std::max(slopes.most, slope);
-  }
-  return slopes;
-}
-
-// Bound on the rounding of quotients of logarithms of whole numbers.
-constexpr double exact_tolerance = 1e-12;
-
-/// Distance of a slope from the claimed one; 0 within rounding.
-double beyond(double slope, double null) {
-  const double difference = slope - null;
-  return std::abs(difference) <= exact_tolerance ? 0 : difference;
-}
-
-/// Costs that never vary have exact slopes.
-Evidence exact_evidence(const SlopeData& data, double null) {
-  const Slopes slopes = exact_slopes(data);
-  constexpr double impossible = std::numeric_limits<double>::lowest();
-  const auto at = [=](double theta) {
-    const double slope = null + theta;
-    stats::TestResult result{.statistic = (slopes.least + slopes.most) / 2 - slope,
-                             .distribution = {"bound", {}}};
-    if (slopes.most > slope + exact_tolerance) result.log_p_upper = impossible;
-    if (slopes.least < slope - exact_tolerance) result.log_p_lower = impossible;
-    return result;
-  };
-  const auto interval = [=](double confidence) {
-    return stats::Interval{beyond(slopes.least, null), beyond(slopes.most, null), confidence};
-  };
-  return {.estimate = beyond((slopes.least + slopes.most) / 2, null),
-          .at = at,
-          .interval = interval,
-          .quantity = "difference from the claimed slope"};
+  refuse(test.claim.left.where,
+         "`{}` is that of one primary of `{}`, which averages: it does not change with "
+         "`primaries`, and its slope is 0; sweep a parameter",
+         quantity.word, test.claim.left.source.estimator);
 }
 
 }  // namespace
@@ -386,8 +442,7 @@ Question bind_slope(const TestEntry& test, const Estimators& estimators) {
   }
   const Constant number = std::get<Constant>(claim.right);
   if (number.standard_error > 0) {
-    throw InputError(claim.left.where,
-                     "a slope is tested against an exact number: `+-` has no method here");
+    refuse(claim.left.where, "a slope is tested against an exact number: `+-` has no method here");
   }
   require_slope_of_something(test, question.subjects[0]);
   question.references.assign(question.channel_count(), number);
@@ -397,69 +452,5 @@ Question bind_slope(const TestEntry& test, const Estimators& estimators) {
 
 const Theta& theta_of_slopes() { return slope_theta; }
 const Theta& theta_of_variance_slopes() { return variance_slope_theta; }
-
-Evidence evidence_of_slope(const Question& question, std::size_t channel,
-                           std::span<const ChannelData> data) {
-  const SlopeData points = points_of(question, channel, data);
-  const double null = question.references[channel].value;
-  if (is_exact(points)) return exact_evidence(points, null);
-  const auto at = [=](double theta) { return stats::slope_test(points, null + theta); };
-  const auto interval = [=](double confidence) {
-    // The set takes each end at the whole level (stats/variances/slope.h).
-    const stats::Interval hull = stats::slope_set(points, (1 + confidence) / 2);
-    return stats::Interval{hull.low - null, hull.high - null, confidence};
-  };
-  return {.estimate = stats::slope_estimate(points).slope - null,
-          .at = at,
-          .interval = interval,
-          .quantity = "difference from the claimed slope"};
-}
-
-std::vector<Gate> skewness_gates(const Question& question, std::size_t channel,
-                                 std::span<const ChannelData> data, double critical) {
-  std::vector<Gate> gates;
-  // Channels share their costs: the first has the gates.
-  if (!of_logarithms(question) || (of_costs(question) && channel != 0)) return gates;
-  for (std::size_t i = 0; i < question.compared(); ++i) {
-    Moments relative = influence_of(question, i, data[i]).relative;
-    if (!(relative.m2 > 0)) continue;
-    // The bend of the logarithm takes 3/2 of their standard deviation off the skewness g1.
-    relative.m3 -= 1.5 * relative.m2 * relative.m2 / static_cast<double>(relative.count);
-    gates.push_back(gate_of(stats::skewness_gate(relative, critical),
-                            " of " + question.subjects[i].estimator->name));
-  }
-  return gates;
-}
-
-Gate power_law_gate(const Question& question, std::size_t channel,
-                    std::span<const ChannelData> data, double level) {
-  const SlopeData points = points_of(question, channel, data);
-  double log_p = 0;
-  if (is_exact(points)) {
-    const Slopes slopes = exact_slopes(points);
-    if (slopes.most - slopes.least > 2 * exact_tolerance) log_p = std::log(0.0);
-  } else {
-    log_p = stats::slope_estimate(points).log_p_best;
-  }
-  const double limit = std::max(least_p_of_fit, level);
-  return gate_of(reports::Gate{.name = "p of a power law",
-                               .value = std::exp(log_p),
-                               .limit = limit,
-                               .state = log_p <= std::log(limit) ? "red" : "green"});
-}
-
-std::string point_without_spread(const Question& question, std::size_t channel,
-                                 std::span<const ChannelData> data) {
-  if (of_costs(question)) return "";
-  for (std::size_t i = 0; i < question.compared(); ++i) {
-    if (!is_constant(question, i, channel, data[i].moments)) continue;
-    return fmt::format(
-        "every observation of `{}` is {:.10g} but for rounding: of a point without spread no error "
-        "is "
-        "known, and a rare value may be unseen, so that no exponent is fitted",
-        question.subjects[i].estimator->name, data[i].moments.mean);
-  }
-  return "";
-}
 
 }  // namespace assay::harness

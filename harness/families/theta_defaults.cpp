@@ -60,11 +60,10 @@ std::uint64_t Theta::usual_size() const { return usual_secondaries; }
 std::string Theta::why_impossible(const Question& question) const {
   const bool uncertain = std::ranges::any_of(
       question.references, [](const Constant& each) { return each.standard_error > 0; });
-  return uncertain ? "no number of observations would decide this claim: the reference's own "
-                     "standard error is too large for the margin; give a larger margin or a "
-                     "better reference"
-                   : "this claim would take more observations than can be counted; give a larger "
-                     "margin";
+  return uncertain
+             ? "no number of observations would decide this claim: the reference's own standard "
+               "error is too large for the margin; give a larger margin or a better reference"
+             : "this claim would take more observations than can be counted; give a larger margin";
 }
 
 std::string Theta::lack_of_numbers(const DrawnTest& test, std::size_t channel,

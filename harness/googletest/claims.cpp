@@ -13,7 +13,7 @@
 #include "harness/run/looks.h"
 #include "harness/run/pools.h"
 #include "harness/sampling/prepare.h"
-#include "harness/suite/suite_keys.h"
+#include "harness/suite/yaml.h"
 #include "harness/theta/ask.h"
 #include "reports/words/describe.h"
 #include "reports/words/number.h"
@@ -156,11 +156,7 @@ reports::Test tested(const std::string& claim, const Asked& asked, const ClaimBu
   const harness::Question question =
       harness::ask_as_written(suite.tests[0], asked.estimators, seed);
   const std::vector<harness::FamilyPlace> place = harness::places(suite, {question});
-  std::vector<const harness::PreparedEstimator*> used;
-  for (const harness::Subject& subject : question.subjects) used.push_back(subject.estimator);
-  harness::Silence silence;
-  const harness::Pilots pilots = harness::run_pilots(
-      used, harness::pilot_run_of({question}, seed, harness::threads()), silence);
+  const harness::Pilots pilots = harness::pilots_of({question}, seed, harness::threads());
   TestWork work{.outcome = {.question = question,
                             .place = place[0],
                             .plan = harness::plan_test(
@@ -168,6 +164,7 @@ reports::Test tested(const std::string& claim, const Asked& asked, const ClaimBu
                                 harness::choose_primaries({question}, place, pilots))}};
   harness::Pools pools;
   work.pools = pools.for_question(question, work.outcome.plan, seed, pilots);
+  harness::Silence silence;
   harness::sample_in_looks({&work}, pools.all(), {}, silence);
   return harness::record_of_test(work, "", false);
 }

@@ -24,46 +24,11 @@ struct Token {
   bool is_word(std::string_view word) const { return kind == Kind::word && text == word; }
 };
 
-/// "`==`", "the number `3`", "the end of the claim": for messages.
-std::string shown(const Token&);
-
-/// Cuts a claim into words, numbers (with their sign), and ( ) , * % == <= >= < > +-.
-class Lexer {
- public:
-  Lexer(std::string_view text, Location where) : text_(text), where_(std::move(where)) {}
-
-  /// The next token. InputError for an unknown character and for a number that overflows.
-  Token next();
-  /// The next token, without taking it.
-  Token peek() const { return Lexer(*this).next(); }
-  /// The text that is not yet taken.
-  std::string_view rest() const { return text_.substr(at_); }
-
- private:
-  Token word();
-  Token number();
-  Token symbol();
-  Token taken(Token::Kind kind, std::size_t length);
-  bool number_begins() const;
-  char ahead(std::size_t offset) const {
-    return at_ + offset < text_.size() ? text_[at_ + offset] : '\0';
-  }
-  Location place() const {
-    return {where_.file, where_.line, where_.column + static_cast<int>(at_)};
-  }
-
-  std::string_view text_;
-  Location where_;
-  std::size_t at_ = 0;
-};
-
-/// A finite number at the start of `text`, and the number of its characters (0: none).
-struct ScannedNumber {
-  double value = 0;
-  std::size_t length = 0;
-  bool overflows = false;
-};
-ScannedNumber scan_number(std::string_view text);
+/// "`==`", "the number `3`", "the end": for messages.
+std::string shown(const Token& token) {
+  if (token.kind == Token::Kind::end) return "the end";
+  return fmt::format("{}`{}`", token.kind == Token::Kind::number ? "the number " : "", token.text);
+}
 
 /// Longest exponent with its sign; without a limit `0e99999999999` would be read as a number.
 constexpr std::size_t longest_exponent = 6;
@@ -73,6 +38,12 @@ bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z')
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 bool continues_word(char c) { return is_letter(c) || is_digit(c) || c == '-' || c == '/'; }
 
+/// A finite number at the start of `text`, and the number of its characters (0: none).
+struct ScannedNumber {
+  double value = 0;
+  std::size_t length = 0;
+  bool overflows = false;
+};
 ScannedNumber scan_number(std::string_view text) {
   const std::size_t plus = text.starts_with('+') ? 1 : 0;
   const std::size_t sign = plus == 1 || text.starts_with('-') ? 1 : 0;
@@ -89,99 +60,105 @@ ScannedNumber scan_number(std::string_view text) {
   return found;
 }
 
-std::string shown(const Token& token) {
-  switch (token.kind) {
-    case Token::Kind::end:
-      return "the end";
-    case Token::Kind::number:
-      return fmt::format("the number `{}`", token.text);
-    case Token::Kind::word:
-    case Token::Kind::symbol:
-      return fmt::format("`{}`", token.text);
+/// Cuts a claim into words, numbers (with their sign), and ( ) , * % == <= >= < > +-.
+class Lexer {
+ public:
+  Lexer(std::string_view text, Location where) : text_(text), where_(std::move(where)) {}
+
+  /// The next token. InputError for an unknown character and for a number that overflows.
+  Token next() {
+    while (is_blank(ahead(0))) ++at_;
+    if (at_ == text_.size()) return taken(Token::Kind::end, 0);
+    if (is_letter(ahead(0))) return word();
+    if (number_begins()) return number();
+    return symbol();
   }
-  return "";
-}
 
-Token Lexer::next() {
-  while (is_blank(ahead(0))) ++at_;
-  if (at_ == text_.size()) return taken(Token::Kind::end, 0);
-  if (is_letter(ahead(0))) return word();
-  if (number_begins()) return number();
-  return symbol();
-}
+  /// The next token, without taking it.
+  Token peek() const { return Lexer(*this).next(); }
 
-Token Lexer::taken(Token::Kind kind, std::size_t length) {
-  Token token{.kind = kind, .text = std::string(text_.substr(at_, length)), .where = place()};
-  at_ += length;
-  return token;
-}
-
-Token Lexer::word() {
-  std::size_t length = 1;
-  while (continues_word(ahead(length)) ||
-         (ahead(length) == '.' && continues_word(ahead(length + 1)))) {
-    ++length;
+ private:
+  Token taken(Token::Kind kind, std::size_t length) {
+    Token token{.kind = kind, .text = std::string(text_.substr(at_, length)), .where = place()};
+    at_ += length;
+    return token;
   }
-  return taken(Token::Kind::word, length);
-}
 
-bool Lexer::number_begins() const {
-  std::size_t i = ahead(0) == '-' || ahead(0) == '+' ? 1 : 0;
-  if (ahead(i) == '.') ++i;
-  return is_digit(ahead(i));
-}
+  Token word() {
+    std::size_t length = 1;
+    while (continues_word(ahead(length)) ||
+           (ahead(length) == '.' && continues_word(ahead(length + 1)))) {
+      ++length;
+    }
+    return taken(Token::Kind::word, length);
+  }
 
-Token Lexer::number() {
-  const ScannedNumber found = scan_number(rest());
-  const Location where = place();
-  Token token = taken(Token::Kind::number, found.length);
-  token.number = found.value;
-  if (found.overflows) {
-    throw InputError(where, fmt::format("the number `{}` does not fit a double", token.text));
+  bool number_begins() const {
+    std::size_t i = ahead(0) == '-' || ahead(0) == '+' ? 1 : 0;
+    if (ahead(i) == '.') ++i;
+    return is_digit(ahead(i));
   }
-  return token;
-}
 
-Token Lexer::symbol() {
-  for (const std::string_view known : {"==", "<=", ">=", "+-", "<", ">", "(", ")", ",", "*", "%"}) {
-    if (rest().starts_with(known)) return taken(Token::Kind::symbol, known.size());
+  Token number() {
+    const ScannedNumber found = scan_number(rest());
+    const Location where = place();
+    Token token = taken(Token::Kind::number, found.length);
+    token.number = found.value;
+    if (found.overflows) refuse(where, "the number `{}` does not fit a double", token.text);
+    return token;
   }
-  struct Habit {
-    std::string_view written, advice;
-  };
-  static constexpr std::string_view no_arithmetic =
-      "a claim has no arithmetic; compare two quantities, as in `mean(a) == mean(b)` or "
-      "`mean(a) == 2 * mean(b)`";
-  static constexpr std::array habits{
-      Habit{"!=", "a claim cannot be `!=`; claim `==` and expect it to fail, or claim `<` or `>`"},
-      Habit{"~", "write `==`, or `within 1% of` for what need only be close"},
-      Habit{"=", "a lone `=`; did you mean `==`?"},
-      Habit{"±", "write `+-` for `±`"},
-      Habit{"≤", "write `<=` for `≤`"},
-      Habit{"≥", "write `>=` for `≥`"},
-      Habit{"\"", "no quotes inside a claim"},
-      Habit{"'", "no quotes inside a claim"},
-      Habit{"-", no_arithmetic},
-      Habit{"+", no_arithmetic},
-      Habit{"/", no_arithmetic},
-      Habit{".", "the name of a part must follow the `.` at once"},
-  };
-  for (const Habit& habit : habits) {
-    if (rest().starts_with(habit.written)) throw InputError(place(), std::string(habit.advice));
+
+  Token symbol() {
+    for (const std::string_view known :
+         {"==", "<=", ">=", "+-", "<", ">", "(", ")", ",", "*", "%"}) {
+      if (rest().starts_with(known)) return taken(Token::Kind::symbol, known.size());
+    }
+    struct Habit {
+      std::string_view written, advice;
+    };
+    static constexpr std::string_view no_arithmetic =
+        "a claim has no arithmetic; compare two quantities, as in `mean(a) == mean(b)` or `mean(a) "
+        "== 2 * mean(b)`";
+    static constexpr std::array habits{
+        Habit{"!=",
+              "a claim cannot be `!=`; claim `==` and expect it to fail, or claim `<` or `>`"},
+        Habit{"~", "write `==`, or `within 1% of` for what need only be close"},
+        Habit{"=", "a lone `=`; did you mean `==`?"},
+        Habit{"±", "write `+-` for `±`"},
+        Habit{"≤", "write `<=` for `≤`"},
+        Habit{"≥", "write `>=` for `≥`"},
+        Habit{"\"", "no quotes inside a claim"},
+        Habit{"'", "no quotes inside a claim"},
+        Habit{"-", no_arithmetic},
+        Habit{"+", no_arithmetic},
+        Habit{"/", no_arithmetic},
+        Habit{".", "the name of a part must follow the `.` at once"},
+    };
+    for (const Habit& habit : habits) {
+      if (rest().starts_with(habit.written)) refuse(place(), std::string(habit.advice));
+    }
+    std::size_t length = 1;
+    while ((static_cast<unsigned char>(ahead(length)) & 0xC0U) == 0x80) ++length;
+    refuse(place(), "`{}` has no meaning in a claim", rest().substr(0, length));
   }
-  std::size_t length = 1;
-  while ((static_cast<unsigned char>(ahead(length)) & 0xC0U) == 0x80) ++length;
-  throw InputError(place(),
-                   fmt::format("`{}` has no meaning in a claim", rest().substr(0, length)));
-}
+
+  /// The text that is not yet taken.
+  std::string_view rest() const { return text_.substr(at_); }
+  char ahead(std::size_t offset) const {
+    return at_ + offset < text_.size() ? text_[at_ + offset] : '\0';
+  }
+  Location place() const {
+    return {where_.file, where_.line, where_.column + static_cast<int>(at_)};
+  }
+
+  std::string_view text_;
+  Location where_;
+  std::size_t at_ = 0;
+};
 
 using Kind = Token::Kind;
 
-std::vector<std::string> quantity_words() {
-  std::vector<std::string> words;
-  for (const QuantityRow& row : quantities()) words.push_back(row.word);
-  return words;
-}
+std::vector<std::string> quantity_words() { return names_of(quantities(), &QuantityRow::word); }
 
 bool stands_on_the_right(std::string_view word) {
   return word == "analytic" || word == "density" || find_law(word);
@@ -208,7 +185,10 @@ class Parser {
 
   Claim claim() {
     Claim claim;
-    claim.left = left();
+    if (const Token token = lexer_.peek(); token.kind == Kind::number) {
+      refuse(token.where, "a claim begins with a quantity, as in `mean(area) == 0.5`");
+    }
+    claim.left = quantity();
     relation(claim);
     claim.right = side();
     end("the claim");
@@ -224,27 +204,25 @@ class Parser {
   Margin margin() {
     const Token token = lexer_.next();
     if (token.kind != Kind::number) unexpected(token, "a margin, as `0.5%` or `0.002`");
-    Margin margin{.value = token.number, .relative = lexer_.peek().is("%"), .where = token.where};
+    Margin margin{.value = token.number, .relative = take("%"), .where = token.where};
     if (margin.relative) margin.value = percent(token);
-    if (margin.relative) lexer_.next();
-    if (margin.value < 0) fail(token.where, "a margin cannot be negative");
+    if (margin.value < 0) refuse(token.where, "a margin cannot be negative");
     return margin;
   }
 
   void end(const char* what) {
     const Token token = lexer_.next();
-    if (token.is("*")) fail(token.where, "a factor stands before its quantity: `0.5 * mean(b)`");
+    if (token.is("*")) refuse(token.where, "a factor stands before its quantity: `0.5 * mean(b)`");
     if (token.is(",")) {
-      fail(token.where, fmt::format("{} is over before `,`; decimals stand after a point", what));
+      refuse(token.where, "{} is over before `,`; decimals stand after a point", what);
     }
     if (token.is_word("within")) {
-      fail(token.where, fmt::format("{} is over before `within`, which stands in place of the "
-                                    "relation: `mean(a) within 1% of 0.5`",
-                                    what));
+      refuse(token.where,
+             "{} is over before `within`, which stands in place of the relation: `mean(a) within "
+             "1% of 0.5`",
+             what);
     }
-    if (token.kind != Kind::end) {
-      fail(token.where, fmt::format("{} is over before {}", what, shown(token)));
-    }
+    if (token.kind != Kind::end) refuse(token.where, "{} is over before {}", what, shown(token));
   }
 
  private:
@@ -255,16 +233,8 @@ class Parser {
     const int shifted = (exponent.empty() ? 0 : std::stoi(exponent)) - 2;
     const ScannedNumber hundredth =
         scan_number(token.text.substr(0, e) + "e" + std::to_string(shifted));
-    if (hundredth.overflows) fail(token.where, "the margin does not fit a double");
+    if (hundredth.overflows) refuse(token.where, "the margin does not fit a double");
     return hundredth.value;
-  }
-
-  Quantity left() {
-    const Token token = lexer_.peek();
-    if (token.kind == Kind::number) {
-      fail(token.where, "a claim begins with a quantity, as in `mean(area) == 0.5`");
-    }
-    return quantity();
   }
 
   Quantity quantity() {
@@ -275,10 +245,7 @@ class Parser {
     Quantity quantity{.row = known, .where = name.where};
     expect("(", fmt::format("`(` after `{}`", name.text));
     quantity.source = source_of(expect_word("the name of an estimator"));
-    while (lexer_.peek().is(",")) {
-      lexer_.next();
-      quantity.arguments.push_back(expect_number());
-    }
+    while (take(",")) quantity.arguments.push_back(expect_number());
     expect(")", "`)` or `,`");
     return quantity;
   }
@@ -286,7 +253,7 @@ class Parser {
   Quantity slope(const Token& name) {
     expect("(", "`(` after `slope`");
     const Token inner = lexer_.peek();
-    if (inner.is_word("slope")) fail(inner.where, "a slope has no slope");
+    if (inner.is_word("slope")) refuse(inner.where, "a slope has no slope");
     Quantity quantity = this->quantity();
     quantity.slope = true;
     quantity.where = name.where;
@@ -304,7 +271,7 @@ class Parser {
       }
     }
     if (token.kind == Kind::end) {
-      fail(token.where, "the claim says nothing of it yet: add `== analytic`, `<= 0.5`, …");
+      refuse(token.where, "the claim says nothing of it yet: add `== analytic`, `<= 0.5`, …");
     }
     if (!token.is_word("within")) {
       const std::string hint = token.kind == Kind::word ? did_you_mean(token.text, {"within"}) : "";
@@ -325,44 +292,39 @@ class Parser {
     lexer_.next();
     if (token.text == "analytic") return Analytic{};
     if (token.text == "density" || find_law(token.text)) return law(token);
-    fail(token.where, fmt::format("`{}` is nothing that a quantity can be compared with{}",
-                                  token.text, side_advice(token)));
+    refuse(token.where, "`{}` is nothing that a quantity can be compared with{}", token.text,
+           side_advice(token));
   }
 
   Side number_side() {
     const double number = lexer_.next().number;
-    const Token token = lexer_.peek();
-    if (token.is("*")) {
-      lexer_.next();
+    if (take("*")) {
       const Token factor = lexer_.peek();
       if (factor.kind == Kind::number) {
-        fail(factor.where, "a claim has no arithmetic; write the product as one number");
+        refuse(factor.where, "a claim has no arithmetic; write the product as one number");
       }
       return ScaledQuantity{number, quantity()};
     }
-    if (token.is("%")) {
-      fail(token.where, fmt::format("a value has no per cent: write `{:g}`, or a margin, as in "
-                                    "`mean(a) within {:g}% of 0.5`",
-                                    number / 100, number));
+    if (const Token token = lexer_.peek(); token.is("%")) {
+      refuse(
+          token.where,
+          "a value has no per cent: write `{:g}`, or a margin, as in `mean(a) within {:g}% of 0.5`",
+          number / 100, number);
     }
-    if (!token.is("+-")) return Constant{number, 0};
-    lexer_.next();
+    if (!take("+-")) return Constant{number, 0};
     const Location where = lexer_.peek().where;
     const double error = expect_number();
-    if (error < 0) fail(where, "a standard error cannot be negative");
+    if (error < 0) refuse(where, "a standard error cannot be negative");
     return Constant{number, error};
   }
 
   Law law(const Token& name) {
     Law law{.name = name.text, .where = name.where};
     if (!lexer_.peek().is("(")) return law;
-    if (name.text == "density") fail(lexer_.peek().where, "`density` takes no numbers");
+    if (name.text == "density") refuse(lexer_.peek().where, "`density` takes no numbers");
     lexer_.next();
-    law.arguments.push_back(expect_number());
-    while (lexer_.peek().is(",")) {
-      lexer_.next();
-      law.arguments.push_back(expect_number());
-    }
+    do law.arguments.push_back(expect_number());
+    while (take(","));
     expect(")", "`)` or `,`");
     return law;
   }
@@ -372,24 +334,24 @@ class Parser {
     for (const char* of_spread :
          {"stddev", "stdev", "std", "deviation", "standard_deviation", "sd"}) {
       if (name.text != of_spread) continue;
-      fail(name.where,
-           fmt::format("there is no quantity `{}`; square it: `variance(…)`", name.text));
+      refuse(name.where, "there is no quantity `{}`; square it: `variance(…)`", name.text);
     }
     if (name.text == "median") {
-      fail(name.where, "there is no quantity `median`; it is a quantile: `quantile(…, 0.5)`");
+      refuse(name.where, "there is no quantity `median`; it is a quantile: `quantile(…, 0.5)`");
     }
     const std::string near = did_you_mean(name.text, quantity_words());
     if (near.empty() && stands_on_the_right(name.text)) {
-      fail(name.where, fmt::format("`{}` stands on the right, as in `mean(area) == analytic` or "
-                                   "`distribution(x) == normal(0, 1)`",
-                                   name.text));
+      refuse(name.where,
+             "`{}` stands on the right, as in `mean(area) == analytic` or `distribution(x) == "
+             "normal(0, 1)`",
+             name.text);
     }
     if (near.empty() && !lexer_.peek().is("(")) {
-      fail(name.where,
-           fmt::format("expected a quantity, as in `mean({0})`, found `{0}`", name.text));
+      refuse(name.where, "expected a quantity, as in `mean({0})`, found `{0}`", name.text);
     }
-    fail(name.where, fmt::format("there is no quantity `{}`{}", name.text,
-                                 advice(name.text, quantity_words())));
+    refuse(
+        name.where, "there is no quantity `{}`{}", name.text,
+        did_you_mean(name.text, quantity_words(), "expected one of " + listed(quantity_words())));
   }
 
   std::string side_advice(const Token& token) {
@@ -404,12 +366,11 @@ class Parser {
     return fmt::format("; expected {}", expected_side);
   }
 
-  static std::string advice(std::string_view word, const std::vector<std::string>& known) {
-    const std::string near = did_you_mean(word, known);
-    if (!near.empty()) return near;
-    std::string all = "; expected one of";
-    for (const std::string& name : known) all += (name == known[0] ? " " : ", ") + name;
-    return all;
+  /// Takes the symbol if it is next.
+  bool take(std::string_view symbol) {
+    const bool is_next = lexer_.peek().is(symbol);
+    if (is_next) lexer_.next();
+    return is_next;
   }
 
   void expect(std::string_view symbol, const std::string& expected) {
@@ -431,11 +392,7 @@ class Parser {
 
   [[noreturn]] static void unexpected(const Token& token, const std::string& expected,
                                       const std::string& hint = "") {
-    fail(token.where, fmt::format("expected {}, found {}{}", expected, shown(token), hint));
-  }
-
-  [[noreturn]] static void fail(const Location& where, const std::string& why) {
-    throw InputError(where, why);
+    refuse(token.where, "expected {}, found {}{}", expected, shown(token), hint);
   }
 
   static constexpr const char* expected_side =
@@ -444,35 +401,28 @@ class Parser {
   Lexer lexer_;
 };
 
-[[noreturn]] void refuse(const Location& where, const std::string& why) {
-  throw InputError(where, why);
-}
-
 void check_arguments(const Quantity& q) {
   if (!q.row->of_a_probability) {
     if (q.arguments.empty()) return;
-    refuse(q.where,
-           fmt::format("`{}` takes an estimator alone; only `quantile` has a number", q.row->word));
+    refuse(q.where, "`{}` takes an estimator alone; only `quantile` has a number", q.row->word);
   }
   if (q.arguments.size() != 1) {
     refuse(q.where, "`quantile` takes an estimator and one probability: `quantile(x, 0.5)`");
   }
   if (!(q.arguments[0] > 0 && q.arguments[0] < 1)) {
-    refuse(q.where, fmt::format("the probability of a quantile lies between 0 and 1, but it is {}",
-                                q.arguments[0]));
+    refuse(q.where, "the probability of a quantile lies between 0 and 1, but it is {}",
+           q.arguments[0]);
   }
 }
 
 void check_quantity(const Quantity& q) {
   check_arguments(q);
   if (q.row->over_all_channels && !q.source.part.empty()) {
-    refuse(q.source.where,
-           fmt::format("`{}` is over all channels; name the estimator alone, or use "
-                       "`variance`",
-                       q.row->word));
+    refuse(q.source.where, "`{}` is over all channels; name the estimator alone, or use `variance`",
+           q.row->word);
   }
   if (q.slope && q.row->of_a_sampler) {
-    refuse(q.where, fmt::format("`{}` is about a sampler, which has no slope", q.row->word));
+    refuse(q.where, "`{}` is about a sampler, which has no slope", q.row->word);
   }
   if (q.slope && q.row->of_a_law) refuse(q.where, "a distribution has no slope");
 }
@@ -482,19 +432,17 @@ void check_side(const Claim& claim, const ScaledQuantity& side) {
   check_quantity(q);
   const Quantity& left = claim.left;
   if (left.slope || q.slope) refuse(q.where, "a slope is compared with a number");
-  if (left.row->of_a_sampler) {
-    refuse(q.where, fmt::format("`{}` is compared with a number", left.row->word));
-  }
+  if (left.row->of_a_sampler) refuse(q.where, "`{}` is compared with a number", left.row->word);
   if (q.row != left.row) {
-    refuse(q.where, fmt::format("`{}` on the left cannot be compared with `{}`; both sides must be "
-                                "the same quantity",
-                                left.row->word, q.row->word));
+    refuse(q.where,
+           "`{}` on the left cannot be compared with `{}`; both sides must be the same quantity",
+           left.row->word, q.row->word);
   }
   if (side.factor == 1) return;
   if (q.row->of_a_law) refuse(q.where, "a distribution cannot be multiplied");
   if (side.factor == 0) refuse(q.where, "a factor of 0 leaves nothing to compare; give the number");
   if (q.row->never_negative && side.factor < 0) {
-    refuse(q.where, fmt::format("`{}` is never negative; the factor must be above 0", q.row->word));
+    refuse(q.where, "`{}` is never negative; the factor must be above 0", q.row->word);
   }
 }
 
@@ -504,16 +452,15 @@ void check_side(const Claim& claim, const Constant& side) {
     refuse(left.where, "a distribution is compared with `density`, a law or another distribution");
   }
   if (left.row->of_a_sampler && side.standard_error > 0) {
-    refuse(left.where, fmt::format("`{}` is held against an exact number: `+-` has no method here",
-                                   left.row->word));
+    refuse(left.where, "`{}` is held against an exact number: `+-` has no method here",
+           left.row->word);
   }
   if (left.row->never_negative && !left.slope && side.value < 0) {
-    refuse(left.where, fmt::format("`{}` is never negative, but it is compared with {}",
-                                   left.row->word, side.value));
+    refuse(left.where, "`{}` is never negative, but it is compared with {}", left.row->word,
+           side.value);
   }
   if (left.row->tested_as_a_ratio && !left.slope && side.value == 0) {
-    refuse(left.where,
-           fmt::format("`{}` is tested as a ratio: give a number above 0", left.row->word));
+    refuse(left.where, "`{}` is tested as a ratio: give a number above 0", left.row->word);
   }
   const bool has_unit = left.row->relative_to_0 && !left.slope;
   if (claim.relation == Relation::within && claim.margin.relative && side.value == 0 && !has_unit) {
@@ -524,17 +471,15 @@ void check_side(const Claim& claim, const Constant& side) {
 void check_side(const Claim& claim, const Analytic&) {
   const Quantity& left = claim.left;
   if (left.slope || !left.row->may_be_analytic) {
-    refuse(left.where,
-           fmt::format("`analytic` is a mean or a variance; there is none of `{}`{}",
-                       left.slope ? "slope" : left.row->word.c_str(),
-                       left.row->relative_to_0 && !left.slope ? "; claim `bias(…) == 0`" : ""));
+    refuse(left.where, "`analytic` is a mean or a variance; there is none of `{}`{}",
+           left.slope ? "slope" : left.row->word.c_str(),
+           left.row->relative_to_0 && !left.slope ? "; claim `bias(…) == 0`" : "");
   }
 }
 
 void check_side(const Claim& claim, const Law& side) {
   if (!claim.left.row->of_a_law || claim.left.slope) {
-    refuse(side.where,
-           fmt::format("`{}` is a law, to which only `distribution(…)` can be equal", side.name));
+    refuse(side.where, "`{}` is a law, to which only `distribution(…)` can be equal", side.name);
   }
   if (side.name != "density") check_law(side);
 }
@@ -543,9 +488,9 @@ void check_side(const Claim& claim, const Law& side) {
 void check_claim(const Claim& claim) {
   check_quantity(claim.left);
   if (claim.left.row->of_a_law && claim.relation != Relation::equal) {
-    refuse(claim.left.where, fmt::format("laws are equal or not: `distribution(…)` goes with `==`, "
-                                         "not with `{}`",
-                                         to_string(claim.relation)));
+    refuse(claim.left.where,
+           "laws are equal or not: `distribution(…)` goes with `==`, not with `{}`",
+           to_string(claim.relation));
   }
   if (claim.relation == Relation::within && claim.margin.value == 0) {
     refuse(claim.left.where, "a margin of 0 can never be shown; give one above 0");
@@ -579,9 +524,8 @@ Margin parse_margin(std::string_view text, const Location& where, std::string_vi
     parser.end("the margin");
     return margin;
   } catch (const InputError& e) {
-    throw InputError(where, fmt::format("{} must be a margin such as `0.5%` or `0.002`, but it is "
-                                        "`{}`: {}",
-                                        what, text, e.message()));
+    refuse(where, "{} must be a margin such as `0.5%` or `0.002`, but it is `{}`: {}", what, text,
+           e.message());
   }
 }
 
@@ -592,6 +536,65 @@ bool is_estimator_name(std::string_view name) {
   } catch (const InputError&) {
     return false;
   }
+}
+
+const char* to_string(Relation relation) {
+  constexpr const char* names[] = {"==", "<=", ">=", "<", ">", "within"};
+  return names[static_cast<int>(relation)];
+}
+
+namespace {
+
+/// The shortest decimal whose hundredth, correctly rounded, is `value`.
+std::string percent_text(double value) {
+  for (int digits = 1; digits <= 17; ++digits) {
+    const std::string text = fmt::format("{:.{}g}", 100 * value, digits);
+    if (parse_margin(text + "%", {}, "").value == value) return fmt::format("{}", std::stod(text));
+  }
+  // 100 * value would be rounded: move the point in the text instead.
+  const std::string text = fmt::format("{:.16e}", value);
+  const std::size_t e = text.find('e');
+  return fmt::format("{}e{}", text.substr(0, e), std::stoi(text.substr(e + 1)) + 2);
+}
+
+std::string to_string(const ScaledQuantity& side) {
+  const std::string quantity = to_string(side.quantity);
+  return side.factor == 1 ? quantity : fmt::format("{} * {}", side.factor, quantity);
+}
+
+std::string to_string(const Analytic&) { return "analytic"; }
+
+}  // namespace
+
+std::string to_string(const Constant& number) {
+  if (number.standard_error == 0) return fmt::format("{}", number.value);
+  return fmt::format("{} +- {}", number.value, number.standard_error);
+}
+
+std::string to_string(const Law& law) {
+  if (law.arguments.empty()) return law.name;
+  return fmt::format("{}({})", law.name, fmt::join(law.arguments, ", "));
+}
+
+std::string to_string(const Margin& margin) {
+  return margin.relative ? percent_text(margin.value) + "%" : fmt::format("{}", margin.value);
+}
+
+std::string to_string(const Source& source) {
+  return source.part.empty() ? source.estimator : source.estimator + "." + source.part;
+}
+
+std::string to_string(const Quantity& quantity) {
+  std::string text = fmt::format("{}({}", quantity.row->word, to_string(quantity.source));
+  for (const double argument : quantity.arguments) text += fmt::format(", {}", argument);
+  return quantity.slope ? fmt::format("slope({}))", text) : text + ")";
+}
+
+std::string to_string(const Claim& claim) {
+  std::string relation = to_string(claim.relation);
+  if (claim.relation == Relation::within) relation += " " + to_string(claim.margin) + " of";
+  return fmt::format("{} {} {}", to_string(claim.left), relation,
+                     std::visit([](const auto& side) { return to_string(side); }, claim.right));
 }
 
 }  // namespace assay::harness

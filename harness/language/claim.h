@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "estimators/core/value.h"
+#include "harness/base/refuse.h"
 #include "harness/language/quantities.h"
 
 namespace assay::harness {
@@ -94,6 +95,8 @@ Margin parse_margin(std::string_view text, const Location& where, std::string_vi
 /// "0.5%" or "0.002".
 std::string to_string(const Margin&);
 
+/// "0.481" or "0.481 +- 0.0001".
+std::string to_string(const Constant&);
 /// "normal(0, 1)" or "density".
 std::string to_string(const Law&);
 

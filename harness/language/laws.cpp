@@ -1,7 +1,6 @@
 #include "harness/language/laws.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <boost/math/distributions.hpp>
@@ -76,30 +75,27 @@ const LawInformation* find_law(std::string_view name) {
 }
 
 std::string signature(const LawInformation& law) {
-  std::vector<std::string> names;
-  for (const LawParameter& parameter : law.parameters) names.push_back(parameter.name);
-  return fmt::format("{}({})", law.name, fmt::join(names, ", "));
+  return fmt::format("{}({})", law.name, listed(names_of(law.parameters, &LawParameter::name)));
 }
 
 void check_law(const Law& law) {
-  const auto refuse = [&](const std::string& why) { throw InputError(law.where, why); };
   const LawInformation& known = *find_law(law.name);
   if (law.arguments.size() != known.parameters.size()) {
-    refuse(fmt::format("`{}` has {} of its numbers; write {}", law.name, law.arguments.size(),
-                       signature(known)));
+    refuse(law.where, "`{}` has {} of its numbers; write {}", law.name, law.arguments.size(),
+           signature(known));
   }
   for (std::size_t i = 0; i < law.arguments.size(); ++i) {
     if (known.parameters[i].positive && !(law.arguments[i] > 0)) {
-      refuse(fmt::format("`{}` of {} must be above 0, but it is {}", known.parameters[i].name,
-                         signature(known), law.arguments[i]));
+      refuse(law.where, "`{}` of {} must be above 0, but it is {}", known.parameters[i].name,
+             signature(known), law.arguments[i]);
     }
   }
   const bool interval = known.parameters.front().name == "low";
   if (interval && !std::ranges::is_sorted(law.arguments)) {
-    refuse(fmt::format("the numbers of {} must ascend", signature(known)));
+    refuse(law.where, "the numbers of {} must ascend", signature(known));
   }
   if (interval && law.arguments.front() == law.arguments.back()) {
-    refuse(fmt::format("{} with equal ends has no density", signature(known)));
+    refuse(law.where, "{} with equal ends has no density", signature(known));
   }
 }
 

@@ -1,16 +1,73 @@
 #pragma once
 
-// `--ledger FILE`: keeps the evidence of nights with fresh seeds, with its own error budget. Many
-// nights together find a bias that each one misses.
+// Evidence of one run on a claim, in a form that pools over runs, and of all nights of a series.
+//
+// A claim about a number gives an estimate of theta at the last look taken. Its standard error
+// (theta.h) and the observations that it rests on come with it. A family that tells no error gives
+// half its interval of one standard deviation. Claims about distances, of laws and of images, give
+// the p-value over the looks taken.
+//
+// A run that stopped early gives the estimate it has. That is not normal then, since a small one
+// stops sooner. But observations times estimate is a random walk, wherever it is stopped. The
+// ledger's E is a martingale in the observations (optional stopping), so its level holds.
+//
+// A night is left out for what its pilots say and for errors. Its own data never leave it out, as
+// the others would be those that look well: samples without their rare values.
 
 #include <memory>
 #include <string>
+#include <variant>
 #include <vector>
 
+#include "harness/ledger/ledger_book.h"
 #include "harness/record/record_of.h"
+#include "harness/run/evaluate.h"
+#include "harness/theta/decision.h"
 #include "reports/record/record.h"
 
 namespace assay::harness {
+
+struct NightEvidence {
+  NightValue value = {};
+  double reference_error = 0;  ///< The error that all runs share; 0 beside a p-value.
+};
+
+/// Why a test gives nothing that nights could pool.
+struct NoEvidence {
+  std::string why;
+};
+
+std::variant<NightEvidence, NoEvidence> night_evidence(const TestWork& work, std::size_t channel);
+
+/// A hash of claim, margins, plugins, parameters and primaries of its estimators, references and
+/// recorded data.
+std::string series_hash(const TestWork& work, std::size_t channel);
+
+/// ln E after each night, for the null hypothesis "theta is in the range". It is the least over the
+/// range, which lies at the value nearest to the estimate of all nights so far. It is at most E at
+/// the true theta, a martingale, so P(any >= 1 / alpha) <= alpha. P-values know no range.
+std::vector<double> log_e_path(const LedgerSeries& series, const std::vector<LedgerNight>& nights,
+                               const ThetaRange& claimed);
+
+/// The most likely first night of a change, and the range of likely nights. The range holds 90 % of
+/// the posterior (stats::change_point).
+struct Moved {
+  std::size_t night = 0;
+  std::size_t from = 0;
+  std::size_t to = 0;
+};
+Moved moved(const LedgerSeries& series, const std::vector<LedgerNight>& nights,
+            const ThetaRange& claimed);
+
+/// The sum of all nights that have estimates.
+stats::PooledNights pooled_nights(const std::vector<LedgerNight>& nights);
+
+/// The share of a test's error budget for its k-th series: 1 / (zeta(3) k^3). The shares sum to 1,
+/// so a claim keeps its budget however often it is changed or begun anew. The first has 0.83.
+double generation_share(int generation);
+
+// `--ledger FILE`: keeps the evidence of nights with fresh seeds, with its own error budget. Many
+// nights together find a bias that each one misses.
 
 /// InputError, before anything is sampled, if a ledger could not be kept. Reasons are an unreadable
 /// file, a missing folder, and two suites that the ledger could not tell apart.

@@ -8,7 +8,7 @@
 
 #include "harness/base/text_file.h"
 #include "harness/base/text_hash.h"
-#include "harness/suite/suite_keys.h"
+#include "harness/suite/yaml.h"
 #include "reports/words/number.h"
 
 namespace assay::harness {
@@ -31,45 +31,146 @@ constexpr const char* introduction[] = {
 
 std::string header_of(double budget) { return version_words + reports::round_trip(budget); }
 
-std::string line_of(const LedgerSeries& series) {
-  const std::string kind =
-      series.has_estimates() ? "estimates reference " + reports::round_trip(*series.reference_error)
-                             : "p-values";
-  return fmt::format("series {} {} weight {} {} {}", series.hash, kind,
-                     reports::round_trip(series.weight), in_quotes(series.test),
-                     in_quotes(series.channel));
-}
-
-std::string text_of(const stats::NightEstimate& night) {
-  return fmt::format("estimate {} error {} observations {} effective {}",
-                     reports::round_trip(night.difference),
-                     reports::round_trip(night.standard_error),
-                     reports::round_trip(night.observations), reports::round_trip(night.effective));
-}
-std::string text_of(const NightPValue& night) {
-  return "log-p " + reports::round_trip(night.log_p);
-}
-
-std::string line_of(const LedgerNight& night, const LedgerSeries& series) {
-  const std::string value = std::visit([](const auto& each) { return text_of(each); }, night.value);
-  return fmt::format("night {} seed {} commit {} series {} {} {} {}", night.date, night.seed,
-                     night.commit, series.hash, value, in_quotes(series.test),
-                     in_quotes(series.channel));
-}
-
-bool same_place(const LedgerSeries& a, const LedgerSeries& b) {
-  return a.test == b.test && a.channel == b.channel;
-}
-
 constexpr std::string_view escaped = "\"\\\n\t\r";
 constexpr std::string_view letters = "\"\\ntr";
 
-template <class Value>
-std::optional<Value> whole(std::string_view word) {
-  Value value{};
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size()) return std::nullopt;
-  return value;
+/// Writes the fields of a line from left to right.
+class LineWriter {
+ public:
+  void word(std::string_view word) { text_.append(text_.empty() ? "" : " ").append(word); }
+  bool either(std::string_view one, std::string_view other, bool is_one) {
+    word(is_one ? one : other);
+    return is_one;
+  }
+  void field(const std::string& text) { word(text); }
+  void field(std::uint64_t count) { word(fmt::format("{}", count)); }
+  void field(double number) { word(reports::round_trip(number)); }
+  void quoted(const std::string& text) { word(in_quotes(text)); }
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+/// Reads the fields that LineWriter writes.
+class LineReader {
+ public:
+  explicit LineReader(std::string_view line) : rest_(line) {}
+
+  void word(std::string_view wanted) { note(taken() == wanted); }
+  bool either(std::string_view one, std::string_view other, bool /*is_one*/) {
+    const std::string_view word = taken();
+    note(word == one || word == other);
+    return word == one;
+  }
+  void field(std::string& text) {
+    text = taken();
+    note(!text.empty() && text.front() != '"');
+  }
+  template <class Number>
+  void field(Number& number) {
+    const std::string_view word = taken();
+    const char* const end = word.data() + word.size();
+    const auto [read, error] = std::from_chars(word.data(), end, number);
+    note(error == std::errc() && read == end && std::isfinite(static_cast<double>(number)));
+  }
+  void quoted(std::string& text) {
+    skip_blanks();
+    std::size_t i = rest_.starts_with('"') ? 1 : rest_.size();
+    for (; i < rest_.size() && rest_[i] != '"'; ++i) {
+      const bool escape = rest_[i] == '\\' && i + 1 < rest_.size();
+      const std::size_t at = escape ? letters.find(rest_[++i]) : 0;
+      note(at != std::string_view::npos);
+      text += escape ? escaped[std::min(at, escaped.size() - 1)] : rest_[i];
+    }
+    note(i < rest_.size());
+    rest_.remove_prefix(std::min(i + 1, rest_.size()));
+  }
+  /// True if the line has these fields and no more.
+  bool is_read() {
+    skip_blanks();
+    return sound_ && rest_.empty();
+  }
+
+ private:
+  void note(bool sound) { sound_ = sound_ && sound; }
+  void skip_blanks() { rest_.remove_prefix(std::min(rest_.find_first_not_of(' '), rest_.size())); }
+  std::string_view taken() {
+    skip_blanks();
+    const std::string_view word = rest_.substr(0, rest_.find(' '));
+    rest_.remove_prefix(word.size());
+    return word;
+  }
+
+  std::string_view rest_;
+  bool sound_ = true;
+};
+
+template <class Line>
+void visit(Line& line, LedgerSeries& series) {
+  line.word("series");
+  line.field(series.hash);
+  if (line.either("estimates", "p-values", series.has_estimates())) {
+    if (!series.reference_error) series.reference_error.emplace();
+    line.word("reference");
+    line.field(*series.reference_error);
+  }
+  line.word("weight");
+  line.field(series.weight);
+  line.quoted(series.test);
+  line.quoted(series.channel);
+}
+
+/// `of` has the hash, the test and the channel of the night's series.
+template <class Line>
+void visit(Line& line, LedgerNight& night, LedgerSeries& of) {
+  line.word("night");
+  line.field(night.date);
+  line.word("seed");
+  line.field(night.seed);
+  line.word("commit");
+  line.field(night.commit);
+  line.word("series");
+  line.field(of.hash);
+  const bool estimated = std::holds_alternative<stats::NightEstimate>(night.value);
+  if (line.either("estimate", "log-p", estimated)) {
+    if (!estimated) night.value = stats::NightEstimate{};
+    auto& value = std::get<stats::NightEstimate>(night.value);
+    line.field(value.difference);
+    line.word("error");
+    line.field(value.standard_error);
+    line.word("observations");
+    line.field(value.observations);
+    line.word("effective");
+    line.field(value.effective);
+  } else {
+    if (estimated) night.value = NightPValue{};
+    line.field(std::get<NightPValue>(night.value).log_p);
+  }
+  line.quoted(of.test);
+  line.quoted(of.channel);
+}
+
+template <class... Parts>
+std::string line_of(Parts... parts) {
+  LineWriter line;
+  visit(line, parts...);
+  return line.text();
+}
+
+/// "line | 1a2b3c4d": the low 32 bits of a hash.
+std::string with_check(std::string_view line, std::uint64_t hash) {
+  return fmt::format("{} | {:08x}", line, hash & 0xffffffffU);
+}
+
+bool is_possible(const stats::NightEstimate& night) {
+  return night.standard_error >= 0 && night.observations > 0 && night.effective >= 1;
+}
+
+bool is_possible(const NightPValue& night) { return night.log_p <= 0; }
+
+bool same_place(const LedgerSeries& a, const LedgerSeries& b) {
+  return a.test == b.test && a.channel == b.channel;
 }
 
 }  // namespace
@@ -102,7 +203,7 @@ int LedgerBook::generation(std::size_t series) const {
 }
 
 bool LedgerBook::has_seed(const LedgerSeries& of, std::uint64_t seed) const {
-  return std::any_of(nights_.begin(), nights_.end(), [&](const LedgerNight& night) {
+  return std::ranges::any_of(nights_, [&](const LedgerNight& night) {
     return night.seed == seed && same_place(series_[night.series], of);
   });
 }
@@ -147,23 +248,23 @@ class LedgerReader {
 
   LedgerBook read() {
     if (!lines_.empty() && lines_[0].starts_with(earlier_words)) {
-      refuse(
-          fmt::format("an earlier version of assay wrote this ledger, whose nights do not pool "
-                      "with new ones; keep it under another name, and the next run begins anew: "
-                      "mv {0} {0}.1",
-                      file_));
+      refuse(fmt::format(
+          "an earlier version of assay wrote this ledger, whose nights do not pool with new ones; "
+          "keep it under another name, and the next run begins anew: mv {0} {0}.1",
+          file_));
     }
     if (lines_.empty() || !lines_[0].starts_with(version_words)) {
       refuse(
           "this is no ledger of this version: its first line must be `assay-ledger 2 budget B`; "
           "name another file for the ledger");
     }
-    LineFields fields(lines_[0].substr(std::string_view(version_words).size()));
-    const std::optional<double> budget = fields.number();
-    if (!budget || !fields.at_end() || !is_error_rate(*budget)) {
+    LineReader fields(lines_[0].substr(std::string_view(version_words).size()));
+    double budget = 0;
+    fields.field(budget);
+    if (!fields.is_read() || !is_error_rate(budget)) {
       refuse("the budget must be a number from 1e-9 to 0.5");
     }
-    book_ = LedgerBook(*budget);
+    book_ = LedgerBook(budget);
     book_.lines_ = {std::string(lines_[0])};
     book_.check_ = text_hash(lines_[0]);
     for (number_ = 1; number_ < lines_.size(); ++number_) take(lines_[number_]);
@@ -184,8 +285,7 @@ class LedgerReader {
   }
   [[noreturn]] void changed() const {
     refuse(
-        "this line, or one before it, was changed, moved, cut or taken out after it was "
-        "written" +
+        "this line, or one before it, was changed, moved, cut or taken out after it was written" +
         mend());
   }
 
@@ -194,39 +294,35 @@ class LedgerReader {
     if (line.starts_with("begin ")) return take_begin(line);
     if (ended_) refuse("`end` must be the last line" + mend());
     if (line.starts_with("end ")) return take_end(line);
-    const auto [checked, check] = split_check(line);
+    const std::string_view checked = line.substr(0, line.rfind(" | "));
     const std::uint64_t wanted = text_hash(checked, book_.check_);
-    if (with_check(std::string(checked), wanted) != line) changed();
-    LineFields fields(checked);
-    if (line.starts_with("series ")) {
-      take_series(fields);
-    } else {
-      take_night(fields);
-    }
-    if (!fields.at_end()) changed();
+    if (with_check(checked, wanted) != line) changed();
+    line.starts_with("series ") ? take_series(checked) : take_night(checked);
     book_.check_ = wanted;
     book_.keep(std::string(line));
   }
 
   void take_begin(std::string_view line) {
-    LineFields fields(line);
+    LineReader fields(line);
+    std::string test;
     fields.word("begin");
-    const std::optional<std::string> test = fields.text();
-    if (!test || !fields.at_end()) {
+    fields.quoted(test);
+    if (!fields.is_read()) {
       refuse("after `begin` stands the test's id in double quotes, as in the lines of its nights");
     }
-    const auto known = [&](const LedgerSeries& series) { return series.test == *test; };
-    if (std::none_of(book_.series_.begin(), book_.series_.end(), known)) {
-      refuse(fmt::format("the ledger has no test {} before this line", in_quotes(*test)));
+    const auto known = [&](const LedgerSeries& series) { return series.test == test; };
+    if (std::ranges::none_of(book_.series_, known)) {
+      refuse(fmt::format("the ledger has no test {} before this line", in_quotes(test)));
     }
-    book_.begin(*test);
+    book_.begin(test);
   }
 
   void take_end(std::string_view line) {
-    LineFields fields(line);
+    LineReader fields(line);
+    std::uint64_t count = 0;
     fields.word("end");
-    const std::optional<std::uint64_t> count = fields.count();
-    if (!count || !fields.at_end() || *count != book_.nights_.size()) {
+    fields.field(count);
+    if (!fields.is_read() || count != book_.nights_.size()) {
       refuse(fmt::format("the ledger has {} nights before this line: lines were added or taken out",
                          book_.nights_.size()) +
              mend());
@@ -234,64 +330,25 @@ class LedgerReader {
     ended_ = true;
   }
 
-  template <class Value>
-  Value required(std::optional<Value> value) const {
-    if (!value) changed();
-    return *value;
-  }
-  double named(LineFields& fields, const char* name) const {
-    if (!fields.word(name)) changed();
-    return required(fields.number());
-  }
-
-  void take_series(LineFields& fields) {
+  void take_series(std::string_view line) {
     LedgerSeries series;
-    fields.word("series");
-    series.hash = required(fields.any_word());
-    if (fields.word("estimates")) {
-      series.reference_error = named(fields, "reference");
-      if (!(*series.reference_error >= 0)) changed();
-    } else if (!fields.word("p-values")) {
+    LineReader fields(line);
+    visit(fields, series);
+    if (!fields.is_read() || !(series.reference_error.value_or(0) >= 0) ||
+        !(series.weight > 0 && series.weight <= 1)) {
       changed();
     }
-    series.weight = named(fields, "weight");
-    if (!(series.weight > 0 && series.weight <= 1)) changed();
-    series.test = required(fields.text());
-    series.channel = required(fields.text());
     book_.series_.push_back(series);
     book_.closed_.push_back(false);
   }
 
-  NightValue value(LineFields& fields) const {
-    if (fields.word("log-p")) {
-      const NightPValue night{.log_p = required(fields.number())};
-      if (!(night.log_p <= 0)) changed();
-      return night;
-    }
-    stats::NightEstimate night;
-    night.difference = named(fields, "estimate");
-    night.standard_error = named(fields, "error");
-    night.observations = named(fields, "observations");
-    night.effective = named(fields, "effective");
-    const bool possible =
-        night.standard_error >= 0 && night.observations > 0 && night.effective >= 1;
-    if (!possible) changed();
-    return night;
-  }
-
-  void take_night(LineFields& fields) {
+  void take_night(std::string_view line) {
     LedgerNight night;
-    if (!fields.word("night")) changed();
-    night.date = required(fields.any_word());
-    if (!fields.word("seed")) changed();
-    night.seed = required(fields.count());
-    if (!fields.word("commit")) changed();
-    night.commit = required(fields.any_word());
-    if (!fields.word("series")) changed();
-    LedgerSeries of{.hash = required(fields.any_word())};
-    night.value = value(fields);
-    of.test = required(fields.text());
-    of.channel = required(fields.text());
+    LedgerSeries of;
+    LineReader fields(line);
+    visit(fields, night, of);
+    const auto possible = [](const auto& value) { return is_possible(value); };
+    if (!fields.is_read() || !std::visit(possible, night.value)) changed();
     const LedgerSeries* series = book_.open_series(of);
     if (series == nullptr) refuse("no open series above has this night's hash and test" + mend());
     if (series->has_estimates() != std::holds_alternative<stats::NightEstimate>(night.value)) {
@@ -323,76 +380,6 @@ std::string in_quotes(std::string_view text) {
     }
   }
   return out + "\"";
-}
-
-std::string with_check(const std::string& line, std::uint64_t hash) {
-  return fmt::format("{} | {:08x}", line, hash & 0xffffffffU);
-}
-
-std::pair<std::string_view, std::string_view> split_check(std::string_view line) {
-  const std::size_t bar = line.rfind(" | ");
-  if (bar == std::string_view::npos) return {line, {}};
-  return {line.substr(0, bar), line.substr(bar + 3)};
-}
-
-void LineFields::skip_blanks() {
-  rest_.remove_prefix(std::min(rest_.find_first_not_of(' '), rest_.size()));
-}
-
-std::string_view LineFields::next() {
-  skip_blanks();
-  return rest_.substr(0, rest_.find(' '));
-}
-
-bool LineFields::word(std::string_view wanted) {
-  if (next() != wanted) return false;
-  rest_.remove_prefix(wanted.size());
-  return true;
-}
-
-std::optional<std::string> LineFields::any_word() {
-  const std::string_view found = next();
-  if (found.empty() || found.front() == '"') return std::nullopt;
-  rest_.remove_prefix(found.size());
-  return std::string(found);
-}
-
-std::optional<std::uint64_t> LineFields::count() {
-  const std::string_view found = next();
-  rest_.remove_prefix(found.size());
-  return whole<std::uint64_t>(found);
-}
-
-std::optional<double> LineFields::number() {
-  const std::string_view found = next();
-  rest_.remove_prefix(found.size());
-  const std::optional<double> value = whole<double>(found);
-  return value && std::isfinite(*value) ? value : std::nullopt;
-}
-
-std::optional<std::string> LineFields::text() {
-  skip_blanks();
-  if (!rest_.starts_with('"')) return std::nullopt;
-  std::string out;
-  for (std::size_t i = 1; i < rest_.size(); ++i) {
-    if (rest_[i] == '"') {
-      rest_.remove_prefix(i + 1);
-      return out;
-    }
-    if (rest_[i] != '\\') {
-      out += rest_[i];
-      continue;
-    }
-    const std::size_t at = ++i < rest_.size() ? letters.find(rest_[i]) : std::string_view::npos;
-    if (at == std::string_view::npos) return std::nullopt;
-    out += escaped[at];
-  }
-  return std::nullopt;
-}
-
-bool LineFields::at_end() {
-  skip_blanks();
-  return rest_.empty();
 }
 
 }  // namespace assay::harness

@@ -11,6 +11,12 @@
 namespace assay::harness {
 namespace {
 
+// Observations of an averaging estimator's pilot, each one primary. Other pilots have at most as
+// many.
+constexpr std::uint64_t many_observations = 8192;
+// Primaries of an observation that shows whether an averaging estimator averages: these, or the
+// suite's `primaries` if they are fewer.
+constexpr std::uint64_t averaged_primaries = 32;
 // The pilot of an estimator that does not average has as many primaries as the floor of evidence.
 // It has 512 observations at least and many_observations at most. Such an estimator may be a chain.
 constexpr std::uint64_t few_observations = 512;
@@ -22,6 +28,14 @@ constexpr std::uint64_t least_images = 2 * stats::least_replicates;
 
 /// Separates the observations that show whether an estimator averages. No sampler has this name.
 const std::string averages_purpose = "(averages)";
+
+/// Number of images in a pilot; nullopt for an estimator of something else.
+std::optional<std::uint64_t> usual_images(const Setup& setup, std::uint64_t primaries) {
+  const auto image = setup.image();
+  if (!image) return std::nullopt;
+  return std::clamp(image_elements / (image->elements() * primaries), least_images,
+                    few_observations);
+}
 
 /// A program that renders each observation is dear.
 std::uint64_t few_of(const PreparedEstimator& estimator) {
@@ -59,21 +73,13 @@ std::uint64_t averaged_primaries_of(const PreparedEstimator& estimator) {
   return std::min(averaged_primaries, estimator.primaries.value_or(averaged_primaries));
 }
 
-std::shared_ptr<Pool> averaged_pool(const PreparedEstimator& estimator, std::uint64_t seed) {
-  const std::uint64_t primaries = averaged_primaries_of(estimator);
+/// A pool that keeps all values of a pilot.
+std::shared_ptr<Pool> kept_pool(const std::shared_ptr<const Setup>& setup, StreamKey key,
+                                std::uint64_t primaries) {
   const std::uint64_t count = many_observations / primaries;
-  auto pool = std::make_shared<Pool>(
-      estimator.setup, key_of(estimator, seed, 0, averages_purpose + " pilot"), primaries);
+  auto pool = std::make_shared<Pool>(setup, key, primaries);
   for (ChannelPlan& channel : pool->plans()) channel.keep = count;
   pool->request(count);
-  return pool;
-}
-
-std::shared_ptr<Pool> draws_pool(const Subject& subject, std::uint64_t seed) {
-  auto pool = std::make_shared<Pool>(
-      subject.setup, key_of(*subject.estimator, seed, 0, subject.purpose + " pilot"), 1);
-  for (ChannelPlan& channel : pool->plans()) channel.keep = many_observations;
-  pool->request(many_observations);
   return pool;
 }
 
@@ -134,13 +140,6 @@ std::string pilot_name_of(const std::string& estimator, const std::string& purpo
 
 }  // namespace
 
-std::optional<std::uint64_t> usual_images(const Setup& setup, std::uint64_t primaries) {
-  const auto image = setup.image();
-  if (!image) return std::nullopt;
-  return std::clamp(image_elements / (image->elements() * primaries), least_images,
-                    few_observations);
-}
-
 std::string pilot_name(const Subject& subject) {
   return pilot_name_of(subject.estimator->name, subject.purpose);
 }
@@ -193,12 +192,15 @@ std::vector<std::pair<std::string, std::shared_ptr<Pool>>> pilot_pools(
     }
   }
   for (const PreparedEstimator* estimator : estimators) {
-    if (averaged_primaries_of(*estimator) == 1) continue;
+    const std::uint64_t primaries = averaged_primaries_of(*estimator);
+    if (primaries == 1) continue;
+    const StreamKey key = key_of(*estimator, run.seed, 0, averages_purpose + " pilot");
     pools.emplace_back(pilot_name_of(estimator->name, averages_purpose),
-                       averaged_pool(*estimator, run.seed));
+                       kept_pool(estimator->setup, key, primaries));
   }
   for (const Subject* subject : run.draws) {
-    pools.emplace_back(pilot_name(*subject), draws_pool(*subject, run.seed));
+    const StreamKey key = key_of(*subject->estimator, run.seed, 0, subject->purpose + " pilot");
+    pools.emplace_back(pilot_name(*subject), kept_pool(subject->setup, key, 1));
   }
   return pools;
 }
@@ -234,10 +236,19 @@ PilotRun pilot_run_of(const std::vector<Question>& questions, const std::vector<
   return run;
 }
 
-PilotRun pilot_run_of(const std::vector<Question>& questions, std::uint64_t seed,
-                      std::shared_ptr<Executor> executor) {
-  return pilot_run_of(questions, std::vector<bool>(questions.size(), true), seed,
-                      std::move(executor));
+Pilots pilots_of(const std::vector<Question>& questions, std::uint64_t seed,
+                 std::shared_ptr<Executor> executor) {
+  std::map<std::string, const PreparedEstimator*> used;
+  for (const Question& question : questions) {
+    for (const Subject& subject : question.subjects) {
+      used.emplace(subject.estimator->name, subject.estimator);
+    }
+  }
+  std::vector<const PreparedEstimator*> estimators;
+  for (const auto& [name, estimator] : used) estimators.push_back(estimator);
+  Silence silence;
+  const std::vector<bool> all(questions.size(), true);
+  return run_pilots(estimators, pilot_run_of(questions, all, seed, std::move(executor)), silence);
 }
 
 }  // namespace assay::harness

@@ -37,16 +37,6 @@ struct Pilot {
   stats::Moments moments(std::size_t channel) const { return sums->moments(channel); }
 };
 
-/// Observations of an averaging estimator's pilot, each one primary. Other pilots have at most as
-/// many.
-inline constexpr std::uint64_t many_observations = 8192;
-
-/// Primaries of an observation that shows whether an averaging estimator averages: these, or the
-/// suite's `primaries` if they are fewer.
-inline constexpr std::uint64_t averaged_primaries = 32;
-
-/// Number of images in a pilot; nullopt for an estimator of something else.
-std::optional<std::uint64_t> usual_images(const Setup& setup, std::uint64_t primaries);
 /// A pilot keeps the values of estimators with at most so many channels.
 inline constexpr std::size_t most_kept_channels = 64;
 
@@ -124,8 +114,9 @@ std::vector<const Subject*> piloted_draws(const Question& question);
 /// not change it. The chosen ones decide whether a sampler's draws are piloted.
 PilotRun pilot_run_of(const std::vector<Question>& questions, const std::vector<bool>& chosen,
                       std::uint64_t seed, std::shared_ptr<Executor> executor);
-/// The same with all chosen.
-PilotRun pilot_run_of(const std::vector<Question>& questions, std::uint64_t seed,
-                      std::shared_ptr<Executor> executor);
+
+/// The pilots of these questions alone, drawn in silence.
+Pilots pilots_of(const std::vector<Question>& questions, std::uint64_t seed,
+                 std::shared_ptr<Executor> executor);
 
 }  // namespace assay::harness

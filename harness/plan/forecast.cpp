@@ -12,6 +12,53 @@
 namespace assay::harness {
 namespace {
 
+/// Moments as if `count` means of `averaged` primaries each had been drawn.
+stats::Moments scaled(const stats::Moments& pilot, double averaged, std::uint64_t count) {
+  const double n = static_cast<double>(count);
+  stats::Moments moments = pilot;
+  const double spread = pilot.variance() / averaged;
+  const double kurtosis = 3 + (pilot.kurtosis() - 3) / averaged;
+  const double skewness = pilot.skewness() / std::sqrt(averaged);
+  moments.count = count;
+  moments.m2 = spread * (n - 1);
+  moments.m3 = skewness * n * std::pow(moments.m2 / n, 1.5);
+  moments.m4 = kurtosis * moments.m2 * moments.m2 / n;
+  return moments;
+}
+
+/// Data that the pilots predict for a channel at this many secondaries: moments scaled to the
+/// plan's primaries. Returns nullopt if an estimator has no pilot, or no spread in it. Recorded
+/// data take the mean of what they are compared with.
+std::optional<std::vector<ChannelData>> expected_data(const TestOutcome& test, std::size_t channel,
+                                                      const Pilots& pilots,
+                                                      std::uint64_t secondaries) {
+  const Question& question = test.question;
+  // An estimator's pilot says nothing of a sampler's draws.
+  if (!question.is().of_moments) return std::nullopt;
+  std::vector<ChannelData> data(question.subjects.size());
+  std::optional<std::size_t> known;
+  for (std::size_t i = 0; i < data.size(); ++i) {
+    const Subject& side = question.subjects[i];
+    if (side.setup->observations()) continue;
+    const Pilot* const known_pilot = pilot_of(side, pilots);
+    if (known_pilot == nullptr) return std::nullopt;
+    const stats::Moments pilot = known_pilot->moments(side.channels[channel]);
+    if (is_constant(question, i, channel, pilot)) return std::nullopt;
+    const double averaged = side.averaged(test.plan.primaries[i]);
+    data[i] = {.primaries = test.plan.primaries[i],
+               .moments = scaled(pilot, averaged, secondaries)};
+    if (averaged == 1) data[i].values = pilot_channel(question, i, channel, pilots).values;
+    known = i;
+  }
+  if (!known) return std::nullopt;
+  for (std::size_t i = 0; i < data.size(); ++i) {
+    if (!question.subjects[i].setup->observations()) continue;
+    data[i].primaries = data[*known].primaries;
+    data[i].moments = data[*known].moments;
+  }
+  return data;
+}
+
 /// The scores at which a look stops. Scores against the claim are positive.
 stats::StoppingLook stopping_look(const Regions& regions, double error, const ErrorShare& levels) {
   const auto z = [](double level) {
@@ -165,28 +212,11 @@ std::optional<double> detectable_of(const TestOutcome& test, const Pilots& pilot
   return largest;
 }
 
-/// Moments as if `count` means of `averaged` primaries each had been drawn.
-stats::Moments scaled(const stats::Moments& pilot, double averaged, std::uint64_t count) {
-  const double n = static_cast<double>(count);
-  stats::Moments moments = pilot;
-  const double spread = pilot.variance() / averaged;
-  const double kurtosis = 3 + (pilot.kurtosis() - 3) / averaged;
-  const double skewness = pilot.skewness() / std::sqrt(averaged);
-  moments.count = count;
-  moments.m2 = spread * (n - 1);
-  moments.m3 = skewness * n * std::pow(moments.m2 / n, 1.5);
-  moments.m4 = kurtosis * moments.m2 * moments.m2 / n;
-  return moments;
-}
-
 }  // namespace
 
 Forecast forecast(const TestOutcome& test, const Pilots& pilots) {
   if (!test.plan.error.empty() || !test.plan.pilot_error.empty()) return {};
-  if (!test.plan.invalid.empty()) {
-    const Outlook invalid{.invalid = 1};
-    return {.if_true = invalid, .if_off = invalid};
-  }
+  if (!test.plan.invalid.empty()) return {.if_true = Outlook{}, .if_off = Outlook{}};
   Forecast found{.detectable = detectable_of(test, pilots)};
   foresee(test, pilots, found);
   return found;
@@ -198,36 +228,6 @@ std::uint64_t expected_secondaries(const TestOutcome& test, const Pilots& pilots
   const double drawn = found.if_true ? found.if_true->drawn : 1;
   return static_cast<std::uint64_t>(
       std::ceil(drawn * static_cast<double>(test.plan.most_secondaries())));
-}
-
-std::optional<std::vector<ChannelData>> expected_data(const TestOutcome& test, std::size_t channel,
-                                                      const Pilots& pilots,
-                                                      std::uint64_t secondaries) {
-  const Question& question = test.question;
-  // An estimator's pilot says nothing of a sampler's draws.
-  if (!question.is().of_moments) return std::nullopt;
-  std::vector<ChannelData> data(question.subjects.size());
-  std::optional<std::size_t> known;
-  for (std::size_t i = 0; i < data.size(); ++i) {
-    const Subject& side = question.subjects[i];
-    if (side.setup->observations()) continue;
-    const Pilot* const known_pilot = pilot_of(side, pilots);
-    if (known_pilot == nullptr) return std::nullopt;
-    const stats::Moments pilot = known_pilot->moments(side.channels[channel]);
-    if (is_constant(question, i, channel, pilot)) return std::nullopt;
-    const double averaged = side.averaged(test.plan.primaries[i]);
-    data[i] = {.primaries = test.plan.primaries[i],
-               .moments = scaled(pilot, averaged, secondaries)};
-    if (averaged == 1) data[i].values = pilot_channel(question, i, channel, pilots).values;
-    known = i;
-  }
-  if (!known) return std::nullopt;
-  for (std::size_t i = 0; i < data.size(); ++i) {
-    if (!question.subjects[i].setup->observations()) continue;
-    data[i].primaries = data[*known].primaries;
-    data[i].moments = data[*known].moments;
-  }
-  return data;
 }
 
 }  // namespace assay::harness

@@ -12,7 +12,6 @@ struct Outlook {
   double pass = 0;
   double fail = 0;
   double inconclusive = 0;
-  double invalid = 0;  ///< Only what the pilot shows.
   double drawn = 1;
 };
 
@@ -34,12 +33,5 @@ Forecast forecast(const TestOutcome& test, const Pilots& pilots);
 
 /// Expected secondaries of a test whose claim holds; the last look's if that is not known.
 std::uint64_t expected_secondaries(const TestOutcome& test, const Pilots& pilots);
-
-/// Data that the pilots predict for a channel at this many secondaries: moments scaled to the
-/// plan's primaries. Returns nullopt if an estimator has no pilot, or no spread in it. Recorded
-/// data take the mean of what they are compared with.
-std::optional<std::vector<ChannelData>> expected_data(const TestOutcome& test, std::size_t channel,
-                                                      const Pilots& pilots,
-                                                      std::uint64_t secondaries);
 
 }  // namespace assay::harness

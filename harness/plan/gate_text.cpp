@@ -85,9 +85,9 @@ std::string in_words(const std::exception& error) {
   const std::size_t colon = text.find(": ");
   const std::string_view name = std::string_view(text).substr(0, colon);
   const bool is_name =
-      colon != std::string::npos && name.find_first_not_of(
-                                        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                        "0123456789_:") == std::string_view::npos;
+      colon != std::string::npos &&
+      name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_:") ==
+          std::string_view::npos;
   if (!is_name) return text;
   return "there is no test of these numbers: " + text.substr(colon + 2);
 }
@@ -122,8 +122,8 @@ std::string what_would_help(const TestOutcome& outcome) {
   // If the tail's moment does not exist, more observations only make the gate redder.
   if (heavy) {
     return fmt::format(
-        "; the values are heavy-tailed, and more of them may only show more of the tail: {}claim "
-        "a quantile, as `{}`",
+        "; the values are heavy-tailed, and more of them may only show more of the tail: {}claim a "
+        "quantile, as `{}`",
         rows ? "" : "clamp the estimator or take another, declare its range, or ",
         median_of(outcome.question));
   }

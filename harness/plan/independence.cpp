@@ -46,8 +46,8 @@ std::vector<Rows> rows_of(const Question& question, const Pilots& pilots, std::u
     for (std::size_t channel = 0; channel < side.channels.size(); ++channel) {
       const PilotChannel data = pilot_channel(side, *pilot, channel);
       const std::size_t used = std::min<std::uint64_t>(data.values.size(), count);
-      const bool finite = std::all_of(data.values.begin(), data.values.end(),
-                                      [](double value) { return std::isfinite(value); });
+      const bool finite =
+          std::ranges::all_of(data.values, [](double value) { return std::isfinite(value); });
       if (!finite || used < fewest_in_order ||
           is_constant(question, subject, channel, data.moments))
         continue;
@@ -140,20 +140,19 @@ struct Pair {
   const Subject& second;
 };
 
-[[noreturn]] void refuse(const Question& question, const Pair& pair, const std::string& why) {
-  throw InputError(
-      question.test->claim.left.where,
-      fmt::format("`{}` and `{}` are no independent samples: {}, bit for bit; give the "
-                  "two sides seeds of their own, none of them twice",
-                  pair.first.estimator->name, pair.second.estimator->name, why));
+[[noreturn]] void refuse_pair(const Question& question, const Pair& pair, const std::string& why) {
+  refuse(question.test->claim.left.where,
+         "`{}` and `{}` are no independent samples: {}, bit for bit; give the two sides seeds of "
+         "their own, none of them twice",
+         pair.first.estimator->name, pair.second.estimator->name, why);
 }
 
 void refuse_shared_pictures(const Question& question, std::uint64_t count) {
   for (const Subject& first : question.subjects) {
     for (const Subject& second : std::span(&first + 1, std::to_address(question.subjects.end()))) {
       if (const auto files = recorded::shared_picture(*first.setup, *second.setup, count)) {
-        refuse(question, {first, second},
-               fmt::format("`{}` and `{}` are the same picture", files->first, files->second));
+        refuse_pair(question, {first, second},
+                    fmt::format("`{}` and `{}` are the same picture", files->first, files->second));
       }
     }
   }
@@ -163,15 +162,15 @@ void refuse_shared_rows(const Question& question, const Rows& one, const Rows& t
   const Subject& first = question.subjects[one.subject];
   const Subject& second = question.subjects[two.subject];
   if (const auto run = stats::common_run(one.values, two.values)) {
-    refuse(question, {first, second},
-           fmt::format("rows {} of `{}` are rows {} of `{}`", from_to(run->first, run->length),
-                       first.setup->data_file(), from_to(run->second, run->length),
-                       second.setup->data_file()));
+    refuse_pair(question, {first, second},
+                fmt::format("rows {} of `{}` are rows {} of `{}`", from_to(run->first, run->length),
+                            first.setup->data_file(), from_to(run->second, run->length),
+                            second.setup->data_file()));
   }
   if (const auto shared = stats::shared_values(one.values, two.values)) {
-    refuse(question, {first, second},
-           fmt::format("{} rows of `{}` are rows of `{}`, in another order", shared->values,
-                       first.setup->data_file(), second.setup->data_file()));
+    refuse_pair(question, {first, second},
+                fmt::format("{} rows of `{}` are rows of `{}`, in another order", shared->values,
+                            first.setup->data_file(), second.setup->data_file()));
   }
 }
 
@@ -226,7 +225,7 @@ void allow_for_dependence(const std::vector<Rows>& all, Plan& plan) {
 bool is_recorded(const Subject& subject) { return subject.setup->observations().has_value(); }
 
 bool has_rows(const Question& question) {
-  return std::any_of(question.subjects.begin(), question.subjects.end(), is_recorded);
+  return std::ranges::any_of(question.subjects, is_recorded);
 }
 
 void require_independent_sides(const Question& question, const Pilots& pilots,
@@ -249,10 +248,10 @@ void judge_independence(const Question& question, const Pilots& pilots, std::uin
   std::string reason = too_few_to_tell(question, pilots, count, plan);
   if (forced || !plan.invalid.empty()) reason.clear();
   const std::vector<Rows> all = rows_of(question, pilots, count);
-  const bool batches = question.is().batches_serve && (!forced || plan.method.is.of_batches) &&
-                       question.test->claim.relation != Relation::within &&
-                       std::all_of(all.begin(), all.end(),
-                                   [](const Rows& each) { return enough_batches(each.values); });
+  const bool batches =
+      question.is().batches_serve && (!forced || plan.method.is.of_batches) &&
+      question.test->claim.relation != Relation::within &&
+      std::ranges::all_of(all, [](const Rows& each) { return enough_batches(each.values); });
   bool answered = false;
   for (const Rows& rows : all) {
     if (const auto again = stats::repeated_run(rows.values)) {
@@ -267,9 +266,8 @@ void judge_independence(const Question& question, const Pilots& pilots, std::uin
     }
     std::vector<stats::Gate> gates{stats::lag_one_gate(rows.values),
                                    stats::lagged_gate(rows.values), stats::batch_gate(rows.values)};
-    const bool red = std::any_of(gates.begin(), gates.end(), [](const stats::Gate& gate) {
-      return gate.state == GateState::red;
-    });
+    const bool red = std::ranges::any_of(
+        gates, [](const stats::Gate& gate) { return gate.state == GateState::red; });
     const bool averaged = red && batches;
     answered = answered || averaged;
     if (red && !averaged && reason.empty()) {
@@ -288,7 +286,7 @@ void judge_independence(const Question& question, const Pilots& pilots, std::uin
   } else if (answered) {
     plan.method = find_method(question, "batch-means");
     // Batches answer what spoke against single rows; it still speaks against a drawn side.
-    if (std::all_of(question.subjects.begin(), question.subjects.end(), is_recorded)) {
+    if (std::ranges::all_of(question.subjects, is_recorded)) {
       plan.invalid.clear();
     }
   } else if (question.is().batches_serve && !plan.method.is.exact) {
@@ -300,9 +298,7 @@ stats::Moments as_tested(const Plan& plan, std::size_t subject, std::size_t chan
                          std::span<const double> values, stats::Moments moments) {
   // Constants are judged by themselves, and have no order.
   if (!(moments.m2 > 0) || values.size() < fewest_in_order) return moments;
-  if (plan.method.is.of_batches) {
-    return stats::batch_means(values, stats::sufficient_batch(values));
-  }
+  if (plan.method.is.of_batches) return stats::batch_means(values, stats::sufficient_batch(values));
   for (const RowAllowance& each : plan.method.frozen.row_allowances) {
     if (each.subject != subject || each.channel != channel) continue;
     moments.m2 *= each.factor;
@@ -319,12 +315,10 @@ void require_lasting_rows(const Suite& suite, const std::string& record) {
     const std::string& name = file->text();
     const std::string path = (std::filesystem::path(suite.folder) / name).string();
     if (!recorded::is_read_once(name) && !recorded::is_read_once(path)) continue;
-    throw InputError(
-        {.file = record},
-        fmt::format("the data of `{}` came from {} and cannot be read\n  again; write "
-                    "them to a file and test that: its record can be replayed",
-                    entry.name,
-                    name == "-" || name == "/dev/stdin" ? "standard input" : "`" + name + "`"));
+    refuse({.file = record},
+           "the data of `{}` came from {} and cannot be read\n  again; write them to a file and "
+           "test that: its record can be replayed",
+           entry.name, name == "-" || name == "/dev/stdin" ? "standard input" : "`" + name + "`");
   }
 }
 

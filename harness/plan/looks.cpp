@@ -1,7 +1,5 @@
 #include "harness/plan/looks.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -37,11 +35,11 @@ std::uint64_t paid_for(const Question& question, const Plan& plan, std::uint64_t
     if (next == spent || next > budget) return paid;
     paid += (budget - spent) / (next - spent);
   }
-  throw InputError(question.test->place_of("budget"),
-                   fmt::format("its budget (or its share of the suite's) of {} primaries does not "
-                               "pay for two observations, the fewest that can be tested: these "
-                               "take {}; give a larger budget, or fewer `primaries`",
-                               budget, fewest_tested * each));
+  refuse(
+      question.test->place_of("budget"),
+      "its budget (or its share of the suite's) of {} primaries does not pay for two observations, "
+      "the fewest that can be tested: these take {}; give a larger budget, or fewer `primaries`",
+      budget, fewest_tested * each);
 }
 
 /// Throws InputError before hours are spent on what was hardly meant.
@@ -49,14 +47,15 @@ void require_possible(const Question& question, const Plan& plan, std::uint64_t 
   const TestEntry& test = *question.test;
   const Location& where = test.place_of(test.detect ? "detect" : "claim");
   if (secondaries >= impossible_secondaries) {
-    throw InputError(where, question.theta->why_impossible(question));
+    refuse(where, question.theta->why_impossible(question));
   }
   const double total =
       static_cast<double>(secondaries) * static_cast<double>(primaries_of_each(question, plan));
   if (total <= most_planned_primaries) return;
-  throw InputError(where, fmt::format("this claim would take about {:.1e} primaries; give a larger "
-                                      "margin, or a `budget` to spend on it all the same",
-                                      total));
+  refuse(where,
+         "this claim would take about {:.1e} primaries; give a larger margin, or a `budget` to "
+         "spend on it all the same",
+         total);
 }
 
 /// One look of a method in seconds: replicates of whole blocks, with as many observations for each
@@ -110,10 +109,9 @@ stats::LookSchedule plan_looks(const Question& question, const FamilyPlace& plac
   const std::uint64_t most = most_available(question, plan);
   if (plan.method.keeps == Keeps::blocks) {
     if (question.test->secondaries || question.test->budget) {
-      throw InputError(
-          question.test->place_of(question.test->secondaries ? "secondaries" : "budget"),
-          "a claim in seconds is timed on whole replicates: `secondaries` and "
-          "`budget` cannot be chosen; leave them out");
+      refuse(question.test->place_of(question.test->secondaries ? "secondaries" : "budget"),
+             "a claim in seconds is timed on whole replicates: `secondaries` and `budget` cannot "
+             "be chosen; leave them out");
     }
     const auto planned = question.theta->secondaries(question, place.share, pilots, plan);
     if (planned) require_possible(question, plan, *planned);

@@ -22,7 +22,7 @@ constexpr stats::CellNumbers line_cells{.bands = 64, .cuts = 1};
 /// True if this side's pilot may choose. Rows may only if no side has a pilot of its own.
 bool may_choose(const Question& question, std::size_t subject) {
   return !is_recorded(question.subjects[subject]) ||
-         std::all_of(question.subjects.begin(), question.subjects.end(), is_recorded);
+         std::ranges::all_of(question.subjects, is_recorded);
 }
 
 std::vector<double> pilot_values(const Question& question, std::size_t subject, std::size_t channel,

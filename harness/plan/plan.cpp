@@ -76,8 +76,8 @@ std::string no_averages(const Subject& subject, const Pilot& single, const Pilot
     return fmt::format(
         "`{0}` declares `averages`, but its observations of {1} primaries are no means of {1} of "
         "its primaries: their variance times {1} is {2:.3g} times that of one primary, their mean "
-        "is {3:.4g} and that of one primary {4:.4g}; average `primaries` independent primaries, "
-        "or leave `averages` out",
+        "is {3:.4g} and that of one primary {4:.4g}; average `primaries` independent primaries, or "
+        "leave `averages` out",
         subject.estimator->name, each,
         static_cast<double>(each) * means.moments.variance() / primaries.moments.variance(),
         means.moments.mean, primaries.moments.mean);
@@ -148,6 +148,21 @@ std::uint64_t wanted_primaries(const Question& question, const FamilyPlace& plac
   return wanted;
 }
 
+/// Primaries of one subject: 1 for a sampler's draws, the suite's number, or the chosen one.
+std::uint64_t primaries_of(const Subject& subject, const Primaries& chosen) {
+  if (!subject.purpose.empty()) return 1;
+  if (subject.estimator->primaries) return *subject.estimator->primaries;
+  const auto found = chosen.find(subject.estimator->name);
+  return found != chosen.end() ? found->second : 1;
+}
+
+/// True if an observation of the claim is a single primary. Bets take single values: what a rare
+/// one loses, they win back from each.
+bool takes_single_primaries(const Question& question, const Pilots& pilots) {
+  if (question.is().of_single_values) return true;
+  return question.is().of_moments && !question.is().of_spread && bets_on_range(question, pilots);
+}
+
 }  // namespace
 
 std::string lack_of_density(const Question& question, const NoDensity& why) {
@@ -197,11 +212,6 @@ Plan plan_test(const Question& question, const FamilyPlace& place, const Pilots&
   return plan;
 }
 
-bool takes_single_primaries(const Question& question, const Pilots& pilots) {
-  if (question.is().of_single_values) return true;
-  return question.is().of_moments && !question.is().of_spread && bets_on_range(question, pilots);
-}
-
 Primaries choose_primaries(const std::vector<Question>& questions,
                            const std::vector<FamilyPlace>& places, const Pilots& pilots) {
   Primaries chosen;
@@ -230,13 +240,6 @@ Primaries choose_primaries(const std::vector<Question>& questions,
     }
   }
   return chosen;
-}
-
-std::uint64_t primaries_of(const Subject& subject, const Primaries& chosen) {
-  if (!subject.purpose.empty()) return 1;
-  if (subject.estimator->primaries) return *subject.estimator->primaries;
-  const auto found = chosen.find(subject.estimator->name);
-  return found != chosen.end() ? found->second : 1;
 }
 
 }  // namespace assay::harness

@@ -22,13 +22,6 @@ using Primaries = std::map<std::string, std::uint64_t>;
 Primaries choose_primaries(const std::vector<Question>& questions,
                            const std::vector<FamilyPlace>& places, const Pilots& pilots);
 
-/// Primaries of one subject: 1 for a sampler's draws, the suite's number, or the chosen one.
-std::uint64_t primaries_of(const Subject& subject, const Primaries& chosen);
-
-/// True if an observation of the claim is a single primary. Bets take single values: what a rare
-/// one loses, they win back from each.
-bool takes_single_primaries(const Question& question, const Pilots& pilots);
-
 /// The plan of one test. Throws InputError at the test's place if its margin is beyond reach.
 Plan plan_test(const Question& question, const FamilyPlace& place, const Pilots& pilots,
                const Primaries& primaries);

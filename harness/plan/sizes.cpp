@@ -17,13 +17,9 @@ double critical_value(double alpha, bool two_sided) {
   return stats::normal_quantile({stats::Tail::upper, std::log(two_sided ? alpha / 2 : alpha)});
 }
 
-double smallest_share(const Question& question, double share) {
-  const bool planned = has_planned_size(question) && !question.test->secondaries;
-  return planned ? share / static_cast<double>(most_looks) : share;
-}
-
 double smallest_level(const Question& question, const FamilyPlace& place) {
-  return smallest_share(question, place.share.alpha);
+  const bool planned = has_planned_size(question) && !question.test->secondaries;
+  return planned ? place.share.alpha / static_cast<double>(most_looks) : place.share.alpha;
 }
 
 double kurtosis_limit(double critical) {

@@ -41,11 +41,8 @@ inline constexpr std::size_t most_looks = 16;
 /// True if `detect` or `within` determines the size.
 bool has_planned_size(const Question& question);
 
-/// An even part of a share, for a look of this test. A look with a smaller level need not keep it
-/// better than the part.
-double smallest_share(const Question& question, double share);
-
-/// The level up to which a method of this test must keep its own.
+/// The level up to which a method of this test must keep its own: an even part of its share for
+/// each look. A look with a smaller level need not keep it better.
 double smallest_level(const Question& question, const FamilyPlace& place);
 
 /// The excess kurtosis up to which F and chi-square serve at this critical value x. At it (.2 at

@@ -45,17 +45,15 @@ void require_no_sampler(const Source& source, const PreparedEstimator& estimator
   const std::string name = source.part.substr(0, source.part.find('.'));
   const std::vector<NamedSampler> samplers = estimator.setup->samplers();
   if (std::ranges::find(samplers, name, &NamedSampler::name) == samplers.end()) return;
-  throw InputError(source.where,
-                   fmt::format("`{}` is a sampler of `{}`: claims about it are `distribution`, "
-                               "`integral` and `inconsistency`; others take a channel of the "
-                               "estimator, as `{}.{}`",
-                               name, source.estimator, source.estimator,
-                               estimator.setup->channels().front().name));
+  refuse(source.where,
+         "`{}` is a sampler of `{}`: claims about it are `distribution`, `integral` and "
+         "`inconsistency`; others take a channel of the estimator, as `{}.{}`",
+         name, source.estimator, source.estimator, estimator.setup->channels().front().name);
 }
 
 [[noreturn]] void no_such_part(const Source& source, const PreparedEstimator& estimator) {
-  throw InputError(source.where, fmt::format("`{}` has no part `{}`; it has {}", source.estimator,
-                                             source.part, parts_of(estimator)));
+  refuse(source.where, "`{}` has no part `{}`; it has {}", source.estimator, source.part,
+         parts_of(estimator));
 }
 
 std::vector<std::size_t> tested_channels(const std::vector<Channel>& channels) {
@@ -78,7 +76,7 @@ std::vector<std::size_t> channels_named(const std::vector<Channel>& channels,
 /// name.
 std::vector<std::size_t> elements_named(ImageShape& shape, const std::string& part) {
   const std::size_t components = shape.components.size();
-  const auto named = std::find(shape.components.begin(), shape.components.end(), part);
+  const auto named = std::ranges::find(shape.components, part);
   std::vector<std::size_t> elements;
   if (!part.empty() && named == shape.components.end()) return elements;
   const bool whole = part.empty();
@@ -109,10 +107,8 @@ const NamedSampler* sampler_named(const std::vector<NamedSampler>& samplers,
 const PreparedEstimator& estimator_of(const Source& source, const Estimators& estimators) {
   const auto found = estimators.find(source.estimator);
   if (found != estimators.end()) return found->second;
-  std::vector<std::string> names;
-  for (const auto& [name, unused] : estimators) names.push_back(name);
-  throw InputError(source.where, fmt::format("no estimator `{}` in this suite{}", source.estimator,
-                                             did_you_mean(source.estimator, names)));
+  refuse(source.where, "no estimator `{}` in this suite{}", source.estimator,
+         did_you_mean(source.estimator, names_of(estimators, &Estimators::value_type::first)));
 }
 
 Subject estimates(const Source& source, const PreparedEstimator& estimator) {
@@ -143,9 +139,8 @@ Subject draws(const Source& source, const Estimators& estimators, Draws what) {
   std::string rest;
   const std::vector<NamedSampler> samplers = estimator.setup->samplers();
   if (samplers.empty() && source.part.empty()) {
-    throw InputError(source.where,
-                     fmt::format("`{}` has no sampler whose draws could be tested; it has {}",
-                                 source.estimator, parts_of(estimator)));
+    refuse(source.where, "`{}` has no sampler whose draws could be tested; it has {}",
+           source.estimator, parts_of(estimator));
   }
   const NamedSampler* named = sampler_named(samplers, source.part, rest);
   if (named == nullptr) no_such_part(source, estimator);
@@ -183,19 +178,17 @@ Subject values(const Source& source, const Estimators& estimators) {
 
 Constant analytic_mean(const Channel& channel, const Source& source) {
   if (channel.mean) return {*channel.mean, channel.mean_error};
-  throw InputError(
-      source.where,
-      fmt::format("`{}` knows no analytic mean of `{}` with these parameters; give the "
-                  "number, or compare with an estimator you trust",
-                  source.estimator, channel.name));
+  refuse(source.where,
+         "`{}` knows no analytic mean of `{}` with these parameters; give the number, or compare "
+         "with an estimator you trust",
+         source.estimator, channel.name);
 }
 
 Constant analytic_variance(const Channel& channel, const Source& source) {
   if (channel.variance) return {*channel.variance, 0};
-  throw InputError(source.where,
-                   fmt::format("`{}` knows no exact variance of `{}` with these parameters; give "
-                               "the number",
-                               source.estimator, channel.name));
+  refuse(source.where,
+         "`{}` knows no exact variance of `{}` with these parameters; give the number",
+         source.estimator, channel.name);
 }
 
 std::vector<Constant> references_of(const Claim& claim, const Subject& subject,
@@ -234,23 +227,22 @@ void require_moments_suffice(const Question& question) {
     const Quantity& quantity = question.test->claim.left;
     const bool costs = quantity.row->counts_cost && !quantity.slope;
     if (!reference && !costs && !question.is().of_moments) {
-      throw InputError(question.test->where,
-                       fmt::format("`{}` has the moments of a run, not its observations: they tell "
-                                   "of mean, bias, variance, cost and efficiency, not of this; "
-                                   "keep observations with `assay sample` and give them as `file`",
-                                   name));
+      refuse(question.test->where,
+             "`{}` has the moments of a run, not its observations: they tell of mean, bias, "
+             "variance, cost and efficiency, not of this; keep observations with `assay sample` "
+             "and give them as `file`",
+             name);
     }
     if (costs && !reference && !run->knows_cost(question.test->cost)) {
-      throw InputError(question.test->where,
-                       fmt::format("the run that `{}` is of does not tell how its costs vary: "
-                                   "claim something of its efficiency there",
-                                   name));
+      refuse(question.test->where,
+             "the run that `{}` is of does not tell how its costs vary: claim something of its "
+             "efficiency there",
+             name);
     }
     if (question.test->secondaries && *question.test->secondaries != run->summary().count) {
-      throw InputError(question.test->place_of("secondaries"),
-                       fmt::format("`{}` has the moments of {} observations together; leave "
-                                   "`secondaries` out",
-                                   name, run->summary().count));
+      refuse(question.test->place_of("secondaries"),
+             "`{}` has the moments of {} observations together; leave `secondaries` out", name,
+             run->summary().count);
     }
   }
 }
@@ -269,10 +261,8 @@ Question one_or_two(const TestEntry& test, const Theta& theta, const Estimators&
   } else {
     const Constant number = std::get<Constant>(claim.right);
     if (number.standard_error > 0) {
-      throw InputError(
-          claim.left.where,
-          fmt::format("`{}` is tested against an exact number: `+-` has no method here",
-                      claim.left.row->word));
+      refuse(claim.left.where, "`{}` is tested against an exact number: `+-` has no method here",
+             claim.left.row->word);
     }
     question.references.assign(question.channel_count(), number);
   }
@@ -285,11 +275,10 @@ std::vector<Constant> truths_of(const TestEntry& test, const Subject& subject,
   const std::vector<Channel> channels = subject.setup->channels();
   for (const std::size_t i : subject.channels) {
     if (!test.reference_number && !channels[i].mean) {
-      throw InputError(
-          source.where,
-          fmt::format("the true mean of `{}` is not known to its plugin; give the test "
-                      "a `reference:`, a number or an estimator",
-                      to_string(source)));
+      refuse(source.where,
+             "the true mean of `{}` is not known to its plugin; give the test a `reference:`, a "
+             "number or an estimator",
+             to_string(source));
     }
     truths.push_back(test.reference_number ? *test.reference_number
                                            : analytic_mean(channels[i], source));
@@ -307,25 +296,22 @@ void require_drawn(const Question& question) {
   if (question.test->cost != CostKind::seconds) return;
   for (const Subject& subject : question.subjects) {
     if (subject.setup->observations()) {
-      throw InputError(question.test->place_of("cost"),
-                       fmt::format("`{}` is not drawn but read: its seconds say nothing",
-                                   subject.estimator->name));
+      refuse(question.test->place_of("cost"), "`{}` is not drawn but read: its seconds say nothing",
+             subject.estimator->name);
     }
     if (recorded::keeps_files(*subject.setup)) {
-      throw InputError(question.test->place_of("cost"),
-                       fmt::format("`{}` keeps what it made: the seconds of a file that is there "
-                                   "say nothing; let `process` answer, or write the seconds as a "
-                                   "number of the observation",
-                                   subject.estimator->name));
+      refuse(question.test->place_of("cost"),
+             "`{}` keeps what it made: the seconds of a file that is there say nothing; let "
+             "`process` answer, or write the seconds as a number of the observation",
+             subject.estimator->name);
     }
   }
 }
 
 void require_absolute(const Margin& margin, const char* reason) {
   if (!margin.relative) return;
-  throw InputError(margin.where, fmt::format("a margin in per cent has no meaning here: {}; give "
-                                             "an absolute number",
-                                             reason));
+  refuse(margin.where, "a margin in per cent has no meaning here: {}; give an absolute number",
+         reason);
 }
 
 std::string outside_of_range(const Subject& subject, const Summary& drawn) {

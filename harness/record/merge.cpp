@@ -62,6 +62,21 @@ std::set<std::uint64_t> indices_of(const std::vector<ShardFile>& shards) {
   return indices;
 }
 
+/// The shards that are not there, in words; "" if all are.
+std::string missing_shards(const std::vector<ShardFile>& shards) {
+  const std::set<std::uint64_t> there = indices_of(shards);
+  const std::uint64_t count = shards.front().record.shard->count;
+  std::vector<std::uint64_t> missing;
+  for (std::uint64_t index = 1; index <= count; ++index) {
+    if (!there.contains(index)) missing.push_back(index);
+  }
+  if (missing.empty()) return "";
+  return fmt::format(
+      "of {} shards these are missing, and their tests are skipped: {}; run them with --shard "
+      "{}/{}{} and merge all records",
+      count, fmt::join(missing, ", "), missing.front(), count, missing.size() > 1 ? ", …" : "");
+}
+
 /// A shard's test with the data for Holm's method.
 struct Part {
   reports::Test test;
@@ -90,8 +105,8 @@ std::vector<Part> parts_of(const std::vector<ShardFile>& shards, std::size_t sui
           .message = fmt::format("shard {} of {} is missing", test.shard, any.shard->count)},
          {.position = test.position}});
   }
-  std::sort(parts.begin(), parts.end(),
-            [](const Part& a, const Part& b) { return a.family.position < b.family.position; });
+  std::ranges::sort(
+      parts, [](const Part& a, const Part& b) { return a.family.position < b.family.position; });
   return parts;
 }
 
@@ -111,9 +126,10 @@ void adjust_p_values(std::vector<Part>& parts) {
   try {
     adjust_family(family);
   } catch (const std::domain_error& error) {
-    throw InputError({}, fmt::format("the shards' shares of alpha do not fit together: {}; was a "
-                                     "record edited? Run the shards again",
-                                     error.what()));
+    refuse({},
+           "the shards' shares of alpha do not fit together: {}; was a record edited? Run the "
+           "shards again",
+           error.what());
   }
 }
 
@@ -167,9 +183,8 @@ reports::Suite merge_suite(const std::vector<ShardFile>& shards, std::size_t ind
     const std::vector<reports::Retry>& more = shard.record.suites[index].retries;
     suite.retries.insert(suite.retries.end(), more.begin(), more.end());
   }
-  suite.timed = std::any_of(shards.begin(), shards.end(), [&](const ShardFile& shard) {
-    return shard.record.suites[index].timed;
-  });
+  suite.timed = std::ranges::any_of(
+      shards, [&](const ShardFile& shard) { return shard.record.suites[index].timed; });
   std::vector<Part> parts = parts_of(shards, index);
   const bool complete = parts.size() == shards.front().record.shard->suites[index].tests &&
                         missing_shards(shards).empty();
@@ -192,17 +207,13 @@ reports::Suite merge_suite(const std::vector<ShardFile>& shards, std::size_t ind
   return suite;
 }
 
-[[noreturn]] void refuse(const ShardFile& shard, const std::string& why) {
-  throw InputError({.file = shard.file}, why);
-}
-
 /// InputError if parts that belong together have different sizes, as after an edit by hand.
 void check_whole(const ShardFile& shard) {
   const reports::Record& record = shard.record;
   if (!record.shard) {
-    refuse(shard,
-           "is a whole run, not a shard; shards are made by `assay run … --shard I/N "
-           "--report json=SHARD.json`");
+    refuse({.file = shard.file},
+           "is a whole run, not a shard; shards are made by `assay run … --shard I/N --report "
+           "json=SHARD.json`");
   }
   const auto fits = [](const reports::ShardTest& result, const reports::Test& test) {
     return result.log_p.size() == test.channels.size() && (!result.inside || result.weight > 0);
@@ -215,7 +226,8 @@ void check_whole(const ShardFile& shard) {
                                   std::ranges::equal(part.results, suite.tests, fits);
                          });
   if (!sound) {
-    refuse(shard, "its `shard` does not fit its tests: was it edited? Run the shard again");
+    refuse({.file = shard.file},
+           "its `shard` does not fit its tests: was it edited? Run the shard again");
   }
 }
 
@@ -233,19 +245,6 @@ std::string all_of(const List& list, const Tell& tell) {
   return fmt::format("{}", fmt::join(texts, " "));
 }
 
-std::string seeds(const reports::Record& record) {
-  return all_of(record.suites, [](const auto& suite) { return fmt::format("{}", suite.seed); });
-}
-
-std::string digests(const reports::Record& record) {
-  return all_of(record.shard->suites, [](const auto& suite) { return suite.digest; });
-}
-
-std::string alphas(const reports::Record& record) {
-  return all_of(record.suites,
-                [](const auto& suite) { return fmt::format("{} {}", suite.alpha, suite.beta); });
-}
-
 const Property properties[] = {
     {"the number of shards",
      [](const reports::Record& r) { return std::to_string(r.shard->count); },
@@ -255,9 +254,22 @@ const Property properties[] = {
      "run all shards by one version of assay"},
     {"the options", [](const reports::Record& r) { return r.shard->options; },
      "run all shards by one command, but for --shard and --report"},
-    {"the seed", seeds, "give all shards one --seed"},
-    {"alpha and beta", alphas, "run all shards with one --alpha"},
-    {"the digest of the suites and the data they name", digests,
+    {"the seed",
+     [](const reports::Record& r) {
+       return all_of(r.suites, [](const auto& suite) { return fmt::format("{}", suite.seed); });
+     },
+     "give all shards one --seed"},
+    {"alpha and beta",
+     [](const reports::Record& r) {
+       return all_of(r.suites, [](const auto& suite) {
+         return fmt::format("{} {}", suite.alpha, suite.beta);
+       });
+     },
+     "run all shards with one --alpha"},
+    {"the digest of the suites and the data they name",
+     [](const reports::Record& r) {
+       return all_of(r.shard->suites, [](const auto& suite) { return suite.digest; });
+     },
      "run all shards on the same files"},
     {"the compiler", [](const reports::Record& r) { return r.environment.compiler; },
      "run all shards by one build"},
@@ -270,9 +282,9 @@ void check_same(const ShardFile& first, const ShardFile& other) {
     const std::string here = property.of(other.record);
     const std::string there = property.of(first.record);
     if (here == there) continue;
-    refuse(other, fmt::format("is no part of the run that `{}` is of: {} is `{}` here and `{}` "
-                              "there; {}",
-                              first.file, property.name, here, there, property.mend));
+    refuse({.file = other.file},
+           "is no part of the run that `{}` is of: {} is `{}` here and `{}` there; {}", first.file,
+           property.name, here, there, property.mend);
   }
 }
 
@@ -285,8 +297,8 @@ void check_shards(const std::vector<ShardFile>& shards) {
     const std::uint64_t index = shard.record.shard->index;
     const auto [first, is_new] = seen.emplace(index, shard.file);
     if (is_new) continue;
-    refuse(shard, fmt::format("is shard {} of {}, and so is `{}`; give each shard once", index,
-                              shard.record.shard->count, first->second));
+    refuse({.file = shard.file}, "is shard {} of {}, and so is `{}`; give each shard once", index,
+           shard.record.shard->count, first->second);
   }
 }
 
@@ -324,24 +336,9 @@ void add_shard(const SuiteRuns& runs, const RunOptions& options, reports::Record
       index, count);
 }
 
-std::string missing_shards(const std::vector<ShardFile>& shards) {
-  const std::set<std::uint64_t> there = indices_of(shards);
-  const std::uint64_t count = shards.front().record.shard->count;
-  std::vector<std::uint64_t> missing;
-  for (std::uint64_t index = 1; index <= count; ++index) {
-    if (!there.contains(index)) missing.push_back(index);
-  }
-  if (missing.empty()) return "";
-  return fmt::format(
-      "of {} shards these are missing, and their tests are skipped: {}; run them with --shard "
-      "{}/{}{} "
-      "and merge all records",
-      count, fmt::join(missing, ", "), missing.front(), count, missing.size() > 1 ? ", …" : "");
-}
-
 reports::Record merge(std::vector<ShardFile> shards) {
   check_shards(shards);
-  std::sort(shards.begin(), shards.end(), [](const ShardFile& a, const ShardFile& b) {
+  std::ranges::sort(shards, [](const ShardFile& a, const ShardFile& b) {
     return a.record.shard->index < b.record.shard->index;
   });
   reports::Record record = shards.front().record;
@@ -364,10 +361,10 @@ reports::Record merge(std::vector<ShardFile> shards) {
   return record;
 }
 
-int merge_shards(const MergeArguments& arguments, const Output& output) {
-  require_writable(output, arguments.records);
+int merge_shards(const std::vector<std::string>& records, const Output& output) {
+  require_writable(output, records);
   std::vector<ShardFile> shards;
-  for (const std::string& file : arguments.records) shards.push_back({file, read_record(file)});
+  for (const std::string& file : records) shards.push_back({file, read_record(file)});
   reports::Record record = merge(shards);
   RunReports(output).write_and_annotate(record);
   const std::string missing = missing_shards(shards);

@@ -26,13 +26,7 @@ struct ShardFile {
 /// InputError also for different suites, data files, seeds, options, versions or instruction sets.
 reports::Record merge(std::vector<ShardFile> shards);
 
-/// The shards that are not there, in words; "" if all are.
-std::string missing_shards(const std::vector<ShardFile>& shards);
-
-struct MergeArguments {
-  std::vector<std::string> records;
-};
 /// Reads, merges and reports. Returns the exit code of the whole run, 1 if a shard is missing.
-int merge_shards(const MergeArguments& arguments, const Output& output);
+int merge_shards(const std::vector<std::string>& records, const Output& output);
 
 }  // namespace assay::harness

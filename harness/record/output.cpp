@@ -12,9 +12,9 @@
 #include "estimators/parameters.h"
 #include "harness/base/terminal.h"
 #include "harness/base/whole_file.h"
-#include "harness/record/image_record.h"
+#include "harness/record/maps.h"
 #include "harness/sampling/pool.h"
-#include "harness/suite/files_read.h"
+#include "harness/suite/suite.h"
 #include "reports/report_formats.h"
 
 namespace assay::harness {
@@ -81,12 +81,11 @@ void require_writable(const Output& output, const std::vector<std::string>& kept
     const std::filesystem::path path(request.path);
     const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
     if (!std::filesystem::is_directory(folder)) {
-      throw InputError({.file = request.path},
-                       fmt::format("its folder does not exist; make it by `mkdir -p {}`",
-                                   shell_quoted(folder.string())));
+      refuse({.file = request.path}, "its folder does not exist; make it by `mkdir -p {}`",
+             shell_quoted(folder.string()));
     }
     if (std::filesystem::is_directory(path)) {
-      throw InputError({.file = request.path}, "is a folder; name the file to write");
+      refuse({.file = request.path}, "is a folder; name the file to write");
     }
   }
 }

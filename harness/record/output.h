@@ -41,7 +41,7 @@ using ReportWriter = std::function<std::string(const ReportRequest& request,
                                                const reports::ConsoleOptions& options)>;
 
 /// InputError before sampling if a report's file cannot be written, or is one of `kept`
-/// (files_read.h).
+/// (suite.h).
 void require_writable(const Output& output, const std::vector<std::string>& kept);
 /// Writes all requested reports and the console's, files first. std::runtime_error at the end if
 /// some could not be written.

@@ -6,7 +6,7 @@
 
 #include "harness/base/numbers.h"
 #include "harness/plan/independence.h"
-#include "harness/record/image_record.h"
+#include "harness/record/maps.h"
 #include "harness/sampling/summary.h"
 #include "harness/theta/evidence.h"
 #include "stats/gates/independence_gates.h"

@@ -16,8 +16,7 @@
 #include "harness/base/numbers.h"
 #include "harness/base/version.h"
 #include "harness/question/question_sources.h"
-#include "harness/record/image_record.h"
-#include "harness/record/law_record.h"
+#include "harness/record/maps.h"
 #include "harness/record/merge.h"
 #include "harness/record/picture.h"
 #include "harness/run/pools.h"
@@ -48,9 +47,9 @@ reports::Verdict expected_verdict(Expectation expect) {
 /// At most 99 points of a normal quantile plot of the values, at the probabilities (i - 1/2) / k.
 std::vector<reports::QuantilePoint> quantile_points(std::span<const double> values) {
   std::vector<double> sorted;
-  std::copy_if(values.begin(), values.end(), std::back_inserter(sorted),
-               [](double value) { return std::isfinite(value); });
-  std::sort(sorted.begin(), sorted.end());
+  std::ranges::copy_if(values, std::back_inserter(sorted),
+                       [](double value) { return std::isfinite(value); });
+  std::ranges::sort(sorted);
   constexpr std::size_t most_points = 99;
   const std::size_t points = std::min(sorted.size(), most_points);
   std::vector<reports::QuantilePoint> plot;
@@ -205,19 +204,13 @@ std::vector<reports::Look> looks_of(const TestOutcome& outcome, const Regions& r
 
 std::string over_text(const TestEntry& test) {
   if (!test.over) return "";
-  std::string values;
-  for (const Value& value : test.over->values) {
-    values += (values.empty() ? "" : ", ") + value.text();
-  }
-  return fmt::format("{{{}: [{}]}}", test.over->parameter, values);
+  return fmt::format("{{{}: [{}]}}", test.over->parameter,
+                     listed(names_of(test.over->values, &Value::text)));
 }
 
 std::string reference_text(const TestEntry& test) {
   if (test.reference) return to_string(*test.reference);
-  if (!test.reference_number) return "";
-  const Constant& number = *test.reference_number;
-  if (number.standard_error == 0) return fmt::format("{}", number.value);
-  return fmt::format("{} +- {}", number.value, number.standard_error);
+  return test.reference_number ? to_string(*test.reference_number) : "";
 }
 
 std::string cost_text(const TestEntry& test) {
@@ -398,7 +391,7 @@ reports::Record record_of(const SuiteRuns& runs, const RunOptions& options) {
       suite.tests.push_back(std::move(test));
     }
     suite.statements = statements_of(run->suite, suite.tests);
-    suite.timed = std::any_of(run->tests.begin(), run->tests.end(), is_timed);
+    suite.timed = std::ranges::any_of(run->tests, is_timed);
     for (const auto& [name, estimator] : run->estimators) {
       const auto* const rendered = dynamic_cast<const foreign::Rendered*>(estimator.setup.get());
       if (rendered == nullptr) continue;

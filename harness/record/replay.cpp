@@ -15,11 +15,10 @@
 #include "harness/pilot/pilot.h"
 #include "harness/plan/independence.h"
 #include "harness/plan/pilot_shape.h"
-#include "harness/plan/sizes.h"
 #include "harness/record/record_of.h"
 #include "harness/run/looks.h"
 #include "harness/run/pools.h"
-#include "harness/suite/suite_entries.h"
+#include "harness/suite/suite.h"
 #include "harness/suite/yaml.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/methods.h"
@@ -46,11 +45,9 @@ std::string meant(const std::string& asked, const std::vector<Recorded>& all) {
 
 std::string some_ids(const std::vector<Recorded>& tests) {
   constexpr std::size_t most = 5;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(most, tests.size()); ++i) {
-    text += (i == 0 ? "`" : ", `") + tests[i].test.id + "`";
-  }
-  return text + (tests.size() > most ? ", …" : "");
+  const auto id = [](const Recorded& each) { return each.test.id; };
+  return quoted(names_of(std::span(tests).first(std::min(most, tests.size())), id)) +
+         (tests.size() > most ? ", …" : "");
 }
 
 /// A list of texts without the colon before each.
@@ -173,10 +170,10 @@ Plan recorded_plan(const Question& question, const Recorded& recorded) {
     const bool drawn = i < test.samples.size() &&
                        test.samples[i].estimator == question.subjects[i].estimator->listed;
     const std::string& name = question.subjects[i].estimator->listed;
-    const auto sample =
-        drawn ? test.samples.begin() + static_cast<std::ptrdiff_t>(i)
-              : std::find_if(test.samples.begin(), test.samples.end(),
-                             [&](const reports::Sample& s) { return s.estimator == name; });
+    const auto sample = drawn ? test.samples.begin() + static_cast<std::ptrdiff_t>(i)
+                              : std::ranges::find_if(test.samples, [&](const reports::Sample& s) {
+                                  return s.estimator == name;
+                                });
     plan.primaries.push_back(sample->primaries);
   }
   plan.regions.assign(question.channel_count(), {.relation = question.test->claim.relation,
@@ -235,10 +232,10 @@ void require_same_rows(const Question& question, const Recorded& recorded,
     // A recorded run is taken whole.
     if (!now || !then || then->secondaries == *now) continue;
     if (then->secondaries == side.secondaries(most_recorded(recorded.test))) continue;
-    throw InputError({.file = record},
-                     fmt::format("the test took {} observations of `{}`, of which there are now "
-                                 "{}: replay needs the data as they were",
-                                 then->secondaries, side.estimator->name, *now));
+    refuse({.file = record},
+           "the test took {} observations of `{}`, of which there are now {}: replay needs the "
+           "data as they were",
+           then->secondaries, side.estimator->name, *now);
   }
 }
 
@@ -300,8 +297,7 @@ bool print_observation(const TestWork& work, const reports::Test& recorded, std:
   const Question& question = work.outcome.question;
   const std::uint64_t drawn = most_recorded(recorded);
   if (index >= drawn) {
-    throw InputError(
-        {}, fmt::format("observation {} was not drawn: the test used 0 to {}", index, drawn - 1));
+    refuse({}, "observation {} was not drawn: the test used 0 to {}", index, drawn - 1);
   }
   bool same = true;
   for (std::size_t i = 0; i < work.pools.size(); ++i) {
@@ -434,29 +430,27 @@ Recorded find_test(const reports::Record& record, const ReplayArguments& argumen
     }
   }
   if (parts.size() > 1) {
-    throw InputError({}, fmt::format("{} tests have `{}` in their id; give more of one: {}",
-                                     parts.size(), arguments.test, some_ids(parts)));
+    refuse({}, "{} tests have `{}` in their id; give more of one: {}", parts.size(), arguments.test,
+           some_ids(parts));
   }
   if (parts.size() == 1) return parts.front();
   if (named.size() == 1) return named.front();
   const Location where{.file = arguments.record};
   if (!named.empty()) {
-    throw InputError(where, fmt::format("{} tests have the name `{}`; give the id of one: {}",
-                                        named.size(), arguments.test, some_ids(named)));
+    refuse(where, "{} tests have the name `{}`; give the id of one: {}", named.size(),
+           arguments.test, some_ids(named));
   }
   const std::string near = meant(arguments.test, all);
-  throw InputError(where, fmt::format("no test `{}` in this run; {}", arguments.test,
-                                      near.empty() ? "there is: " + some_ids(all)
-                                                   : "did you mean `" + near + "`?"));
+  refuse(where, "no test `{}` in this run; {}", arguments.test,
+         near.empty() ? "there is: " + some_ids(all) : "did you mean `" + near + "`?");
 }
 
 int replay(const ReplayArguments& arguments) {
   const reports::Record record = read_record(arguments.record);
   const Recorded recorded = find_test(record, arguments);
   if (recorded.test.samples.empty()) {
-    throw InputError(
-        {.file = arguments.record},
-        fmt::format("test `{}` recorded no samples: {}", recorded.test.id, recorded.test.message));
+    refuse({.file = arguments.record}, "test `{}` recorded no samples: {}", recorded.test.id,
+           recorded.test.message);
   }
   try {
     return replay(recorded, arguments);

@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "estimators/core/value.h"
+#include "estimators/estimator.h"
 #include "harness/language/claim.h"
+#include "harness/suite/yaml.h"
 
 namespace assay::harness {
 
@@ -146,5 +148,60 @@ std::vector<Source> sources_of(const Claim& claim);
 
 /// The line of the file with a caret under the column; "" if the file cannot be read.
 std::string excerpt(const Location&);
+
+// Protects files that a command reads from being overwritten by a report.
+
+/// The suites' own files, and every file that an estimator's parameter names, relative to its
+/// suite: recorded rows, programs, libraries.
+std::vector<std::string> files_read(const std::vector<Suite>& suites);
+
+/// InputError if the report would replace one of `kept`, by whichever path.
+void refuse_overwriting(const std::string& report, const std::vector<std::string>& kept);
+
+/// Reads the keys of a test beside its claim and name, as from a suite or the options of a command.
+/// It checks that `allow` is below `detect` and that the claim uses every key. InputError at the
+/// offending key.
+void read_test_keys(const Document& document, const Value& map, TestEntry& test);
+
+/// `primaries` and the plugin's parameters, which a sweep or `--set` can change.
+std::vector<std::string> settable_names(const Entry& plugin);
+
+/// `primaries:` of an estimator: a count from 1, or auto (nullopt).
+std::optional<std::uint64_t> read_primaries(const Value& value, std::string_view what);
+
+/// InputError at the place of a name that no claim can use.
+void require_estimator_name(const std::string& name, const Location& where);
+/// The map with this value of the key.
+Value with_member(const Value& map, const std::string& key, const Value& value);
+const Value& scene_or(const Value& value, const Value& scenes);
+
+// `assay images`: compares two sets of rendered pictures without a suite file.
+
+/// The question about two sets of pictures. Are their means equal? Are the means of differences 0,
+/// where equal names have equal seeds? Is their whole law the same?
+enum class ImageQuestion { means, paired, law };
+
+struct ImagesArguments {
+  std::string candidate;            ///< A pattern of pictures, one observation each.
+  std::string reference;            ///< A pattern, or one file.
+  std::string channels = "usual";   ///< Patterns separated by commas.
+  bool independent_pixels = false;  ///< Pixels of one picture are independent.
+  ImageQuestion question = ImageQuestion::means;
+  bool ignores_nonfinite = false;           ///< Leaves out pixels that are not finite somewhere.
+  std::optional<std::string> mask = {};     ///< A picture; where it is 0 pixels are left out.
+  std::optional<std::string> samples = {};  ///< For a reference that carries its variance.
+  std::optional<std::string> detect = {};
+  std::optional<std::string> allow = {};
+  std::optional<std::string> within = {};
+};
+
+/// The suite of the claim `mean(candidate) == mean(reference)`, or `within` a margin of it. Several
+/// layers have a claim each, on `candidate_LAYER` and `reference_LAYER`. The usual channels include
+/// alpha unless it is 1, or missing, throughout the first picture of each side. Files of unequal
+/// windows on one canvas are compared where both have pixels. Both sides are rounded as the coarser
+/// one is. A single reference file is a mean whose error its channels tell (pbrt's `Variance.*`,
+/// Mitsuba's `m2_*`), else exact. InputError if a pattern matches no file, there are too few
+/// pictures for a pixel's variance, or options contradict each other.
+Suite suite_of_images(const ImagesArguments&);
 
 }  // namespace assay::harness

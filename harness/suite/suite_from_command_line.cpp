@@ -8,8 +8,6 @@
 #include "estimators/core/quoting.h"
 #include "harness/language/quantities.h"
 #include "harness/suite/suite.h"
-#include "harness/suite/suite_entries.h"
-#include "harness/suite/suite_keys.h"
 #include "harness/suite/yaml.h"
 
 namespace assay::harness {
@@ -26,19 +24,7 @@ std::optional<std::pair<std::string, std::string>> cut(const std::string& text, 
 void require_parameter(const std::string& plugin, const std::string& key, const Location& where) {
   const std::vector<std::string> names = settable_names(find_plugin(plugin, where));
   if (std::ranges::find(names, key) != names.end()) return;
-  throw InputError(where,
-                   fmt::format("{} has no parameter `{}`{}", plugin, key, suggestion(key, names)));
-}
-
-Value with_member(const Value& map, const std::string& key, const Value& value) {
-  std::vector<Value::Member> members = map.members();
-  const auto found = std::ranges::find(members, key, &Value::Member::first);
-  if (found == members.end()) {
-    members.emplace_back(key, value);
-  } else {
-    found->second = value;
-  }
-  return Value::map(std::move(members), map.where());
+  refuse(where, "{} has no parameter `{}`{}", plugin, key, suggestion(key, names));
 }
 
 void assign(EstimatorEntry& estimator, const std::string& key, const Value& value) {
@@ -61,9 +47,7 @@ Assignment parse_assignment(const std::string& piece) {
   const auto sides = cut(piece, '=');
   const auto path = sides ? cut(sides->first, '.') : std::nullopt;
   if (!path || path->first.empty() || path->second.empty()) {
-    throw InputError(where,
-                     "expected estimator.key=value; a value with commas stands in brackets "
-                     "or quotes");
+    refuse(where, "expected estimator.key=value; a value with commas stands in brackets or quotes");
   }
   return {path->first, path->second, read_flow(sides->second, where)};
 }
@@ -82,17 +66,15 @@ void assign_everywhere(std::vector<Suite>& suites, const Assignment& assignment)
     }
   }
   if (found) return;
-  throw InputError(assignment.value.where(),
-                   fmt::format("no suite has an estimator `{}`{}", assignment.estimator,
-                               suggestion(assignment.estimator, names)));
+  refuse(assignment.value.where(), "no suite has an estimator `{}`{}", assignment.estimator,
+         suggestion(assignment.estimator, names));
 }
 
-std::optional<EstimatorEntry> entry_named(const std::vector<EstimatorEntry>& entries,
-                                          const std::string& name) {
-  for (const EstimatorEntry& entry : entries) {
-    if (entry.name == name) return entry;
-  }
-  return {};
+/// Null if no entry has the name.
+const EstimatorEntry* entry_named(const std::vector<EstimatorEntry>& entries,
+                                  const std::string& name) {
+  const auto found = std::ranges::find(entries, name, &EstimatorEntry::name);
+  return found == entries.end() ? nullptr : &*found;
 }
 
 std::vector<EstimatorEntry> parse_options(const std::vector<std::string>& options) {
@@ -100,7 +82,7 @@ std::vector<EstimatorEntry> parse_options(const std::vector<std::string>& option
   for (const std::string& option : options) {
     EstimatorEntry entry = parse_estimator_option(option);
     if (entry_named(entries, entry.name)) {
-      throw InputError(entry.where, fmt::format("a second estimator named `{}`", entry.name));
+      refuse(entry.where, "a second estimator named `{}`", entry.name);
     }
     entries.push_back(std::move(entry));
   }
@@ -116,25 +98,19 @@ EstimatorEntry plugin_itself(const Source& source) {
 }
 
 EstimatorEntry entry_for(const Source& source, const std::vector<EstimatorEntry>& given) {
-  if (const auto entry = entry_named(given, source.estimator)) return *entry;
-  std::vector<std::string> names;
-  for (const EstimatorEntry& entry : given) names.push_back(entry.name);
-  const std::string near = nearest(source.estimator, names);
+  if (const auto* entry = entry_named(given, source.estimator)) return *entry;
+  const std::string near = nearest(source.estimator, names_of(given, &EstimatorEntry::name));
   if (near.empty()) return plugin_itself(source);
-  throw InputError(source.where, fmt::format("no --estimator is named `{}`; did you mean `{}`?",
-                                             source.estimator, near));
+  refuse(source.where, "no --estimator is named `{}`; did you mean `{}`?", source.estimator, near);
 }
 
 void refuse_unused(const std::vector<EstimatorEntry>& given,
                    const std::vector<EstimatorEntry>& used) {
-  std::vector<std::string> names;
-  for (const EstimatorEntry& each : used) names.push_back("`" + each.name + "`");
   for (const EstimatorEntry& entry : given) {
     if (entry_named(used, entry.name)) continue;
-    throw InputError(entry.where,
-                     fmt::format("`{0}` is used nowhere, only {1}: write `{0}` in its place, or "
-                                 "leave the option out",
-                                 entry.name, listed(names)));
+    refuse(entry.where,
+           "`{0}` is used nowhere, only {1}: write `{0}` in its place, or leave the option out",
+           entry.name, quoted(names_of(used, &EstimatorEntry::name)));
   }
 }
 
@@ -172,15 +148,10 @@ EstimatorEntry parse_estimator_option(const std::string& text) {
   const std::vector<std::string> pieces = split_outside_brackets(text);
   const auto head = cut(pieces[0], '=');
   if (!head) {
-    throw InputError(where, fmt::format("the plugin needs a name, which the claim uses: "
-                                        "`--estimator {}`",
-                                        shell_quoted("x=" + text)));
+    refuse(where, "the plugin needs a name, which the claim uses: `--estimator {}`",
+           shell_quoted("x=" + text));
   }
-  if (!is_estimator_name(head->first)) {
-    throw InputError(where, fmt::format("`{}` cannot name an estimator: a letter, then letters, "
-                                        "digits, `_`, `-` and `/`",
-                                        head->first));
-  }
+  require_estimator_name(head->first, where);
   EstimatorEntry entry{.name = head->first,
                        .plugin = find_plugin(head->second, where).information.name,
                        .parameters = Value::map({}, where),
@@ -189,12 +160,11 @@ EstimatorEntry parse_estimator_option(const std::string& text) {
   for (std::size_t i = 1; i < pieces.size(); ++i) {
     const auto sides = cut(pieces[i], '=');
     if (!sides) {
-      throw InputError(where, fmt::format("`{}` is not key=value; a value with commas stands in "
-                                          "brackets or quotes",
-                                          pieces[i]));
+      refuse(where, "`{}` is not key=value; a value with commas stands in brackets or quotes",
+             pieces[i]);
     }
     if (std::ranges::find(seen, sides->first) != seen.end()) {
-      throw InputError(where, fmt::format("`{}` is given twice", sides->first));
+      refuse(where, "`{}` is given twice", sides->first);
     }
     seen.push_back(sides->first);
     assign(entry, sides->first, read_flow(sides->second, where));

@@ -1,5 +1,3 @@
-#include "harness/suite/suite_images.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -9,8 +7,8 @@
 #include <span>
 
 #include "estimators/pictures.h"
-#include "harness/suite/suite_entries.h"
-#include "harness/suite/suite_keys.h"
+#include "harness/suite/suite.h"
+#include "harness/suite/yaml.h"
 #include "stats/images/image.h"
 
 namespace assay::harness {
@@ -25,18 +23,16 @@ std::vector<std::string> files_given(const char* option, const std::string& patt
   try {
     return recorded::files_of(pattern);
   } catch (const InputError& error) {
-    throw InputError(place(option, pattern), error.message());
+    refuse(place(option, pattern), error.message());
   }
 }
 
 void require_enough(const char* option, const std::string& pattern, std::size_t count) {
   if (count >= stats::least_replicates) return;
-  throw InputError(
-      place(option, pattern),
-      fmt::format("{} {}, and the test takes {} or more: how much a pixel varies is known from "
-                  "them alone; render more, each with a seed of its own",
-                  count, count == 1 ? "picture matches" : "pictures match",
-                  stats::least_replicates));
+  refuse(place(option, pattern),
+         "{} {}, and the test takes {} or more: how much a pixel varies is known from them alone; "
+         "render more, each with a seed of its own",
+         count, count == 1 ? "picture matches" : "pictures match", stats::least_replicates);
 }
 
 EstimatorEntry entry(const std::string& name, const Location& where,
@@ -91,10 +87,10 @@ std::string usual_with_alpha(const ImagesArguments& arguments, const FirstPictur
   const std::string names = fmt::format("{}", fmt::join(usual.names, ","));
   const auto require_alpha = [&](const PictureFile& file, const Location& where) {
     if (has(file, alpha)) return;
-    throw InputError(where,
-                     "its pictures have no alpha, and that of the other side is not 1 "
-                     "everywhere; --channels '" +
-                         names + "' compares without it");
+    refuse(
+        where,
+        "its pictures have no alpha, and that of the other side is not 1 everywhere; --channels '" +
+            names + "' compares without it");
   };
   require_alpha(*first.candidate, place("--candidate", arguments.candidate));
   require_alpha(*first.reference, place("--reference", arguments.reference));
@@ -148,11 +144,10 @@ std::optional<PictureWindow> common_window(const ImagesArguments& arguments,
     return PictureWindow{left, top, static_cast<std::size_t>(right - left),
                          static_cast<std::size_t>(bottom - top)};
   }
-  throw InputError(
-      place("--reference", arguments.reference),
-      fmt::format("its pictures have {} x {} pixels at x {}, y {}, those of "
-                  "--candidate {} x {} at x {}, y {}; render the same part on both, at one size",
-                  b.width, b.height, b.left, b.top, a.width, a.height, a.left, a.top));
+  refuse(place("--reference", arguments.reference),
+         "its pictures have {} x {} pixels at x {}, y {}, those of --candidate {} x {} at x {}, y "
+         "{}; render the same part on both, at one size",
+         b.width, b.height, b.left, b.top, a.width, a.height, a.left, a.top);
 }
 
 const char* rounding_of(const FirstPictures& first, const Layer& layer) {
@@ -209,9 +204,9 @@ EstimatorEntry reference_entry(const std::string& name, std::vector<Value::Membe
   const recorded::MomentChannels errors = recorded::usual_moments(picture, channels);
   if (errors.any()) {
     if (!arguments.samples && !picture.samples_per_pixel()) {
-      throw InputError(where,
-                       "the picture carries its variance and not of how many samples its means "
-                       "are; give --samples, a number or the channel that counts them");
+      refuse(where,
+             "the picture carries its variance and not of how many samples its means are; give "
+             "--samples, a number or the channel that counts them");
     }
     if (!errors.variance.empty()) members.push_back(member("variance", errors.variance, where));
     if (!errors.second_moment.empty()) {
@@ -220,8 +215,8 @@ EstimatorEntry reference_entry(const std::string& name, std::vector<Value::Membe
     if (arguments.samples) members.push_back(member("samples", *arguments.samples, where));
   } else {
     if (arguments.samples) {
-      throw InputError(place("--samples", *arguments.samples),
-                       "the reference has no channels `Variance.*` or `m2_*` that it could be for");
+      refuse(place("--samples", *arguments.samples),
+             "the reference has no channels `Variance.*` or `m2_*` that it could be for");
     }
     members.push_back(member("exact", "true", where));
   }
@@ -241,9 +236,8 @@ std::string claim_of(const ImagesArguments& arguments, const std::string& suffix
   for (const auto& [text, option] :
        {std::pair(&arguments.detect, "--detect"), std::pair(&arguments.allow, "--allow")}) {
     if (!*text) continue;
-    throw InputError(place(option, **text),
-                     "is of a claim that the pictures are equal; --within says itself what must "
-                     "not pass");
+    refuse(place(option, **text),
+           "is of a claim that the pictures are equal; --within says itself what must not pass");
   }
   return fmt::format("mean(candidate{1}) within {0} of mean(reference{1})", *arguments.within,
                      suffix);
@@ -273,7 +267,7 @@ FirstPictures first_pictures(const ImagesArguments& arguments, const std::string
     try {
       return open_picture(file);
     } catch (const InputError& error) {
-      throw InputError(place(option, pattern), "`" + file + "`: " + error.message());
+      refuse(place(option, pattern), "`" + file + "`: " + error.message());
     }
   };
   return {open("--candidate", arguments.candidate, candidate),
@@ -291,15 +285,14 @@ Suite suite_of_images(const ImagesArguments& arguments) {
   const std::vector<std::string> references = files_given("--reference", arguments.reference);
   const bool one = references.size() == 1;
   if (!one && arguments.samples) {
-    throw InputError(place("--samples", *arguments.samples),
-                     "is of a reference that is one picture with its variance; several tell it "
-                     "themselves");
+    refuse(place("--samples", *arguments.samples),
+           "is of a reference that is one picture with its variance; several tell it themselves");
   }
   if (!one) require_enough("--reference", arguments.reference, references.size());
   if (one && arguments.question != ImageQuestion::means) {
-    throw InputError(of_reference,
-                     "one picture is a mean: its pairs and its law are unknown; give as many as "
-                     "of the candidate");
+    refuse(of_reference,
+           "one picture is a mean: its pairs and its law are unknown; give as many as of the "
+           "candidate");
   }
   const FirstPictures first = first_pictures(arguments, candidates[0], references[0]);
   Suite suite;

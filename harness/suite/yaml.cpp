@@ -6,13 +6,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <sstream>
 
+#include "harness/base/refuse.h"
 #include "harness/base/text_file.h"
 
 namespace assay::harness {
-
 namespace {
 
 constexpr std::size_t deepest = 64;
@@ -32,8 +33,8 @@ std::string readable(const std::string& message) {
       Translation{YAML::ErrorMsg::END_OF_SEQ_FLOW,
                   "a `[` is not closed, or a comma is missing before this"},
       Translation{YAML::ErrorMsg::END_OF_MAP,
-                  "expected a key of the map here; is the indentation "
-                  "that of the other keys, and the line `key: value`?"},
+                  "expected a key of the map here; is the indentation that of the other keys, and "
+                  "the line `key: value`?"},
       Translation{
           YAML::ErrorMsg::END_OF_SEQ,
           "expected another `- ` item here; indent all items alike, and all keys of an item"},
@@ -154,8 +155,8 @@ class DocumentBuilder final : public YAML::EventHandler {
     if (text.empty()) refuse(where, "a key is missing before the `:`");
     const auto [first, unseen] = frame.seen.emplace(text, where);
     if (!unseen) {
-      refuse(where, fmt::format("duplicate key `{}`; it is already given at {}:{}", text,
-                                first->second.line, first->second.column));
+      refuse(where, "duplicate key `{}`; it is already given at {}:{}", text, first->second.line,
+             first->second.column);
     }
     frame.key = text;
     frame.key_place = where;
@@ -198,24 +199,19 @@ class DocumentBuilder final : public YAML::EventHandler {
     const Value::Member* before = frame.members.empty() ? nullptr : &frame.members.back();
     const bool cut = before && before->second.kind() == Value::Kind::scalar &&
                      open_brackets(before->second.text()) > 0 && open_brackets(*frame.key) < 0;
-    if (!cut) refuse(frame.key_place, fmt::format("`{}` has no value", *frame.key));
+    if (!cut) refuse(frame.key_place, "`{}` has no value", *frame.key);
     refuse(frame.key_place,
-           fmt::format("inside {{…}} a comma ends the value of `{0}`; quote the {0}: `{0}: \"{1}, "
-                       "{2}\"`",
-                       before->first, before->second.text(), *frame.key));
+           "inside {{…}} a comma ends the value of `{0}`; quote the {0}: `{0}: \"{1}, {2}\"`",
+           before->first, before->second.text(), *frame.key);
   }
 
   void refuse_tag(const YAML::Mark& mark, const std::string& tag) const {
     if (tag.empty() || tag == "?" || tag == "!") return;
-    refuse(place(mark), fmt::format("the tag `{}` is not read; leave it out", tag));
+    refuse(place(mark), "the tag `{}` is not read; leave it out", tag);
   }
 
   [[noreturn]] void refuse_alias(const YAML::Mark& mark) const {
     refuse(place(mark), std::string(no_aliases));
-  }
-
-  [[noreturn]] void refuse(const Location& where, const std::string& why) const {
-    throw InputError(where, why);
   }
 
   Document& document_;
@@ -230,8 +226,8 @@ void refuse_tabs(const std::vector<std::string>& lines, const std::string& file)
     const std::size_t at = lines[i].find_first_not_of(' ');
     const bool tab = at != std::string_view::npos && lines[i][at] == '\t';
     if (tab && lines[i].find_first_not_of(" \t") != std::string_view::npos) {
-      throw InputError({file, static_cast<int>(i) + 1, static_cast<int>(at) + 1},
-                       "indent with spaces, not with a tab");
+      refuse({file, static_cast<int>(i) + 1, static_cast<int>(at) + 1},
+             "indent with spaces, not with a tab");
     }
   }
 }
@@ -252,9 +248,9 @@ Document::Document(std::string file, std::string_view text) : file_(std::move(fi
     while (parser.HandleNextDocument(builder)) {
     }
   } catch (const YAML::Exception& e) {
-    throw InputError(at_most_last(e.mark.line + 1, e.mark.column + 1), readable(e.msg));
+    refuse(at_most_last(e.mark.line + 1, e.mark.column + 1), readable(e.msg));
   }
-  if (!builder.complete()) throw InputError({file_, 1, 1}, "the file is empty");
+  if (!builder.complete()) refuse({file_, 1, 1}, "the file is empty");
 }
 
 Location Document::at_most_last(int line, int column) const {
@@ -300,16 +296,16 @@ Value moved_to(const Value& value, const Location& where) {
 }  // namespace
 
 Value read_flow(std::string_view text, const Location& where) {
-  if (text.find('\n') != std::string_view::npos) throw InputError(where, "a value is one line");
+  if (text.find('\n') != std::string_view::npos) refuse(where, "a value is one line");
   if (text.find_first_not_of(' ') == std::string_view::npos) {
-    throw InputError(where, "a value is missing after the `=`");
+    refuse(where, "a value is missing after the `=`");
   }
   // Standard input, not a list.
   if (text == "-") return Value::scalar("-", where);
   try {
     return moved_to(read_yaml_text(text, "").root(), where);
   } catch (const InputError& e) {
-    throw InputError(where, fmt::format("`{}`: {}", text, e.message()));
+    refuse(where, "`{}`: {}", text, e.message());
   }
 }
 
@@ -335,6 +331,84 @@ std::vector<std::string> split_outside_brackets(std::string_view text) {
     pieces.back() += c;
   }
   return pieces;
+}
+
+std::string suggestion(std::string_view name, const std::vector<std::string>& candidates) {
+  return did_you_mean(name, candidates,
+                      candidates.empty() ? "there is none" : "there is: " + listed(candidates));
+}
+
+Keys::Keys(const Document& document, const Value& map, std::string what,
+           const std::vector<std::string>& known)
+    : document_(document), map_(map), what_(std::move(what)) {
+  if (map.kind() != Value::Kind::map) {
+    refuse(map.where(), "{} must be a map of keys and values", what_);
+  }
+  for (const auto& [key, value] : map.members()) {
+    if (std::ranges::find(known, key) == known.end()) {
+      refuse(document.key(value), "unknown key `{}` of {}{}", key, what_, suggestion(key, known));
+    }
+  }
+}
+
+const Value& Keys::require(std::string_view key, std::string_view example) const {
+  if (const Value* value = find(key)) return *value;
+  refuse(map_.where(), "{} needs the key `{}`, as in `{}`", what_, key, example);
+}
+
+namespace {
+
+/// A wrong type and a wrong value get the same message: what is allowed, and what was given.
+template <class Read, class Allowed>
+auto read_within(const Value& value, std::string_view what, const std::string& range, Read read,
+                 Allowed allowed) {
+  std::string found = "no single value";
+  if (value.kind() == Value::Kind::scalar) {
+    found = "`" + value.text() + "`";
+    try {
+      const auto number = read();
+      if (allowed(number)) return number;
+    } catch (const InputError&) {
+    }
+  }
+  refuse(value.where(), "{} must be {}, but it is {}", what, range, found);
+}
+
+}  // namespace
+
+double positive_number(const Value& value, std::string_view what) {
+  return read_within(
+      value, what, "a number above 0", [&] { return value.number(what); },
+      [](double number) { return number > 0 && std::isfinite(number); });
+}
+
+bool is_error_rate(double rate) { return rate >= 1e-9 && rate <= 0.5; }
+
+double error_rate(const Value& value, std::string_view what) {
+  return read_within(
+      value, what, "a number from 1e-9 to 0.5 (5 % is 0.05)", [&] { return value.number(what); },
+      is_error_rate);
+}
+
+std::uint64_t count_from(const Value& value, std::string_view what, std::uint64_t least) {
+  return read_within(
+      value, what, fmt::format("a whole number, {} or more", least),
+      [&] { return value.count(what); }, [&](std::uint64_t count) { return count >= least; });
+}
+
+std::string one_line(const Value& value, std::string_view what) {
+  const std::string& text = value.string(what);
+  const bool blank = text.find_first_not_of(" \t\n") == std::string::npos;
+  if (!blank && text.find('\n') == std::string::npos) return text;
+  refuse(value.where(), "{} must be one line of text", what);
+}
+
+std::size_t choice(const Value& value, std::string_view what,
+                   const std::vector<std::string>& allowed) {
+  const std::string& text = value.string(what);
+  const auto found = std::ranges::find(allowed, text);
+  if (found != allowed.end()) return static_cast<std::size_t>(found - allowed.begin());
+  refuse(value.where(), "{} cannot be `{}`{}", what, text, suggestion(text, allowed));
 }
 
 }  // namespace assay::harness

@@ -1,7 +1,6 @@
 #include "harness/theta/ask.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -20,10 +19,9 @@ void require_pairs(const Question& question, const Claim& claim) {
   const std::size_t first = question.subjects[0].channels.size();
   for (const Subject& other : question.subjects) {
     if (other.channels.size() == first) continue;
-    throw InputError(claim.left.where,
-                     fmt::format("the two sides have {} and {} channels; name one of each, as in "
-                                 "`{}.channel`",
-                                 first, other.channels.size(), claim.left.source.estimator));
+    refuse(claim.left.where,
+           "the two sides have {} and {} channels; name one of each, as in `{}.channel`", first,
+           other.channels.size(), claim.left.source.estimator);
   }
 }
 
@@ -33,30 +31,27 @@ void require_different_data(const Question& question, const Claim& claim) {
   if (as_recorded_run(*question.subjects[0].setup) != nullptr) return;
   const std::string first = question.subjects[0].setup->data_file();
   const auto same = [&](const Subject& other) { return other.setup->data_file() == first; };
-  if (first.empty() ||
-      std::count_if(question.subjects.begin(), question.subjects.end(), same) < 2) {
+  if (first.empty() || std::ranges::count_if(question.subjects, same) < 2) {
     return;
   }
   if (question.subjects[0].setup->image()) {
-    throw InputError(claim.left.where,
-                     fmt::format("both sides are the pictures `{}`; give one of them pictures of "
-                                 "seeds of their own",
-                                 first));
+    refuse(claim.left.where,
+           "both sides are the pictures `{}`; give one of them pictures of seeds of their own",
+           first);
   }
-  throw InputError(claim.left.where,
-                   fmt::format("both sides are read from `{}`: its rows belong together and are no "
-                               "independent samples; record the difference as a column of its own "
-                               "and claim that its mean is 0",
-                               first));
+  refuse(claim.left.where,
+         "both sides are read from `{}`: its rows belong together and are no independent samples; "
+         "record the difference as a column of its own and claim that its mean is 0",
+         first);
 }
 
 /// Gives the second of two sources with one key a stream of its own, if it is drawn.
 bool separate_pair(Subject& first, Subject& second, const Claim& claim, std::uint64_t seed) {
   if (!(stream_of(first, seed) == stream_of(second, seed))) return false;
   if (first.setup->data_stream() && second.setup->data_stream()) {
-    throw InputError(claim.left.where,
-                     "both sides say that they were drawn from the same stream: they are not "
-                     "independent; draw one of them with another `--seed`");
+    refuse(claim.left.where,
+           "both sides say that they were drawn from the same stream: they are not independent; "
+           "draw one of them with another `--seed`");
   }
   ++(second.setup->data_stream() ? first : second).copy;
   return true;
@@ -90,13 +85,13 @@ void refuse_missing_per_cent(const Question& question) {
   const double size = question.theta->known_size(question).value_or(0);
   for (const Margin& margin : margins_of(*question.test)) {
     if ((quantity.of_a_law || quantity.of_a_sampler) && margin.value > 1) {
-      throw InputError(margin.where,
-                       fmt::format("the margin {:g} is more than any difference of probabilities; "
-                                   "here {:g} per cent is written `{:g}`",
-                                   margin.value, margin.value, margin.value / 100));
+      refuse(margin.where,
+             "the margin {:g} is more than any difference of probabilities; here {:g} per cent is "
+             "written `{:g}`",
+             margin.value, margin.value, margin.value / 100);
     }
     const std::string per_cent = missing_per_cent(margin, size);
-    if (!per_cent.empty()) throw InputError(margin.where, "the margin " + per_cent);
+    if (!per_cent.empty()) refuse(margin.where, "the margin " + per_cent);
   }
 }
 
@@ -107,19 +102,19 @@ void check_sizes(const Question& question) {
   const auto longest = std::ranges::find_if(question.subjects, [&](const Subject& subject) {
     return subject.setup->observations() == most;
   });
-  throw InputError(test.place_of("secondaries"),
-                   fmt::format("`secondaries: {}` is more than the {} observations that `{}` has",
-                               *test.secondaries, *most, longest->estimator->name));
+  refuse(test.place_of("secondaries"),
+         "`secondaries: {}` is more than the {} observations that `{}` has", *test.secondaries,
+         *most, longest->estimator->name);
 }
 
 /// A mean with its error has no observations, so nothing else can be tested.
 void require_observations(const Question& question) {
   for (const Subject& subject : question.subjects) {
     if (!recorded::is_reference(*subject.setup)) continue;
-    throw InputError(question.test->claim.left.where,
-                     fmt::format("`{0}` is a reference, a mean without observations: it can stand "
-                                 "on the right of a mean, as in `mean(x) == mean({0})`",
-                                 subject.estimator->name));
+    refuse(question.test->claim.left.where,
+           "`{0}` is a reference, a mean without observations: it can stand on the right of a "
+           "mean, as in `mean(x) == mean({0})`",
+           subject.estimator->name);
   }
 }
 
@@ -130,19 +125,17 @@ void ask_of_images(Question& question) {
   }
   const Subject& image =
       question.subjects[0].image ? question.subjects[0] : question.subjects.back();
-  throw InputError(
-      question.test->claim.left.where,
-      fmt::format("`{}` has no method for an image; there is mean, bias, total_variance and cost; "
-                  "or name one pixel, as in `{}.{}`",
-                  question.test->claim.left.row->word, image.estimator->name,
-                  element_name(*image.image, 0)));
+  refuse(question.test->claim.left.where,
+         "`{}` has no method for an image; there is mean, bias, total_variance and cost; or name "
+         "one pixel, as in `{}.{}`",
+         question.test->claim.left.row->word, image.estimator->name, element_name(*image.image, 0));
 }
 
 void ask_of_pairs(Question& question) {
   const Theta* const theta = question.theta->of_pairs();
   if (theta == nullptr || !question.of_two()) {
-    throw InputError(question.test->place_of("paired"),
-                     "`paired` has a method for the means of two images alone; leave it out");
+    refuse(question.test->place_of("paired"),
+           "`paired` has a method for the means of two images alone; leave it out");
   }
   question.theta = theta;
 }
@@ -197,8 +190,7 @@ std::string missing_per_cent(const Margin& margin, double size) {
   if (margin.relative || !(size > 0) || margin.value <= size) return "";
   return fmt::format(
       "{0:g} is larger than the reference, {1:.3g}: for {0:g} per cent write `{0:g}%`; if so much "
-      "is "
-      "meant, `{2:.0f}%`",
+      "is meant, `{2:.0f}%`",
       margin.value, size, std::ceil(100 * margin.value / size));
 }
 
@@ -210,10 +202,9 @@ Question ask_as_written(TestEntry& test, const Estimators& estimators, std::uint
   if (test.detect_by_default) {
     test.detect = Margin{.value = default_law_effect};
     if (test.allow && test.allow->value >= default_law_effect) {
-      throw InputError(test.allow->where,
-                       fmt::format("`allow` ({}) is not below `detect`, which is {} by default; "
-                                   "give a larger `detect`",
-                                   to_string(*test.allow), default_law_effect));
+      refuse(test.allow->where,
+             "`allow` ({}) is not below `detect`, which is {} by default; give a larger `detect`",
+             to_string(*test.allow), default_law_effect);
     }
   }
   refuse_missing_per_cent(question);
@@ -233,15 +224,13 @@ double margin_on_theta(const Question& question, std::size_t channel, const Marg
 }
 
 bool has_relative_margin(const TestEntry& test) {
-  return (test.detect && test.detect->relative) ||
-         (test.allow && test.allow->relative && test.allow->value > 0) ||
-         (test.claim.relation == Relation::within && test.claim.margin.relative);
+  return std::ranges::any_of(margins_of(test),
+                             [](const Margin& m) { return m.relative && m.value > 0; });
 }
 
 bool has_absolute_margin(const TestEntry& test) {
-  return (test.detect && !test.detect->relative) ||
-         (test.allow && !test.allow->relative && test.allow->value > 0) ||
-         (test.claim.relation == Relation::within && !test.claim.margin.relative);
+  return std::ranges::any_of(margins_of(test),
+                             [](const Margin& m) { return !m.relative && m.value > 0; });
 }
 
 }  // namespace assay::harness

@@ -119,11 +119,10 @@ std::optional<ConstantVerdict> judge_constant_variance(const Question& question,
   }
   const double hidden = hidden_deviation(question, channel, data);
   if (hidden * hidden > question.references[channel].value) return {};
-  return ConstantVerdict{
-      Verdict::pass,
-      fmt::format("every observation is {:.10g}, so that no variance was seen that could be too "
-                  "large; values never seen are not ruled out",
-                  data.moments.mean)};
+  return ConstantVerdict{Verdict::pass,
+                         fmt::format("every observation is {:.10g}, so that no variance was seen "
+                                     "that could be too large; values never seen are not ruled out",
+                                     data.moments.mean)};
 }
 
 std::string lack_of_variance(const Question& question, std::size_t channel,

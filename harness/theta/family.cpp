@@ -8,7 +8,7 @@ namespace {
 
 bool inside_family(const Question& question) {
   if (question.test->expect != Expectation::pass) return false;
-  return std::none_of(question.subjects.begin(), question.subjects.end(), [](const Subject& s) {
+  return std::ranges::none_of(question.subjects, [](const Subject& s) {
     return !s.estimator->entry->information.original.empty();
   });
 }

@@ -8,45 +8,39 @@ const std::vector<GateKind>& gate_kinds() {
   static const std::vector<GateKind> table{
       {.name = "level factor by skewness",
        .sentence = "the observations are so skewed that one tail of the test is off by a factor of "
-                   "{0}, limit "
-                   "{1}",
+                   "{0}, limit {1}",
        .needs_more = true,
        .falls = Falls::by_its_logarithm},
       {.name = "observations of a variance",
-       .sentence =
-           "{0} observations are too few to show how heavy the tail of their squares is: it "
-           "takes {1}",
+       .sentence = "{0} observations are too few to show how heavy the tail of their squares is: "
+                   "it takes {1}",
        .needs_more = true,
        .falls = Falls::inversely},
       {.name = "level factor after correction",
        .sentence = "the observations are so skewed that one tail of the test is off by a factor of "
-                   "{0} even "
-                   "after correction, limit {1}",
+                   "{0} even after correction, limit {1}",
        .needs_more = true,
        .falls = Falls::by_its_logarithm},
       {.name = "share of one observation",
-       .sentence = "one observation outweighs the others: it has {0} of the sum of squares, limit "
-                   "{1}",
+       .sentence =
+           "one observation outweighs the others: it has {0} of the sum of squares, limit {1}",
        .needs_more = true,
        .falls = Falls::as_one_observation},
       {.name = "excess kurtosis",
-       .sentence =
-           "the observations are not normal enough for this test of their variance: their excess "
-           "kurtosis is {0}, limit {1}",
+       .sentence = "the observations are not normal enough for this test of their variance: their "
+                   "excess kurtosis is {0}, limit {1}",
        .heavy_tail = true},
       {.name = "p of a power law",
        .sentence = "the points lie on no power law: p {0} of the best one, limit {1}; let `over` "
-                   "begin where one "
-                   "holds, often at larger values",
+                   "begin where one holds, often at larger values",
        .says_what_helps = true},
       {.name = "skewness of the images, theirs alone",
-       .sentence = "rare bright pixels (fireflies), of which the pilot saw too few, move the tails "
-                   "of the test "
-                   "by a factor of {0} at least, limit {1}; take more samples a picture"},
+       .sentence =
+           "rare bright pixels (fireflies), of which the pilot saw too few, move the tails of the "
+           "test by a factor of {0} at least, limit {1}; take more samples a picture"},
       {.name = "rounding",
        .sentence = "the values are rounded too coarsely to be held against a continuous law: a "
-                   "step is {0} of "
-                   "the distance that is rejected, limit {1}; write more digits",
+                   "step is {0} of the distance that is rejected, limit {1}; write more digits",
        .says_what_helps = true},
       {.name = "correlation of successive values",
        .sentence = "each value depends on the one before: correlation {0}, limit {1}"},
@@ -58,8 +52,8 @@ const std::vector<GateKind>& gate_kinds() {
       {.name = "rank correlation of drawn observations",
        .sentence = "those some steps apart have a rank correlation of {0}, limit {1}"},
       {.name = "variance of batch ranks of drawn observations",
-       .sentence = "means of neighbours vary {0} times as much as those of independent ones, limit "
-                   "{1}"},
+       .sentence =
+           "means of neighbours vary {0} times as much as those of independent ones, limit {1}"},
       {.name = "longest repetition", .sentence = "a run of {0} values occurs twice"},
       {.name = "values that occur equally often",
        .sentence = "{0} values occur equally often, limit {1}: they are no independent draws"},

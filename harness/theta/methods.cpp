@@ -20,27 +20,28 @@ std::string relation_text(const TestEntry& test) {
   return texts[static_cast<int>(test.claim.relation)];
 }
 
-[[noreturn]] void refuse(const Question& question, const std::string& method,
-                         const std::string& why) {
+[[noreturn]] void refuse_method(const Question& question, const std::string& method,
+                                const std::string& why) {
   const Location& where = question.test->place_of("test");
   // The place of an option names the method itself.
-  if (where.line == 0) throw InputError(where, why);
-  throw InputError(where, fmt::format("`test: {}` {}", method, why));
+  if (where.line == 0) refuse(where, why);
+  refuse(where, "`test: {}` {}", method, why);
 }
 
 /// Throws InputError if the data do not suit the method.
 void require_data(const Method& method, const Question& question) {
   for (const Subject& subject : question.subjects) {
     if (method.is.of_observations && as_recorded_run(*subject.setup) != nullptr) {
-      refuse(question, method.name,
-             fmt::format("needs observations, and `{}` has the moments of a run",
-                         subject.estimator->name));
+      refuse_method(question, method.name,
+                    fmt::format("needs observations, and `{}` has the moments of a run",
+                                subject.estimator->name));
     }
     if (!method.is.in_range || !subject.setup->observations()) continue;
-    refuse(question, method.name,
-           fmt::format("needs a range that is declared, and the rows of `{}` declare none; leave "
-                       "`test` out",
-                       subject.estimator->name));
+    refuse_method(
+        question, method.name,
+        fmt::format(
+            "needs a range that is declared, and the rows of `{}` declare none; leave `test` out",
+            subject.estimator->name));
   }
 }
 
@@ -94,15 +95,14 @@ std::vector<Method> methods_for(const Question& question) {
 }
 
 Method find_method(const Question& question, const std::string& name) {
-  std::string known;
-  for (const Method& method : methods_for(question)) {
-    if (method.name == name) {
-      require_data(method, question);
-      return method;
-    }
-    known += (known.empty() ? "`" : ", `") + method.name + "`";
+  const std::vector<Method> known = methods_for(question);
+  const auto found = std::ranges::find(known, name, &Method::name);
+  if (found == known.end()) {
+    refuse_method(question, name,
+                  "does not answer this claim; there is " + quoted(names_of(known, &Method::name)));
   }
-  refuse(question, name, "does not answer this claim; there is " + known);
+  require_data(*found, question);
+  return *found;
 }
 
 std::string null_hypothesis(const Question& question, std::size_t channel) {

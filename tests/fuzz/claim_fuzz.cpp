@@ -1,8 +1,8 @@
 // Claims as users type them (harness/claim.h). Every text is a claim, or is refused with a column.
 // A claim is written and read again as the same.
 
-// sources: harness/language/claim.cpp harness/language/claim_text.cpp
-// sources: harness/language/laws.cpp harness/suite/suite_keys.cpp harness/suite/yaml.cpp
+// sources: harness/language/claim.cpp
+// sources: harness/language/laws.cpp harness/suite/yaml.cpp
 // sources: harness/base/text_file.cpp estimators/core/value.cpp estimators/core/value_checks.cpp
 // libraries: -lfmt -lyaml-cpp
 

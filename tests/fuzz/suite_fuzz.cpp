@@ -1,8 +1,8 @@
 // Suite files (harness/suite.h). All bytes are a suite, or are refused at a place in the file.
 
-// sources: harness/suite/suite.cpp harness/suite/suite_entries.cpp harness/suite/suite_keys.cpp
+// sources: harness/suite/suite.cpp
 // sources: harness/suite/suite_from_command_line.cpp
-// sources: harness/language/claim.cpp harness/language/claim_text.cpp
+// sources: harness/language/claim.cpp
 // sources: harness/language/laws.cpp harness/suite/yaml.cpp harness/base/text_file.cpp
 // sources: estimators/core/value.cpp estimators/core/value_checks.cpp estimators/core/flow.cpp
 // sources: estimators/core/text_pattern.cpp estimators/catalogue.cpp estimators/parameters.cpp

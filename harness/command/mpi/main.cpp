@@ -9,7 +9,7 @@
 #include <set>
 
 #include "estimators/library_host.h"
-#include "harness/command/launcher.h"
+#include "harness/command/environment.h"
 #include "harness/command/program.h"
 #include "harness/ranks/ranks.h"
 
@@ -102,9 +102,7 @@ class MpiMessages final : public Messages {
     std::set<int> unfinished;
     for (auto part = receiving_.begin(); part != receiving_.end();) {
       int done = 0;
-      if (!unfinished.contains(part->from)) {
-        MPI_Test(&part->request, &done, MPI_STATUS_IGNORE);
-      }
+      if (!unfinished.contains(part->from)) MPI_Test(&part->request, &done, MPI_STATUS_IGNORE);
       if (done == 0) {
         unfinished.insert((part++)->from);
         continue;
@@ -139,7 +137,7 @@ int joined_program(const std::vector<std::string>& arguments) {
   MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &granted);
   MpiMessages messages;
   int code = 2;
-  const unsigned tasks = launched_tasks(system_environment);
+  const unsigned tasks = launched_tasks();
   if (messages.size() == 1 && tasks > 1) {
     fmt::print(stderr,
                "assay: a launcher started {} tasks that MPI does not connect; start them by the "

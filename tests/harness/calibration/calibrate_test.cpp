@@ -1,6 +1,5 @@
 #include "harness/calibration/calibrate.h"
 
-#include "harness/calibration/calibration_cases.h"
 #include "tests/prelude.h"
 
 namespace assay::harness {

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "harness/command/commands.h"
-#include "harness/record/image_record.h"
+#include "harness/record/maps.h"
 #include "harness/record/replay.h"
 #include "reports/report_formats.h"
 #include "tests/estimators/exr.h"

@@ -236,7 +236,7 @@ TEST(CommandLine, MergesRecordsInAnyNumber) {
   const auto command =
       parsed<MergeCommand>({"merge", "2.json", "1.json", "--report", "metrics=m.txt", "--github",
                             "never", "--inconclusive", "pass"});
-  EXPECT_THAT(command.arguments.records, ElementsAre("2.json", "1.json"));
+  EXPECT_THAT(command.records, ElementsAre("2.json", "1.json"));
   EXPECT_EQ(command.output.reports.at(0).kind, "metrics");
   EXPECT_FALSE(command.output.github);
   EXPECT_EQ(command.output.inconclusive, InconclusivePolicy::pass);

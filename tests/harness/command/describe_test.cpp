@@ -2,7 +2,6 @@
 
 #include "estimators/catalogue.h"
 #include "harness/command/commands.h"
-#include "harness/command/tables.h"
 #include "harness/draws/sampler_setup.h"
 #include "tests/harness/prelude.h"
 

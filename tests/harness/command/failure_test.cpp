@@ -1,6 +1,5 @@
-#include "harness/command/failure.h"
-
 #include "estimators/core/line_error.h"
+#include "harness/command/program.h"
 #include "harness/suite/suite.h"
 #include "tests/prelude.h"
 

@@ -1,5 +1,4 @@
-#include "harness/draws/domain_chart.h"
-
+#include "harness/draws/draw_cells.h"
 #include "tests/prelude.h"
 
 namespace assay::harness {

@@ -1,7 +1,7 @@
-#include "harness/families/slope.h"
 #include "harness/plan/looks.h"
 #include "harness/plan/outcome.h"
 #include "harness/plan/sizes.h"
+#include "harness/run/evaluate.h"
 #include "harness/theta/decision.h"
 #include "harness/theta/methods.h"
 #include "harness/theta/theta.h"
@@ -40,15 +40,22 @@ std::array<ChannelData, 4> bent() {
   return {point(1, error), point(1, error), point(.25, error), point(.125, error)};
 }
 
-std::string state_of(const std::string& test, ErrorShare share, std::span<const ChannelData> data) {
-  const auto asked = ask_text(suite);
-  TestOutcome outcome{.question = asked->question(test),
-                      .place = {.inside = false, .share = share}};
+/// The claim `test` of the suite, at its only look.
+TestOutcome outcome_of(const Asked& asked, const std::string& test, ErrorShare share) {
+  TestOutcome outcome{.question = asked.question(test), .place = {.inside = false, .share = share}};
   outcome.plan.method = methods_for(outcome.question).front();
   outcome.plan.looks = one_look(1000, outcome.place.share);
-  const bool within = test == "within";
   outcome.plan.regions = {{.relation = Relation::equal}};
-  if (within) outcome.plan.regions = {{.relation = Relation::within, .detect = 0.3}};
+  if (outcome.question.test->claim.relation == Relation::within) {
+    outcome.plan.regions = {{.relation = Relation::within, .detect = 0.3}};
+  }
+  return outcome;
+}
+
+std::string state_of(const std::string& test, ErrorShare share, std::span<const ChannelData> data,
+                     const char* text = suite) {
+  const auto asked = ask_text(text);
+  const TestOutcome outcome = outcome_of(*asked, test, share);
   const std::vector<Gate> gates = outcome.question.theta->gates(
       outcome, 0, data,
       critical_value(outcome.share().alpha, is_two_sided(outcome.question.test->claim.relation)));
@@ -59,7 +66,8 @@ std::string state_of(const std::string& test, ErrorShare share, std::span<const 
 TEST(EvidenceOfSlope, WhereEverySlopeIsRejectedTheGateIsRed) {
   const auto asked = ask_text(suite);
   const std::array<ChannelData, 4> data = bent();
-  const Evidence evidence = evidence_of_slope(asked->question("within"), 0, data);
+  const Question question = asked->question("within");
+  const Evidence evidence = evidence_of(methods_for(question).front(), question, 0, data);
   const Regions regions{.relation = Relation::within, .detect = 0.1};
   ASSERT_GT(std::abs(evidence.estimate), 0.1);
   ASSERT_LT(log_p_forbidden(evidence, regions), std::log(beta));
@@ -84,12 +92,12 @@ TEST(EvidenceOfSlope, PointsOnAPowerLawAreGreen) {
 
 // Opposite signs, at two points: no multiple of a power is both.
 TEST(EvidenceOfSlope, TwoPointsOfOppositeSignsAreRed) {
-  const auto asked = ask_text(R"(suite: two
+  const std::array<ChannelData, 2> data{point(1, .1), point(-1, .1)};
+  EXPECT_EQ(state_of("t", {.alpha = beta, .beta = beta}, data, R"(suite: two
 estimators: {it: {plugin: analytic/ratio}}
 tests: [{name: t, claim: slope(mean(it)) within 0.3 of -1, over: {primaries: [1, 8]}}]
-)");
-  const std::array<ChannelData, 2> data{point(1, .1), point(-1, .1)};
-  EXPECT_EQ(power_law_gate(asked->question("t"), 0, data, beta).state, "red");
+)"),
+            "p of a power law red");
 }
 
 // Exactly 1, 1/2, 1/4 and 1/8: on a power law, but without an error to say how well.
@@ -99,9 +107,11 @@ TEST(EvidenceOfSlope, PointsWithoutSpreadAreSaidToHaveNoError) {
   for (int i = 0; i < 4; ++i) {
     for (int k = 0; k < 100; ++k) data[static_cast<std::size_t>(i)].moments.add(std::ldexp(1, -i));
   }
-  const std::string reason = point_without_spread(asked->question("within"), 0, data);
+  const TestOutcome outcome = outcome_of(*asked, "within", {.alpha = beta, .beta = beta});
+  const Theta& theta = *outcome.question.theta;
+  const std::string reason = theta.lack_of_numbers({outcome, {}}, 0, data);
   EXPECT_THAT(reason, HasSubstr("`it (primaries = 1)` is 1 but for rounding"));
-  EXPECT_EQ(point_without_spread(asked->question("within"), 0, bent()), "");
+  EXPECT_EQ(theta.lack_of_numbers({outcome, {}}, 0, bent()), "");
 }
 
 }  // namespace

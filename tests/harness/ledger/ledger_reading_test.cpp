@@ -1,4 +1,4 @@
-#include "harness/ledger/night_evidence.h"
+#include "harness/ledger/ledger.h"
 #include "tests/prelude.h"
 
 namespace assay::harness {

@@ -1,4 +1,4 @@
-#include "harness/record/law_record.h"
+#include "harness/record/maps.h"
 #include "tests/harness/prelude.h"
 #include "tests/harness/questions.h"
 

@@ -1,12 +1,11 @@
 // `assay images`: what it makes of its options.
 
-#include "harness/suite/suite_images.h"
-
 #include <fmt/format.h>
 #include <png.h>
 
 #include "harness/command/cli.h"
 #include "harness/command/run.h"
+#include "harness/suite/suite.h"
 #include "tests/harness/pictures.h"
 #include "tests/harness/prelude.h"
 

@@ -3,7 +3,7 @@
 #include "harness/base/text_file.h"
 #include "harness/question/question.h"
 #include "harness/sampling/prepare.h"
-#include "harness/suite/suite_entries.h"
+#include "harness/suite/suite.h"
 #include "harness/suite/yaml.h"
 #include "harness/theta/ask.h"
 #include "tests/harness/prelude.h"

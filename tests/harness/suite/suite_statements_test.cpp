@@ -1,4 +1,4 @@
-#include "harness/suite/suite_entries.h"
+#include "harness/suite/suite.h"
 #include "reports/words/statements.h"
 #include "tests/harness/prelude.h"
 

@@ -44,8 +44,8 @@ DeclaredLaw declared_law(const Question& question, std::size_t channel);
 /// mass have half the level each (Bonferroni).
 Evidence points_against_law(const Points& points, const DeclaredLaw& declared);
 
-/// "One law" is tested given the pooled values (stats/laws/kolmogorov_smirnov.h), "at most theta" by a
-/// bound on the distance. Two samplers always share the level: missing mass is not known
+/// "One law" is tested given the pooled values (stats/laws/kolmogorov_smirnov.h), "at most theta"
+/// by a bound on the distance. Two samplers always share the level: missing mass is not known
 /// beforehand.
 Evidence points_against_points(const Points& x, const Points& y);
 
@@ -54,14 +54,5 @@ Evidence points_against_points(const Points& x, const Points& y);
 /// Counts of one side's values in each cell. The last number counts draws without a point.
 std::vector<std::uint64_t> counts_in(const stats::SampledCells& cells, const Subject& side,
                                      const ChannelData& data);
-
-/// A sampler's draws against its declared density.
-Evidence cells_against_density(const Method&, const Question& question, std::size_t,
-                               std::span<const ChannelData> data);
-
-/// Two samples against each other in the method's cells. One more cell counts draws without a
-/// point. Throws std::domain_error if there are no cells.
-Evidence cells_against_cells(const Method& method, const Question& question, std::size_t,
-                             std::span<const ChannelData> data);
 
 }  // namespace assay::harness

@@ -1,4 +1,4 @@
-#include "harness/families/law_evidence.h"
+#include "harness/families/law.h"
 
 #include "stats/means/binomial.h"
 #include "tests/philox.h"

@@ -1,4 +1,4 @@
-#include "harness/suite/selection.h"
+#include "harness/suite/run_options.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 
 #include "estimators/core/quoting.h"
 #include "estimators/core/text_pattern.h"
-#include "harness/suite/suite_keys.h"
+#include "harness/suite/yaml.h"
 
 namespace assay::harness {
 namespace {

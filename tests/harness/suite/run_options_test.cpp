@@ -1,4 +1,4 @@
-#include "harness/suite/selection.h"
+#include "harness/suite/run_options.h"
 
 #include "harness/command/commands.h"
 #include "tests/harness/prelude.h"

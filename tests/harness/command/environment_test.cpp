@@ -1,4 +1,4 @@
-#include "harness/command/shard_environment.h"
+#include "harness/command/environment.h"
 
 #include "tests/harness/prelude.h"
 
