@@ -174,10 +174,9 @@ NoisePyramid::Around NoisePyramid::around(const Rectangle& window, std::size_t c
   return found;
 }
 
-bool NoisePyramid::of_one_law(const Around& near) const {
+bool NoisePyramid::of_one_law(const Around& near, double toward) const {
   constexpr double errors_of_signs = 6;
-  constexpr double errors_of_rates = 3;
-  constexpr double least_part = 0.15;  // Of both rates: a brighter side has some more.
+  constexpr double errors_of_rates = 4;
   if (inverse_[1] == 0) return false;
   return std::ranges::all_of(near.blocks, [&](const Sides& here) {
     const double more = std::abs(here[0]->noisier() - here[1]->noisier());
@@ -186,7 +185,7 @@ bool NoisePyramid::of_one_law(const Around& near) const {
       const double a = here[0]->rare(octave) * inverse_[0];
       const double b = here[1]->rare(octave) * inverse_[1];
       const double error = std::sqrt(a * inverse_[0] + b * inverse_[1]);
-      if (std::abs(a - b) > std::max(errors_of_rates * error, least_part * (a + b))) return false;
+      if (toward * (a - b) > errors_of_rates * error) return false;
     }
     return true;
   });
@@ -208,7 +207,7 @@ NoisePyramid::Kept NoisePyramid::kept(const CellNoise& cell, const Rectangle& wi
   const double direction = cell.effect < 0 ? 1 : -1;
   const double toward = cell.weight < 0 ? -direction : direction;
   const Around near = around(window, channel);
-  const bool one_law = of_one_law(near);
+  const bool one_law = of_one_law(near, toward);
   double largest = 0;
   for (int octave = near.first; octave <= near.last; ++octave) {
     for (const Sides& here : near.blocks) {

@@ -105,9 +105,9 @@ class NoisePyramid {
   // rarest do not drown the others.
   //
   // Two sides of one law have k3 = 0, and a block's k3 counts beyond its error. It counts whole
-  // where the sides have different laws. One is noisier for its mean in too many elements (sign
-  // test), or has too many rare values beyond an octave, in one of these blocks. A reference has a
-  // law of its own.
+  // where the sides have different laws in one of these blocks: one is noisier for its mean in too
+  // many elements (sign test), or the darker has too many rare values beyond an octave. A reference
+  // has a law of its own.
   struct Kept {
     double t = 0;
     double standard_error = 0;
@@ -137,7 +137,7 @@ class NoisePyramid {
     int last = 0;
   };
   Around around(const Rectangle& window, std::size_t channel) const;
-  bool of_one_law(const Around& near) const;
+  bool of_one_law(const Around& near, double toward) const;
   double growth(const Sides& here, int octave, double toward, bool one_law) const;
 
   std::array<double, sides_of_pair> replicates_ = {};  // 0: no side, but a reference.
