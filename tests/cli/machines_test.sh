@@ -135,10 +135,10 @@ go_on_after() {
   done
 }
 
+# ASSAY_KILLS is how often rank 2 is killed, all are killed, and all are asked to end.
 test_ranks_that_are_killed_go_on_from_a_checkpoint() {
   require_mpi
-  local counts=(2 2 1)
-  [ -z "$long" ] || counts=(20 50 5)
+  local counts=(${ASSAY_KILLS-2 2 1})
   of_one_thread "$source_folder/tests/suites/kinds.yaml"
   go_on_after "${counts[0]}" KILL 2
   go_on_after "${counts[1]}" KILL all
