@@ -97,7 +97,8 @@ std::optional<std::size_t> Round::next_pool() const {
 std::uint64_t Round::blocks_left() const {
   std::uint64_t blocks = 0;
   for (std::size_t i = 0; i < pools_.size(); ++i) {
-    const std::uint64_t end = pools_[i]->requested(), size = pools_[i]->block_size();
+    const std::uint64_t end = pools_[i]->requested();
+    const std::uint64_t size = pools_[i]->block_size();
     if (!in_trouble_[i] && next_[i] < end) blocks += (end - next_[i] + size - 1) / size;
   }
   return blocks;

@@ -99,13 +99,10 @@ PooledNoise::Moments PooledNoise::cut_off(int octave) const {
 }
 
 double PooledNoise::rare(int octave) const {
-  double count = 0;
-  for (const Tail& tail : rare_) {
-    for (int i = 0; i <= std::min(top_ - octave, octaves - 1); ++i) {
-      count += static_cast<double>(tail[static_cast<std::size_t>(i)].count);
-    }
-  }
-  return count;
+  const int i = top_ - octave;
+  if (i < 0 || i >= octaves) return 0;
+  const auto bin = static_cast<std::size_t>(i);
+  return static_cast<double>(rare_[0][bin].count) + static_cast<double>(rare_[1][bin].count);
 }
 
 double PooledNoise::hidden_squares(double replicates) const {
@@ -125,7 +122,6 @@ NoisePyramid::NoisePyramid(const ImageExtent& extent,
   level.channels = extent.channels;
   for (std::size_t s = 0; s < sides_of_pair; ++s) {
     replicates_[s] = static_cast<double>(replicates[s]);
-    inverse_[s] = replicates[s] > 0 ? 1 / replicates_[s] : 0;
     level.noise[s].resize(level.width * level.height * level.channels);
   }
 }
@@ -174,17 +170,23 @@ NoisePyramid::Around NoisePyramid::around(const Rectangle& window, std::size_t c
   return found;
 }
 
+double NoisePyramid::inverse(std::size_t side) const {
+  return replicates_[side] > 0 ? 1 / replicates_[side] : 0;
+}
+
 bool NoisePyramid::of_one_law(const Around& near, double toward) const {
   constexpr double errors_of_signs = 6;
   constexpr double errors_of_rates = 4;
-  if (inverse_[1] == 0) return false;
+  if (replicates_[1] == 0) return false;
   return std::ranges::all_of(near.blocks, [&](const Sides& here) {
     const double more = std::abs(here[0]->noisier() - here[1]->noisier());
     if (more > errors_of_signs * std::sqrt(here[0]->noisier() + here[1]->noisier())) return false;
-    for (int octave = near.first; octave <= near.last; ++octave) {
-      const double a = here[0]->rare(octave) * inverse_[0];
-      const double b = here[1]->rare(octave) * inverse_[1];
-      const double error = std::sqrt(a * inverse_[0] + b * inverse_[1]);
+    std::array<double, sides_of_pair> beyond = {};
+    for (int octave = near.last; octave >= near.first; --octave) {
+      for (std::size_t s = 0; s < sides_of_pair; ++s) beyond[s] += here[s]->rare(octave);
+      const double a = beyond[0] * inverse(0);
+      const double b = beyond[1] * inverse(1);
+      const double error = std::sqrt(a * inverse(0) + b * inverse(1));
       if (toward * (a - b) > errors_of_rates * error) return false;
     }
     return true;
@@ -194,10 +196,10 @@ bool NoisePyramid::of_one_law(const Around& near, double toward) const {
 double NoisePyramid::growth(const Sides& here, int octave, double toward, bool one_law) const {
   const PooledNoise::Moments a = here[0]->cut_off(octave);
   const PooledNoise::Moments b = here[1]->cut_off(octave);
-  const double second = a.second * inverse_[0] + b.second * inverse_[1];
+  const double second = a.second * inverse(0) + b.second * inverse(1);
   if (!(second > 0)) return 0;
-  const double a2 = square(inverse_[0]);
-  const double b2 = square(inverse_[1]);
+  const double a2 = square(inverse(0));
+  const double b2 = square(inverse(1));
   const double error = std::sqrt(a.squared_error * square(a2) + b.squared_error * square(b2));
   return (toward * (a.third * a2 - b.third * b2) - (one_law ? error : 0)) / second;
 }

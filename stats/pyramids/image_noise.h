@@ -48,7 +48,7 @@ class PooledNoise {
   static constexpr int no_octave = -100'000;  // top() without any.
   int top() const { return top_; }            // No rare deviation is beyond +-2^top.
   double noisier() const { return noisier_; }
-  // Number of rare deviations in this octave or beyond it.
+  // Number of rare deviations in this octave.
   double rare(int octave) const;
 
   // The square, summed over the elements, of the mean that each lacks if it missed the values that
@@ -105,9 +105,9 @@ class NoisePyramid {
   // rarest do not drown the others.
   //
   // Two sides of one law have k3 = 0, and a block's k3 counts beyond its error. It counts whole
-  // where the sides have different laws in one of these blocks: one is noisier for its mean in too
-  // many elements (sign test), or the darker has too many rare values beyond an octave. A reference
-  // has a law of its own.
+  // where the sides have different laws in one of these blocks. Then one is noisier for its mean in
+  // too many elements (sign test), or the darker has too many rare values beyond an octave. A
+  // reference has a law of its own.
   struct Kept {
     double t = 0;
     double standard_error = 0;
@@ -137,11 +137,11 @@ class NoisePyramid {
     int last = 0;
   };
   Around around(const Rectangle& window, std::size_t channel) const;
+  double inverse(std::size_t side) const;  // 1 / replicates_, 0 of a reference.
   bool of_one_law(const Around& near, double toward) const;
   double growth(const Sides& here, int octave, double toward, bool one_law) const;
 
   std::array<double, sides_of_pair> replicates_ = {};  // 0: no side, but a reference.
-  std::array<double, sides_of_pair> inverse_ = {};     // 1 / replicates_, 0 of a reference.
   std::vector<Level> levels_;
 };
 

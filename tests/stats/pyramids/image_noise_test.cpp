@@ -105,8 +105,8 @@ TEST(NoisePyramid, HasTheVarianceOfEqualMeans) {
   const std::vector<double> rare = with_rare(40);
   const double alone = -3 / std::sqrt(2.0 / 16);
   EXPECT_NEAR(pyramid_of({clean, normal_values(random)}).kept(dark, pixel, 0).t, alone, 0.3);
-  // Of 1024 values one side has `more` of 50 and the other `fewer`. Their squares and those of the
-  // normal values are k2, in means of 16.
+  // One side has `more` values of 50 among its 1024, the other `fewer`. Their squares and those of
+  // the normal values make k2, in means of 16.
   const auto t = [](double more, double fewer, double k3_values) {
     const double k3 = k3_values / 1024 * 125000;
     const double k2 = (more + fewer) / 1024 * 2499 + 2;
