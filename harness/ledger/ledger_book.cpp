@@ -107,16 +107,19 @@ class LineReader {
 };
 
 template <class Line>
+void named(Line& line, std::string_view name, auto& field) {
+  line.word(name);
+  line.field(field);
+}
+
+template <class Line>
 void visit(Line& line, LedgerSeries& series) {
-  line.word("series");
-  line.field(series.hash);
+  named(line, "series", series.hash);
   if (line.either("estimates", "p-values", series.has_estimates())) {
     if (!series.reference_error) series.reference_error.emplace();
-    line.word("reference");
-    line.field(*series.reference_error);
+    named(line, "reference", *series.reference_error);
   }
-  line.word("weight");
-  line.field(series.weight);
+  named(line, "weight", series.weight);
   line.quoted(series.test);
   line.quoted(series.channel);
 }
@@ -124,25 +127,18 @@ void visit(Line& line, LedgerSeries& series) {
 /// `of` has the hash, the test and the channel of the night's series.
 template <class Line>
 void visit(Line& line, LedgerNight& night, LedgerSeries& of) {
-  line.word("night");
-  line.field(night.date);
-  line.word("seed");
-  line.field(night.seed);
-  line.word("commit");
-  line.field(night.commit);
-  line.word("series");
-  line.field(of.hash);
+  named(line, "night", night.date);
+  named(line, "seed", night.seed);
+  named(line, "commit", night.commit);
+  named(line, "series", of.hash);
   const bool estimated = std::holds_alternative<stats::NightEstimate>(night.value);
   if (line.either("estimate", "log-p", estimated)) {
     if (!estimated) night.value = stats::NightEstimate{};
     auto& value = std::get<stats::NightEstimate>(night.value);
     line.field(value.difference);
-    line.word("error");
-    line.field(value.standard_error);
-    line.word("observations");
-    line.field(value.observations);
-    line.word("effective");
-    line.field(value.effective);
+    named(line, "error", value.standard_error);
+    named(line, "observations", value.observations);
+    named(line, "effective", value.effective);
   } else {
     if (estimated) night.value = NightPValue{};
     line.field(std::get<NightPValue>(night.value).log_p);
