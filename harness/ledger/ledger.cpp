@@ -246,14 +246,17 @@ void read_moved(reports::LedgerSeries& result, const LedgerSeries& series,
   result.moved_to = nights[change.to].date;
 }
 
-/// A night as the report shows it.
-void read_value(reports::LedgerNight& result, const stats::NightEstimate& night) {
+/// A night as the report shows it, added to those before it.
+void read_value(reports::LedgerNight& result, const stats::NightEstimate& night,
+                stats::PooledNights& pooled) {
+  pooled.add(night);
+  result.mean = pooled.difference();
   const double reach = stats::upper_normal_quantile(0.025) * night.standard_error;
   result.estimate = night.difference;
   result.low = night.difference - reach;
   result.high = night.difference + reach;
 }
-void read_value(reports::LedgerNight& result, const NightPValue& night) {
+void read_value(reports::LedgerNight& result, const NightPValue& night, stats::PooledNights&) {
   result.log_p = night.log_p;
 }
 
@@ -267,16 +270,16 @@ void read_nights(reports::LedgerSeries& result, const LedgerBook& book, std::siz
   // The weight stays as it was at the beginning: else a change of the suite would raise and lower
   // alarms of past nights.
   const double alpha = book.budget() * series.weight * generation_share(book.generation(index));
+  stats::PooledNights pooled;
   for (std::size_t i = 0; i < nights.size(); ++i) {
     reports::LedgerNight& night = result.nights.emplace_back();
     night.date = nights[i].date;
     night.commit = nights[i].commit;
     night.log_e = path[i];
-    std::visit([&](const auto& value) { read_value(night, value); }, nights[i].value);
+    std::visit([&](const auto& value) { read_value(night, value, pooled); }, nights[i].value);
   }
   result.limit = -std::log(alpha);
   if (series.has_estimates()) {
-    const stats::PooledNights pooled = pooled_nights(nights);
     result.estimate = pooled.difference();
     result.standard_error = std::sqrt(pooled.variance());
     result.reference_error = *series.reference_error;

@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <ranges>
 #include <set>
 #include <string>
 #include <utility>
@@ -302,6 +303,13 @@ void upgrade(Json& root) {
       if (test["image"].contains("winner")) add_effect(test["image"]["winner"]);
     });
   });
+  if (root.contains("ledger")) {
+    each(root["ledger"], "series", [&](Json& series) {
+      each(series, "nights", [](Json& night) {
+        if (night.is_object()) night.emplace("mean", nullptr);
+      });
+    });
+  }
   root["schema"] = schema_version;
 }
 
@@ -309,7 +317,8 @@ void check_version(const Json& root) {
   if (!root.is_object() || !root.contains("schema"))
     fail("", "not a record of assay: the key \"schema\" is missing");
   const Json& version = root["schema"];
-  if (version != 1 && version != 2 && version != schema_version)
+  const auto is = [&](int known) { return version == known; };
+  if (std::ranges::none_of(std::views::iota(1, schema_version + 1), is))
     fail("schema",
          fmt::format("written with version {} of the record, this program reads 1 to {}",
                      version.is_number() ? version.dump() : version.type_name(), schema_version));

@@ -115,9 +115,10 @@ struct LedgerNight {
   std::string date;  ///< UTC, ISO 8601
   std::string commit;
   Number estimate, low, high;  ///< Theta by this night, with its own 95 % interval.
+  Number mean;                 ///< Theta by all nights up to it, pooled by their observations.
   Number log_p;                ///< ln of the p-value of a night without an estimate.
   Number log_e;                ///< ln of the e-value of all nights up to it.
-  ASSAY_FIELDS(LedgerNight, date, commit, estimate, low, high, log_p, log_e)
+  ASSAY_FIELDS(LedgerNight, date, commit, estimate, low, high, mean, log_p, log_e)
 };
 
 /// One channel of one claim in the ledger: what all nights with fresh seeds say together.
@@ -154,7 +155,7 @@ struct Ledger {
   ASSAY_FIELDS(Ledger, file, budget, series)
 };
 
-inline constexpr int schema_version = 3;
+inline constexpr int schema_version = 4;
 
 /// The verdict of a test. `skipped` was not run (another shard's).
 enum class Verdict { pass, fail, inconclusive, invalid, error, skipped };

@@ -392,8 +392,7 @@ RecordDisplay display(const Record& record) {
     words.series.push_back({.name = series_name(record.ledger, series),
                             .sentence = series_sentence(series),
                             .alarm = alarm_sentence(series),
-                            .changes = changes(series),
-                            .running = running_means(series)});
+                            .changes = changes(series)});
   }
   return words;
 }

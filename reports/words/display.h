@@ -107,10 +107,9 @@ std::vector<Suspect> suspects(const Suite&);
 struct SeriesDisplay {
   std::string name;
   std::string sentence;
-  std::string alarm;            ///< empty without one
-  std::string changes;          ///< command that lists the commits of the night it moved
-  std::vector<Number> running;  ///< theta by all nights up to each
-  ASSAY_FIELDS(SeriesDisplay, name, sentence, alarm, changes, running)
+  std::string alarm;    ///< empty without one
+  std::string changes;  ///< command that lists the commits of the night it moved
+  ASSAY_FIELDS(SeriesDisplay, name, sentence, alarm, changes)
 };
 struct RecordDisplay {
   std::string verdict;  ///< "5 of 126 claims broken; 1 ledger alarm"

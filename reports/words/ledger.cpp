@@ -96,20 +96,6 @@ std::string changes(const LedgerSeries& series) {
   return fmt::format("git log --oneline {}..{}", before, moved->commit);
 }
 
-std::vector<Number> running_means(const LedgerSeries& series) {
-  std::vector<Number> means;
-  double weights = 0, sum = 0;
-  for (const LedgerNight& night : series.nights) {
-    const double width = night.high.value_or(0) - night.low.value_or(0);
-    if (night.estimate && width > 0) {
-      weights += 1 / (width * width);
-      sum += *night.estimate / (width * width);
-    }
-    means.push_back(weights > 0 ? Number(sum / weights) : Number());
-  }
-  return means;
-}
-
 std::string quiet_sentence(const Ledger& ledger) {
   const LedgerSeries* highest = nullptr;
   std::uint64_t count = 0;

@@ -33,9 +33,6 @@ std::string alarm_sentence(const LedgerSeries&);
 /// where they are one commit.
 std::string changes(const LedgerSeries&);
 
-/// theta by all nights up to each, weighted by the widths of their intervals.
-std::vector<Number> running_means(const LedgerSeries&);
-
 /// One sentence for all series without an alarm: their number, and which stands highest.
 std::string quiet_sentence(const Ledger&);
 

@@ -26,7 +26,7 @@ def spoiled(record):
     text["suites"][0]["alpha"] = "0.01"
     yield "a number as text", text
     version = copy.deepcopy(record)
-    version["schema"] = 4
+    version["schema"] += 1
     yield "another version", version
 
 

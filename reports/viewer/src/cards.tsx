@@ -66,7 +66,7 @@ export function WhatBroke() {
             {words?.name} <span class="quiet">drifted</span>
           </h3>
           <p class="sentence">{words?.alarm}</p>
-          <NightsChart series={series} running={words?.running ?? []} />
+          <NightsChart series={series} />
           <Copy label="what changed" command={words?.changes ?? ""} />
           <Fold title="Statistics">{() => <p class="quiet">{words?.sentence}</p>}</Fold>
         </article>

@@ -1,7 +1,7 @@
 // Charts by Observable Plot, drawn when they are looked at.
 import { areaY, dot, line, plot, rectY, ruleX, ruleY, text, type PlotOptions } from "@observablehq/plot";
 import { useEffect, useRef } from "preact/hooks";
-import { finite, type Channel, type Estimator, type Num, type Sample, type Series, type Test } from "./record";
+import { finite, type Channel, type Estimator, type Sample, type Series, type Test } from "./record";
 
 const percent = new Intl.NumberFormat("en", { style: "percent", maximumSignificantDigits: 3 });
 const short = new Intl.NumberFormat("en", { notation: "compact", maximumSignificantDigits: 3 });
@@ -152,13 +152,13 @@ export function LawsChart({ channel }: { channel: Channel }) {
   );
 }
 
-export function NightsChart({ series, running }: { series: Series; running: Num[] }) {
-  const nights = series.nights.flatMap((night, i) => {
+export function NightsChart({ series }: { series: Series }) {
+  const nights = series.nights.flatMap((night) => {
     const value = finite(night.estimate);
     if (value === null) return [];
     const date = new Date(night.date);
     const words = `${night.date}, commit ${night.commit}`;
-    return [{ date, value, words, low: finite(night.low) ?? value, high: finite(night.high) ?? value, mean: finite(running[i]) }];
+    return [{ date, value, words, low: finite(night.low) ?? value, high: finite(night.high) ?? value, mean: finite(night.mean) }];
   });
   if (nights.length === 0) return null;
   const means = nights.filter((night) => night.mean !== null);

@@ -143,6 +143,7 @@ export interface Night {
   estimate: Num;
   low: Num;
   high: Num;
+  mean: Num;
 }
 export interface Series {
   test: string;
@@ -158,7 +159,6 @@ export interface SeriesDisplay {
   sentence: string;
   alarm: string;
   changes: string;
-  running: Num[];
 }
 export interface Suspect {
   suite: string;

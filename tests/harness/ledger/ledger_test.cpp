@@ -84,6 +84,7 @@ TEST_F(Ledger, NightsArePooledByTheirObservations) {
   double sum = 0;
   for (const reports::LedgerNight& each : one.nights) {
     sum += each.estimate.value();
+    EXPECT_NEAR(each.mean.value(), sum / static_cast<double>(&each - one.nights.data() + 1), 1e-12);
     EXPECT_NEAR(each.high.value() - each.low.value(), 2 * 1.96 * 0.1 / 2, 0.03);
   }
   EXPECT_NEAR(one.estimate.value(), sum / 3, 1e-12);
