@@ -9,9 +9,9 @@ namespace assay::tests {
 // `bash tests/run.sh --all` sets it.
 inline bool is_long() { return std::getenv("ASSAY_LONG") != nullptr; }
 
-// The repetitions of a long calibration: all, or a quarter in its short form. Bounds follow from
+// The repetitions of a long calibration: all, or an eighth in its short form. Bounds follow from
 // the number.
-inline std::size_t repetitions(std::size_t all) { return is_long() ? all : (all + 3) / 4; }
+inline std::size_t repetitions(std::size_t all) { return is_long() ? all : (all + 7) / 8; }
 
 // The calibration of a p-value under its null hypothesis. Elementary probability bounds judge it,
 // which share nothing with the code under test. All three together raise a false alarm with

@@ -13,13 +13,13 @@ inline void expect_calibrated(const std::vector<double>& log_p, Shape shape) {
 }
 
 // Both tails of a result. A false alarm of each has probability 1e-5 (calibration.h). Without
-// ASSAY_LONG a quarter of 8000 and more repetitions.
+// ASSAY_LONG an eighth of 4000 and more repetitions.
 inline void expect_tails_calibrated(const Experiment& experiment,
                                     const std::function<stats::TestResult(Philox&)>& draw) {
   const std::size_t all = experiment.repetitions;
   Philox random(experiment.test_case);
   std::vector<double> lower, upper;
-  while (lower.size() < (all >= 8000 ? repetitions(all) : all)) {
+  while (lower.size() < (all >= 4000 ? repetitions(all) : all)) {
     const stats::TestResult result = draw(random);
     lower.push_back(result.log_p_lower);
     upper.push_back(result.log_p_upper);
@@ -32,7 +32,7 @@ inline void expect_calibrated(const Experiment& experiment,
                               const std::function<double(Philox&)>& draw) {
   const std::size_t all = experiment.repetitions;
   Philox random(experiment.test_case);
-  std::vector<double> log_p(all >= 8000 ? repetitions(all) : all);
+  std::vector<double> log_p(all >= 4000 ? repetitions(all) : all);
   for (double& value : log_p) value = draw(random);
   expect_calibrated(log_p, experiment.shape);
 }

@@ -93,7 +93,7 @@ TEST(Levels, OfAWholeSuiteAreAtMostAlpha) {
 
 // 2.075 is three quarters of a standard error of 100 away: so little must already show.
 TEST(Levels, OfAClaimThatIsALittleWrongAreSeenToBeMore) {
-  const std::size_t runs = tests::repetitions(2000);
+  const std::size_t runs = 2000;
   const auto outcomes = first_looks(
       runs, suite_of({"mean(normal) == 2.075, secondaries: 100"}, rate_of_each, rate_of_each));
   EXPECT_TRUE(tests::too_many(rate_at(outcomes.at("0").log_p, rate_of_each), rate_of_each,
