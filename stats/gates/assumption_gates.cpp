@@ -178,6 +178,20 @@ std::vector<double> means_of(std::span<const double> values, std::size_t each) {
   return means;
 }
 
+// Makes values equal that differ by less than a sum of so many loses in single precision. From the
+// least on, each takes those within that distance.
+void join_rounded(std::vector<double>& values, std::size_t each) {
+  const double relative = 0x1p-24 * static_cast<double>(each);
+  std::vector<double*> order;
+  for (double& value : values) order.push_back(&value);
+  std::ranges::sort(order, {}, [](const double* value) { return *value; });
+  double least = *order.front();
+  for (double* const value : order) {
+    if (*value - least > relative * std::max(std::abs(least), std::abs(*value))) least = *value;
+    *value = least;
+  }
+}
+
 // Phi^-1 of the ranks, the mean rank for equal values.
 std::vector<double> normal_scores(std::span<const double> values) {
   std::vector<double> sorted(values.begin(), values.end());
@@ -308,6 +322,7 @@ Gate averages_gate(std::span<const double> values, std::span<const double> means
             .limit = limit(false_red_of_averages)};
   if (std::min(groups, means.size()) < fewest_means) return gate;
   pooled.insert(pooled.end(), means.begin(), means.end());
+  join_rounded(pooled, each);
   std::vector<double> scores = normal_scores(pooled);
   gate.value = deviation_of_sum(scores, groups);
   for (double& score : scores) score *= score;

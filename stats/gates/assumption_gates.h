@@ -62,8 +62,9 @@ Gate quantisation_gate(std::span<const double> sorted, double level);
 // Null hypothesis: `means` are independent means of `each` independent values of the law that
 // `values` come from. So the G = floor(n / each) means of values 0, G, 2G, ...; 1, G + 1, ...; and
 // the given ones are exchangeable. Their pooled ranks R = 0 ... N - 1, the mean rank for equal
-// ones, have the law of a random order, whatever the law and its tails. Their
-// normal scores are a = Phi^-1((R + 1/2) / N).
+// ones, have the law of a random order, whatever the law and its tails. Means are equal within
+// each / 2^24, relative: sums in another order or in single precision round so. Their normal scores
+// are a = Phi^-1((R + 1/2) / N).
 //
 // The sum of a sees another place (van der Waerden 1952), the sum of a^2 another spread (Klotz
 // 1962). Both are held against their permutation means and variances, as z. Value: the larger |z|.

@@ -277,6 +277,31 @@ TEST(AveragesGate, AccusesNoMeans) {
   }
 }
 
+// Most means are 10.149248115565992. Sums in single precision and of quotients round it otherwise.
+TEST(AveragesGate, OfFrequentValuesHearsNoRounding) {
+  Philox random(7113);
+  const auto draw = [&] { return 10.149248115565992 + (random.uniform() < .001 ? 500 : 0); };
+  for (int run = 0; run < 20; ++run) {
+    std::vector<double> values(8192);
+    for (double& value : values) value = draw();
+    std::vector<double> in_single, times;
+    for (int i = 0; i < 256; ++i) {
+      float sum = 0;
+      double other = 0;
+      for (std::size_t k = 0; k < each; ++k) {
+        const double value = draw();
+        sum += static_cast<float>(value);
+        other += value / static_cast<double>(each);
+      }
+      in_single.push_back(static_cast<double>(sum / static_cast<float>(each)));
+      times.push_back(other);
+    }
+    for (const auto& means : {in_single, times}) {
+      EXPECT_NE(averages_gate(values, means, each).state, GateState::red) << run;
+    }
+  }
+}
+
 TEST(AveragesGate, SeesWhatIsNoMean) {
   Philox random(7112);
   for (int run = 0; run < 50; ++run) {
