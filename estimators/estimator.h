@@ -134,6 +134,30 @@ struct SetupParts {
 };
 std::shared_ptr<const Setup> setup_of(SetupParts parts);
 
+/// An estimator that is a function of what secondary() is given.
+template <class Function>
+class FunctionEstimator final : public Estimator {
+ public:
+  explicit FunctionEstimator(Function function) : function_(std::move(function)) {}
+
+  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
+                 Cost& cost) override {
+    function_(random, primaries, out, cost);
+  }
+
+ private:
+  Function function_;
+};
+
+/// Makes such estimators, for SetupParts::make. Every worker gets a copy of the function: what a
+/// `mutable` one captures by value is scratch.
+template <class Function>
+std::function<std::unique_ptr<Estimator>()> estimating(Function function) {
+  return [function = std::move(function)] {
+    return std::make_unique<FunctionEstimator<Function>>(function);
+  };
+}
+
 /// Static facts of a plugin, known without preparing it; `assay describe` prints them.
 struct Information {
   std::string name;         ///< "luminaire/area"

@@ -1,7 +1,6 @@
 #include "estimators/parameters.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <stdexcept>
@@ -23,18 +22,13 @@ std::string suggestion(std::string_view name, const std::vector<std::string>& kn
   return did_you_mean(name, known, known.empty() ? "it has none" : "it has: " + listed(known));
 }
 
-std::string shown(double value) {
-  char buffer[32];
-  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};
-}
-
 std::string range_text(const ParameterInformation& p) {
   std::string out;
   if (std::isfinite(p.low))
-    out += std::string(p.low_excluded ? "above " : "at least ") + shown(p.low);
+    out += std::string(p.low_excluded ? "above " : "at least ") + shortest_text(p.low);
   if (std::isfinite(p.high)) {
     out += (out.empty() ? "" : " and ") + std::string(p.high_excluded ? "below " : "at most ") +
-           shown(p.high);
+           shortest_text(p.high);
   }
   if (!out.empty() && !p.unit.empty()) out += " " + p.unit;
   return out.empty() ? "finite" : out;
@@ -115,6 +109,11 @@ ParameterInformation structure_parameter(std::string name, std::string summary,
           .fallback = std::move(fallback)};
 }
 
+ParameterInformation beside_draws(ParameterInformation parameter) {
+  parameter.shapes_draws = false;
+  return parameter;
+}
+
 std::vector<ParameterInformation> joined(std::vector<ParameterInformation> all,
                                          const std::vector<ParameterInformation>& more) {
   all.insert(all.end(), more.begin(), more.end());
@@ -180,7 +179,8 @@ void Parameters::check(const ParameterInformation& parameter, const Value& value
 
 double Parameters::in_range(const ParameterInformation& parameter, double number) const {
   if (!within(parameter, number)) {
-    refuse(parameter.name, "must be " + range_text(parameter) + ", but it is " + shown(number) +
+    refuse(parameter.name, "must be " + range_text(parameter) + ", but it is " +
+                               shortest_text(number) +
                                (parameter.reason.empty() ? "" : ": " + parameter.reason));
   }
   return number;

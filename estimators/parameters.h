@@ -54,6 +54,8 @@ ParameterInformation text_parameter(std::string name, std::string summary,
                                     std::vector<std::string> choices = {});
 ParameterInformation structure_parameter(std::string name, std::string summary,
                                          std::string fallback = "", std::string unit = "");
+/// The same, for a parameter that no draw depends on.
+ParameterInformation beside_draws(ParameterInformation parameter);
 /// One list and then the other.
 std::vector<ParameterInformation> joined(std::vector<ParameterInformation> all,
                                          const std::vector<ParameterInformation>& more);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace assay {
 
@@ -37,7 +38,30 @@ std::size_t each(auto in, auto out, auto number) {
   return in.size();
 }
 
+class SamplerOfParts final : public Sampler {
+ public:
+  explicit SamplerOfParts(SamplerParts parts) : parts_(std::move(parts)) {}
+
+  Domain domain() const override { return parts_.domain; }
+  std::array<double, 2> bounds() const override { return parts_.bounds; }
+  SamplerDraw sample(Stream& random) const override {
+    const std::optional<Point> point = parts_.point(random);
+    if (!point) return {.valid = false};
+    return {.point = *point, .density = density(*point), .weight = 1};
+  }
+  double density(const Point& point) const override { return parts_.density(point); }
+  double evaluate(const Point& point) const override { return density(point); }
+  Panels panels() const override { return parts_.panels; }
+
+ private:
+  SamplerParts parts_;
+};
+
 }  // namespace
+
+std::shared_ptr<const Sampler> sampler_of(SamplerParts parts) {
+  return std::make_shared<SamplerOfParts>(std::move(parts));
+}
 
 std::size_t Sampler::samples(std::span<const Stream> random, std::span<SamplerDraw> draws) const {
   return each(random, draws, [this](Stream stream) { return sample(stream); });

@@ -4,6 +4,9 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -98,5 +101,21 @@ class Sampler {
   /// CPU seconds that other processes have spent so far on what the calling thread asked.
   virtual double seconds_elsewhere() const { return 0; }
 };
+
+/// The parts of a sampler of points that only their own density is asked of: evaluate() is the
+/// density, and every weight is 1.
+struct SamplerParts {
+  Domain domain = Domain::interval;
+  std::function<std::optional<Point>(Stream&)> point;  ///< nullopt where none comes out
+  std::function<double(const Point&)> density;
+  std::array<double, 2> bounds = {0, 1};
+  Panels panels = {};
+};
+std::shared_ptr<const Sampler> sampler_of(SamplerParts parts);
+
+/// The density of points that are uniform in their domain.
+inline std::function<double(const Point&)> uniform_density(double density) {
+  return [density](const Point&) { return density; };
+}
 
 }  // namespace assay

@@ -183,14 +183,17 @@ std::shared_ptr<const Setup> zero_variance(Parameters&) {
 
 std::shared_ptr<const Setup> ratio(Parameters&) {
   // A ratio of sums lies between the extremes of f / g, at x = 1/3 and x = 1.
-  return ratio_setup<SamePoint, RatioOfSums>(
-      Channel{.mean = integral(),
-              .low = integrand(1.0 / 3) / near_density(1.0 / 3),
-              .high = integrand(1) / near_density(1)});
+  return ratio_setup(Channel{.mean = integral(),
+                             .low = integrand(1.0 / 3) / near_density(1.0 / 3),
+                             .high = integrand(1) / near_density(1)},
+                     same_point, ratio_of_sums);
 }
 
 std::shared_ptr<const Setup> jackknifed(Parameters&) {
-  return ratio_setup<SamePoint, Jackknife<BothLeftOut>>(Channel{.mean = integral()});
+  const auto both_left_out = [](const RatioPair& without, const RatioPair& /*all*/) {
+    return without.full / without.target;
+  };
+  return ratio_setup(Channel{.mean = integral()}, same_point, jackknife(both_left_out));
 }
 
 }  // namespace

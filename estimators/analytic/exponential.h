@@ -29,12 +29,10 @@ struct RatioPair {
 };
 
 /// At x uniform in [0, 1).
-struct SamePoint {
-  RatioPair operator()(Stream& random) const {
-    const double x = random.uniform();
-    return {integrand(x), near_density(x)};
-  }
-};
+inline RatioPair same_point(Stream& random) {
+  const double x = random.uniform();
+  return {integrand(x), near_density(x)};
+}
 
 inline RatioPair sum(std::span<const RatioPair> pairs) {
   RatioPair all;
@@ -45,12 +43,10 @@ inline RatioPair sum(std::span<const RatioPair> pairs) {
   return all;
 }
 
-struct RatioOfSums {
-  double operator()(std::span<const RatioPair> pairs) const {
-    const RatioPair all = sum(pairs);
-    return all.full / all.target;
-  }
-};
+inline double ratio_of_sums(std::span<const RatioPair> pairs) {
+  const RatioPair all = sum(pairs);
+  return all.full / all.target;
+}
 
 /// The means of all pairs but one.
 struct LeftOut {
@@ -64,48 +60,30 @@ struct LeftOut {
 };
 
 /// The jackknife (Quenouille 1956) removes the term 1/M of the bias. It subtracts (M - 1) times the
-/// mean change of R when one pair is left out. The function `Replicate` gives a ratio from the
+/// mean change of R when one pair is left out. The function `replicate` gives a ratio from the
 /// means with a pair left out and the means of all. One pair gives R as it is.
-template <class Replicate>
-struct Jackknife {
-  double operator()(std::span<const RatioPair> pairs) const {
+auto jackknife(const auto& replicate) {
+  return [replicate](std::span<const RatioPair> pairs) {
     const LeftOut left{sum(pairs), static_cast<double>(pairs.size())};
     const double ratio = left.all.full / left.all.target;
     if (pairs.size() < 2) return ratio;
     double replicates = 0;
-    for (const RatioPair& pair : pairs) {
-      replicates += Replicate{}(left.without(pair), left.mean());
-    }
+    for (const RatioPair& pair : pairs) replicates += replicate(left.without(pair), left.mean());
     return left.count * ratio - (left.count - 1) * replicates / left.count;
-  }
-};
+  };
+}
 
-struct BothLeftOut {
-  double operator()(const RatioPair& without, const RatioPair& /*all*/) const {
-    return without.full / without.target;
-  }
-};
-
-/// `Draw` makes a pair, `Combine` the estimate of all.
-template <class Draw, class Combine>
-class RatioEstimator final : public Estimator {
- public:
-  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
-                 Cost& cost) override {
-    pairs_.resize(primaries);
-    for (RatioPair& pair : pairs_) pair = Draw{}(random);
-    out[0] = Combine{}(pairs_);
+/// `draw` makes a pair, `combine` the estimate of all.
+std::shared_ptr<const Setup> ratio_setup(Channel channel, const auto& draw, const auto& combine) {
+  const auto estimate = [draw, combine, pairs = std::vector<RatioPair>()](
+                            Stream& random, std::uint64_t primaries, std::span<double> out,
+                            Cost& cost) mutable {
+    pairs.resize(primaries);
+    for (RatioPair& pair : pairs) pair = draw(random);
+    out[0] = combine(pairs);
     cost.samples += primaries;
-  }
-
- private:
-  std::vector<RatioPair> pairs_;  // scratch
-};
-
-template <class Draw, class Combine>
-std::shared_ptr<const Setup> ratio_setup(Channel channel) {
-  return setup_of({.channels = {std::move(channel)},
-                   .make = [] { return std::make_unique<RatioEstimator<Draw, Combine>>(); }});
+  };
+  return setup_of({.channels = {std::move(channel)}, .make = estimating(estimate)});
 }
 
 }  // namespace assay::analytic

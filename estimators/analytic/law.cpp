@@ -259,43 +259,29 @@ ParameterInformation law_parameter() {
 
 /// Draws X with its density, on an interval of 12 standard deviations about the mean, cut by the
 /// range. Values outside are missing mass.
-class VariableSampler final : public Sampler {
- public:
-  explicit VariableSampler(const Variable& variable)
-      : variable_(variable), bounds_(interval(variable)) {}
-
-  Domain domain() const override { return Domain::interval; }
-  std::array<double, 2> bounds() const override { return bounds_; }
-  SamplerDraw sample(Stream& random) const override {
-    const double x = variable_(random);
-    if (x < bounds_[0] || x > bounds_[1]) return {.valid = false};
-    return {.point = {x}, .density = density({x}), .weight = 1};
-  }
-  double density(const Point& p) const override {
-    return variable_.law.density((p[0] - variable_.shift) / variable_.scale) / variable_.scale;
-  }
-  double evaluate(const Point& p) const override { return density(p); }
-  Panels panels() const override { return {.first = 64}; }
-
- private:
-  static std::array<double, 2> interval(const Variable& v) {
-    const double reach = 6 * std::sqrt(*v.law.variance());
-    const double low = std::max(v.law.low(), *v.law.mean() - reach);
-    const double high = std::min(v.law.high(), *v.law.mean() + reach);
-    return {v.shift + v.scale * low, v.shift + v.scale * high};
-  }
-
-  Variable variable_;
-  std::array<double, 2> bounds_;
-};
+std::shared_ptr<const Sampler> sampler(const Variable& v) {
+  const double reach = 6 * std::sqrt(*v.law.variance());
+  const double low = v.shift + v.scale * std::max(v.law.low(), *v.law.mean() - reach);
+  const double high = v.shift + v.scale * std::min(v.law.high(), *v.law.mean() + reach);
+  const auto point = [v, low, high](Stream& random) {
+    const double x = v(random);
+    return x < low || x > high ? std::nullopt : std::optional(Point{x});
+  };
+  const auto density = [v](const Point& p) {
+    return v.law.density((p[0] - v.shift) / v.scale) / v.scale;
+  };
+  return sampler_of({.domain = Domain::interval,
+                     .point = point,
+                     .density = density,
+                     .bounds = {low, high},
+                     .panels = {.first = 64}});
+}
 
 std::shared_ptr<const Setup> law(Parameters& parameters) {
   const Law law = law_of(parameters);
   const Variable variable{law, parameters.number("shift"), parameters.number("scale")};
   std::vector<NamedSampler> samplers;
-  if (law.has_density() && law.variance()) {
-    samplers.push_back({"x", std::make_shared<VariableSampler>(variable)});
-  }
+  if (law.has_density() && law.variance()) samplers.push_back({"x", sampler(variable)});
   return setup_of({.channels = {channel_of(variable)},
                    .make = [variable] { return std::make_unique<VariableEstimator>(variable); },
                    .samplers = std::move(samplers)});

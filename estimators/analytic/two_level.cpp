@@ -13,33 +13,14 @@ namespace assay::plugins {
 
 namespace {
 
-class TwoLevel final : public Estimator {
- public:
-  explicit TwoLevel(double splitting) : splitting_(splitting) {}
-
-  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
-                 Cost& cost) override {
-    double value = 0;
-    double children = 0;
-    for (std::uint64_t i = 0; i < primaries; ++i) value += primary(random, children);
-    const double n = static_cast<double>(primaries);
-    out[0] = value / n;
-    out[1] = children / n;
-    cost.samples += primaries;
-  }
-
- private:
-  double primary(Stream& random, double& children) const {
-    const double u = random.uniform();
-    const double count = std::floor(splitting_ + random.uniform());
-    double sum = 0;
-    for (double i = 0; i < count; ++i) sum -= std::log(random.uniform_open());
-    children += count;
-    return 1 + u + 4 * u * u / splitting_ * sum;
-  }
-
-  double splitting_;
-};
+double primary(double splitting, Stream& random, double& children) {
+  const double u = random.uniform();
+  const double count = std::floor(splitting + random.uniform());
+  double sum = 0;
+  for (double i = 0; i < count; ++i) sum -= std::log(random.uniform_open());
+  children += count;
+  return 1 + u + 4 * u * u / splitting * sum;
+}
 
 std::shared_ptr<const Setup> prepare(Parameters& given) {
   const double s = given.number("splitting");
@@ -55,7 +36,17 @@ std::shared_ptr<const Setup> prepare(Parameters& given) {
                                  .low = whole,
                                  .high = std::ceil(s),
                                  .diagnostic = true}},
-                   .make = [s] { return std::make_unique<TwoLevel>(s); }});
+                   .make = estimating([s](Stream& random, std::uint64_t primaries,
+                                          std::span<double> out, Cost& cost) {
+                     double value = 0;
+                     double children = 0;
+                     for (std::uint64_t i = 0; i < primaries; ++i) {
+                       value += primary(s, random, children);
+                     }
+                     out[0] = value / static_cast<double>(primaries);
+                     out[1] = children / static_cast<double>(primaries);
+                     cost.samples += primaries;
+                   })});
 }
 
 }  // namespace

@@ -4,26 +4,10 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <optional>
 
 namespace assay {
 
 namespace {
-
-std::optional<double> parse_number(std::string_view text) {
-  if (text.starts_with("+-")) return {};
-  if (text.starts_with('+')) text.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) return {};
-  return value;
-}
-
-std::string shortest(double value) {
-  std::array<char, 32> buffer{};
-  const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
-  return {buffer.data(), end};
-}
 
 std::string quoted(std::string_view text) {
   std::string out = "\"";
@@ -53,7 +37,7 @@ const char* kind_name(Value::Kind kind) {
 
 std::string canonical_scalar(const std::string& text) {
   const std::optional<double> number = parse_number(text);
-  return number && std::isfinite(*number) ? shortest(*number) : quoted(text);
+  return number && std::isfinite(*number) ? shortest_text(*number) : quoted(text);
 }
 
 std::string canonical_list(const std::vector<Value>& items) {
@@ -180,6 +164,21 @@ std::string Value::canonical() const {
       return canonical_map(members_);
   }
   return "";
+}
+
+std::optional<double> parse_number(std::string_view text) {
+  if (text.starts_with("+-")) return {};
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return {};
+  return value;
+}
+
+std::string shortest_text(double value) {
+  std::array<char, 32> buffer{};
+  const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+  return {buffer.data(), end};
 }
 
 std::string nearest(std::string_view name, const std::vector<std::string>& candidates) {

@@ -4,6 +4,7 @@
 // node remembers where it was written, so that whatever is wrong with it can be shown there.
 
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -83,6 +84,11 @@ class Value {
   std::vector<Value> items_;
   std::vector<Member> members_;
 };
+
+/// A number as C or Python writes it: decimal, `inf`, `nan`, perhaps with a sign.
+std::optional<double> parse_number(std::string_view text);
+/// The shortest text that reads back as this number.
+std::string shortest_text(double value);
 
 /// The candidate nearest to `name` in edit distance, or "" when none is near enough to suggest.
 std::string nearest(std::string_view name, const std::vector<std::string>& candidates);

@@ -59,103 +59,6 @@ ColourSums draw_sums(const PairSource& source, std::uint64_t count, Stream& rand
   return sums;
 }
 
-class FixedEstimator final : public Estimator {
- public:
-  FixedEstimator(SharedPairs source, double lambda) : source_(std::move(source)), lambda_(lambda) {}
-
-  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
-                 Cost& cost) override {
-    const auto& colours = source_->colours();
-    Rgb sum{};
-    for_each_pair(*source_, primaries, random, cost, [&](const Pair& pair) {
-      for (std::size_t c = 0; c < colours.size(); ++c) {
-        sum[c] += pair.full[c] + lambda_ * (colours[c].control_integral - pair.control[c]);
-      }
-    });
-    for (std::size_t c = 0; c < colours.size(); ++c) {
-      out[c] = sum[c] / static_cast<double>(primaries);
-    }
-  }
-
- private:
-  SharedPairs source_;
-  double lambda_;
-};
-
-class SameSamplesEstimator final : public Estimator {
- public:
-  SameSamplesEstimator(SharedPairs source, LambdaRule rule)
-      : source_(std::move(source)), rule_(std::move(rule)) {}
-
-  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
-                 Cost& cost) override {
-    const auto& colours = source_->colours();
-    const ColourSums sums = draw_sums(*source_, primaries, random, cost);
-    for (std::size_t c = 0; c < colours.size(); ++c) {
-      const double lambda = rule_(sums[c], colours[c].control_integral);
-      out[c] = sums[c].estimate(lambda);
-      out[colours.size() + c] = lambda;
-    }
-  }
-
- private:
-  SharedPairs source_;
-  LambdaRule rule_;
-};
-
-class CrossFittedEstimator final : public Estimator {
- public:
-  CrossFittedEstimator(SharedPairs source, LambdaRule rule)
-      : source_(std::move(source)), rule_(std::move(rule)) {}
-
-  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
-                 Cost& cost) override {
-    const auto& colours = source_->colours();
-    const std::uint64_t half = primaries / 2;
-    const ColourSums first = draw_sums(*source_, half, random, cost);
-    const ColourSums second = draw_sums(*source_, primaries - half, random, cost);
-    for (std::size_t c = 0; c < colours.size(); ++c) {
-      const double of_first = lambda(first[c], colours[c].control_integral);
-      const double of_second = lambda(second[c], colours[c].control_integral);
-      out[c] =
-          (first[c].full + of_second * first[c].lack + second[c].full + of_first * second[c].lack) /
-          static_cast<double>(primaries);
-      out[colours.size() + c] = (of_first + of_second) / 2;
-    }
-  }
-
- private:
-  double lambda(const Sums& sums, double integral) const {
-    return sums.count < 2 ? 0 : rule_(sums, integral);
-  }
-
-  SharedPairs source_;
-  LambdaRule rule_;
-};
-
-class RatioEstimator final : public Estimator {
- public:
-  explicit RatioEstimator(SharedPairs source) : source_(std::move(source)) {}
-
-  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
-                 Cost& cost) override {
-    const auto& colours = source_->colours();
-    Rgb full{}, control{};
-    for_each_pair(*source_, primaries, random, cost, [&](const Pair& pair) {
-      for (std::size_t c = 0; c < colours.size(); ++c) {
-        full[c] += pair.full[c];
-        control[c] += pair.control[c];
-      }
-    });
-    for (std::size_t c = 0; c < colours.size(); ++c) {
-      out[c] = control[c] == 0 ? 0 : colours[c].control_integral * full[c] / control[c];
-    }
-  }
-
- private:
-  SharedPairs source_;
-};
-
 }  // namespace
 
 LambdaRule estimated_lambda(Centre centre) {
@@ -192,29 +95,76 @@ std::vector<Channel> channels_with_lambda(const PairSource& source) {
 std::shared_ptr<const Setup> fixed(SharedPairs source, double lambda) {
   std::vector<Channel> channels;
   for (const Colour& colour : source->colours()) channels.push_back(channel_of(colour, lambda));
-  return setup_of({std::move(channels),
-                   [source, lambda] { return std::make_unique<FixedEstimator>(source, lambda); },
-                   source->samplers()});
+  const auto estimate = [source, lambda](Stream& random, std::uint64_t primaries,
+                                         std::span<double> out, Cost& cost) {
+    const auto& colours = source->colours();
+    Rgb sum{};
+    for_each_pair(*source, primaries, random, cost, [&](const Pair& pair) {
+      for (std::size_t c = 0; c < colours.size(); ++c) {
+        sum[c] += pair.full[c] + lambda * (colours[c].control_integral - pair.control[c]);
+      }
+    });
+    for (std::size_t c = 0; c < colours.size(); ++c) {
+      out[c] = sum[c] / static_cast<double>(primaries);
+    }
+  };
+  return setup_of({std::move(channels), estimating(estimate), source->samplers()});
 }
 
 std::shared_ptr<const Setup> same_samples(SharedPairs source, LambdaRule rule) {
-  return setup_of({channels_with_lambda(*source),
-                   [source, rule] { return std::make_unique<SameSamplesEstimator>(source, rule); },
-                   source->samplers()});
+  const auto estimate = [source, rule](Stream& random, std::uint64_t primaries,
+                                       std::span<double> out, Cost& cost) {
+    const auto& colours = source->colours();
+    const ColourSums sums = draw_sums(*source, primaries, random, cost);
+    for (std::size_t c = 0; c < colours.size(); ++c) {
+      const double lambda = rule(sums[c], colours[c].control_integral);
+      out[c] = sums[c].estimate(lambda);
+      out[colours.size() + c] = lambda;
+    }
+  };
+  return setup_of({channels_with_lambda(*source), estimating(estimate), source->samplers()});
 }
 
 std::shared_ptr<const Setup> cross_fitted(SharedPairs source, LambdaRule rule) {
-  return setup_of({channels_with_lambda(*source),
-                   [source, rule] { return std::make_unique<CrossFittedEstimator>(source, rule); },
-                   source->samplers()});
+  const auto estimate = [source, rule](Stream& random, std::uint64_t primaries,
+                                       std::span<double> out, Cost& cost) {
+    const auto lambda = [&](const Sums& sums, double integral) {
+      return sums.count < 2 ? 0 : rule(sums, integral);
+    };
+    const auto& colours = source->colours();
+    const std::uint64_t half = primaries / 2;
+    const ColourSums first = draw_sums(*source, half, random, cost);
+    const ColourSums second = draw_sums(*source, primaries - half, random, cost);
+    for (std::size_t c = 0; c < colours.size(); ++c) {
+      const double of_first = lambda(first[c], colours[c].control_integral);
+      const double of_second = lambda(second[c], colours[c].control_integral);
+      out[c] =
+          (first[c].full + of_second * first[c].lack + second[c].full + of_first * second[c].lack) /
+          static_cast<double>(primaries);
+      out[colours.size() + c] = (of_first + of_second) / 2;
+    }
+  };
+  return setup_of({channels_with_lambda(*source), estimating(estimate), source->samplers()});
 }
 
 std::shared_ptr<const Setup> ratio(SharedPairs source) {
   std::vector<Channel> channels;
   for (const Colour& colour : source->colours()) channels.push_back(irradiance(colour));
-  return setup_of({std::move(channels),
-                   [source] { return std::make_unique<RatioEstimator>(source); },
-                   source->samplers()});
+  const auto estimate = [source](Stream& random, std::uint64_t primaries, std::span<double> out,
+                                 Cost& cost) {
+    const auto& colours = source->colours();
+    Rgb full{}, control{};
+    for_each_pair(*source, primaries, random, cost, [&](const Pair& pair) {
+      for (std::size_t c = 0; c < colours.size(); ++c) {
+        full[c] += pair.full[c];
+        control[c] += pair.control[c];
+      }
+    });
+    for (std::size_t c = 0; c < colours.size(); ++c) {
+      out[c] = control[c] == 0 ? 0 : colours[c].control_integral * full[c] / control[c];
+    }
+  };
+  return setup_of({std::move(channels), estimating(estimate), source->samplers()});
 }
 
 namespace {

@@ -34,9 +34,7 @@ struct ImagePlan {
   Cost overhead;                 ///< of one image, beside its lens samples
 };
 
-/// Static information of depth_of_field/image, and its parameters `scene`, `width`, `height`,
-/// `size`.
-Information image_information();
+/// `width`, `height` and `size` of an image.
 std::vector<ParameterInformation> grid_parameters();
 Grid read_grid(Parameters&);
 
@@ -68,40 +66,28 @@ std::vector<Channel> image_channels(const ImagePlan& plan);
 
 /// A primary is an image: the prediction's rays, and for each pixel its number of lens samples from
 /// a substream of its own.
-template <class Shading>
-class LensImage final : public Estimator {
- public:
-  LensImage(std::shared_ptr<const ImagePlan> plan, Shading shading)
-      : plan_(std::move(plan)), shading_(std::move(shading)), ends_(noise_extremes(*plan_)) {}
-
-  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
-                 Cost& cost) override {
-    const std::size_t pixels = plan_->grid.pixels();
-    for (std::size_t i = 0; i < pixels; ++i) {
-      Stream mine = random.substream(static_cast<std::uint32_t>(i));
-      double sum = 0;
-      const std::uint64_t count = primaries * plan_->counts[i];
-      for (std::uint64_t k = 0; k < count; ++k) sum += shading_.sample(*plan_, i, mine, cost);
-      out[i] = sum / (static_cast<double>(primaries) * shading_.divisor(*plan_, i));
-    }
-    out[pixels] = out[ends_.worst];
-    out[pixels + 1] = out[ends_.quietest];
-    cost.camera_rays += primaries * plan_->overhead.camera_rays;
-    cost.samples += primaries;
-  }
-
- private:
-  std::shared_ptr<const ImagePlan> plan_;
-  Shading shading_;
-  NoiseExtremes ends_;
-};
-
 template <class Shading = SoundShading>
 std::shared_ptr<const Setup> image_setup(ImagePlan plan, Shading shading = {}) {
   const auto shared = std::make_shared<const ImagePlan>(std::move(plan));
+  const auto estimate = [shared, shading, ends = noise_extremes(*shared)](
+                            Stream& random, std::uint64_t primaries, std::span<double> out,
+                            Cost& cost) {
+    const std::size_t pixels = shared->grid.pixels();
+    for (std::size_t i = 0; i < pixels; ++i) {
+      Stream mine = random.substream(static_cast<std::uint32_t>(i));
+      double sum = 0;
+      const std::uint64_t count = primaries * shared->counts[i];
+      for (std::uint64_t k = 0; k < count; ++k) sum += shading.sample(*shared, i, mine, cost);
+      out[i] = sum / (static_cast<double>(primaries) * shading.divisor(*shared, i));
+    }
+    out[pixels] = out[ends.worst];
+    out[pixels + 1] = out[ends.quietest];
+    cost.camera_rays += primaries * shared->overhead.camera_rays;
+    cost.samples += primaries;
+  };
   return setup_of(
       {.channels = image_channels(*shared),
-       .make = [shared, shading] { return std::make_unique<LensImage<Shading>>(shared, shading); },
+       .make = estimating(estimate),
        .samplers = lens_samplers<>(),
        .image = ImageShape{shared->grid.width, shared->grid.height, {"radiance"}, true}});
 }

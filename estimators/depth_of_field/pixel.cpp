@@ -1,7 +1,5 @@
 #include "depth_of_field/pixel.h"
 
-#include <utility>
-
 #include "estimators/parameters.h"
 
 namespace assay::depth_of_field {
@@ -53,46 +51,10 @@ Channel radiance_channel(const SceneDescription& scene, const Moments& moments, 
 // through the pixel's point P of the focal plane. E[X] is the average of L over the lens. Both E[X]
 // and Var X are known in closed form or by quadrature (exact.h).
 
-Information pixel_information() {
-  return {
-      .name = "depth_of_field/pixel",
-      .summary = "The radiance at one pixel behind a thin lens, by points of the lens.",
-      .description =
-          "X = L(u, P): the radiance along the ray from a point u, uniform on the lens, through "
-          "the point P of the focal plane that the pixel sees; one camera ray. Mean and "
-          "variance are exact. Before a half-plane whose edge is at distance d from the middle "
-          "of a disc of confusion of radius r the mean is c = 1 - (acos t - t sqrt(1 - t^2)) / "
-          "pi, t = d / r, and the variance c (1 - c); of a wave cos(k x) the lens leaves 2 "
-          "J1(k r) / (k r). r = radius |depth - focus| / focus on the plane at that depth. "
-          "With `jitter: n` a primary is the mean of n^2 lens points, one in each cell of a "
-          "grid. (Soler, Subr, Durand, Holzschuch and Sillion 2009, ACM Trans. Graph. 28(2), "
-          "article 18.)",
-      .parameters = {scene_parameter("edge"), pixel_parameter(),
-                     count_parameter("jitter", "side n of the grid; 1 for independent lens points",
-                                     "1", {1, 1024})}};
-}
-
 // Lens integration in two stages: a pilot decides how many lens samples follow, and is thrown away.
 //
 // X is the mean of N fresh lens samples, N a function of the pilot alone: E[X | N] is the average
 // over the lens, whatever N.
-
-Information two_stage_information() {
-  return {.name = "depth_of_field/two_stage",
-          .summary = "The radiance at one pixel, by as many lens points as a pilot asks for.",
-          .description =
-              "A pilot of lens samples gives their variance s^2; X is the mean of N = max(1, "
-              "ceil(s^2 / noise^2)) further ones, at most `most`. As the pilot is not averaged "
-              "with them, N does not depend on what is averaged, and X is unbiased; to average "
-              "the pilot too is a bias (Kirk and Arvo 1991, \"Unbiased sampling techniques for "
-              "image synthesis\"). The pilot's rays are counted.",
-          .parameters = {
-              scene_parameter("edge"), pixel_parameter(),
-              count_parameter("pilot", "lens samples of the pilot", "8", {2, 1e6}),
-              number_parameter("noise", "standard error that is asked for", "0.1", above(0),
-                               "radiance"),
-              count_parameter("most", "lens samples after the pilot, at most", "4096", {1, 1e6})}};
-}
 
 StageRule read_stage_rule(Parameters& given) {
   return {given.count("pilot"), given.number("noise"), given.count("most")};
@@ -104,8 +66,39 @@ namespace assay::plugins {
 
 std::vector<Entry> depth_of_field_pixel() {
   using namespace depth_of_field;
-  return {{pixel_information(), prepare_pixel<>},
-          {two_stage_information(), [](Parameters& given) { return prepare_two_stage<>(given); }}};
+  return {
+      {{.name = "depth_of_field/pixel",
+        .summary = "The radiance at one pixel behind a thin lens, by points of the lens.",
+        .description =
+            "X = L(u, P): the radiance along the ray from a point u, uniform on the lens, through "
+            "the point P of the focal plane that the pixel sees; one camera ray. Mean and "
+            "variance are exact. Before a half-plane whose edge is at distance d from the middle "
+            "of a disc of confusion of radius r the mean is c = 1 - (acos t - t sqrt(1 - t^2)) / "
+            "pi, t = d / r, and the variance c (1 - c); of a wave cos(k x) the lens leaves 2 "
+            "J1(k r) / (k r). r = radius |depth - focus| / focus on the plane at that depth. "
+            "With `jitter: n` a primary is the mean of n^2 lens points, one in each cell of a "
+            "grid. (Soler, Subr, Durand, Holzschuch and Sillion 2009, ACM Trans. Graph. 28(2), "
+            "article 18.)",
+        .parameters = {scene_parameter("edge"), pixel_parameter(),
+                       count_parameter("jitter",
+                                       "side n of the grid; 1 for independent lens points", "1",
+                                       {1, 1024})}},
+       prepare_pixel<>},
+      {{.name = "depth_of_field/two_stage",
+        .summary = "The radiance at one pixel, by as many lens points as a pilot asks for.",
+        .description =
+            "A pilot of lens samples gives their variance s^2; X is the mean of N = max(1, "
+            "ceil(s^2 / noise^2)) further ones, at most `most`. As the pilot is not averaged "
+            "with them, N does not depend on what is averaged, and X is unbiased; to average "
+            "the pilot too is a bias (Kirk and Arvo 1991, \"Unbiased sampling techniques for "
+            "image synthesis\"). The pilot's rays are counted.",
+        .parameters = {scene_parameter("edge"), pixel_parameter(),
+                       count_parameter("pilot", "lens samples of the pilot", "8", {2, 1e6}),
+                       number_parameter("noise", "standard error that is asked for", "0.1",
+                                        above(0), "radiance"),
+                       count_parameter("most", "lens samples after the pilot, at most", "4096",
+                                       {1, 1e6})}},
+       [](Parameters& given) { return prepare_two_stage<>(given); }}};
 }
 
 }  // namespace assay::plugins

@@ -35,33 +35,25 @@ struct LensPrimary {
   double value(const PlanePoint& u, Cost& cost) const { return setting->radiance(pixel, u, cost); }
 };
 
-/// Static information of depth_of_field/pixel.
-Information pixel_information();
-
 /// The mean of `side` x `side` lens samples, one in each cell of a grid over the square that is
 /// mapped to the disc. Unbiased for any side; on an edge its variance falls like side^-3.
 template <class Disc = UniformDisc>
-class JitteredPrimary {
- public:
-  JitteredPrimary(LensPrimary<Disc> primary, std::uint64_t side)
-      : primary_(std::move(primary)), side_(side) {}
+struct JitteredPrimary {
+  LensPrimary<Disc> primary;
+  std::uint64_t side;
 
   double operator()(Stream& random, Cost& cost) const {
-    const double cell = 1 / static_cast<double>(side_);
+    const double cell = 1 / static_cast<double>(side);
     double sum = 0;
-    for (std::uint64_t i = 0; i < side_; ++i) {
-      for (std::uint64_t j = 0; j < side_; ++j) {
+    for (std::uint64_t i = 0; i < side; ++i) {
+      for (std::uint64_t j = 0; j < side; ++j) {
         const double s = (static_cast<double>(i) + random.uniform()) * cell;
         const double t = (static_cast<double>(j) + random.uniform()) * cell;
-        sum += primary_.value(Disc{}(s, t), cost);
+        sum += primary.value(Disc{}(s, t), cost);
       }
     }
     return sum * cell * cell;
   }
-
- private:
-  LensPrimary<Disc> primary_;
-  std::uint64_t side_;
 };
 
 /// The set-up of parameters `scene`, `pixel`, `jitter`. `Disc` maps numbers to the lens.
@@ -74,7 +66,7 @@ std::shared_ptr<const Setup> prepare_pixel(Parameters& given) {
   const LensPrimary<Disc> primary{setting, pixel};
   if (side == 1) return averaging(std::move(channel), primary, lens_samplers<Disc>());
   channel.variance.reset();
-  return averaging(std::move(channel), JitteredPrimary<Disc>(primary, side), lens_samplers<Disc>());
+  return averaging(std::move(channel), JitteredPrimary<Disc>{primary, side}, lens_samplers<Disc>());
 }
 
 /// How many lens samples follow a pilot.
@@ -102,7 +94,6 @@ struct FreshSamples {
   }
 };
 
-Information two_stage_information();
 StageRule read_stage_rule(Parameters&);
 
 /// `Stages` makes one estimate from a rule and a callable that draws a lens sample.

@@ -92,43 +92,17 @@ Splats normalised(Splats splats) {
 
 namespace {
 
-class Reconstruction final : public Estimator {
- public:
-  Reconstruction(std::shared_ptr<const ReconstructionPlan> plan, std::size_t worst)
-      : plan_(std::move(plan)), worst_(worst), values_(plan_->samples.size()) {}
-
-  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
-                 Cost& cost) override {
-    for (std::size_t i = 0; i < values_.size(); ++i) {
-      Stream mine = random.substream(static_cast<std::uint32_t>(i));
-      values_[i] = lens_average(i, primaries * plan_->counts[i], mine, cost);
-    }
-    for (std::size_t p = 0; p < plan_->splats.size(); ++p) {
-      double sum = 0;
-      for (const Share& share : plan_->splats[p]) sum += share.weight * values_[share.sample];
-      out[p] = sum;
-    }
-    out[plan_->splats.size()] = out[worst_];
-    cost.camera_rays += primaries * plan_->overhead.camera_rays;
-    cost.samples += primaries;
+double lens_average(const ReconstructionPlan& plan, std::size_t sample, std::uint64_t count,
+                    Stream& random, Cost& cost) {
+  const PlanePoint pixel = plan.grid.pixel(plan.pixel_of(plan.samples[sample]));
+  double sum = 0;
+  for (std::uint64_t k = 0; k < count; ++k) {
+    const double s = random.uniform();
+    const PlanePoint u = UniformDisc{}(s, random.uniform());
+    sum += plan.setting->radiance(pixel, u, cost);
   }
-
- private:
-  double lens_average(std::size_t sample, std::uint64_t count, Stream& random, Cost& cost) const {
-    const PlanePoint pixel = plan_->grid.pixel(plan_->pixel_of(plan_->samples[sample]));
-    double sum = 0;
-    for (std::uint64_t k = 0; k < count; ++k) {
-      const double s = random.uniform();
-      const PlanePoint u = UniformDisc{}(s, random.uniform());
-      sum += plan_->setting->radiance(pixel, u, cost);
-    }
-    return sum / static_cast<double>(count);
-  }
-
-  std::shared_ptr<const ReconstructionPlan> plan_;
-  std::size_t worst_;
-  std::vector<double> values_;  // scratch
-};
+  return sum / static_cast<double>(count);
+}
 
 std::size_t worst_pixel(const ReconstructionPlan& plan) {
   const std::vector<double> bias = plan.bias();
@@ -190,8 +164,24 @@ std::shared_ptr<const Setup> prepare_reconstruction(Parameters& given,
       std::make_shared<const ReconstructionPlan>(read_reconstruction_plan(given, rules));
   const std::size_t worst = worst_pixel(*plan);
   const ImageShape shape{plan->grid.width, plan->grid.height, {"radiance"}, false};
+  const auto estimate = [plan, worst, values = std::vector<double>(plan->samples.size())](
+                            Stream& random, std::uint64_t primaries, std::span<double> out,
+                            Cost& cost) mutable {
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      Stream mine = random.substream(static_cast<std::uint32_t>(i));
+      values[i] = lens_average(*plan, i, primaries * plan->counts[i], mine, cost);
+    }
+    for (std::size_t p = 0; p < plan->splats.size(); ++p) {
+      double sum = 0;
+      for (const Share& share : plan->splats[p]) sum += share.weight * values[share.sample];
+      out[p] = sum;
+    }
+    out[plan->splats.size()] = out[worst];
+    cost.camera_rays += primaries * plan->overhead.camera_rays;
+    cost.samples += primaries;
+  };
   return setup_of({.channels = channels_of(*plan, shape, worst),
-                   .make = [plan, worst] { return std::make_unique<Reconstruction>(plan, worst); },
+                   .make = estimating(estimate),
                    .samplers = lens_samplers<>(),
                    .image = shape});
 }
@@ -202,39 +192,39 @@ std::shared_ptr<const Setup> prepare_reconstruction(Parameters& given,
 // predicted variance. Each pixel is a weighted mean of the image samples near it. The lens averages
 // are unbiased. E of a pixel is the interpolant of the exact means.
 
-Information reconstruction_information() {
-  return {
-      .name = "depth_of_field/reconstruction",
-      .summary = "An image behind a thin lens, sampled sparsely where it is blurred, and splatted.",
-      .description =
-          "The prediction of depth_of_field/image gives each pixel the highest frequency B that "
-          "the image has there: of the waves of textures and edges those that the lens lets "
-          "through, radius |W| below the first zero 3.83 of 2 J1(z) / z. Tiles of 8 x 8 pixels get "
-          "samples 1, 2, 4 or 8 pixels apart, the most that leaves two a period, pi / B "
-          "(Soler, Subr, Durand, Holzschuch and Sillion 2009, whose samples are scattered). Each "
-          "sample is the mean of N lens samples, N = max(1, K V); each pixel the mean of samples "
-          "weighted by tents as wide as their spacing, divided by the sum of weights. Channels: "
-          "the pixels, with their lens averages as means, which the reconstruction approaches like "
-          "spacing^2 where the image is smooth; diagnostic: `worst`, the pixel that it is farthest "
-          "off from.",
-      .parameters = joined(
-          joined({scene_parameter("portrait")}, grid_parameters()),
-          {count_parameter("samples", "lens samples an image sample, the mean over the image", "16",
-                           {1, 1e6}),
-           count_parameter("spacing",
-                           "of image samples: 1, 2, 4 or 8, or 0 for what the prediction says", "0",
-                           {0, 8}, "pixels")}),
-      .bias = BiasClass::reconstruction};
-}
-
 }  // namespace assay::depth_of_field
 
 namespace assay::plugins {
 
 std::vector<Entry> depth_of_field_reconstruction() {
   using namespace depth_of_field;
-  return {{reconstruction_information(),
-           [](Parameters& given) { return prepare_reconstruction(given); }}};
+  return {
+      {{.name = "depth_of_field/reconstruction",
+        .summary =
+            "An image behind a thin lens, sampled sparsely where it is blurred, and splatted.",
+        .description =
+            "The prediction of depth_of_field/image gives each pixel the highest frequency B that "
+            "the image has there: of the waves of textures and edges those that the lens lets "
+            "through, radius |W| below the first zero 3.83 of 2 J1(z) / z. Tiles of 8 x 8 pixels "
+            "get "
+            "samples 1, 2, 4 or 8 pixels apart, the most that leaves two a period, pi / B "
+            "(Soler, Subr, Durand, Holzschuch and Sillion 2009, whose samples are scattered). Each "
+            "sample is the mean of N lens samples, N = max(1, K V); each pixel the mean of samples "
+            "weighted by tents as wide as their spacing, divided by the sum of weights. Channels: "
+            "the pixels, with their lens averages as means, which the reconstruction approaches "
+            "like "
+            "spacing^2 where the image is smooth; diagnostic: `worst`, the pixel that it is "
+            "farthest "
+            "off from.",
+        .parameters = joined(
+            joined({scene_parameter("portrait")}, grid_parameters()),
+            {count_parameter("samples", "lens samples an image sample, the mean over the image",
+                             "16", {1, 1e6}),
+             count_parameter("spacing",
+                             "of image samples: 1, 2, 4 or 8, or 0 for what the prediction says",
+                             "0", {0, 8}, "pixels")}),
+        .bias = BiasClass::reconstruction},
+       [](Parameters& given) { return prepare_reconstruction(given); }}};
 }
 
 }  // namespace assay::plugins

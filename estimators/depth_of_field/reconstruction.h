@@ -59,8 +59,6 @@ struct ReconstructionPlan {
   std::vector<double> bias() const;
 };
 
-Information reconstruction_information();
-
 /// The parts that a reconstruction is made with.
 struct ReconstructionRules {
   PredictionRules prediction = wave_rules();

@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include "estimators/estimator.h"
 #include "estimators/stream.h"
@@ -65,26 +64,14 @@ struct UniformDisc {
 /// uniform on the disc become directions of density cos(theta) / pi (Malley's method, backwards).
 /// The type `Disc` maps two numbers to a point of the disc.
 template <class Disc = UniformDisc>
-class LensSampler final : public Sampler {
- public:
-  Domain domain() const override { return Domain::hemisphere; }
-  SamplerDraw sample(Stream& random) const override {
+std::vector<NamedSampler> lens_samplers() {
+  const auto point = [](Stream& random) {
     const double s = random.uniform();
     const PlanePoint u = Disc{}(s, random.uniform());
-    const double height = std::sqrt(std::max(0.0, 1 - u.x * u.x - u.y * u.y));
-    SamplerDraw out{.point = {u.x, u.y, height}};
-    out.density = density(out.point);
-    out.weight = out.density > 0 ? evaluate(out.point) / out.density : 0;
-    return out;
-  }
-  double density(const Point& w) const override { return std::max(0.0, w[2]) / std::numbers::pi; }
-  /// The average over the disc: its integral is 1.
-  double evaluate(const Point& w) const override { return density(w); }
-};
-
-template <class Disc = UniformDisc>
-std::vector<NamedSampler> lens_samplers() {
-  return {{"lens", std::make_shared<const LensSampler<Disc>>()}};
+    return Point{u.x, u.y, std::sqrt(std::max(0.0, 1 - u.x * u.x - u.y * u.y))};
+  };
+  const auto density = [](const Point& w) { return std::max(0.0, w[2]) / std::numbers::pi; };
+  return {{"lens", sampler_of({Domain::hemisphere, point, density})}};
 }
 
 }  // namespace assay::depth_of_field

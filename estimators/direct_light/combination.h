@@ -3,7 +3,6 @@
 // Weights of two sampling techniques (Veach 1997, sections 9.2.2 and 9.2.3).
 
 #include <cstdint>
-#include <utility>
 
 #include "direct_light/techniques.h"
 #include "estimators/parameters.h"
@@ -59,6 +58,7 @@ class WeightedByHeuristic {
   Pair weights(const Pair& p) const {
     return heuristic_({shares_.light * p.light, shares_.brdf * p.brdf});
   }
+  bool smooth() const { return heuristic_.smooth(); }
 
  private:
   Heuristic heuristic_;
@@ -87,49 +87,37 @@ struct Counts {
 
 /// X = sum over techniques of 1 / n_i times the sum over its n_i draws of w_i f / p_i (eq. 9.4).
 template <class Combination = WeightedByHeuristic>
-class MultiSamplePrimary {
- public:
-  MultiSamplePrimary(SharedTechniques techniques, Counts counts, Combination combination)
-      : techniques_(std::move(techniques)), counts_(counts), combination_(combination) {}
+struct MultiSamplePrimary {
+  SharedTechniques techniques;
+  Counts counts;
+  Combination combination;
 
   double operator()(Stream& random, Cost& cost) const {
     double light = 0;
     double brdf = 0;
-    for (std::uint64_t i = 0; i < counts_.light; ++i) {
-      light += from_light(combination_, techniques_->light(random, cost));
+    for (std::uint64_t i = 0; i < counts.light; ++i) {
+      light += from_light(combination, techniques->light(random, cost));
     }
-    for (std::uint64_t i = 0; i < counts_.brdf; ++i) {
-      brdf += from_brdf(combination_, techniques_->brdf(random, cost));
+    for (std::uint64_t i = 0; i < counts.brdf; ++i) {
+      brdf += from_brdf(combination, techniques->brdf(random, cost));
     }
-    return light / static_cast<double>(counts_.light) + brdf / static_cast<double>(counts_.brdf);
+    return light / static_cast<double>(counts.light) + brdf / static_cast<double>(counts.brdf);
   }
-
- private:
-  SharedTechniques techniques_;
-  Counts counts_;
-  Combination combination_;
 };
 
 /// X = w_i f / (c_i p_i) with the technique i drawn with the probability c_i (eq. 9.15).
 template <class Combination = WeightedByHeuristic>
-class OneSamplePrimary {
- public:
-  OneSamplePrimary(SharedTechniques techniques, Pair probabilities, Combination combination)
-      : techniques_(std::move(techniques)),
-        probabilities_(probabilities),
-        combination_(combination) {}
+struct OneSamplePrimary {
+  SharedTechniques techniques;
+  Pair probabilities;
+  Combination combination;
 
   double operator()(Stream& random, Cost& cost) const {
-    if (random.uniform() < probabilities_.light) {
-      return from_light(combination_, techniques_->light(random, cost)) / probabilities_.light;
+    if (random.uniform() < probabilities.light) {
+      return from_light(combination, techniques->light(random, cost)) / probabilities.light;
     }
-    return from_brdf(combination_, techniques_->brdf(random, cost)) / probabilities_.brdf;
+    return from_brdf(combination, techniques->brdf(random, cost)) / probabilities.brdf;
   }
-
- private:
-  SharedTechniques techniques_;
-  Pair probabilities_;
-  Combination combination_;
 };
 
 }  // namespace assay::direct_light

@@ -30,12 +30,7 @@ class Directions : public Sampler {
       : techniques_(std::move(techniques)),
         triangles_(luminaire::lit_triangles(techniques_->setting())) {}
 
-  Domain domain() const override {
-    const bool above = std::ranges::all_of(triangles_, [](const LitTriangle& t) {
-      return t.seen.a().z >= 0 && t.seen.b().z >= 0 && t.seen.c().z >= 0;
-    });
-    return above ? Domain::hemisphere : Domain::sphere;
-  }
+  Domain domain() const override { return luminaire::domain_of(triangles_); }
 
   double evaluate(const Point& point) const override {
     const Vector3 w = direction_of(point);
@@ -50,7 +45,7 @@ class Directions : public Sampler {
   Panels panels() const override {
     double omega = 0;
     for (const LitTriangle& triangle : triangles_) omega += triangle.seen.solid_angle();
-    const double outline = omega > 0 ? std::clamp(2 * pi / std::sqrt(omega), 32.0, 128.0) : 1;
+    const double outline = omega > 0 ? luminaire::parts_across(omega) : 1;
     const double lobe = pi / 2 / (4 * techniques_->reflectance().width());
     const double parts = std::ceil(std::max(outline, lobe));
     return {.first = static_cast<std::size_t>(parts),
@@ -59,9 +54,7 @@ class Directions : public Sampler {
 
  protected:
   const LitTriangle* containing(const Vector3& w) const {
-    const auto found =
-        std::ranges::find_if(triangles_, [&](const LitTriangle& t) { return t.seen.contains(w); });
-    return found == triangles_.end() ? nullptr : &*found;
+    return luminaire::containing(triangles_, w);
   }
   // All triangles of a planar luminaire lie in the plane of the first.
   double light_density(const Vector3& w) const {
@@ -160,16 +153,44 @@ std::vector<NamedSampler> mixture_samplers(const SharedTechniques& techniques,
   return {{"mixture", std::make_shared<MixtureDirections>(techniques, probabilities)}};
 }
 
+// The most that a draw of the BRDF brings when all the light of the scene is weighted by 1.
+double highest_of_brdf(const Techniques& techniques) {
+  // A product and a quotient of a few factors, each rounded.
+  return techniques.setting().radiance() * techniques.reflectance().weight_bound() * (1 + 0x1p-40);
+}
+
+// The channel of primaries with these weights, in [0, high], with what quadrature knows of smooth
+// weights: the mean, and the variance that `variance_of` takes from the moments. The mean has a
+// closed form of a constant BRDF. The variance is stated if it is known to 1e-8.
+template <class VarianceOf>
+Channel radiance_channel(const Techniques& techniques, const WeightedByHeuristic& weights,
+                         double high, const VarianceOf& variance_of) {
+  const auto known = weights.smooth() ? moments(techniques, weights) : std::nullopt;
+  // Quadrature takes its time where a BRDF has kinks: not twice.
+  Channel channel = mean_channel(
+      known && !techniques.reflectance().constant() ? known->radiance() : radiance(techniques));
+  channel.low = 0;
+  channel.high = high;
+  if (!known) return channel;
+  const Known variance = variance_of(*known);
+  if (variance.error <= 1e-8 * variance.value) channel.variance = variance.value;
+  return channel;
+}
+
+// The same of the one-sample model, with these probabilities of the techniques.
+Channel one_sample_channel(const Techniques& techniques, const WeightedByHeuristic& weights,
+                           double high, const Pair& probabilities) {
+  return radiance_channel(techniques, weights, high, [&](const Moments& known) {
+    return known.one_sample_variance(probabilities);
+  });
+}
+
 std::shared_ptr<const Setup> prepare_light(Parameters& given) {
   const SharedTechniques techniques = read_techniques(given);
   const WeightedByHeuristic alone(Heuristic::balance(), {1, 0});
-  KnownPrimary primary{.high = std::numeric_limits<double>::infinity()};
-  if (const auto known = moments(*techniques, alone)) {
-    primary.mean = known->radiance();
-    primary.variance = known->one_sample_variance({1, 0});
-  }
+  constexpr double unbounded = std::numeric_limits<double>::infinity();
   return averaging(
-      radiance_channel(*techniques, primary),
+      one_sample_channel(*techniques, alone, unbounded, {1, 0}),
       [techniques, alone](Stream& random, Cost& cost) {
         return from_light(alone, techniques->light(random, cost));
       },
@@ -181,13 +202,8 @@ std::shared_ptr<const Setup> prepare_brdf(Parameters& given) {
   const auto techniques = std::make_shared<const Techniques>(setting, read_reflectance(given),
                                                              solid_angle_sampling(setting));
   const WeightedByHeuristic alone(Heuristic::balance(), {0, 1});
-  KnownPrimary primary{.high = highest_of_brdf(*techniques)};
-  if (const auto known = moments(*techniques, alone)) {
-    primary.mean = known->radiance();
-    primary.variance = known->one_sample_variance({0, 1});
-  }
   return averaging(
-      radiance_channel(*techniques, primary),
+      one_sample_channel(*techniques, alone, highest_of_brdf(*techniques), {0, 1}),
       [techniques, alone](Stream& random, Cost& cost) {
         return from_brdf(alone, techniques->brdf(random, cost));
       },
@@ -198,44 +214,29 @@ std::shared_ptr<const Setup> prepare_brdf(Parameters& given) {
 //   Balance: w_i f / q_i = f / (q_l + q_b).
 //   Power: f q_i^(e-1) / (q_l^e + q_b^e) <= f / q_b, since x^(e-1) <= 1 + x^e.
 //   Maximum and cutoff: f / q_i with q_i the larger, if the other is left out.
-double highest(const Techniques& techniques, const Counts& counts) {
-  const Pair n = counts.shares();
-  return highest_of_brdf(techniques) * (n.light + n.brdf) / n.brdf;
-}
 
 std::shared_ptr<const Setup> prepare_multi_sample(Parameters& given) {
   const SharedTechniques techniques = read_techniques(given);
   const Counts counts = read_counts(given);
-  const Heuristic heuristic = read_heuristic(given);
-  const WeightedByHeuristic combination(heuristic, counts.shares());
-  KnownPrimary primary{.high = highest(*techniques, counts)};
-  if (heuristic.smooth()) {
-    if (const auto known = moments(*techniques, combination)) {
-      primary.mean = known->radiance();
-      primary.variance = known->multi_sample_variance(counts);
-    }
-  }
+  const Pair n = counts.shares();
+  const WeightedByHeuristic combination(read_heuristic(given), n);
+  const double high = highest_of_brdf(*techniques) * (n.light + n.brdf) / n.brdf;
   std::vector<NamedSampler> samplers = light_samplers(techniques);
   samplers.push_back(brdf_samplers(techniques)[0]);
-  return averaging(radiance_channel(*techniques, primary),
-                   MultiSamplePrimary<>(techniques, counts, combination), std::move(samplers));
+  return averaging(
+      radiance_channel(*techniques, combination, high,
+                       [&](const Moments& known) { return known.multi_sample_variance(counts); }),
+      MultiSamplePrimary<>{techniques, counts, combination}, std::move(samplers));
 }
 
 std::shared_ptr<const Setup> prepare_one_sample(Parameters& given) {
   const SharedTechniques techniques = read_techniques(given);
   const Pair probabilities = read_probabilities(given);
-  const Heuristic heuristic = read_heuristic(given);
-  const WeightedByHeuristic combination(heuristic, probabilities);
+  const WeightedByHeuristic combination(read_heuristic(given), probabilities);
   // The bound of the multi-sample model, with one draw.
-  KnownPrimary primary{.high = highest_of_brdf(*techniques) / probabilities.brdf};
-  if (heuristic.smooth()) {
-    if (const auto known = moments(*techniques, combination)) {
-      primary.mean = known->radiance();
-      primary.variance = known->one_sample_variance(probabilities);
-    }
-  }
-  return averaging(radiance_channel(*techniques, primary),
-                   OneSamplePrimary<>(techniques, probabilities, combination),
+  const double high = highest_of_brdf(*techniques) / probabilities.brdf;
+  return averaging(one_sample_channel(*techniques, combination, high, probabilities),
+                   OneSamplePrimary<>{techniques, probabilities, combination},
                    mixture_samplers(techniques, probabilities));
 }
 

@@ -2,6 +2,7 @@
 
 // The common parameters and the channel of direct lighting.
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -15,13 +16,13 @@ std::vector<ParameterInformation> common_parameters();
 /// scene, brdf, light_sampling and `more`.
 std::vector<ParameterInformation> parameters_with(std::vector<ParameterInformation> more);
 
-struct Parts {
-  luminaire::SharedSetting setting;
-  SharedReflectance reflectance;
-  SharedLightSampling light_sampling;
-};
-Parts read_parts(Parameters&);
-SharedTechniques read_techniques(Parameters&);
+/// Reads what parameters_with() declares; `Kind` is made as Techniques is.
+template <class Kind = Techniques>
+std::shared_ptr<const Kind> read_techniques(Parameters& given) {
+  const luminaire::SharedSetting setting = luminaire::read_setting(given);
+  const SharedReflectance reflectance = read_reflectance(given);
+  return std::make_shared<const Kind>(setting, reflectance, read_light_sampling(given, setting));
+}
 
 /// light_samples and brdf_samples, one or more of each.
 std::vector<ParameterInformation> count_parameters();
@@ -31,19 +32,6 @@ ParameterInformation probability_parameter();
 Pair read_probabilities(Parameters&);
 
 /// The channel `radiance` with its mean, where that is known, and nothing else.
-Channel mean_channel(const Techniques&);
-
-struct KnownPrimary {
-  std::optional<Known> mean = {};
-  std::optional<Known> variance = {};
-  double high = 0;  ///< no primary is above
-};
-/// The channel with the range [0, high] and the mean of the primary. The function mean_channel()
-/// gives the mean if it has a closed form or none is given. The variance is stated if it is known
-/// to 1e-8.
-Channel radiance_channel(const Techniques&, const KnownPrimary&);
-
-/// The most that a draw of the BRDF brings when all the light of the scene is weighted by 1.
-double highest_of_brdf(const Techniques&);
+Channel mean_channel(const std::optional<Known>& radiance);
 
 }  // namespace assay::direct_light

@@ -99,7 +99,6 @@ namespace {
 
 using luminaire::LightTriangle;
 using luminaire::SharedSetting;
-using render::Vector3;
 
 class AreaSampling final : public LightSampling {
  public:
@@ -167,8 +166,6 @@ SharedLightSampling read_light_sampling(Parameters& given, SharedSetting setting
   return given.string("light_sampling") == "area" ? area_sampling(std::move(setting))
                                                   : solid_angle_sampling(std::move(setting));
 }
-
-using render::Vector3;
 
 Techniques::Techniques(luminaire::SharedSetting setting, SharedReflectance reflectance,
                        SharedLightSampling light_sampling)

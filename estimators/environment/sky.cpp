@@ -49,33 +49,21 @@ struct Primaries {
 /// Mean of the three channels: what samplers of directions evaluate.
 inline double grey(const Rgb& rgb) { return (rgb[0] + rgb[1] + rgb[2]) / 3; }
 
-/// An estimator whose primary, Rgb(Stream&, Cost&), has three channels.
+/// The set-up of a primary, Rgb(Stream&, Cost&), of three channels.
 template <class Primary>
-class RgbEstimator final : public Estimator {
- public:
-  explicit RgbEstimator(Primary primary) : primary_(std::move(primary)) {}
-
-  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
-                 Cost& cost) override {
+std::shared_ptr<const Setup> rgb_setup(std::vector<Channel> channels, const Primary& primary,
+                                       NamedSampler sampler) {
+  const auto estimate = [primary](Stream& random, std::uint64_t primaries, std::span<double> out,
+                                  Cost& cost) {
     Rgb sum{};
     for (std::uint64_t i = 0; i < primaries; ++i) {
-      const Rgb value = primary_(random, cost);
+      const Rgb value = primary(random, cost);
       for (std::size_t c = 0; c < 3; ++c) sum[c] += value[c];
     }
     for (std::size_t c = 0; c < 3; ++c) out[c] = sum[c] / static_cast<double>(primaries);
     cost.samples += primaries;
-  }
-
- private:
-  Primary primary_;
-};
-
-template <class Primary>
-std::shared_ptr<const Setup> rgb_setup(std::vector<Channel> channels, Primary primary,
-                                       NamedSampler sampler) {
-  return setup_of({.channels = std::move(channels),
-                   .make = [primary] { return std::make_unique<RgbEstimator<Primary>>(primary); },
-                   .samplers = {std::move(sampler)}});
+  };
+  return setup_of({std::move(channels), estimating(estimate), {std::move(sampler)}});
 }
 
 /// map, normal, position, occluders.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <span>
 
+#include "estimators/core/thread_seconds.h"
+
 namespace assay::foreign {
 
 namespace {
@@ -14,18 +16,19 @@ constexpr std::size_t asked_of_further = 2;
 
 }  // namespace
 
-Children::Children(Terms terms) : terms_(std::move(terms)) {
-  idle_.push_back(std::make_unique<Dialogue>(terms_));
+Children::Children(std::string name, Start start)
+    : name_(std::move(name)), start_(std::move(start)) {
+  idle_.push_back(start_());
   hello_ = idle_.back()->hello();
 }
 
 Children::~Children() {
-  for (const auto& dialogue : idle_) dialogue->child().close_input();
+  for (const auto& dialogue : idle_) dialogue->close();
   const Deadline end = std::chrono::steady_clock::now() + farewell;
-  for (const auto& dialogue : idle_) dialogue->child().ends_by(end);
+  for (const auto& dialogue : idle_) dialogue->ends_by(end);
 }
 
-std::unique_ptr<Dialogue> Children::take() {
+std::unique_ptr<Respondent> Children::take() {
   {
     const std::scoped_lock lock(mutex_);
     if (!idle_.empty()) {
@@ -34,12 +37,12 @@ std::unique_ptr<Dialogue> Children::take() {
       return dialogue;
     }
   }
-  auto dialogue = std::make_unique<Dialogue>(terms_);
+  std::unique_ptr<Respondent> dialogue = start_();
   if (to_text(dialogue->hello()) == to_text(hello_)) return dialogue;
-  throw NoAnswer("`" + terms_.name + "` said another hello when it was started again");
+  throw NoAnswer("`" + name_ + "` said another hello when it was started again");
 }
 
-void Children::give_back(std::unique_ptr<Dialogue> dialogue) {
+void Children::give_back(std::unique_ptr<Respondent> dialogue) {
   const std::scoped_lock lock(mutex_);
   idle_.push_back(std::move(dialogue));
 }
@@ -79,7 +82,7 @@ void Children::refuse_unless_empty(const std::string& why) {
 }
 
 /// Draws the observations, as many at a time as are answered soon. Whether it answered for all.
-bool Children::draw_ahead(Dialogue& dialogue, FirstObservations& mine) {
+bool Children::draw_ahead(Respondent& dialogue, FirstObservations& mine) {
   Question question = mine.question;
   while (mine.count() < mine.question.count) {
     question.first = mine.count();
@@ -96,20 +99,21 @@ bool Children::draw_ahead(Dialogue& dialogue, FirstObservations& mine) {
   return true;
 }
 
-bool Children::examine(Dialogue& dialogue, const Question& wanted) {
+bool Children::examine(Respondent& dialogue, const Question& wanted) {
   if (is_to_draw(wanted)) return examine_first(dialogue, wanted);
   examine_further(dialogue, wanted);
   return true;
 }
 
-bool Children::examine_first(Dialogue& dialogue, const Question& wanted) {
+bool Children::examine_first(Respondent& dialogue, const Question& wanted) {
   const std::size_t width = hello_.width();
   FirstObservations mine{.question = {.key = wanted.key,
                                       .first = 0,
                                       .count = asked_twice(width),
                                       .primaries = wanted.primaries},
                          .width = width};
-  const double begin = dialogue.cpu_seconds();
+  const auto spent = [&] { return thread_seconds() + dialogue.cpu_seconds(); };
+  const double begin = spent();
   bool runs = false;
   try {
     runs = draw_ahead(dialogue, mine);
@@ -118,13 +122,13 @@ bool Children::examine_first(Dialogue& dialogue, const Question& wanted) {
     throw;
   }
   const auto count = static_cast<double>(std::max<std::size_t>(mine.count(), 1));
-  keep(mine, (dialogue.cpu_seconds() - begin) / count);
+  keep(mine, (spent() - begin) / count);
   if (!runs) return false;
   const auto ask = [&](const Question& one) { return dialogue.ask(one); };
-  refuse_unless_empty(why_not_repeated(ask, mine, terms_.name));
+  refuse_unless_empty(why_not_repeated(ask, mine, name_));
   std::string why;
   try {
-    why = why_unfit(ask, mine, terms_.name, hello_.means());
+    why = why_unfit(ask, mine, name_, hello_.means());
   } catch (const NoAnswer&) {
     return false;
   }
@@ -132,7 +136,7 @@ bool Children::examine_first(Dialogue& dialogue, const Question& wanted) {
   return true;
 }
 
-void Children::examine_further(Dialogue& dialogue, const Question& wanted) {
+void Children::examine_further(Respondent& dialogue, const Question& wanted) {
   FirstObservations few;
   {
     const std::scoped_lock lock(mutex_);
@@ -140,7 +144,7 @@ void Children::examine_further(Dialogue& dialogue, const Question& wanted) {
   }
   few.numbers.resize(std::min(few.count(), asked_of_further) * few.width);
   const auto ask = [&](const Question& one) { return dialogue.ask(one); };
-  refuse_unless_empty(why_not_repeated(ask, few, terms_.name));
+  refuse_unless_empty(why_not_repeated(ask, few, name_));
 }
 
 Recalled Children::recalled(const Question& question) const {
@@ -156,7 +160,7 @@ Recalled Children::recalled(const Question& question) const {
           .seconds = found->second.seconds * static_cast<double>(count)};
 }
 
-void Children::examine_unusual(Dialogue& dialogue, const Question& question,
+void Children::examine_unusual(Respondent& dialogue, const Question& question,
                                const std::vector<double>& numbers) {
   std::optional<std::vector<double>> usual;
   {
@@ -171,7 +175,7 @@ void Children::examine_unusual(Dialogue& dialogue, const Question& question,
   const std::size_t width = usual->size();
   const std::span<const double> unusual = std::span(numbers).subspan(*found * width, width);
   const bool same = same_bits(dialogue.ask(one), {unusual.begin(), unusual.end()});
-  refuse_unless_empty(same ? "" : other_numbers(terms_.name, one));
+  refuse_unless_empty(same ? "" : other_numbers(name_, one));
   const std::scoped_lock lock(mutex_);
   known_.at(question.primaries).usual.reset();
 }

@@ -1,9 +1,11 @@
 #pragma once
 
-// The running programs of one set-up: one a worker, kept from one round of sampling to the next.
+// What answers the workers of one set-up, one for each, kept from one round of sampling to the
+// next.
 
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -25,32 +27,33 @@ struct Recalled {
 
 class Children {
  public:
-  /// Starts the first one, for its hello. Throws NoAnswer, or std::system_error where the program
-  /// cannot be started.
-  explicit Children(Terms terms);
+  using Start = std::function<std::unique_ptr<Respondent>()>;
+
+  /// Starts the first one, for its hello. Throws what `start` throws. Messages call it `name`.
+  Children(std::string name, Start start);
   /// Asks all to end, and kills those that do not.
   ~Children();
   Children(const Children&) = delete;
   Children& operator=(const Children&) = delete;
 
   const Hello& hello() const { return hello_; }
-  const Terms& terms() const { return terms_; }
+  const std::string& name() const { return name_; }
 
   /// One that nobody uses, else a new one; its hello must be that of the first.
-  std::unique_ptr<Dialogue> take();
-  void give_back(std::unique_ptr<Dialogue> dialogue);
+  std::unique_ptr<Respondent> take();
+  void give_back(std::unique_ptr<Respondent> dialogue);
 
   /// Asks a program that is new to observations of so many primaries for the first ones
   /// (examination.h). The set-up's first program is asked for all of them twice. Every other waits
   /// until they are drawn and is compared with two of them. Throws NoAnswer where numbers are no
   /// function of key and index, and where a program ends at what another has answered. False where
   /// the first one ended: the observation that ends it tells.
-  bool examine(Dialogue& dialogue, const Question& wanted);
+  bool examine(Respondent& dialogue, const Question& wanted);
   /// Returns those observations at the head of the question that an examination has drawn.
   Recalled recalled(const Question& question) const;
   /// If all first observations were the same, asks again for the first other one among these
   /// numbers. Throws NoAnswer if it is then another.
-  void examine_unusual(Dialogue& dialogue, const Question& question,
+  void examine_unusual(Respondent& dialogue, const Question& question,
                        const std::vector<double>& numbers);
 
   /// That observation `index` of a stream could not be had. Those after it need not be tried.
@@ -72,12 +75,12 @@ class Children {
   };
 
   bool is_to_draw(const Question& wanted);
-  bool draw_ahead(Dialogue& dialogue, FirstObservations& mine);
+  bool draw_ahead(Respondent& dialogue, FirstObservations& mine);
   void keep(const FirstObservations& drawn, double seconds);
   void leave_undrawn(const Question& wanted);
   void refuse_unless_empty(const std::string& why);
-  bool examine_first(Dialogue& dialogue, const Question& wanted);
-  void examine_further(Dialogue& dialogue, const Question& wanted);
+  bool examine_first(Respondent& dialogue, const Question& wanted);
+  void examine_further(Respondent& dialogue, const Question& wanted);
 
   struct Failure {
     std::uint64_t index;
@@ -85,10 +88,11 @@ class Children {
   };
   using StreamName = std::pair<std::uint64_t, std::uint64_t>;  // key, primaries
 
-  Terms terms_;
+  std::string name_;
+  Start start_;
   Hello hello_;
   mutable std::mutex mutex_;
-  std::vector<std::unique_ptr<Dialogue>> idle_;
+  std::vector<std::unique_ptr<Respondent>> idle_;
   std::condition_variable drawn_;         ///< no longer being drawn
   std::map<std::uint64_t, Known> known_;  ///< by primaries
   std::map<StreamName, Failure> failures_;

@@ -255,46 +255,31 @@ std::vector<Entry> foreign_command() {
               .type = ParameterType::texts,
               .summary = "the program and its arguments, with the places `{seed}` or `{seeds}`, "
                          "`{samples}` and `{out}`"},
-             {.name = "output",
-              .type = ParameterType::string,
-              .summary = "what it writes: OpenEXR, or text",
-              .fallback = "exr",
-              .choices = {"exr", "text"}},
-             {.name = "channels",
-              .type = ParameterType::string,
-              .summary = "of pictures: the channels to use, patterns with commas between; R, G and "
-                         "B, or what stands for them, when absent",
-              .fallback = "usual"},
-             {.name = "pixels",
-              .type = ParameterType::string,
-              .summary = "of pictures: whether the pixels of one are independent, as they are "
-                         "under a box filter one pixel wide",
-              .fallback = "dependent",
-              .choices = {"dependent", "independent"}},
+             text_parameter("output", "what it writes: OpenEXR, or text", "exr", {"exr", "text"}),
+             text_parameter(
+                 "channels",
+                 "of pictures: the channels to use, patterns with commas between; R, G and "
+                 "B, or what stands for them, when absent",
+                 "usual"),
+             text_parameter("pixels",
+                            "of pictures: whether the pixels of one are independent, as they are "
+                            "under a box filter one pixel wide",
+                            "dependent", {"dependent", "independent"}),
              {.name = "depends",
               .type = ParameterType::texts,
               .summary = "files that change the pictures, beside those that the command names",
               .fallback = "[]"},
-             {.name = "cache",
-              .type = ParameterType::string,
-              .summary = "the folder of what was made, relative to the suite",
-              .fallback = ".assay-cache",
-              .shapes_draws = false},
-             {.name = "jobs",
-              .type = ParameterType::count,
-              .summary = "programs at a time; 0 for one each core",
-              .fallback = "0",
-              .high = 1024,
-              .shapes_draws = false},
+             beside_draws(text_parameter(
+                 "cache", "the folder of what was made, relative to the suite", ".assay-cache")),
+             beside_draws(count_parameter("jobs", "programs at a time; 0 for one each core", "0",
+                                          {.high = 1024})),
              foreign::timeout_parameter(
                  "how long one picture may take, from the start of its program", "600"),
-             {.name = "retries",
-              .type = ParameterType::count,
-              .summary = "how many times a program that fails, takes too long or writes nothing is "
-                         "started again, with the same seed; each is told on standard error",
-              .fallback = "0",
-              .high = 100,
-              .shapes_draws = false},
+             beside_draws(count_parameter(
+                 "retries",
+                 "how many times a program that fails, takes too long or writes nothing is "
+                 "started again, with the same seed; each is told on standard error",
+                 "0", {.high = 100})),
              foreign::memory_parameter()},
         .averages = false},
        prepare}};

@@ -97,20 +97,22 @@ void Dialogue::give_up(const std::string& why) {
   throw NoAnswer("`" + terms_.name + "` " + why + ending_with(child_.last_errors()));
 }
 
-std::vector<double> Dialogue::ask(const Question& question) { return ask(question, {}); }
-
-std::vector<double> Dialogue::ask(const Question& question, std::string_view items) {
+std::vector<double> Respondent::ask(const Question& question, std::string_view items) {
   const auto start = steady_clock::now();
+  std::vector<double> numbers = hear(question, items);
+  learn_pace(question, duration<double>(steady_clock::now() - start).count());
+  return numbers;
+}
+
+std::vector<double> Dialogue::hear(const Question& question, std::string_view items) {
   try {
-    std::vector<double> numbers = hear(question, items);
-    learn_pace(question, duration<double>(steady_clock::now() - start).count());
-    return numbers;
+    return reply_to(question, items);
   } catch (const ProtocolError& error) {
     give_up("cannot be understood: " + std::string(error.what()));
   }
 }
 
-std::vector<double> Dialogue::hear(const Question& question, std::string_view items) {
+std::vector<double> Dialogue::reply_to(const Question& question, std::string_view items) {
   const std::size_t width =
       question.is_to_sampler() ? numbers_of(question.asked()) : hello_.width();
   Reply reply(question, width, hello_.numbers);
@@ -147,16 +149,16 @@ std::vector<double> Dialogue::hear(const Question& question, std::string_view it
   return reply.numbers();
 }
 
-bool Dialogue::is_new_to(const Question& question) const {
+bool Respondent::is_new_to(const Question& question) const {
   return !sizes_.contains(kind_of(question));
 }
 
-std::uint64_t Dialogue::well_sized(const Question& question) const {
+std::uint64_t Respondent::well_sized(const Question& question) const {
   const auto known = sizes_.find(kind_of(question));
   return std::min(known == sizes_.end() ? 1 : known->second, question.count);
 }
 
-void Dialogue::learn_pace(const Question& question, double seconds) {
+void Respondent::learn_pace(const Question& question, double seconds) {
   constexpr std::uint64_t growth = 8;
   std::uint64_t& size = sizes_[kind_of(question)];
   const auto count = static_cast<double>(question.count);

@@ -40,15 +40,15 @@ class Refused : public NoAnswer {
   using NoAnswer::NoAnswer;
 };
 
-class Dialogue {
+/// What answers questions about an estimator: a program, or a library in this process.
+class Respondent {
  public:
-  /// Starts the program and reads its hello. Throws NoAnswer, Refused where it refuses.
-  explicit Dialogue(const Terms& terms);
+  virtual ~Respondent() = default;
 
-  const Hello& hello() const { return hello_; }
-  /// The numbers of the observations, one after the other. Throws NoAnswer, after which the program
+  virtual const Hello& hello() const = 0;
+  /// The numbers of the observations, one after the other. Throws NoAnswer, after which a program
   /// no longer runs.
-  std::vector<double> ask(const Question& question);
+  std::vector<double> ask(const Question& question) { return ask(question, {}); }
   /// The same of a question to a sampler, whose items follow it.
   std::vector<double> ask(const Question& question, std::string_view items);
   /// How many of the question's observations or items to ask for at a time, by how long the last
@@ -56,23 +56,44 @@ class Dialogue {
   std::uint64_t well_sized(const Question& question) const;
   /// True if no question of as many primaries, or to the same sampler, has been asked yet.
   bool is_new_to(const Question& question) const;
-  double cpu_seconds() const { return child_.cpu_seconds(); }
-  Child& child() { return child_; }
+  /// CPU seconds that it has spent outside of the threads that ask.
+  virtual double cpu_seconds() const { return 0; }
+  /// Asks it to end.
+  virtual void close() {}
+  /// Waits for that.
+  virtual void ends_by(Deadline) {}
+
+ private:
+  virtual std::vector<double> hear(const Question& question, std::string_view items) = 0;
+  void learn_pace(const Question& question, double seconds);
+
+  /// The sizes of questions for observations of so many primaries, and to each sampler for what it
+  /// is asked.
+  std::map<std::pair<std::uint64_t, std::uint64_t>, std::uint64_t> sizes_;
+};
+
+/// A running program.
+class Dialogue final : public Respondent {
+ public:
+  /// Starts the program and reads its hello. Throws NoAnswer, Refused where it refuses.
+  explicit Dialogue(const Terms& terms);
+
+  const Hello& hello() const override { return hello_; }
+  double cpu_seconds() const override { return child_.cpu_seconds(); }
+  void close() override { child_.close_input(); }
+  void ends_by(Deadline end) override { child_.ends_by(end); }
 
  private:
   Deadline deadline() const;
   void hear_hello();
   std::size_t listen(std::span<char> into, Deadline end);
-  std::vector<double> hear(const Question& question, std::string_view items);
-  void learn_pace(const Question& question, double seconds);
+  std::vector<double> hear(const Question& question, std::string_view items) override;
+  std::vector<double> reply_to(const Question& question, std::string_view items);
   [[noreturn]] void give_up(const std::string& why);
 
   const Terms& terms_;
   Child child_;
   Hello hello_;
-  /// The sizes of questions for observations of so many primaries, and to each sampler for what it
-  /// is asked.
-  std::map<std::pair<std::uint64_t, std::uint64_t>, std::uint64_t> sizes_;
 };
 
 }  // namespace assay::foreign

@@ -2,13 +2,9 @@
 // asked otherwise.
 
 #include <array>
-#include <atomic>
 #include <filesystem>
-#include <map>
 #include <memory>
-#include <mutex>
 
-#include "estimators/core/thread_seconds.h"
 #include "estimators/foreign/examination.h"
 #include "estimators/foreign/setup.h"
 #include "estimators/foreign/shared_library.h"
@@ -73,138 +69,36 @@ double InProcessSampler::evaluate(const Point& point) const {
   return LibrarySampler::evaluate(point);
 }
 
-/// The observation's numbers as a program of the library would reply them.
-std::vector<double> numbers_of(const PreparedLibrary& library, const Question& question) {
-  AssayStream random = assay_stream(question.key, question.first);
-  std::vector<double> numbers(library.hello().channels.size());
-  const std::uint64_t rays = library.observe(random, question.primaries, numbers);
-  if (library.hello().rays) numbers.push_back(static_cast<double>(rays));
-  return numbers;
-}
-
-/// The result of asking again for observations of so many primaries.
-struct Examined {
-  FirstLook look;
-  std::vector<double> usual;  ///< of observations that were all the same
-  std::atomic<bool> varies = false;
-};
-
-/// Draws the first observations. What the library reports as an error is told by the observation
-/// that has it.
-std::string why_unfit(const PreparedLibrary& library, std::uint64_t key, std::uint64_t primaries,
-                      Examined& examined) {
-  const auto ask = [&](const Question& one) { return numbers_of(library, one); };
-  const std::size_t width = library.hello().width();
-  FirstObservations first{
-      .question = {.key = key, .first = 0, .count = asked_twice(width), .primaries = primaries},
-      .width = width};
-  try {
-    Question one = first.question;
-    for (one.count = 1; one.first < first.question.count; ++one.first) {
-      const std::vector<double> numbers = ask(one);
-      first.numbers.insert(first.numbers.end(), numbers.begin(), numbers.end());
-    }
-    const std::string why = why_not_repeated(ask, first, library.file());
-    if (!why.empty()) return why;
-    examined.varies = !first.usual();
-    if (!examined.varies) examined.usual = first.row(0);
-    return why_unfit(ask, first, library.file(), library.hello().means());
-  } catch (const LibraryError&) {
-    examined.varies = true;
-    return "";
-  }
-}
-
-/// Holds those of one set-up, by primaries.
-class Examinations {
+/// A library in this process.
+class LibraryRespondent final : public Respondent {
  public:
-  Examined& of(std::uint64_t primaries) {
-    const std::scoped_lock lock(mutex_);
-    return all_[primaries];
-  }
+  explicit LibraryRespondent(std::shared_ptr<const PreparedLibrary> library)
+      : library_(std::move(library)) {}
+
+  const Hello& hello() const override { return library_->hello(); }
 
  private:
-  std::mutex mutex_;
-  std::map<std::uint64_t, Examined> all_;
-};
-
-class LibraryEstimator final : public Estimator {
- public:
-  LibraryEstimator(std::shared_ptr<const PreparedLibrary> library,
-                   std::shared_ptr<Examinations> examinations)
-      : library_(std::move(library)),
-        examinations_(std::move(examinations)),
-        elements_(library_->hello().image ? library_->hello().image->elements() : 1) {}
-
-  void announce(const Announcement& next) override { streams_.announce(next); }
-  /// An examination's are not the estimator's.
-  double seconds_elsewhere() const override { return -seconds_examining_; }
-
-  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
-                 Cost& cost) override {
-    if (examined_ == nullptr || primaries != primaries_) examine(random.key(), primaries);
-    AssayStream theirs = streams_.of(random.key(), random.observation());
-    cost.closest_hit_rays += library_->observe(theirs, primaries, out);
-    cost.samples += primaries * elements_;
-    if (!examined_->varies.load(std::memory_order_acquire)) {
-      examine_unusual({.key = random.key().bits,
-                       .first = random.observation(),
-                       .count = 1,
-                       .primaries = primaries},
-                      out);
+  std::vector<double> hear(const Question& question, std::string_view /*items*/) override {
+    try {
+      std::uint64_t at = 0;
+      return library_->answer(question, at);
+    } catch (const LibraryError& error) {
+      throw NoAnswer(error.what());
     }
-  }
-
- private:
-  void examine(StreamKey key, std::uint64_t primaries) {
-    const double before = thread_seconds();
-    Examined& examined = examinations_->of(primaries);
-    examined.look.at([&] { return why_unfit(*library_, key.bits, primaries, examined); });
-    seconds_examining_ += thread_seconds() - before;
-    examined_ = &examined;
-    primaries_ = primaries;
-  }
-
-  /// Draws the first other observation again. Rays are not compared.
-  void examine_unusual(const Question& question, std::span<const double> out) {
-    if (!first_unusual(out, std::span(examined_->usual).first(out.size()))) return;
-    std::vector<double> again = numbers_of(*library_, question);
-    again.resize(out.size());
-    if (first_unusual(out, again)) throw LibraryError(other_numbers(library_->file(), question));
-    examined_->varies = true;
   }
 
   std::shared_ptr<const PreparedLibrary> library_;
-  std::shared_ptr<Examinations> examinations_;
-  Examined* examined_ = nullptr;  ///< of so many primaries
-  std::uint64_t primaries_ = 0;
-  double seconds_examining_ = 0;
-  std::uint64_t elements_;
-  StreamsAhead streams_;
 };
 
-class LibrarySetup final : public Setup {
- public:
-  explicit LibrarySetup(std::shared_ptr<const PreparedLibrary> library)
-      : library_(std::move(library)) {
-    for (const AssaySampler& sampler : library_->samplers()) {
-      samplers_.push_back({sampler.name, std::make_shared<InProcessSampler>(library_, sampler)});
-    }
+std::shared_ptr<const Setup> in_this_process(const LibraryChoice& choice) {
+  const auto library = std::make_shared<const PreparedLibrary>(choice);
+  std::vector<NamedSampler> samplers;
+  for (const AssaySampler& sampler : library->samplers()) {
+    samplers.push_back({sampler.name, std::make_shared<InProcessSampler>(library, sampler)});
   }
-
-  std::vector<Channel> channels() const override { return library_->hello().channels; }
-  std::unique_ptr<Estimator> make() const override {
-    return std::make_unique<LibraryEstimator>(library_, examinations_);
-  }
-  std::optional<ImageShape> image() const override { return library_->hello().image; }
-  std::optional<Nature> nature() const override { return library_->hello().nature; }
-  std::vector<NamedSampler> samplers() const override { return samplers_; }
-
- private:
-  std::shared_ptr<const PreparedLibrary> library_;
-  std::shared_ptr<Examinations> examinations_ = std::make_shared<Examinations>();
-  std::vector<NamedSampler> samplers_;
-};
+  const auto start = [library] { return std::make_unique<LibraryRespondent>(library); };
+  return setup_of(std::make_shared<Children>(library->file(), start), std::move(samplers));
+}
 
 }  // namespace
 
@@ -250,8 +144,7 @@ std::shared_ptr<const Setup> isolated(foreign::Terms terms, const foreign::Libra
 std::shared_ptr<const Setup> in_process(const foreign::LibraryChoice& choice,
                                         const Parameters& parameters) {
   try {
-    return std::make_shared<foreign::LibrarySetup>(
-        std::make_shared<const foreign::PreparedLibrary>(choice));
+    return foreign::in_this_process(choice);
   } catch (const std::runtime_error& error) {
     parameters.refuse("file", std::string("is of no use: ") + error.what());
   }
@@ -269,19 +162,12 @@ std::vector<ParameterInformation> parameters() {
       {.name = "file",
        .type = ParameterType::string,
        .summary = "the library, relative to the suite"},
-      {.name = "estimator",
-       .type = ParameterType::string,
-       .summary = "which of its estimators; where it has one, that",
-       .fallback = "only"},
-      {.name = "parameters",
-       .type = ParameterType::structure,
-       .summary = "what the library declares, `{rate: 2}`",
-       .fallback = "{}"},
-      {.name = "isolated",
-       .type = ParameterType::boolean,
-       .summary = "run in a process of its own; if false a crash of the library ends the whole run",
-       .fallback = "true",
-       .shapes_draws = false}};
+      text_parameter("estimator", "which of its estimators; where it has one, that", "only"),
+      structure_parameter("parameters", "what the library declares, `{rate: 2}`", "{}"),
+      beside_draws(boolean_parameter(
+          "isolated",
+          "run in a process of its own; if false a crash of the library ends the whole run",
+          true))};
   for (const ParameterInformation& term : foreign::terms_parameters()) all.push_back(term);
   return all;
 }

@@ -26,11 +26,9 @@ namespace assay {
 namespace {
 
 using foreign::Asked;
-using foreign::Hello;
 using foreign::LibrarySampler;
 using foreign::PreparedLibrary;
 using foreign::Question;
-using foreign::StreamsAhead;
 
 constexpr int failed = 3;
 
@@ -130,26 +128,14 @@ void reply(const Channels& channels, const Question& question, std::span<const d
   channels.write(to_bytes(question, foreign::Numbers::binary));
 }
 
-/// Rays stand behind an observation's numbers, as doubles.
 void answer(const PreparedLibrary& library, const Channels& channels, const Question& question) {
   const FlushDenormals flush;
-  const Hello& hello = library.hello();
-  const std::size_t width = hello.width();
-  std::vector<double> numbers(static_cast<std::size_t>(question.count) * width);
-  const StreamKey key{question.key};
-  StreamsAhead streams;
-  streams.announce({.key = key, .first = question.first, .last = question.first + question.count});
-  for (std::uint64_t i = 0; i < question.count; ++i) {
-    const std::span<double> row = std::span(numbers).subspan(i * width, width);
-    AssayStream random = streams.of(key, question.first + i);
-    try {
-      const std::uint64_t rays =
-          library.observe(random, question.primaries, row.first(hello.channels.size()));
-      if (hello.rays) row.back() = static_cast<double>(rays);
-    } catch (const foreign::LibraryError& error) {
-      throw foreign::LibraryError("observation " + std::to_string(question.first + i) + ": " +
-                                  error.what());
-    }
+  std::uint64_t at = question.first;
+  std::vector<double> numbers;
+  try {
+    numbers = library.answer(question, at);
+  } catch (const foreign::LibraryError& error) {
+    throw foreign::LibraryError("observation " + std::to_string(at) + ": " + error.what());
   }
   reply(channels, question, numbers);
 }

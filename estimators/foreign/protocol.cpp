@@ -100,7 +100,7 @@ class Reader {
   [[noreturn]] void wrong_here(const std::string& why) const { wrong(line_, why); }
 
   double number(std::string_view word) const {
-    const std::optional<double> value = number_of(word);
+    const std::optional<double> value = parse_number(word);
     if (!value || std::isnan(*value)) wrong_here("`" + shown(word) + "` is not a number");
     return *value;
   }
@@ -233,6 +233,14 @@ class Reader {
     if (words.size() != 1) wrong_here("nothing follows this word");
   }
 
+  /// The meaning of a word that stands alone.
+  std::function<void(const Words&)> sets(bool& flag) {
+    return [this, &flag](const Words& words) {
+      alone(words);
+      flag = true;
+    };
+  }
+
   std::vector<Channel> elements() const {
     if (!hello_.image) {
       if (!needs_image_.empty()) wrong(needs_image_, "there is no `image`");
@@ -284,21 +292,9 @@ class Reader {
       {"bias", [this](const Words& words) { bias(words); }},
       {"sampler", [this](const Words& words) { sampler(words); }},
       {"error", [this](const Words&) { error(); }},
-      {"averages",
-       [this](const Words& words) {
-         alone(words);
-         hello_.nature.averages = true;
-       }},
-      {"rays",
-       [this](const Words& words) {
-         alone(words);
-         hello_.rays = true;
-       }},
-      {"ready",
-       [this](const Words& words) {
-         alone(words);
-         ready_ = true;
-       }},
+      {"averages", sets(hello_.nature.averages)},
+      {"rays", sets(hello_.rays)},
+      {"ready", sets(ready_)},
       {"independent", [this](const Words& words) {
          alone(words);
          if (!hello_.image) wrong_here("it stands after the `image` whose pixels it is about");
@@ -317,12 +313,12 @@ class Reader {
 
 std::string channel_line(const Channel& channel) {
   std::string line = "channel " + channel.name;
-  if (channel.mean) line += " mean " + text_of(*channel.mean);
-  if (channel.mean_error != 0) line += " error " + text_of(channel.mean_error);
-  if (channel.variance) line += " variance " + text_of(*channel.variance);
-  if (std::isfinite(channel.low)) line += " low " + text_of(channel.low);
-  if (std::isfinite(channel.high)) line += " high " + text_of(channel.high);
-  if (channel.rounding != 0) line += " rounding " + text_of(channel.rounding);
+  if (channel.mean) line += " mean " + shortest_text(*channel.mean);
+  if (channel.mean_error != 0) line += " error " + shortest_text(channel.mean_error);
+  if (channel.variance) line += " variance " + shortest_text(*channel.variance);
+  if (std::isfinite(channel.low)) line += " low " + shortest_text(channel.low);
+  if (std::isfinite(channel.high)) line += " high " + shortest_text(channel.high);
+  if (channel.rounding != 0) line += " rounding " + shortest_text(channel.rounding);
   return line + (channel.diagnostic ? " diagnostic\n" : "\n");
 }
 
@@ -332,7 +328,7 @@ std::string image_lines(const ImageShape& image, const Channel& element) {
   lines += image.independent ? "\nindependent\n" : "\n";
   const Channel unknown;
   if (element.low == unknown.low && element.high == unknown.high) return lines;
-  return lines + "range " + text_of(element.low) + " " + text_of(element.high) + "\n";
+  return lines + "range " + shortest_text(element.low) + " " + shortest_text(element.high) + "\n";
 }
 
 std::string bias_line(std::optional<BiasClass> bias) {
@@ -344,9 +340,10 @@ std::string sampler_line(const SamplerNote& sampler) {
   const std::string_view domain = domain_words[static_cast<std::size_t>(sampler.domain)];
   std::string line = "sampler " + sampler.name + " " + std::string(domain);
   if (sampler.domain == Domain::interval) {
-    line += " low " + text_of(sampler.bounds[0]) + " high " + text_of(sampler.bounds[1]);
+    line +=
+        " low " + shortest_text(sampler.bounds[0]) + " high " + shortest_text(sampler.bounds[1]);
   }
-  if (sampler.rounding != 0) line += " rounding " + text_of(sampler.rounding);
+  if (sampler.rounding != 0) line += " rounding " + shortest_text(sampler.rounding);
   return line + "\n";
 }
 
@@ -471,7 +468,7 @@ void Reply::take_line(std::string_view line) {
                         of(width_, "number") + ", but it is `" + shown(line) + "`");
   }
   for (const std::string_view word : words) {
-    const std::optional<double> value = number_of(word);
+    const std::optional<double> value = parse_number(word);
     if (!value) {
       throw ProtocolError("observation " + std::to_string(index) + " has `" + shown(word) +
                           "`, which is not a number");

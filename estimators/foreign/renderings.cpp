@@ -280,7 +280,8 @@ std::string Renderings::run_program(const Task& task, const std::string& out, do
     if (ending != "ended with exit status 0") failure = ending;
   } catch (const TimeOut&) {
     child.kill();
-    failure = "took more than " + text_of(seconds) + " s and was ended; give it a larger `timeout`";
+    failure =
+        "took more than " + shortest_text(seconds) + " s and was ended; give it a larger `timeout`";
   }
   cpu_seconds += child.cpu_seconds();
   if (failure.empty()) return "";

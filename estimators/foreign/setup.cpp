@@ -60,7 +60,7 @@ class ForeignEstimator final : public Estimator {
     const double rays = row[width_ - 1];
     constexpr double most = 0x1p53;
     if (!(rays >= 0 && rays <= most && rays == std::floor(rays))) {
-      throw NoAnswer("`" + children_->terms().name + "` says that " + to_text(question) + " took " +
+      throw NoAnswer("`" + children_->name() + "` says that " + to_text(question) + " took " +
                      std::to_string(rays) + " rays, which is no whole number");
     }
     cost.closest_hit_rays += static_cast<std::uint64_t>(rays);
@@ -159,7 +159,7 @@ class ForeignEstimator final : public Estimator {
 
   std::shared_ptr<Children> children_;
   std::size_t width_;
-  std::unique_ptr<Dialogue> dialogue_;
+  std::unique_ptr<Respondent> dialogue_;
   double taken_at_ = 0;
   double seconds_ = 0;
   Announcement announced_;
@@ -175,14 +175,14 @@ thread_local double seconds_of_programs = 0;
 /// Counts a program's while it lives.
 class Counted {
  public:
-  explicit Counted(const Dialogue& dialogue)
+  explicit Counted(const Respondent& dialogue)
       : dialogue_(dialogue), before_(dialogue.cpu_seconds()) {}
   ~Counted() { seconds_of_programs += dialogue_.cpu_seconds() - before_; }
   Counted(const Counted&) = delete;
   Counted& operator=(const Counted&) = delete;
 
  private:
-  const Dialogue& dialogue_;
+  const Respondent& dialogue_;
   double before_;
 };
 
@@ -235,8 +235,8 @@ class IsolatedSampler final : public Sampler {
   std::size_t at_points(Asked what, std::span<const Point> points, std::span<double> out) const;
   std::vector<double> ask(const Items& items) const;
   std::vector<double> ask_once(Items& items) const;
-  void witness(Dialogue& dialogue, const Question& question, const Items& items) const;
-  void require_alone(Dialogue& dialogue, const Question& question, const Items& items,
+  void witness(Respondent& dialogue, const Question& question, const Items& items) const;
+  void require_alone(Respondent& dialogue, const Question& question, const Items& items,
                      std::span<const double> numbers) const;
   void require_whole(const Items& items, std::span<const double> numbers) const;
   std::vector<double> narrowed(const Items& items, const NoAnswer& failure) const;
@@ -356,7 +356,7 @@ std::vector<double> IsolatedSampler::ask_once(Items& items) const {
                     .first = static_cast<std::uint64_t>(items.what) + denormals,
                     .count = items.size(),
                     .primaries = 0};
-  std::unique_ptr<Dialogue> dialogue = children_->take();
+  std::unique_ptr<Respondent> dialogue = children_->take();
   question.count = dialogue->well_sized(question);
   items = items.range(0, question.count);
   std::vector<double> numbers;
@@ -373,7 +373,7 @@ std::vector<double> IsolatedSampler::ask_once(Items& items) const {
 
 /// Asks for the last of the first many of each kind alone. A program that draws on from the state
 /// of its random numbers gives others.
-void IsolatedSampler::require_alone(Dialogue& dialogue, const Question& question,
+void IsolatedSampler::require_alone(Respondent& dialogue, const Question& question,
                                     const Items& items, std::span<const double> numbers) const {
   {
     const std::scoped_lock lock(mutex_);
@@ -389,7 +389,7 @@ void IsolatedSampler::require_alone(Dialogue& dialogue, const Question& question
     asked_alone_.insert(items.what);
     return;
   }
-  throw NoAnswer(other_numbers_alone(children_->terms().name, question));
+  throw NoAnswer(other_numbers_alone(children_->name(), question));
 }
 
 void IsolatedSampler::require_whole(const Items& items, std::span<const double> numbers) const {
@@ -398,15 +398,15 @@ void IsolatedSampler::require_whole(const Items& items, std::span<const double> 
     const std::span<const double> item = numbers.subspan(i * size, size);
     if (is_whole(item)) continue;
     std::string words;
-    for (const double number : item) words += (words.empty() ? "" : ", ") + text_of(number);
-    throw NoAnswer("`" + children_->terms().name + "` gave " + words +
+    for (const double number : item) words += (words.empty() ? "" : ", ") + shortest_text(number);
+    throw NoAnswer("`" + children_->name() + "` gave " + words +
                    (size > 1 ? ", which is no draw: five numbers, and 1 for a point or 0 for none"
                              : ", which is no number"));
   }
 }
 
 /// Each program is asked for the very same as the first one, and that one twice.
-void IsolatedSampler::witness(Dialogue& dialogue, const Question& question,
+void IsolatedSampler::witness(Respondent& dialogue, const Question& question,
                               const Items& items) const {
   Question one = question;
   one.count = 1;
@@ -417,7 +417,7 @@ void IsolatedSampler::witness(Dialogue& dialogue, const Question& question,
     first = witnesses_.try_emplace(items.what, first).first->second;
   }
   if (same_bits(dialogue.ask(first.question, first.item), first.numbers)) return;
-  throw NoAnswer(other_numbers(children_->terms().name, one));
+  throw NoAnswer(other_numbers(children_->name(), one));
 }
 
 std::vector<double> IsolatedSampler::ask(const Items& items) const {
@@ -447,16 +447,10 @@ std::vector<double> IsolatedSampler::narrowed(const Items& items, const NoAnswer
   throw NoAnswer(name + items.place(note_.domain) + ": " + failure.what());
 }
 
-/// An observation is a function of the stream's key and its index: what the program answers for
-/// them. Nothing is drawn from the stream itself.
 class ForeignSetup final : public Setup {
  public:
-  explicit ForeignSetup(std::shared_ptr<Children> children) : children_(std::move(children)) {
-    const std::vector<SamplerNote>& notes = children_->hello().samplers;
-    for (std::size_t i = 0; i < notes.size(); ++i) {
-      samplers_.push_back({notes[i].name, std::make_shared<IsolatedSampler>(children_, i)});
-    }
-  }
+  ForeignSetup(std::shared_ptr<Children> children, std::vector<NamedSampler> samplers)
+      : children_(std::move(children)), samplers_(std::move(samplers)) {}
 
   std::vector<Channel> channels() const override { return children_->hello().channels; }
   std::unique_ptr<Estimator> make() const override {
@@ -473,12 +467,24 @@ class ForeignSetup final : public Setup {
 
 }  // namespace
 
+std::shared_ptr<const Setup> setup_of(std::shared_ptr<Children> children,
+                                      std::vector<NamedSampler> samplers) {
+  return std::make_shared<ForeignSetup>(std::move(children), std::move(samplers));
+}
+
 std::shared_ptr<const Setup> start(Terms terms, const Parameters& parameters,
                                    std::string_view name) {
   const std::string program = terms.launch.command.front();
   if (terms.name.empty()) terms.name = joined(terms.launch.command);
   try {
-    return std::make_shared<ForeignSetup>(std::make_shared<Children>(std::move(terms)));
+    const auto shared = std::make_shared<const Terms>(std::move(terms));
+    const auto children = std::make_shared<Children>(
+        shared->name, [shared] { return std::make_unique<Dialogue>(*shared); });
+    std::vector<NamedSampler> samplers;
+    for (const SamplerNote& note : children->hello().samplers) {
+      samplers.push_back({note.name, std::make_shared<IsolatedSampler>(children, samplers.size())});
+    }
+    return setup_of(children, std::move(samplers));
   } catch (const Refused& refusal) {
     parameters.refuse(name, std::string("starts no estimator: ") + refusal.what());
   } catch (const std::system_error& failure) {
@@ -492,26 +498,13 @@ std::shared_ptr<const Setup> start(Terms terms, const Parameters& parameters,
 }
 
 ParameterInformation timeout_parameter(const std::string& summary, const std::string& fallback) {
-  return {.name = "timeout",
-          .type = ParameterType::number,
-          .summary = summary,
-          .unit = "s",
-          .fallback = fallback,
-          .low = 0,
-          .high = 1e6,
-          .low_excluded = true,
-          .shapes_draws = false};
+  return beside_draws(number_parameter("timeout", summary, fallback, {0, 1e6, true}, "s"));
 }
 
 ParameterInformation memory_parameter() {
-  return {.name = "memory",
-          .type = ParameterType::number,
-          .summary = "the most address space that the program may take; 0 is no limit",
-          .unit = "MiB",
-          .fallback = "0",
-          .low = 0,
-          .high = 1e9,
-          .shapes_draws = false};
+  return beside_draws(
+      number_parameter("memory", "the most address space that the program may take; 0 is no limit",
+                       "0", {0, 1e9}, "MiB"));
 }
 
 std::vector<ParameterInformation> terms_parameters() {

@@ -112,19 +112,12 @@ std::string or_empty(const char* text) { return text != nullptr ? text : ""; }
 bool has(std::uint32_t flags, int flag) { return (flags & static_cast<unsigned>(flag)) != 0; }
 
 ParameterType type_of(const AssayParameter& parameter, const std::string& library) {
-  switch (parameter.type) {
-    case ASSAY_NUMBER:
-      return ParameterType::number;
-    case ASSAY_COUNT:
-      return ParameterType::count;
-    case ASSAY_BOOLEAN:
-      return ParameterType::boolean;
-    case ASSAY_TEXT:
-      return ParameterType::string;
-    default:
-      throw LibraryError(library + " declares a parameter of type " +
-                         std::to_string(parameter.type) + ", which is none");
-  }
+  // In the order of plugin_abi.h.
+  constexpr std::array types{ParameterType::number, ParameterType::count, ParameterType::boolean,
+                             ParameterType::string};
+  if (parameter.type < types.size()) return types[parameter.type];
+  throw LibraryError(library + " declares a parameter of type " + std::to_string(parameter.type) +
+                     ", which is none");
 }
 
 std::vector<ParameterInformation> declared(const AssayEstimator& estimator,
@@ -166,7 +159,7 @@ double read(Parameters& given, const ParameterInformation& parameter, std::strin
       text = given.string(parameter.name);
       return 0;
   }
-  text = foreign::text_of(number);
+  text = shortest_text(number);
   return number;
 }
 
@@ -215,22 +208,15 @@ Channel element_of(const AssayImage& theirs) {
 }
 
 std::optional<BiasClass> bias_of(std::uint32_t theirs) {
-  switch (theirs) {
-    case ASSAY_BIAS_UNKNOWN:
-      return std::nullopt;
-    case ASSAY_UNBIASED:
-      return BiasClass::unbiased;
-    case ASSAY_BIAS_PRIMARIES:
-      return BiasClass::inverse_primaries;
-    case ASSAY_BIAS_BOOTSTRAP:
-      return BiasClass::inverse_bootstrap;
-    case ASSAY_BIAS_START_UP:
-      return BiasClass::start_up;
-    case ASSAY_BIAS_RECONSTRUCTION:
-      return BiasClass::reconstruction;
-    default:
-      throw LibraryError("declares the bias " + std::to_string(theirs) + ", which is none");
-  }
+  // In the order of plugin_abi.h.
+  constexpr std::array<std::optional<BiasClass>, 6> known{std::nullopt,
+                                                          BiasClass::unbiased,
+                                                          BiasClass::inverse_primaries,
+                                                          BiasClass::inverse_bootstrap,
+                                                          BiasClass::start_up,
+                                                          BiasClass::reconstruction};
+  if (theirs < known.size()) return known[theirs];
+  throw LibraryError("declares the bias " + std::to_string(theirs) + ", which is none");
 }
 
 std::vector<AssaySampler> samplers_of(const AssayPreparation& prepared) {
@@ -379,6 +365,23 @@ std::uint64_t PreparedLibrary::observe(AssayStream& random, std::uint64_t primar
                      text_of(message) + " (status " + std::to_string(status) + " of secondary())");
 }
 
+std::vector<double> PreparedLibrary::answer(const Question& question, std::uint64_t& at) const {
+  const std::size_t width = hello_.width();
+  std::vector<double> numbers(static_cast<std::size_t>(question.count) * width);
+  const StreamKey key{question.key};
+  StreamsAhead streams;
+  streams.announce({.key = key, .first = question.first, .last = question.first + question.count});
+  for (std::uint64_t i = 0; i < question.count; ++i) {
+    at = question.first + i;
+    const std::span<double> row = std::span(numbers).subspan(i * width, width);
+    AssayStream random = streams.of(key, at);
+    const std::uint64_t rays =
+        observe(random, question.primaries, row.first(hello_.channels.size()));
+    if (hello_.rays) row.back() = static_cast<double>(rays);
+  }
+  return numbers;
+}
+
 LibrarySampler::LibrarySampler(std::shared_ptr<const PreparedLibrary> library,
                                const AssaySampler& sampler)
     : library_(std::move(library)), sampler_(sampler), note_(note_of(sampler)) {}
@@ -402,13 +405,13 @@ SamplerDraw LibrarySampler::draw(std::uint64_t key, std::uint64_t observation) c
                          .valid = drawn.no_point == 0};
   if (!draw.valid || is_whole(draw)) return draw;
   throw LibraryError("sampler `" + note_.name + "`: sample() gave the point " +
-                     text_of(draw.point, note_.domain) + ", density " + text_of(draw.density) +
-                     " and weight " + text_of(draw.weight));
+                     text_of(draw.point, note_.domain) + ", density " +
+                     shortest_text(draw.density) + " and weight " + shortest_text(draw.weight));
 }
 
 double LibrarySampler::number(double value, const char* function, const Point& point) const {
   if (!std::isnan(value)) return value;
-  throw LibraryError("sampler `" + note_.name + "`: " + function + " is " + text_of(value) +
+  throw LibraryError("sampler `" + note_.name + "`: " + function + " is " + shortest_text(value) +
                      " at " + text_of(point, note_.domain));
 }
 

@@ -4,7 +4,6 @@
 // the sizes of its structs, and called in this process.
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -72,6 +71,9 @@ class PreparedLibrary {
   /// Writes an observation; returns its rays. Throws LibraryError where the library reports an
   /// error.
   std::uint64_t observe(AssayStream& random, std::uint64_t primaries, std::span<double> out) const;
+  /// The reply to a question for observations. Where that throws LibraryError, `at` is the one that
+  /// has the error. Rays stand behind an observation's numbers, as doubles.
+  std::vector<double> answer(const Question& question, std::uint64_t& at) const;
 
  private:
   void prepare(const LibraryChoice& choice, AssayPreparation& preparation);

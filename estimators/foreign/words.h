@@ -3,7 +3,6 @@
 // Lines and words of what programs write to each other.
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cstdint>
 #include <optional>
@@ -12,6 +11,7 @@
 #include <vector>
 
 #include "estimators/core/quoting.h"
+#include "estimators/core/value.h"
 #include "estimators/sampler.h"
 
 namespace assay::foreign {
@@ -29,15 +29,6 @@ inline std::vector<std::string_view> words_of(std::string_view line) {
   return words;
 }
 
-/// A number as C or Python writes it: decimal, `inf`, `nan`, perhaps with a sign.
-inline std::optional<double> number_of(std::string_view word) {
-  if (word.starts_with("+") && !word.starts_with("+-")) word.remove_prefix(1);
-  double value = 0;
-  const auto parsed = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (parsed.ec != std::errc{} || parsed.ptr != word.data() + word.size()) return {};
-  return value;
-}
-
 inline std::optional<std::uint64_t> whole_of(std::string_view word) {
   std::uint64_t value = 0;
   const auto parsed = std::from_chars(word.data(), word.data() + word.size(), value);
@@ -45,18 +36,12 @@ inline std::optional<std::uint64_t> whole_of(std::string_view word) {
   return value;
 }
 
-/// The shortest text that reads back as this number.
-inline std::string text_of(double value) {
-  std::array<char, 32> buffer{};
-  return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
-}
-
 /// The coordinates that the domain uses: "(0.25, 1)".
 inline std::string text_of(const Point& point, Domain domain) {
   const bool direction = domain == Domain::hemisphere || domain == Domain::sphere;
   const std::size_t used = domain == Domain::interval ? 1 : direction ? 3 : 2;
   std::string text;
-  for (std::size_t i = 0; i < used; ++i) text += (i == 0 ? "(" : ", ") + text_of(point[i]);
+  for (std::size_t i = 0; i < used; ++i) text += (i == 0 ? "(" : ", ") + shortest_text(point[i]);
   return text + ")";
 }
 

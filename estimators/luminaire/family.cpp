@@ -6,14 +6,12 @@ namespace assay::luminaire {
 
 namespace {
 
-const ParameterInformation scene_parameter = {
-    .name = "scene",
-    .type = ParameterType::structure,
-    .summary =
-        "a built-in scene (triangle, cornell_triangle, rectangle), or receiver, light and "
-        "occluders: `{receiver: {position: [0, 0, 0], normal: [0, 0, 1]}, light: {obj: lamp.obj}, "
-        "occluders: [{obj: chair.obj}]}`",
-    .fallback = "triangle"};
+const ParameterInformation scene_parameter = structure_parameter(
+    "scene",
+    "a built-in scene (triangle, cornell_triangle, rectangle), or receiver, light and "
+    "occluders: `{receiver: {position: [0, 0, 0], normal: [0, 0, 1]}, light: {obj: lamp.obj}, "
+    "occluders: [{obj: chair.obj}]}`",
+    "triangle");
 
 std::optional<double> variance(double mean, const std::optional<double>& second_moment) {
   if (!second_moment) return {};

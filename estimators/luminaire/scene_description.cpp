@@ -20,71 +20,10 @@ using render::Vector3;
 // seven digits. The irradiance of a bent polygon is that of its edges all the same.
 constexpr double planarity = 1e-6;
 
-void require_map(const Value& value, const std::string& what) {
-  if (value.kind() != Value::Kind::map) throw InputError(value.where(), what + " must be a map");
-}
-
-const Value& required(const Value& value, const std::string& what, const char* key) {
-  return required_key(value, what, key);
-}
-
-Vector3 vector(const Value& value, const std::string& what) {
-  if (value.kind() != Value::Kind::list || value.items().size() != 3) {
-    throw InputError(value.where(), what + " must be a list of three numbers");
-  }
-  const std::vector<Value>& items = value.items();
-  return {finite_number(items[0], what), finite_number(items[1], what),
-          finite_number(items[2], what)};
-}
-
-Vector3 unit_vector(const Value& value, const std::string& what) {
-  const Vector3 v = vector(value, what);
-  const double scale = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-  if (scale == 0) throw InputError(value.where(), what + " must not be the zero vector");
-  return render::normalised(v / scale);
-}
-
-Polygon polygon(const Value& value, const std::string& what) {
-  if (value.kind() != Value::Kind::list || value.items().size() < 3) {
-    throw InputError(value.where(), what + " must be a list of three or more vertices");
-  }
-  Polygon vertices;
-  for (const Value& item : value.items()) vertices.push_back(vector(item, "a vertex of " + what));
-  const auto same = std::ranges::adjacent_find(vertices);
-  if (same != vertices.end() || vertices.front() == vertices.back()) {
-    throw InputError(value.where(), what + " has the same vertex twice in a row");
-  }
-  // Rounding leaves points on a line an area of about 1e-16 squared diameters.
-  const double extent = render::diameter(vertices);
-  if (!(render::area(vertices) > 1e-12 * extent * extent)) {
-    throw InputError(value.where(), what + " has no area");
-  }
-  if (!render::is_planar(vertices, planarity)) {
-    throw InputError(value.where(), what + " is not planar");
-  }
-  if (!render::is_convex(vertices)) {
-    throw InputError(value.where(), what + " is not convex: split it, or give it as an OBJ file");
-  }
-  return vertices;
-}
-
-TriangleMesh mesh(const Value& value, const std::string& what, const std::string& folder) {
-  const std::filesystem::path file = std::filesystem::path(folder) / value.string(what);
-  try {
-    return render::read_obj(file.lexically_normal().string());
-  } catch (const InputError& error) {
-    // A file that is not there is a mistake of the scene, what stands in it one of the file.
-    if (error.where().line != 0) throw;
-    const bool is_there = std::filesystem::exists(file);
-    throw InputError(value.where(), what + " `" + error.where().file + "`: " + error.message() +
-                                        (is_there ? "" : "; it is sought from the suite's folder"));
-  }
-}
-
 Receiver receiver(const Value& value) {
   require_keys(value, "the receiver", {"position", "normal"});
-  return {vector(required(value, "the receiver", "position"), "the receiver's position"),
-          unit_vector(required(value, "the receiver", "normal"), "the receiver's normal")};
+  return {read_vector(required_key(value, "the receiver", "position"), "the receiver's position"),
+          read_unit_vector(required_key(value, "the receiver", "normal"), "the receiver's normal")};
 }
 
 // True if a polygon is seen clockwise from the side that `direction` points to.
@@ -94,10 +33,11 @@ bool is_clockwise(const Polygon& vertices, const Vector3& direction) {
 
 // With `normal` the side that it points from emits, else the side that the receiver is on.
 Light polygon_light(const Value& value, const Receiver& receiver, double radiance) {
-  Polygon vertices = polygon(required(value, "the light", "polygon"), "the light's polygon");
+  Polygon vertices =
+      read_polygon(required_key(value, "the light", "polygon"), "the light's polygon");
   const Value* const given = value.find("normal");
   const Vector3 emitting =
-      given ? unit_vector(*given, "the light's normal") : receiver.position - vertices[0];
+      given ? read_unit_vector(*given, "the light's normal") : receiver.position - vertices[0];
   const double cosine = dot(emitting, render::normalised(render::area_vector(vertices)));
   // The normal only chooses the side, but one that is far off was meant for something else.
   if (given && std::abs(cosine) < 0.99) {
@@ -119,16 +59,17 @@ Light light(const Value& value, const Receiver& receiver, const std::string& fol
                      "side on which they are counter-clockwise");
   }
   const double radiance =
-      at_least_zero(required(value, "the light", "radiance"), "the light's radiance");
-  if (from_file) return {mesh(*value.find("obj"), "the light's file", folder), radiance, false};
+      at_least_zero(required_key(value, "the light", "radiance"), "the light's radiance");
+  if (from_file)
+    return {read_mesh(*value.find("obj"), "the light's file", folder), radiance, false};
   return polygon_light(value, receiver, radiance);
 }
 
 Disc disc(const Value& value) {
   require_keys(value, "a disc", {"center", "normal", "radius"});
-  return {vector(required(value, "a disc", "center"), "a disc's center"),
-          unit_vector(required(value, "a disc", "normal"), "a disc's normal"),
-          at_least_zero(required(value, "a disc", "radius"), "a disc's radius")};
+  return {read_vector(required_key(value, "a disc", "center"), "a disc's center"),
+          read_unit_vector(required_key(value, "a disc", "normal"), "a disc's normal"),
+          at_least_zero(required_key(value, "a disc", "radius"), "a disc's radius")};
 }
 
 Occluder occluder(const Value& value, const std::string& folder) {
@@ -137,19 +78,9 @@ Occluder occluder(const Value& value, const std::string& folder) {
     throw InputError(value.where(), "an occluder needs one of `polygon`, `disc` and `obj`");
   }
   const auto& [key, form] = value.members().front();
-  if (key == "polygon") return polygon(form, "an occluder's polygon");
+  if (key == "polygon") return read_polygon(form, "an occluder's polygon");
   if (key == "disc") return disc(form);
-  return mesh(form, "an occluder's file", folder);
-}
-
-std::vector<Occluder> occluders(const Value* value, const std::string& folder) {
-  if (!value) return {};
-  if (value->kind() != Value::Kind::list) {
-    throw InputError(value->where(), "occluders must be a list");
-  }
-  std::vector<Occluder> list;
-  for (const Value& item : value->items()) list.push_back(occluder(item, folder));
-  return list;
+  return read_mesh(form, "an occluder's file", folder);
 }
 
 const std::vector<std::pair<std::string, SceneDescription>>& built_in() {
@@ -184,7 +115,7 @@ std::string alternatives(std::string_view name, const std::vector<std::string>& 
 
 void require_keys(const Value& value, const std::string& what,
                   const std::vector<std::string>& known) {
-  require_map(value, what);
+  if (value.kind() != Value::Kind::map) throw InputError(value.where(), what + " must be a map");
   for (const auto& [key, member] : value.members()) {
     if (std::ranges::find(known, key) == known.end()) {
       throw InputError(member.where(),
@@ -198,20 +129,67 @@ const Value& required_key(const Value& value, const std::string& what, const cha
   throw InputError(value.where(), what + " needs the key `" + key + "`");
 }
 
-std::vector<Occluder> read_occluders(const Value& value, const std::string& folder) {
-  return occluders(&value, folder);
+Vector3 read_vector(const Value& value, const std::string& what) {
+  if (value.kind() != Value::Kind::list || value.items().size() != 3) {
+    throw InputError(value.where(), what + " must be a list of three numbers");
+  }
+  const std::vector<Value>& items = value.items();
+  return {finite_number(items[0], what), finite_number(items[1], what),
+          finite_number(items[2], what)};
 }
-
-Vector3 read_vector(const Value& value, const std::string& what) { return vector(value, what); }
 
 Vector3 read_unit_vector(const Value& value, const std::string& what) {
-  return unit_vector(value, what);
+  const Vector3 v = read_vector(value, what);
+  const double scale = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  if (scale == 0) throw InputError(value.where(), what + " must not be the zero vector");
+  return render::normalised(v / scale);
 }
 
-Polygon read_polygon(const Value& value, const std::string& what) { return polygon(value, what); }
+Polygon read_polygon(const Value& value, const std::string& what) {
+  if (value.kind() != Value::Kind::list || value.items().size() < 3) {
+    throw InputError(value.where(), what + " must be a list of three or more vertices");
+  }
+  Polygon vertices;
+  for (const Value& item : value.items())
+    vertices.push_back(read_vector(item, "a vertex of " + what));
+  const auto same = std::ranges::adjacent_find(vertices);
+  if (same != vertices.end() || vertices.front() == vertices.back()) {
+    throw InputError(value.where(), what + " has the same vertex twice in a row");
+  }
+  // Rounding leaves points on a line an area of about 1e-16 squared diameters.
+  const double extent = render::diameter(vertices);
+  if (!(render::area(vertices) > 1e-12 * extent * extent)) {
+    throw InputError(value.where(), what + " has no area");
+  }
+  if (!render::is_planar(vertices, planarity)) {
+    throw InputError(value.where(), what + " is not planar");
+  }
+  if (!render::is_convex(vertices)) {
+    throw InputError(value.where(), what + " is not convex: split it, or give it as an OBJ file");
+  }
+  return vertices;
+}
 
 TriangleMesh read_mesh(const Value& value, const std::string& what, const std::string& folder) {
-  return mesh(value, what, folder);
+  const std::filesystem::path file = std::filesystem::path(folder) / value.string(what);
+  try {
+    return render::read_obj(file.lexically_normal().string());
+  } catch (const InputError& error) {
+    // A file that is not there is a mistake of the scene, what stands in it one of the file.
+    if (error.where().line != 0) throw;
+    const bool is_there = std::filesystem::exists(file);
+    throw InputError(value.where(), what + " `" + error.where().file + "`: " + error.message() +
+                                        (is_there ? "" : "; it is sought from the suite's folder"));
+  }
+}
+
+std::vector<Occluder> read_occluders(const Value& value, const std::string& folder) {
+  if (value.kind() != Value::Kind::list) {
+    throw InputError(value.where(), "occluders must be a list");
+  }
+  std::vector<Occluder> list;
+  for (const Value& item : value.items()) list.push_back(occluder(item, folder));
+  return list;
 }
 
 std::vector<std::string> built_in_scenes() {
@@ -224,9 +202,11 @@ SceneDescription read_scene(const Value& value, const std::string& folder) {
   if (value.kind() == Value::Kind::scalar) return named(value);
   require_keys(value, "the scene", {"receiver", "light", "occluders"});
   SceneDescription scene;
-  scene.receiver = receiver(required(value, "the scene", "receiver"));
-  scene.light = light(required(value, "the scene", "light"), scene.receiver, folder);
-  scene.occluders = occluders(value.find("occluders"), folder);
+  scene.receiver = receiver(required_key(value, "the scene", "receiver"));
+  scene.light = light(required_key(value, "the scene", "light"), scene.receiver, folder);
+  if (const Value* const hiding = value.find("occluders")) {
+    scene.occluders = read_occluders(*hiding, folder);
+  }
   return scene;
 }
 

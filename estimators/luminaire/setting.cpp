@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <utility>
 
 namespace assay::luminaire {
 
@@ -87,31 +86,19 @@ Shape occluder_shape(const Occluder& occluder, const View& view) {
   return view.of(std::get<TriangleMesh>(occluder));
 }
 
-void append(std::vector<Shape>& shapes, const std::vector<Occluder>& occluders, const View& view) {
-  for (const Occluder& occluder : occluders) shapes.push_back(occluder_shape(occluder, view));
-}
-
 TriangleMesh drawn_nearer(TriangleMesh mesh) {
   for (Vector3& p : mesh.vertices) p = (1 - resolution) * p;
   return mesh;
 }
 
-// The luminaire is shape 0.
-std::vector<Shape> everything(const SceneDescription& description) {
-  const View view(description.receiver);
-  std::vector<Shape> shapes = {drawn_nearer(light_mesh(description.light, view))};
-  append(shapes, description.occluders, view);
-  return shapes;
-}
-
-// A planar luminaire never shades itself.
-std::vector<Shape> blockers(const SceneDescription& description) {
-  const View view(description.receiver);
-  std::vector<Shape> shapes;
-  if (!std::holds_alternative<Polygon>(description.light.shape)) {
-    shapes.push_back(drawn_nearer(light_mesh(description.light, view)));
+// What rays can hit: the luminaire, as shape 0, and the occluders. A planar luminaire never shades
+// itself.
+std::vector<Shape> shapes_of(const SceneDescription& description, bool with_luminaire) {
+  std::vector<Shape> shapes = occluder_shapes(description.occluders, description.receiver);
+  if (with_luminaire) {
+    shapes.insert(shapes.begin(),
+                  drawn_nearer(light_mesh(description.light, View(description.receiver))));
   }
-  append(shapes, description.occluders, view);
   return shapes;
 }
 
@@ -125,8 +112,8 @@ Setting::Setting(const SceneDescription& description, const Location& where)
       polygonal_occluders_(polygons_of(description.occluders, View(description.receiver))),
       area_(0),
       near_(near_distance(light_mesh(description.light, View(description.receiver)), where)),
-      scene_(everything(description)),
-      blockers_(blockers(description)) {
+      scene_(shapes_of(description, true)),
+      blockers_(shapes_of(description, !planar_)) {
   if (planar_) {
     polygon_ = View(description.receiver).of(std::get<Polygon>(description.light.shape));
   }

@@ -20,6 +20,19 @@ std::vector<LitTriangle> lit_triangles(const Setting& setting) {
   return list;
 }
 
+Domain domain_of(const std::vector<LitTriangle>& triangles) {
+  const bool above = std::ranges::all_of(triangles, [](const LitTriangle& t) {
+    return t.seen.a().z >= 0 && t.seen.b().z >= 0 && t.seen.c().z >= 0;
+  });
+  return above ? Domain::hemisphere : Domain::sphere;
+}
+
+const LitTriangle* containing(const std::vector<LitTriangle>& triangles, const render::Vector3& w) {
+  const auto found =
+      std::ranges::find_if(triangles, [&](const LitTriangle& t) { return t.seen.contains(w); });
+  return found == triangles.end() ? nullptr : &*found;
+}
+
 Channel solid_angle_channel(const Setting& setting) {
   double omega = 0;
   for (const LitTriangle& triangle : lit_triangles(setting)) omega += triangle.seen.solid_angle();

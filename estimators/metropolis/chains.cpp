@@ -25,58 +25,29 @@ double ratio(double numerator, double denominator) {
   return denominator > 0 ? numerator / denominator : 0;
 }
 
-using SharedStep = std::shared_ptr<const SmallStep>;
-
-class StepSampler final : public Sampler {
- public:
-  explicit StepSampler(SharedStep step) : step_(std::move(step)) {}
-
-  Domain domain() const override { return Domain::interval; }
-  std::array<double, 2> bounds() const override {
-    return {-SmallStep::largest, SmallStep::largest};
-  }
-  SamplerDraw sample(Stream& random) const override {
-    const Point point = {step_->step(random), 0, 0};
-    return {.point = point, .density = density(point), .weight = 1};
-  }
-  double density(const Point& point) const override {
-    const double length = std::abs(point[0]);
-    // Rounding may leave a step a hair outside.
-    const double hair = 1 + 0x1p-40;
-    if (length < SmallStep::smallest / hair || length > SmallStep::largest * hair) return 0;
-    return 1 / (2 * length * std::log(SmallStep::largest / SmallStep::smallest));
-  }
-  double evaluate(const Point& point) const override { return density(point); }
-  // The gap between the smallest steps ends on the borders of parts.
-  Panels panels() const override { return {.first = 32}; }
-
- private:
-  SharedStep step_;
-};
-
-class CoordinateSampler final : public Sampler {
- public:
-  explicit CoordinateSampler(SharedStep step) : step_(std::move(step)) {}
-
-  Domain domain() const override { return Domain::interval; }
-  SamplerDraw sample(Stream& random) const override {
-    const double before = random.uniform();
-    return {
-        .point = {step_->moved(before, random).value_or(before), 0, 0}, .density = 1, .weight = 1};
-  }
-  double density(const Point&) const override { return 1; }
-  double evaluate(const Point&) const override { return 1; }
-
- private:
-  SharedStep step_;
-};
-
 /// The samplers of a step. One is `step`, the signed length, of density 1 / (2 |x| ln(largest /
 /// smallest)). The other is `coordinate`, a uniform number after a small step; it stays if a step
 /// is rejected. It is uniform again.
-std::vector<NamedSampler> step_samplers(const SharedStep& step) {
-  return {{"step", std::make_shared<StepSampler>(step)},
-          {"coordinate", std::make_shared<CoordinateSampler>(step)}};
+std::vector<NamedSampler> step_samplers(const std::shared_ptr<const SmallStep>& step) {
+  const auto length_of = [step](Stream& random) { return Point{step->step(random), 0, 0}; };
+  const auto density = [](const Point& point) {
+    const double length = std::abs(point[0]);
+    // Rounding may leave a step a hair outside.
+    const double hair = 1 + 0x1p-40;
+    if (length < SmallStep::smallest / hair || length > SmallStep::largest * hair) return 0.0;
+    return 1 / (2 * length * std::log(SmallStep::largest / SmallStep::smallest));
+  };
+  const auto moved = [step](Stream& random) {
+    const double before = random.uniform();
+    return Point{step->moved(before, random).value_or(before), 0, 0};
+  };
+  // The gap between the smallest steps ends on the borders of parts.
+  return {{"step", sampler_of({.domain = Domain::interval,
+                               .point = length_of,
+                               .density = density,
+                               .bounds = {-SmallStep::largest, SmallStep::largest},
+                               .panels = {.first = 32}})},
+          {"coordinate", sampler_of({Domain::interval, moved, uniform_density(1)})}};
 }
 
 double luminance_of(const Spectrum& s, std::size_t components) {
@@ -93,7 +64,7 @@ void write_image(const ImageShape& shape, const Tally& tally, std::span<double> 
     const Spectrum value = tally.steps > 0 ? 1 / tally.steps * tally.pixels[p] : Spectrum{};
     sum += value;
     for (std::size_t c = 0; c < components; ++c) {
-      out[p * components + c] = pixels * component(value, c);
+      out[p * components + c] = pixels * value.*paths::colours[c].part;
     }
   }
   out[shape.elements()] = luminance_of(sum, components);
@@ -154,30 +125,6 @@ class ChainEstimator final : public Estimator {
   Tally tally_;
 };
 
-class IndependentEstimator final : public Estimator {
- public:
-  explicit IndependentEstimator(SharedTarget target)
-      : target_(std::move(target)), shape_(target_->shape()) {}
-
-  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
-                 Cost& cost) override {
-    tally_.pixels.assign(shape_.pixels(), {});
-    for (std::uint64_t i = 0; i < primaries; ++i) {
-      IndependentCoordinates point(random);
-      const Contribution found = target_->at(point, cost);
-      tally_.add(found.pixel, 1, found.value);
-    }
-    tally_.steps = static_cast<double>(primaries);
-    cost.samples += primaries;
-    write_image(shape_, tally_, out);
-  }
-
- private:
-  SharedTarget target_;
-  ImageShape shape_;
-  Tally tally_;
-};
-
 std::vector<Channel> image_channels(const Target& target) {
   const ImageShape shape = target.shape();
   const std::vector<double> means = target.means();
@@ -212,8 +159,21 @@ Boundary boundary_of(const std::string& name) {
 /// A secondary estimate is the image of `primaries` independent points: what chains are held
 /// against. Channels: the image's elements and `image_mean`.
 std::shared_ptr<const Setup> independent(SharedTarget target) {
+  const auto estimate = [target, shape = target->shape(), tally = Tally{}](
+                            Stream& random, std::uint64_t primaries, std::span<double> out,
+                            Cost& cost) mutable {
+    tally.pixels.assign(shape.pixels(), {});
+    for (std::uint64_t i = 0; i < primaries; ++i) {
+      IndependentCoordinates point(random);
+      const Contribution found = target->at(point, cost);
+      tally.add(found.pixel, 1, found.value);
+    }
+    tally.steps = static_cast<double>(primaries);
+    cost.samples += primaries;
+    write_image(shape, tally, out);
+  };
   return setup_of({.channels = image_channels(*target),
-                   .make = [target] { return std::make_unique<IndependentEstimator>(target); },
+                   .make = estimating(estimate),
                    .image = dependent(target->shape())});
 }
 

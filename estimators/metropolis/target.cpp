@@ -153,7 +153,8 @@ class SphereTarget final : public Target {
         sum += common / (high - low) * (surface.emission + surface.diffuse * law.mean_radiance());
         below = top;
       }
-      for (std::size_t c = 0; c < (form_.grey ? 1 : 3); ++c) all.push_back(component(sum, c));
+      for (std::size_t c = 0; c < (form_.grey ? 1 : 3); ++c)
+        all.push_back(sum.*paths::colours[c].part);
     }
     return all;
   }
@@ -322,7 +323,7 @@ std::vector<double> ProductTarget::means() const {
       sum += product;
     }
     for (std::size_t c = 0; c < (coloured_ ? 3 : 1); ++c) {
-      all.push_back(sum * component(colours_[p], c));
+      all.push_back(sum * colours_[p].*paths::colours[c].part);
     }
   }
   return all;

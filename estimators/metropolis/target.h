@@ -38,11 +38,6 @@ class Target {
 
 using SharedTarget = std::shared_ptr<const Target>;
 
-/// The colour of an element: red, green or blue; of a grey target red stands for all.
-inline double component(const Spectrum& s, std::size_t index) {
-  return index == 0 ? s.red : index == 1 ? s.green : s.blue;
-}
-
 /// a + b u.
 struct Linear {
   double constant = 1;

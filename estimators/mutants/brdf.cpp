@@ -68,25 +68,6 @@ struct NoSineOfAzimuth final : Ward {
   }
 };
 
-// Draws until a direction is above the horizon and declares the density as if it had not.
-class Redrawn final : public Sampler {
- public:
-  explicit Redrawn(std::shared_ptr<const Sampler> original) : original_(std::move(original)) {}
-  Domain domain() const override { return original_->domain(); }
-  SamplerDraw sample(Stream& random) const override {
-    while (true) {
-      const SamplerDraw draw = original_->sample(random);
-      if (draw.valid) return draw;
-    }
-  }
-  double density(const Point& p) const override { return original_->density(p); }
-  double evaluate(const Point& p) const override { return original_->evaluate(p); }
-  Panels panels() const override { return original_->panels(); }
-
- private:
-  std::shared_ptr<const Sampler> original_;
-};
-
 // The original's points with one part of what is said of them exchanged.
 class Misreported : public Sampler {
  public:
@@ -102,6 +83,17 @@ class Misreported : public Sampler {
 
  private:
   std::shared_ptr<const Sampler> original_;
+};
+
+// Draws until a direction is above the horizon and declares the density as if it had not.
+struct Redrawn final : Misreported {
+  using Misreported::Misreported;
+  SamplerDraw sample(Stream& random) const override {
+    while (true) {
+      const SamplerDraw draw = original().sample(random);
+      if (draw.valid) return draw;
+    }
+  }
 };
 
 struct WeightWithoutCosine final : Misreported {
@@ -169,46 +161,51 @@ Information information(const std::string& original, const Defect& defect) {
           .defect = defect.what};
 }
 
+// The reflectances, and how each is read.
+struct OfWard {
+  using Sound = Ward;
+  static constexpr const char* name = "brdf/ward";
+  template <class Brdf>
+  static auto read(Parameters& given) {
+    return std::make_shared<Brdf>(brdf::ward<Brdf>(given));
+  }
+};
+
+struct OfAshikhminShirley {
+  using Sound = AshikhminShirley;
+  static constexpr const char* name = "brdf/ashikhmin_shirley";
+  template <class Brdf>
+  static auto read(Parameters& given) {
+    return std::make_shared<Brdf>(brdf::ashikhmin_shirley<Brdf>(given));
+  }
+};
+
+template <class Of, class Mutant>
+Entry exchanged(const Defect& defect) {
+  return {information(Of::name, defect), [](Parameters& given) {
+            const auto mutant = Of::template read<Mutant>(given);
+            return mutated(given, *Of::template read<typename Of::Sound>(given),
+                           brdf::published_sampler(mutant));
+          }};
+}
+
+template <class Of, class Wrapper>
+Entry wrapped(const Defect& defect) {
+  return {information(Of::name, defect), [](Parameters& given) {
+            const auto original = Of::template read<typename Of::Sound>(given);
+            return mutated(given, *original,
+                           std::make_shared<Wrapper>(brdf::published_sampler(original)));
+          }};
+}
+
 template <class Mutant>
 Entry ward(const Defect& defect) {
-  return {information("brdf/ward", defect), [](Parameters& given) {
-            auto mutant = std::make_shared<Mutant>(brdf::ward<Mutant>(given));
-            return mutated(given, brdf::ward(given), brdf::published_sampler(mutant));
-          }};
+  return exchanged<OfWard, Mutant>(defect);
 }
 
 template <class Mutant>
 Entry ashikhmin_shirley(const Defect& defect) {
-  return {information("brdf/ashikhmin_shirley", defect), [](Parameters& given) {
-            auto mutant = std::make_shared<Mutant>(brdf::ashikhmin_shirley<Mutant>(given));
-            return mutated(given, brdf::ashikhmin_shirley(given), brdf::published_sampler(mutant));
-          }};
-}
-
-std::shared_ptr<const Setup> redrawn(Parameters& given, brdf::SharedBrdf original) {
-  return mutated(given, *original, std::make_shared<Redrawn>(brdf::published_sampler(original)));
-}
-
-Entry ward_redrawn(const Defect& defect) {
-  return {information("brdf/ward", defect), [](Parameters& given) {
-            return redrawn(given, std::make_shared<Ward>(brdf::ward(given)));
-          }};
-}
-
-Entry ashikhmin_shirley_redrawn(const Defect& defect) {
-  return {information("brdf/ashikhmin_shirley", defect), [](Parameters& given) {
-            return redrawn(given,
-                           std::make_shared<AshikhminShirley>(brdf::ashikhmin_shirley(given)));
-          }};
-}
-
-template <class Wrapper>
-Entry misreported_ward(const Defect& defect) {
-  return {information("brdf/ward", defect), [](Parameters& given) {
-            const auto original = std::make_shared<Ward>(brdf::ward(given));
-            return mutated(given, *original,
-                           std::make_shared<Wrapper>(brdf::published_sampler(original)));
-          }};
+  return exchanged<OfAshikhminShirley, Mutant>(defect);
 }
 
 }  // namespace
@@ -227,14 +224,14 @@ std::vector<Entry> mutants_brdf() {
                           "the azimuth is (ay / ax) tan 2 pi u without the arctangent, as printed "
                           "in the paper of 1992."}),
       ward<NoSineOfAzimuth>({"ward_no_sine", "the y component of h lacks the factor sin phi."}),
-      ward_redrawn({"ward_redrawn", redrawn_what}),
-      misreported_ward<WeightWithoutCosine>(
+      wrapped<OfWard, Redrawn>({"ward_redrawn", redrawn_what}),
+      wrapped<OfWard, WeightWithoutCosine>(
           {"ward_weight_without_cosine", "the weight is f / p, without the cosine."}),
-      misreported_ward<DensityOffInASector>(
+      wrapped<OfWard, DensityOffInASector>(
           {"ward_density_sector",
            "the density at a point is declared .1 % too large in a hundredth of the azimuth, that "
            "from pi + 0.05 on."}),
-      misreported_ward<MirroredWeight>(
+      wrapped<OfWard, MirroredWeight>(
           {"ward_weight_mirrored",
            "the weight takes the BRDF of the direction with its x and y exchanged."}),
       ashikhmin_shirley<SingleQuadrant<AshikhminShirley>>(
@@ -247,7 +244,7 @@ std::vector<Entry> mutants_brdf() {
       ashikhmin_shirley<ExponentWithoutOne>(
           {"ashikhmin_shirley_exponent", "cos d = v^(1/e) instead of v^(1/(e+1))."}),
       ashikhmin_shirley<NoJacobian<AshikhminShirley>>({"ashikhmin_shirley_no_jacobian", jacobian}),
-      ashikhmin_shirley_redrawn({"ashikhmin_shirley_redrawn", redrawn_what}),
+      wrapped<OfAshikhminShirley, Redrawn>({"ashikhmin_shirley_redrawn", redrawn_what}),
   };
 }
 

@@ -132,40 +132,16 @@ void only_published_rule(Parameters& given) {
   if (given.boolean("clamped")) given.refuse("clamped", "must be false here");
 }
 
-/// One lambda for receivers side by side, from the very samples that it corrects.
-class PooledEstimator final : public Estimator {
- public:
-  explicit PooledEstimator(std::vector<SharedPairs> pixels) : pixels_(std::move(pixels)) {}
+Sums sums_of(const PairSource& pixel, std::uint64_t count, Stream& random, Cost& cost) {
+  const double integral = pixel.colours()[0].control_integral;
+  Sums all;
+  for_each_pair(pixel, count, random, cost,
+                [&](const Pair& pair) { all.add(pair.full[0], integral - pair.control[0]); });
+  return all;
+}
 
-  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
-                 Cost& cost) override {
-    const Sums own = sums(*pixels_[0], primaries, random, cost);
-    double covariation = own.covariation();
-    double spread = own.lack_squared;
-    for (std::size_t k = 1; k < pixels_.size(); ++k) {
-      Stream neighbour = random.substream(static_cast<std::uint32_t>(k));
-      const Sums other = sums(*pixels_[k], primaries, neighbour, cost);
-      covariation += other.covariation();
-      spread += other.lack_squared;
-    }
-    const double lambda = spread > 0 ? covariation / spread : 0;
-    out[0] = own.estimate(lambda);
-    out[1] = lambda;
-  }
-
- private:
-  static Sums sums(const PairSource& pixel, std::uint64_t count, Stream& random, Cost& cost) {
-    const double integral = pixel.colours()[0].control_integral;
-    Sums all;
-    for_each_pair(pixel, count, random, cost,
-                  [&](const Pair& pair) { all.add(pair.full[0], integral - pair.control[0]); });
-    return all;
-  }
-
-  std::vector<SharedPairs> pixels_;
-};
-
-// The receiver and its neighbours, a fiftieth of the luminaire's width apart.
+// One lambda for receivers side by side, from the very samples that it corrects. They are
+// a fiftieth of the luminaire's width apart.
 std::shared_ptr<const Setup> pooled_lambda(Parameters& given) {
   const auto own = read_area_pairs(given);
   luminaire::SceneDescription scene =
@@ -178,9 +154,22 @@ std::shared_ptr<const Setup> pooled_lambda(Parameters& given) {
     pixels.push_back(std::make_shared<const AreaPairs>(scene, given.where("scene")));
   }
   only_published_rule(given);
-  return setup_of({.channels = channels_with_lambda(*own),
-                   .make = [pixels] { return std::make_unique<PooledEstimator>(pixels); },
-                   .samplers = own->samplers()});
+  const auto estimate = [pixels](Stream& random, std::uint64_t primaries, std::span<double> out,
+                                 Cost& cost) {
+    const Sums first = sums_of(*pixels[0], primaries, random, cost);
+    double covariation = first.covariation();
+    double spread = first.lack_squared;
+    for (std::size_t k = 1; k < pixels.size(); ++k) {
+      Stream neighbour = random.substream(static_cast<std::uint32_t>(k));
+      const Sums other = sums_of(*pixels[k], primaries, neighbour, cost);
+      covariation += other.covariation();
+      spread += other.lack_squared;
+    }
+    const double lambda = spread > 0 ? covariation / spread : 0;
+    out[0] = first.estimate(lambda);
+    out[1] = lambda;
+  };
+  return setup_of({channels_with_lambda(*own), estimating(estimate), own->samplers()});
 }
 
 }  // namespace

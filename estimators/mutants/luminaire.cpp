@@ -20,53 +20,37 @@ using render::Vector3;
 
 // Replacements for the geometry term cos+ light_cosine+ / r^2.
 
-struct NoReceiverCosine {
-  double operator()(const Connection& c) const {
-    if (c.receiver_height() <= 0) return 0;
-    return std::max(0.0, c.light_cosine()) / c.squared_distance;
-  }
-};
+double no_receiver_cosine(const Connection& c) {
+  if (c.receiver_height() <= 0) return 0;
+  return std::max(0.0, c.light_cosine()) / c.squared_distance;
+}
 
-struct NoLightCosine {
-  double operator()(const Connection& c) const {
-    if (c.light_height <= 0) return 0;
-    return std::max(0.0, c.receiver_cosine()) / c.squared_distance;
-  }
-};
+double no_light_cosine(const Connection& c) {
+  if (c.light_height <= 0) return 0;
+  return std::max(0.0, c.receiver_cosine()) / c.squared_distance;
+}
 
-struct NoChangeOfVariables {
-  double operator()(const Connection& c) const {
-    return c.light_height > 0 ? std::max(0.0, c.receiver_cosine()) : 0;
-  }
-};
+double no_change_of_variables(const Connection& c) {
+  return c.light_height > 0 ? std::max(0.0, c.receiver_cosine()) : 0;
+}
 
-struct InverseDistance {
-  double operator()(const Connection& c) const { return GeometryTerm{}(c)*c.distance(); }
-};
+double inverse_distance(const Connection& c) { return GeometryTerm{}(c)*c.distance(); }
 
-struct ReversedDifference {
-  double operator()(const Connection& c) const {
-    return -c.receiver_height() * c.light_height / (c.squared_distance * c.squared_distance);
-  }
-};
+double reversed_difference(const Connection& c) {
+  return -c.receiver_height() * c.light_height / (c.squared_distance * c.squared_distance);
+}
 
-struct AbsoluteReceiverCosine {
-  double operator()(const Connection& c) const {
-    return std::abs(c.receiver_height()) * std::max(0.0, c.light_height) /
-           (c.squared_distance * c.squared_distance);
-  }
-};
+double absolute_receiver_cosine(const Connection& c) {
+  return std::abs(c.receiver_height()) * std::max(0.0, c.light_height) /
+         (c.squared_distance * c.squared_distance);
+}
 
-struct TwoSidedLight {
-  double operator()(const Connection& c) const {
-    return std::max(0.0, c.receiver_height()) * std::abs(c.light_height) /
-           (c.squared_distance * c.squared_distance);
-  }
-};
+double two_sided_light(const Connection& c) {
+  return std::max(0.0, c.receiver_height()) * std::abs(c.light_height) /
+         (c.squared_distance * c.squared_distance);
+}
 
-struct OnePercentMore {
-  double operator()(const Connection& c) const { return 1.01 * GeometryTerm{}(c); }
-};
+double one_percent_more(const Connection& c) { return 1.01 * GeometryTerm{}(c); }
 
 // The points are uniform in area, but what they are divided by is the density 1 / Omega.
 struct SolidAngleDensity {
@@ -126,17 +110,18 @@ struct UniformAngle {
 
 // Entries.
 
-using Make = std::shared_ptr<const Setup> (*)(SharedSetting);
+using Make = std::function<std::shared_ptr<const Setup>(SharedSetting)>;
 
-Entry entry(const Mutant& its, Make make) {
+Entry entry(const Mutant& its, const Make& make) {
   return mutant(its, [make](Parameters& parameters) { return make(read_setting(parameters)); });
 }
 
-template <class Term>
-Entry term_mutant(const char* name, const char* defect) {
-  return entry({name, "luminaire/area", defect}, [](SharedSetting setting) {
-    return averaging(only_mean(area_channel(*setting)), AreaPrimary<UniformTriangle, Term>(setting),
-                     point_samplers<>(setting));
+using Term = double (*)(const Connection&);
+
+Entry term_mutant(Term term, const char* name, const char* defect) {
+  return entry({name, "luminaire/area", defect}, [term](SharedSetting setting) {
+    return averaging(only_mean(area_channel(*setting)),
+                     AreaPrimary<UniformTriangle, Term>(setting, term), point_samplers<>(setting));
   });
 }
 
@@ -186,19 +171,14 @@ struct Pixel {
 using Weight = std::function<double(const Pixel&, const ImageShape&)>;
 
 /// A primary times a factor that is not 1 where it should be.
-class WeightedPrimary {
- public:
-  WeightedPrimary(AreaPrimary<> primary, double factor)
-      : primary_(std::move(primary)), factor_(factor) {}
+struct WeightedPrimary {
+  AreaPrimary<> primary;
+  double factor;
 
-  LightSample draw(Stream& random) const { return primary_.draw(random); }
+  LightSample draw(Stream& random) const { return primary.draw(random); }
   double value(const LightSample& sample, Cost& cost) const {
-    return factor_ * primary_.value(sample, cost);
+    return factor * primary.value(sample, cost);
   }
-
- private:
-  AreaPrimary<> primary_;
-  double factor_;
 };
 
 /// Four pixels, away from each other and from the edges.
@@ -233,7 +213,7 @@ std::shared_ptr<const Setup> weighted(Parameters& parameters, const Weight& weig
   std::vector<WeightedPrimary> primaries;
   for (std::size_t i = 0; i < floor.settings.size(); ++i) {
     const Pixel pixel{i % floor.shape.width, i / floor.shape.width};
-    primaries.emplace_back(AreaPrimary<>(floor.settings[i]), weight(pixel, floor.shape));
+    primaries.push_back({AreaPrimary<>(floor.settings[i]), weight(pixel, floor.shape)});
   }
   return imaging<WeightedPrimary>(
       {floor.shape, only_means(floor_channels(floor)), std::move(primaries), floor.streams});
@@ -249,26 +229,24 @@ Entry entry(const char* name, const char* defect, Weight weight) {
 
 std::vector<Entry> mutants_luminaire() {
   return {
-      term_mutant<NoReceiverCosine>(
-          "no_cosine", "forgets the receiver's cosine: the result is L Omega; +13.8 %."),
-      term_mutant<NoLightCosine>("no_light_cosine", "forgets the luminaire's cosine; +31.9 %."),
-      term_mutant<NoChangeOfVariables>(
-          "no_change_of_variables",
-          "forgets light_cosine / r^2, which turns solid angle into area; +134 %."),
-      term_mutant<InverseDistance>("inverse_distance", "divides by r, not r^2; +28.9 %."),
-      term_mutant<ReversedDifference>(
-          "reversed_difference",
-          "takes the connection from the luminaire to the receiver and does not clamp: the "
-          "irradiance comes out negative; -200 %."),
-      term_mutant<AbsoluteReceiverCosine>(
-          "absolute_cosine",
+      term_mutant(no_receiver_cosine, "no_cosine",
+                  "forgets the receiver's cosine: the result is L Omega; +13.8 %."),
+      term_mutant(no_light_cosine, "no_light_cosine", "forgets the luminaire's cosine; +31.9 %."),
+      term_mutant(no_change_of_variables, "no_change_of_variables",
+                  "forgets light_cosine / r^2, which turns solid angle into area; +134 %."),
+      term_mutant(inverse_distance, "inverse_distance", "divides by r, not r^2; +28.9 %."),
+      term_mutant(reversed_difference, "reversed_difference",
+                  "takes the connection from the luminaire to the receiver and does not clamp: the "
+                  "irradiance comes out negative; -200 %."),
+      term_mutant(
+          absolute_receiver_cosine, "absolute_cosine",
           "takes the receiver's cosine absolutely, so that a luminaire below the horizon shines: "
           "nothing on `triangle`, too bright where a luminaire crosses the horizon."),
-      term_mutant<TwoSidedLight>(
-          "two_sided_light",
+      term_mutant(
+          two_sided_light, "two_sided_light",
           "lets both sides of the luminaire emit: nothing where the emitting side faces the "
           "receiver; a luminaire that faces away shines."),
-      term_mutant<OnePercentMore>("one_percent", "is scaled by 1.01; +1 %."),
+      term_mutant(one_percent_more, "one_percent", "is scaled by 1.01; +1 %."),
       entry({"nonuniform_triangle", "luminaire/area",
              "maps (x, y) to (x, y (1 - x)), which is not uniform in the "
              "triangle, at the uniform density; -25.4 %."},

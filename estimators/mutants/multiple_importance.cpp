@@ -96,30 +96,25 @@ struct BackSideSeen final : Techniques {
 };
 
 /// The samples of the BRDF are averaged over those that hit the light.
-class MissesNotCounted {
- public:
-  MissesNotCounted(SharedTechniques techniques, Counts counts, Sound combination)
-      : techniques_(std::move(techniques)), counts_(counts), combination_(combination) {}
+struct MissesNotCounted {
+  SharedTechniques techniques;
+  Counts counts;
+  Sound combination;
 
   double operator()(Stream& random, Cost& cost) const {
     double light = 0;
-    for (std::uint64_t i = 0; i < counts_.light; ++i) {
-      light += from_light(combination_, techniques_->light(random, cost));
+    for (std::uint64_t i = 0; i < counts.light; ++i) {
+      light += from_light(combination, techniques->light(random, cost));
     }
     double brdf = 0;
     double hits = 0;
-    for (std::uint64_t i = 0; i < counts_.brdf; ++i) {
-      const Draw draw = techniques_->brdf(random, cost);
-      brdf += from_brdf(combination_, draw);
+    for (std::uint64_t i = 0; i < counts.brdf; ++i) {
+      const Draw draw = techniques->brdf(random, cost);
+      brdf += from_brdf(combination, draw);
       hits += draw.integrand > 0 ? 1 : 0;
     }
-    return light / static_cast<double>(counts_.light) + (hits > 0 ? brdf / hits : 0);
+    return light / static_cast<double>(counts.light) + (hits > 0 ? brdf / hits : 0);
   }
-
- private:
-  SharedTechniques techniques_;
-  Counts counts_;
-  Sound combination_;
 };
 
 // Set-ups. The channel keeps the original's mean, the reference to be missed.
@@ -131,29 +126,23 @@ Sound sound(const Techniques& techniques, Heuristic heuristic, const Pair& share
           .probabilities = shares};
 }
 
-template <class Mutant = Techniques>
-std::shared_ptr<const Mutant> techniques(Parameters& given) {
-  const Parts parts = read_parts(given);
-  return std::make_shared<const Mutant>(parts.setting, parts.reflectance, parts.light_sampling);
-}
-
 /// Primary<Combination> of the multi-sample model with `OfTechniques`.
 template <class Combination, class OfTechniques = Techniques,
           class Primary = MultiSamplePrimary<Combination>>
 std::shared_ptr<const Setup> multi_sample(Parameters& given) {
-  const auto of = techniques<OfTechniques>(given);
+  const auto of = read_techniques<OfTechniques>(given);
   const Counts counts = read_counts(given);
   const Combination combination{sound(*of, read_heuristic(given), counts.shares())};
-  return averaging(mean_channel(*of), Primary(of, counts, combination));
+  return averaging(mean_channel(radiance(*of)), Primary{of, counts, combination});
 }
 
 template <class Combination>
 std::shared_ptr<const Setup> one_sample(Parameters& given) {
-  const auto of = techniques(given);
+  const auto of = read_techniques(given);
   const Pair probabilities = read_probabilities(given);
   const Combination combination{sound(*of, read_heuristic(given), probabilities)};
-  return averaging(mean_channel(*of),
-                   OneSamplePrimary<Combination>(of, probabilities, combination));
+  return averaging(mean_channel(radiance(*of)),
+                   OneSamplePrimary<Combination>{of, probabilities, combination});
 }
 
 }  // namespace

@@ -147,7 +147,7 @@ std::shared_ptr<const Setup> with(const Parts& parts, SharedDirections direction
                                   Follow follow = &sky::outcome) {
   return sky::sky_setup(
       parts.setting, directions,
-      sky::StratifiedPrimary<Follow>(parts.setting, directions, parts.strata, follow), true);
+      sky::StratifiedPrimary<Follow>{parts.setting, directions, parts.strata, follow}, true);
 }
 
 template <class Warp, class Measure>

@@ -94,19 +94,6 @@ bool in_tile(const Picture& picture, std::size_t x, std::size_t y) {
          y >= picture.height / 2 && y < picture.height / 2 + picture.height / 4;
 }
 
-class PictureEstimator final : public Estimator {
- public:
-  explicit PictureEstimator(std::shared_ptr<const Picture> picture)
-      : picture_(std::move(picture)) {}
-  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
-                 Cost& cost) override {
-    render(*picture_, random, primaries, out, cost);
-  }
-
- private:
-  std::shared_ptr<const Picture> picture_;
-};
-
 }  // namespace
 
 Integrator integrator_of(const std::string& name) {
@@ -233,9 +220,11 @@ Picture read_picture(Parameters& given) {
 std::shared_ptr<const Setup> image_setup(Picture picture) {
   const auto shared = std::make_shared<const Picture>(std::move(picture));
   const ImageShape shape{shared->width, shared->height, colours, true};
-  return setup_of({.channels = element_channels(shape, {.low = 0}),
-                   .make = [shared] { return std::make_unique<PictureEstimator>(shared); },
-                   .image = shape});
+  return setup_of(
+      {.channels = element_channels(shape, {.low = 0}),
+       .make = estimating([shared](Stream& random, std::uint64_t primaries, std::span<double> out,
+                                   Cost& cost) { render(*shared, random, primaries, out, cost); }),
+       .image = shape});
 }
 
 }  // namespace assay::path_tracing

@@ -4,7 +4,6 @@
 
 #include <span>
 #include <string>
-#include <vector>
 
 #include "estimators/cost.h"
 #include "estimators/estimator.h"

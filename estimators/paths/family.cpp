@@ -7,10 +7,6 @@ namespace assay::paths {
 
 namespace {
 
-using Pick = double Spectrum::*;
-constexpr std::array<Pick, 3> colours = {&Spectrum::red, &Spectrum::green, &Spectrum::blue};
-constexpr std::array<const char*, 3> colour_names = {"red", "green", "blue"};
-
 Scene scene_of(const SphereScene& form, const Camera& camera) {
   auto world = std::make_shared<const SphereWorld>(form, camera);
   const ZonedScene& law = world->zones().law();
@@ -30,7 +26,7 @@ Scene scene_of(const MeshScene& form, const Camera& camera) {
 
 // Adds the score of a vertex of a zone, for one colour. The emission that arrives along the
 // camera's ray is added to the mean elsewhere and has no variance.
-void add_score(ZoneSteps& zone, const Scene& scene, const Surface& surface, Pick colour,
+void add_score(ZoneSteps& zone, const Scene& scene, const Surface& surface, Colour colour,
                Direct direct) {
   const ZonedScene& law = *scene.law;
   if (direct == Direct::hit) {
@@ -47,7 +43,7 @@ void add_score(ZoneSteps& zone, const Scene& scene, const Surface& surface, Pick
   zone.score_variance = zone.albedo * zone.albedo * (square - light * light);
 }
 
-std::vector<ZoneSteps> zone_steps(const Scene& scene, const Steps& steps, Pick colour) {
+std::vector<ZoneSteps> zone_steps(const Scene& scene, const Steps& steps, Colour colour) {
   std::vector<ZoneSteps> all;
   for (const ZonedScene::Zone& z : scene.law->zones) {
     ZoneSteps zone{.fraction = z.fraction,
@@ -75,7 +71,7 @@ void add_steps(Knowledge& known, const Scene& scene, const Steps& steps) {
   if (!has_variance(scene, steps)) return;
   const ZonedScene& law = *scene.law;
   for (std::size_t c = 0; c < 3; ++c) {
-    const auto zones = zone_steps(scene, steps, colours[c]);
+    const auto zones = zone_steps(scene, steps, colours[c].part);
     const std::optional<double> variance = path_variance(zones, law.seen, steps.splitting);
     const double mean = *known.colours[c].mean;
     // A difference that is nothing but rounding is not stated.
@@ -91,37 +87,11 @@ void add_steps(Knowledge& known, const Scene& scene, const Steps& steps) {
   known.all_vertices = 1 + vertices[1] / (1 - survival);
 }
 
-class Walks final : public Estimator {
- public:
-  Walks(Trace trace, bool grey) : trace_(std::move(trace)), grey_(grey) {}
-
-  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
-                 Cost& cost) override {
-    Tally tally;
-    random.draw_ahead();
-    for (std::uint64_t i = 0; i < primaries; ++i) trace_(random, tally, cost);
-    cost.samples += primaries;
-    const double n = static_cast<double>(primaries);
-    std::size_t at = 0;
-    for (const Pick colour : colours) {
-      if (at == 0 || !grey_) out[at++] = tally.value.*colour / n;
-    }
-    out[at++] = static_cast<double>(tally.vertices) / n;
-    for (std::size_t k = 1; k < Tally::bounces; ++k) {
-      out[at++] = static_cast<double>(tally.at_bounce[k]) / n;
-    }
-  }
-
- private:
-  Trace trace_;
-  bool grey_;
-};
-
 std::vector<Channel> channels(const Scene& scene, const Knowledge& known) {
   std::vector<Channel> all;
   for (std::size_t c = 0; c < (scene.grey ? 1 : 3); ++c) {
     const Known& colour = known.colours[c];
-    all.push_back({.name = scene.grey ? "radiance" : colour_names[c],
+    all.push_back({.name = scene.grey ? "radiance" : colours[c].name,
                    .mean = colour.mean,
                    .variance = colour.variance,
                    .low = known.low,
@@ -136,20 +106,6 @@ std::vector<Channel> channels(const Scene& scene, const Knowledge& known) {
   }
   return all;
 }
-
-class Directions final : public Sampler {
- public:
-  Domain domain() const override { return Domain::hemisphere; }
-  SamplerDraw sample(Stream& random) const override {
-    const double u = random.uniform();
-    const double v = random.uniform();
-    const render::Vector3 w = render::cosine_hemisphere(u, v);
-    const Point point = {w.x, w.y, w.z};
-    return {.point = point, .density = density(point), .weight = 1};
-  }
-  double density(const Point& point) const override { return point[2] / std::numbers::pi; }
-  double evaluate(const Point& point) const override { return point[2] / std::numbers::pi; }
-};
 
 }  // namespace
 
@@ -166,16 +122,32 @@ Knowledge knowledge(const Scene& scene, const std::optional<Steps>& steps) {
   Knowledge known;
   if (!scene.law) return known;
   const Spectrum radiance = scene.law->seen_radiance();
-  for (std::size_t c = 0; c < 3; ++c) known.colours[c].mean = radiance.*colours[c];
+  for (std::size_t c = 0; c < 3; ++c) known.colours[c].mean = radiance.*colours[c].part;
   if (steps) add_steps(known, scene, *steps);
   return known;
 }
 
 std::shared_ptr<const Setup> setup(const Scene& scene, const Knowledge& known, Trace trace,
                                    std::vector<NamedSampler> samplers, const Cost& cost) {
+  const auto estimate = [trace = std::move(trace), grey = scene.grey](
+                            Stream& random, std::uint64_t primaries, std::span<double> out,
+                            Cost& spent) {
+    Tally tally;
+    random.draw_ahead();
+    for (std::uint64_t i = 0; i < primaries; ++i) trace(random, tally, spent);
+    spent.samples += primaries;
+    const double n = static_cast<double>(primaries);
+    std::size_t at = 0;
+    for (const auto& colour : colours) {
+      if (at == 0 || !grey) out[at++] = tally.value.*colour.part / n;
+    }
+    out[at++] = static_cast<double>(tally.vertices) / n;
+    for (std::size_t k = 1; k < Tally::bounces; ++k) {
+      out[at++] = static_cast<double>(tally.at_bounce[k]) / n;
+    }
+  };
   return setup_of({.channels = channels(scene, known),
-                   .make = [trace = std::move(trace),
-                            grey = scene.grey] { return std::make_unique<Walks>(trace, grey); },
+                   .make = estimating(estimate),
                    .samplers = std::move(samplers),
                    .cost = cost});
 }
@@ -210,6 +182,14 @@ Direct read_direct(Parameters& parameters, const Scene& scene) {
   return Direct::sampled;
 }
 
-NamedSampler direction_sampler() { return {"direction", std::make_shared<Directions>()}; }
+NamedSampler direction_sampler() {
+  const auto point = [](Stream& random) {
+    const double u = random.uniform();
+    const render::Vector3 w = render::cosine_hemisphere(u, random.uniform());
+    return Point{w.x, w.y, w.z};
+  };
+  const auto density = [](const Point& w) { return w[2] / std::numbers::pi; };
+  return {"direction", sampler_of({Domain::hemisphere, point, density})};
+}
 
 }  // namespace assay::paths

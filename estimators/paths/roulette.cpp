@@ -26,24 +26,6 @@ std::vector<Surface> patch_surfaces(const Scene& scene) {
   return all;
 }
 
-// The point where a reflected ray arrives in a sphere: uniform in area.
-class SphereHits final : public Sampler {
- public:
-  explicit SphereHits(SharedSphere world) : world_(std::move(world)) {}
-  Domain domain() const override { return Domain::sphere; }
-  SamplerDraw sample(Stream& random) const override {
-    Cost uncounted;
-    const Vertex hit = world_->reflected(world_->camera(uncounted), random, uncounted);
-    const Point point = {hit.position.x, hit.position.y, hit.position.z};
-    return {.point = point, .density = density(point), .weight = 1};
-  }
-  double density(const Point&) const override { return 1 / (4 * std::numbers::pi); }
-  double evaluate(const Point&) const override { return 1 / (4 * std::numbers::pi); }
-
- private:
-  SharedSphere world_;
-};
-
 // The number of bounces of a path with roulette in a furnace, the last cell for all beyond.
 class Lengths final : public Sampler {
  public:
@@ -174,7 +156,14 @@ std::vector<NamedSampler> samplers_of(const Scene& scene, const RoulettePlan& pl
                                       const Knowledge& known) {
   std::vector<NamedSampler> all = {direction_sampler()};
   if (const auto* const sphere = std::get_if<SharedSphere>(&scene.world)) {
-    all.push_back({"hit", std::make_shared<SphereHits>(*sphere)});
+    // The point where a reflected ray arrives: uniform in area.
+    const auto hit = [world = *sphere](Stream& random) {
+      Cost uncounted;
+      const Vertex seen = world->reflected(world->camera(uncounted), random, uncounted);
+      return Point{seen.position.x, seen.position.y, seen.position.z};
+    };
+    all.push_back(
+        {"hit", sampler_of({Domain::sphere, hit, uniform_density(1 / (4 * std::numbers::pi))})});
   } else if (known.vertices) {
     all.push_back(
         {"length", std::make_shared<Lengths>(std::get<SharedMesh>(scene.world),

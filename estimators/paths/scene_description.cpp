@@ -18,8 +18,6 @@ namespace {
 using luminaire::alternatives;
 using luminaire::require_keys;
 using luminaire::required_key;
-using render::TriangleMesh;
-using render::Vector3;
 
 double at_least_zero(const Value& value, const std::string& what) {
   const double number = value.number(what);

@@ -3,6 +3,7 @@
 // Colours, surfaces, and points of them that a path has reached.
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 
 #include "render/vector.h"
@@ -25,6 +26,15 @@ struct Spectrum {
     return *this;
   }
 };
+
+/// One of the numbers under its name.
+using Colour = double Spectrum::*;
+struct NamedColour {
+  const char* name;
+  Colour part;
+};
+inline constexpr std::array<NamedColour, 3> colours = {
+    {{"red", &Spectrum::red}, {"green", &Spectrum::green}, {"blue", &Spectrum::blue}}};
 
 constexpr Spectrum operator+(Spectrum a, const Spectrum& b) { return a += b; }
 constexpr Spectrum operator*(double x, const Spectrum& s) {

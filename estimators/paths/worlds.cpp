@@ -15,17 +15,8 @@ namespace {
 // Radiance does not change.
 class Fit {
  public:
-  explicit Fit(const TriangleMesh& mesh) {
-    Vector3 low = mesh.vertices.front();
-    Vector3 high = low;
-    for (const Vector3& v : mesh.vertices) {
-      low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
-      high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
-    }
-    centre_ = 0.5 * (low + high);
-    const Vector3 size = high - low;
-    scale_ = 1 / std::max({size.x, size.y, size.z});
-  }
+  explicit Fit(const TriangleMesh& mesh)
+      : centre_(render::Box(mesh).centre()), scale_(1 / render::Box(mesh).longest_side()) {}
   Vector3 operator()(const Vector3& v) const { return scale_ * (v - centre_); }
   TriangleMesh operator()(TriangleMesh mesh) const {
     for (Vector3& v : mesh.vertices) v = (*this)(v);
@@ -34,7 +25,7 @@ class Fit {
 
  private:
   Vector3 centre_;
-  double scale_ = 1;
+  double scale_;
 };
 
 // Additive recurrences with the powers of 1/g, g^5 = g + 1. They are even in four dimensions for

@@ -38,30 +38,6 @@ struct Selection {
   std::size_t count = 1;
 };
 
-class Recorded final : public Estimator {
- public:
-  Recorded(SharedTable table, Selection selection)
-      : table_(std::move(table)), selection_(selection) {}
-
-  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
-                 Cost& cost) override {
-    if (primaries != 1) throw std::invalid_argument("recorded: `primaries` must be 1");
-    const std::uint64_t row = random.observation();
-    if (row >= table_->rows()) {
-      throw std::out_of_range("recorded: there is no observation " + std::to_string(row) +
-                              ", the file has " + std::to_string(table_->rows()) + " rows");
-    }
-    const double* const begin =
-        table_->values.data() + row * table_->columns.size() + selection_.first;
-    std::copy_n(begin, selection_.count, out.begin());
-    cost.samples += 1;
-  }
-
- private:
-  SharedTable table_;
-  Selection selection_;
-};
-
 class RecordedSetup final : public Setup, public recorded::InFiles {
  public:
   RecordedSetup(Reading reading, Selection selection)
@@ -75,7 +51,20 @@ class RecordedSetup final : public Setup, public recorded::InFiles {
     return channels;
   }
   std::unique_ptr<Estimator> make() const override {
-    return std::make_unique<Recorded>(table_, selection_);
+    return estimating([table = table_, selection = selection_](Stream& random,
+                                                               std::uint64_t primaries,
+                                                               std::span<double> out, Cost& cost) {
+      if (primaries != 1) throw std::invalid_argument("recorded: `primaries` must be 1");
+      const std::uint64_t row = random.observation();
+      if (row >= table->rows()) {
+        throw std::out_of_range("recorded: there is no observation " + std::to_string(row) +
+                                ", the file has " + std::to_string(table->rows()) + " rows");
+      }
+      const double* const begin =
+          table->values.data() + row * table->columns.size() + selection.first;
+      std::copy_n(begin, selection.count, out.begin());
+      cost.samples += 1;
+    })();
   }
   std::optional<std::uint64_t> observations() const override { return table_->rows(); }
   std::string data_file() const override { return file_; }
@@ -312,75 +301,54 @@ std::vector<Entry> recorded_recorded() {
             "They answer claims on mean, bias, variance, cost and efficiency, so that a run is "
             "the reference of the next one. The other side takes as many observations as the "
             "run has, from a stream that the run has not used.",
-        .parameters = {{.name = "file",
-                        .type = ParameterType::string,
-                        .summary = "the file of rows, `-` for standard input, or a pattern of "
-                                   "pictures; relative to the suite",
-                        .fallback = "none"},
-                       {.name = "column",
-                        .type = ParameterType::string,
-                        .summary = "the one column to use; all of them when absent",
-                        .fallback = "all"},
-                       {.name = "channels",
-                        .type = ParameterType::string,
-                        .summary = "of pictures: the channels to use, patterns with commas "
-                                   "between; R, G and B, or what stands for them, when absent",
-                        .fallback = "usual"},
-                       {.name = "pixels",
-                        .type = ParameterType::string,
-                        .summary = "of pictures: whether the pixels of one are independent, as "
-                                   "they are under a box filter one pixel wide",
-                        .fallback = "dependent",
-                        .choices = {"dependent", "independent"}},
-                       {.name = "exact",
-                        .type = ParameterType::boolean,
-                        .summary = "the picture is a reference without error",
-                        .fallback = "false"},
-                       {.name = "variance",
-                        .type = ParameterType::string,
-                        .summary = "of a reference: its channels of the variance of a sample, "
-                                   "`*` standing for the channel's name",
-                        .fallback = "none"},
-                       {.name = "second_moment",
-                        .type = ParameterType::string,
-                        .summary = "the same of second moments",
-                        .fallback = "none"},
-                       {.name = "samples",
-                        .type = ParameterType::string,
-                        .summary = "how many samples the mean is of, a number or the channel "
-                                   "that counts them; the file's own word when absent",
-                        .fallback = "none"},
-                       {.name = "rounded",
-                        .type = ParameterType::string,
-                        .summary = "of pictures: round their numbers as files do that they are "
-                                   "compared with; PNG clips to [0, 1] too",
-                        .fallback = "none",
-                        .choices = {"none", "half", "png16", "png8"}},
-                       {.name = "crop",
-                        .type = ParameterType::string,
-                        .summary = "of pictures: left, top, width and height of the part to use, "
-                                   "in pixels of the whole",
-                        .fallback = "none"},
-                       {.name = "mask",
-                        .type = ParameterType::string,
-                        .summary = "of pictures: a picture of the pixels to use; where it is 0, "
-                                   "they are left out",
-                        .fallback = "none"},
-                       {.name = "finite",
-                        .type = ParameterType::string,
-                        .summary = "of pictures: patterns of files, commas between; pixels that "
-                                   "are not finite in one of them are left out",
-                        .fallback = "none"},
-                       {.name = "run",
-                        .type = ParameterType::string,
-                        .summary = "instead of a file of rows: a saved run, whose moments are "
-                                   "used",
-                        .fallback = "none"},
-                       {.name = "estimator",
-                        .type = ParameterType::string,
-                        .summary = "which of the run's estimators; may be left out where it "
-                                   "has one",
-                        .fallback = "the only one"}},
+        .parameters =
+            {text_parameter("file",
+                            "the file of rows, `-` for standard input, or a pattern of "
+                            "pictures; relative to the suite",
+                            "none"),
+             text_parameter("column", "the one column to use; all of them when absent", "all"),
+             text_parameter("channels",
+                            "of pictures: the channels to use, patterns with commas "
+                            "between; R, G and B, or what stands for them, when absent",
+                            "usual"),
+             text_parameter("pixels",
+                            "of pictures: whether the pixels of one are independent, as "
+                            "they are under a box filter one pixel wide",
+                            "dependent", {"dependent", "independent"}),
+             boolean_parameter("exact", "the picture is a reference without error", false),
+             text_parameter("variance",
+                            "of a reference: its channels of the variance of a sample, "
+                            "`*` standing for the channel's name",
+                            "none"),
+             text_parameter("second_moment", "the same of second moments", "none"),
+             text_parameter("samples",
+                            "how many samples the mean is of, a number or the channel "
+                            "that counts them; the file's own word when absent",
+                            "none"),
+             text_parameter("rounded",
+                            "of pictures: round their numbers as files do that they are "
+                            "compared with; PNG clips to [0, 1] too",
+                            "none", {"none", "half", "png16", "png8"}),
+             text_parameter("crop",
+                            "of pictures: left, top, width and height of the part to use, "
+                            "in pixels of the whole",
+                            "none"),
+             text_parameter("mask",
+                            "of pictures: a picture of the pixels to use; where it is 0, "
+                            "they are left out",
+                            "none"),
+             text_parameter("finite",
+                            "of pictures: patterns of files, commas between; pixels that "
+                            "are not finite in one of them are left out",
+                            "none"),
+             text_parameter("run",
+                            "instead of a file of rows: a saved run, whose moments are "
+                            "used",
+                            "none"),
+             text_parameter("estimator",
+                            "which of the run's estimators; may be left out where it "
+                            "has one",
+                            "the only one")},
         .averages = false},
        prepare}};
 }

@@ -1,7 +1,6 @@
 // Portable float maps: `PF` or `Pf`, width, height and a scale as text, then floats from the bottom
 // row up. A negative scale means little endian.
 
-#include <algorithm>
 #include <bit>
 #include <filesystem>
 #include <fstream>

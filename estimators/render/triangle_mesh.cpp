@@ -1,5 +1,6 @@
 #include "render/triangle_mesh.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
@@ -10,6 +11,18 @@
 #include "estimators/core/value.h"
 
 namespace assay::render {
+
+Box::Box(const TriangleMesh& mesh) : low(mesh.vertices.front()), high(low) {
+  for (const Vector3& v : mesh.vertices) {
+    low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
+    high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
+  }
+}
+
+double Box::longest_side() const {
+  const Vector3 size = high - low;
+  return std::max({size.x, size.y, size.z});
+}
 
 TriangleMesh fan(const Polygon& polygon) {
   TriangleMesh mesh{polygon, {}};

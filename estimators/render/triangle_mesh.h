@@ -22,6 +22,17 @@ struct TriangleMesh {
   }
 };
 
+/// The smallest box along the axes that holds all vertices, of which there is one or more.
+struct Box {
+  explicit Box(const TriangleMesh& mesh);
+
+  Vector3 centre() const { return 0.5 * (low + high); }
+  double longest_side() const;
+
+  Vector3 low;
+  Vector3 high;
+};
+
 /// A convex polygon as a fan of triangles about its first vertex; those without area are left out.
 TriangleMesh fan(const Polygon& polygon);
 

@@ -101,67 +101,29 @@ inline Outcome outcome(const Setting& setting, const Direction& direction, Cost&
 /// A primary: the mean over `strata` samples. The j-th has its first number in [j, j + 1) / strata.
 /// `Follow` is Outcome(const Setting&, const Direction&, Cost&).
 template <class Follow = decltype(&outcome)>
-class StratifiedPrimary {
- public:
-  StratifiedPrimary(SharedSetting setting, SharedDirections directions, std::uint64_t strata,
-                    Follow follow = &outcome)
-      : setting_(std::move(setting)),
-        directions_(std::move(directions)),
-        strata_(strata),
-        follow_(std::move(follow)) {}
+struct StratifiedPrimary {
+  SharedSetting setting;
+  SharedDirections directions;
+  std::uint64_t strata;
+  Follow follow = &outcome;
 
   Outcome operator()(Stream& random, Cost& cost) const {
-    const auto k = static_cast<double>(strata_);
+    const auto k = static_cast<double>(strata);
     Outcome sum;
-    for (std::uint64_t j = 0; j < strata_; ++j) {
+    for (std::uint64_t j = 0; j < strata; ++j) {
       const double u = (static_cast<double>(j) + random.uniform()) / k;
-      const Outcome one = follow_(*setting_, directions_->draw(u, random.uniform()), cost);
+      const Outcome one = follow(*setting, directions->draw(u, random.uniform()), cost);
       for (std::size_t c = 0; c < 3; ++c) sum.value[c] += one.value[c] / k;
       sum.below += one.below / k;
       sum.nodes += one.nodes / k;
     }
-    cost.samples += strata_;
+    cost.samples += strata;
     return sum;
   }
-
- private:
-  SharedSetting setting_;
-  SharedDirections directions_;
-  std::uint64_t strata_;
-  Follow follow_;
 };
 
-/// The mean of primaries. Writes `colours` numbers, then the shares `below` and `nodes` if there
-/// are two channels more.
-template <class Primary>
-class SkyEstimator final : public Estimator {
- public:
-  SkyEstimator(Primary primary, std::size_t colours)
-      : primary_(std::move(primary)), colours_(colours) {}
-
-  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
-                 Cost& cost) override {
-    Outcome sum;
-    for (std::uint64_t i = 0; i < primaries; ++i) {
-      const Outcome one = primary_(random, cost);
-      for (std::size_t c = 0; c < 3; ++c) sum.value[c] += one.value[c];
-      sum.below += one.below;
-      sum.nodes += one.nodes;
-    }
-    const auto n = static_cast<double>(primaries);
-    for (std::size_t c = 0; c < colours_; ++c) out[c] = sum.value[c] / n;
-    if (out.size() == colours_) return;
-    out[colours_] = sum.below / n;
-    out[colours_ + 1] = sum.nodes / n;
-  }
-
- private:
-  Primary primary_;
-  std::size_t colours_;
-};
-
-/// A set-up with the sampler `direction`; `diagnostic` adds the channels `below` and `nodes`;
-/// `gain` is that of irradiance_channels().
+/// The mean of primaries, with the sampler `direction`. `diagnostic` adds the channels `below` and
+/// `nodes`, shares of an Outcome; `gain` is that of irradiance_channels().
 template <class Primary>
 std::shared_ptr<const Setup> sky_setup(const SharedSetting& setting, SharedDirections directions,
                                        Primary primary, bool diagnostic,
@@ -171,11 +133,24 @@ std::shared_ptr<const Setup> sky_setup(const SharedSetting& setting, SharedDirec
     channels.push_back({.name = "below", .low = 0, .high = 1, .diagnostic = true});
     channels.push_back({.name = "nodes", .low = 0, .diagnostic = true});
   }
-  const auto make = [primary = std::move(primary), colours = setting->colours()] {
-    return std::make_unique<SkyEstimator<Primary>>(primary, colours);
+  const auto estimate = [primary = std::move(primary), colours = setting->colours(), diagnostic](
+                            Stream& random, std::uint64_t primaries, std::span<double> out,
+                            Cost& cost) {
+    Outcome sum;
+    for (std::uint64_t i = 0; i < primaries; ++i) {
+      const Outcome one = primary(random, cost);
+      for (std::size_t c = 0; c < 3; ++c) sum.value[c] += one.value[c];
+      sum.below += one.below;
+      sum.nodes += one.nodes;
+    }
+    const auto n = static_cast<double>(primaries);
+    for (std::size_t c = 0; c < colours; ++c) out[c] = sum.value[c] / n;
+    if (!diagnostic) return;
+    out[colours] = sum.below / n;
+    out[colours + 1] = sum.nodes / n;
   };
   return setup_of({.channels = std::move(channels),
-                   .make = make,
+                   .make = estimating(estimate),
                    .samplers = {{"direction", std::make_shared<DirectionSampler>(
                                                   setting, std::move(directions))}}});
 }

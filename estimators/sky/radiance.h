@@ -29,6 +29,10 @@ class Radiance {
   virtual Rgb operator()(const Vector3& w) const = 0;
   /// The mean over the sphere.
   virtual Rgb mean() const = 0;
+  /// The mean of the colours of a value: what samplers of directions follow.
+  double grey(const Rgb& rgb) const {
+    return colours() == 1 ? rgb[0] : (rgb[0] + rgb[1] + rgb[2]) / 3;
+  }
   /// No radiance is above.
   virtual double most(std::size_t colour) const = 0;
   /// The integral of L(w) max(0, n . w) over the sphere, n a unit vector.
@@ -36,12 +40,6 @@ class Radiance {
 };
 
 using SharedRadiance = std::shared_ptr<const Radiance>;
-
-/// The weight of a direction in sampling: the mean of the colours.
-inline double luminance(const Radiance& radiance, const Vector3& w) {
-  const Rgb rgb = radiance(w);
-  return radiance.colours() == 1 ? rgb[0] : (rgb[0] + rgb[1] + rgb[2]) / 3;
-}
 
 /// The parameter `sky`: a map with one of the keys
 ///   uniform: L

@@ -60,9 +60,7 @@ class Setting : public Receiver {
   /// L cos+ V; below the horizon 0, and no ray is traced.
   Rgb received(const Vector3& w, Cost& cost) const;
   /// The mean of the colours of a value.
-  double grey(const Rgb& rgb) const {
-    return colours() == 1 ? rgb[0] : (rgb[0] + rgb[1] + rgb[2]) / 3;
-  }
+  double grey(const Rgb& rgb) const { return radiance_->grey(rgb); }
 
  private:
   SharedRadiance radiance_;

@@ -13,7 +13,7 @@ std::shared_ptr<const Setup> prepare(Parameters& given) {
   const sky::SharedSetting setting = sky::read_setting(given);
   const auto directions = std::make_shared<const Kind>();
   return sky::sky_setup(setting, directions,
-                        sky::StratifiedPrimary<>(setting, directions, given.count("strata")),
+                        sky::StratifiedPrimary<>{setting, directions, given.count("strata")},
                         false);
 }
 

@@ -165,7 +165,7 @@ class SteeredDirections : public sky::Directions {
   const sky::Harmonics& steering() const { return a_; }
   const render::Frame& frame() const { return frame_; }
 
- protected:
+ private:
   sky::Direction in_triangle(std::size_t triangle, double u, double v) const {
     const TrianglePoint point = Warp{}(tree_->weights(triangle, a_), u, v);
     const auto [a, b, c] = tree_->sphere().corners(triangle);
@@ -173,7 +173,6 @@ class SteeredDirections : public sky::Directions {
     return {frame_.to_local(normalised(q)), density_at(triangle, q, point)};
   }
 
- private:
   double density_at(std::size_t triangle, const Vector3& q, const TrianglePoint& point) const {
     const auto [a, b, c] = tree_->sphere().corners(triangle);
     const double distance = dot(normalised(cross(b - a, c - a)), a);

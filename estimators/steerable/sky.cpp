@@ -65,16 +65,14 @@ double lobe_minimum(const Lobe& lobe) {
 
 SkyTree::SkyTree(const sky::Radiance& radiance, const Preparation& preparation)
     : sphere_(preparation.level), coefficients_(preparation.coefficients) {
-  const sky::Rgb mean = radiance.mean();
-  const double grey = radiance.colours() == 1 ? mean[0] : (mean[0] + mean[1] + mean[2]) / 3;
-  fill_vertices(radiance, preparation.floor * grey);
+  fill_vertices(radiance, preparation.floor * radiance.grey(radiance.mean()));
   fill_nodes();
 }
 
 void SkyTree::fill_vertices(const sky::Radiance& radiance, double floor) {
   least_ = std::numeric_limits<double>::infinity();
   for (const sky::Vector3& w : sphere_.vertices()) {
-    const double value = luminance(radiance, w) + floor;
+    const double value = radiance.grey(radiance(w)) + floor;
     least_ = std::min(least_, value);
     const sky::Harmonics y = sky::harmonics(w);
     for (std::size_t i = 0; i < coefficients_; ++i) vertices_.push_back(value * y[i]);
@@ -136,7 +134,7 @@ std::shared_ptr<const Setup> prepare(Parameters& given) {
   const auto directions = std::make_shared<const steerable::SteeredDirections<>>(
       steerable::read_tree(given, *setting), lobe, setting->frame());
   return sky::sky_setup(setting, directions,
-                        sky::StratifiedPrimary<>(setting, directions, given.count("strata")), true,
+                        sky::StratifiedPrimary<>{setting, directions, given.count("strata")}, true,
                         directions->gain());
 }
 

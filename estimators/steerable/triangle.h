@@ -51,59 +51,19 @@ VertexWeights read_weights(Parameters&);
 /// The coordinates a, b, c; mean, and variance too if the estimator is the sound one.
 std::vector<Channel> triangle_channels(const VertexWeights&, bool with_variance);
 
-/// Points as a sampler: density 6 weight / sum.
+/// Samplers: the points, of density 6 weight / sum, and the pairs of numbers behind them, uniform.
 template <class Warp>
-class TrianglePointSampler final : public Sampler {
- public:
-  explicit TrianglePointSampler(const VertexWeights& weights) : weights_(weights) {}
-
-  Domain domain() const override { return Domain::triangle; }
-  SamplerDraw sample(Stream& random) const override {
+std::shared_ptr<const Setup> triangle_setup(const VertexWeights& weights, bool sound) {
+  const auto draw = [weights](Stream& random) {
     const double x = random.uniform();
-    const auto [u, v] = Warp{}(weights_, x, random.uniform());
-    const Point point = {u, v, 0};
-    return {.point = point, .density = density(point), .weight = 1};
-  }
-  double density(const Point& p) const override {
-    return 6 * TrianglePoint{p[0], p[1]}.weight(weights_) / weights_.sum();
-  }
-  double evaluate(const Point& p) const override { return density(p); }
-
- private:
-  VertexWeights weights_;
-};
-
-/// The pair of numbers behind a point: constant density 1.
-template <class Warp>
-class TriangleSquareSampler final : public Sampler {
- public:
-  explicit TriangleSquareSampler(const VertexWeights& weights) : weights_(weights) {}
-
-  Domain domain() const override { return Domain::square; }
-  SamplerDraw sample(Stream& random) const override {
-    const double x = random.uniform();
-    const SquarePoint square = square_of(weights_, Warp{}(weights_, x, random.uniform()));
-    return {.point = {square.x, square.y, 0}, .density = 1, .weight = 1};
-  }
-  double density(const Point&) const override { return 1; }
-  double evaluate(const Point&) const override { return 1; }
-
- private:
-  VertexWeights weights_;
-};
-
-template <class Warp>
-class TriangleEstimator final : public Estimator {
- public:
-  explicit TriangleEstimator(const VertexWeights& weights) : weights_(weights) {}
-
-  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
-                 Cost& cost) override {
+    return Warp{}(weights, x, random.uniform());
+  };
+  const auto estimate = [draw](Stream& random, std::uint64_t primaries, std::span<double> out,
+                               Cost& cost) {
     double sum_u = 0;
     double sum_v = 0;
     for (std::uint64_t i = 0; i < primaries; ++i) {
-      const double x = random.uniform();
-      const auto [u, v] = Warp{}(weights_, x, random.uniform());
+      const auto [u, v] = draw(random);
       sum_u += u;
       sum_v += v;
     }
@@ -112,19 +72,23 @@ class TriangleEstimator final : public Estimator {
     out[1] = sum_u / n;
     out[2] = sum_v / n;
     cost.samples += primaries;
-  }
-
- private:
-  VertexWeights weights_;
-};
-
-template <class Warp>
-std::shared_ptr<const Setup> triangle_setup(const VertexWeights& weights, bool sound) {
+  };
+  const auto point = [draw](Stream& random) {
+    const auto [u, v] = draw(random);
+    return Point{u, v, 0};
+  };
+  const auto density = [weights](const Point& p) {
+    return 6 * TrianglePoint{p[0], p[1]}.weight(weights) / weights.sum();
+  };
+  const auto square = [draw, weights](Stream& random) {
+    const auto [x, y] = square_of(weights, draw(random));
+    return Point{x, y, 0};
+  };
   return setup_of(
       {.channels = triangle_channels(weights, sound),
-       .make = [weights] { return std::make_unique<TriangleEstimator<Warp>>(weights); },
-       .samplers = {{"point", std::make_shared<TrianglePointSampler<Warp>>(weights)},
-                    {"square", std::make_shared<TriangleSquareSampler<Warp>>(weights)}}});
+       .make = estimating(estimate),
+       .samplers = {{"point", sampler_of({Domain::triangle, point, density})},
+                    {"square", sampler_of({Domain::square, square, uniform_density(1)})}}});
 }
 
 }  // namespace assay::steerable

@@ -8,38 +8,13 @@ namespace assay::virtual_lights {
 
 namespace {
 
-using Pick = double Spectrum::*;
-constexpr std::array<Pick, 3> colours = {&Spectrum::red, &Spectrum::green, &Spectrum::blue};
-constexpr std::array<const char*, 3> colour_names = {"red", "green", "blue"};
-
-class LightsEstimator final : public Estimator {
- public:
-  LightsEstimator(Recipe recipe, bool grey) : recipe_(std::move(recipe)), grey_(grey) {}
-
-  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
-                 Cost& cost) override {
-    const double count = static_cast<double>(primaries);
-    const Sums sums = recipe_.sums(random, primaries, cost);
-    const Spectrum value = recipe_.result(sums, count);
-    std::size_t at = 0;
-    for (const Pick colour : colours) {
-      if (at == 0 || !grey_) out[at++] = value.*colour;
-    }
-    if (recipe_.has_target) out[at] = sums.target / count;
-  }
-
- private:
-  Recipe recipe_;
-  bool grey_;
-};
-
 std::vector<Channel> channels(const Scene& scene, const Recipe& recipe) {
   const std::optional<Spectrum> known = twice_reflected(*scene.room);
   std::vector<Channel> all;
   for (std::size_t c = 0; c < (scene.grey ? 1 : 3); ++c) {
-    Channel channel{.name = scene.grey ? "radiance" : colour_names[c], .low = 0};
+    Channel channel{.name = scene.grey ? "radiance" : paths::colours[c].name, .low = 0};
     if (known) {
-      channel.mean = (*known).*colours[c];
+      channel.mean = (*known).*paths::colours[c].part;
       // Rounding of ratios of sums of thousands of terms.
       channel.rounding = 1e-12 * *channel.mean;
     }
@@ -126,12 +101,22 @@ Weighted read_weighted(Parameters& parameters, SharedRoom room) {
 
 std::shared_ptr<const Setup> setup(const Scene& scene, Recipe recipe) {
   std::vector<Channel> its = channels(scene, recipe);
-  return setup_of(
-      {.channels = std::move(its),
-       .make = [recipe = std::move(recipe),
-                grey = scene.grey] { return std::make_unique<LightsEstimator>(recipe, grey); },
-       .samplers = {paths::direction_sampler()},
-       .cost = {.camera_rays = 1}});
+  const auto estimate = [recipe = std::move(recipe), grey = scene.grey](
+                            Stream& random, std::uint64_t primaries, std::span<double> out,
+                            Cost& cost) {
+    const double count = static_cast<double>(primaries);
+    const Sums sums = recipe.sums(random, primaries, cost);
+    const Spectrum value = recipe.result(sums, count);
+    std::size_t at = 0;
+    for (const auto& colour : paths::colours) {
+      if (at == 0 || !grey) out[at++] = value.*colour.part;
+    }
+    if (recipe.has_target) out[at] = sums.target / count;
+  };
+  return setup_of({.channels = std::move(its),
+                   .make = estimating(estimate),
+                   .samplers = {paths::direction_sampler()},
+                   .cost = {.camera_rays = 1}});
 }
 
 }  // namespace assay::virtual_lights

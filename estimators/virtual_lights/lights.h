@@ -6,7 +6,6 @@
 #include <functional>
 #include <memory>
 #include <numbers>
-#include <vector>
 
 #include "virtual_lights/room.h"
 

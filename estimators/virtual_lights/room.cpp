@@ -1,6 +1,5 @@
 #include "virtual_lights/room.h"
 
-#include <algorithm>
 #include <map>
 #include <numbers>
 #include <numeric>
@@ -19,16 +18,6 @@ using std::numbers::pi;
 namespace {
 
 constexpr double flat = 1e-9;  // of the longest side
-
-double longest_side(const TriangleMesh& mesh) {
-  Vector3 low = mesh.vertices.front();
-  Vector3 high = low;
-  for (const Vector3& v : mesh.vertices) {
-    low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
-    high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
-  }
-  return std::max({high.x - low.x, high.y - low.y, high.z - low.z});
-}
 
 TriangleMesh welded(const TriangleMesh& mesh) {
   std::map<std::tuple<double, double, double>, std::uint32_t> index;
@@ -92,7 +81,7 @@ void find_walls(const TriangleMesh& mesh, Enclosure& room) {
   Sets walls(mesh.triangles.size());
   Sets connected(mesh.triangles.size());
   const auto all = sides(mesh);
-  const double tolerance = flat * longest_side(mesh);
+  const double tolerance = flat * render::Box(mesh).longest_side();
   for (const auto& [edge, side] : all) {
     const Side& other = all.at({edge.second, edge.first});
     connected.join(side.triangle, other.triangle);

@@ -111,36 +111,6 @@ TEST(DepthOfField, AMaskMovesWavesToBothSides) {
   EXPECT_EQ(waves[1].power, 1);
 }
 
-// A Gaussian of waves as a set and as its covariance, through the same chain.
-TEST(DepthOfField, CovariancesFollowSetsOfWaves) {
-  std::vector<Frequency> waves;
-  double total = 0;
-  for (int i = -60; i <= 60; ++i) {
-    for (int j = -60; j <= 60; ++j) {
-      const double a = i / 12.;
-      const double b = j / 12.;
-      waves.push_back({2 * a, 3 * b + a, std::exp(-(a * a + b * b) / 2)});
-      total += waves.back().power;
-    }
-  }
-  Spectrum set(waves);
-  set.travel(.7).curve(.3).reflect(.2).travel(1.1);
-  Covariance gauss(total, {.position = 4, .slope = 10, .both = 2});
-  gauss.travel(.7).curve(.3).reflect(.2).travel(1.1);
-  Covariance::Spread sum;
-  double power = 0;
-  for (const Frequency& w : set.waves()) {
-    power += w.power;
-    sum.position += w.power * w.position * w.position;
-    sum.slope += w.power * w.slope * w.slope;
-    sum.both += w.power * w.position * w.slope;
-  }
-  EXPECT_NEAR(power / gauss.power(), 1, 1e-4);
-  EXPECT_NEAR(sum.position / power / gauss.spread().position, 1, 1e-3);
-  EXPECT_NEAR(sum.slope / power / gauss.spread().slope, 1, 1e-3);
-  EXPECT_NEAR(sum.both / power / gauss.spread().both, 1, 1e-3);
-}
-
 TEST(DepthOfField, ForLowFrequenciesTheCovariancePredictsTheDiscsVariance) {
   const Lens lens{.1, 2};
   const auto waves = Spectrum({{.5, 0, 1}}).travel(3).at_camera(lens);

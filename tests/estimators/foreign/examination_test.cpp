@@ -43,32 +43,6 @@ TEST_F(Examination, WhoseObservationsAreNoFunctionOfKeyAndIndexIsRefused) {
       HasSubstr("by_key.so` ignores the index: observations 0 to 31 all have the same numbers"));
 }
 
-TEST_F(Examination, IsAskedAgainOnceForAllWorkersAndNothingMore) {
-  // It counts in what nobody compares: its rays are not declared.
-  const auto setup = load(compile_text(
-      "static uint64_t calls;\n" +
-      with_body("call->rays = ++calls; call->out[0] = assay_uniform(call->random); return 0; ")));
-  Cost cost;
-  for (int worker = 0; worker < 2; ++worker) {
-    const auto estimator = setup->make();
-    for (std::uint64_t i = 0; i < 100; ++i) {
-      cost = {};
-      draw_one(*estimator, i, 1, cost);
-    }
-  }
-  // 32 observations twice, and one of another key.
-  EXPECT_EQ(cost.closest_hit_rays, 200u + 65);
-}
-
-TEST_F(Examination, WhoseRareValueDoesNotComeAgainIsRefused) {
-  const auto setup =
-      load(compile_text(with_body("static int asked; int rare = call->random->counter[2] == 200; "
-                                  "call->out[0] = rare && asked++ == 0; return 0; ")));
-  EXPECT_THAT(
-      failure(*setup, 256, 64),
-      HasSubstr("gave other numbers when it was asked for observation 200 of the same key"));
-}
-
 TEST_F(Examination, IsNotTheEstimatorsTime) {
   const auto setup = load(compile_text(with_body(
       "double sum = 0; for (int i = 0; i < 1000000; ++i) sum += assay_uniform(call->random); "
