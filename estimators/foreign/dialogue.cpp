@@ -27,12 +27,6 @@ std::string seconds_text(double seconds) {
   return std::string(buffer.data()) + (seconds == 1 ? " second" : " seconds");
 }
 
-/// Questions that take alike long.
-std::pair<std::uint64_t, std::uint64_t> kind_of(const Question& question) {
-  if (!question.is_to_sampler()) return {0, question.primaries};
-  return {question.key + 1, static_cast<std::uint64_t>(question.asked())};
-}
-
 }  // namespace
 
 Dialogue::Dialogue(const Terms& terms) : terms_(terms), child_(terms.launch) {
@@ -149,9 +143,12 @@ std::vector<double> Dialogue::reply_to(const Question& question, std::string_vie
   return reply.numbers();
 }
 
-bool Respondent::is_new_to(const Question& question) const {
-  return !sizes_.contains(kind_of(question));
+Respondent::Kind Respondent::kind_of(const Question& question) {
+  if (!question.is_to_sampler()) return {0, question.primaries};
+  return {question.key + 1, static_cast<std::uint64_t>(question.asked())};
 }
+
+bool Respondent::meets(const Question& question) { return met_.insert(kind_of(question)).second; }
 
 std::uint64_t Respondent::well_sized(const Question& question) const {
   const auto known = sizes_.find(kind_of(question));

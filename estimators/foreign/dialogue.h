@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -54,8 +55,9 @@ class Respondent {
   /// How many of the question's observations or items to ask for at a time, by how long the last
   /// replies to such questions took.
   std::uint64_t well_sized(const Question& question) const;
-  /// True if no question of as many primaries, or to the same sampler, has been asked yet.
-  bool is_new_to(const Question& question) const;
+  /// True at the first question of as many primaries, or to the same sampler. What an examination
+  /// asks beyond its own does not count.
+  bool meets(const Question& question);
   /// CPU seconds that it has spent outside of the threads that ask.
   virtual double cpu_seconds() const { return 0; }
   /// Asks it to end.
@@ -67,9 +69,12 @@ class Respondent {
   virtual std::vector<double> hear(const Question& question, std::string_view items) = 0;
   void learn_pace(const Question& question, double seconds);
 
-  /// The sizes of questions for observations of so many primaries, and to each sampler for what it
-  /// is asked.
-  std::map<std::pair<std::uint64_t, std::uint64_t>, std::uint64_t> sizes_;
+  /// Questions for observations of so many primaries, and to each sampler for what it is asked.
+  using Kind = std::pair<std::uint64_t, std::uint64_t>;
+  static Kind kind_of(const Question& question);
+
+  std::map<Kind, std::uint64_t> sizes_;
+  std::set<Kind> met_;
 };
 
 /// A running program.

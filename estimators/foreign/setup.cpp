@@ -73,7 +73,7 @@ class ForeignEstimator final : public Estimator {
         dialogue_ = children_->take();
         taken_at_ = dialogue_->cpu_seconds();
       }
-      if (!dialogue_->is_new_to(wanted)) return;
+      if (!dialogue_->meets(wanted)) return;
       const double seconds = seconds_elsewhere() + thread_seconds();
       const bool runs = children_->examine(*dialogue_, wanted);
       seconds_ -= seconds_elsewhere() + thread_seconds() - seconds;
@@ -362,7 +362,7 @@ std::vector<double> IsolatedSampler::ask_once(Items& items) const {
   std::vector<double> numbers;
   {
     const Counted counted(*dialogue);
-    if (dialogue->is_new_to(question)) witness(*dialogue, question, items);
+    if (dialogue->meets(question)) witness(*dialogue, question, items);
     numbers = dialogue->ask(question, items.bytes);
     if (question.count > 1) require_alone(*dialogue, question, items, numbers);
   }

@@ -221,6 +221,19 @@ TEST_F(Process, RefusesObservationsThatAreNoFunctionOfKeyAndIndex) {
   }
 }
 
+// Twice as many primaries are asked for once to see whether they count. That is no examination of
+// observations of so many.
+TEST_F(Process, IsExaminedAtEachNumberOfPrimaries) {
+  const std::string averages = "channel x\\naverages";
+  const auto rare = run_shell(for_each("echo $((i == 40))"), 20, averages);
+  draw(*rare, 4, 4, 1);
+  EXPECT_EQ(draw(*rare, 64, 64, 2)[40], 1);
+  const auto counts =
+      run_shell("n=0\n" + for_each("echo $((primaries == 2 ? (n = n + 1) : 5))"), 20, averages);
+  draw(*counts, 4, 4, 1);
+  EXPECT_THAT(thrown([&] { draw(*counts, 4, 4, 2); }), HasSubstr("gave other numbers"));
+}
+
 TEST_F(Process, RefusesZerosAndOnesOfAGeneratorWithoutSeed) {
   const std::string coins = R"(import random
 print("assay 1 text\nchannel x\nready", flush=True)
