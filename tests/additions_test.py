@@ -21,8 +21,7 @@ NEW_FILES = {
 
 namespace assay::harness {
 
-Evidence added_evidence(const Method&, const Question&, std::size_t channel,
-                        std::span<const ChannelData>);
+Evidence added_evidence(const Method&, const Seen& seen);
 
 }  // namespace assay::harness
 """,
@@ -33,10 +32,9 @@ Evidence added_evidence(const Method&, const Question&, std::size_t channel,
 
 namespace assay::harness {
 
-Evidence added_evidence(const Method&, const Question& question, std::size_t channel,
-                        std::span<const ChannelData> data) {
-  const stats::Moments x = data[0].moments;
-  const double null = question.references[channel].value;
+Evidence added_evidence(const Method&, const Seen& seen) {
+  const stats::Moments x = seen.moments(0);
+  const double null = seen.reference().value;
   return {.estimate = x.mean - null,
           .at = [=](double t) { return stats::student_t(x, {.value = null + t}); },
           .interval =
@@ -54,7 +52,6 @@ Evidence added_evidence(const Method&, const Question& question, std::size_t cha
 
 namespace assay::harness {
 
-Question bind_second_moment(const TestEntry&, const Estimators&);
 const Theta& theta_of_second_moments();
 
 }  // namespace assay::harness
@@ -62,7 +59,6 @@ const Theta& theta_of_second_moments();
     "harness/families/added_quantity.cpp": """#include "harness/families/added_quantity.h"
 
 #include "harness/families/families.h"
-#include "harness/question/question_sources.h"
 #include "harness/plan/sizes.h"
 #include "stats/means/student_t.h"
 
@@ -70,11 +66,10 @@ namespace assay::harness {
 namespace {
 
 /// theta = E x^2 - r.
-Evidence t_of_squares(const Method&, const Question& question, std::size_t channel,
-                      std::span<const ChannelData> data) {
+Evidence t_of_squares(const Method&, const Seen& seen) {
   stats::Moments squares;
-  for (const double x : data[0].values) squares.add(x * x);
-  const double null = question.references[channel].value;
+  for (const double x : seen.data[0].values) squares.add(x * x);
+  const double null = seen.reference().value;
   return {.estimate = squares.mean - null,
           .at = [=](double t) { return stats::student_t(squares, {.value = null + t}); },
           .interval =
@@ -86,31 +81,19 @@ Evidence t_of_squares(const Method&, const Question& question, std::size_t chann
 
 class SecondMomentTheta final : public Theta {
  public:
-  SecondMomentTheta() : Theta({.of_single_values = true}) {}
-  const std::vector<MethodRow>& methods() const override {
-    static const std::vector<MethodRow> table{
-        {"t-of-squares", "Student's t of the squares", any_question, Keeps::values, t_of_squares}};
-    return table;
-  }
-  std::uint64_t choose(const Question&, const FamilyPlace&, const Pilots&, std::uint64_t,
-                       Plan&) const override {
-    return least_secondaries;
-  }
-  std::optional<std::uint64_t> secondaries(const Question&, const ErrorShare&, const Pilots&,
-                                           const Plan&) const override {
+  SecondMomentTheta()
+      : Theta({.of_single_values = true},
+              {{"t-of-squares", "Student's t of the squares", any_question, Keeps::values,
+                t_of_squares}}) {}
+  std::optional<std::uint64_t> secondaries(const TestOutcome&, const ErrorShare&,
+                                           const Pilots&) const override {
     return std::nullopt;
   }
 };
 
-const SecondMomentTheta second_moment_theta;
-
 }  // namespace
 
-Question bind_second_moment(const TestEntry& test, const Estimators& estimators) {
-  return one_or_two(test, second_moment_theta, estimators);
-}
-
-const Theta& theta_of_second_moments() { return second_moment_theta; }
+const Theta& theta_of_second_moments() { return one<SecondMomentTheta>(); }
 
 }  // namespace assay::harness
 """,
@@ -154,16 +137,11 @@ std::vector<Entry> analytic_added() {
 
 # The one file that each addition changes: a line to add an #include after, a line to add a row
 # before.
-METHOD_ROW = """    {"added-method",
-     "an added test of a mean",
-     [](const Question& q) { return !q.of_two(); },
-     Keeps::moments,
-     added_evidence},
+METHOD_ROW = """      {"added-method", "an added test of a mean", of_one, Keeps::moments, added_evidence},
 """
 QUANTITY_ROW = """      {.word = "second_moment",
        .example = "second_moment(a) == 1",
        .summary = "an added quantity",
-       .bind = bind_second_moment,
        .theta = &theta_of_second_moments()},
 """
 REPORT_ROW = """      {"added", "added", "an added report",

@@ -247,28 +247,50 @@ TestEntry test_of(const std::string& claim, const Draft& draft) {
   return test;
 }
 
-/// A method on a question about a law.
+using reports::Verdict;
+
+/// Outcomes of one test over the seeds. They are sums of whole numbers, so the order of seeds does
+/// not matter.
+struct VerdictCounts {
+  std::uint64_t runs = 0;
+  std::map<Verdict, std::uint64_t> verdicts = {};  ///< Errors and refusals count as invalid.
+  std::uint64_t red = 0;
+  std::uint64_t mistaken_not_red = 0;  ///< Mistakes in runs without a red gate.
+  std::uint64_t observations = 0;      ///< Sum of each subject's at the last look taken.
+  std::map<std::string, std::uint64_t> methods = {};  ///< Number of runs that each method judged.
+};
+
+/// A claim, if the case has it, and its outcomes.
+struct CalibratedClaim {
+  std::optional<TestEntry> test = {};
+  VerdictCounts counts = {};
+};
+
+/// A method on a question about a law at one alpha. The limits of its rates need the total number
+/// of cells.
 struct CalibrationCase {
+  std::string law;
   std::string method;
   std::string question;  ///< "mean == number"
   bool proof = false;    ///< True if a pass is the mistake.
+  double alpha = 0;
   /// Theta is 0. Missing if another method is the question's default.
-  std::optional<TestEntry> holds = {};
+  CalibratedClaim holds = {};
   /// Theta is at `detect`, for a proof at the border of the forbidden region. Missing if another
   /// method is the question's default, or no law at that distance is available.
-  std::optional<TestEntry> off = {};
+  CalibratedClaim off = {};
   /// The claim on which a verdict against the level is possible, with this method forced and all
   /// observations in one look. Gates are shown but have no effect.
-  std::optional<TestEntry> alone = {};
+  CalibratedClaim alone = {};
 };
 
 CalibrationCase case_of(const Draft& draft, const Facts& facts,
                         std::optional<std::uint64_t> samples) {
-  CalibrationCase made{.method = draft.method, .question = draft.question};
+  CalibrationCase made{.law = facts.law, .method = draft.method, .question = draft.question};
   made.proof = parse_claim(draft.holds, {}).relation == Relation::within;
-  made.alone = test_of(made.proof ? draft.off : draft.holds, draft);
-  made.alone->method = draft.method;
-  made.alone->secondaries = samples.value_or(draft.alone);
+  TestEntry& alone = made.alone.test.emplace(test_of(made.proof ? draft.off : draft.holds, draft));
+  alone.method = draft.method;
+  alone.secondaries = samples.value_or(draft.alone);
   if (!draft.is_default) return made;
   const auto planned = [&](const std::string& claim) {
     TestEntry test = test_of(claim, draft);
@@ -276,8 +298,8 @@ CalibrationCase case_of(const Draft& draft, const Facts& facts,
     test.detect = margin_of(draft.detect, facts);
     return test;
   };
-  made.holds = planned(draft.holds);
-  if (!draft.off.empty()) made.off = planned(draft.off);
+  made.holds.test = planned(draft.holds);
+  if (!draft.off.empty()) made.off.test = planned(draft.off);
   return made;
 }
 
@@ -295,11 +317,10 @@ namespace {
 /// The cases of one law with their estimators; empty if no question suits the method and the law.
 /// Questions point into it, so it cannot move.
 struct CalibrationBench {
-  std::string law;
   std::map<std::string, PreparedEstimator> estimators;
   std::vector<CalibrationCase> cases;
 
-  CalibrationBench(const std::string& named, const CalibrateArguments& arguments) : law(named) {
+  CalibrationBench(const std::string& law, const CalibrateArguments& arguments) {
     Facts facts = facts_of(law);
     if (facts.has_density) facts.shift_at_law_effect = shift_at_law_effect(facts);
     for (const EstimatorEntry& entry :
@@ -362,31 +383,9 @@ void require_calibrated(const std::string& method) {
 
 using reports::CalibrationCell;
 using reports::Rate;
-using reports::Verdict;
 using reports::VerdictRates;
 
 constexpr double usual_beta = 0.01;
-
-/// Outcomes of one test over the seeds. They are sums of whole numbers, so the order of seeds does
-/// not matter.
-struct VerdictCounts {
-  std::uint64_t runs = 0;
-  std::map<Verdict, std::uint64_t> verdicts = {};  ///< Errors and refusals count as invalid.
-  std::uint64_t red = 0;
-  std::uint64_t mistaken_not_red = 0;  ///< Mistakes in runs without a red gate.
-  std::uint64_t observations = 0;      ///< Sum of each subject's at the last look taken.
-  std::map<std::string, std::uint64_t> methods = {};  ///< Number of runs that each method judged.
-};
-
-/// A case on one law at one alpha. The limits of its rates need the total number of cells.
-struct Measured {
-  double alpha;
-  std::string law;
-  CalibrationCase of;
-  VerdictCounts holds = {};
-  VerdictCounts off = {};
-  VerdictCounts alone = {};
-};
 
 /// One test of a case, as a suite of its own.
 struct Item {
@@ -395,22 +394,19 @@ struct Item {
   Suite suite;
 };
 
-std::vector<Item> items_of(std::vector<Measured>& all) {
+std::vector<Item> items_of(std::vector<CalibrationCase>& all) {
   std::vector<Item> items;
-  for (Measured& each : all) {
-    const auto add = [&](const std::optional<TestEntry>& test, VerdictCounts& counts) {
-      if (!test) return;
+  for (CalibrationCase& each : all) {
+    for (CalibratedClaim* const claim : {&each.holds, &each.off, &each.alone}) {
+      if (!claim->test) continue;
       // A proof errs by passing, so its level is beta.
       Suite suite{.name = "calibration",
                   .stem = "calibration",
                   .alpha = each.alpha,
-                  .beta = each.of.proof ? each.alpha : usual_beta};
-      suite.tests = {*test};
-      items.push_back({counts, each.of.proof, std::move(suite)});
-    };
-    add(each.of.holds, each.holds);
-    add(each.of.off, each.off);
-    add(each.of.alone, each.alone);
+                  .beta = each.proof ? each.alpha : usual_beta};
+      suite.tests = {*claim->test};
+      items.push_back({claim->counts, each.proof, std::move(suite)});
+    }
   }
   return items;
 }
@@ -447,13 +443,9 @@ void run_once(const CalibrationBench& bench, const std::vector<Item>& items, std
   std::vector<std::optional<TestWork>> works(items.size());
   std::vector<TestWork*> open;
   for (std::size_t i = 0; i < items.size(); ++i) {
-    const std::vector<FamilyPlace> place = places(items[i].suite, {questions[i]});
     try {
-      Plan plan = plan_test(questions[i], place[0], pilots,
-                            choose_primaries({questions[i]}, place, pilots));
-      works[i] = TestWork{
-          .outcome = {.question = questions[i], .place = place[0], .plan = std::move(plan)},
-          .verdict_only = true};
+      works[i] = TestWork{.outcome = plan_alone(items[i].suite, questions[i], pilots),
+                          .verdict_only = true};
     } catch (const InputError&) {
       continue;  // a run would stop before sampling
     }
@@ -478,11 +470,12 @@ void run_once(const CalibrationBench& bench, const std::vector<Item>& items, std
 }
 
 /// The cases of one law, by alpha. `done` gets the number of finished runs, on the calling thread.
-std::vector<Measured> measure(const CalibrationBench& bench, const CalibrateArguments& arguments,
-                              const std::function<void(std::uint64_t)>& done) {
-  std::vector<Measured> all;
+std::vector<CalibrationCase> measure(const CalibrationBench& bench,
+                                     const CalibrateArguments& arguments,
+                                     const std::function<void(std::uint64_t)>& done) {
+  std::vector<CalibrationCase> all;
   for (const double alpha : arguments.alphas) {
-    for (const CalibrationCase& each : bench.cases) all.push_back({alpha, bench.law, each});
+    for (const CalibrationCase& each : bench.cases) all.emplace_back(each).alpha = alpha;
   }
   const std::vector<Item> items = items_of(all);
   std::atomic<std::uint64_t> next{0};
@@ -538,25 +531,25 @@ VerdictRates rates_of(VerdictCounts counts, double error) {
           .by = by_frequency(counts)};
 }
 
-CalibrationCell cell_of(const Measured& measured, double error) {
-  const VerdictCounts& alone = measured.alone;
-  return {.method = measured.of.method,
-          .question = measured.of.question,
+CalibrationCell cell_of(const CalibrationCase& measured, double error) {
+  const VerdictCounts& alone = measured.alone.counts;
+  return {.method = measured.method,
+          .question = measured.question,
           .law = measured.law,
           .alpha = measured.alpha,
-          .proof = measured.of.proof,
-          .holds = rates_of(measured.holds, error),
-          .off = rates_of(measured.off, error),
+          .proof = measured.proof,
+          .holds = rates_of(measured.holds.counts, error),
+          .off = rates_of(measured.off.counts, error),
           .alone = rates_of(alone, error),
           .alone_not_red = rate_of(alone.mistaken_not_red, alone.runs, error)};
 }
 
 /// Groups cells by alpha, then method and question. Alphas, questions and laws keep their order.
-void group(std::vector<Measured>& all, const std::vector<double>& alphas) {
-  const auto question = [](const Measured& each) { return each.of.method + each.of.question; };
+void group(std::vector<CalibrationCase>& all, const std::vector<double>& alphas) {
+  const auto question = [](const CalibrationCase& each) { return each.method + each.question; };
   std::map<std::string, std::size_t> questions;
-  for (const Measured& each : all) questions.try_emplace(question(each), questions.size());
-  std::ranges::stable_sort(all, {}, [&](const Measured& each) {
+  for (const CalibrationCase& each : all) questions.try_emplace(question(each), questions.size());
+  std::ranges::stable_sort(all, {}, [&](const CalibrationCase& each) {
     return std::pair(std::ranges::find(alphas, each.alpha), questions.at(question(each)));
   });
 }
@@ -591,7 +584,7 @@ reports::Calibration calibration(const CalibrateArguments& arguments, Progress& 
   if (options.alphas.empty()) options.alphas = {0.05, 0.01, 0.001};
   for (const std::string& method : arguments.methods) require_calibrated(method);
   refuse_twice("METHOD", arguments.methods);
-  std::vector<Measured> all;
+  std::vector<CalibrationCase> all;
   progress.begin({"calibration", laws.size() * arguments.runs, "runs"});
   for (std::size_t i = 0; i < laws.size(); ++i) {
     const CalibrationBench bench(laws[i], arguments);
@@ -607,7 +600,7 @@ reports::Calibration calibration(const CalibrateArguments& arguments, Progress& 
   }
   group(all, options.alphas);
   const double error = result.error / static_cast<double>(all.size());
-  for (const Measured& each : all) result.cells.push_back(cell_of(each, error));
+  for (const CalibrationCase& each : all) result.cells.push_back(cell_of(each, error));
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }

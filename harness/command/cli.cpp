@@ -98,20 +98,20 @@ struct Running {
   const char* alpha;
 };
 
-void add_sampling(Options& options, RunOptions& run, Output& output, const Running& about) {
-  options.add({"--seed", "N|random", Replay::nowhere, "", {"random"}}, run.seed, read_seed,
-              about.seed);
-  add_threads(options, run.threads);
-  options.add({"--alpha", "A"}, run.alpha, read_error_rate, about.alpha);
-  add_quiet(options, output);
+void add_sampling(Options& options, SamplingCommand& command, const Running& about) {
+  options.add({"--seed", "N|random", Replay::nowhere, "", {"random"}}, command.options.seed,
+              read_seed, about.seed);
+  add_threads(options, command.options.threads);
+  options.add({"--alpha", "A"}, command.options.alpha, read_error_rate, about.alpha);
+  add_quiet(options, command.output);
 }
 
-void add_running(Options& options, RunOptions& run, Output& output, const Running& about) {
-  add_sampling(options, run, output, about);
-  add_inconclusive(options, output);
-  add_output(options, output);
-  output.kept = true;
-  options.repeat_by(run.command);
+void add_running(Options& options, SamplingCommand& command, const Running& about) {
+  add_sampling(options, command, about);
+  add_inconclusive(options, command.output);
+  add_output(options, command.output);
+  command.output.kept = true;
+  options.repeat_by(command.options.command);
 }
 
 void add_estimators(Options& options, Texts& estimators) {
@@ -175,7 +175,7 @@ Examples:
   options.add({"--ledger", "FILE", Replay::nowhere, "", {"*"}}, command.options.ledger,
               "add the run's evidence to a file of nights with fresh seeds and alarm at what they "
               "say together; default none");
-  add_running(options, command.options, command.output, of_suites);
+  add_running(options, command, of_suites);
 }
 
 void define_plan(Options& options, PlanCommand& command) {
@@ -193,7 +193,7 @@ Examples:
                "print the renders that are missing instead, one a line: command, seed and file "
                "with tabs between; the pilots' first, then the tests'; default the plan",
                command.list_renders);
-  add_sampling(options, command.options, command.output, of_suites);
+  add_sampling(options, command, of_suites);
 }
 
 void define_check(Options& options, CheckCommand& command) {
@@ -233,7 +233,7 @@ Examples:
               "primary estimates of an observation; default chosen from the pilot");
   options.add({"--secondaries", "M"}, given.secondaries, at_least(2),
               "number of observations, 2 or more; default what --detect needs");
-  add_running(options, command.options, command.output,
+  add_running(options, command,
               {.seed = "seed of all streams, or a fresh one; default 1",
                .alpha = "probability that a claim that holds fails, in [1e-9, 0.5]; default 0.01"});
 }
@@ -299,7 +299,7 @@ Examples:
       {"--within", "X"}, given.within,
       "prove that the pictures differ by less, as 1% or 0.002; default test that they are equal");
   add_running(
-      options, command.options, command.output,
+      options, command,
       {.seed = "seed of the signs that are flipped where pixels depend on each other; default 1",
        .alpha = "probability that equal pictures fail, in [1e-9, 0.5]; default 0.01"});
 }

@@ -15,27 +15,25 @@
 
 namespace assay::harness {
 
-struct SuitesCommand {
-  std::vector<std::string> suites;
-  std::vector<std::string> assignments;  ///< of --set
+struct SamplingCommand {
   RunOptions options;
   Output output;
+};
+struct SuitesCommand : SamplingCommand {
+  std::vector<std::string> suites;
+  std::vector<std::string> assignments;  ///< of --set
 };
 struct RunCommand : SuitesCommand {};
 struct PlanCommand : SuitesCommand {
   bool list_renders = false;
 };
 
-struct CheckCommand {
+struct CheckCommand : SamplingCommand {
   CheckArguments arguments;
-  RunOptions options;
-  Output output;
 };
 
-struct ImagesCommand {
+struct ImagesCommand : SamplingCommand {
   ImagesArguments arguments;
-  RunOptions options;
-  Output output;
 };
 
 struct CalibrateCommand {

@@ -215,63 +215,49 @@ std::string page_of(const MethodRow& row) {
   return page;
 }
 
-Table methods() {
-  Table table{"methods", "a method", {}};
-  for (const MethodRow& row : method_table()) {
-    table.rows.push_back({row.name, row.summary, page_of(row)});
-  }
-  return table;
+TableRow row_of(const MethodRow& method) { return {method.name, method.summary, page_of(method)}; }
+
+TableRow row_of(const QuantityRow& quantity) {
+  std::string page = wrapped(fmt::format("Claim: {}", quantity.example), table_columns, 2);
+  if (quantity.of_a_sampler) page += "  It is about a sampler of an estimator.\n";
+  if (quantity.over_all_channels) page += "  It is over all channels of an estimator.\n";
+  return {quantity.word, quantity.summary, page};
 }
 
-Table quantity_table() {
-  Table table{"quantities", "a quantity", {}};
-  for (const QuantityRow& row : quantities()) {
-    std::string page = wrapped(fmt::format("Claim: {}", row.example), table_columns, 2);
-    if (row.of_a_sampler) page += "  It is about a sampler of an estimator.\n";
-    if (row.over_all_channels) page += "  It is over all channels of an estimator.\n";
-    table.rows.push_back({row.word, row.summary, page});
+TableRow row_of(const LawInformation& law) {
+  std::string page = fmt::format("  Claim: distribution(a) == {}\n", signature(law));
+  for (const LawParameter& parameter : law.parameters) {
+    if (parameter.positive) page += fmt::format("  `{}` is above 0.\n", parameter.name);
   }
-  return table;
+  return {law.name, signature(law), page};
 }
 
-Table law_table() {
-  Table table{"laws", "a law", {}};
-  for (const LawInformation& law : laws()) {
-    std::string page = fmt::format("  Claim: distribution(a) == {}\n", signature(law));
-    for (const LawParameter& parameter : law.parameters) {
-      if (parameter.positive) page += fmt::format("  `{}` is above 0.\n", parameter.name);
-    }
-    table.rows.push_back({law.name, signature(law), page});
-  }
-  return table;
+TableRow row_of(const GateKind& gate) {
+  std::string page = "  A red gate makes the test invalid, unless `test` forces the method.\n";
+  if (gate.heavy_tail) page += "  More observations may only show more of the tail.\n";
+  return {gate.name, fmt::format(fmt::runtime(gate.sentence), "VALUE", "LIMIT"), page};
 }
 
-Table gate_table() {
-  Table table{"gates", "a gate", {}};
-  for (const GateKind& gate : gate_kinds()) {
-    const std::string red = fmt::format(fmt::runtime(gate.sentence), "VALUE", "LIMIT");
-    std::string page = "  A red gate makes the test invalid, unless `test` forces the method.\n";
-    if (gate.heavy_tail) page += "  More observations may only show more of the tail.\n";
-    table.rows.push_back({gate.name, red, page});
-  }
-  return table;
+TableRow row_of(const reports::ReportFormat& format) {
+  return {format.kind, format.summary,
+          fmt::format("  Write it by `--report {}=FILE.{}`.\n", format.kind, format.ending)};
 }
 
-Table report_table() {
-  Table table{"reports", "a report", {}};
-  for (const reports::ReportFormat& format : reports::report_formats()) {
-    table.rows.push_back(
-        {format.kind, format.summary,
-         fmt::format("  Write it by `--report {}=FILE.{}`.\n", format.kind, format.ending)});
-  }
+template <class Rows>
+Table table_of(const char* plural, const char* singular, const Rows& rows) {
+  Table table{plural, singular, {}};
+  for (const auto& row : rows) table.rows.push_back(row_of(row));
   return table;
 }
 
 }  // namespace
 
 const std::vector<Table>& tables() {
-  static const std::vector<Table> all{methods(), quantity_table(), law_table(), gate_table(),
-                                      report_table()};
+  static const std::vector<Table> all{table_of("methods", "a method", method_table()),
+                                      table_of("quantities", "a quantity", quantities()),
+                                      table_of("laws", "a law", laws()),
+                                      table_of("gates", "a gate", gate_kinds()),
+                                      table_of("reports", "a report", reports::report_formats())};
   return all;
 }
 

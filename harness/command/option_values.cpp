@@ -39,14 +39,6 @@ unsigned read_threads(const std::string& text, const std::string& option) {
   return static_cast<unsigned>(std::min(at_least(1)(text, option), most));
 }
 
-double read_error_rate(const std::string& text, const std::string& option) {
-  return error_rate(Value::scalar(text), option);
-}
-
-double read_positive(const std::string& text, const std::string& option) {
-  return positive_number(Value::scalar(text), option);
-}
-
 std::uint64_t read_seed(const std::string& text, const std::string& option) {
   if (text == "random") return random_seed();
   try {

@@ -20,8 +20,13 @@ inline auto at_least(std::uint64_t least) {
 }
 
 unsigned read_threads(const std::string& text, const std::string& option);
-double read_error_rate(const std::string& text, const std::string& option);
-double read_positive(const std::string& text, const std::string& option);
+/// A number, as a reader of suites takes it.
+template <double (*read)(const Value&, std::string_view)>
+double read_number(const std::string& text, const std::string& option) {
+  return read(Value::scalar(text), option);
+}
+inline constexpr auto read_error_rate = read_number<error_rate>;
+inline constexpr auto read_positive = read_number<positive_number>;
 
 /// A count, or `random`: 64 bits from the operating system.
 std::uint64_t read_seed(const std::string& text, const std::string& option);

@@ -99,9 +99,7 @@ std::optional<std::uint64_t> first_inconsistent(const Pool& pool, std::uint64_t 
   estimator->announce({.key = pool.key(), .first = 0, .last = count});
   std::vector<double> out(pool.channels());
   for (std::uint64_t i = 0; i < count; ++i) {
-    Stream random(pool.key(), i);
-    Cost unused;
-    estimator->secondary(random, pool.primaries(), out, unused);
+    pool.draw_again(*estimator, i, out);
     if (out[0] != 0) return i;
   }
   return std::nullopt;

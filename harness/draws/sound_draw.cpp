@@ -9,6 +9,7 @@
 #include <string>
 
 #include "reports/words/number.h"
+#include "stats/basics/adaptive_quadrature.h"
 
 namespace assay::harness {
 namespace {
@@ -37,22 +38,17 @@ std::string domain_in_words(const Sampler& sampler) {
 
 double length_of(const Point& p) { return std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]); }
 
-struct Range {
-  double low;
-  double high;
-};
-
 /// Moves a coordinate that is at most `slack` outside the range to its border. False if it is
 /// farther out.
-bool settle(double& x, Range range, double slack) {
+bool settle(double& x, stats::Span range, double slack) {
   if (!(x >= range.low - slack && x <= range.high + slack)) return false;
   x = std::clamp(x, range.low, range.high);
   return true;
 }
 
 /// Adds single precision's rounding of the bounds themselves.
-double slack_of_interval(double slack, Range range) {
-  return slack * (range.high - range.low) +
+double slack_of_interval(double slack, stats::Span range) {
+  return slack * range.width() +
          single_rounding * std::max(std::abs(range.low), std::abs(range.high));
 }
 

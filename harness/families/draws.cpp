@@ -8,6 +8,7 @@
 #include "harness/draws/consistency_setup.h"
 #include "harness/draws/sampler_setup.h"
 #include "harness/families/families.h"
+#include "harness/families/law.h"
 #include "harness/plan/sizes.h"
 #include "harness/question/question_sources.h"
 #include "harness/run/evaluate.h"
@@ -69,39 +70,35 @@ std::string per_cent(double part) { return fmt::format("{:.3g} %", 100 * part); 
 /// theta = S + q - claimed. Here S is the density's integral over the domain plus its point masses,
 /// by quadrature with a known error. The other part, q, is the probability of a draw without a
 /// point, by exact binomial tests at both ends of that error.
-Evidence integral(const Method&, const Question& question, std::size_t,
-                  std::span<const ChannelData> sides) {
-  const ChannelData& data = sides[0];
-  const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
-  const DensityCells& cells = draws.density_cells();
-  Evidence evidence = from_probability(
-      {.seen = {.successes = cells.in_cells(data.cells).back(), .trials = sum(data.cells)},
-       .offset = cells.mass.total - question.references[0].value,
-       .error = cells.tolerance()});
+Evidence integral(const Method&, const Seen& seen) {
+  const std::span<const std::uint64_t> counts = seen.data[0].cells;
+  const DensityCells& cells = density_of(seen.question);
+  Evidence evidence =
+      from_probability({.seen = {.successes = cells.in_cells(counts).back(), .trials = sum(counts)},
+                        .offset = cells.mass.total - seen.reference().value,
+                        .error = cells.tolerance()});
   evidence.quantity = fmt::format(
       "integral of the density ({:.10g}, quadrature error {:.1g}) and the mass without a point, "
       "less {:g},",
-      cells.mass.total, cells.tolerance(), question.references[0].value);
+      cells.mass.total, cells.tolerance(), seen.reference().value);
   return evidence;
 }
 
 /// theta = q - claimed. q is the probability of an inconsistent draw (consistency_setup.h), by
 /// exact binomial tests. One such draw disproves "q = 0".
-Evidence inconsistency(const Method&, const Question& question, std::size_t,
-                       std::span<const ChannelData> sides) {
-  const ChannelData& data = sides[0];
-  const auto& draws = dynamic_cast<const ConsistencySetup&>(*question.subjects[0].setup);
-  const std::uint64_t draws_made = sum(data.cells);
-  const std::uint64_t inconsistent = draws_made - data.cells[0];
-  Evidence evidence = from_probability({.seen = {.successes = inconsistent, .trials = draws_made},
-                                        .offset = -question.references[0].value});
+Evidence inconsistency(const Method&, const Seen& seen) {
+  const std::span<const std::uint64_t> counts = seen.data[0].cells;
+  const auto& draws = dynamic_cast<const ConsistencySetup&>(*seen.question.subjects[0].setup);
+  const std::uint64_t draws_made = sum(counts);
+  const std::uint64_t inconsistent = draws_made - counts[0];
+  const double claimed = seen.reference().value;
+  Evidence evidence = from_probability(
+      {.seen = {.successes = inconsistent, .trials = draws_made}, .offset = -claimed});
   evidence.quantity = "probability of an inconsistent draw";
-  if (const double claimed = question.references[0].value; claimed != 0) {
-    evidence.quantity += fmt::format(", less {:g},", claimed);
-  }
+  if (claimed != 0) evidence.quantity += fmt::format(", less {:g},", claimed);
   if (inconsistent > 0) {
-    const auto most = std::max_element(data.cells.begin() + 1, data.cells.end());
-    const auto cell = static_cast<std::size_t>(most - data.cells.begin()) - 1;
+    const auto most = std::max_element(counts.begin() + 1, counts.end());
+    const auto cell = static_cast<std::size_t>(most - counts.begin()) - 1;
     evidence.most_against =
         always(fmt::format("; more in one cell than in any other, {} of them, in {}",
                            per_cent(static_cast<double>(*most) / static_cast<double>(inconsistent)),
@@ -121,7 +118,7 @@ struct CountedProbability {
 /// A probability of a sampler's draws, less the claimed one. It is tested exactly.
 class DrawsTheta : public Theta {
  public:
-  DrawsTheta() : Theta({.of_single_values = true}) {}
+  explicit DrawsTheta(const MethodRow& row) : Theta({.of_single_values = true}, {row}) {}
 
   void check_margin(const Question& question, const Margin& margin) const override {
     require_absolute(margin, "this is a probability");
@@ -131,12 +128,12 @@ class DrawsTheta : public Theta {
 
   /// Draws that show a probability off by `detect`. Exact binomial tests are planned as normal
   /// ones, plus z^2 / room for discreteness.
-  std::optional<std::uint64_t> secondaries(const Question& question, const ErrorShare& share,
-                                           const Pilots&, const Plan& plan) const override {
-    const Regions& regions = plan.regions[0];
+  std::optional<std::uint64_t> secondaries(const TestOutcome& test, const ErrorShare& share,
+                                           const Pilots&) const override {
+    const Regions& regions = test.plan.regions[0];
     const double distance = distance_of(regions);
     if (!(distance > 0)) return std::nullopt;
-    const CountedProbability known = counted(question);
+    const CountedProbability known = counted(test.question);
     const double room = distance - 2 * known.error;
     if (!(room > 0)) return impossible_secondaries;
     const stats::ErrorRates rates = planned_rates(share, regions);
@@ -152,50 +149,63 @@ class DrawsTheta : public Theta {
   }
 
  protected:
+  Question bind_draws(const TestEntry& test, const Estimators& estimators, Draws what) const {
+    const Source& source = test.claim.left.source;
+    const Subject whole = draws(source, estimators, Draws::cells);
+    const std::vector<Channel> channels = whole.setup->channels();
+    if (channels[whole.channels[0]].name != cell_channel) {
+      refuse(source.where, "`integral` and `inconsistency` are about a whole sampler: name `{}.{}`",
+             source.estimator, whole.purpose);
+    }
+    return {.test = &test,
+            .theta = this,
+            .subjects = {draws(source, estimators, what)},
+            .references = {std::get<Constant>(test.claim.right)}};
+  }
   virtual CountedProbability counted(const Question&) const = 0;
 };
 
 class IntegralTheta final : public DrawsTheta {
  public:
-  const std::vector<MethodRow>& methods() const override {
-    static const std::vector<MethodRow> table{{"binomial",
-                                               "exact: what a sampler's density integrates to",
-                                               any_question,
-                                               Keeps::cells,
-                                               integral,
-                                               {.exact = true}}};
-    return table;
+  IntegralTheta()
+      : DrawsTheta({"binomial",
+                    "exact: what a sampler's density integrates to",
+                    any_question,
+                    Keeps::cells,
+                    integral,
+                    {.exact = true}}) {}
+
+  Question bind(const TestEntry& test, const Estimators& estimators) const override {
+    return bind_draws(test, estimators, Draws::cells);
   }
-  void require_density(const Question& question) const override {
-    dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup).density_cells();
-  }
+  void require_density(const Question& question) const override { density_of(question); }
   std::string why_impossible(const Question& question) const override {
-    const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
     return fmt::format(
         "no number of observations would decide this claim: the quadrature of the density is "
         "certain only to {:.1g}, too little for the margin; give a larger one, or let the "
         "sampler's panels() be finer",
-        draws.density_cells().tolerance());
+        density_of(question).tolerance());
   }
 
  protected:
   CountedProbability counted(const Question& question) const override {
-    const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
-    return {.value = question.references[0].value - draws.density_cells().mass.total,
-            .error = draws.density_cells().tolerance()};
+    const DensityCells& cells = density_of(question);
+    return {.value = question.references[0].value - cells.mass.total, .error = cells.tolerance()};
   }
 };
 
 class InconsistencyTheta final : public DrawsTheta {
  public:
-  const std::vector<MethodRow>& methods() const override {
-    static const std::vector<MethodRow> table{{"binomial",
-                                               "exact: how often a draw contradicts its sampler",
-                                               any_question,
-                                               Keeps::cells,
-                                               inconsistency,
-                                               {.exact = true}}};
-    return table;
+  InconsistencyTheta()
+      : DrawsTheta({"binomial",
+                    "exact: how often a draw contradicts its sampler",
+                    any_question,
+                    Keeps::cells,
+                    inconsistency,
+                    {.exact = true}}) {}
+
+  Question bind(const TestEntry& test, const Estimators& estimators) const override {
+    return bind_draws(test, estimators, Draws::consistency);
   }
   std::string where_it_differs(const DrawnTest& test) const override {
     return first_contradiction(test);
@@ -207,38 +217,9 @@ class InconsistencyTheta final : public DrawsTheta {
   }
 };
 
-const IntegralTheta integral_theta;
-const InconsistencyTheta inconsistency_theta;
-
-void require_whole_sampler(const Source& source, const Estimators& estimators) {
-  const Subject marginal = draws(source, estimators, Draws::cells);
-  const std::vector<Channel> channels = marginal.setup->channels();
-  if (channels[marginal.channels[0]].name == cell_channel) return;
-  refuse(source.where, "`integral` and `inconsistency` are about a whole sampler: name `{}.{}`",
-         source.estimator, marginal.purpose);
-}
-
-Question bind_draws(const TestEntry& test, const Estimators& estimators, const Theta& theta,
-                    Draws what) {
-  const Claim& claim = test.claim;
-  require_whole_sampler(claim.left.source, estimators);
-  return {.test = &test,
-          .theta = &theta,
-          .subjects = {draws(claim.left.source, estimators, what)},
-          .references = {std::get<Constant>(claim.right)}};
-}
-
 }  // namespace
 
-Question bind_integral(const TestEntry& test, const Estimators& estimators) {
-  return bind_draws(test, estimators, integral_theta, Draws::cells);
-}
-
-Question bind_inconsistency(const TestEntry& test, const Estimators& estimators) {
-  return bind_draws(test, estimators, inconsistency_theta, Draws::consistency);
-}
-
-const Theta& theta_of_integrals() { return integral_theta; }
-const Theta& theta_of_inconsistencies() { return inconsistency_theta; }
+const Theta& theta_of_integrals() { return one<IntegralTheta>(); }
+const Theta& theta_of_inconsistencies() { return one<InconsistencyTheta>(); }
 
 }  // namespace assay::harness

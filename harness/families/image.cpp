@@ -71,8 +71,7 @@ void require_something(const Question& question) {
                                 [](const Constant& reference) { return reference.value == 0; });
   if (!dark) return;
   const TestEntry& test = *question.test;
-  const bool relative = has_relative_margin(test);
-  if (relative) {
+  if (has_margin(test, true)) {
     throw InputError(test.where,
                      "a margin in per cent has no meaning here: the reference is zero in every "
                      "pixel; give an absolute number");
@@ -183,11 +182,6 @@ bool all_pictured(const Question& question, const Pilots& pilots) {
   });
 }
 
-stats::AnyImageStack stack_of(const ImageViews& views, const stats::ImageExtent& extent) {
-  if (views.single_precision()) return stats::ImageStack<float>{extent, views.images<float>()};
-  return stats::ImageStack<double>{extent, views.images<double>()};
-}
-
 // Standard errors above the estimate of tr C^2: pilots of heavy noise differ.
 constexpr double errors_above = 2;
 
@@ -202,8 +196,9 @@ PlannedImage pilot_image(const stats::ImageStack<Real>& pilot) {
 
 PlannedImage pilot_image(const Subject& subject, const Pilot& pilot) {
   const ImageViews views(pilot.images, subject.channels);
-  return std::visit([](const auto& stack) { return pilot_image(stack); },
-                    stack_of(views, extent_of(*subject.image)));
+  return views.with([&](const auto& images) {
+    return pilot_image(stats::ImageStack{extent_of(*subject.image), images});
+  });
 }
 
 /// The noise of differences, and the brightness of what is subtracted.
@@ -213,20 +208,22 @@ PlannedImage pilot_of_differences(const Question& question, const Pilots& pilots
     data[s].images =
         ImageViews(pilot_at(question, s, pilots).images, question.subjects[s].channels);
   }
-  return with_pair(question, data, [](const auto& pair) {
-    PlannedImage image = pilot_image(pair.first());
-    image.squared_norm = stats::image_squared_mean(*pair.subtracted());
+  return with_pair({question, 0, data}, [](const auto& pair) {
+    PlannedImage image = pilot_image(pair.first);
+    image.squared_norm = stats::image_squared_mean(*pair.subtracted);
     return image;
   });
 }
 
 /// The noise of an observation, and the brightness that margins are relative to. The root of two
 /// sides is at most the sum of theirs.
-PlannedImage planned_image(const Question& question, const Pilots& pilots, const Plan& plan) {
+PlannedImage planned_image(const TestOutcome& test, const Pilots& pilots) {
+  const Question& question = test.question;
+  const std::vector<std::uint64_t>& primaries = test.plan.primaries;
   if (question.is().of_pairs) {
     PlannedImage image = pilot_of_differences(question, pilots);
-    image.trace /= question.subjects[0].averaged(plan.primaries[0]);
-    image.root /= question.subjects[0].averaged(plan.primaries[0]);
+    image.trace /= question.subjects[0].averaged(primaries[0]);
+    image.root /= question.subjects[0].averaged(primaries[0]);
     return image;
   }
   PlannedImage all;
@@ -234,8 +231,8 @@ PlannedImage planned_image(const Question& question, const Pilots& pilots, const
     const Subject& side = question.subjects[s];
     const PlannedImage image = pilot_image(side, pilot_at(question, s, pilots));
     const double square = s == 0 ? 1 : question.factor * question.factor;
-    all.trace += square * image.trace / side.averaged(plan.primaries[s]);
-    all.root += square * image.root / side.averaged(plan.primaries[s]);
+    all.trace += square * image.trace / side.averaged(primaries[s]);
+    all.root += square * image.root / side.averaged(primaries[s]);
     all.squared_norm = square * image.squared_norm;
   }
   return all;
@@ -271,17 +268,10 @@ double squared_unit(const Question& question, const PlannedImage& last) {
 class ImageTheta : public Theta {
  public:
   ImageTheta() : ImageTheta({.joins_channels = true, .of_images = true}) {}
-  explicit ImageTheta(const ThetaTraits& traits) : Theta(traits) {}
-
-  const std::vector<MethodRow>& methods() const override {
-    static const std::vector<MethodRow> table{{"image",
-                                               "cells of every size, and alternating sums: images",
-                                               any_question,
-                                               Keeps::images,
-                                               nullptr,
-                                               {}}};
-    return table;
-  }
+  explicit ImageTheta(const ThetaTraits& traits)
+      : ImageTheta(traits, {"image", "cells of every size, and alternating sums: images",
+                            any_question, Keeps::images, nullptr}) {}
+  ImageTheta(const ThetaTraits& traits, const MethodRow& row) : Theta(traits, {row}) {}
 
   const Theta* of_images() const override { return this; }
   const Theta* of_pairs() const override;
@@ -309,38 +299,42 @@ class ImageTheta : public Theta {
   bool is_relative(const Question& question, std::size_t) const override {
     const TestEntry& test = *question.test;
     const auto lit = [](const Constant& reference) { return reference.value != 0; };
-    return !has_absolute_margin(test) &&
+    return !has_margin(test, false) &&
            (question.of_two() || std::ranges::any_of(question.references, lit));
   }
 
-  std::uint64_t choose(const Question& question, const FamilyPlace&, const Pilots& pilots,
-                       std::uint64_t most, Plan& plan) const override {
-    if (const Pilot* const pilot = pilot_of(question.subjects[0], pilots)) plan.look = pilot->look;
+  std::uint64_t choose(TestOutcome& test, const Pilots& pilots, std::uint64_t most) const override {
+    const Question& question = test.question;
+    if (const Pilot* const pilot = pilot_of(question.subjects[0], pilots)) {
+      test.plan.look = pilot->look;
+    }
     const bool in_looks = has_planned_size(question) && !question.test->secondaries;
     if (!in_looks || !all_pictured(question, pilots)) return stats::least_replicates;
     // Rows have one look, whose size nothing plans.
-    if (!has_rows(question)) plan.image = planned_image(question, pilots, plan);
+    if (!has_rows(question)) test.plan.image = planned_image(test, pilots);
     return std::min<std::uint64_t>(stats::least_replicates, most);
   }
   /// Replicates that exclude `detect` or prove `within` if the images are equal.
-  std::optional<std::uint64_t> secondaries(const Question& question, const ErrorShare& share,
-                                           const Pilots&, const Plan& plan) const override {
-    if (!plan.image) return std::nullopt;
-    const Regions& regions = plan.regions[0];
+  std::optional<std::uint64_t> secondaries(const TestOutcome& test, const ErrorShare& share,
+                                           const Pilots&) const override {
+    const std::optional<PlannedImage>& image = test.plan.image;
+    if (!image) return std::nullopt;
+    const Regions& regions = test.plan.regions[0];
     const double margin = *regions.detect;
-    const double unit = squared_unit(question, *plan.image);
+    const double unit = squared_unit(test.question, *image);
     const double room = (margin * margin - regions.allow * regions.allow) * unit;
     if (!(room > 0)) return impossible_secondaries;
     std::uint64_t count = stats::least_replicates;
     while (count < impossible_secondaries) {
-      if (excluded_square(*plan.image, share.beta, static_cast<double>(count)) <= room) break;
+      if (excluded_square(*image, share.beta, static_cast<double>(count)) <= room) break;
       count += count / 8 + 1;
     }
     return std::min(count, impossible_secondaries);
   }
   std::uint64_t usual_size() const override { return classical_replicates; }
-  std::string too_few(const Question& question, const Plan& plan) const override {
-    const std::uint64_t fewest = fewest_secondaries(question, plan.most_secondaries());
+  std::string too_few(const TestOutcome& test) const override {
+    const Question& question = test.question;
+    const std::uint64_t fewest = fewest_secondaries(question, test.plan.most_secondaries());
     if (fewest >= stats::least_replicates) return "";
     const std::string mend =
         question.test->budget
@@ -356,10 +350,8 @@ class ImageTheta : public Theta {
         fewest, stats::least_replicates, question.subjects[0].channels.size(), mend);
   }
 
-  ChannelEvidence evidence(const DrawnTest& test, std::size_t,
-                           std::span<const ChannelData> data) const override {
-    ImageEvidence found = evidence_of_images(test.outcome.question, image_test(test), data);
-    return {.evidence = std::move(found.evidence), .image = std::move(found.outcome)};
+  ChannelEvidence evidence(const DrawnTest& test, const Seen& seen) const override {
+    return evidence_of_images(seen, image_test(test));
   }
 
   /// Other cells see the same difference in a few pixels, or of both signs, from other sizes on.
@@ -367,7 +359,7 @@ class ImageTheta : public Theta {
   std::string where_it_differs(const DrawnTest& test) const override {
     return means_where_it_differs(test);
   }
-  std::string taken_as_exact(const Question& question) const override {
+  std::string hint(const Question& question) const override {
     const ScaledQuantity* const other = other_side(question.test->claim);
     if (question.of_two() || other == nullptr) return "";
     const bool exact = std::ranges::all_of(
@@ -390,7 +382,7 @@ class BiasImageTheta final : public ImageTheta {
     return reference_text(question) + ImageTheta::circumstances(question);
   }
   bool is_relative(const Question& question, std::size_t) const override {
-    return has_relative_margin(*question.test);
+    return has_margin(*question.test, true);
   }
 };
 
@@ -423,17 +415,14 @@ class ImageLawTheta final : public ImageTheta {
 
  public:
   ImageLawTheta()
-      : ImageTheta({.joins_channels = true, .of_single_values = true, .of_a_law = true}) {}
+      : ImageTheta({.joins_channels = true, .of_single_values = true, .of_a_law = true},
+                   {"permutation",
+                    "permutation of labels: laws of two images",
+                    any_question,
+                    Keeps::images,
+                    nullptr,
+                    {.exact = true}}) {}
 
-  const std::vector<MethodRow>& methods() const override {
-    static const std::vector<MethodRow> table{{"permutation",
-                                               "permutation of labels: laws of two images",
-                                               any_question,
-                                               Keeps::images,
-                                               nullptr,
-                                               {.exact = true}}};
-    return table;
-  }
   const Theta* of_pairs() const override { return nullptr; }
   void check(const Question& question) const override {
     if (!question.of_two()) {
@@ -444,40 +433,33 @@ class ImageLawTheta final : public ImageTheta {
     ImageTheta::check(question);
     require_equal_primaries(question);
   }
-  std::uint64_t choose(const Question& question, const FamilyPlace& place, const Pilots& pilots,
-                       std::uint64_t most, Plan& plan) const override {
-    if (place.share.alpha < least_alpha && plan.invalid.empty()) {
-      plan.invalid = fmt::format(
+  std::uint64_t choose(TestOutcome& test, const Pilots& pilots, std::uint64_t most) const override {
+    const double alpha = test.place.share.alpha;
+    if (alpha < least_alpha && test.plan.invalid.empty()) {
+      test.plan.invalid = fmt::format(
           "its share of alpha is {:.2g}, for which 1 / alpha labels would be drawn, and a test of "
           "laws takes a share of {:g} or more: give it more `weight`, or the suite a larger "
           "`alpha`",
-          place.share.alpha, least_alpha);
+          alpha, least_alpha);
     }
-    return ImageTheta::choose(question, place, pilots, most, plan);
+    return ImageTheta::choose(test, pilots, most);
   }
   void check_margin(const Question&, const Margin& margin) const override {
     throw InputError(margin.where,
                      "laws of images are the same or not: no margin has a meaning here; leave it "
                      "out");
   }
-  ChannelEvidence evidence(const DrawnTest& test, std::size_t,
-                           std::span<const ChannelData> data) const override {
-    ImageEvidence found = evidence_of_image_laws(test.outcome.question, image_test(test), data);
-    return {.evidence = std::move(found.evidence), .image = std::move(found.outcome)};
+  ChannelEvidence evidence(const DrawnTest& test, const Seen& seen) const override {
+    return evidence_of_image_laws(seen, image_test(test));
   }
 };
 
-const ImageLawTheta image_law_theta;
-const PairedImageTheta paired_image_theta;
-const ImageTheta image_theta;
-const BiasImageTheta bias_image_theta;
+const Theta* ImageTheta::of_pairs() const { return &one<PairedImageTheta>(); }
 
 }  // namespace
 
-const Theta* ImageTheta::of_pairs() const { return &paired_image_theta; }
-
-const Theta& theta_of_images() { return image_theta; }
-const Theta& theta_of_image_laws() { return image_law_theta; }
-const Theta& theta_of_bias_images() { return bias_image_theta; }
+const Theta& theta_of_images() { return one<ImageTheta>(); }
+const Theta& theta_of_image_laws() { return one<ImageLawTheta>(); }
+const Theta& theta_of_bias_images() { return one<BiasImageTheta>(); }
 
 }  // namespace assay::harness

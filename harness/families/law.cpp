@@ -241,16 +241,14 @@ std::string pool_text(const std::vector<std::size_t>& members,
                      describe(members.front()));
 }
 
-std::string worst_of(const stats::ChiSquareFit& fit, const SamplerSetup& draws) {
+std::string worst_of(const stats::ChiSquareFit& fit, const DrawCells& cells) {
   const auto part = [](const stats::PooledCell& cell) {
     const double difference = static_cast<double>(cell.observed) - cell.expected;
     return difference * difference / cell.expected;
   };
   const auto worst = std::ranges::max_element(
       fit.cells, [&](const auto& a, const auto& b) { return part(a) < part(b); });
-  const auto describe = [&](std::size_t cell) {
-    return draws.density_cells().cells.describe(cell);
-  };
+  const auto describe = [&](std::size_t cell) { return cells.describe(cell); };
   std::string text;
   if (fit.impossible > 0) text = fmt::format("; {} draws where the density is 0", fit.impossible);
   return text + fmt::format("; farthest off in {}, {} draws where {:.4g} are expected",
@@ -259,13 +257,17 @@ std::string worst_of(const stats::ChiSquareFit& fit, const SamplerSetup& draws) 
 
 }  // namespace
 
-Points points_of(const Question& question, std::size_t subject, std::size_t channel,
-                 std::span<const double> values) {
+const DensityCells& density_of(const Question& question) {
+  return dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup).density_cells();
+}
+
+Points points_of(const Seen& seen, std::size_t subject) {
+  const std::span<const double> values = seen.data[subject].values;
   Points points{.sorted = {values.begin(), values.end()}, .draws = values.size()};
-  const Subject& side = question.subjects[subject];
+  const Subject& side = seen.question.subjects[subject];
   if (const auto* draws = dynamic_cast<const SamplerSetup*>(side.setup.get())) {
     points.of_a_sampler = true;
-    std::erase(points.sorted, no_point(draws->marginals()[side.channels[channel]]));
+    std::erase(points.sorted, no_point(draws->marginals()[side.channels[seen.channel]]));
   }
   points.sorted = stats::sorted(std::move(points.sorted));
   return points;
@@ -307,12 +309,13 @@ Evidence points_against_points(const Points& x, const Points& y) {
   return larger_of(rest, {from_proportions(x, y), masses_without_a_point});
 }
 
-std::vector<std::uint64_t> counts_in(const stats::SampledCells& cells, const Subject& side,
-                                     const ChannelData& data) {
+std::vector<std::uint64_t> counts_in(const stats::SampledCells& cells, const Seen& seen,
+                                     std::size_t subject) {
+  const ChannelData& data = seen.data[subject];
   std::vector<std::uint64_t> counts(cells.size() + 1);
   const std::span<const double> first = data.all_values[0];
   const bool plane = data.all_values.size() > 1;
-  const std::optional<double> none = no_point_of(side);
+  const std::optional<double> none = no_point_of(seen.question.subjects[subject]);
   for (std::size_t i = 0; i < first.size(); ++i) {
     const bool point = first[i] != none;
     ++counts[point ? cells.index({first[i], plane ? data.all_values[1][i] : 0}) : cells.size()];
@@ -323,17 +326,15 @@ std::vector<std::uint64_t> counts_in(const stats::SampledCells& cells, const Sub
 namespace {
 
 /// A sampler's draws against its declared density.
-Evidence cells_against_density(const Method&, const Question& question, std::size_t,
-                               std::span<const ChannelData> data) {
-  const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
-  const stats::CellProbabilities& mass = draws.density_cells().mass;
-  stats::CellCounts counts{.observed = draws.density_cells().in_cells(data[0].cells),
-                           .probability = mass.probability,
-                           .error = mass.error};
-  counts.probability.push_back(draws.density_cells().missing());
-  counts.error.push_back(mass.total_error);
+Evidence cells_against_density(const Method&, const Seen& seen) {
+  const DensityCells& density = density_of(seen.question);
+  stats::CellCounts counts{.observed = density.in_cells(seen.data[0].cells),
+                           .probability = density.mass.probability,
+                           .error = density.mass.error};
+  counts.probability.push_back(density.missing());
+  counts.error.push_back(density.mass.total_error);
   const stats::ChiSquareFit fit =
-      stats::chi_square_fit(counts, {.probability_tolerance = draws.density_cells().tolerance()});
+      stats::chi_square_fit(counts, {.probability_tolerance = density.tolerance()});
   const auto at = [fit](double theta) {
     return theta == 0 ? fit.test : stats::chi_square_fit_effect(fit, std::max(0.0, theta));
   };
@@ -343,20 +344,18 @@ Evidence cells_against_density(const Method&, const Question& question, std::siz
   return {.estimate = fit.effect,
           .at = at,
           .interval = interval,
-          .most_against = always(worst_of(fit, draws)),
+          .most_against = always(worst_of(fit, density.cells)),
           .quantity = effect_over_cells,
           .distance = true};
 }
 
 /// Two samples against each other in the method's cells. One more cell counts draws without a
 /// point. Throws std::domain_error if there are no cells.
-Evidence cells_against_cells(const Method& method, const Question& question, std::size_t,
-                             std::span<const ChannelData> data) {
+Evidence cells_against_cells(const Method& method, const Seen& seen) {
   if (!method.frozen.cells) throw std::domain_error("the pilots gave no cells to count in");
   const stats::SampledCells& cells = *method.frozen.cells;
-  const stats::ChiSquareTwoSample fit =
-      stats::chi_square_two_sample({.x = counts_in(cells, question.subjects[0], data[0]),
-                                    .y = counts_in(cells, question.subjects[1], data[1])});
+  const stats::ChiSquareTwoSample fit = stats::chi_square_two_sample(
+      {.x = counts_in(cells, seen, 0), .y = counts_in(cells, seen, 1)});
   const auto at = [fit](double theta) {
     return theta <= 0 ? fit.test : stats::chi_square_effect(fit.statistic, theta);
   };
@@ -364,7 +363,8 @@ Evidence cells_against_cells(const Method& method, const Question& question, std
     return stats::chi_square_effect_interval(fit.statistic, confidence);
   };
   const stats::PooledPair& worst = farthest(fit);
-  const auto place = [&](std::size_t cell) { return describe(cells, question.subjects[0], cell); };
+  const Subject& first = seen.question.subjects[0];
+  const auto place = [&](std::size_t cell) { return describe(cells, first, cell); };
   return {.estimate = fit.statistic.effect(),
           .at = at,
           .interval = interval,
@@ -374,16 +374,12 @@ Evidence cells_against_cells(const Method& method, const Question& question, std
           .distance = true};
 }
 
-Evidence law_against_law(const Method&, const Question& question, std::size_t channel,
-                         std::span<const ChannelData> data) {
-  return points_against_points(points_of(question, 0, channel, data[0].values),
-                               points_of(question, 1, channel, data[1].values));
+Evidence law_against_law(const Method&, const Seen& seen) {
+  return points_against_points(points_of(seen, 0), points_of(seen, 1));
 }
 
-Evidence values_against_law(const Method&, const Question& question, std::size_t channel,
-                            std::span<const ChannelData> data) {
-  return points_against_law(points_of(question, 0, channel, data[0].values),
-                            declared_law(question, channel));
+Evidence values_against_law(const Method&, const Seen& seen) {
+  return points_against_law(points_of(seen, 0), declared_law(seen.question, seen.channel));
 }
 
 /// True if a sampler's draws are tested against its density in cells of all coordinates.
@@ -398,11 +394,11 @@ stats::ErrorRates rates_of(const ErrorShare& share) {
   return {.alpha = share.alpha, .beta = share.beta, .two_sided = false};
 }
 
-stats::DistancePlan distance_plan(const Question& question, const ErrorShare& share, double allow,
+stats::DistancePlan distance_plan(const TestOutcome& test, const ErrorShare& share,
                                   double allocation = 1) {
-  return {.two_samples = question.of_two(),
+  return {.two_samples = test.question.of_two(),
           .allocation = allocation,
-          .allow = allow,
+          .allow = test.plan.regions[0].allow,
           .rates = rates_of(share)};
 }
 
@@ -412,35 +408,31 @@ bool in_cells(const Plan& plan) {
 }
 
 /// Degrees of freedom at so many observations. Cells that expect too few are pooled.
-double degrees_of_freedom(const Question& question, const Plan& plan, double observations) {
+double degrees_of_freedom(const TestOutcome& test, double observations) {
   // Draws without a point are one more cell, so none is subtracted.
-  if (plan.method.frozen.cells) return static_cast<double>(plan.method.frozen.cells->size());
-  const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
+  if (const auto& cells = test.plan.method.frozen.cells) return static_cast<double>(cells->size());
+  const DensityCells& density = density_of(test.question);
   const double least = stats::FitOptions{}.minimum_expected;
   double pools = 0;
-  for (const double p : draws.density_cells().mass.probability) {
-    pools += std::min(1.0, observations * p / least);
-  }
-  pools += std::min(1.0, observations * draws.density_cells().missing() / least);
+  for (const double p : density.mass.probability) pools += std::min(1.0, observations * p / least);
+  pools += std::min(1.0, observations * density.missing() / least);
   return std::max(1.0, pools - 1);
 }
 
-stats::FitPlan fit_plan(const Question& question, const Plan& plan, const ErrorShare& share,
-                        double observations) {
-  return {.degrees_of_freedom = degrees_of_freedom(question, plan, observations),
-          .allow = plan.regions[0].allow,
+stats::FitPlan fit_plan(const TestOutcome& test, const ErrorShare& share, double observations) {
+  return {.degrees_of_freedom = degrees_of_freedom(test, observations),
+          .allow = test.plan.regions[0].allow,
           .rates = rates_of(share)};
 }
 
 /// Fewer observations fill fewer pools, which need fewer observations. Each round's number is
 /// enough; four rounds save nearly all.
-std::optional<std::uint64_t> fit_secondaries(const Question& question, const ErrorShare& share,
-                                             const Plan& plan) {
+std::optional<std::uint64_t> fit_secondaries(const TestOutcome& test, const ErrorShare& share) {
   double observations = std::numeric_limits<double>::max();
   std::optional<std::uint64_t> enough;
   for (int round = 0; round < 4; ++round) {
-    const auto found = stats::chi_square_fit_sample_size(
-        fit_plan(question, plan, share, observations), *plan.regions[0].detect);
+    const auto found = stats::chi_square_fit_sample_size(fit_plan(test, share, observations),
+                                                         *test.plan.regions[0].detect);
     if (!found) return enough;
     enough = found;
     observations = static_cast<double>(*found);
@@ -451,9 +443,9 @@ std::optional<std::uint64_t> fit_secondaries(const Question& question, const Err
 /// Observations of each side worth one of a single sample, by m n / (m + n).
 std::uint64_t sides(const Question& question) { return question.of_two() ? 2 : 1; }
 
-double worth(const Question& question, const TestSize& size) {
-  const stats::SampleSizes sizes = sizes_of(question, size.secondaries);
-  return question.of_two() ? sizes.x / (1 + sizes.x / sizes.y) : sizes.x;
+double worth(const Sized& sized) {
+  const stats::SampleSizes sizes = sized.sizes();
+  return sized.test.question.of_two() ? sizes.x / (1 + sizes.x / sizes.y) : sizes.x;
 }
 
 bool of_one_law(const Question& question) {
@@ -464,30 +456,28 @@ bool of_one_law(const Question& question) {
 /// over cells.
 class LawTheta : public Theta {
  public:
-  using Theta::Theta;
+  explicit LawTheta(const ThetaTraits& traits)
+      : Theta(traits,
+              {{"ks",
+                "Kolmogorov-Smirnov: values against a law",
+                of_one_law,
+                Keeps::values,
+                values_against_law,
+                {.of_distinct_values = true}},
+               {"ks", "Kolmogorov-Smirnov: values of two, a frequent one apart",
+                [](const Question& q) { return q.of_two() && !q.is().joins_channels; },
+                Keeps::values, law_against_law},
+               {"chi-square-two-sample",
+                "chi-square of two: one or two coordinates together, in cells",
+                of_two,
+                Keeps::points,
+                cells_against_cells,
+                {.joins_channels = true, .cells_of_pilots = true}},
+               {"chi-square-fit", "chi-square: draws against their declared density, in cells",
+                [](const Question& q) { return !q.of_two() && !of_one_law(q); }, Keeps::cells,
+                cells_against_density}}) {}
 
-  const std::vector<MethodRow>& methods() const override {
-    static const std::vector<MethodRow> table{
-        {"ks",
-         "Kolmogorov-Smirnov: values against a law",
-         of_one_law,
-         Keeps::values,
-         values_against_law,
-         {.of_distinct_values = true}},
-        {"ks", "Kolmogorov-Smirnov: values of two, a frequent one apart",
-         [](const Question& q) { return q.of_two() && !q.is().joins_channels; }, Keeps::values,
-         law_against_law},
-        {"chi-square-two-sample",
-         "chi-square of two: one or two coordinates together, in cells",
-         [](const Question& q) { return q.of_two(); },
-         Keeps::points,
-         cells_against_cells,
-         {.joins_channels = true, .cells_of_pilots = true}},
-        {"chi-square-fit", "chi-square: draws against their declared density, in cells",
-         [](const Question& q) { return !q.of_two() && q.law.name.empty() && of_whole_draws(q); },
-         Keeps::cells, cells_against_density}};
-    return table;
-  }
+  Question bind(const TestEntry& test, const Estimators& estimators) const override;
   const Theta* of_images() const override { return &theta_of_image_laws(); }
 
   std::string channel_name(const Question& question, std::size_t channel) const override {
@@ -503,109 +493,99 @@ class LawTheta : public Theta {
     Theta::check_margin(question, margin);
   }
 
-  std::uint64_t choose(const Question& question, const FamilyPlace&, const Pilots& pilots,
-                       std::uint64_t, Plan& plan) const override {
-    freeze(question, pilots, plan);
+  std::uint64_t choose(TestOutcome& test, const Pilots& pilots, std::uint64_t) const override {
+    freeze(test, pilots);
     return least_secondaries;
   }
 
   /// Counts in cells are planned by the noncentral chi-square, distances by Hoeffding's bound.
-  std::optional<std::uint64_t> secondaries(const Question& question, const ErrorShare& share,
-                                           const Pilots&, const Plan& plan) const override {
-    const Regions& regions = plan.regions[0];
+  std::optional<std::uint64_t> secondaries(const TestOutcome& test, const ErrorShare& share,
+                                           const Pilots&) const override {
+    const Regions& regions = test.plan.regions[0];
     if (!regions.detect) return std::nullopt;
-    if (in_cells(plan)) {
-      const auto alone = fit_secondaries(question, share, plan);
-      return alone ? sides(question) * *alone : impossible_secondaries;
+    if (in_cells(test.plan)) {
+      const auto alone = fit_secondaries(test, share);
+      return alone ? sides(test.question) * *alone : impossible_secondaries;
     }
-    return stats::ks_sample_size(distance_plan(question, share, regions.allow), *regions.detect);
+    return stats::ks_sample_size(distance_plan(test, share), *regions.detect);
   }
 
-  std::optional<double> detectable(const Question& question, const TestSize& size, const Plan& plan,
-                                   const PlannedChannel&) const override {
-    if (in_cells(plan)) {
-      const double observations = worth(question, size);
-      return stats::chi_square_fit_detectable(fit_plan(question, plan, size.share, observations),
+  std::optional<double> detectable(const Sized& sized) const override {
+    const auto& [test, size, channel] = sized;
+    if (in_cells(test.plan)) {
+      const double observations = worth(sized);
+      return stats::chi_square_fit_detectable(fit_plan(test, size.share, observations),
                                               observations);
     }
-    const stats::SampleSizes sizes = sizes_of(question, size.secondaries);
-    return stats::ks_detectable(
-        distance_plan(question, size.share, plan.regions[0].allow, sizes.y / sizes.x), sizes.x);
+    const stats::SampleSizes sizes = sized.sizes();
+    return stats::ks_detectable(distance_plan(test, size.share, sizes.y / sizes.x), sizes.x);
   }
 
   /// The probability, or a lower bound of it.
-  std::optional<double> power(const Question& question, const TestSize& size, const Plan& plan,
-                              const PlannedChannel&, double effect) const override {
-    if (in_cells(plan)) {
-      const double observations = worth(question, size);
-      return stats::chi_square_fit_power(fit_plan(question, plan, size.share, observations),
-                                         observations, effect);
+  std::optional<double> power(const Sized& sized, double effect) const override {
+    const auto& [test, size, channel] = sized;
+    if (in_cells(test.plan)) {
+      const double observations = worth(sized);
+      return stats::chi_square_fit_power(fit_plan(test, size.share, observations), observations,
+                                         effect);
     }
-    const stats::SampleSizes sizes = sizes_of(question, size.secondaries);
-    return stats::ks_power_bound(
-        distance_plan(question, size.share, plan.regions[0].allow, sizes.y / sizes.x), sizes.x,
-        effect);
+    const stats::SampleSizes sizes = sized.sizes();
+    return stats::ks_power_bound(distance_plan(test, size.share, sizes.y / sizes.x), sizes.x,
+                                 effect);
   }
 
   /// Judges the rows of a file: coarsely rounded values break the level of a fit.
-  std::vector<Gate> gates(const TestOutcome& outcome, std::size_t channel,
-                          std::span<const ChannelData> data, double) const override {
-    const Question& question = outcome.question;
-    if (!has_rows(question) || question.of_two() || !outcome.plan.method.is.of_distinct_values ||
-        data[0].values.size() < 2) {
+  std::vector<Gate> gates(const TestOutcome& outcome, const Seen& seen, double) const override {
+    const std::span<const double> values = seen.data[0].values;
+    if (!has_rows(seen.question) || seen.question.of_two() ||
+        !outcome.plan.method.is.of_distinct_values || values.size() < 2) {
       return {};
     }
-    const std::vector<double> sorted =
-        stats::sorted({data[0].values.begin(), data[0].values.end()});
+    const std::vector<double> sorted = stats::sorted({values.begin(), values.end()});
     return {gate_of(stats::quantisation_gate(sorted, outcome.share().alpha),
-                    channel_suffix(question, channel))};
+                    channel_suffix(seen.question, seen.channel))};
   }
 };
 
 /// A sampler's draws against its declared density.
 class DensityTheta final : public LawTheta {
  public:
-  using LawTheta::LawTheta;
+  DensityTheta() : LawTheta({.of_single_values = true, .of_a_law = true}) {}
 
   /// One draw where the density is 0 refutes the claim, whatever its margins.
-  std::optional<ConstantVerdict> settled(const Question& question, std::size_t,
-                                         std::span<const ChannelData> data, const Regions&,
-                                         const ErrorShare&) const override {
-    if (!of_whole_draws(question)) return std::nullopt;
-    const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
-    const auto counts = draws.density_cells().impossible(data[0].cells);
+  std::optional<ConstantVerdict> settled(const Seen& seen, const Regions&) const override {
+    if (!of_whole_draws(seen.question)) return std::nullopt;
+    const DensityCells& density = density_of(seen.question);
+    const auto counts = density.impossible(seen.data[0].cells);
     const std::uint64_t all = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
     if (all == 0) return std::nullopt;
     const auto most = static_cast<std::size_t>(std::ranges::max_element(counts) - counts.begin());
-    return ConstantVerdict{reports::Verdict::fail,
-                           fmt::format("{} of {} draws lie where the declared density is 0, {} of "
-                                       "them in {}: no sampler of this density draws there",
-                                       all, data[0].moments.count, counts[most],
-                                       draws.density_cells().cells.describe(most))};
+    return ConstantVerdict{
+        reports::Verdict::fail,
+        fmt::format("{} of {} draws lie where the declared density is 0, {} of "
+                    "them in {}: no sampler of this density draws there",
+                    all, seen.moments(0).count, counts[most], density.cells.describe(most))};
   }
 
   std::string claimed_value(const Question&, std::size_t) const override {
     return "its declared density";
   }
 
-  void require_density(const Question& question) const override {
-    dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup).density_cells();
-  }
+  void require_density(const Question& question) const override { density_of(question); }
 
   /// No sampler can follow a density whose integral exceeds 1.
   std::optional<ConstantVerdict> settled_beforehand(const Question& question) const override {
-    const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
-    const double total = draws.density_cells().mass.total;
-    if (total - 1 <= draws.density_cells().tolerance()) return std::nullopt;
+    const DensityCells& density = density_of(question);
+    const double total = density.mass.total;
+    if (total - 1 <= density.tolerance()) return std::nullopt;
     return ConstantVerdict{
         reports::Verdict::fail,
         fmt::format("the declared density integrates to {:.6g} over its domain (quadrature error "
                     "{:.1g}): more than 1, so no sampler can follow it",
-                    total, draws.density_cells().tolerance())};
+                    total, density.tolerance())};
   }
 };
 
-const DensityTheta density_theta({.of_single_values = true, .of_a_law = true});
 /// Values against a law's distribution function, or of two subjects.
 const LawTheta values_theta({.of_single_values = true, .of_a_law = true});
 /// All channels together, in cells.
@@ -654,7 +634,7 @@ void require_same_marginals(const Question& question, const Location& where) {
 
 }  // namespace
 
-Question bind_distribution(const TestEntry& test, const Estimators& estimators) {
+Question LawTheta::bind(const TestEntry& test, const Estimators& estimators) const {
   const Claim& claim = test.claim;
   const Source& source = claim.left.source;
   if (const auto* other = std::get_if<ScaledQuantity>(&claim.right)) {
@@ -670,13 +650,13 @@ Question bind_distribution(const TestEntry& test, const Estimators& estimators) 
   const Law& law = std::get<Law>(claim.right);
   if (law.name == "density") {
     return {.test = &test,
-            .theta = &density_theta,
+            .theta = &theta_of_laws(),
             .subjects = {draws(source, estimators, Draws::cells)}};
   }
   return {
       .test = &test, .theta = &values_theta, .subjects = {values(source, estimators)}, .law = law};
 }
 
-const Theta& theta_of_laws() { return density_theta; }
+const Theta& theta_of_laws() { return one<DensityTheta>(); }
 
 }  // namespace assay::harness

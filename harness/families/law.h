@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "harness/draws/declared_density.h"
 #include "harness/question/question.h"
 #include "harness/theta/evidence.h"
 #include "harness/theta/methods.h"
@@ -24,8 +25,10 @@ struct Points {
   std::uint64_t missing() const { return draws - sorted.size(); }
 };
 
-Points points_of(const Question& question, std::size_t subject, std::size_t channel,
-                 std::span<const double> values);
+Points points_of(const Seen& seen, std::size_t subject);
+
+/// The cells of a sampler's declared density, of a claim about its draws.
+const DensityCells& density_of(const Question& question);
 
 /// The law that points are held against. A table's distance to the law is at most `error`. So
 /// "theta is at most" is tested with D - error, "theta is at least" with D + error.
@@ -52,7 +55,7 @@ Evidence points_against_points(const Points& x, const Points& y);
 // Evidence about laws from counts in cells. theta = w, Cohen's effect size over the cells.
 
 /// Counts of one side's values in each cell. The last number counts draws without a point.
-std::vector<std::uint64_t> counts_in(const stats::SampledCells& cells, const Subject& side,
-                                     const ChannelData& data);
+std::vector<std::uint64_t> counts_in(const stats::SampledCells& cells, const Seen& seen,
+                                     std::size_t subject);
 
 }  // namespace assay::harness

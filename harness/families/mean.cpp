@@ -146,10 +146,9 @@ constexpr MeanTest by_corrected_t{corrected_of_one, corrected_of_two};
 constexpr MeanTest by_counts{binomial_of_one, binomial_of_two};
 constexpr MeanTest by_bets{bets_of_one, bets_of_two};
 
-Side side_of(const Question& question, std::size_t channel, std::span<const ChannelData> data,
-             std::size_t subject) {
-  return {data[subject], range_of(question, subject, channel, data[subject].moments),
-          rounding_of(question, subject, channel)};
+Side side_of(const Seen& seen, std::size_t subject) {
+  return {seen.data[subject], range_of(seen.question, subject, seen.channel, seen.moments(subject)),
+          rounding_of(seen.question, subject, seen.channel)};
 }
 
 /// A first step from an estimate of theta. Without a spread it is what one more value could add.
@@ -234,14 +233,14 @@ Evidence ratio_of_means(const MeanTest& mean, const Question& question, const Si
           .relative = true};
 }
 
-Evidence mean_against_number(const MeanTest& mean, const Question& question, std::size_t channel,
-                             const Side& side) {
+Evidence mean_against_number(const MeanTest& mean, const Seen& seen) {
+  const Side side = side_of(seen, 0);
   const Moments x = side.data.moments;
-  const Constant& reference = question.references[channel];
-  const bool relative = question.theta->is_relative(question, channel);
+  const Constant& reference = seen.reference();
+  const bool relative = seen.relative();
   const double unit = relative ? std::abs(reference.value) : 1;
   const double slope = relative ? std::copysign(1, reference.value) : 0;
-  const double null = reference.value + question.offset;
+  const double null = reference.value + seen.question.offset;
   const double estimate = x.mean_less(null) / unit;
   const OneMeanTest test = mean.of_one(side);
   const auto at = [=](double theta) {
@@ -267,13 +266,10 @@ Evidence mean_against_number(const MeanTest& mean, const Question& question, std
 
 /// Theta's evidence by this test, with x and y the sides of the claim.
 template <const MeanTest& mean>
-Evidence evidence_of_means(const Method&, const Question& question, std::size_t channel,
-                           std::span<const ChannelData> data) {
-  const Side x = side_of(question, channel, data, 0);
-  if (!question.of_two()) return mean_against_number(mean, question, channel, x);
-  const Side y = side_of(question, channel, data, 1);
-  return question.theta->is_relative(question, channel) ? ratio_of_means(mean, question, x, y)
-                                                        : difference_of_means(mean, question, x, y);
+Evidence evidence_of_means(const Method&, const Seen& seen) {
+  if (!seen.question.of_two()) return mean_against_number(mean, seen);
+  return (seen.relative() ? ratio_of_means : difference_of_means)(
+      mean, seen.question, side_of(seen, 0), side_of(seen, 1));
 }
 
 // A shift of so many standard errors moves a tail of one per cent by a third at most.
@@ -285,22 +281,22 @@ struct RoundedPart {
   double standard_error = 0;
 };
 
-RoundedPart part_of(const Question& question, std::size_t subject, const ChannelData& data) {
-  if (data.moments.count < 2) return {};
-  const double factor = subject == 0 ? 1 : std::abs(question.factor);
-  return {.rounding = factor * stats::rounding_of_mean(data.moments),
-          .standard_error = factor * data.moments.standard_error()};
+RoundedPart part_of(const Seen& seen, std::size_t subject) {
+  const Moments& moments = seen.moments(subject);
+  if (moments.count < 2) return {};
+  const double factor = subject == 0 ? 1 : std::abs(seen.question.factor);
+  return {.rounding = factor * stats::rounding_of_mean(moments),
+          .standard_error = factor * moments.standard_error()};
 }
 
 /// Why means cannot be compared: rounding adds more than the tolerated shift; "" if it adds less.
-std::string lost_to_rounding(const Question& question, std::size_t channel,
-                             std::span<const ChannelData> data) {
+std::string lost_to_rounding(const Seen& seen) {
   std::size_t worst = 0;
   double most = 0;
   double rounding = 0;
-  double error = question.of_two() ? 0 : question.references[channel].standard_error;
-  for (std::size_t subject = 0; subject < data.size(); ++subject) {
-    const RoundedPart part = part_of(question, subject, data[subject]);
+  double error = seen.question.of_two() ? 0 : seen.reference().standard_error;
+  for (std::size_t subject = 0; subject < seen.data.size(); ++subject) {
+    const RoundedPart part = part_of(seen, subject);
     if (part.rounding > most) worst = subject;
     most = std::max(most, part.rounding);
     rounding = std::hypot(rounding, part.rounding);
@@ -311,7 +307,7 @@ std::string lost_to_rounding(const Question& question, std::size_t channel,
       "the mean of `{}` is {:.6g}: numbers of that size are rounded so coarsely that their mean is "
       "off by about {:.2g} where the standard error is {:.2g}; take a constant near the mean off "
       "the observations",
-      question.subjects[worst].estimator->name, data[worst].moments.mean, rounding, error);
+      seen.question.subjects[worst].estimator->name, seen.moments(worst).mean, rounding, error);
 }
 
 // ---- Binding
@@ -395,30 +391,29 @@ double size_of_the_spread(const stats::SampleSizes& sizes, const PlannedChannel&
   return channel.standard_deviation > 0 ? sizes.x : sizes.y;
 }
 
-stats::MeanPlan mean_plan(const stats::ErrorRates& rates, double allow,
-                          const PlannedChannel& channel) {
+stats::MeanPlan mean_plan(const stats::ErrorRates& rates, const PlannedChannel& channel) {
   return {.standard_deviation = std::hypot(channel.standard_deviation, channel.other_deviation),
-          .allow = allow * channel.unit,
+          .allow = channel.regions.allow * channel.unit,
           .reference_standard_error = channel.reference_error,
           .rates = rates};
 }
 
-stats::TwoMeansPlan means_plan(const stats::ErrorRates& rates, double allow,
-                               const PlannedChannel& channel, double allocation = 1) {
+stats::TwoMeansPlan means_plan(const stats::ErrorRates& rates, const PlannedChannel& channel,
+                               double allocation = 1) {
   return {.standard_deviation_x = channel.standard_deviation,
           .standard_deviation_y = channel.other_deviation,
           .allocation = allocation,
-          .allow = allow * channel.unit,
+          .allow = channel.regions.allow * channel.unit,
           .rates = rates};
 }
 
 std::optional<std::uint64_t> for_means(const Question& question, const stats::ErrorRates& rates,
-                                       const Regions& regions, const PlannedChannel& channel) {
-  const double detect = *regions.detect * channel.unit;
+                                       const PlannedChannel& channel) {
+  const double detect = *channel.regions.detect * channel.unit;
   if (both_spread(question, channel)) {
-    return stats::welch_sample_size(means_plan(rates, regions.allow, channel), detect);
+    return stats::welch_sample_size(means_plan(rates, channel), detect);
   }
-  return stats::student_t_sample_size(mean_plan(rates, regions.allow, channel), detect);
+  return stats::student_t_sample_size(mean_plan(rates, channel), detect);
 }
 
 /// Both one-sided tests at beta must reject when theta = 0, each missing with beta / 2.
@@ -445,10 +440,11 @@ std::vector<int> sides_of(const Regions& regions) {
   return {regions.bounds_above() != regions.proof() ? 1 : -1};
 }
 
-bool is_quoted(const Question& question, const Plan& plan, const PlannedChannel& channel) {
-  return plan.method.is.plans != nullptr && !question.of_two() &&
-         channel.regions.relation != Relation::within &&
-         (!plan.method.is.in_range || channel.law) && channel.range.low < channel.range.high;
+bool is_quoted(const Sized& sized) {
+  const MethodTraits& method = sized.test.plan.method.is;
+  const PlannedChannel& channel = sized.channel;
+  return method.plans != nullptr && !sized.test.question.of_two() && !channel.regions.within() &&
+         (!method.in_range || channel.law) && channel.range.low < channel.range.high;
 }
 
 stats::ExactMeanPlan plan_of(const PlannedChannel& channel, const stats::ErrorRates& rates) {
@@ -474,41 +470,39 @@ std::optional<std::uint64_t> exact_size(const stats::ExactPlanning& plans,
   return std::max(*rejects, plans.sample_size(forbidden, edge - effect).value_or(0));
 }
 
-std::optional<std::uint64_t> exact_secondaries(const Question& question, const Plan& plan,
+std::optional<std::uint64_t> exact_secondaries(const TestOutcome& test,
                                                const PlannedChannel& channel,
                                                const stats::ErrorRates& rates) {
+  const stats::ExactPlanning& plans = *test.plan.method.is.plans;
   const double detect = channel.regions.detect.value_or(0) * channel.unit;
-  if (question.of_two()) {
-    const auto welch =
-        stats::welch_sample_size(means_plan(rates, channel.regions.allow, channel), detect);
+  if (test.question.of_two()) {
+    const auto welch = stats::welch_sample_size(means_plan(rates, channel), detect);
     if (!welch) return std::nullopt;
     return static_cast<std::uint64_t>(std::ceil(two_sample_cost * static_cast<double>(*welch)));
   }
   std::uint64_t most = 0;
   for (const int side : sides_of(channel.regions)) {
     const stats::ExactMeanPlan claimed = plan_of(channel, rates);
-    const auto count = channel.regions.proof()
-                           ? plan.method.is.plans->sample_size(claimed, side * detect)
-                           : exact_size(*plan.method.is.plans, claimed, side * detect);
+    const auto count = channel.regions.proof() ? plans.sample_size(claimed, side * detect)
+                                               : exact_size(plans, claimed, side * detect);
     if (!count) return std::nullopt;
     most = std::max(most, *count);
   }
   return most;
 }
 
-std::optional<std::uint64_t> exact_equivalence_secondaries(const Question& question,
-                                                           const Plan& plan,
+/// At each margin theta = 0 is the effect to be found, with half of the misses.
+std::optional<std::uint64_t> exact_equivalence_secondaries(const TestOutcome& test,
                                                            const PlannedChannel& channel,
-                                                           const ErrorShare& share) {
-  // At each margin theta = 0 is the effect to be found, with half of the misses.
-  const stats::ErrorRates rates = planned_rates(share, channel.regions);
-  if (question.of_two()) return exact_secondaries(question, plan, channel, rates);
+                                                           const stats::ErrorRates& rates) {
+  if (test.question.of_two()) return exact_secondaries(test, channel, rates);
   PlannedChannel at_margin = channel;
   const double margin = *channel.regions.detect * channel.unit;
   std::uint64_t most = 0;
   for (const int side : {1, -1}) {
     at_margin.null_value = channel.null_value + side * margin;
-    const auto count = plan.method.is.plans->sample_size(plan_of(at_margin, rates), -side * margin);
+    const auto count =
+        test.plan.method.is.plans->sample_size(plan_of(at_margin, rates), -side * margin);
     if (!count) return std::nullopt;
     most = std::max(most, *count);
   }
@@ -518,8 +512,8 @@ std::optional<std::uint64_t> exact_equivalence_secondaries(const Question& quest
 // ---- The choice of a method
 
 /// True if every known value is one of the two ends of its range.
-bool are_two_valued(const Question& question, const std::vector<Known>& channels,
-                    const Plan& plan) {
+bool are_two_valued(const TestOutcome& test, const std::vector<Known>& channels) {
+  const Question& question = test.question;
   if (question.of_two() && question.factor <= 0) return false;
   return channels.size() == question.subjects.size() * question.channel_count() &&
          std::ranges::all_of(channels, [&](const Known& known) {
@@ -527,7 +521,7 @@ bool are_two_valued(const Question& question, const std::vector<Known>& channels
                range_of(question, known.subject, known.channel, known.pilot.moments);
            // Rows declare no range: only 0 and 1 are surely a count of successes.
            if (known.rows && (range.low != 0 || range.high != 1)) return false;
-           return plan.primaries[known.subject] == 1 && !known.pilot.values.empty() &&
+           return test.plan.primaries[known.subject] == 1 && !known.pilot.values.empty() &&
                   std::ranges::all_of(known.pilot.values,
                                       [&](double v) { return v == range.low || v == range.high; });
          });
@@ -537,17 +531,16 @@ bool are_two_valued(const Question& question, const std::vector<Known>& channels
 constexpr std::uint64_t most_bets = std::uint64_t{1} << 26;
 
 /// True if bets decide within what can be kept, as far as the pilot tells.
-bool can_afford_bets(const Question& question, const FamilyPlace& place, const Pilots& pilots,
-                     const Plan& plan) {
-  Plan betting = plan;
-  betting.method = find_method(question, "betting");
-  return question.theta->secondaries(question, place.share, pilots, betting).value_or(0) <=
-         most_bets;
+bool can_afford_bets(TestOutcome betting, const Pilots& pilots) {
+  betting.plan.method = find_method(betting.question, "betting");
+  const auto size = betting.question.theta->secondaries(betting, betting.place.share, pilots);
+  return size.value_or(0) <= most_bets;
 }
 
-std::uint64_t choose_for_mean(const Question& question, const FamilyPlace& place,
-                              const Pilots& pilots, Plan& plan) {
-  const std::vector<Known> channels = known_channels(question, pilots, plan);
+std::uint64_t choose_for_mean(TestOutcome& test, const Pilots& pilots) {
+  const Question& question = test.question;
+  Plan& plan = test.plan;
+  const std::vector<Known> channels = known_channels(test, pilots);
   bool near_normal = true;
   for (const Known& known : channels) {
     const stats::Gate gate = near_normal_gate(known);
@@ -555,9 +548,9 @@ std::uint64_t choose_for_mean(const Question& question, const FamilyPlace& place
     note(plan, known, gate);
   }
   if (!question.test->method) {
-    if (!channels.empty() && are_two_valued(question, channels, plan)) {
+    if (!channels.empty() && are_two_valued(test, channels)) {
       plan.method = find_method(question, "binomial");
-    } else if (bets_on_range(question, pilots) && can_afford_bets(question, place, pilots, plan)) {
+    } else if (bets_on_range(question, pilots) && can_afford_bets(test, pilots)) {
       plan.method = find_method(question, "betting");
     } else if (!near_normal) {
       plan.method = find_method(question, "skewness-corrected-t");
@@ -565,29 +558,26 @@ std::uint64_t choose_for_mean(const Question& question, const FamilyPlace& place
   }
   // Without a size to plan, the floor is as usual as any.
   return plan.method.is.exact && has_planned_size(question) ? least_secondaries
-                                                            : secondaries_of_floor(question, plan);
+                                                            : secondaries_of_floor(test);
 }
 
 // ---- Data
 
 /// Why two means cannot be compared if one is constant and its unseen values could decide; "" if
 /// they can.
-std::string unseen_could_decide(const TestOutcome& outcome, std::size_t channel,
-                                std::span<const ChannelData> data) {
+std::string unseen_could_decide(const TestOutcome& outcome, const Seen& seen) {
   const Question& question = outcome.question;
-  for (std::size_t subject = 0; subject < data.size() && question.of_two(); ++subject) {
-    const ChannelData& mine = data[subject];
-    const ChannelData& other = data[1 - subject];
-    if (!is_constant(question, subject, channel, mine.moments)) continue;
+  for (std::size_t subject = 0; subject < seen.data.size() && question.of_two(); ++subject) {
+    if (!is_constant(seen, subject)) continue;
     // The second mean enters times the factor.
     const double factor = std::abs(question.factor);
-    const double shift = (subject == 1 ? factor : 1) *
-                         unseen_shift(question, subject, channel, mine, outcome.share().alpha);
-    const double error = (subject == 0 ? factor : 1) * other.moments.standard_error();
+    const double shift =
+        (subject == 1 ? factor : 1) * unseen_shift(seen, subject, outcome.share().alpha);
+    const double error = (subject == 0 ? factor : 1) * seen.moments(1 - subject).standard_error();
     if (shift <= tolerated_shift * error) continue;
     return fmt::format(
         "every observation of `{}` is {:.10g}, and {}", question.subjects[subject].estimator->name,
-        mine.moments.mean,
+        seen.moments(subject).mean,
         std::isfinite(shift)
             ? fmt::format("values never seen could move its mean by {:.3g} where the comparison's "
                           "standard error is {:.3g}; take more observations",
@@ -598,77 +588,81 @@ std::string unseen_could_decide(const TestOutcome& outcome, std::size_t channel,
   return "";
 }
 
-stats::Gate skewness_gate(const Question& question, std::span<const ChannelData> data, double x) {
-  if (data.size() == 1) return stats::skewness_gate(data[0].moments, x);
-  return stats::skewness_gate(data[0].moments, data[1].moments, question.factor, x);
+stats::Gate skewness_gate(const Seen& seen, double x) {
+  if (seen.data.size() == 1) return stats::skewness_gate(seen.moments(0), x);
+  return stats::skewness_gate(seen.moments(0), seen.moments(1), seen.question.factor, x);
 }
 
-stats::Gate residual_gate(const Question& question, std::size_t channel,
-                          std::span<const ChannelData> data, double x) {
-  if (data.size() == 2) {
-    return stats::residual_skewness_gate(data[0].moments, data[1].moments, question.factor, x);
+stats::Gate residual_gate(const Seen& seen, double x) {
+  if (seen.data.size() == 2) {
+    return stats::residual_skewness_gate(seen.moments(0), seen.moments(1), seen.question.factor, x);
   }
-  const Constant& reference = question.references[channel];
+  const Constant& reference = seen.reference();
   return stats::residual_skewness_gate(
-      data[0].moments, {reference.value + question.offset, reference.standard_error}, x);
+      seen.moments(0), {reference.value + seen.question.offset, reference.standard_error}, x);
+}
+
+std::vector<MethodRow> methods_of_means() {
+  return {{"t",
+           "Student's t: a mean against a number",
+           [](const Question& q) { return !q.of_two() && !is_within(q); },
+           Keeps::moments,
+           evidence_of_means<by_t>,
+           {.over_looks = stats::LookLaw::independent_increments}},
+          {"welch",
+           "Welch's t: two means, whatever their variances",
+           [](const Question& q) { return q.of_two() && !is_within(q); },
+           Keeps::moments,
+           evidence_of_means<by_t>,
+           {.over_looks = stats::LookLaw::independent_increments}},
+          {"tost",
+           "two one-sided t tests: a mean lies within a margin",
+           is_within,
+           Keeps::moments,
+           evidence_of_means<by_t>,
+           {.over_looks = stats::LookLaw::independent_increments}},
+          {"skewness-corrected-t",
+           "t or Welch with Hall's correction for the skewness of the values",
+           any_question,
+           Keeps::moments,
+           evidence_of_means<by_corrected_t>,
+           {.corrects_skewness = true, .over_looks = stats::LookLaw::independent_increments}},
+          {"binomial",
+           "exact: a mean of values that are the two ends of a range",
+           any_question,
+           Keeps::moments,
+           evidence_of_means<by_counts>,
+           {.exact = true, .of_observations = true, .plans = &stats::binomial_planning}},
+          {"betting",
+           "exact at every look: means of values in declared ranges, by bets",
+           any_question,
+           Keeps::values,
+           evidence_of_means<by_bets>,
+           {.exact = true,
+            .in_range = true,
+            .of_observations = true,
+            .over_looks = stats::LookLaw::anytime_valid,
+            .plans = &stats::betting_planning}},
+          {"batch-means",
+           "t of batch means: a mean of observations that depend on their neighbours",
+           [](const Question& q) { return !is_within(q); },
+           Keeps::values,
+           evidence_of_means<by_t>,
+           {.of_observations = true, .of_batches = true}}};
+}
+
+double unit_of(const Seen& seen) {
+  const double other_mean = seen.question.of_two() ? seen.moments(1).mean : 0;
+  return unit_of_theta(seen.question, seen.channel, other_mean);
 }
 
 /// theta = E x - r, or (E x - r) / |r| if margins are relative. For two estimators c E y replaces
 /// r. A claimed bias is subtracted from E x.
 class MeanTheta : public Theta {
  public:
-  MeanTheta() : Theta({.of_moments = true, .batches_serve = true}) {}
+  MeanTheta() : Theta({.of_moments = true, .batches_serve = true}, methods_of_means()) {}
 
-  const std::vector<MethodRow>& methods() const override {
-    static const std::vector<MethodRow> table{
-        {"t",
-         "Student's t: a mean against a number",
-         [](const Question& q) { return !q.of_two() && !is_within(q); },
-         Keeps::moments,
-         evidence_of_means<by_t>,
-         {.over_looks = stats::LookLaw::independent_increments}},
-        {"welch",
-         "Welch's t: two means, whatever their variances",
-         [](const Question& q) { return q.of_two() && !is_within(q); },
-         Keeps::moments,
-         evidence_of_means<by_t>,
-         {.over_looks = stats::LookLaw::independent_increments}},
-        {"tost",
-         "two one-sided t tests: a mean lies within a margin",
-         [](const Question& q) { return is_within(q); },
-         Keeps::moments,
-         evidence_of_means<by_t>,
-         {.over_looks = stats::LookLaw::independent_increments}},
-        {"skewness-corrected-t",
-         "t or Welch with Hall's correction for the skewness of the values",
-         any_question,
-         Keeps::moments,
-         evidence_of_means<by_corrected_t>,
-         {.corrects_skewness = true, .over_looks = stats::LookLaw::independent_increments}},
-        {"binomial",
-         "exact: a mean of values that are the two ends of a range",
-         any_question,
-         Keeps::moments,
-         evidence_of_means<by_counts>,
-         {.exact = true, .of_observations = true, .plans = &stats::binomial_planning}},
-        {"betting",
-         "exact at every look: means of values in declared ranges, by bets",
-         any_question,
-         Keeps::values,
-         evidence_of_means<by_bets>,
-         {.exact = true,
-          .in_range = true,
-          .of_observations = true,
-          .over_looks = stats::LookLaw::anytime_valid,
-          .plans = &stats::betting_planning}},
-        {"batch-means",
-         "t of batch means: a mean of observations that depend on their neighbours",
-         [](const Question& q) { return !is_within(q); },
-         Keeps::values,
-         evidence_of_means<by_t>,
-         {.of_observations = true, .of_batches = true}}};
-    return table;
-  }
+  Question bind(const TestEntry& test, const Estimators& estimators) const override;
   const Theta* of_images() const override { return &theta_of_images(); }
 
   std::optional<double> known_size(const Question& question) const override {
@@ -685,18 +679,17 @@ class MeanTheta : public Theta {
   }
 
   bool is_relative(const Question& question, std::size_t channel) const override {
-    return !has_absolute_margin(*question.test) &&
+    return !has_margin(*question.test, false) &&
            (question.of_two() || question.references[channel].value != 0);
   }
 
-  std::optional<ThetaError> error(const Question& question, std::size_t channel,
-                                  std::span<const ChannelData> data) const override {
-    const double unit =
-        unit_of_theta(question, channel, question.of_two() ? data[1].moments.mean : 0);
+  std::optional<ThetaError> error(const Seen& seen) const override {
+    const Question& question = seen.question;
+    const double unit = unit_of(seen);
     ThetaError error;
     double squares = 0;  // of the observations' parts of the variance
-    for (std::size_t i = 0; i < data.size(); ++i) {
-      const Moments& x = data[i].moments;
+    for (std::size_t i = 0; i < seen.data.size(); ++i) {
+      const Moments& x = seen.moments(i);
       const double factor = i == 0 ? 1 : std::abs(question.factor);
       const double own = factor * x.standard_error() / unit;
       if (question.subjects[i].setup->observations()) {
@@ -708,25 +701,24 @@ class MeanTheta : public Theta {
     }
     if (squares > 0) error.effective = std::pow(error.drawn, 4) / squares;
     if (!question.references.empty()) {
-      error.fixed = std::hypot(error.fixed, question.references[channel].standard_error / unit);
-      error.estimate = (data[0].moments.mean - question.references[channel].value) / unit;
+      error.fixed = std::hypot(error.fixed, seen.reference().standard_error / unit);
+      error.estimate = (seen.moments(0).mean - seen.reference().value) / unit;
     } else if (question.of_two()) {
       const stats::Contrast null{.scale = question.factor, .offset = question.offset};
-      error.estimate = stats::contrast_of_means(data[0].moments, data[1].moments, null) / unit;
+      error.estimate = stats::contrast_of_means(seen.moments(0), seen.moments(1), null) / unit;
     }
     return error;
   }
 
-  std::uint64_t choose(const Question& question, const FamilyPlace& place, const Pilots& pilots,
-                       std::uint64_t, Plan& plan) const override {
-    return choose_for_mean(question, place, pilots, plan);
+  std::uint64_t choose(TestOutcome& test, const Pilots& pilots, std::uint64_t) const override {
+    return choose_for_mean(test, pilots);
   }
 
-  std::optional<std::uint64_t> secondaries(const Question& question, const ErrorShare& share,
-                                           const Pilots& pilots, const Plan& plan) const override {
-    if (!all_piloted(question, pilots)) return std::nullopt;
-    return most_of_channels(question, [&](std::size_t channel) {
-      return of_channel(question, channel, share, pilots, plan);
+  std::optional<std::uint64_t> secondaries(const TestOutcome& test, const ErrorShare& share,
+                                           const Pilots& pilots) const override {
+    if (!all_piloted(test.question, pilots)) return std::nullopt;
+    return most_of_channels(test.question, [&](std::size_t channel) {
+      return of_channel(test, channel, share, pilots);
     });
   }
 
@@ -750,109 +742,90 @@ class MeanTheta : public Theta {
     return "";
   }
 
-  PlannedChannel observed(const Question& question, const Regions& regions, std::size_t channel,
-                          std::span<const ChannelData> data) const override {
+  PlannedChannel observed(const Seen& seen, const Regions& regions) const override {
+    const Question& question = seen.question;
     PlannedChannel observed{.regions = regions};
-    observed.standard_deviation = data[0].moments.standard_deviation();
-    double other_mean = 0;
+    observed.standard_deviation = seen.moments(0).standard_deviation();
     if (question.of_two()) {
-      other_mean = data[1].moments.mean;
-      observed.other_deviation = std::abs(question.factor) * data[1].moments.standard_deviation();
+      observed.other_deviation = std::abs(question.factor) * seen.moments(1).standard_deviation();
     } else {
-      observed.reference_error = question.references[channel].standard_error;
+      observed.reference_error = seen.reference().standard_error;
     }
-    note_range(question, channel, data[0].moments, observed);
-    if (!question.of_two() && !data[0].values.empty()) {
-      observed.law = std::make_shared<const stats::ValueCells>(data[0].values);
+    note_range(question, seen.channel, seen.moments(0), observed);
+    if (!question.of_two() && !seen.data[0].values.empty()) {
+      observed.law = std::make_shared<const stats::ValueCells>(seen.data[0].values);
     }
-    observed.unit = unit_of_theta(question, channel, other_mean);
+    observed.unit = unit_of(seen);
     return observed;
   }
 
-  std::optional<double> detectable(const Question& question, const TestSize& size, const Plan& plan,
-                                   const PlannedChannel& channel) const override {
-    const stats::ErrorRates rates = planned_rates(size.share, channel.regions);
-    if (plan.method.is.exact) return exact_detectable(question, size, plan, channel, rates);
-    const stats::SampleSizes sizes = sizes_of(question, size.secondaries);
-    const double allow = channel.regions.allow;
-    if (both_spread(question, channel)) {
-      return stats::welch_detectable(means_plan(rates, allow, channel, sizes.y / sizes.x),
-                                     sizes.x) /
-             channel.unit;
-    }
-    return stats::student_t_detectable(mean_plan(rates, allow, channel),
-                                       size_of_the_spread(sizes, channel)) /
-           channel.unit;
+  std::optional<double> detectable(const Sized& sized) const override {
+    if (sized.test.plan.method.is.exact) return exact_detectable(sized);
+    const stats::ErrorRates rates = sized.rates();
+    const stats::SampleSizes sizes = sized.sizes();
+    const PlannedChannel& channel = sized.channel;
+    const double found =
+        both_spread(sized.test.question, channel)
+            ? stats::welch_detectable(means_plan(rates, channel, sizes.y / sizes.x), sizes.x)
+            : stats::student_t_detectable(mean_plan(rates, channel),
+                                          size_of_the_spread(sizes, channel));
+    return found / channel.unit;
   }
 
-  bool finds_nothing(const Question& question, const TestSize& size, const Plan& plan,
-                     const PlannedChannel& channel) const override {
-    if (!is_quoted(question, plan, channel)) return false;
-    const stats::ErrorRates rates = planned_rates(size.share, channel.regions);
-    return std::ranges::none_of(sides_of(channel.regions), [&](int side) {
-      return stats::exact_detectable(*plan.method.is.plans, plan_of(channel, rates),
-                                     size.secondaries, side)
-          .has_value();
-    });
+  bool finds_nothing(const Sized& sized) const override {
+    return is_quoted(sized) && std::ranges::none_of(sides_of(sized.channel.regions), [&](int side) {
+             return exact_effect(sized, side).has_value();
+           });
   }
 
-  std::optional<double> power(const Question& question, const TestSize& size, const Plan& plan,
-                              const PlannedChannel& channel, double effect) const override {
-    const stats::ErrorRates rates = planned_rates(size.share, channel.regions);
-    if (plan.method.is.exact) return exact_power(question, size, plan, channel, rates, effect);
-    const stats::SampleSizes sizes = sizes_of(question, size.secondaries);
-    if (channel.regions.relation == Relation::within) {
-      return equivalence_power(sizes, size.share, channel);
-    }
-    const double allow = channel.regions.allow;
-    if (both_spread(question, channel)) {
-      return stats::welch_power(means_plan(rates, allow, channel, sizes.y / sizes.x), sizes.x,
+  std::optional<double> power(const Sized& sized, double effect) const override {
+    if (sized.test.plan.method.is.exact) return exact_power(sized, effect);
+    const stats::ErrorRates rates = sized.rates();
+    const stats::SampleSizes sizes = sized.sizes();
+    const PlannedChannel& channel = sized.channel;
+    if (channel.regions.within()) return equivalence_power(sizes, sized.size.share, channel);
+    if (both_spread(sized.test.question, channel)) {
+      return stats::welch_power(means_plan(rates, channel, sizes.y / sizes.x), sizes.x,
                                 effect * channel.unit);
     }
-    return stats::student_t_power(mean_plan(rates, allow, channel),
-                                  size_of_the_spread(sizes, channel), effect * channel.unit);
+    return stats::student_t_power(mean_plan(rates, channel), size_of_the_spread(sizes, channel),
+                                  effect * channel.unit);
   }
 
-  std::optional<ConstantVerdict> settled(const Question& question, std::size_t channel,
-                                         std::span<const ChannelData> data, const Regions& regions,
-                                         const ErrorShare&) const override {
-    if (!all_constant(question, channel, data)) return std::nullopt;
-    return judge_constant(question, channel, data, regions);
+  std::optional<ConstantVerdict> settled(const Seen& seen, const Regions& regions) const override {
+    if (!all_constant(seen)) return std::nullopt;
+    return judge_constant(seen, regions);
   }
 
-  std::string lack_of_numbers(const DrawnTest& test, std::size_t channel,
-                              std::span<const ChannelData> data) const override {
-    std::string reason = Theta::lack_of_numbers(test, channel, data);
+  std::string lack_of_numbers(const TestOutcome& test, const Seen& seen) const override {
+    std::string reason = Theta::lack_of_numbers(test, seen);
     // An exact method bounds what was never seen.
-    if (!reason.empty() || test.outcome.plan.method.is.exact) return reason;
-    reason = lost_to_rounding(test.outcome.question, channel, data);
-    return reason.empty() ? unseen_could_decide(test.outcome, channel, data) : reason;
+    if (!reason.empty() || test.plan.method.is.exact) return reason;
+    reason = lost_to_rounding(seen);
+    return reason.empty() ? unseen_could_decide(test, seen) : reason;
   }
 
-  std::vector<Gate> gates(const TestOutcome& outcome, std::size_t channel,
-                          std::span<const ChannelData> data, double x) const override {
+  std::vector<Gate> gates(const TestOutcome& outcome, const Seen& seen, double x) const override {
     std::vector<Gate> gates;
-    const Question& question = outcome.question;
     const MethodTraits& method = outcome.plan.method.is;
-    const std::string name = channel_suffix(question, channel);
+    const std::string name = channel_suffix(seen.question, seen.channel);
     if (method.exact) return gates;
-    gates.push_back(gate_of(method.corrects_skewness ? residual_gate(question, channel, data, x)
-                                                     : skewness_gate(question, data, x),
-                            name));
-    for (std::size_t subject = 0; subject < data.size(); ++subject) {
-      const Moments& moments = data[subject].moments;
+    gates.push_back(
+        gate_of(method.corrects_skewness ? residual_gate(seen, x) : skewness_gate(seen, x), name));
+    for (std::size_t subject = 0; subject < seen.data.size(); ++subject) {
+      const Moments& moments = seen.moments(subject);
       // Two values cannot show an outlier.
       if (!(moments.m2 > 0) || moments.count <= 2) continue;
       gates.push_back(gate_of(stats::dominance_gate(moments),
-                              name + " of " + question.subjects[subject].estimator->name));
+                              name + " of " + seen.question.subjects[subject].estimator->name));
     }
     return gates;
   }
 
-  std::optional<double> marked(const Question& question, std::size_t channel,
-                               std::span<const ChannelData> data) const override {
-    if (question.of_two()) return question.factor * data[1].moments.mean + question.offset;
-    return question.references[channel].value + question.offset;
+  std::optional<double> marked(const Seen& seen) const override {
+    const Question& question = seen.question;
+    return question.offset +
+           (question.of_two() ? question.factor * seen.moments(1).mean : seen.reference().value);
   }
 
  private:
@@ -865,8 +838,10 @@ class MeanTheta : public Theta {
 
   /// The channel as the pilot shows it. Returns nullopt if it has no spread and no range bounds
   /// what it missed.
-  static std::optional<PlannedChannel> from_pilots(const Question& question, std::size_t channel,
-                                                   const Pilots& pilots, const Plan& plan) {
+  static std::optional<PlannedChannel> from_pilots(const TestOutcome& test, std::size_t channel,
+                                                   const Pilots& pilots) {
+    const Question& question = test.question;
+    const Plan& plan = test.plan;
     const Moments& first = pilot_channel(question, 0, channel, pilots).moments;
     PlannedChannel planned{.regions = plan.regions[channel]};
     const bool constant = is_constant(question, 0, channel, first);
@@ -908,22 +883,20 @@ class MeanTheta : public Theta {
     return planned;
   }
 
-  static std::optional<std::uint64_t> of_channel(const Question& question, std::size_t index,
-                                                 const ErrorShare& share, const Pilots& pilots,
-                                                 const Plan& plan) {
-    const Regions& regions = plan.regions[index];
-    const bool equivalence = regions.within();
-    const std::optional<PlannedChannel> channel = from_pilots(question, index, pilots, plan);
+  static std::optional<std::uint64_t> of_channel(const TestOutcome& test, std::size_t index,
+                                                 const ErrorShare& share, const Pilots& pilots) {
+    const Regions& regions = test.plan.regions[index];
+    const std::optional<PlannedChannel> channel = from_pilots(test, index, pilots);
     if (!channel || !regions.detect) return std::nullopt;
+    const stats::ErrorRates rates = planned_rates(share, regions);
     std::optional<std::uint64_t> count;
-    if (plan.method.is.plans) {
-      count = equivalence
-                  ? exact_equivalence_secondaries(question, plan, *channel, share)
-                  : exact_secondaries(question, plan, *channel, planned_rates(share, regions));
-    } else if (equivalence) {
+    if (test.plan.method.is.plans) {
+      count = (regions.within() ? exact_equivalence_secondaries : exact_secondaries)(test, *channel,
+                                                                                     rates);
+    } else if (regions.within()) {
       count = for_equivalence(share, *channel);
     } else {
-      count = for_means(question, planned_rates(share, regions), regions, *channel);
+      count = for_means(test.question, rates, *channel);
     }
     const std::uint64_t most = channel->unseen ? most_for_the_unseen : impossible_secondaries;
     return std::min(count.value_or(impossible_secondaries), most);
@@ -945,30 +918,32 @@ class MeanTheta : public Theta {
                                     n, 0);
   }
 
-  static std::optional<double> exact_detectable(const Question& question, const TestSize& size,
-                                                const Plan& plan, const PlannedChannel& channel,
-                                                const stats::ErrorRates& rates) {
-    if (!is_quoted(question, plan, channel)) return std::nullopt;
+  /// The least effect on one side; nullopt if the range ends before.
+  static std::optional<double> exact_effect(const Sized& sized, int side) {
+    return stats::exact_detectable(*sized.test.plan.method.is.plans,
+                                   plan_of(sized.channel, sized.rates()), sized.size.secondaries,
+                                   side);
+  }
+
+  static std::optional<double> exact_detectable(const Sized& sized) {
+    if (!is_quoted(sized)) return std::nullopt;
     double most = 0;
-    for (const int side : sides_of(channel.regions)) {
-      const auto found = stats::exact_detectable(*plan.method.is.plans, plan_of(channel, rates),
-                                                 size.secondaries, side);
-      // The range ends before any such effect on this side.
+    for (const int side : sides_of(sized.channel.regions)) {
+      const auto found = exact_effect(sized, side);
       if (!found) return std::nullopt;
       most = std::max(most, *found);
     }
-    return most / channel.unit;
+    return most / sized.channel.unit;
   }
 
-  static std::optional<double> exact_power(const Question& question, const TestSize& size,
-                                           const Plan& plan, const PlannedChannel& channel,
-                                           const stats::ErrorRates& rates, double effect) {
-    if (!is_quoted(question, plan, channel) || effect == 0) return std::nullopt;
-    const stats::ExactMeanPlan exact = plan_of(channel, rates);
+  static std::optional<double> exact_power(const Sized& sized, double effect) {
+    if (!is_quoted(sized) || effect == 0) return std::nullopt;
+    const stats::ExactMeanPlan exact = plan_of(sized.channel, sized.rates());
+    const stats::ExactPlanning& plans = *sized.test.plan.method.is.plans;
     double least = 1;
-    for (const int side : sides_of(channel.regions)) {
-      const double theta = side * effect * channel.unit;
-      least = std::min(least, plan.method.is.plans->power(exact, size.secondaries, theta));
+    for (const int side : sides_of(sized.channel.regions)) {
+      const double theta = side * effect * sized.channel.unit;
+      least = std::min(least, plans.power(exact, sized.size.secondaries, theta));
     }
     return least;
   }
@@ -977,9 +952,10 @@ class MeanTheta : public Theta {
 /// The mean less the truth. Its margins are numbers unless one is in per cent.
 class BiasTheta final : public MeanTheta {
  public:
+  Question bind(const TestEntry& test, const Estimators& estimators) const override;
   const Theta* of_images() const override { return &theta_of_bias_images(); }
   bool is_relative(const Question& question, std::size_t) const override {
-    return has_relative_margin(*question.test);
+    return has_margin(*question.test, true);
   }
   std::string claimed_value(const Question& question, std::size_t) const override {
     return fmt::format("{}", question.offset);
@@ -988,9 +964,6 @@ class BiasTheta final : public MeanTheta {
     return reference_text(question);
   }
 };
-
-const MeanTheta mean_theta;
-const BiasTheta bias_theta;
 
 }  // namespace
 
@@ -1003,10 +976,10 @@ std::string channel_suffix(const Question& question, std::size_t channel) {
   return question.channel_count() > 1 ? ", " + question.channel_name(channel) : "";
 }
 
-Question bind_mean(const TestEntry& test, const Estimators& estimators) {
+Question MeanTheta::bind(const TestEntry& test, const Estimators& estimators) const {
   const Claim& claim = test.claim;
   Question question{
-      .test = &test, .theta = &mean_theta, .subjects = {estimates(claim.left.source, estimators)}};
+      .test = &test, .theta = this, .subjects = {estimates(claim.left.source, estimators)}};
   const ScaledQuantity* const other = other_side(claim);
   if (other == nullptr) {
     question.references = references_of(claim, question.subjects[0], analytic_mean);
@@ -1023,7 +996,8 @@ Question bind_mean(const TestEntry& test, const Estimators& estimators) {
   return question;
 }
 
-Question bind_bias(const TestEntry& test, const Estimators& estimators) {
+/// E x against reference + number. The reference is the analytic mean, or that of `reference:`.
+Question BiasTheta::bind(const TestEntry& test, const Estimators& estimators) const {
   const Claim& claim = test.claim;
   if (other_side(claim) != nullptr) {
     refuse(claim.left.where,
@@ -1034,7 +1008,7 @@ Question bind_bias(const TestEntry& test, const Estimators& estimators) {
     refuse(claim.left.where, "per cent of what? a margin on a bias other than 0 is a number");
   }
   Question question{.test = &test,
-                    .theta = &bias_theta,
+                    .theta = this,
                     .subjects = {estimates(claim.left.source, estimators)},
                     .offset = number.value};
   if (!test.reference) {
@@ -1051,7 +1025,7 @@ Question bind_bias(const TestEntry& test, const Estimators& estimators) {
   return question;
 }
 
-const Theta& theta_of_means() { return mean_theta; }
-const Theta& theta_of_biases() { return bias_theta; }
+const Theta& theta_of_means() { return one<MeanTheta>(); }
+const Theta& theta_of_biases() { return one<BiasTheta>(); }
 
 }  // namespace assay::harness

@@ -29,10 +29,10 @@ double middle(const std::vector<double>& sorted, double probability) {
   return sorted[stats::sample_quantile_rank(sorted.size(), probability)];
 }
 
-Evidence against_number(const Question& question, std::size_t channel, std::vector<double> values) {
-  const double probability = question.test->claim.left.arguments[0];
-  const double null = question.references[channel].value;
-  const bool relative = question.theta->is_relative(question, channel);
+Evidence against_number(const Seen& seen, std::vector<double> values) {
+  const double probability = seen.question.test->claim.left.arguments[0];
+  const double null = seen.reference().value;
+  const bool relative = seen.relative();
   const double unit = relative ? std::abs(null) : 1;
   const double estimate = middle(values, probability);
   const auto at = [values, probability, null, unit](double theta) {
@@ -53,12 +53,12 @@ Evidence against_number(const Question& question, std::size_t channel, std::vect
 }
 
 /// Exact for every law.
-Evidence quantile(const Method&, const Question& question, std::size_t channel,
-                  std::span<const ChannelData> data) {
-  std::vector<double> x = sorted(data[0].values, 1);
-  if (!question.of_two()) return against_number(question, channel, std::move(x));
+Evidence quantile(const Method&, const Seen& seen) {
+  const Question& question = seen.question;
+  std::vector<double> x = sorted(seen.data[0].values, 1);
+  if (!question.of_two()) return against_number(seen, std::move(x));
   // The quantile of c y is c times that of y, c > 0.
-  const std::vector<double> y = sorted(data[1].values, question.factor);
+  const std::vector<double> y = sorted(seen.data[1].values, question.factor);
   const double probability = question.test->claim.left.arguments[0];
   const double estimate = middle(x, probability) - middle(y, probability);
   const auto at = [x, y, probability](double theta) {
@@ -110,36 +110,44 @@ std::optional<double> observed_deviation(std::span<const double> pilot, double p
 }
 
 /// Deviation of one secondary; means of several primaries count as normal.
-double quantile_deviation(const Question& question, std::size_t subject, std::size_t channel,
-                          double distance, const Pilots& pilots, const Plan& plan) {
-  const double probability = question.test->claim.left.arguments[0];
-  const PilotChannel pilot = pilot_channel(question, subject, channel, pilots);
-  if (question.subjects[subject].averaged(plan.primaries[subject]) == 1) {
+double quantile_deviation(const TestOutcome& test, std::size_t subject, std::size_t channel,
+                          double distance, const Pilots& pilots) {
+  const double probability = test.question.test->claim.left.arguments[0];
+  const PilotChannel pilot = pilot_channel(test.question, subject, channel, pilots);
+  const double averaged = test.question.subjects[subject].averaged(test.plan.primaries[subject]);
+  if (averaged == 1) {
     const auto observed = observed_deviation(pilot.values, probability, distance);
     if (observed) return *observed;
   }
   const double z = stats::normal_quantile({stats::Tail::lower, std::log(probability)});
   return stats::quantile_standard_deviation(probability, normal_density(z)) *
-         std::sqrt(pilot.moments.variance() /
-                   question.subjects[subject].averaged(plan.primaries[subject]));
+         std::sqrt(pilot.moments.variance() / averaged);
 }
 
 /// theta = v - r of the values' quantile v, over |r| if a margin is relative; of two, v - c w.
 class QuantileTheta final : public Theta {
  public:
-  QuantileTheta() : Theta({.of_single_values = true}) {}
+  QuantileTheta()
+      : Theta({.of_single_values = true},
+              {{"binomial",
+                "exact: a quantile against a number",
+                of_one,
+                Keeps::values,
+                quantile,
+                {.exact = true}},
+               {"quantile", "exact: two quantiles, by the counts on both sides", of_two,
+                Keeps::values, quantile}}) {}
 
-  const std::vector<MethodRow>& methods() const override {
-    static const std::vector<MethodRow> table{
-        {"binomial",
-         "exact: a quantile against a number",
-         [](const Question& q) { return !q.of_two(); },
-         Keeps::values,
-         quantile,
-         {.exact = true}},
-        {"quantile", "exact: two quantiles, by the counts on both sides",
-         [](const Question& q) { return q.of_two(); }, Keeps::values, quantile}};
-    return table;
+  Question bind(const TestEntry& test, const Estimators& estimators) const override {
+    Question question = Theta::bind(test, estimators);
+    const ScaledQuantity* other = other_side(test.claim);
+    if (other == nullptr) return question;
+    const Location& where = other->quantity.where;
+    if (other->quantity.arguments != test.claim.left.arguments) {
+      refuse(where, "both quantiles must be of the same probability");
+    }
+    if (other->factor < 0) refuse(where, "the factor of a quantile must be above 0");
+    return question;
   }
 
   void check_margin(const Question& question, const Margin& margin) const override {
@@ -148,38 +156,38 @@ class QuantileTheta final : public Theta {
   }
 
   bool is_relative(const Question& question, std::size_t) const override {
-    return !question.of_two() && has_relative_margin(*question.test);
+    return !question.of_two() && has_margin(*question.test, true);
   }
 
   /// The size is planned by the pilot's counts over the distance to be found; means of several
   /// primaries count as normal. If the density at the quantile differs, the size is off by its
   /// ratio and the verdict may be inconclusive. The test itself is exact for every law.
-  std::optional<std::uint64_t> secondaries(const Question& question, const ErrorShare& share,
-                                           const Pilots& pilots, const Plan& plan) const override {
+  std::optional<std::uint64_t> secondaries(const TestOutcome& test, const ErrorShare& share,
+                                           const Pilots& pilots) const override {
+    const Question& question = test.question;
     if (!all_piloted(question, pilots)) return std::nullopt;
     return most_over_channels(question, [&](std::size_t channel) -> std::optional<std::uint64_t> {
       const double unit = question.theta->is_relative(question, channel)
                               ? std::abs(question.references[channel].value)
                               : 1;
-      const double distance = distance_of(plan.regions[channel]) * unit;
+      const Regions& regions = test.plan.regions[channel];
+      const double distance = distance_of(regions) * unit;
       if (!(distance > 0)) return std::nullopt;
-      double sd = quantile_deviation(question, 0, channel, distance, pilots, plan);
+      double sd = quantile_deviation(test, 0, channel, distance, pilots);
       if (question.of_two()) {
         const double factor = std::abs(question.factor);
-        const double other =
-            quantile_deviation(question, 1, channel, distance / factor, pilots, plan);
-        sd = std::hypot(sd, factor * other);
+        sd = std::hypot(sd,
+                        factor * quantile_deviation(test, 1, channel, distance / factor, pilots));
       }
       if (!(sd > 0)) return std::nullopt;
-      return whole_secondaries(stats::normal_sample_size(
-          sd, {.allow = 0, .detect = distance}, planned_rates(share, plan.regions[channel])));
+      return whole_secondaries(stats::normal_sample_size(sd, {.allow = 0, .detect = distance},
+                                                         planned_rates(share, regions)));
     });
   }
 
-  std::optional<double> marked(const Question& question, std::size_t channel,
-                               std::span<const ChannelData>) const override {
-    if (question.of_two()) return std::nullopt;
-    return question.references[channel].value;
+  std::optional<double> marked(const Seen& seen) const override {
+    if (seen.question.of_two()) return std::nullopt;
+    return seen.reference().value;
   }
 
   std::string not_excluded(const ChannelOutcome& channel) const override {
@@ -194,22 +202,8 @@ class QuantileTheta final : public Theta {
   }
 };
 
-const QuantileTheta quantile_theta;
-
 }  // namespace
 
-Question bind_quantile(const TestEntry& test, const Estimators& estimators) {
-  const Claim& claim = test.claim;
-  Question question = one_or_two(test, quantile_theta, estimators);
-  const ScaledQuantity* other = other_side(claim);
-  if (other == nullptr) return question;
-  if (other->quantity.arguments != claim.left.arguments) {
-    refuse(other->quantity.where, "both quantiles must be of the same probability");
-  }
-  if (other->factor < 0) refuse(other->quantity.where, "the factor of a quantile must be above 0");
-  return question;
-}
-
-const Theta& theta_of_quantiles() { return quantile_theta; }
+const Theta& theta_of_quantiles() { return one<QuantileTheta>(); }
 
 }  // namespace assay::harness

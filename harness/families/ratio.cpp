@@ -146,13 +146,18 @@ PlannedMean mean_plan(const Method& method, const stats::ErrorRates& rates,
           .count = n};
 }
 
+PlannedMean mean_plan(const Sized& sized) {
+  return mean_plan(sized.test.plan.method, sized.rates(), sized.channel, sized.sizes());
+}
+
 /// The variance of one observation's influence values of a variance, over its square. It is 2 for a
 /// normal law. A mean's excess kurtosis falls like 1 / its size.
 double averaged_spread(double of_one, double averaged) { return 2 + (of_one - 2) / averaged; }
 
 class LogTheta : public Theta {
  public:
-  LogTheta(ThetaTraits traits, RatioWords named) : Theta(with_logarithm(traits)), words(named) {}
+  LogTheta(ThetaTraits traits, RatioWords named, std::vector<MethodRow> rows)
+      : Theta(with_logarithm(traits), std::move(rows)), words(named) {}
 
   void check_margin(const Question& question, const Margin& margin) const override {
     Theta::check_margin(question, margin);
@@ -160,109 +165,97 @@ class LogTheta : public Theta {
     refuse(margin.where, "a margin on a ratio of {} is relative; give it in per cent", words.many);
   }
 
-  std::optional<ThetaError> error(const Question& question, std::size_t channel,
-                                  std::span<const ChannelData> data) const override {
+  std::optional<ThetaError> error(const Seen& seen) const override {
+    const Question& question = seen.question;
     ThetaError error;
     for (std::size_t i = 0; i < question.compared(); ++i) {
-      const std::optional<double> spread = this->spread(question, i, channel, data);
+      const std::optional<double> spread = this->spread(seen, i);
       if (!spread) return std::nullopt;
       double& part = question.subjects[i].setup->observations() ? error.fixed : error.drawn;
-      const double count = static_cast<double>(data[i].moments.count);
+      const double count = static_cast<double>(seen.moments(i).count);
       part = std::hypot(part, std::sqrt(*spread / count));
       // A drawn reference is new in every run.
       double& of_truth = question.has_reference_subject ? error.drawn : error.fixed;
-      of_truth =
-          std::hypot(of_truth, std::sqrt(spread_of_truth(question, i, channel, data) / count));
+      of_truth = std::hypot(of_truth, std::sqrt(spread_of_truth(seen, i) / count));
     }
     if (!question.references.empty()) {
-      error.fixed = std::hypot(error.fixed, question.references[channel].standard_error);
+      error.fixed = std::hypot(error.fixed, seen.reference().standard_error);
     }
     return error;
   }
 
-  std::uint64_t choose(const Question& question, const FamilyPlace&, const Pilots&, std::uint64_t,
-                       Plan& plan) const override {
-    return std::max(usual_secondaries, secondaries_of_floor(question, plan));
+  std::uint64_t choose(TestOutcome& test, const Pilots&, std::uint64_t) const override {
+    return std::max(usual_secondaries, secondaries_of_floor(test));
   }
 
-  std::optional<std::uint64_t> secondaries(const Question& question, const ErrorShare& share,
-                                           const Pilots& pilots, const Plan& plan) const override {
-    if (!all_piloted(question, pilots)) return std::nullopt;
-    return most_of_channels(question, [&](std::size_t i) -> std::optional<std::uint64_t> {
-      const Regions& regions = plan.regions[i];
-      const auto channel = from_pilots(question, i, regions, pilots, plan);
+  std::optional<std::uint64_t> secondaries(const TestOutcome& test, const ErrorShare& share,
+                                           const Pilots& pilots) const override {
+    if (!all_piloted(test.question, pilots)) return std::nullopt;
+    return most_of_channels(test.question, [&](std::size_t i) -> std::optional<std::uint64_t> {
+      const Regions& regions = test.plan.regions[i];
+      const auto channel = from_pilots(test, i, regions, pilots);
       if (!channel || !regions.detect) return std::nullopt;
-      const PlannedMean mean = mean_plan(plan.method, planned_rates(share, regions), *channel, {});
+      const stats::ErrorRates rates = planned_rates(share, regions);
+      const PlannedMean mean = mean_plan(test.plan.method, rates, *channel, {});
       return stats::student_t_sample_size(mean.plan, *regions.detect)
           .value_or(impossible_secondaries);
     });
   }
 
-  std::optional<PlannedChannel> planned(const Question& question, const Regions& regions,
-                                        const Pilots& pilots, const Plan& plan) const override {
-    for (const Subject& side : question.subjects) {
+  std::optional<PlannedChannel> planned(const TestOutcome& test, const Regions& regions,
+                                        const Pilots& pilots) const override {
+    for (const Subject& side : test.question.subjects) {
       if (side.setup->observations()) return std::nullopt;
     }
-    return from_pilots(question, std::nullopt, regions, pilots, plan);
+    return from_pilots(test, std::nullopt, regions, pilots);
   }
 
-  PlannedChannel observed(const Question& question, const Regions& regions, std::size_t channel,
-                          std::span<const ChannelData> data) const override {
+  PlannedChannel observed(const Seen& seen, const Regions& regions) const override {
     PlannedChannel observed{.regions = regions};
-    for (std::size_t i = 0; i < question.compared(); ++i) {
+    for (std::size_t i = 0; i < seen.question.compared(); ++i) {
       double& deviation = i == 0 ? observed.standard_deviation : observed.other_deviation;
-      deviation = std::sqrt(spread(question, i, channel, data).value_or(0) +
-                            spread_of_truth(question, i, channel, data));
+      deviation = std::sqrt(spread(seen, i).value_or(0) + spread_of_truth(seen, i));
     }
     return observed;
   }
 
-  std::optional<double> detectable(const Question& question, const TestSize& size, const Plan& plan,
-                                   const PlannedChannel& channel) const override {
-    if (!varies(channel)) return std::nullopt;
-    const PlannedMean mean = mean_plan(plan.method, planned_rates(size.share, channel.regions),
-                                       channel, sizes_of(question, size.secondaries));
+  std::optional<double> detectable(const Sized& sized) const override {
+    if (!varies(sized.channel)) return std::nullopt;
+    const PlannedMean mean = mean_plan(sized);
     return stats::student_t_detectable(mean.plan, mean.count);
   }
 
-  std::optional<double> power(const Question& question, const TestSize& size, const Plan& plan,
-                              const PlannedChannel& channel, double effect) const override {
-    if (!varies(channel)) return std::nullopt;
-    const bool within = channel.regions.within();
-    const PlannedMean mean = mean_plan(plan.method, planned_rates(size.share, channel.regions),
-                                       channel, sizes_of(question, size.secondaries));
+  std::optional<double> power(const Sized& sized, double effect) const override {
+    const Regions& regions = sized.channel.regions;
+    if (!varies(sized.channel)) return std::nullopt;
+    const PlannedMean mean = mean_plan(sized);
     const double one_margin =
-        stats::student_t_power(mean.plan, mean.count, within ? *channel.regions.detect : effect);
-    return within ? std::max(0.0, 2 * one_margin - 1) : one_margin;
+        stats::student_t_power(mean.plan, mean.count, regions.within() ? *regions.detect : effect);
+    return regions.within() ? std::max(0.0, 2 * one_margin - 1) : one_margin;
   }
 
-  std::string lack_of_numbers(const DrawnTest& test, std::size_t channel,
-                              std::span<const ChannelData> data) const override {
-    const std::string reason = Theta::lack_of_numbers(test, channel, data);
+  std::string lack_of_numbers(const TestOutcome& test, const Seen& seen) const override {
+    const std::string reason = Theta::lack_of_numbers(test, seen);
     const bool of_one_variance = is.of_spread && !is.joins_channels;
-    return reason.empty() && of_one_variance
-               ? lack_of_variance(test.outcome.question, channel, data)
-               : reason;
+    return reason.empty() && of_one_variance ? lack_of_variance(seen) : reason;
   }
 
-  std::vector<Gate> gates(const TestOutcome& outcome, std::size_t channel,
-                          std::span<const ChannelData> data, double critical) const override {
+  std::vector<Gate> gates(const TestOutcome& outcome, const Seen& seen,
+                          double critical) const override {
     const Question& question = outcome.question;
     std::vector<Gate> gates;
     if (outcome.plan.method.keeps == Keeps::blocks) return gates;
-    const std::string name = channel_suffix(question, channel);
+    const std::string name = channel_suffix(question, seen.channel);
     std::vector<Influence> sides;
     for (std::size_t i = 0; i < question.compared(); ++i) {
       const std::string mine = name + " of " + question.subjects[i].estimator->name;
-      const std::uint64_t count = data[i].moments.count;
+      const std::uint64_t count = seen.moments(i).count;
       if (is.of_spread && count < fewest_for_a_variance) {
-        gates.push_back(gate_of(reports::Gate{.name = "observations of a variance",
-                                              .value = static_cast<double>(count),
-                                              .limit = static_cast<double>(fewest_for_a_variance),
-                                              .state = "red"},
+        gates.push_back(gate_of(gate_of("observations of a variance", static_cast<double>(count),
+                                        fewest_for_a_variance, "red"),
                                 mine));
       }
-      const std::optional<Influence> influence = this->influence(question, i, channel, data);
+      const std::optional<Influence> influence = this->influence(seen, i);
       if (!influence) return gates;
       sides.push_back(*influence);
       if (influence->relative.m2 > 0) {
@@ -280,14 +273,13 @@ class LogTheta : public Theta {
   }
 
   /// A subject's side of the ratio. Throws std::domain_error if it has none.
-  virtual RatioSide side(const Question&, std::size_t subject, std::size_t channel,
-                         std::span<const ChannelData>) const = 0;
+  virtual RatioSide side(const Seen&, std::size_t subject) const = 0;
   /// True if the data tell a subject's influence values.
   virtual bool tells(const ChannelData&) const = 0;
   /// ln of the ratio, or of the one quantity, where theta is 0.
-  virtual double log_null(const Question& question, std::size_t channel,
-                          std::span<const ChannelData>) const {
-    return std::log(question.of_two() ? question.factor : question.references[channel].value);
+  virtual double log_null(const Seen& seen) const {
+    const Question& question = seen.question;
+    return std::log(question.of_two() ? question.factor : seen.reference().value);
   }
 
   /// True if sides are inverses of the quantities.
@@ -302,20 +294,15 @@ class LogTheta : public Theta {
   }
 
   /// The same from the test's own data.
-  virtual std::optional<double> spread(const Question& question, std::size_t subject,
-                                       std::size_t channel,
-                                       std::span<const ChannelData> data) const {
-    const std::optional<Influence> influence = this->influence(question, subject, channel, data);
+  virtual std::optional<double> spread(const Seen& seen, std::size_t subject) const {
+    const std::optional<Influence> influence = this->influence(seen, subject);
     if (!influence) return std::nullopt;
     const double error = influence->relative.standard_error();
-    return static_cast<double>(data[subject].moments.count) * error * error;
+    return static_cast<double>(seen.moments(subject).count) * error * error;
   }
 
   /// Count times the variance that the truth's own error makes.
-  virtual double spread_of_truth(const Question&, std::size_t, std::size_t,
-                                 std::span<const ChannelData>) const {
-    return 0;
-  }
+  virtual double spread_of_truth(const Seen&, std::size_t) const { return 0; }
 
   const RatioWords words;
 
@@ -326,40 +313,38 @@ class LogTheta : public Theta {
   }
 
   /// A subject's influence values, with the truth as known; nullopt if the data do not tell.
-  std::optional<Influence> influence(const Question& question, std::size_t subject,
-                                     std::size_t channel, std::span<const ChannelData> data) const {
-    if (!tells(data[subject])) return std::nullopt;
-    const RatioSide side = this->side(question, subject, channel, data);
+  std::optional<Influence> influence(const Seen& seen, std::size_t subject) const {
+    if (!tells(seen.data[subject])) return std::nullopt;
+    const RatioSide side = this->side(seen, subject);
     return side.influence(side.truth.known.value);
   }
 
-  std::optional<double> pilot_spread(const Question& question, std::size_t subject,
-                                     std::optional<std::size_t> channel, const Pilots& pilots,
-                                     const Plan& plan) const {
-    const Subject& side = question.subjects[subject];
+  std::optional<double> pilot_spread(const TestOutcome& test, std::size_t subject,
+                                     std::optional<std::size_t> channel,
+                                     const Pilots& pilots) const {
+    const Subject& side = test.question.subjects[subject];
     const Pilot& pilot = *pilot_of(side, pilots);
-    const double averaged = side.averaged(plan.primaries[subject]);
+    const double averaged = side.averaged(test.plan.primaries[subject]);
     std::optional<double> most;
     for (std::size_t i = 0; i < side.channels.size(); ++i) {
       if (channel && !is.joins_channels && i != *channel) continue;
       const std::size_t index = side.channels[i];
       const Moments values = pilot.moments(index);
       const PilotMoments seen{.values = values, .joint = joint_moments(pilot.sums->details(index))};
-      const auto spread = predicted_spread(question, seen, averaged);
+      const auto spread = predicted_spread(test.question, seen, averaged);
       if (spread) most = std::max(most.value_or(0), *spread);
     }
     return most;
   }
 
   /// The plan of one channel, or of the worst; nullopt if a pilot has no spread there.
-  std::optional<PlannedChannel> from_pilots(const Question& question,
+  std::optional<PlannedChannel> from_pilots(const TestOutcome& test,
                                             std::optional<std::size_t> channel,
-                                            const Regions& regions, const Pilots& pilots,
-                                            const Plan& plan) const {
-    if (!all_piloted(question, pilots)) return std::nullopt;
+                                            const Regions& regions, const Pilots& pilots) const {
+    if (!all_piloted(test.question, pilots)) return std::nullopt;
     PlannedChannel planned{.regions = regions};
-    for (std::size_t i = 0; i < question.compared(); ++i) {
-      const std::optional<double> spread = pilot_spread(question, i, channel, pilots, plan);
+    for (std::size_t i = 0; i < test.question.compared(); ++i) {
+      const std::optional<double> spread = pilot_spread(test, i, channel, pilots);
       if (!spread) return std::nullopt;
       (i == 0 ? planned.standard_deviation : planned.other_deviation) = std::sqrt(*spread);
     }
@@ -375,15 +360,13 @@ std::string quantity_of(const Question& question) {
                            : fmt::format("{} over the reference", words.one);
 }
 
-Evidence by_influence(const Method&, const Question& question, std::size_t channel,
-                      std::span<const ChannelData> data) {
-  const auto& family = dynamic_cast<const LogTheta&>(*question.theta);
-  LogRatio ratio{.log_null = family.log_null(question, channel, data),
-                 .sign = family.is_inverse() ? -1.0 : 1.0};
+Evidence by_influence(const Method&, const Seen& seen) {
+  const auto& family = dynamic_cast<const LogTheta&>(*seen.question.theta);
+  LogRatio ratio{.log_null = family.log_null(seen), .sign = family.is_inverse() ? -1.0 : 1.0};
   std::vector<Influence> known;
   double variance = 0;
-  for (std::size_t i = 0; i < question.compared(); ++i) {
-    ratio.sides.push_back(family.side(question, i, channel, data));
+  for (std::size_t i = 0; i < seen.question.compared(); ++i) {
+    ratio.sides.push_back(family.side(seen, i));
     known.push_back(ratio.sides[i].influence(ratio.sides[i].truth.known.value));
     variance += std::pow(known.back().relative.standard_error(), 2);
   }
@@ -401,7 +384,7 @@ Evidence by_influence(const Method&, const Question& question, std::size_t chann
   return {.estimate = estimate,
           .at = at,
           .interval = interval,
-          .quantity = quantity_of(question),
+          .quantity = quantity_of(seen.question),
           .ratio = true,
           .exact = error == 0};
 }
@@ -419,19 +402,19 @@ MethodRow influence_row(bool (*answers)(const Question&), Keeps keeps) {
 // ---- Variances
 
 /// The variance of the first over that of the second, or over the number, where theta is 0.
-double null_of(const Question& question, std::size_t channel, std::span<const ChannelData> data) {
-  const double x = question.subjects[0].averaged(data[0].primaries);
-  if (!question.of_two()) return question.references[channel].value / x;
-  return question.factor * question.subjects[1].averaged(data[1].primaries) / x;
+double null_of(const Seen& seen) {
+  const Question& question = seen.question;
+  const double x = question.subjects[0].averaged(seen.data[0].primaries);
+  if (!question.of_two()) return seen.reference().value / x;
+  return question.factor * question.subjects[1].averaged(seen.data[1].primaries) / x;
 }
 
 /// By chi-square or F, for normal values.
-Evidence of_normal_values(const Method&, const Question& question, std::size_t channel,
-                          std::span<const ChannelData> data) {
-  const Moments x = data[0].moments;
-  const Moments y = question.of_two() ? data[1].moments : Moments{};
-  const bool two = question.of_two();
-  const double null = null_of(question, channel, data);
+Evidence of_normal_values(const Method&, const Seen& seen) {
+  const bool two = seen.question.of_two();
+  const Moments x = seen.moments(0);
+  const Moments y = two ? seen.moments(1) : Moments{};
+  const double null = null_of(seen);
   const auto at = [=](double theta) {
     const double value = null * std::exp(theta);
     return two ? stats::f_ratio(x, y, value) : stats::chi_square_variance(x, value);
@@ -444,7 +427,7 @@ Evidence of_normal_values(const Method&, const Question& question, std::size_t c
   return {.estimate = std::log(x.variance() / (two ? y.variance() : 1) / null),
           .at = at,
           .interval = interval,
-          .quantity = quantity_of(question),
+          .quantity = quantity_of(seen.question),
           .ratio = true};
 }
 
@@ -485,40 +468,53 @@ std::string rows_beside_primaries(const Question& question) {
 }
 
 /// theta = ln(Var x / v0), or ln(Var x / (c Var y)), each of one primary if the estimator averages.
-class VarianceTheta final : public LogTheta {
+class VarianceTheta : public LogTheta {
  public:
-  VarianceTheta() : LogTheta({.of_moments = true, .of_spread = true}, {"variance", "variances"}) {}
+  VarianceTheta()
+      : LogTheta(
+            {.of_moments = true, .of_spread = true}, {"variance", "variances"},
+            {{"F",
+              "F: two variances of near-normal values",
+              of_two,
+              Keeps::moments,
+              of_normal_values,
+              {.of_normal_values = true, .over_looks = stats::LookLaw::independent_increments}},
+             {"chi-square",
+              "chi-square: a variance of near-normal values",
+              of_one,
+              Keeps::moments,
+              of_normal_values,
+              {.of_normal_values = true, .over_looks = stats::LookLaw::independent_increments}},
+             influence_row(any_question, Keeps::powers)}) {}
 
-  const std::vector<MethodRow>& methods() const override {
-    static const std::vector<MethodRow> table{
-        {"F",
-         "F: two variances of near-normal values",
-         [](const Question& q) { return q.of_two(); },
-         Keeps::moments,
-         of_normal_values,
-         {.of_normal_values = true, .over_looks = stats::LookLaw::independent_increments}},
-        {"chi-square",
-         "chi-square: a variance of near-normal values",
-         [](const Question& q) { return !q.of_two(); },
-         Keeps::moments,
-         of_normal_values,
-         {.of_normal_values = true, .over_looks = stats::LookLaw::independent_increments}},
-        influence_row(any_question, Keeps::powers)};
-    return table;
+  Question bind(const TestEntry& test, const Estimators& estimators) const override {
+    const Claim& claim = test.claim;
+    Question question{
+        .test = &test, .theta = this, .subjects = {estimates(claim.left.source, estimators)}};
+    if (const ScaledQuantity* const other = other_side(claim)) {
+      question.factor = other->factor;
+      question.subjects.push_back(estimates(other->quantity.source, estimators));
+      return question;
+    }
+    const auto* const number = std::get_if<Constant>(&claim.right);
+    if (number != nullptr && number->standard_error > 0) {
+      refuse(claim.left.where,
+             "a variance is tested against an exact number: `+-` has no method here");
+    }
+    question.references = references_of(claim, question.subjects[0], analytic_variance);
+    return question;
   }
 
-  std::uint64_t choose(const Question& question, const FamilyPlace& place, const Pilots& pilots,
-                       std::uint64_t most, Plan& plan) const override {
-    const auto channels = known_channels(question, pilots, plan);
-    const double x = critical_value(smallest_level(question, place),
+  std::uint64_t choose(TestOutcome& test, const Pilots& pilots, std::uint64_t most) const override {
+    const Question& question = test.question;
+    const auto channels = known_channels(test, pilots);
+    const double x = critical_value(smallest_level(question, test.place),
                                     is_two_sided(question.test->claim.relation));
     std::vector<stats::Gate> gates;
     const bool normal = are_near_normal(question, channels, x, gates);
-    if (!question.test->method && !normal) plan.method = find_method(question, "influence-t");
-    if (!plan.method.is.of_normal_values) {
-      return LogTheta::choose(question, place, pilots, most, plan);
-    }
-    for (std::size_t i = 0; i < channels.size(); ++i) note(plan, channels[i], gates[i]);
+    if (!question.test->method && !normal) test.plan.method = find_method(question, "influence-t");
+    if (!test.plan.method.is.of_normal_values) return LogTheta::choose(test, pilots, most);
+    for (std::size_t i = 0; i < channels.size(); ++i) note(test.plan, channels[i], gates[i]);
     return least_secondaries;
   }
 
@@ -526,45 +522,52 @@ class VarianceTheta final : public LogTheta {
     return question.of_two() ? rows_beside_primaries(question) : "";
   }
 
-  std::optional<ConstantVerdict> settled(const Question& question, std::size_t channel,
-                                         std::span<const ChannelData> data, const Regions& regions,
-                                         const ErrorShare&) const override {
-    if (question.of_two()) return std::nullopt;
-    return judge_constant_variance(question, channel, data[0], regions);
+  std::optional<ConstantVerdict> settled(const Seen& seen, const Regions& regions) const override {
+    if (seen.question.of_two()) return std::nullopt;
+    return judge_constant_variance(seen, regions);
   }
 
-  std::vector<Gate> gates(const TestOutcome& outcome, std::size_t channel,
-                          std::span<const ChannelData> data, double critical) const override {
-    if (!outcome.plan.method.is.of_normal_values) {
-      return LogTheta::gates(outcome, channel, data, critical);
-    }
+  std::vector<Gate> gates(const TestOutcome& outcome, const Seen& seen,
+                          double critical) const override {
+    if (!outcome.plan.method.is.of_normal_values) return LogTheta::gates(outcome, seen, critical);
     std::vector<Gate> gates;
-    const Question& question = outcome.question;
-    for (std::size_t subject = 0; subject < data.size(); ++subject) {
-      const Moments& moments = data[subject].moments;
+    const std::string name = channel_suffix(seen.question, seen.channel);
+    for (std::size_t subject = 0; subject < seen.data.size(); ++subject) {
+      const Moments& moments = seen.moments(subject);
       // Three values cannot show a kurtosis.
       if (!(moments.m2 > 0) || moments.count <= 3) continue;
-      gates.push_back(gate_of(
-          stats::kurtosis_gate(moments),
-          channel_suffix(question, channel) + " of " + question.subjects[subject].estimator->name));
+      gates.push_back(gate_of(stats::kurtosis_gate(moments),
+                              name + " of " + seen.question.subjects[subject].estimator->name));
     }
     return gates;
   }
 
  private:
-  RatioSide side(const Question&, std::size_t subject, std::size_t,
-                 std::span<const ChannelData> data) const override {
-    return without_truth(stats::influence_of_variance(powers_of_values(data[subject])));
+  RatioSide side(const Seen& seen, std::size_t subject) const override {
+    return without_truth(stats::influence_of_variance(powers_of_values(seen.data[subject])));
   }
   // Fewer do not tell a kurtosis.
   bool tells(const ChannelData& data) const override { return data.moments.count >= 4; }
-  double log_null(const Question& question, std::size_t channel,
-                  std::span<const ChannelData> data) const override {
-    return std::log(null_of(question, channel, data));
-  }
+  double log_null(const Seen& seen) const override { return std::log(null_of(seen)); }
 };
 
-const VarianceTheta variance_theta;
+/// Allows "at most" and "below" for the largest variance of several channels: every channel's is
+/// bounded then.
+class WorstVarianceTheta final : public VarianceTheta {
+ public:
+  Question bind(const TestEntry& test, const Estimators& estimators) const override {
+    const Claim& claim = test.claim;
+    const std::size_t channels = estimates(claim.left.source, estimators).channels.size();
+    const bool number = std::holds_alternative<Constant>(claim.right);
+    if (channels == 1 || (is_upper(claim.relation) && number)) {
+      return VarianceTheta::bind(test, estimators);
+    }
+    refuse(claim.left.where,
+           "`worst_variance` of {} channels is bounded by a number from above (`<=` or `<`): that "
+           "every channel's variance is; there is no method for another claim",
+           channels);
+  }
+};
 
 // ---- Costs, efficiencies and total variances
 
@@ -584,48 +587,21 @@ double spread_of_truth(const Moments& x, const Constant& truth) {
   return n * of_truth * of_truth;
 }
 
-Influence cost_of(const Question& question, std::size_t subject, const ChannelData& data) {
-  Influence cost = stats::influence_of_mean(counted_cost(question, data).cost());
-  cost.log_value -= std::log(question.subjects[subject].averaged(data.primaries));
-  return cost;
-}
-
-Influence total_variance_of(const Question& question, std::size_t subject,
-                            const ChannelData& data) {
-  if (!(data.group_variances.mean > 0)) {
-    throw std::domain_error("no channel of `" + question.subjects[subject].estimator->name +
-                            "` varies: it has no total variance");
-  }
-  Influence total = stats::influence_of_mean(data.group_variances);
-  total.log_value += std::log(question.subjects[subject].averaged(data.primaries));
-  return total;
-}
-
 /// The truth about which a subject's mean squared error stands for the variance; nullopt if none
 /// does.
-std::optional<Constant> truth_beside(const Question& question, std::size_t subject,
-                                     std::size_t channel, std::span<const ChannelData> data) {
-  if (question.truths[subject].empty()) return std::nullopt;
-  return truth_of(question, subject, channel, data);
-}
-
-/// Error times cost, the inverse of the efficiency.
-RatioSide inverse_efficiency(const Question& question, std::size_t subject, std::size_t channel,
-                             std::span<const ChannelData> data) {
-  const JointMoments sample = counted_cost(question, data[subject]);
-  const auto truth = truth_beside(question, subject, channel, data);
-  if (!truth) return without_truth(stats::influence_of_variance_and_cost(sample));
-  return {.influence = [sample](double t) { return stats::influence_of_error_and_cost(sample, t); },
-          .truth = {.known = {truth->value, truth->standard_error}, .turn = sample.x().mean}};
+std::optional<Constant> truth_beside(const Seen& seen, std::size_t subject) {
+  if (seen.question.truths[subject].empty()) return std::nullopt;
+  return truth_of(seen, subject);
 }
 
 /// ln(seconds per primary) of each replicate; for efficiency -ln(seconds * variance of a primary).
-Moments logarithms(const Question& question, std::size_t subject, const ChannelData& data) {
-  const double primaries = question.subjects[subject].averaged(data.primaries);
+Moments logarithms(const Seen& seen, std::size_t subject) {
+  const ChannelData& data = seen.data[subject];
+  const double primaries = seen.question.subjects[subject].averaged(data.primaries);
   Moments logs;
   for (const Replicate& replicate : data.replicates) {
     const double seconds = replicate.seconds / static_cast<double>(replicate.count) / primaries;
-    if (!question.is().of_spread) {
+    if (!seen.question.is().of_spread) {
       logs.add(std::log(seconds));
     } else {
       logs.add(-std::log(seconds * replicate.moments.variance() * primaries));
@@ -640,11 +616,11 @@ Moments logarithms(const Question& question, std::size_t subject, const ChannelD
 /// Costs and efficiencies in seconds, from replicates: Student's or Welch's t on the logarithms of
 /// their costs, or of cost x variance. The mean logarithm is off by about 1 / replicate size, alike
 /// on both sides.
-Evidence evidence_of_replicates(const Method&, const Question& question, std::size_t channel,
-                                std::span<const ChannelData> data) {
-  const Moments x = logarithms(question, 0, data[0]);
+Evidence evidence_of_replicates(const Method&, const Seen& seen) {
+  const Question& question = seen.question;
+  const Moments x = logarithms(seen, 0);
   if (!question.of_two()) {
-    const double null = std::log(question.references[channel].value);
+    const double null = std::log(seen.reference().value);
     return {.estimate = x.mean - null,
             .at = [=](double t) { return stats::student_t(x, {.value = null + t}); },
             .interval =
@@ -654,7 +630,7 @@ Evidence evidence_of_replicates(const Method&, const Question& question, std::si
             .quantity = quantity_of(question),
             .ratio = true};
   }
-  Moments y = logarithms(question, 1, data[1]);
+  Moments y = logarithms(seen, 1);
   y.mean += std::log(question.factor);
   return {.estimate = x.mean - y.mean,
           .at = [=](double t) { return stats::welch_t(x, y, {.scale = 1, .offset = t}); },
@@ -676,33 +652,34 @@ class RatioTheta : public LogTheta {
     return {influence_row(in_counts, Keeps::costs),
             {"replicates", of_replicates, in_seconds, Keeps::blocks, evidence_of_replicates}};
   }
-  std::optional<double> spread(const Question& question, std::size_t subject, std::size_t channel,
-                               std::span<const ChannelData> data) const override {
-    const ChannelData& mine = data[subject];
-    if (mine.replicates.empty()) return LogTheta::spread(question, subject, channel, data);
+  std::optional<double> spread(const Seen& seen, std::size_t subject) const override {
+    const ChannelData& mine = seen.data[subject];
+    if (mine.replicates.empty()) return LogTheta::spread(seen, subject);
     const double per_count =
         static_cast<double>(mine.moments.count) / static_cast<double>(mine.replicates.size());
-    return per_count * logarithms(question, subject, mine).variance();
+    return per_count * logarithms(seen, subject).variance();
   }
+  bool tells(const ChannelData& data) const override { return !data.joint.empty(); }
 };
 
 class CostTheta final : public RatioTheta {
  public:
-  CostTheta() : RatioTheta({.joins_channels = true}, {"cost", "costs"}) {}
+  CostTheta()
+      : RatioTheta({.joins_channels = true}, {"cost", "costs"},
+                   rows("t of replicates: costs in seconds")) {}
 
-  const std::vector<MethodRow>& methods() const override {
-    static const std::vector<MethodRow> table = rows("t of replicates: costs in seconds");
-    return table;
+  Question bind(const TestEntry& test, const Estimators& estimators) const override {
+    Question question = Theta::bind(test, estimators);
+    require_drawn(question);
+    return question;
   }
   const Theta* of_images() const override { return this; }
   std::string channel_name(const Question&, std::size_t) const override { return "cost"; }
 
  protected:
-  RatioSide side(const Question& question, std::size_t subject, std::size_t,
-                 std::span<const ChannelData> data) const override {
-    return without_truth(cost_of(question, subject, data[subject]));
+  RatioSide side(const Seen& seen, std::size_t subject) const override {
+    return without_truth(cost_of(seen, subject));
   }
-  bool tells(const ChannelData& data) const override { return !data.joint.empty(); }
   std::optional<double> predicted_spread(const Question& question, const PilotMoments& pilot,
                                          double averaged) const override {
     if (in_seconds(question)) return RatioTheta::predicted_spread(question, pilot, averaged);
@@ -715,24 +692,26 @@ class CostTheta final : public RatioTheta {
 
 class EfficiencyTheta final : public RatioTheta {
  public:
-  EfficiencyTheta() : RatioTheta({.of_spread = true}, {"efficiency", "efficiencies"}) {}
+  EfficiencyTheta()
+      : RatioTheta({.of_spread = true}, {"efficiency", "efficiencies"},
+                   rows("t of replicates: efficiencies in seconds")) {}
 
-  const std::vector<MethodRow>& methods() const override {
-    static const std::vector<MethodRow> table = rows("t of replicates: efficiencies in seconds");
-    return table;
-  }
+  Question bind(const TestEntry& test, const Estimators& estimators) const override;
 
  protected:
-  RatioSide side(const Question& question, std::size_t subject, std::size_t channel,
-                 std::span<const ChannelData> data) const override {
-    return inverse_efficiency(question, subject, channel, data);
+  /// Error times cost, the inverse of the efficiency.
+  RatioSide side(const Seen& seen, std::size_t subject) const override {
+    const JointMoments sample = counted_cost(seen.question, seen.data[subject]);
+    const auto truth = truth_beside(seen, subject);
+    if (!truth) return without_truth(stats::influence_of_variance_and_cost(sample));
+    return {
+        .influence = [sample](double t) { return stats::influence_of_error_and_cost(sample, t); },
+        .truth = {.known = {truth->value, truth->standard_error}, .turn = sample.x().mean}};
   }
-  bool tells(const ChannelData& data) const override { return !data.joint.empty(); }
   bool is_inverse() const override { return true; }
-  double spread_of_truth(const Question& question, std::size_t subject, std::size_t channel,
-                         std::span<const ChannelData> data) const override {
-    const auto truth = truth_beside(question, subject, channel, data);
-    return truth ? harness::spread_of_truth(data[subject].moments, *truth) : 0;
+  double spread_of_truth(const Seen& seen, std::size_t subject) const override {
+    const auto truth = truth_beside(seen, subject);
+    return truth ? harness::spread_of_truth(seen.moments(subject), *truth) : 0;
   }
   std::optional<double> predicted_spread(const Question& question, const PilotMoments& pilot,
                                          double averaged) const override {
@@ -746,16 +725,12 @@ class EfficiencyTheta final : public RatioTheta {
   }
 };
 
-class TotalVarianceTheta final : public RatioTheta {
+class TotalVarianceTheta final : public LogTheta {
  public:
   TotalVarianceTheta()
-      : RatioTheta({.joins_channels = true, .of_spread = true},
-                   {"total variance", "total variances"}) {}
+      : LogTheta({.joins_channels = true, .of_spread = true}, {"total variance", "total variances"},
+                 {influence_row(any_question, Keeps::group_variances)}) {}
 
-  const std::vector<MethodRow>& methods() const override {
-    static const std::vector<MethodRow> table{influence_row(any_question, Keeps::group_variances)};
-    return table;
-  }
   const Theta* of_images() const override { return this; }
   std::string channel_name(const Question& question, std::size_t channel) const override {
     return question.subjects[0].channels.size() > 1 ? "all channels"
@@ -763,16 +738,19 @@ class TotalVarianceTheta final : public RatioTheta {
   }
 
  protected:
-  RatioSide side(const Question& question, std::size_t subject, std::size_t,
-                 std::span<const ChannelData> data) const override {
-    return without_truth(total_variance_of(question, subject, data[subject]));
+  RatioSide side(const Seen& seen, std::size_t subject) const override {
+    const ChannelData& data = seen.data[subject];
+    const Subject& side = seen.question.subjects[subject];
+    if (!(data.group_variances.mean > 0)) {
+      throw std::domain_error("no channel of `" + side.estimator->name +
+                              "` varies: it has no total variance");
+    }
+    Influence total = stats::influence_of_mean(data.group_variances);
+    total.log_value += std::log(side.averaged(data.primaries));
+    return without_truth(total);
   }
   bool tells(const ChannelData& data) const override { return data.group_variances.count >= 2; }
 };
-
-const CostTheta cost_theta;
-const EfficiencyTheta efficiency_theta;
-const TotalVarianceTheta total_variance_theta;
 
 bool is_biased(const Subject& subject) {
   return subject.estimator->nature().bias.value_or(BiasClass::unbiased) != BiasClass::unbiased;
@@ -802,54 +780,22 @@ JointMoments powers_of_values(const ChannelData& data) {
   return data.joint.empty() ? stats::joint_of_four(data.moments) : data.joint.front();
 }
 
-Constant truth_of(const Question& question, std::size_t subject, std::size_t channel,
-                  std::span<const ChannelData> data) {
-  if (!question.has_reference_subject) return question.truths[subject][channel];
-  const Moments& reference = data.back().moments;
+Influence cost_of(const Seen& seen, std::size_t subject) {
+  const ChannelData& data = seen.data[subject];
+  Influence cost = stats::influence_of_mean(counted_cost(seen.question, data).cost());
+  cost.log_value -= std::log(seen.question.subjects[subject].averaged(data.primaries));
+  return cost;
+}
+
+Constant truth_of(const Seen& seen, std::size_t subject) {
+  const Question& question = seen.question;
+  if (!question.has_reference_subject) return question.truths[subject][seen.channel];
+  const Moments& reference = seen.data.back().moments;
   return {reference.mean, reference.standard_error()};
 }
 
-Question bind_variance(const TestEntry& test, const Estimators& estimators) {
-  const Claim& claim = test.claim;
-  Question question{.test = &test,
-                    .theta = &variance_theta,
-                    .subjects = {estimates(claim.left.source, estimators)}};
-  if (const ScaledQuantity* const other = other_side(claim)) {
-    question.factor = other->factor;
-    question.subjects.push_back(estimates(other->quantity.source, estimators));
-  } else {
-    const auto* const number = std::get_if<Constant>(&claim.right);
-    if (number != nullptr && number->standard_error > 0) {
-      refuse(claim.left.where,
-             "a variance is tested against an exact number: `+-` has no method here");
-    }
-    question.references = references_of(claim, question.subjects[0], analytic_variance);
-  }
-  return question;
-}
-
-Question bind_worst_variance(const TestEntry& test, const Estimators& estimators) {
-  const Claim& claim = test.claim;
-  const Subject subject = estimates(claim.left.source, estimators);
-  const bool bounded = claim.relation == Relation::at_most || claim.relation == Relation::less;
-  const bool number = std::holds_alternative<Constant>(claim.right);
-  if (subject.channels.size() == 1 || (bounded && number)) return bind_variance(test, estimators);
-  refuse(claim.left.where,
-         "`worst_variance` of {} channels is bounded by a number from above (`<=` or `<`): that "
-         "every channel's variance is; there is no method for another claim",
-         subject.channels.size());
-}
-
-const Theta& theta_of_variances() { return variance_theta; }
-
-Question bind_cost(const TestEntry& test, const Estimators& estimators) {
-  Question question = one_or_two(test, cost_theta, estimators);
-  require_drawn(question);
-  return question;
-}
-
-Question bind_efficiency(const TestEntry& test, const Estimators& estimators) {
-  Question question = one_or_two(test, efficiency_theta, estimators);
+Question EfficiencyTheta::bind(const TestEntry& test, const Estimators& estimators) const {
+  Question question = Theta::bind(test, estimators);
   require_drawn(question);
   const bool asked = test.reference || test.reference_number;
   const std::vector<Source> sources = sources_of(test.claim);
@@ -870,12 +816,10 @@ Question bind_efficiency(const TestEntry& test, const Estimators& estimators) {
   return question;
 }
 
-Question bind_total_variance(const TestEntry& test, const Estimators& estimators) {
-  return one_or_two(test, total_variance_theta, estimators);
-}
-
-const Theta& theta_of_costs() { return cost_theta; }
-const Theta& theta_of_efficiencies() { return efficiency_theta; }
-const Theta& theta_of_total_variances() { return total_variance_theta; }
+const Theta& theta_of_variances() { return one<VarianceTheta>(); }
+const Theta& theta_of_worst_variances() { return one<WorstVarianceTheta>(); }
+const Theta& theta_of_costs() { return one<CostTheta>(); }
+const Theta& theta_of_efficiencies() { return one<EfficiencyTheta>(); }
+const Theta& theta_of_total_variances() { return one<TotalVarianceTheta>(); }
 
 }  // namespace assay::harness

@@ -1,7 +1,6 @@
 #include "stats/variances/slope.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -38,12 +37,10 @@ bool of_logarithms(const Question& question) {
 }
 
 /// The cost or the variance of a primary at point i.
-stats::Influence influence_of(const Question& question, std::size_t i, const ChannelData& data) {
-  const double averaged = std::log(question.subjects[i].averaged(data.primaries));
-  stats::Influence influence = of_costs(question)
-                                   ? stats::influence_of_mean(counted_cost(question, data).cost())
-                                   : stats::influence_of_variance(powers_of_values(data));
-  influence.log_value += of_costs(question) ? -averaged : averaged;
+stats::Influence influence_of(const Seen& seen, std::size_t i) {
+  if (of_costs(seen.question)) return cost_of(seen, i);
+  stats::Influence influence = stats::influence_of_variance(powers_of_values(seen.data[i]));
+  influence.log_value += std::log(seen.question.subjects[i].averaged(seen.data[i].primaries));
   return influence;
 }
 
@@ -53,14 +50,15 @@ bool reference_is_shared(const Question& question) {
          question.test->over->parameter == "primaries";
 }
 
-SlopeData biases(const Question& question, std::size_t channel, std::span<const ChannelData> data) {
+SlopeData biases(const Seen& seen) {
+  const Question& question = seen.question;
   SlopeData slope;
   for (std::size_t i = 0; i < question.compared(); ++i) {
-    const Moments& x = data[i].moments;
+    const Moments& x = seen.moments(i);
     SlopePoint point{
         .size = question.sizes[i], .estimate = x.mean, .standard_error = x.standard_error()};
     if (of_biases(question)) {
-      const Constant truth = truth_of(question, i, channel, data);
+      const Constant truth = truth_of(seen, i);
       point.estimate -= truth.value;
       if (reference_is_shared(question)) {
         slope.reference_error = truth.standard_error;
@@ -73,13 +71,12 @@ SlopeData biases(const Question& question, std::size_t channel, std::span<const 
   return slope;
 }
 
-SlopeData points_of(const Question& question, std::size_t channel,
-                    std::span<const ChannelData> data) {
-  if (!of_logarithms(question)) return biases(question, channel, data);
+SlopeData points_of(const Seen& seen) {
+  if (!of_logarithms(seen.question)) return biases(seen);
   SlopeData slope{.scale = stats::SlopeScale::logarithms};
-  for (std::size_t i = 0; i < question.compared(); ++i) {
-    const stats::Influence influence = influence_of(question, i, data[i]);
-    slope.points.push_back({.size = question.sizes[i],
+  for (std::size_t i = 0; i < seen.question.compared(); ++i) {
+    const stats::Influence influence = influence_of(seen, i);
+    slope.points.push_back({.size = seen.question.sizes[i],
                             .estimate = influence.log_value,
                             .standard_error = influence.relative.standard_error()});
   }
@@ -141,10 +138,9 @@ Evidence exact_evidence(const SlopeData& data, double null) {
 
 /// Theta is the exponent minus the claimed one. Biases and means are fitted as they are, variances
 /// and costs by their logarithms (stats/variances/slope.h). Costs that never vary are exact.
-Evidence slope(const Method&, const Question& question, std::size_t channel,
-               std::span<const ChannelData> data) {
-  const SlopeData points = points_of(question, channel, data);
-  const double null = question.references[channel].value;
+Evidence slope(const Method&, const Seen& seen) {
+  const SlopeData points = points_of(seen);
+  const double null = seen.reference().value;
   if (is_exact(points)) return exact_evidence(points, null);
   const auto at = [=](double theta) { return stats::slope_test(points, null + theta); };
   const auto interval = [=](double confidence) {
@@ -159,13 +155,13 @@ Evidence slope(const Method&, const Question& question, std::size_t channel,
 }
 
 /// Gates of the points whose logarithms are fitted, on the skewness of their influence values.
-std::vector<Gate> skewness_gates(const Question& question, std::size_t channel,
-                                 std::span<const ChannelData> data, double critical) {
+std::vector<Gate> skewness_gates(const Seen& seen, double critical) {
+  const Question& question = seen.question;
   std::vector<Gate> gates;
   // Channels share their costs: the first has the gates.
-  if (!of_logarithms(question) || (of_costs(question) && channel != 0)) return gates;
+  if (!of_logarithms(question) || (of_costs(question) && seen.channel != 0)) return gates;
   for (std::size_t i = 0; i < question.compared(); ++i) {
-    Moments relative = influence_of(question, i, data[i]).relative;
+    Moments relative = influence_of(seen, i).relative;
     if (!(relative.m2 > 0)) continue;
     // The bend of the logarithm takes 3/2 of their standard deviation off the skewness g1.
     relative.m3 -= 1.5 * relative.m2 * relative.m2 / static_cast<double>(relative.count);
@@ -179,9 +175,8 @@ std::vector<Gate> skewness_gates(const Question& question, std::size_t channel,
 /// to max(`level`, 1e-5); `level` is the largest at which a verdict rejects a slope. A red gate
 /// leaves no slope: to reject all others neither shows nor refutes a claim. Under a power law it is
 /// red with at most this probability.
-Gate power_law_gate(const Question& question, std::size_t channel,
-                    std::span<const ChannelData> data, double level) {
-  const SlopeData points = points_of(question, channel, data);
+Gate power_law_gate(const Seen& seen, double level) {
+  const SlopeData points = points_of(seen);
   double log_p = 0;
   if (is_exact(points)) {
     const Slopes slopes = exact_slopes(points);
@@ -190,23 +185,20 @@ Gate power_law_gate(const Question& question, std::size_t channel,
     log_p = stats::slope_estimate(points).log_p_best;
   }
   const double limit = std::max(least_p_of_fit, level);
-  return gate_of(reports::Gate{.name = "p of a power law",
-                               .value = std::exp(log_p),
-                               .limit = limit,
-                               .state = log_p <= std::log(limit) ? "red" : "green"});
+  return gate_of("p of a power law", std::exp(log_p), limit,
+                 log_p <= std::log(limit) ? "red" : "green");
 }
 
 /// Why the points of a sweep cannot be fitted: one has no spread, so its error is unknown. Empty if
 /// all have. Costs that never vary are exact.
-std::string point_without_spread(const Question& question, std::size_t channel,
-                                 std::span<const ChannelData> data) {
-  if (of_costs(question)) return "";
-  for (std::size_t i = 0; i < question.compared(); ++i) {
-    if (!is_constant(question, i, channel, data[i].moments)) continue;
+std::string point_without_spread(const Seen& seen) {
+  if (of_costs(seen.question)) return "";
+  for (std::size_t i = 0; i < seen.question.compared(); ++i) {
+    if (!is_constant(seen, i)) continue;
     return fmt::format(
         "every observation of `{}` is {:.10g} but for rounding: of a point without spread no error "
         "is known, and a rare value may be unseen, so that no exponent is fitted",
-        question.subjects[i].estimator->name, data[i].moments.mean);
+        seen.question.subjects[i].estimator->name, seen.moments(i).mean);
   }
   return "";
 }
@@ -222,10 +214,11 @@ Moments moments_of(const Question& question, std::size_t subject, std::size_t ch
 }
 
 /// The variance of b, or of ln b, at size i from one observation.
-double point_variance(const Question& question, std::size_t i, std::size_t channel,
-                      const Pilots& pilots, const Plan& plan) {
+double point_variance(const TestOutcome& test, std::size_t i, std::size_t channel,
+                      const Pilots& pilots) {
+  const Question& question = test.question;
   const Moments& pilot = moments_of(question, i, channel, pilots);
-  const double n = question.subjects[i].averaged(plan.primaries[i]);
+  const double n = question.subjects[i].averaged(test.plan.primaries[i]);
   if (!(pilot.m2 > 0)) return 0;
   if (question.is().of_spread) return 2 + (pilot.kurtosis() - 3) / n;
   return pilot.variance() / n;
@@ -258,8 +251,9 @@ Fit fit_constant(const Question& question, std::size_t channel, const Pilots& pi
 }
 
 /// Points of one observation each, expected if the claim held with this exponent.
-std::optional<SlopeData> expected_points(const Question& question, std::size_t channel,
-                                         const Pilots& pilots, const Plan& plan, double exponent) {
+std::optional<SlopeData> expected_points(const TestOutcome& test, std::size_t channel,
+                                         const Pilots& pilots, double exponent) {
+  const Question& question = test.question;
   const bool logarithms = question.is().of_spread;
   SlopeData data{.scale = logarithms ? stats::SlopeScale::logarithms : stats::SlopeScale::values};
   Fit fit{.constant = 1, .standard_error = 0};
@@ -271,7 +265,7 @@ std::optional<SlopeData> expected_points(const Question& question, std::size_t c
   }
   for (std::size_t i = 0; i < question.compared(); ++i) {
     const double size = question.sizes[i];
-    const double variance = point_variance(question, i, channel, pilots, plan);
+    const double variance = point_variance(test, i, channel, pilots);
     if (!(variance > 0)) return std::nullopt;
     data.points.push_back({.size = size,
                            .estimate = logarithms ? exponent * std::log(size)
@@ -281,15 +275,14 @@ std::optional<SlopeData> expected_points(const Question& question, std::size_t c
   return data;
 }
 
-std::optional<std::uint64_t> slope_channel(const Question& question, std::size_t channel,
-                                           const ErrorShare& share, const Pilots& pilots,
-                                           const Plan& plan) {
-  const Regions& regions = plan.regions[channel];
+std::optional<std::uint64_t> slope_channel(const TestOutcome& test, std::size_t channel,
+                                           const ErrorShare& share, const Pilots& pilots) {
+  const Regions& regions = test.plan.regions[channel];
   const double distance = distance_of(regions);
   if (!(distance > 0)) return std::nullopt;
-  const double null = question.references[channel].value;
+  const double null = test.question.references[channel].value;
   const stats::ErrorRates rates = planned_rates(share, regions);
-  const auto expected = expected_points(question, channel, pilots, plan, null);
+  const auto expected = expected_points(test, channel, pilots, null);
   if (!expected) return std::nullopt;
   double most = 0;
   for (const double edge : {null - distance, null + distance}) {
@@ -308,54 +301,48 @@ double largest_level(const ErrorShare& share, const Regions& regions) {
 }
 
 /// theta = s - the claimed exponent, where the quantity goes like (swept parameter)^s.
-class SlopeTheta final : public Theta {
+class SlopeTheta : public Theta {
  public:
-  using Theta::Theta;
+  explicit SlopeTheta(const ThetaTraits& traits = {.fit_decides = true})
+      : Theta(traits,
+              {{"slope", "weighted fit of a power law: costs over a parameter", of_costs,
+                Keeps::costs, slope},
+               {"slope", "weighted fit of a power law: variances over a parameter",
+                [](const Question& q) { return q.is().of_spread; }, Keeps::powers, slope},
+               {"slope", "weighted fit of a power law: means or biases over a parameter",
+                [](const Question& q) { return !of_logarithms(q); }, Keeps::moments, slope}}) {}
 
-  const std::vector<MethodRow>& methods() const override {
-    static const std::vector<MethodRow> table{
-        {"slope", "weighted fit of a power law: costs over a parameter", of_costs, Keeps::costs,
-         slope},
-        {"slope", "weighted fit of a power law: variances over a parameter",
-         [](const Question& q) { return q.is().of_spread; }, Keeps::powers, slope},
-        {"slope", "weighted fit of a power law: means or biases over a parameter",
-         [](const Question& q) { return !of_costs(q) && !q.is().of_spread; }, Keeps::moments,
-         slope}};
-    return table;
-  }
+  Question bind(const TestEntry& test, const Estimators& estimators) const override;
 
   void check_margin(const Question&, const Margin& margin) const override {
     require_absolute(margin, "a slope is an exponent");
   }
   std::optional<double> known_size(const Question&) const override { return std::nullopt; }
 
-  std::uint64_t choose(const Question& question, const FamilyPlace&, const Pilots&, std::uint64_t,
-                       Plan& plan) const override {
-    const std::uint64_t floor = secondaries_of_floor(question, plan);
-    return is.of_spread || of_costs(question) ? std::max(usual_secondaries, floor) : floor;
+  std::uint64_t choose(TestOutcome& test, const Pilots&, std::uint64_t) const override {
+    const std::uint64_t floor = secondaries_of_floor(test);
+    return of_logarithms(test.question) ? std::max(usual_secondaries, floor) : floor;
   }
 
   /// Size for each subject, from a pilot that shows the claimed power law: its constant at the
   /// claimed exponent exceeds three standard errors. Nullopt if it does not.
-  std::optional<std::uint64_t> secondaries(const Question& question, const ErrorShare& share,
-                                           const Pilots& pilots, const Plan& plan) const override {
-    if (!all_piloted(question, pilots) || of_costs(question)) return std::nullopt;
-    return most_over_channels(question, [&](std::size_t channel) {
-      return slope_channel(question, channel, share, pilots, plan);
+  std::optional<std::uint64_t> secondaries(const TestOutcome& test, const ErrorShare& share,
+                                           const Pilots& pilots) const override {
+    if (!all_piloted(test.question, pilots) || of_costs(test.question)) return std::nullopt;
+    return most_over_channels(test.question, [&](std::size_t channel) {
+      return slope_channel(test, channel, share, pilots);
     });
   }
 
-  std::string lack_of_numbers(const DrawnTest& test, std::size_t channel,
-                              std::span<const ChannelData> data) const override {
-    const std::string reason = Theta::lack_of_numbers(test, channel, data);
-    return reason.empty() ? point_without_spread(test.outcome.question, channel, data) : reason;
+  std::string lack_of_numbers(const TestOutcome& test, const Seen& seen) const override {
+    const std::string reason = Theta::lack_of_numbers(test, seen);
+    return reason.empty() ? point_without_spread(seen) : reason;
   }
 
-  std::vector<Gate> gates(const TestOutcome& outcome, std::size_t channel,
-                          std::span<const ChannelData> data, double x) const override {
-    std::vector<Gate> gates = skewness_gates(outcome.question, channel, data, x);
-    gates.push_back(power_law_gate(outcome.question, channel, data,
-                                   largest_level(outcome.share(), outcome.plan.regions[channel])));
+  std::vector<Gate> gates(const TestOutcome& outcome, const Seen& seen, double x) const override {
+    std::vector<Gate> gates = skewness_gates(seen, x);
+    const Regions& regions = outcome.plan.regions[seen.channel];
+    gates.push_back(power_law_gate(seen, largest_level(outcome.share(), regions)));
     return gates;
   }
 
@@ -366,8 +353,10 @@ class SlopeTheta final : public Theta {
   }
 };
 
-const SlopeTheta slope_theta({.fit_decides = true});
-const SlopeTheta variance_slope_theta({.of_spread = true, .fit_decides = true});
+class VarianceSlopeTheta final : public SlopeTheta {
+ public:
+  VarianceSlopeTheta() : SlopeTheta({.of_spread = true, .fit_decides = true}) {}
+};
 
 // ---- Binding
 
@@ -389,19 +378,6 @@ PreparedEstimator swept(const PreparedEstimator& estimator, const std::string& p
   return point;
 }
 
-/// InputError, with the quantities that have a slope.
-void require_slope(const Claim& claim) {
-  if (claim.left.row->slope != nullptr) return;
-  std::vector<std::string> words;
-  for (const QuantityRow& row : quantities()) {
-    if (row.slope != nullptr) words.push_back(row.word);
-  }
-  const std::string last = words.back();
-  words.pop_back();
-  refuse(claim.left.where, "`slope` takes a {} or {}, not `{}`", fmt::join(words, ", "), last,
-         claim.left.row->word);
-}
-
 void require_counted(const TestEntry& test) {
   if (test.cost != CostKind::seconds) return;
   refuse(test.where, "a slope of seconds has no method; count `rays` or `samples`");
@@ -421,11 +397,10 @@ void require_slope_of_something(const TestEntry& test, const Subject& subject) {
 
 }  // namespace
 
-Question bind_slope(const TestEntry& test, const Estimators& estimators) {
+Question SlopeTheta::bind(const TestEntry& test, const Estimators& estimators) const {
   const Claim& claim = test.claim;
-  require_slope(claim);
   require_counted(test);
-  Question question{.test = &test, .theta = claim.left.row->slope};
+  Question question{.test = &test, .theta = this};
   const PreparedEstimator& estimator = estimator_of(claim.left.source, estimators);
   for (const Value& value : test.over->values) {
     auto point =
@@ -450,7 +425,7 @@ Question bind_slope(const TestEntry& test, const Estimators& estimators) {
   return question;
 }
 
-const Theta& theta_of_slopes() { return slope_theta; }
-const Theta& theta_of_variance_slopes() { return variance_slope_theta; }
+const Theta& theta_of_slopes() { return one<SlopeTheta>(); }
+const Theta& theta_of_variance_slopes() { return one<VarianceSlopeTheta>(); }
 
 }  // namespace assay::harness

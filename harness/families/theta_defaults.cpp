@@ -11,8 +11,28 @@ namespace assay::harness {
 
 const ThetaTraits& Question::is() const { return theta->is; }
 
+bool Seen::relative() const { return question.theta->is_relative(question, channel); }
+
 std::string Question::channel_name(std::size_t channel) const {
   return theta->channel_name(*this, channel);
+}
+
+Question Theta::bind(const TestEntry& test, const Estimators& estimators) const {
+  const Claim& claim = test.claim;
+  Question question{
+      .test = &test, .theta = this, .subjects = {estimates(claim.left.source, estimators)}};
+  if (const ScaledQuantity* other = other_side(claim)) {
+    question.factor = other->factor;
+    question.subjects.push_back(estimates(other->quantity.source, estimators));
+  } else {
+    const Constant number = std::get<Constant>(claim.right);
+    if (number.standard_error > 0) {
+      refuse(claim.left.where, "`{}` is tested against an exact number: `+-` has no method here",
+             claim.left.row->word);
+    }
+    question.references.assign(question.channel_count(), number);
+  }
+  return question;
 }
 
 std::string Theta::channel_name(const Question& question, std::size_t channel) const {
@@ -50,8 +70,7 @@ std::optional<double> Theta::known_size(const Question& question) const {
   return largest > 0 ? std::optional(largest) : std::nullopt;
 }
 
-std::uint64_t Theta::choose(const Question&, const FamilyPlace&, const Pilots&, std::uint64_t,
-                            Plan&) const {
+std::uint64_t Theta::choose(TestOutcome&, const Pilots&, std::uint64_t) const {
   return least_secondaries;
 }
 
@@ -66,23 +85,21 @@ std::string Theta::why_impossible(const Question& question) const {
              : "this claim would take more observations than can be counted; give a larger margin";
 }
 
-std::string Theta::lack_of_numbers(const DrawnTest& test, std::size_t channel,
-                                   std::span<const ChannelData> data) const {
-  const Question& question = test.outcome.question;
-  for (std::size_t i = 0; i < data.size() && !is.of_single_values; ++i) {
-    if (is_constant(question, i, channel, data[i].moments)) continue;
-    std::string reason = beyond_doubles(data[i].moments, question.subjects[i].estimator->name);
-    for (const stats::JointMoments& powers : data[i].joint) {
-      if (reason.empty()) reason = beyond_doubles(powers, question.subjects[i].estimator->name);
+std::string Theta::lack_of_numbers(const TestOutcome&, const Seen& seen) const {
+  for (std::size_t i = 0; i < seen.data.size() && !is.of_single_values; ++i) {
+    if (is_constant(seen, i)) continue;
+    const std::string& name = seen.question.subjects[i].estimator->name;
+    std::string reason = beyond_doubles(seen.moments(i), name);
+    for (const stats::JointMoments& powers : seen.data[i].joint) {
+      if (reason.empty()) reason = beyond_doubles(powers, name);
     }
     if (!reason.empty()) return reason;
   }
   return "";
 }
 
-ChannelEvidence Theta::evidence(const DrawnTest& test, std::size_t channel,
-                                std::span<const ChannelData> data) const {
-  return {.evidence = evidence_of(test.outcome.plan.method, test.outcome.question, channel, data)};
+ChannelEvidence Theta::evidence(const DrawnTest& test, const Seen& seen) const {
+  return {.evidence = evidence_of(test.outcome.plan.method, seen)};
 }
 
 }  // namespace assay::harness

@@ -155,13 +155,8 @@ reports::Test tested(const std::string& claim, const Asked& asked, const ClaimBu
       harness::test_of_claim({.claim = claim, .detect = asked.detect, .allow = asked.allow})};
   const harness::Question question =
       harness::ask_as_written(suite.tests[0], asked.estimators, seed);
-  const std::vector<harness::FamilyPlace> place = harness::places(suite, {question});
   const harness::Pilots pilots = harness::pilots_of({question}, seed, harness::threads());
-  TestWork work{.outcome = {.question = question,
-                            .place = place[0],
-                            .plan = harness::plan_test(
-                                question, place[0], pilots,
-                                harness::choose_primaries({question}, place, pilots))}};
+  TestWork work{.outcome = harness::plan_alone(suite, question, pilots)};
   harness::Pools pools;
   work.pools = pools.for_question(question, work.outcome.plan, seed, pilots);
   harness::Silence silence;

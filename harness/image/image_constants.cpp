@@ -107,23 +107,15 @@ bool find_spans(const stats::ImageStack<Real>& stack, const DeclaredElements& ch
 }
 
 /// The value of a constant, and the range of the law whose other values it can have missed.
-struct Missing {
-  double constant;
-  double low;
-  double high;
-  std::size_t count;
-
+struct Missing : stats::ConstantSample {
   /// Tests it against a mean that is known or estimated.
   double log_p(const Constant& mean) const {
-    const stats::ConstantSample sample{.value = constant,
-                                       .low = std::min(low, constant),
-                                       .high = std::max(high, constant),
-                                       .count = count};
-    return stats::log_p_constant(sample, {mean.value, mean.standard_error});
+    return stats::log_p_constant({value, std::min(low, value), std::max(high, value), count},
+                                 {mean.value, mean.standard_error});
   }
-  double sign(const Constant& mean) const { return constant < mean.value ? -1 : 1; }
+  double sign(const Constant& mean) const { return value < mean.value ? -1 : 1; }
   bool bounded(const Constant& mean) const {
-    return std::isfinite(mean.value < constant ? low : high);
+    return std::isfinite(mean.value < value ? low : high);
   }
 };
 
@@ -159,52 +151,46 @@ double z_of(const UnseenElement& unseen) {
 }
 
 template <class Real>
-VaryingPart<Real>::VaryingPart(const Question& question, const ImagePair<Real>& pair)
-    : of_two_(pair.of_two()), first_(pair.first()) {
-  if (of_two_) {
-    second_ = pair.second();
-    settle_two(question);
-  } else {
-    settle_against_reference(question, pair);
-  }
+VaryingPart<Real>::VaryingPart(const Question& question, const ComparedImages<Real>& pair)
+    : ComparedImages<Real>(pair) {
+  this->second ? settle_two(question) : settle_against_reference(question);
 }
 
 template <class Real>
-void VaryingPart<Real>::settle_against_reference(const Question& question,
-                                                 const ImagePair<Real>& pair) {
-  const stats::ImageReference reference = pair.reference();
-  value_.assign(reference.value.begin(), reference.value.end());
-  error_.assign(reference.standard_error.begin(), reference.standard_error.end());
+void VaryingPart<Real>::settle_against_reference(const Question& question) {
+  auto& [images, none, numbers, errors] = static_cast<ComparedImages<Real>&>(*this);
   DeclaredElements channels(question.subjects[0]);
   if (question.is().of_pairs) channels.subtract(mapped_elements(question));
   Spans spans;
   bool constants = false;
   std::vector<Replacement> replacements;
-  for (std::size_t i = 0; i < value_.size(); ++i) {
-    if (i % at_a_time == 0) constants = find_spans(first_, channels, i, spans);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (i % at_a_time == 0) constants = find_spans(images, channels, i, spans);
     if (!constants) continue;
     const Span span = spans[i % at_a_time];
     if (!span.constant(channels[i].rounding)) continue;
-    const double constant = first_.images[0][i];
-    const Constant expected{value_[i], error_.empty() ? 0 : error_[i]};
+    const double constant = images.images[0][i];
+    const Constant expected{numbers[i], errors.empty() ? 0 : errors[i]};
     const bool differs = std::abs(constant - expected.value) > channels[i].rounding;
     if (differs && question.is().of_pairs) continue;  // it fails, as of two images
     ++constants_;
     if (differs) {
-      const Missing missing{constant, channels[i].low, channels[i].high, first_.images.size()};
+      const Missing missing{constant, channels[i].low, channels[i].high, images.images.size()};
       unseen_.push_back({i, missing.sign(expected), missing.log_p(expected)});
     }
     if (span.low < span.high) replacements.push_back({i, constant});
     if (differs) continue;
-    value_[i] = constant;
-    if (!error_.empty()) error_[i] = 0;
+    numbers[i] = constant;
+    if (!errors.empty()) errors[i] = 0;
   }
-  if (std::ranges::all_of(error_, [](double error) { return error == 0; })) error_.clear();
-  first_ = replaced(first_, replacements, settled_);
+  this->drop_zero_errors();
+  images = replaced(images, replacements, settled_);
 }
 
 template <class Real>
 void VaryingPart<Real>::settle_two(const Question& question) {
+  auto& stack = this->first;
+  auto& other = *this->second;
   const DeclaredElements one(question.subjects[0]);
   const DeclaredElements two = mapped_elements(question);
   std::vector<Replacement> of_first;
@@ -212,17 +198,17 @@ void VaryingPart<Real>::settle_two(const Question& question) {
   Spans first_spans;
   Spans second_spans;
   bool constants = false;
-  for (std::size_t i = 0; i < first_.extent.elements(); ++i) {
+  for (std::size_t i = 0; i < stack.extent.elements(); ++i) {
     if (i % at_a_time == 0) {
-      constants = find_spans(first_, one, i, first_spans);
-      constants |= find_spans(second_, two, i, second_spans);
+      constants = find_spans(stack, one, i, first_spans);
+      constants |= find_spans(other, two, i, second_spans);
     }
     if (!constants) continue;
     const bool first_constant = first_spans[i % at_a_time].constant(one[i].rounding);
     const bool second_constant = second_spans[i % at_a_time].constant(two[i].rounding);
     if (!first_constant && !second_constant) continue;
-    const double a = first_.images[0][i];
-    const double b = second_.images[0][i];
+    const double a = stack.images[0][i];
+    const double b = other.images[0][i];
     if (first_constant && second_constant) {
       ++constants_;
       const bool equal = std::abs(a - b) <= one[i].rounding + two[i].rounding;
@@ -231,21 +217,21 @@ void VaryingPart<Real>::settle_two(const Question& question) {
       continue;
     }
     const Declared& channel = first_constant ? one[i] : two[i];
-    const stats::ImageStack<Real>& constant = first_constant ? first_ : second_;
-    const Constant mean = mean_of(first_constant ? second_ : first_, i);
+    const stats::ImageStack<Real>& constant = first_constant ? stack : other;
+    const Constant mean = mean_of(first_constant ? other : stack, i);
     const Missing missing{first_constant ? a : b, channel.low, channel.high,
                           constant.images.size()};
     if (!missing.bounded(mean)) continue;
     const double sign = first_constant ? missing.sign(mean) : -missing.sign(mean);
     unseen_.push_back({i, sign, missing.log_p(mean)});
-    of_first.push_back({i, missing.constant});
-    of_second.push_back({i, missing.constant});
+    of_first.push_back({i, missing.value});
+    of_second.push_back({i, missing.value});
   }
-  first_ = replaced(first_, of_first, settled_);
-  second_ = replaced(second_, of_second, settled_);
+  stack = replaced(stack, of_first, settled_);
+  other = replaced(other, of_second, settled_);
 }
 
-template class VaryingPart<float>;
-template class VaryingPart<double>;
+template struct VaryingPart<float>;
+template struct VaryingPart<double>;
 
 }  // namespace assay::harness

@@ -31,32 +31,19 @@ double z_of(const UnseenElement& unseen);
 /// alone varied, its standard error tests the other's constant, provided that the other declares a
 /// range. Without a range Welch's test takes the values seen.
 template <class Real>
-class VaryingPart {
- public:
-  VaryingPart(const Question& question, const ImagePair<Real>& pair);
+struct VaryingPart : ComparedImages<Real> {
+  VaryingPart(const Question& question, const ComparedImages<Real>& pair);
   VaryingPart(const VaryingPart&) = delete;  // spans point inside
   VaryingPart& operator=(const VaryingPart&) = delete;
 
   const std::vector<UnseenElement>& unseen() const { return unseen_; }
-  bool any() const { return constants_ < first_.extent.elements(); }
-
-  /// Calls `use` with the first stack and its comparison, and returns the result.
-  template <class Use>
-  auto with(const Use& use) const {
-    if (of_two_) return use(first_, second_);
-    return use(first_, stats::ImageReference{first_.extent, value_, error_});
-  }
+  bool any() const { return constants_ < this->first.extent.elements(); }
 
  private:
-  void settle_against_reference(const Question& question, const ImagePair<Real>& pair);
+  void settle_against_reference(const Question& question);
   void settle_two(const Question& question);
 
-  bool of_two_ = false;
-  stats::ImageStack<Real> first_;
-  stats::ImageStack<Real> second_;
   std::vector<std::vector<Real>> settled_;  // images with a rounded element
-  std::vector<double> value_;
-  std::vector<double> error_;
   std::vector<UnseenElement> unseen_;
   std::size_t constants_ = 0;
 };

@@ -88,23 +88,22 @@ stats::ImageDistance distance_of(const ImagePair<Real>& pair, bool relative,
   stats::ImageDistance distance = pair.with([](const auto& first, const auto& second) {
     return stats::image_distance(first, second, on_all_threads);
   });
-  if (const auto* const subtracted = pair.subtracted()) {
-    distance = relative_to(distance, *subtracted);
-  } else if (!pair.of_two()) {
-    distance = stats::with_reference_error(distance, pair.first(), pair.reference(), errors);
+  if (pair.subtracted) {
+    distance = relative_to(distance, *pair.subtracted);
+  } else if (!pair.second) {
+    distance = stats::with_reference_error(distance, pair.first, pair.reference(), errors);
   }
-  return in_units_of_margin(distance, pair.extent(), relative);
+  return in_units_of_margin(distance, pair.first.extent, relative);
 }
 
 template <class Real>
 double uniform_error(const ImagePair<Real>& pair, bool relative) {
-  ChannelMeans other =
-      pair.of_two() ? channel_means(pair.second()) : channel_means(pair.reference());
-  if (const auto* const subtracted = pair.subtracted()) {
-    other = channel_means(*subtracted);
+  ChannelMeans other = pair.second ? channel_means(*pair.second) : channel_means(pair.reference());
+  if (pair.subtracted) {
+    other = channel_means(*pair.subtracted);
     drop_errors(other);
   }
-  return uniform_error(channel_means(pair.first()), other, relative);
+  return uniform_error(channel_means(pair.first), other, relative);
 }
 
 /// Replicates at which theta would be excluded from `margin` on. The squared bias's standard error
@@ -198,20 +197,21 @@ void require_independent(const ImageTest& test, const ImagePair<Real>& pair) {
 template <class Real>
 stats::ImageDistance look_at(const Question& question, const ImageTest& test,
                              const ImagePair<Real>& pair, ImageOutcome& outcome) {
-  stats::check::replicates("image", pair.fewest_replicates());
+  const auto [fewest, most] = pair.replicates();
+  const stats::ImageExtent& extent = pair.first.extent;
+  stats::check::replicates("image", fewest);
   require_independent(test, pair);
   const bool relative = question.theta->is_relative(question, 0);
   const auto errors =
       test.independent ? stats::ElementErrors::independent : stats::ElementErrors::unknown;
   const stats::ImageDistance distance = distance_of(pair, relative, errors);
   const VaryingPart varying(question, pair);
-  const auto* const partners = pair.subtracted();
-  require_spread(question, varying.any() || (partners != nullptr && varies(*partners)));
+  require_spread(question, varying.any() || (pair.subtracted && varies(*pair.subtracted)));
   outcome.unseen = varying.unseen();
-  outcome.replicates = pair.most_replicates();
-  look_at_family(varying, pair.extent(), pair.of_two() || question.is().of_pairs, outcome);
+  outcome.replicates = most;
+  look_at_family(varying, extent, pair.second || question.is().of_pairs, outcome);
   for (const UnseenElement& unseen : outcome.unseen) outcome.z[unseen.element] = z_of(unseen);
-  add_unseen(pair.extent(), outcome);
+  add_unseen(extent, outcome);
   outcome.uniform_error = uniform_error(pair, relative);
   return distance;
 }
@@ -289,9 +289,9 @@ template <class Real>
 stats::ImageLawTest law_test_of(const Question& question, const ImageTest& test,
                                 const ImagePair<Real>& pair) {
   require_independent(test, pair);
-  require_spread(question, varies(pair.first()) || varies(pair.second()));
+  require_spread(question, varies(pair.first) || varies(*pair.second));
   return stats::image_law_test(
-      pair.first(), pair.second(),
+      pair.first, *pair.second,
       {.permutations = permutations_at(test.share.alpha),
        .draw = [key = test.labels](
                    std::uint64_t index, std::size_t count,
@@ -301,11 +301,11 @@ stats::ImageLawTest law_test_of(const Question& question, const ImageTest& test,
 
 }  // namespace
 
-ImageEvidence evidence_of_image_laws(const Question& question, const ImageTest& test,
-                                     std::span<const ChannelData> data) {
-  ImageEvidence result;
-  stats::ImageLawTest law = with_pair(question, data, [&](const auto& pair) {
-    result.outcome.replicates = pair.most_replicates();
+ChannelEvidence evidence_of_image_laws(const Seen& seen, const ImageTest& test) {
+  const Question& question = seen.question;
+  ImageOutcome outcome;
+  stats::ImageLawTest law = with_pair(seen, [&](const auto& pair) {
+    outcome.replicates = pair.replicates().second;
     return law_test_of(question, test, pair);
   });
   const stats::ImageExtent extent = extent_of(*question.subjects[0].image);
@@ -315,10 +315,10 @@ ImageEvidence evidence_of_image_laws(const Question& question, const ImageTest& 
                            .z = law.most.z,
                            .log_p = law.log_p,
                            .adjusted_log_p = law.log_p};
-  result.outcome.family = {
+  outcome.family = {
       .log_p = law.log_p, .winner = most, .groups = {most}, .tested = extent.elements()};
-  result.outcome.seen = seen_text(law.most, question.subjects[0].estimator->name);
-  result.outcome.z = std::move(law.z);
+  outcome.seen = seen_text(law.most, question.subjects[0].estimator->name);
+  outcome.z = std::move(law.z);
   const stats::TestResult equal{
       .statistic = law.most.z,
       .distribution = {"permutation", {static_cast<double>(law.permutations)}},
@@ -326,15 +326,15 @@ ImageEvidence evidence_of_image_laws(const Question& question, const ImageTest& 
       .log_p_upper = law.log_p,
       .exactness = stats::Exactness::exact};
   constexpr double unknown = std::numeric_limits<double>::infinity();
-  result.evidence = {.estimate = unknown,
-                     .at = [equal](double) { return equal; },
-                     .interval =
-                         [=](double confidence) {
-                           return stats::Interval{-unknown, unknown, confidence};
-                         },
-                     .quantity = "difference of the laws",
-                     .distance = true};
-  return result;
+  Evidence evidence{.estimate = unknown,
+                    .at = [equal](double) { return equal; },
+                    .interval =
+                        [=](double confidence) {
+                          return stats::Interval{-unknown, unknown, confidence};
+                        },
+                    .quantity = "difference of the laws",
+                    .distance = true};
+  return {std::move(evidence), std::move(outcome)};
 }
 
 std::string place_text(const stats::ImageFinding& finding, const ImageShape& shape) {
@@ -364,23 +364,21 @@ std::string place_text(const stats::ImageFinding& finding, const ImageShape& sha
                      z);
 }
 
-ImageEvidence evidence_of_images(const Question& question, const ImageTest& test,
-                                 std::span<const ChannelData> data) {
+ChannelEvidence evidence_of_images(const Seen& seen, const ImageTest& test) {
+  const Question& question = seen.question;
   const bool relative = question.theta->is_relative(question, 0);
-  ImageEvidence result;
-  const auto look = [&](const auto& images) {
-    return look_at(question, test, images, result.outcome);
-  };
+  ImageOutcome outcome;
+  const auto look = [&](const auto& images) { return look_at(question, test, images, outcome); };
   const stats::ImageDistance distance =
-      test.look != nullptr ? look(*test.look) : with_pair(question, data, look);
+      test.look != nullptr ? look(*test.look) : with_pair(seen, look);
   const TestEntry& entry = *question.test;
   const bool within = entry.claim.relation == Relation::within;
   if (within || entry.detect) {
     const double margin = within ? entry.claim.margin.value : entry.detect->value;
-    result.outcome.wanted =
-        wanted_replicates(distance, margin, test, static_cast<double>(result.outcome.replicates));
+    outcome.wanted =
+        wanted_replicates(distance, margin, test, static_cast<double>(outcome.replicates));
   }
-  const stats::ImageFamily& family = result.outcome.family;
+  const stats::ImageFamily& family = outcome.family;
   const double hidden = std::sqrt(family.hidden_squares / distance.squared_norm);
   const stats::TestResult equal{
       .statistic = family.winner.z,
@@ -390,23 +388,23 @@ ImageEvidence evidence_of_images(const Question& question, const ImageTest& test
       .exactness = stats::Exactness::asymptotic};
   const double estimate = std::sqrt(std::max(0.0, distance.squared_bias / distance.squared_norm));
   const bool exact = !(distance.bias_variance > 0);
-  result.evidence = {.estimate = estimate,
-                     .at =
-                         [=](double theta) {
-                           if (theta > 0 && exact) return at_exactly(estimate, theta);
-                           return theta > 0 ? at_margin(distance, hidden, theta) : equal;
-                         },
-                     .interval =
-                         [=](double confidence) {
-                           return exact ? stats::Interval{estimate, estimate, confidence}
-                                        : interval_of(distance, hidden, confidence);
-                         },
-                     .quantity = relative ? "relative root mean square difference of the images"
-                                          : "root mean square difference of the images",
-                     .relative = relative,
-                     .distance = true,
-                     .exact = exact};
-  return result;
+  Evidence evidence{.estimate = estimate,
+                    .at =
+                        [=](double theta) {
+                          if (theta > 0 && exact) return at_exactly(estimate, theta);
+                          return theta > 0 ? at_margin(distance, hidden, theta) : equal;
+                        },
+                    .interval =
+                        [=](double confidence) {
+                          return exact ? stats::Interval{estimate, estimate, confidence}
+                                       : interval_of(distance, hidden, confidence);
+                        },
+                    .quantity = relative ? "relative root mean square difference of the images"
+                                         : "root mean square difference of the images",
+                    .relative = relative,
+                    .distance = true,
+                    .exact = exact};
+  return {std::move(evidence), std::move(outcome)};
 }
 
 }  // namespace assay::harness

@@ -6,6 +6,7 @@
 // The unbiased squared bias tests other values (stats/image_equivalence.h).
 
 #include <functional>
+#include <optional>
 
 #include "harness/image/image_constants.h"
 #include "harness/image/image_pair.h"
@@ -38,18 +39,17 @@ struct ImageOutcome {
   double uniform_error = 0;    ///< Standard error of a theta that is the same everywhere.
 };
 
-struct ImageEvidence {
+/// One channel's evidence; of images also their findings.
+struct ChannelEvidence {
   Evidence evidence;
-  ImageOutcome outcome;
+  std::optional<ImageOutcome> image = {};
 };
 
 /// Throws std::domain_error for fewer than 16 replicates, and if nothing varies that is drawn.
-ImageEvidence evidence_of_images(const Question& question, const ImageTest& test,
-                                 std::span<const ChannelData> data);
+ChannelEvidence evidence_of_images(const Seen& seen, const ImageTest& test);
 
 /// Evidence that two images have different laws (stats/images/image_law.h). Theta is 0 or not.
-ImageEvidence evidence_of_image_laws(const Question& question, const ImageTest& test,
-                                     std::span<const ChannelData> data);
+ChannelEvidence evidence_of_image_laws(const Seen& seen, const ImageTest& test);
 
 /// The place of a finding: "columns 8-15, rows 16-23 of red (8 x 8 pixels), z = +6.1".
 std::string place_text(const stats::ImageFinding& finding, const ImageShape& shape);

@@ -55,46 +55,60 @@ stats::ImageExtent extent_of(const ImageShape& shape) {
 }
 
 template <class Real>
-ImagePair<Real>::ImagePair(const Question& question, std::span<const ChannelData> data)
-    : extent_(extent_of(*question.subjects[0].image)),
-      first_{extent_, images_of<Real>(data[0].images, mapping_of(question, 0), made_[0])} {
+ImagePair<Real>::ImagePair(const Seen& seen) {
+  const Question& question = seen.question;
+  const auto stack = [&](std::size_t side) {
+    return stats::ImageStack<Real>{
+        extent_of(*question.subjects[0].image),
+        images_of<Real>(seen.data[side].images, mapping_of(question, side), made_[side])};
+  };
+  this->first = stack(0);
   if (question.of_two()) {
-    second_ = stats::ImageStack<Real>{
-        extent_, images_of<Real>(data[1].images, mapping_of(question, 1), made_[1])};
-    if (question.is().of_pairs) subtract();
+    this->second = stack(1);
+    if (!question.is().of_pairs) return;
+    subtracted.swap(this->second);
+    this->first = difference(this->first, *subtracted, differences_);
+    this->value.assign(this->first.extent.elements(), 0);
     return;
   }
   for (const Constant& reference : question.references) {
-    value_.push_back(reference.value + question.offset);
-    error_.push_back(reference.standard_error);
+    this->value.push_back(reference.value + question.offset);
+    this->error.push_back(reference.standard_error);
   }
-  if (std::all_of(error_.begin(), error_.end(), [](double e) { return e == 0; })) error_.clear();
+  this->drop_zero_errors();
 }
 
-template <class Real>
-void ImagePair<Real>::subtract() {
-  subtracted_ = std::move(second_);
-  second_.reset();
-  std::vector<std::vector<Real>> differences;
-  for (std::size_t i = 0; i < std::min(first_.images.size(), subtracted_->images.size()); ++i) {
-    std::vector<Real>& difference = differences.emplace_back(extent_.elements());
-    std::ranges::transform(first_.images[i], subtracted_->images[i], difference.begin(),
-                           std::minus<>());
-  }
-  differences_ = ImageViews(std::move(differences));
-  first_.images = differences_.images<Real>();
-  value_.assign(extent_.elements(), 0);
-}
-
-bool in_single_precision(const Question& question, std::span<const ChannelData> data) {
-  for (std::size_t i = 0; i < data.size(); ++i) {
-    if (!data[i].images.single_precision() || mapping_of(question, i).changes()) return false;
+bool in_single_precision(const Seen& seen) {
+  for (std::size_t i = 0; i < seen.data.size(); ++i) {
+    if (!seen.data[i].images.single_precision() || mapping_of(seen.question, i).changes()) {
+      return false;
+    }
   }
   return true;
 }
 
-template class ImagePair<float>;
-template class ImagePair<double>;
+template struct ImagePair<float>;
+template struct ImagePair<double>;
+
+template <class Real>
+stats::ImageStack<Real> difference(const stats::ImageStack<Real>& one,
+                                   const stats::ImageStack<Real>& other,
+                                   std::vector<Real>& texels) {
+  stats::ImageStack<Real> differences{one.extent, {}, one.there};
+  const std::size_t count = std::min(one.images.size(), other.images.size());
+  const std::size_t size = count == 0 ? 0 : one.images[0].size();
+  texels.resize(count * size);
+  for (std::size_t i = 0; i < count; ++i) {
+    differences.images.push_back(std::span(texels).subspan(i * size, size));
+  }
+  on_all_threads(count, [&](std::size_t i) {
+    std::ranges::transform(one.images[i], other.images[i],
+                           texels.begin() + static_cast<std::ptrdiff_t>(i * size), std::minus<>());
+  });
+  return differences;
+}
+template stats::ImageStack<float> difference(const stats::ImageStack<float>&,
+                                             const stats::ImageStack<float>&, std::vector<float>&);
 
 template <class Real>
 ChannelMeans channel_means(const stats::ImageStack<Real>& stack) {

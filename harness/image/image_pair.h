@@ -14,60 +14,62 @@ namespace assay::harness {
 
 stats::ImageExtent extent_of(const ImageShape& shape);
 
-/// Replicates of an image, and their comparison: scaled replicates of another image, or a number
-/// for each element. Of a paired claim the replicates are differences, which are held against 0.
+/// Replicates of an image, and their comparison: replicates of another image, or a number for each
+/// element.
 template <class Real>
-class ImagePair {
- public:
-  /// Single precision requires in_single_precision().
-  ImagePair(const Question& question, std::span<const ChannelData> data);
-  ImagePair(const ImagePair&) = delete;  // spans point inside
-  ImagePair& operator=(const ImagePair&) = delete;
+struct ComparedImages {
+  stats::ImageStack<Real> first = {};
+  std::optional<stats::ImageStack<Real>> second = {};
+  std::vector<double> value = {};
+  std::vector<double> error = {};  ///< Empty if no number has one.
 
-  const stats::ImageExtent& extent() const { return extent_; }
-  bool of_two() const { return second_.has_value(); }
-  /// The fewest replicates of a side, and the most.
-  std::size_t fewest_replicates() const {
-    return std::min(first_.images.size(), (second_ ? *second_ : first_).images.size());
+  stats::ImageReference reference() const { return {first.extent, value, error}; }
+  void drop_zero_errors() {
+    if (std::ranges::all_of(error, [](double each) { return each == 0; })) error.clear();
   }
-  std::size_t most_replicates() const {
-    return std::max(first_.images.size(), (second_ ? *second_ : first_).images.size());
-  }
-  const stats::ImageStack<Real>& first() const { return first_; }
-  const stats::ImageStack<Real>& second() const { return *second_; }
-  stats::ImageReference reference() const { return {extent_, value_, error_}; }
-  /// The replicates that were subtracted in pairs; null if none were.
-  const stats::ImageStack<Real>* subtracted() const {
-    return subtracted_ ? &*subtracted_ : nullptr;
-  }
-
   /// Calls `use` with the first stack and its comparison, and returns the result.
   template <class Use>
   auto with(const Use& use) const {
-    return second_ ? use(first_, *second_) : use(first_, reference());
+    return second ? use(first, *second) : use(first, reference());
   }
-
- private:
-  void subtract();
-
-  stats::ImageExtent extent_;
-  ImageViews made_[2];  // for a side that is scaled or widened
-  ImageViews differences_;
-  stats::ImageStack<Real> first_;
-  std::optional<stats::ImageStack<Real>> second_;
-  std::optional<stats::ImageStack<Real>> subtracted_;
-  std::vector<double> value_;
-  std::vector<double> error_;
 };
 
+/// The images of a claim, with the second's scaled. Of a paired claim the replicates are
+/// differences, which are held against 0.
+template <class Real>
+struct ImagePair : ComparedImages<Real> {
+  /// Single precision requires in_single_precision().
+  explicit ImagePair(const Seen& seen);
+  ImagePair(const ImagePair&) = delete;  // spans point inside
+  ImagePair& operator=(const ImagePair&) = delete;
+
+  /// The fewest replicates of a side, and the most.
+  auto replicates() const {
+    return std::minmax(
+        {this->first.images.size(), (this->second ? *this->second : this->first).images.size()});
+  }
+
+  /// The replicates that were subtracted in pairs.
+  std::optional<stats::ImageStack<Real>> subtracted = {};
+
+ private:
+  ImageViews made_[2];  // for a side that is scaled or widened
+  std::vector<Real> differences_;
+};
+
+/// The images of one stack less those of another, in `texels`.
+template <class Real>
+stats::ImageStack<Real> difference(const stats::ImageStack<Real>& one,
+                                   const stats::ImageStack<Real>& other, std::vector<Real>& texels);
+
 /// True if both sides are pictures of files and are compared unchanged.
-bool in_single_precision(const Question& question, std::span<const ChannelData> data);
+bool in_single_precision(const Seen& seen);
 
 /// Calls `use` with the pair in its precision, and returns the result.
 template <class Use>
-auto with_pair(const Question& question, std::span<const ChannelData> data, const Use& use) {
-  if (in_single_precision(question, data)) return use(ImagePair<float>(question, data));
-  return use(ImagePair<double>(question, data));
+auto with_pair(const Seen& seen, const Use& use) {
+  if (in_single_precision(seen)) return use(ImagePair<float>(seen));
+  return use(ImagePair<double>(seen));
 }
 
 /// Means of replicates. The spread of these means shows how far pixels depend on each other.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <boost/math/distributions.hpp>
+#include <utility>
 
 namespace assay::harness {
 namespace {
@@ -25,17 +26,13 @@ Cdf cdf_of(const Distribution& distribution) {
 // Doubles, not long doubles: a distance needs no more than ten digits, and this is faster.
 using Unpromoted = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
 
-template <template <class, class> class Distribution>
-Cdf one(const Arguments& a) {
-  return cdf_of(Distribution<double, Unpromoted>(a[0]));
+template <template <class, class> class Distribution, std::size_t... places>
+Cdf law_of(const Arguments& a, std::index_sequence<places...>) {
+  return cdf_of(Distribution<double, Unpromoted>(a[places]...));
 }
-template <template <class, class> class Distribution>
-Cdf two(const Arguments& a) {
-  return cdf_of(Distribution<double, Unpromoted>(a[0], a[1]));
-}
-template <template <class, class> class Distribution>
-Cdf three(const Arguments& a) {
-  return cdf_of(Distribution<double, Unpromoted>(a[0], a[1], a[2]));
+template <template <class, class> class Distribution, std::size_t numbers = 2>
+Cdf law(const Arguments& a) {
+  return law_of<Distribution>(a, std::make_index_sequence<numbers>());
 }
 
 }  // namespace
@@ -43,28 +40,28 @@ Cdf three(const Arguments& a) {
 const std::vector<LawInformation>& laws() {
   namespace bm = boost::math;
   static const std::vector<LawInformation> known{
-      {"arcsine", {{"low"}, {"high"}}, two<bm::arcsine_distribution>},
-      {"beta", {{"alpha", true}, {"beta", true}}, two<bm::beta_distribution>},
-      {"cauchy", {{"location"}, {"scale", true}}, two<bm::cauchy_distribution>},
-      {"chi_squared", {{"freedom", true}}, one<bm::chi_squared_distribution>},
-      {"exponential", {{"rate", true}}, one<bm::exponential_distribution>},
-      {"extreme_value", {{"location"}, {"scale", true}}, two<bm::extreme_value_distribution>},
-      {"fisher_f", {{"freedom1", true}, {"freedom2", true}}, two<bm::fisher_f_distribution>},
-      {"gamma", {{"shape", true}, {"scale", true}}, two<bm::gamma_distribution>},
-      {"inverse_gamma", {{"shape", true}, {"scale", true}}, two<bm::inverse_gamma_distribution>},
+      {"arcsine", {{"low"}, {"high"}}, law<bm::arcsine_distribution>},
+      {"beta", {{"alpha", true}, {"beta", true}}, law<bm::beta_distribution>},
+      {"cauchy", {{"location"}, {"scale", true}}, law<bm::cauchy_distribution>},
+      {"chi_squared", {{"freedom", true}}, law<bm::chi_squared_distribution, 1>},
+      {"exponential", {{"rate", true}}, law<bm::exponential_distribution, 1>},
+      {"extreme_value", {{"location"}, {"scale", true}}, law<bm::extreme_value_distribution>},
+      {"fisher_f", {{"freedom1", true}, {"freedom2", true}}, law<bm::fisher_f_distribution>},
+      {"gamma", {{"shape", true}, {"scale", true}}, law<bm::gamma_distribution>},
+      {"inverse_gamma", {{"shape", true}, {"scale", true}}, law<bm::inverse_gamma_distribution>},
       {"inverse_gaussian",
        {{"mean", true}, {"scale", true}},
-       two<bm::inverse_gaussian_distribution>},
-      {"laplace", {{"location"}, {"scale", true}}, two<bm::laplace_distribution>},
-      {"logistic", {{"location"}, {"scale", true}}, two<bm::logistic_distribution>},
-      {"lognormal", {{"location"}, {"scale", true}}, two<bm::lognormal_distribution>},
-      {"normal", {{"mean"}, {"sd", true}}, two<bm::normal_distribution>},
-      {"pareto", {{"scale", true}, {"shape", true}}, two<bm::pareto_distribution>},
-      {"rayleigh", {{"sigma", true}}, one<bm::rayleigh_distribution>},
-      {"student_t", {{"freedom", true}}, one<bm::students_t_distribution>},
-      {"triangular", {{"low"}, {"mode"}, {"high"}}, three<bm::triangular_distribution>},
-      {"uniform", {{"low"}, {"high"}}, two<bm::uniform_distribution>},
-      {"weibull", {{"shape", true}, {"scale", true}}, two<bm::weibull_distribution>},
+       law<bm::inverse_gaussian_distribution>},
+      {"laplace", {{"location"}, {"scale", true}}, law<bm::laplace_distribution>},
+      {"logistic", {{"location"}, {"scale", true}}, law<bm::logistic_distribution>},
+      {"lognormal", {{"location"}, {"scale", true}}, law<bm::lognormal_distribution>},
+      {"normal", {{"mean"}, {"sd", true}}, law<bm::normal_distribution>},
+      {"pareto", {{"scale", true}, {"shape", true}}, law<bm::pareto_distribution>},
+      {"rayleigh", {{"sigma", true}}, law<bm::rayleigh_distribution, 1>},
+      {"student_t", {{"freedom", true}}, law<bm::students_t_distribution, 1>},
+      {"triangular", {{"low"}, {"mode"}, {"high"}}, law<bm::triangular_distribution, 3>},
+      {"uniform", {{"low"}, {"high"}}, law<bm::uniform_distribution>},
+      {"weibull", {{"shape", true}, {"scale", true}}, law<bm::weibull_distribution>},
   };
   return known;
 }

@@ -11,8 +11,6 @@
 namespace assay::harness {
 
 struct PreparedEstimator;
-struct Question;
-struct TestEntry;
 class Theta;
 
 using Estimators = std::map<std::string, PreparedEstimator>;
@@ -21,8 +19,6 @@ struct QuantityRow {
   std::string word;     ///< The word in claims.
   std::string example;  ///< A claim about it.
   std::string summary;
-  /// Binds a claim about it to a suite's estimators.
-  Question (*bind)(const TestEntry&, const Estimators&);
   const Theta* theta;  ///< The theta of a claim about it, unless of images or a slope.
   /// What `slope(…)` of it is about; null if it has no slope.
   const Theta* slope = nullptr;

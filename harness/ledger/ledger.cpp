@@ -69,7 +69,7 @@ std::optional<ThetaError> error_of_interval(const Question& question, std::size_
 std::variant<NightEvidence, NoEvidence> of_estimate(const DrawnTest& drawn, std::size_t channel) {
   const Question& question = drawn.outcome.question;
   const std::vector<ChannelData> data = data_of(drawn, channel);
-  std::optional<ThetaError> error = question.theta->error(question, channel, data);
+  std::optional<ThetaError> error = question.theta->error({question, channel, data});
   const ChannelOutcome* outcome = outcome_of(drawn.outcome, channel);
   if (outcome != nullptr) {
     if (!error) error = error_of_interval(question, channel, outcome->evidence);
@@ -103,21 +103,20 @@ constexpr double zeta_3 = 1.2020569031595942;
 constexpr double credibility = 0.9;
 
 std::vector<stats::NightEstimate> estimates_of(const std::vector<LedgerNight>& nights) {
-  std::vector<stats::NightEstimate> estimates;
-  for (const LedgerNight& night : nights) {
-    estimates.push_back(std::get<stats::NightEstimate>(night.value));
-  }
-  return estimates;
+  std::vector<stats::NightEstimate> all;
+  for (const LedgerNight& night : nights)
+    all.push_back(std::get<stats::NightEstimate>(night.value));
+  return all;
 }
 
 std::vector<double> log_p_values_of(const std::vector<LedgerNight>& nights) {
-  std::vector<double> log_p;
-  for (const LedgerNight& night : nights) log_p.push_back(std::get<NightPValue>(night.value).log_p);
-  return log_p;
+  std::vector<double> all;
+  for (const LedgerNight& night : nights) all.push_back(std::get<NightPValue>(night.value).log_p);
+  return all;
 }
 
 /// The null hypothesis at the nearest value that the claim allows.
-stats::NullTheta nearest(const ThetaRange& claimed, const stats::PooledNights& pooled,
+stats::NullTheta nearest(const stats::Range& claimed, const stats::PooledNights& pooled,
                          const LedgerSeries& series) {
   return {.value = std::clamp(pooled.difference(), claimed.low, claimed.high),
           .reference_error = *series.reference_error};
@@ -162,7 +161,7 @@ stats::PooledNights pooled_nights(const std::vector<LedgerNight>& nights) {
 }
 
 std::vector<double> log_e_path(const LedgerSeries& series, const std::vector<LedgerNight>& nights,
-                               const ThetaRange& claimed) {
+                               const stats::Range& claimed) {
   std::vector<double> path;
   if (series.has_estimates()) {
     stats::PooledNights pooled;
@@ -181,7 +180,7 @@ std::vector<double> log_e_path(const LedgerSeries& series, const std::vector<Led
 }
 
 Moved moved(const LedgerSeries& series, const std::vector<LedgerNight>& nights,
-            const ThetaRange& claimed) {
+            const stats::Range& claimed) {
   const auto change = [&] {
     if (!series.has_estimates()) return stats::change_point(log_p_values_of(nights));
     return stats::change_point(estimates_of(nights),
@@ -238,7 +237,7 @@ void add_night(LedgerBook& book, const LedgerRun& ledger, const Entry& entry,
 }
 
 void read_moved(reports::LedgerSeries& result, const LedgerSeries& series,
-                const std::vector<LedgerNight>& nights, const ThetaRange& claimed) {
+                const std::vector<LedgerNight>& nights, const stats::Range& claimed) {
   const Moved change = moved(series, nights, claimed);
   result.moved = nights[change.night].date;
   result.moved_commit = nights[change.night].commit;
@@ -265,7 +264,7 @@ void read_nights(reports::LedgerSeries& result, const LedgerBook& book, std::siz
   const LedgerSeries& series = book.series()[index];
   const std::vector<LedgerNight> nights = book.nights_of(index);
   if (nights.empty()) return;
-  const ThetaRange claimed = entry.work.outcome.plan.regions[entry.channel].claimed();
+  const stats::Range claimed = entry.work.outcome.plan.regions[entry.channel].claimed();
   const std::vector<double> path = log_e_path(series, nights, claimed);
   // The weight stays as it was at the beginning: else a change of the suite would raise and lower
   // alarms of past nights.

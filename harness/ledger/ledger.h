@@ -47,7 +47,7 @@ std::string series_hash(const TestWork& work, std::size_t channel);
 /// range, which lies at the value nearest to the estimate of all nights so far. It is at most E at
 /// the true theta, a martingale, so P(any >= 1 / alpha) <= alpha. P-values know no range.
 std::vector<double> log_e_path(const LedgerSeries& series, const std::vector<LedgerNight>& nights,
-                               const ThetaRange& claimed);
+                               const stats::Range& claimed);
 
 /// The most likely first night of a change, and the range of likely nights. The range holds 90 % of
 /// the posterior (stats::change_point).
@@ -57,7 +57,7 @@ struct Moved {
   std::size_t to = 0;
 };
 Moved moved(const LedgerSeries& series, const std::vector<LedgerNight>& nights,
-            const ThetaRange& claimed);
+            const stats::Range& claimed);
 
 /// The sum of all nights that have estimates.
 stats::PooledNights pooled_nights(const std::vector<LedgerNight>& nights);

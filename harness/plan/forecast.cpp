@@ -86,8 +86,7 @@ std::optional<StoppingLooks> stopping_looks(const TestOutcome& test, std::size_t
   for (std::size_t k = 0; k < test.plan.looks.count(); ++k) {
     const auto data = expected_data(test, channel, pilots, test.plan.looks.sizes[k]);
     if (!data) return std::nullopt;
-    const std::optional<ThetaError> error =
-        test.question.theta->error(test.question, channel, *data);
+    const auto error = test.question.theta->error({test.question, channel, *data});
     if (!error || !(error->drawn > 0)) return std::nullopt;
     looks.push_back(stopping_look(test.plan.regions[channel],
                                   std::hypot(error->drawn, error->fixed), test.share_at(k)));
@@ -155,25 +154,25 @@ std::optional<PlannedChannel> expected_channel(const TestOutcome& test, std::siz
   const Question& question = test.question;
   const Regions& regions = test.plan.regions[channel];
   if (!question.is().of_moments) {
-    return question.theta->planned(question, regions, pilots, test.plan);
+    return question.theta->planned(test, regions, pilots);
   }
   for (const Subject& side : question.subjects) {
     if (side.setup->observations()) return std::nullopt;
   }
   const auto data = expected_data(test, channel, pilots, secondaries);
   if (!data) return std::nullopt;
-  return question.theta->observed(question, regions, channel, *data);
+  return question.theta->observed({question, channel, *data}, regions);
 }
 
 /// The least margin that a claim of that size proves with probability 1 - beta if theta is 0, by
 /// bisection to a thousandth. Returns nullopt if no formula tells, or none is.
-std::optional<double> margin_shown(const Question& question, const TestSize& size, const Plan& plan,
-                                   PlannedChannel channel) {
+std::optional<double> margin_shown(const Sized& sized) {
   constexpr double farthest = 0x1p100;
+  PlannedChannel channel = sized.channel;
   const auto shows = [&](double margin) {
     channel.regions.detect = margin;
-    return question.theta->power(question, size, plan, channel, 0).value_or(0) >=
-           1 - size.share.beta;
+    const auto power = sized.test.question.theta->power({sized.test, sized.size, channel}, 0);
+    return power.value_or(0) >= 1 - sized.size.share.beta;
   };
   double above = *channel.regions.detect;
   if (!(above > 0)) return std::nullopt;
@@ -191,22 +190,15 @@ std::optional<double> margin_shown(const Question& question, const TestSize& siz
   return above;
 }
 
-std::optional<double> shown_or_found(const Question& question, const TestSize& size,
-                                     const Plan& plan, const PlannedChannel& channel) {
-  const bool shows = channel.regions.relation == Relation::within;
-  return shows ? margin_shown(question, size, plan, channel)
-               : detectable_effect(question, size, plan, channel);
-}
-
 std::optional<double> detectable_of(const TestOutcome& test, const Pilots& pilots) {
-  const Plan& plan = test.plan;
-  const TestSize size{.share = test.share_at(plan.looks.count() - 1),
-                      .secondaries = plan.most_secondaries()};
+  const TestSize size{.share = test.share_at(test.plan.looks.count() - 1),
+                      .secondaries = test.plan.most_secondaries()};
   std::optional<double> largest;
   for (std::size_t channel = 0; channel < test.question.channel_count(); ++channel) {
     const auto planned = expected_channel(test, channel, pilots, size.secondaries);
     if (!planned) return std::nullopt;
-    const auto found = shown_or_found(test.question, size, plan, *planned);
+    const Sized sized{test, size, *planned};
+    const auto found = planned->regions.within() ? margin_shown(sized) : detectable_effect(sized);
     if (found) largest = std::max(*found, largest.value_or(0));
   }
   return largest;

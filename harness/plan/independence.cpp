@@ -51,11 +51,9 @@ std::vector<Rows> rows_of(const Question& question, const Pilots& pilots, std::u
       if (!finite || used < fewest_in_order ||
           is_constant(question, subject, channel, data.moments))
         continue;
-      const std::string part =
-          side.channels.size() > 1 ? "." + side.setup->channels()[side.channels[channel]].name : "";
       all.push_back({.subject = subject,
                      .channel = channel,
-                     .label = "rows of " + side.estimator->name + part,
+                     .label = "rows of " + side.name_of(channel),
                      .values = data.values.first(used)});
     }
   }
@@ -107,13 +105,9 @@ std::string dependent(const Question& question, const Rows& rows, bool at_a_lag)
 }
 
 /// A red gate on something that chance does not make.
-stats::Gate red_gate(const char* name, std::size_t value, std::size_t limit) {
-  const auto shown = static_cast<double>(value);
-  return {.name = name,
-          .value = shown,
-          .low = shown,
-          .limit = static_cast<double>(limit),
-          .state = GateState::red};
+Gate red_gate(const char* name, std::size_t value, std::size_t limit, const Rows& rows) {
+  return gate_of(gate_of(name, static_cast<double>(value), static_cast<double>(limit), "red"),
+                 ", " + rows.label);
 }
 
 std::string from_to(std::size_t first, std::size_t length) {
@@ -175,10 +169,9 @@ void refuse_shared_rows(const Question& question, const Rows& one, const Rows& t
 }
 
 /// Why rows are too few to show their independence; "" if they are enough.
-std::string too_few_to_tell(const Question& question, const Pilots& pilots, std::uint64_t count,
-                            Plan& plan) {
+std::string too_few_to_tell(TestOutcome& test, const Pilots& pilots, std::uint64_t count) {
   std::string reason;
-  for (const Subject& side : question.subjects) {
+  for (const Subject& side : test.question.subjects) {
     const Pilot* pilot = pilot_of(side, pilots);
     if (!is_recorded(side) || side.setup->image() || pilot == nullptr) continue;
     const PilotChannel first = pilot_channel(side, *pilot, 0);
@@ -186,17 +179,16 @@ std::string too_few_to_tell(const Question& question, const Pilots& pilots, std:
     const bool constant = first.values.size() > 1 && !(first.moments.m2 > 0);
     if (first.values.empty() || constant) continue;
     const std::uint64_t rows = std::min<std::uint64_t>(first.values.size(), count);
-    plan.gates.push_back(gate_of(
-        reports::Gate{.name = "rows that show their independence of " + side.estimator->name,
-                      .value = static_cast<double>(rows),
-                      .limit = static_cast<double>(fewest_in_order_to_tell),
-                      .state = rows < fewest_in_order_to_tell ? "red" : "green"}));
+    test.plan.gates.push_back(gate_of(
+        "rows that show their independence of " + side.estimator->name, static_cast<double>(rows),
+        fewest_in_order_to_tell, rows < fewest_in_order_to_tell ? "red" : "green"));
     if (rows >= fewest_in_order_to_tell || !reason.empty()) continue;
     // A forced method runs unchecked.
     const std::string forced =
-        rows < fewest_to_force ? ""
-                               : fmt::format("; if they are independent, add {}",
-                                             written_key(*question.test, "test", plan.method.name));
+        rows < fewest_to_force
+            ? ""
+            : fmt::format("; if they are independent, add {}",
+                          written_key(*test.question.test, "test", test.plan.method.name));
     reason = fmt::format(
         "`{}` has {} row{}, and it takes {} to see that they do not depend on each other: give "
         "more{}",
@@ -213,10 +205,7 @@ void allow_for_dependence(const std::vector<Rows>& all, Plan& plan) {
     plan.method.frozen.row_allowances.push_back(
         {.subject = rows.subject, .channel = rows.channel, .factor = factor});
     plan.gates.push_back(
-        gate_of(reports::Gate{.name = "variance of the mean, allowed for dependence, " + rows.label,
-                              .value = factor,
-                              .limit = 1,
-                              .state = "amber"}));
+        gate_of("variance of the mean, allowed for dependence, " + rows.label, factor, 1, "amber"));
   }
 }
 
@@ -242,10 +231,11 @@ void require_independent_sides(const Question& question, const Pilots& pilots,
   }
 }
 
-void judge_independence(const Question& question, const Pilots& pilots, std::uint64_t count,
-                        Plan& plan) {
+void judge_independence(TestOutcome& test, const Pilots& pilots, std::uint64_t count) {
+  const Question& question = test.question;
+  Plan& plan = test.plan;
   const bool forced = question.test->method.has_value();
-  std::string reason = too_few_to_tell(question, pilots, count, plan);
+  std::string reason = too_few_to_tell(test, pilots, count);
   if (forced || !plan.invalid.empty()) reason.clear();
   const std::vector<Rows> all = rows_of(question, pilots, count);
   const bool batches =
@@ -255,13 +245,11 @@ void judge_independence(const Question& question, const Pilots& pilots, std::uin
   bool answered = false;
   for (const Rows& rows : all) {
     if (const auto again = stats::repeated_run(rows.values)) {
-      plan.gates.push_back(
-          gate_of(red_gate("longest repetition", again->length, 0), ", " + rows.label));
+      plan.gates.push_back(red_gate("longest repetition", again->length, 0, rows));
       if (reason.empty()) reason = repeated(rows, *again);
     } else if (const auto alike = stats::recurring_values(rows.values)) {
       plan.gates.push_back(
-          gate_of(red_gate("values that occur equally often", alike->values, alike->limit),
-                  ", " + rows.label));
+          red_gate("values that occur equally often", alike->values, alike->limit, rows));
       if (reason.empty()) reason = recurring(rows, *alike);
     }
     std::vector<stats::Gate> gates{stats::lag_one_gate(rows.values),
@@ -341,14 +329,14 @@ std::string why_dependent(const Subject& subject, std::span<const stats::Gate> o
   return why;
 }
 
-void judge_drawn_order(const Question& question, const Pilots& pilots, Plan& plan) {
-  for (const Subject& side : question.subjects) {
+void judge_drawn_order(TestOutcome& test, const Pilots& pilots) {
+  for (const Subject& side : test.question.subjects) {
     const Pilot* pilot = pilot_of(side, pilots);
     if (!shows_order(side) || pilot == nullptr) continue;
     for (const std::size_t channel : side.channels) {
       if (channel >= pilot->order_gates.size()) continue;
-      std::string why = why_dependent(side, pilot->order_gates[channel], plan.gates);
-      if (plan.invalid.empty()) plan.invalid = std::move(why);
+      std::string why = why_dependent(side, pilot->order_gates[channel], test.plan.gates);
+      if (test.plan.invalid.empty()) test.plan.invalid = std::move(why);
     }
   }
 }

@@ -35,8 +35,7 @@ void require_independent_sides(const Question& question, const Pilots& pilots, s
 /// or values that occur equally often (stats/gates/copies.h) make any test invalid, a
 /// forced method as well. For dependence too weak for a gate, a test of means allows
 /// (stats::allowance_for_dependence).
-void judge_independence(const Question& question, const Pilots& pilots, std::uint64_t count,
-                        Plan& plan);
+void judge_independence(TestOutcome& test, const Pilots& pilots, std::uint64_t count);
 
 /// The moments that a test of means takes, of batch means if that is its method. Rows with an
 /// allowance get larger deviations: those of independent values with as uncertain a mean.
@@ -59,6 +58,6 @@ std::string why_dependent(const Subject& subject, std::span<const stats::Gate> o
 
 /// Judges what estimators drew in their pilots. Dependence makes every method invalid, a forced one
 /// as well.
-void judge_drawn_order(const Question& question, const Pilots& pilots, Plan& plan);
+void judge_drawn_order(TestOutcome& test, const Pilots& pilots);
 
 }  // namespace assay::harness

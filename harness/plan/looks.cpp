@@ -25,32 +25,32 @@ constexpr std::uint64_t fewest_tested = 2;
 
 /// The look that a budget in primaries pays for. Throws InputError if it buys fewer than two
 /// secondaries of each subject.
-std::uint64_t paid_for(const Question& question, const Plan& plan, std::uint64_t budget) {
-  const std::uint64_t each = primaries_of_each(question, plan);
+std::uint64_t paid_for(const TestOutcome& test, std::uint64_t budget) {
+  const std::uint64_t each = primaries_of_each(test);
   std::uint64_t paid = budget / each;
   // Subjects without more secondaries leave their part to the others.
   while (paid >= fewest_tested) {
-    const std::uint64_t next = primaries_of_look(question, plan, paid + 1);
-    const std::uint64_t spent = primaries_of_look(question, plan, paid);
+    const std::uint64_t next = primaries_of_look(test, paid + 1);
+    const std::uint64_t spent = primaries_of_look(test, paid);
     if (next == spent || next > budget) return paid;
     paid += (budget - spent) / (next - spent);
   }
   refuse(
-      question.test->place_of("budget"),
+      test.question.test->place_of("budget"),
       "its budget (or its share of the suite's) of {} primaries does not pay for two observations, "
       "the fewest that can be tested: these take {}; give a larger budget, or fewer `primaries`",
       budget, fewest_tested * each);
 }
 
 /// Throws InputError before hours are spent on what was hardly meant.
-void require_possible(const Question& question, const Plan& plan, std::uint64_t secondaries) {
-  const TestEntry& test = *question.test;
-  const Location& where = test.place_of(test.detect ? "detect" : "claim");
+void require_possible(const TestOutcome& test, std::uint64_t secondaries) {
+  const Question& question = test.question;
+  const Location& where = question.test->place_of(question.test->detect ? "detect" : "claim");
   if (secondaries >= impossible_secondaries) {
     refuse(where, question.theta->why_impossible(question));
   }
   const double total =
-      static_cast<double>(secondaries) * static_cast<double>(primaries_of_each(question, plan));
+      static_cast<double>(secondaries) * static_cast<double>(primaries_of_each(test));
   if (total <= most_planned_primaries) return;
   refuse(where,
          "this claim would take about {:.1e} primaries; give a larger margin, or a `budget` to "
@@ -60,14 +60,14 @@ void require_possible(const Question& question, const Plan& plan, std::uint64_t 
 
 /// One look of a method in seconds: replicates of whole blocks, with as many observations for each
 /// subject.
-stats::LookSchedule timed_look(const Plan& plan, const ErrorShare& share,
-                               std::uint64_t secondaries) {
+stats::LookSchedule timed_look(const TestOutcome& test, std::uint64_t secondaries) {
   std::uint64_t block = 1;
-  for (const std::uint64_t primaries : plan.primaries) {
+  for (const std::uint64_t primaries : test.plan.primaries) {
     block = std::max(block, block_size_of(primaries));
   }
   const std::uint64_t unit = block * replicate_count;
-  return one_look(std::max<std::uint64_t>(1, (secondaries + unit - 1) / unit) * unit, share);
+  return one_look(std::max<std::uint64_t>(1, (secondaries + unit - 1) / unit) * unit,
+                  test.place.share);
 }
 
 /// How looks grow, and how many there are at most.
@@ -92,75 +92,77 @@ std::vector<std::uint64_t> sizes_up_to(std::uint64_t last, std::uint64_t first, 
 
 }  // namespace
 
-std::uint64_t most_available(const Question& question, const Plan& plan) {
+std::uint64_t most_available(const TestOutcome& test) {
   const std::uint64_t most =
-      question.most_rows().value_or(std::numeric_limits<std::uint64_t>::max());
-  const std::optional<Budget>& budget = question.test->budget;
+      test.question.most_rows().value_or(std::numeric_limits<std::uint64_t>::max());
+  const std::optional<Budget>& budget = test.question.test->budget;
   if (!budget || !budget->primaries) return most;
-  return std::min(most, paid_for(question, plan, *budget->primaries));
+  return std::min(most, paid_for(test, *budget->primaries));
 }
 
 stats::LookSchedule one_look(std::uint64_t secondaries, const ErrorShare& share) {
   return {.sizes = {secondaries}, .alpha = {share.alpha}, .beta = {share.beta}};
 }
 
-stats::LookSchedule plan_looks(const Question& question, const FamilyPlace& place,
-                               const Pilots& pilots, const Plan& plan, std::uint64_t first) {
-  const std::uint64_t most = most_available(question, plan);
-  if (plan.method.keeps == Keeps::blocks) {
-    if (question.test->secondaries || question.test->budget) {
-      refuse(question.test->place_of(question.test->secondaries ? "secondaries" : "budget"),
+stats::LookSchedule plan_looks(const TestOutcome& test, const Pilots& pilots, std::uint64_t first) {
+  const Question& question = test.question;
+  const TestEntry& entry = *question.test;
+  const ErrorShare& whole = test.place.share;
+  const std::uint64_t most = most_available(test);
+  if (test.plan.method.keeps == Keeps::blocks) {
+    if (entry.secondaries || entry.budget) {
+      refuse(entry.place_of(entry.secondaries ? "secondaries" : "budget"),
              "a claim in seconds is timed on whole replicates: `secondaries` and `budget` cannot "
              "be chosen; leave them out");
     }
-    const auto planned = question.theta->secondaries(question, place.share, pilots, plan);
-    if (planned) require_possible(question, plan, *planned);
-    return timed_look(plan, place.share, std::max(first, planned.value_or(usual_secondaries)));
+    const auto planned = question.theta->secondaries(test, whole, pilots);
+    if (planned) require_possible(test, *planned);
+    return timed_look(test, std::max(first, planned.value_or(usual_secondaries)));
   }
-  if (question.test->secondaries) {
-    const std::uint64_t given = std::min(*question.test->secondaries, most);
-    if (!question.test->budget) require_possible(question, plan, given);
-    return one_look(given, place.share);
+  if (entry.secondaries) {
+    const std::uint64_t given = std::min(*entry.secondaries, most);
+    if (!entry.budget) require_possible(test, given);
+    return one_look(given, whole);
   }
-  if (has_rows(question)) return one_look(most, place.share);
-  const std::optional<std::uint64_t> alone =
-      question.theta->secondaries(question, place.share, pilots, plan);
+  if (has_rows(question)) return one_look(most, whole);
+  const std::optional<std::uint64_t> alone = question.theta->secondaries(test, whole, pilots);
   const std::uint64_t classical = question.theta->usual_size();
-  if (!alone) return one_look(std::min(std::max(first, classical), most), place.share);
-  if (most == std::numeric_limits<std::uint64_t>::max()) require_possible(question, plan, *alone);
-  const stats::LookLaw law = plan.method.is.over_looks;
+  if (!alone) return one_look(std::min(std::max(first, classical), most), whole);
+  if (most == std::numeric_limits<std::uint64_t>::max()) require_possible(test, *alone);
+  const stats::LookLaw law = test.plan.method.is.over_looks;
   const bool may_wait = law == stats::LookLaw::independent_increments;
   const std::uint64_t least = may_wait ? waiting_looks * first : first;
   const std::uint64_t needed = std::max(*alone, least);
-  if (needed <= first) return one_look(std::min(first, most), place.share);
+  if (needed <= first) return one_look(std::min(first, most), whole);
   const Growth growth = growth_of(law);
-  const stats::ErrorRates errors{.alpha = place.share.alpha,
-                                 .beta = place.share.beta,
-                                 .two_sided = is_two_sided(question.test->claim.relation)};
-  const std::size_t whole =
+  const stats::ErrorRates errors{
+      .alpha = whole.alpha, .beta = whole.beta, .two_sided = is_two_sided(entry.claim.relation)};
+  const std::size_t sizes =
       stats::geometric_sizes({.first = first, .last = needed}, growth.factor).size();
-  for (std::size_t count = std::min(growth.most, whole); count > 1; --count) {
+  for (std::size_t count = std::min(growth.most, sizes); count > 1; --count) {
     const stats::LookSchedule trial =
         stats::schedule_looks(sizes_up_to(needed, first, growth.factor, count), law, errors);
     const ErrorShare share{.alpha = trial.alpha.back(), .beta = trial.beta.back()};
     const std::uint64_t last =
-        std::min(most, std::max(least, question.theta->secondaries(question, share, pilots, plan)
+        std::min(most, std::max(least, question.theta->secondaries(test, share, pilots)
                                            .value_or(impossible_secondaries)));
     // A reference's error may put smaller levels beyond any number: try fewer looks.
     if (last > dearest_looks * needed) continue;
-    if (last <= first) return one_look(last, place.share);
+    if (last <= first) return one_look(last, whole);
     return stats::schedule_looks(sizes_up_to(last, first, growth.factor, count), law, errors);
   }
-  return one_look(std::min(std::max(first, *alone), most), place.share);
+  return one_look(std::min(std::max(first, *alone), most), whole);
 }
 
-std::vector<std::uint64_t> postponed_looks(const Question& question, const Plan& plan) {
+std::vector<std::uint64_t> postponed_looks(const TestOutcome& test) {
+  const Question& question = test.question;
+  const Plan& plan = test.plan;
   const bool chosen = question.test->secondaries || question.test->detect || has_rows(question);
   if (chosen || plan.looks.count() > 1 ||
       plan.method.is.over_looks != stats::LookLaw::independent_increments) {
     return {};
   }
-  const std::uint64_t most = most_available(question, plan);
+  const std::uint64_t most = most_available(test);
   std::vector<std::uint64_t> sizes;
   for (std::uint64_t times = 2; times <= most_postponed; times *= 2) {
     const std::uint64_t size = times * plan.looks.sizes.front();
@@ -169,22 +171,19 @@ std::vector<std::uint64_t> postponed_looks(const Question& question, const Plan&
   return sizes;
 }
 
-stats::LookSchedule look_for_its_picture(const Question& question, const FamilyPlace& place,
-                                         const Plan& plan) {
-  const bool given = question.test->secondaries || has_rows(question);
-  if (given || plan.method.keeps == Keeps::blocks) return plan.looks;
-  return one_look(std::min(plan.looks.sizes.front(), usual_secondaries), place.share);
+stats::LookSchedule look_for_its_picture(const TestOutcome& test) {
+  const bool given = test.question.test->secondaries || has_rows(test.question);
+  if (given || test.plan.method.keeps == Keeps::blocks) return test.plan.looks;
+  return one_look(std::min(test.plan.looks.sizes.front(), usual_secondaries), test.place.share);
 }
 
-std::uint64_t primaries_of_each(const Question& question, const Plan& plan) {
-  return primaries_of_look(question, plan, 1);
-}
+std::uint64_t primaries_of_each(const TestOutcome& test) { return primaries_of_look(test, 1); }
 
-std::uint64_t primaries_of_look(const Question& question, const Plan& plan, std::uint64_t look) {
+std::uint64_t primaries_of_look(const TestOutcome& test, std::uint64_t look) {
   std::uint64_t sum = 0;
-  for (std::size_t i = 0; i < plan.primaries.size(); ++i) {
-    const Subject& side = question.subjects[i];
-    sum += primaries_of_observation(*side.setup, plan.primaries[i]) * side.secondaries(look);
+  for (std::size_t i = 0; i < test.plan.primaries.size(); ++i) {
+    const Subject& side = test.question.subjects[i];
+    sum += primaries_of_observation(*side.setup, test.plan.primaries[i]) * side.secondaries(look);
   }
   return sum;
 }

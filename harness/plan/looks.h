@@ -10,28 +10,26 @@ namespace assay::harness {
 /// Looks that grow from the fewest meaningful up to what `detect` needs at the last look's levels.
 /// One look if nothing asks for a number or it is given: rows of a file, `secondaries`, the
 /// classical 1000.
-stats::LookSchedule plan_looks(const Question& question, const FamilyPlace& place,
-                               const Pilots& pilots, const Plan& plan, std::uint64_t first);
+stats::LookSchedule plan_looks(const TestOutcome& test, const Pilots& pilots, std::uint64_t first);
 
 stats::LookSchedule one_look(std::uint64_t secondaries, const ErrorShare& share);
 
 /// The only look of a plan may be put off to these sizes. Each is twice the one before, the last at
 /// most 64 times the look. Empty with several looks, or if somebody chose the size.
-std::vector<std::uint64_t> postponed_looks(const Question& question, const Plan& plan);
+std::vector<std::uint64_t> postponed_looks(const TestOutcome& test);
 
 /// The look of a test that is invalid beforehand. It decides nothing; it shows the estimators'
 /// data.
-stats::LookSchedule look_for_its_picture(const Question& question, const FamilyPlace& place,
-                                         const Plan& plan);
+stats::LookSchedule look_for_its_picture(const TestOutcome& test);
 
 /// The largest look: the rows of the longest file, also for a side drawn beside it, or what a
 /// budget in primaries pays for.
-std::uint64_t most_available(const Question& question, const Plan& plan);
+std::uint64_t most_available(const TestOutcome& test);
 
 /// Primaries of one secondary of each subject together; for an image, in all its elements.
-std::uint64_t primaries_of_each(const Question& question, const Plan& plan);
+std::uint64_t primaries_of_each(const TestOutcome& test);
 
 /// Primaries of a look of this size, all subjects together.
-std::uint64_t primaries_of_look(const Question& question, const Plan& plan, std::uint64_t look);
+std::uint64_t primaries_of_look(const TestOutcome& test, std::uint64_t look);
 
 }  // namespace assay::harness

@@ -35,7 +35,6 @@ struct Plan {
   std::vector<std::uint64_t> postponed = {};
   std::vector<Regions> regions = {};  ///< One a channel.
   std::vector<Gate> gates = {};       ///< Gates of the pilot.
-  std::string hint = "";              ///< Reason that the pilot's images give for a fail, or "".
   std::string caution = "";  ///< Possible slip of the user, shown unless the claim is refuted.
   /// True if red gates on the test's own data void a look. A forced method only shows them.
   bool gates_invalidate = true;
@@ -48,12 +47,6 @@ struct Plan {
   std::optional<PlannedImage> image = {};  ///< Set where the sizes of looks at images are planned.
 
   std::uint64_t most_secondaries() const { return looks.sizes.back(); }
-};
-
-/// One channel's evidence; of images also their findings.
-struct ChannelEvidence {
-  Evidence evidence;
-  std::optional<ImageOutcome> image = {};
 };
 
 /// One channel's numbers.

@@ -25,23 +25,22 @@ bool may_choose(const Question& question, std::size_t subject) {
          std::ranges::all_of(question.subjects, is_recorded);
 }
 
-std::vector<double> pilot_values(const Question& question, std::size_t subject, std::size_t channel,
-                                 const Pilots& pilots, const Plan& plan) {
-  const Subject& side = question.subjects[subject];
-  if (pilot_of(side, pilots) == nullptr || !may_choose(question, subject)) return {};
-  return as_secondaries(side, pilot_channel(question, subject, channel, pilots).values,
-                        plan.primaries[subject]);
+std::vector<double> pilot_values(const TestOutcome& test, std::size_t subject, std::size_t channel,
+                                 const Pilots& pilots) {
+  const Subject& side = test.question.subjects[subject];
+  if (pilot_of(side, pilots) == nullptr || !may_choose(test.question, subject)) return {};
+  return as_secondaries(side, pilot_channel(test.question, subject, channel, pilots).values,
+                        test.plan.primaries[subject]);
 }
 
 /// Both sides' pilot points, without draws that yield none.
-std::vector<stats::PlanePoint> pilot_points(const Question& question, const Pilots& pilots,
-                                            const Plan& plan) {
+std::vector<stats::PlanePoint> pilot_points(const TestOutcome& test, const Pilots& pilots) {
   std::vector<stats::PlanePoint> points;
-  for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
-    const Subject& side = question.subjects[subject];
-    const std::vector<double> first = pilot_values(question, subject, 0, pilots, plan);
+  for (std::size_t subject = 0; subject < test.question.subjects.size(); ++subject) {
+    const Subject& side = test.question.subjects[subject];
+    const std::vector<double> first = pilot_values(test, subject, 0, pilots);
     const std::vector<double> second = side.channels.size() > 1
-                                           ? pilot_values(question, subject, 1, pilots, plan)
+                                           ? pilot_values(test, subject, 1, pilots)
                                            : std::vector<double>(first.size(), 0);
     const std::optional<double> none = no_point_of(side);
     for (std::size_t i = 0; i < first.size(); ++i) {
@@ -86,8 +85,8 @@ std::string unusable_pilot(const Question& question, const Pilots& pilots) {
   return "";
 }
 
-std::vector<Known> known_channels(const Question& question, const Pilots& pilots,
-                                  const Plan& plan) {
+std::vector<Known> known_channels(const TestOutcome& test, const Pilots& pilots) {
+  const Question& question = test.question;
   std::vector<Known> all;
   for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
     const Subject& side = question.subjects[subject];
@@ -96,14 +95,12 @@ std::vector<Known> known_channels(const Question& question, const Pilots& pilots
     for (std::size_t channel = 0; channel < side.channels.size(); ++channel) {
       const PilotChannel data = pilot_channel(side, *pilot, channel);
       if (is_constant(question, subject, channel, data.moments)) continue;
-      const std::string part =
-          side.channels.size() > 1 ? "." + side.setup->channels()[side.channels[channel]].name : "";
       all.push_back({.subject = subject,
                      .channel = channel,
                      .pilot = data,
-                     .averaged = side.averaged(plan.primaries[subject]),
+                     .averaged = side.averaged(test.plan.primaries[subject]),
                      .rows = side.setup->observations().has_value(),
-                     .label = fmt::format(", pilot of {}{}", side.estimator->name, part)});
+                     .label = ", pilot of " + side.name_of(channel)});
     }
   }
   return all;
@@ -176,15 +173,15 @@ bool bets_on_range(const Question& question, const Pilots& pilots) {
   return hidden;
 }
 
-void freeze(const Question& question, const Pilots& pilots, Plan& plan) {
-  if (!plan.method.is.cells_of_pilots) return;
-  std::vector<stats::PlanePoint> points = pilot_points(question, pilots, plan);
+void freeze(TestOutcome& test, const Pilots& pilots) {
+  if (!test.plan.method.is.cells_of_pilots) return;
+  std::vector<stats::PlanePoint> points = pilot_points(test, pilots);
   if (points.empty()) {
-    plan.invalid = "the pilots gave no point to choose cells by";
+    test.plan.invalid = "the pilots gave no point to choose cells by";
     return;
   }
-  const bool plane = question.subjects[0].channels.size() > 1;
-  plan.method.frozen.cells = std::make_shared<const stats::SampledCells>(
+  const bool plane = test.question.subjects[0].channels.size() > 1;
+  test.plan.method.frozen.cells = std::make_shared<const stats::SampledCells>(
       stats::sampled_cells(std::move(points), plane ? plane_cells : line_cells));
 }
 

@@ -33,7 +33,7 @@ std::vector<double> as_secondaries(const Subject& side, std::span<const double> 
 std::string unusable_pilot(const Question& question, const Pilots& pilots);
 
 /// The channels that pilots or rows show, without those that never vary.
-std::vector<Known> known_channels(const Question& question, const Pilots& pilots, const Plan& plan);
+std::vector<Known> known_channels(const TestOutcome& test, const Pilots& pilots);
 
 /// Notes a gate of the pilot, but none of rows: they are judged with the test's own data.
 void note(Plan& plan, const Known& known, const stats::Gate& gate);
@@ -51,6 +51,6 @@ bool bets_on_range(const Question& question, const Pilots& pilots);
 
 /// Gives the plan's method what it takes from the pilots; sets `invalid` if they lack it. Rows of a
 /// file are their own pilot, both sides together; beside drawn values they are not used.
-void freeze(const Question& question, const Pilots& pilots, Plan& plan);
+void freeze(TestOutcome& test, const Pilots& pilots);
 
 }  // namespace assay::harness

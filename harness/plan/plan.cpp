@@ -108,17 +108,17 @@ std::string caution_of(const Question& question, const Pilots& pilots) {
 
 /// Chooses the method by the pilots' shapes, then judges the order of rows and draws. Returns the
 /// fewest secondaries that the method takes.
-std::uint64_t choose_method(const Question& question, const FamilyPlace& place,
-                            const Pilots& pilots, std::uint64_t most, Plan& plan) {
+std::uint64_t choose_method(TestOutcome& test, const Pilots& pilots, std::uint64_t most) {
+  const Question& question = test.question;
   const std::uint64_t used = std::min(most, question.test->secondaries.value_or(most));
   if (has_rows(question)) require_independent_sides(question, pilots, used);
   if (std::string reason = unusable_pilot(question, pilots); !reason.empty()) {
-    plan.invalid = std::move(reason);
+    test.plan.invalid = std::move(reason);
     return least_secondaries;
   }
-  const std::uint64_t least = question.theta->choose(question, place, pilots, most, plan);
-  if (has_rows(question)) judge_independence(question, pilots, used, plan);
-  judge_drawn_order(question, pilots, plan);
+  const std::uint64_t least = question.theta->choose(test, pilots, most);
+  if (has_rows(question)) judge_independence(test, pilots, used);
+  judge_drawn_order(test, pilots);
   return least;
 }
 
@@ -170,13 +170,14 @@ std::string lack_of_density(const Question& question, const NoDensity& why) {
                      question.subjects[0].estimator->name, why.what());
 }
 
-Plan plan_test(const Question& question, const FamilyPlace& place, const Pilots& pilots,
-               const Primaries& primaries) {
-  const TestEntry& test = *question.test;
-  Plan plan{
-      .method = test.method ? find_method(question, *test.method) : methods_for(question).front(),
-      .regions = regions_of(question),
-      .gates_invalidate = !test.method};
+TestOutcome plan_test(const Question& question, const FamilyPlace& place, const Pilots& pilots,
+                      const Primaries& primaries) {
+  TestOutcome test{.question = question, .place = place};
+  const std::optional<std::string>& forced = question.test->method;
+  Plan& plan = test.plan;
+  plan = {.method = forced ? find_method(question, *forced) : methods_for(question).front(),
+          .regions = regions_of(question),
+          .gates_invalidate = !forced};
   const bool single = takes_single_primaries(question, pilots);
   for (const Subject& subject : question.subjects) {
     const bool chosen = !single || subject.estimator->primaries;
@@ -187,20 +188,18 @@ Plan plan_test(const Question& question, const FamilyPlace& place, const Pilots&
   if (plan.error.empty()) plan.error = misdeclared(question, pilots);
   if (!plan.error.empty()) {
     plan.looks = one_look(2, place.share);
-    return plan;
+    return test;
   }
   try {
     question.theta->require_density(question);
-    const std::uint64_t most = most_available(question, plan);
-    const std::uint64_t least = choose_method(question, place, pilots, most, plan);
-    plan.looks = plan_looks(question, place, pilots, plan, least);
-    if (plan.invalid.empty()) plan.invalid = question.theta->too_few(question, plan);
+    const std::uint64_t least = choose_method(test, pilots, most_available(test));
+    plan.looks = plan_looks(test, pilots, least);
+    if (plan.invalid.empty()) plan.invalid = question.theta->too_few(test);
     if (plan.invalid.empty()) {
-      plan.postponed = postponed_looks(question, plan);
+      plan.postponed = postponed_looks(test);
     } else {
-      plan.looks = look_for_its_picture(question, place, plan);
+      plan.looks = look_for_its_picture(test);
     }
-    plan.hint += question.theta->hint(question);
     plan.caution = caution_of(question, pilots);
   } catch (const std::domain_error& error) {
     plan.looks = one_look(2, place.share);
@@ -209,7 +208,12 @@ Plan plan_test(const Question& question, const FamilyPlace& place, const Pilots&
     plan.looks = one_look(2, place.share);
     plan.error = lack_of_density(question, failure);
   }
-  return plan;
+  return test;
+}
+
+TestOutcome plan_alone(const Suite& suite, const Question& question, const Pilots& pilots) {
+  const std::vector<FamilyPlace> place = places(suite, {question});
+  return plan_test(question, place[0], pilots, choose_primaries({question}, place, pilots));
 }
 
 Primaries choose_primaries(const std::vector<Question>& questions,

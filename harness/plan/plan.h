@@ -22,9 +22,11 @@ using Primaries = std::map<std::string, std::uint64_t>;
 Primaries choose_primaries(const std::vector<Question>& questions,
                            const std::vector<FamilyPlace>& places, const Pilots& pilots);
 
-/// The plan of one test. Throws InputError at the test's place if its margin is beyond reach.
-Plan plan_test(const Question& question, const FamilyPlace& place, const Pilots& pilots,
-               const Primaries& primaries);
+/// One test with its plan. Throws InputError at the test's place if its margin is beyond reach.
+TestOutcome plan_test(const Question& question, const FamilyPlace& place, const Pilots& pilots,
+                      const Primaries& primaries);
+/// The same as a suite of its own, drawn by itself.
+TestOutcome plan_alone(const Suite& suite, const Question& question, const Pilots& pilots);
 
 /// The message of a test whose claim needs a density that cannot be had.
 std::string lack_of_density(const Question& question, const NoDensity& why);

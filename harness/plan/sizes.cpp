@@ -51,12 +51,12 @@ stats::SampleSizes sizes_of(const Question& question, std::uint64_t look) {
   return {.x = taken(0), .y = taken(question.of_two() ? 1 : 0)};
 }
 
-std::uint64_t secondaries_of_floor(const Question& question, const Plan& plan) {
+std::uint64_t secondaries_of_floor(const TestOutcome& test) {
   std::uint64_t floor = least_secondaries;
-  for (std::size_t i = 0; i < question.subjects.size(); ++i) {
-    const Setup& setup = *question.subjects[i].setup;
+  for (std::size_t i = 0; i < test.question.subjects.size(); ++i) {
+    const Setup& setup = *test.question.subjects[i].setup;
     if (setup.observations() || setup.image() || recorded::keeps_files(setup)) continue;
-    const std::uint64_t each = std::max<std::uint64_t>(1, plan.primaries[i]);
+    const std::uint64_t each = std::max<std::uint64_t>(1, test.plan.primaries[i]);
     floor = std::max(floor, (floor_of_evidence + each - 1) / each);
   }
   return floor;
@@ -92,10 +92,13 @@ std::optional<std::uint64_t> most_of_channels(const Question& question,
   return std::clamp(*most, least_secondaries, impossible_secondaries);
 }
 
-std::optional<double> detectable_effect(const Question& question, const TestSize& size,
-                                        const Plan& plan, const PlannedChannel& channel) {
-  if (channel.regions.relation == Relation::within) return std::nullopt;  // it finds nothing
-  const std::optional<double> found = question.theta->detectable(question, size, plan, channel);
+stats::ErrorRates Sized::rates() const { return planned_rates(size.share, channel.regions); }
+
+stats::SampleSizes Sized::sizes() const { return sizes_of(test.question, size.secondaries); }
+
+std::optional<double> detectable_effect(const Sized& sized) {
+  if (sized.channel.regions.within()) return std::nullopt;  // it finds nothing
+  const std::optional<double> found = sized.test.question.theta->detectable(sized);
   return found && std::isfinite(*found) ? found : std::nullopt;
 }
 

@@ -63,7 +63,7 @@ stats::SampleSizes sizes_of(const Question& question, std::uint64_t look);
 /// Secondaries that the floor of evidence asks for, at least `least_secondaries`. Rows
 /// of a file, pictures and files that a program writes are as many as somebody paid for: they have
 /// no floor.
-std::uint64_t secondaries_of_floor(const Question& question, const Plan& plan);
+std::uint64_t secondaries_of_floor(const TestOutcome& test);
 
 /// A computed count, rounded up; `impossible_secondaries` if it is too large or NaN.
 std::uint64_t whole_secondaries(double count);
@@ -85,7 +85,6 @@ std::optional<std::uint64_t> most_of_channels(const Question& question,
 
 /// The least theta that a test of that size finds with probability 1 - beta. Nullopt if no formula
 /// tells, and `within`.
-std::optional<double> detectable_effect(const Question& question, const TestSize& size,
-                                        const Plan& plan, const PlannedChannel& channel);
+std::optional<double> detectable_effect(const Sized& sized);
 
 }  // namespace assay::harness

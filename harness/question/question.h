@@ -34,6 +34,12 @@ struct Subject {
     return std::min(look, setup->observations().value_or(look));
   }
 
+  /// The estimator's name, with the channel's if there are several: "area.red".
+  std::string name_of(std::size_t channel) const {
+    return estimator->name +
+           (channels.size() > 1 ? "." + setup->channels()[channels[channel]].name : "");
+  }
+
   /// The number of primaries that an observation averages. Its variance and cost times this are
   /// those of one primary.
   double averaged(std::uint64_t primaries) const {

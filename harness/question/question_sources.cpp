@@ -251,24 +251,6 @@ const ScaledQuantity* other_side(const Claim& claim) {
   return std::get_if<ScaledQuantity>(&claim.right);
 }
 
-Question one_or_two(const TestEntry& test, const Theta& theta, const Estimators& estimators) {
-  const Claim& claim = test.claim;
-  Question question{
-      .test = &test, .theta = &theta, .subjects = {estimates(claim.left.source, estimators)}};
-  if (const ScaledQuantity* other = other_side(claim)) {
-    question.factor = other->factor;
-    question.subjects.push_back(estimates(other->quantity.source, estimators));
-  } else {
-    const Constant number = std::get<Constant>(claim.right);
-    if (number.standard_error > 0) {
-      refuse(claim.left.where, "`{}` is tested against an exact number: `+-` has no method here",
-             claim.left.row->word);
-    }
-    question.references.assign(question.channel_count(), number);
-  }
-  return question;
-}
-
 std::vector<Constant> truths_of(const TestEntry& test, const Subject& subject,
                                 const Source& source) {
   std::vector<Constant> truths;

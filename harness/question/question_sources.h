@@ -48,9 +48,6 @@ void require_moments_suffice(const Question& question);
 /// The quantity on the right; null if there is another side.
 const ScaledQuantity* other_side(const Claim& claim);
 
-/// One source against a number, InputError if that has an error, or two against each other.
-Question one_or_two(const TestEntry& test, const Theta& theta, const Estimators& estimators);
-
 /// The true mean of each channel: the number of `reference:`, else the plugin's.
 std::vector<Constant> truths_of(const TestEntry& test, const Subject& subject,
                                 const Source& source);

@@ -111,14 +111,12 @@ void add_moments(const DrawnTest& drawn, std::size_t subject, reports::Test& tes
   const Subject& side = drawn.outcome.question.subjects[subject];
   const Summary& summary = drawn.samples[subject].summary();
   const auto moments = [&](std::size_t i) { return summary.moments(side.channels[i]); };
-  const char* const mean_names[] = {"mean", "other_mean"};
-  const char* const variance_names[] = {"variance", "other_variance"};
-  test.maps.push_back(
-      map_of(mean_names[subject], *side.image, [&](std::size_t i) { return moments(i).mean; }));
-  test.maps.back().source = side.estimator->listed;
-  test.maps.push_back(map_of(variance_names[subject], *side.image,
-                             [&](std::size_t i) { return moments(i).variance(); }));
-  test.maps.back().source = side.estimator->listed;
+  const auto add = [&](const char* name, const auto& value) {
+    test.maps.emplace_back(map_of(name, *side.image, value)).source = side.estimator->listed;
+  };
+  add(subject == 0 ? "mean" : "other_mean", [&](std::size_t i) { return moments(i).mean; });
+  add(subject == 0 ? "variance" : "other_variance",
+      [&](std::size_t i) { return moments(i).variance(); });
 }
 
 void add_maps(const DrawnTest& drawn, const ImageOutcome& outcome, reports::Test& test) {
@@ -376,14 +374,13 @@ bool are_a_rectangle(const stats::SampledCells& cells) {
 }
 
 /// The first sample, against its part of both together.
-Cells of_two(const Question& question, const stats::SampledCells& sampled,
-             std::span<const ChannelData> data) {
-  const Subject& first = question.subjects[0];
+Cells of_two(const Seen& seen, const stats::SampledCells& sampled) {
+  const Subject& first = seen.question.subjects[0];
   const std::vector<Channel> channels = first.setup->channels();
-  const std::vector<std::uint64_t> x = counts_in(sampled, first, data[0]);
-  const std::vector<std::uint64_t> y = counts_in(sampled, question.subjects[1], data[1]);
-  const auto n = static_cast<double>(data[0].all_values[0].size());
-  const auto m = static_cast<double>(data[1].all_values[0].size());
+  const std::vector<std::uint64_t> x = counts_in(sampled, seen, 0);
+  const std::vector<std::uint64_t> y = counts_in(sampled, seen, 1);
+  const auto n = static_cast<double>(seen.data[0].all_values[0].size());
+  const auto m = static_cast<double>(seen.data[1].all_values[0].size());
   Cells cells{.axes = fmt::format("of {}, parts of equal probability: of {} from top to bottom, of "
                                   "{} within each from left to right; expected as of both samples",
                                   first.estimator->listed, channels[first.channels[0]].name,
@@ -401,14 +398,16 @@ Cells of_two(const Question& question, const stats::SampledCells& sampled,
 Cells cells_of(const DrawnTest& test) {
   const TestOutcome& outcome = test.outcome;
   const Question& question = outcome.question;
-  const std::vector<ChannelData> data = data_of(test, outcome.channels[0].index);
+  const std::size_t channel = outcome.channels[0].index;
+  const std::vector<ChannelData> data = data_of(test, channel);
   if (question.is().of_a_law && outcome.plan.method.keeps == Keeps::cells) {
     const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
     if (draws.sampler().domain() != Domain::interval) return of_density(draws, data[0]);
   }
   const auto& sampled = outcome.plan.method.frozen.cells;
   const bool plane = question.subjects[0].channels.size() > 1;
-  if (plane && sampled && are_a_rectangle(*sampled)) return of_two(question, *sampled, data);
+  if (plane && sampled && are_a_rectangle(*sampled))
+    return of_two({question, channel, data}, *sampled);
   return {};
 }
 
@@ -487,8 +486,7 @@ std::vector<reports::EmpiricalLaw> empirical_laws(const DrawnTest& test, std::si
   const double confidence = 1 - test.outcome.share().alpha;
   const std::vector<ChannelData> data = data_of(test, channel);
   for (std::size_t subject = 0; subject < data.size(); ++subject) {
-    laws.push_back(empirical_law(points_of(question, subject, channel, data[subject].values),
-                                 confidence, law));
+    laws.push_back(empirical_law(points_of({question, channel, data}, subject), confidence, law));
     laws.back().source = question.subjects[subject].estimator->listed;
   }
   return laws;

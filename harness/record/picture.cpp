@@ -17,16 +17,11 @@
 namespace assay::harness {
 namespace {
 
-reports::Moments recorded(const stats::Moments& moments) {
-  return {.count = moments.count,
-          .mean = moments.mean,
-          .m2 = moments.m2,
-          .m3 = moments.m3,
-          .m4 = moments.m4,
-          .min = moments.minimum,
-          .max = moments.maximum,
-          .nonzero = moments.nonzero,
-          .rest = moments.rest};
+/// Moments of stats as those of a record, or back: both have the same members in one order.
+template <class To>
+To in_order(const auto& moments) {
+  const auto& [count, mean, m2, m3, m4, least, most, nonzero, rest] = moments;
+  return {count, mean, m2, m3, m4, least, most, nonzero, rest};
 }
 
 /// True if moments suffice for intervals of mean and variance.
@@ -144,18 +139,6 @@ reports::EstimatorSummary summarise(const Picture& picture, const SuiteRun& run)
   return row;
 }
 
-stats::Moments moments_of(const reports::Moments& recorded) {
-  return {.count = recorded.count,
-          .mean = recorded.mean,
-          .m2 = recorded.m2,
-          .m3 = recorded.m3,
-          .m4 = recorded.m4,
-          .minimum = recorded.min,
-          .maximum = recorded.max,
-          .nonzero = recorded.nonzero,
-          .rest = recorded.rest};
-}
-
 // More pairs would not be readable.
 constexpr std::size_t most_estimators = 40;
 
@@ -193,8 +176,8 @@ struct ComparedPair {
 };
 
 ComparedPair compare(const Pictured& first, const Pictured& second, std::size_t channel) {
-  const stats::Moments x = moments_of(first.shown.channels[channel].moments);
-  const stats::Moments y = moments_of(second.shown.channels[channel].moments);
+  const auto x = in_order<stats::Moments>(first.shown.channels[channel].moments);
+  const auto y = in_order<stats::Moments>(second.shown.channels[channel].moments);
   ComparedPair pair{.row = {.first = first.name,
                             .second = second.name,
                             .channel = first.shown.channels[channel].name}};
@@ -256,7 +239,8 @@ Pictured pictured(const Picture& picture, const SuiteRun& run) {
   const std::vector<Channel> channels = picture.pool->setup()->channels();
   for (std::size_t i = 0; i < channels.size(); ++i) {
     result.shown.channels.push_back(
-        {channels[i].name, channels[i].mean, recorded(moments_of(picture, run, *drawn, i))});
+        {channels[i].name, channels[i].mean,
+         in_order<reports::Moments>(moments_of(picture, run, *drawn, i))});
   }
   return result;
 }

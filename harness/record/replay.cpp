@@ -147,6 +147,24 @@ std::uint64_t most_recorded(const reports::Test& test) {
   return std::ranges::max(test.samples, {}, &reports::Sample::secondaries).secondaries;
 }
 
+/// The record's sample of a subject's channel, or null.
+const reports::Sample* recorded_of(const reports::Test& test, const Question& question,
+                                   std::size_t subject, std::size_t channel) {
+  const Subject& side = question.subjects[subject];
+  if (std::ranges::find(side.channels, channel) == side.channels.end()) return nullptr;
+  // Samples of two subjects with one estimator are in the subjects' order.
+  auto earlier = std::ranges::count_if(
+      std::span(question.subjects).first(subject),
+      [&](const Subject& each) { return each.estimator->listed == side.estimator->listed; });
+  const std::string name = side.setup->channels()[channel].name;
+  for (const reports::Sample& sample : test.samples) {
+    const bool is_its = sample.estimator == side.estimator->listed &&
+                        (side.image.has_value() || sample.channel == name);
+    if (is_its && earlier-- == 0) return &sample;
+  }
+  return nullptr;
+}
+
 /// The looks that were planned; what was drawn of constants.
 stats::LookSchedule recorded_looks(const Question& question, const Recorded& recorded,
                                    stats::LookLaw law) {
@@ -165,16 +183,11 @@ Plan recorded_plan(const Question& question, const Recorded& recorded) {
   Plan plan{.method = method,
             .looks = recorded_looks(question, recorded, method.is.over_looks),
             .gates_invalidate = !test.forced};
-  // The record has all subjects of a channel together.
   for (std::size_t i = 0; i < question.subjects.size(); ++i) {
-    const bool drawn = i < test.samples.size() &&
-                       test.samples[i].estimator == question.subjects[i].estimator->listed;
-    const std::string& name = question.subjects[i].estimator->listed;
-    const auto sample = drawn ? test.samples.begin() + static_cast<std::ptrdiff_t>(i)
-                              : std::ranges::find_if(test.samples, [&](const reports::Sample& s) {
-                                  return s.estimator == name;
-                                });
-    plan.primaries.push_back(sample->primaries);
+    const Subject& side = question.subjects[i];
+    const reports::Sample* const sample = recorded_of(test, question, i, side.channels[0]);
+    plan.primaries.push_back(sample != nullptr ? sample->primaries
+                                               : side.estimator->primaries.value_or(1));
   }
   plan.regions.assign(question.channel_count(), {.relation = question.test->claim.relation,
                                                  .allow = test.allow.value_or(0),
@@ -202,24 +215,6 @@ Pilots pilots_of(const Rebuilt& rebuilt, const Question& question, std::uint64_t
     throw std::runtime_error(why);
   }
   return pilots;
-}
-
-/// The record's sample of a subject's channel, or null.
-const reports::Sample* recorded_of(const reports::Test& test, const Question& question,
-                                   std::size_t subject, std::size_t channel) {
-  const Subject& side = question.subjects[subject];
-  if (std::ranges::find(side.channels, channel) == side.channels.end()) return nullptr;
-  // Samples of two subjects with one estimator are in the subjects' order.
-  auto earlier = std::ranges::count_if(
-      std::span(question.subjects).first(subject),
-      [&](const Subject& each) { return each.estimator->listed == side.estimator->listed; });
-  const std::string name = side.setup->channels()[channel].name;
-  for (const reports::Sample& sample : test.samples) {
-    const bool is_its = sample.estimator == side.estimator->listed &&
-                        (side.image.has_value() || sample.channel == name);
-    if (is_its && earlier-- == 0) return &sample;
-  }
-  return nullptr;
 }
 
 /// InputError if recorded data changed since.
@@ -253,23 +248,20 @@ std::unique_ptr<Rebuilt> rebuild(const Recorded& recorded, const std::string& re
   rebuilt->suite = suite_of(recorded, record);
   require_lasting_rows(rebuilt->suite, record);
   rebuilt->estimators = prepare_all(rebuilt->suite);
-  Question question = ask(rebuilt->suite.tests[0], rebuilt->estimators, recorded.suite.seed);
-  Plan plan = recorded_plan(question, recorded);
-  require_same_rows(question, recorded, record);
-  draw_recorded_streams(question, recorded.test);
-  if (plan.method.is.cells_of_pilots) {
-    freeze(question, pilots_of(*rebuilt, question, recorded.suite.seed), plan);
-  }
-  rebuilt->work.outcome = {
-      .question = std::move(question),
-      .place = {.inside = false,
-                .share = {.alpha = recorded.test.alpha.value_or(rebuilt->suite.alpha),
-                          .beta = recorded.test.beta.value_or(rebuilt->suite.beta)}},
-      .plan = std::move(plan)};
   TestWork& work = rebuilt->work;
+  TestOutcome& outcome = work.outcome;
+  outcome.question = ask(rebuilt->suite.tests[0], rebuilt->estimators, recorded.suite.seed);
+  outcome.plan = recorded_plan(outcome.question, recorded);
+  outcome.place = {.inside = false,
+                   .share = {.alpha = recorded.test.alpha.value_or(rebuilt->suite.alpha),
+                             .beta = recorded.test.beta.value_or(rebuilt->suite.beta)}};
+  require_same_rows(outcome.question, recorded, record);
+  draw_recorded_streams(outcome.question, recorded.test);
+  if (outcome.plan.method.is.cells_of_pilots) {
+    freeze(outcome, pilots_of(*rebuilt, outcome.question, recorded.suite.seed));
+  }
   if (!recorded.test.looks.empty()) work.last_look = recorded.test.looks.size() - 1;
-  work.pools = rebuilt->pools.for_question(work.outcome.question, work.outcome.plan,
-                                           recorded.suite.seed, {});
+  work.pools = rebuilt->pools.for_question(outcome.question, outcome.plan, recorded.suite.seed, {});
   return rebuilt;
 }
 

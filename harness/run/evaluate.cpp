@@ -58,9 +58,6 @@ reports::Effect effect_of(const TestOutcome& outcome, const ChannelOutcome& chan
   constexpr double least_error = 1e-12;
   const double error = std::max(deciding_error(outcome, channel, outcome.share()), least_error);
   const stats::Interval interval = evidence.interval(1 - error);
-  const auto number = [](double value) {
-    return std::isfinite(value) ? reports::Number(value) : reports::Number();
-  };
   return {.quantity = quantity_of(evidence, outcome.question.factor),
           .estimate = number(evidence.estimate),
           .low = number(interval.low),
@@ -77,8 +74,9 @@ void note_sizes(TestOutcome& outcome, const DrawnTest& test) {
       continue;
     }
     const std::vector<ChannelData> data = data_of(test, channel.index);
+    const Theta& theta = *outcome.question.theta;
     PlannedChannel observed =
-        outcome.question.theta->observed(outcome.question, channel.regions, channel.index, data);
+        theta.observed({outcome.question, channel.index, data}, channel.regions);
     if (outcome.plan.method.is.of_batches) {
       // The deviations of independent values whose means are as uncertain.
       const auto deviation = [&](std::size_t subject) {
@@ -90,21 +88,15 @@ void note_sizes(TestOutcome& outcome, const DrawnTest& test) {
         observed.other_deviation = std::abs(outcome.question.factor) * deviation(1);
       }
     }
-    channel.detectable =
-        detectable_effect(outcome.question, full_size(outcome), outcome.plan, observed);
-    channel.finds_nothing =
-        !channel.detectable && outcome.question.theta->finds_nothing(
-                                   outcome.question, full_size(outcome), outcome.plan, observed);
-    const bool equivalence = channel.regions.relation == Relation::within;
+    const Sized sized{outcome, full_size(outcome), observed};
+    channel.detectable = detectable_effect(sized);
+    channel.finds_nothing = !channel.detectable && theta.finds_nothing(sized);
+    const bool equivalence = channel.regions.within();
     if (!equivalence && !channel.regions.detect) continue;
-    const std::optional<double> power =
-        outcome.question.theta->power(outcome.question, full_size(outcome), outcome.plan, observed,
-                                      equivalence ? 0 : *channel.regions.detect);
+    const auto power = theta.power(sized, equivalence ? 0 : *channel.regions.detect);
     if (power) outcome.power = std::min(*power, outcome.power.value_or(1));
   }
 }
-
-using reports::Verdict;
 
 void settle(TestOutcome& outcome, Verdict verdict, std::string message) {
   outcome.verdict = verdict;
@@ -121,23 +113,21 @@ bool is_settled_beforehand(TestOutcome& outcome) try {
   return true;
 }
 
-ChannelOutcome channel_outcome(const DrawnTest& test, std::size_t channel,
-                               std::span<const ChannelData> data) {
-  const TestOutcome& outcome = test.outcome;
-  const Question& question = outcome.question;
-  const Regions& regions = outcome.plan.regions[channel];
-  ChannelEvidence found = question.theta->evidence(test, channel, data);
+ChannelOutcome channel_outcome(const DrawnTest& test, const Seen& seen) {
+  const Theta& theta = *seen.question.theta;
+  const Regions& regions = test.outcome.plan.regions[seen.channel];
+  ChannelEvidence found = theta.evidence(test, seen);
   const stats::TestResult at_null = found.evidence.at(0);
-  ChannelOutcome result{.index = channel,
-                        .name = question.channel_name(channel),
-                        .regions = regions,
-                        .at_null = at_null,
-                        .evidence = std::move(found.evidence)};
-  result.decision = {.log_p_claimed = log_p_claimed(result.evidence, regions),
-                     .log_p_forbidden = log_p_forbidden(result.evidence, regions)};
-  result.image = std::move(found.image);
-  result.reference = question.theta->marked(question, channel, data);
-  return result;
+  const ChannelDecision decision{.log_p_claimed = log_p_claimed(found.evidence, regions),
+                                 .log_p_forbidden = log_p_forbidden(found.evidence, regions)};
+  return {.index = seen.channel,
+          .name = seen.question.channel_name(seen.channel),
+          .regions = regions,
+          .at_null = at_null,
+          .evidence = std::move(found.evidence),
+          .decision = decision,
+          .reference = theta.marked(seen),
+          .image = std::move(found.image)};
 }
 
 int badness(Verdict verdict) {
@@ -163,24 +153,23 @@ std::vector<ConstantVerdict> evaluate_channels(TestOutcome& outcome, const Drawn
   };
   for (std::size_t channel = 0; channel < question.channel_count(); ++channel) {
     const std::vector<ChannelData> data = data_of(test, channel);
-    const Regions& regions = outcome.plan.regions[channel];
+    const Seen seen{question, channel, data};
     const bool in_range = outcome.plan.method.is.in_range;  // which tests constants too
-    auto settled = in_range
-                       ? std::nullopt
-                       : question.theta->settled(question, channel, data, regions, outcome.share());
+    auto settled =
+        in_range ? std::nullopt : question.theta->settled(seen, outcome.plan.regions[channel]);
     if (settled) {
       add(channel, *std::move(settled));
       continue;
     }
-    std::string reason = question.theta->lack_of_numbers(test, channel, data);
+    std::string reason = question.theta->lack_of_numbers(outcome, seen);
     if (!reason.empty()) {
       add(channel, {Verdict::invalid, std::move(reason)});
       continue;
     }
-    for (Gate& gate : question.theta->gates(outcome, channel, data, critical)) {
+    for (Gate& gate : question.theta->gates(outcome, seen, critical)) {
       outcome.gates.push_back(std::move(gate));
     }
-    outcome.channels.push_back(channel_outcome(test, channel, data));
+    outcome.channels.push_back(channel_outcome(test, seen));
   }
   return constants;
 }
@@ -337,8 +326,7 @@ void take_sound_look(TestWork& work, const DrawnTest& test, bool may_go_on) {
     if (outcome.message.empty()) {
       outcome.message = narrate(outcome) + outcome.question.theta->where_it_differs(test);
       if (outcome.verdict == Verdict::fail) {
-        outcome.message +=
-            outcome.plan.hint + outcome.question.theta->taken_as_exact(outcome.question);
+        outcome.message += outcome.question.theta->hint(outcome.question);
       }
     }
   }

@@ -79,12 +79,6 @@ bool draws_differ(const Subject& subject, const Pool& pool, std::uint64_t observ
   return false;
 }
 
-void draw(Estimator& estimator, const Pool& pool, std::uint64_t index, std::span<double> out) {
-  Stream random(pool.key(), index);
-  Cost unused;
-  estimator.secondary(random, pool.primaries(), out, unused);
-}
-
 bool estimates_differ(const Subject& subject, const Pool& pool, std::uint64_t observations) {
   const Setup& original = *subject.estimator->original;
   const std::vector<Channel> mine = subject.setup->channels();
@@ -98,8 +92,8 @@ bool estimates_differ(const Subject& subject, const Pool& pool, std::uint64_t ob
   std::vector<double> b(theirs.size());
   for (std::uint64_t i = 0; i < observations; ++i) {
     // One observation, such as an image, may cost as much as the rest of a look.
-    if (i >= kept.size()) draw(*one, pool, i, a);
-    draw(*other, pool, i, b);
+    if (i >= kept.size()) pool.draw_again(*one, i, a);
+    pool.draw_again(*other, i, b);
     if (!std::ranges::equal(i < kept.size() ? kept[i] : a, b)) return true;
   }
   return false;

@@ -218,7 +218,7 @@ class Looking {
       stats::add_to_sums(of_pictures_[s], stacks[s], rows.elements(extent_), on_all_threads);
     }
     if (question_.is().of_pairs) {
-      const Stack differences = subtract(stacks);
+      const Stack differences = difference(stacks[0], stacks[1], differences_);
       const stats::ImageReference zero{extent_, zeros_};
       take(stats::pair_of(differences, zero), {differences, stacks[1]}, rows);
       norm_.take(stats::pair_of(stacks[1], zero), rows, on_all_threads);
@@ -240,23 +240,6 @@ class Looking {
     distance_.take(pair, rows, on_all_threads);
     dependence_.take(pair, rows, on_all_threads);
     pyramid_->take(pair, rows);
-  }
-
-  /// Pictures less their partners, in the rows that are there.
-  Stack subtract(const Stack (&stacks)[2]) {
-    Stack differences{extent_, {}, stacks[0].there};
-    const std::size_t size = stacks[0].there.size();
-    differences_.resize(pictures_ * size);
-    for (std::size_t i = 0; i < pictures_; ++i) {
-      const std::span<float> of(differences_.data() + i * size, size);
-      differences.images.emplace_back(of);
-    }
-    on_all_threads(pictures_, [&](std::size_t i) {
-      std::ranges::transform(stacks[0].images[i], stacks[1].images[i],
-                             differences_.begin() + static_cast<std::ptrdiff_t>(i * size),
-                             std::minus<>());
-    });
-    return differences;
   }
 
   void finish() {

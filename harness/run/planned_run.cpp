@@ -191,10 +191,8 @@ Primaries plan_tests(SuiteRun& run, const RunOptions& options, Progress& progres
   const Primaries primaries = choose_primaries(questions, place, run.pilots);
   for (std::size_t i = 0; i < questions.size(); ++i) {
     if (!chosen[i]) continue;
-    Plan plan = plan_test(questions[i], place[i], run.pilots, primaries);
-    run.tests.push_back(
-        {.suite_budget = run.suite.budget ? &*run.suite.budget : nullptr,
-         .outcome = {.question = questions[i], .place = place[i], .plan = std::move(plan)}});
+    run.tests.push_back({.suite_budget = run.suite.budget ? &*run.suite.budget : nullptr,
+                         .outcome = plan_test(questions[i], place[i], run.pilots, primaries)});
   }
   return primaries;
 }

@@ -7,6 +7,7 @@
 #include "harness/draws/consistency_setup.h"
 #include "harness/plan/independence.h"
 #include "harness/question/question_sources.h"
+#include "stats/means/student_t.h"
 
 namespace assay::harness {
 namespace {
@@ -14,10 +15,7 @@ namespace {
 // The histogram spans so many standard deviations to each side, within the channel's range.
 constexpr double histogram_deviations = 5;
 
-struct Range {
-  double low;
-  double high;
-};
+using stats::Range;
 
 /// Bounds of a histogram that holds both ends.
 ChannelPlan with_histogram(Range range) {

@@ -215,9 +215,8 @@ double reference_error(const TestOutcome& outcome, const ChannelOutcome& channel
 /// So many times the secondaries, or the number for a `budget`.
 std::string times_as_many(const TestOutcome& outcome, double factor) {
   const std::string text = sizes_text(outcome, factor) + " secondaries";
-  if (primaries_of_each(outcome.question, outcome.plan) == 1) return text;
-  const auto primaries =
-      static_cast<double>(primaries_of_look(outcome.question, outcome.plan, outcome.secondaries()));
+  if (primaries_of_each(outcome) == 1) return text;
+  const auto primaries = static_cast<double>(primaries_of_look(outcome, outcome.secondaries()));
   return fmt::format("{} ({} primaries)", text, reports::human(factor * primaries, 2));
 }
 
@@ -227,8 +226,8 @@ std::string line_to_write(const TestOutcome& outcome, double factor) {
   if (has_rows(outcome.question)) return "";
   const bool budget = test.budget && test.budget->primaries;
   const std::uint64_t secondaries = outcome.secondaries();
-  const double now = static_cast<double>(
-      budget ? primaries_of_look(outcome.question, outcome.plan, secondaries) : secondaries);
+  const auto now =
+      static_cast<double>(budget ? primaries_of_look(outcome, secondaries) : secondaries);
   const double step = std::pow(10, std::max(0.0, std::floor(std::log10(factor * now)) - 1));
   const std::string number = fmt::format("{:.0f}", std::ceil(factor * now / step) * step);
   return "; write " + written_key(test, budget ? "budget" : "secondaries", number);

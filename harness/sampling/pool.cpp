@@ -413,6 +413,12 @@ void Pool::fold(Block&& block) {
   fault_ = std::move(block.fault);
 }
 
+void Pool::draw_again(Estimator& estimator, std::uint64_t index, std::span<double> out) const {
+  Stream random(key_, index);
+  Cost unused;
+  estimator.secondary(random, primaries_, out, unused);
+}
+
 std::vector<double> draw_observation(const Setup& setup, StreamKey key, std::uint64_t primaries,
                                      std::uint64_t index) {
   const FlushDenormals flush;

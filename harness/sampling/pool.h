@@ -163,6 +163,8 @@ class Pool {
     std::optional<Fault> fault = {};
     std::uint64_t size = 0;  ///< observations when complete
   };
+  /// Draws one observation again.
+  void draw_again(Estimator& estimator, std::uint64_t index, std::span<double> out) const;
   /// All that is drawn, as one block.
   Block drawn_block() const;
   /// Draws observations [first, last) of one block with a worker's estimator, made if needed.

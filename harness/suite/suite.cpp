@@ -60,13 +60,19 @@ void require_increasing(const Sweep& sweep) {
   }
 }
 
+/// The items of a list that has any. InputError with what it must be.
+const std::vector<Value>& items_of(const Value& list, const std::string& otherwise) {
+  if (list.kind() == Value::Kind::list && !list.items().empty()) return list.items();
+  refuse(list.where(), otherwise);
+}
+
+std::vector<std::string> read_lines(const Value& list, const char* what) {
+  return names_of(list.items(), [&](const Value& item) { return one_line(item, what); });
+}
+
 std::vector<std::string> read_tags(const Value& value) {
-  if (value.kind() != Value::Kind::list) {
-    refuse(value.where(), "`tags` must be a list: `tags: [slow, images]`");
-  }
-  std::vector<std::string> tags;
-  for (const Value& tag : value.items()) tags.push_back(one_line(tag, "a tag"));
-  return tags;
+  if (value.kind() == Value::Kind::list) return read_lines(value, "a tag");
+  refuse(value.where(), "`tags` must be a list: `tags: [slow, images]`");
 }
 
 Budget read_short_budget(const Value& value) {
@@ -198,7 +204,7 @@ void refuse_levels(const Document& document, const Value& test) {
 using Tests = std::vector<TestEntry>;
 
 bool is_in(const std::vector<std::string>& names, const std::string& name) {
-  return std::ranges::find(names, name) != names.end();
+  return std::ranges::count(names, name) > 0;
 }
 
 /// An exact name goes before a glob: a claim's factor contains an asterisk.
@@ -227,11 +233,10 @@ void require_an_answer(const TestEntry& test, const Location& where) {
 std::vector<std::string> read_names(const Keys& keys, const char* key, const Tests& tests) {
   const Value* list = keys.find(key);
   if (list == nullptr) return {};
-  if (list->kind() != Value::Kind::list || list->items().empty()) {
-    refuse(list->where(), "`{}` must be a list of at least one test, by its name or a glob", key);
-  }
   std::vector<std::string> names;
-  for (const Value& item : list->items()) {
+  for (const Value& item : items_of(
+           *list,
+           fmt::format("`{}` must be a list of at least one test, by its name or a glob", key))) {
     one_line(item, "the name of a test");
     const std::vector<const TestEntry*> found = tests_named(item.text(), tests);
     require_tests(found, item, tests);
@@ -421,15 +426,11 @@ TestEntry read_test(const Document& document, const Value& value) {
 /// lists, a condition without both lists, and both lists without a condition.
 std::vector<StatementEntry> read_statements(const Document& document, const Value& list,
                                             const Tests& tests) {
-  if (list.kind() != Value::Kind::list || list.items().empty()) {
-    refuse(list.where(),
-           "`statements` must be a list of at least one, as in `- {text: they agree, source: a "
-           "talk, holds: [a test]}`");
-  }
+  const auto& items = items_of(list,
+                               "`statements` must be a list of at least one, as in `- {text: they "
+                               "agree, source: a talk, holds: [a test]}`");
   std::vector<StatementEntry> statements;
-  for (const Value& item : list.items()) {
-    statements.push_back(read_statement(document, item, tests));
-  }
+  for (const Value& item : items) statements.push_back(read_statement(document, item, tests));
   return statements;
 }
 
@@ -452,12 +453,8 @@ std::string folder_of(const std::string& file) {
 }
 
 std::vector<std::string> read_needs(const Value& value) {
-  if (value.kind() != Value::Kind::list || value.items().empty()) {
-    refuse(value.where(), "`needs` must be a list of programs: `needs: [blender]`");
-  }
-  std::vector<std::string> programs;
-  for (const Value& program : value.items()) programs.push_back(one_line(program, "a program"));
-  return programs;
+  items_of(value, "`needs` must be a list of programs: `needs: [blender]`");
+  return read_lines(value, "a program");
 }
 
 void read_head(const Document& document, const Keys& keys, Suite& suite) {
@@ -525,12 +522,11 @@ void check_sweep(const Suite& suite, const TestEntry& test) {
 }
 
 void read_tests(const Document& document, const Value& list, Suite& suite) {
-  if (list.kind() != Value::Kind::list || list.items().empty()) {
-    refuse(list.where(),
-           "`tests` must be a list of at least one test, as in `- claim: mean(area) == analytic`");
-  }
   std::map<std::string, Location> names;
-  for (const Value& item : list.items()) {
+  for (const Value& item :
+       items_of(list,
+                "`tests` must be a list of at least one test, as in `- claim: mean(area) == "
+                "analytic`")) {
     TestEntry test = read_test(document, item);
     test.id = suite.stem + "/" + test.name;
     for (const Source& source : sources_of(test.claim)) require_estimator(suite, source);

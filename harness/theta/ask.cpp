@@ -1,6 +1,7 @@
 #include "harness/theta/ask.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -118,6 +119,18 @@ void require_observations(const Question& question) {
   }
 }
 
+/// InputError, with the quantities that have a slope.
+[[noreturn]] void refuse_slope(const Quantity& quantity) {
+  std::vector<std::string> words;
+  for (const QuantityRow& row : quantities()) {
+    if (row.slope != nullptr) words.push_back(row.word);
+  }
+  const std::string last = words.back();
+  words.pop_back();
+  refuse(quantity.where, "`slope` takes a {} or {}, not `{}`", fmt::join(words, ", "), last,
+         quantity.row->word);
+}
+
 void ask_of_images(Question& question) {
   if (const Theta* const theta = question.theta->of_images()) {
     question.theta = theta;
@@ -155,7 +168,8 @@ std::optional<std::uint64_t> Question::most_rows() const {
 
 Question ask(const TestEntry& test, const Estimators& estimators, std::uint64_t seed) {
   const Quantity& left = test.claim.left;
-  Question question = left.slope ? bind_slope(test, estimators) : left.row->bind(test, estimators);
+  if (left.slope && left.row->slope == nullptr) refuse_slope(left);
+  Question question = (left.slope ? left.row->slope : left.row->theta)->bind(test, estimators);
   require_observations(question);
   if (has_image(question)) ask_of_images(question);
   if (test.paired) ask_of_pairs(question);
@@ -223,14 +237,10 @@ double margin_on_theta(const Question& question, std::size_t channel, const Marg
   return std::log1p(margin.value / question.references[channel].value);
 }
 
-bool has_relative_margin(const TestEntry& test) {
-  return std::ranges::any_of(margins_of(test),
-                             [](const Margin& m) { return m.relative && m.value > 0; });
-}
-
-bool has_absolute_margin(const TestEntry& test) {
-  return std::ranges::any_of(margins_of(test),
-                             [](const Margin& m) { return !m.relative && m.value > 0; });
+bool has_margin(const TestEntry& test, bool in_per_cent) {
+  return std::ranges::any_of(margins_of(test), [&](const Margin& margin) {
+    return margin.relative == in_per_cent && margin.value > 0;
+  });
 }
 
 }  // namespace assay::harness

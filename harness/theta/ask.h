@@ -54,8 +54,7 @@ double unit_of_theta(const Question& question, std::size_t channel, double other
 /// A margin of the claim on theta's scale: ln(1 + x) for a ratio of variances.
 double margin_on_theta(const Question& question, std::size_t channel, const Margin& margin);
 
-/// True if a margin of the test is given in per cent, or as a number.
-bool has_relative_margin(const TestEntry& test);
-bool has_absolute_margin(const TestEntry& test);
+/// True if a margin of the test above 0 is given in per cent, or else as a number.
+bool has_margin(const TestEntry& test, bool in_per_cent);
 
 }  // namespace assay::harness

@@ -21,30 +21,29 @@ struct Difference {
   double scale = 1;  ///< Theta's unit: 1 or |reference|.
 };
 
-Difference difference_of(const Question& question, std::size_t channel,
-                         std::span<const ChannelData> data) {
-  Difference difference{.rounding = rounding_of(question, 0, channel)};
+Difference difference_of(const Seen& seen) {
+  const Question& question = seen.question;
+  Difference difference{.rounding = rounding_of(question, 0, seen.channel)};
   double reference = 0;
   if (question.of_two()) {
-    reference = question.factor * data[1].moments.mean;
-    difference.rounding += std::abs(question.factor) * rounding_of(question, 1, channel);
+    reference = question.factor * seen.moments(1).mean;
+    difference.rounding += std::abs(question.factor) * rounding_of(question, 1, seen.channel);
   } else {
-    reference = question.references[channel].value;
+    reference = seen.reference().value;
   }
-  difference.value = data[0].moments.mean - question.offset - reference;
-  const bool relative = question.theta->is_relative(question, channel);
-  if (relative && reference != 0) difference.scale = std::abs(reference);
+  difference.value = seen.moments(0).mean - question.offset - reference;
+  if (seen.relative() && reference != 0) difference.scale = std::abs(reference);
   return difference;
 }
 
 /// All values that theta may have.
-ThetaRange theta_of(const Difference& difference) {
+stats::Range theta_of(const Difference& difference) {
   return {.low = (difference.value - difference.rounding) / difference.scale,
           .high = (difference.value + difference.rounding) / difference.scale};
 }
 
-bool meets_claimed(const ThetaRange& theta, const Regions& regions) {
-  const ThetaRange claimed = regions.claimed();
+bool meets_claimed(const stats::Range& theta, const Regions& regions) {
+  const stats::Range claimed = regions.claimed();
   return regions.proof() ? theta.low < claimed.high && theta.high > claimed.low
                          : theta.low <= claimed.high && theta.high >= claimed.low;
 }
@@ -61,10 +60,11 @@ std::string seeds(const Question& question) {
 }
 
 /// The spread that rounding may hide, by the size of the values or as declared.
-double hidden_deviation(const Question& question, std::size_t channel, const ChannelData& data) {
-  const double size = std::abs(data.moments.mean) * question.subjects[0].averaged(data.primaries);
+double hidden_deviation(const Seen& seen) {
+  const double averaged = seen.question.subjects[0].averaged(seen.data[0].primaries);
+  const double size = std::abs(seen.moments(0).mean) * averaged;
   const double spacing = std::nextafter(size, std::numeric_limits<double>::infinity()) - size;
-  return std::max(spacing, 2 * rounding_of(question, 0, channel));
+  return std::max(spacing, 2 * rounding_of(seen.question, 0, seen.channel));
 }
 
 }  // namespace
@@ -74,26 +74,23 @@ bool is_constant(const Question& question, std::size_t subject, std::size_t chan
   return moments.maximum - moments.minimum <= 2 * rounding_of(question, subject, channel);
 }
 
-double unseen_shift(const Question& question, std::size_t subject, std::size_t channel,
-                    const ChannelData& data, double level) {
-  const stats::Moments& x = data.moments;
-  const stats::Range range = range_of(question, subject, channel, x);
+double unseen_shift(const Seen& seen, std::size_t subject, double level) {
+  const stats::Moments& x = seen.moments(subject);
+  const stats::Range range = range_of(seen.question, subject, seen.channel, x);
   const double unseen = -std::expm1(std::log(level) / static_cast<double>(x.count));
   return unseen * std::max({0.0, x.mean - range.low, range.high - x.mean}) +
-         rounding_of(question, subject, channel);
+         rounding_of(seen.question, subject, seen.channel);
 }
 
-bool all_constant(const Question& question, std::size_t channel,
-                  std::span<const ChannelData> data) {
-  for (std::size_t subject = 0; subject < data.size(); ++subject) {
-    if (!is_constant(question, subject, channel, data[subject].moments)) return false;
+bool all_constant(const Seen& seen) {
+  for (std::size_t subject = 0; subject < seen.data.size(); ++subject) {
+    if (!is_constant(seen, subject)) return false;
   }
   return true;
 }
 
-ConstantVerdict judge_constant(const Question& question, std::size_t channel,
-                               std::span<const ChannelData> data, const Regions& regions) {
-  const Difference difference = difference_of(question, channel, data);
+ConstantVerdict judge_constant(const Seen& seen, const Regions& regions) {
+  const Difference difference = difference_of(seen);
   if (meets_claimed(theta_of(difference), regions)) {
     if (!regions.has_forbidden()) {
       return {Verdict::pass,
@@ -107,32 +104,29 @@ ConstantVerdict judge_constant(const Question& question, std::size_t channel,
           fmt::format("every observation is {:.10g}, which differs from the reference by {:.3g}; "
                       "without a spread there is no test, and a rare value may be unseen: declare "
                       "the range, or take more observations{}",
-                      data[0].moments.mean, difference.value, seeds(question))};
+                      seen.moments(0).mean, difference.value, seeds(seen.question))};
 }
 
-std::optional<ConstantVerdict> judge_constant_variance(const Question& question,
-                                                       std::size_t channel, const ChannelData& data,
-                                                       const Regions& regions) {
-  if (regions.relation != Relation::at_most || regions.has_forbidden() ||
-      !is_constant(question, 0, channel, data.moments)) {
+std::optional<ConstantVerdict> judge_constant_variance(const Seen& seen, const Regions& regions) {
+  if (regions.relation != Relation::at_most || regions.has_forbidden() || !is_constant(seen, 0)) {
     return {};
   }
-  const double hidden = hidden_deviation(question, channel, data);
-  if (hidden * hidden > question.references[channel].value) return {};
+  const double hidden = hidden_deviation(seen);
+  if (hidden * hidden > seen.reference().value) return {};
   return ConstantVerdict{Verdict::pass,
                          fmt::format("every observation is {:.10g}, so that no variance was seen "
                                      "that could be too large; values never seen are not ruled out",
-                                     data.moments.mean)};
+                                     seen.moments(0).mean)};
 }
 
-std::string lack_of_variance(const Question& question, std::size_t channel,
-                             std::span<const ChannelData> data) {
+std::string lack_of_variance(const Seen& seen) {
+  const Question& question = seen.question;
   for (std::size_t subject = 0; subject < question.compared(); ++subject) {
-    if (is_constant(question, subject, channel, data[subject].moments)) {
+    if (is_constant(seen, subject)) {
       return fmt::format(
           "every observation of `{}` is {:.10g} but for rounding: a sample without spread says "
           "nothing of a variance, and a rare value may be unseen; take more observations{}",
-          question.subjects[subject].estimator->name, data[subject].moments.mean,
+          question.subjects[subject].estimator->name, seen.moments(subject).mean,
           question.of_two() ? ", or compare the other with a number" : "");
     }
   }

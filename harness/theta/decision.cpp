@@ -27,12 +27,12 @@ std::optional<double> Regions::forbidden_edge() const {
   return proof() && !within() ? std::optional(0.0) : detect;
 }
 
-ThetaRange Regions::between(double edge) const {
+stats::Range Regions::between(double edge) const {
   return {bounds_below() ? -edge : -infinity, bounds_above() ? edge : infinity};
 }
 
 double log_p_claimed(const Evidence& evidence, const Regions& regions) {
-  const ThetaRange claimed = regions.claimed();
+  const stats::Range claimed = regions.claimed();
   if (evidence.distance) return evidence.at(claimed.high).log_p_upper;
   const double above = regions.bounds_above() ? evidence.at(claimed.high).log_p_upper : 0;
   const double below = regions.bounds_below() ? evidence.at(claimed.low).log_p_lower : 0;
@@ -44,7 +44,7 @@ double log_p_claimed(const Evidence& evidence, const Regions& regions) {
 double log_p_forbidden(const Evidence& evidence, const Regions& regions) {
   const std::optional<double> edge = regions.forbidden_edge();
   if (!edge) return 0;
-  const ThetaRange allowed = regions.between(*edge);
+  const stats::Range allowed = regions.between(*edge);
   if (evidence.distance || !regions.bounds_below()) return evidence.at(allowed.high).log_p_lower;
   if (!regions.bounds_above()) return evidence.at(allowed.low).log_p_upper;
   // Two one-sided tests, each at the full level.

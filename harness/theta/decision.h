@@ -13,14 +13,9 @@
 #include "harness/language/claim.h"
 #include "harness/theta/evidence.h"
 #include "reports/record/record.h"
+#include "stats/means/student_t.h"
 
 namespace assay::harness {
-
-/// Values of theta; an end may be infinite.
-struct ThetaRange {
-  double low;
-  double high;
-};
 
 /// Margins on theta's scale. `detect` of `within` is its margin. In `<` and `>` it is only the
 /// advantage to plan for.
@@ -42,13 +37,13 @@ struct Regions {
   double claimed_edge() const;
   /// The distance of F's ends from 0; nullopt if there is no F.
   std::optional<double> forbidden_edge() const;
-  /// C with its ends. For a distance only the upper end counts.
-  ThetaRange claimed() const { return between(claimed_edge()); }
+  /// C with its ends, which may be infinite. For a distance only the upper end counts.
+  stats::Range claimed() const { return between(claimed_edge()); }
 
  private:
   friend double log_p_forbidden(const Evidence& evidence, const Regions& regions);
   /// The values that lie less far out than `edge`, on the sides that the claim bounds.
-  ThetaRange between(double edge) const;
+  stats::Range between(double edge) const;
 };
 
 /// Natural logarithm of the p-value of "theta in C".

@@ -80,11 +80,12 @@ Gate gate_of(const reports::Gate& gate, const std::string& where) {
 
 Gate gate_of(const stats::Gate& gate, const std::string& where) {
   constexpr const char* states[] = {"green", "amber", "red"};
-  return gate_of(reports::Gate{.name = gate.name,
-                               .value = gate.value,
-                               .limit = gate.limit,
-                               .state = states[static_cast<int>(gate.state)]},
+  return gate_of(gate_of(gate.name, gate.value, gate.limit, states[static_cast<int>(gate.state)]),
                  where);
+}
+
+Gate gate_of(const std::string& name, double value, double limit, const char* state) {
+  return gate_of(reports::Gate{.name = name, .value = value, .limit = limit, .state = state});
 }
 
 }  // namespace assay::harness

@@ -45,20 +45,20 @@ void require_data(const Method& method, const Question& question) {
   }
 }
 
-/// The rows of the families that claims about the quantities may belong to, each family once.
+/// The rows of the families that claims about the quantities may belong to. Families that derive
+/// from each other have the same ones.
 std::vector<MethodRow> rows_of_families() {
-  std::vector<const std::vector<MethodRow>*> families;
+  std::vector<MethodRow> rows;
+  const auto same = [](const MethodRow& a, const MethodRow& b) {
+    return a.name == b.name && a.summary == b.summary && a.keeps == b.keeps;
+  };
   const auto add = [&](const Theta* theta) {
-    if (theta == nullptr || std::ranges::count(families, &theta->methods()) > 0) return;
-    families.push_back(&theta->methods());
+    if (theta == nullptr || !std::ranges::search(rows, theta->methods, same).empty()) return;
+    rows.insert(rows.end(), theta->methods.begin(), theta->methods.end());
   };
   for (const QuantityRow& row : quantities()) add(row.theta);
   for (const QuantityRow& row : quantities()) add(row.slope);
   for (const QuantityRow& row : quantities()) add(row.theta->of_images());
-  std::vector<MethodRow> rows;
-  for (const std::vector<MethodRow>* each : families) {
-    rows.insert(rows.end(), each->begin(), each->end());
-  }
   return rows;
 }
 
@@ -88,7 +88,7 @@ bool joins_channels(const std::string& method) {
 
 std::vector<Method> methods_for(const Question& question) {
   std::vector<Method> methods;
-  for (const MethodRow& row : question.theta->methods()) {
+  for (const MethodRow& row : question.theta->methods) {
     if (row.answers(question)) methods.push_back({row});
   }
   return methods;

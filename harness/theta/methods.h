@@ -37,6 +37,19 @@ struct ChannelData {
   std::vector<Replicate> replicates = {};
 };
 
+/// A channel of a claim as it was seen, with one entry of data a subject; for a slope, one a point.
+struct Seen {
+  const Question& question;
+  std::size_t channel;
+  std::span<const ChannelData> data;
+
+  const stats::Moments& moments(std::size_t subject) const { return data[subject].moments; }
+  /// The number that a claim about one estimator names.
+  const Constant& reference() const { return question.references[channel]; }
+  /// True if theta is in units of the reference.
+  bool relative() const;
+};
+
 /// Data that a method needs kept. `points` are the values of all channels together.
 enum class Keeps { moments, values, points, cells, powers, costs, group_variances, blocks, images };
 
@@ -85,8 +98,7 @@ struct MethodRow {
   bool (*answers)(const Question&);
   Keeps keeps;
   /// Null if the family has evidence of its own (Theta::evidence).
-  Evidence (*evidence)(const Method&, const Question&, std::size_t channel,
-                       std::span<const ChannelData>);
+  Evidence (*evidence)(const Method&, const Seen&);
   MethodTraits is = {};
 };
 
@@ -95,10 +107,9 @@ struct Method : MethodRow {
   Frozen frozen = {};
 };
 
-/// Evidence on theta of one channel. `data` has one entry a subject; for a slope, one a point.
-inline Evidence evidence_of(const Method& method, const Question& question, std::size_t channel,
-                            std::span<const ChannelData> data) {
-  return method.evidence(method, question, channel, data);
+/// Evidence on theta of one channel.
+inline Evidence evidence_of(const Method& method, const Seen& seen) {
+  return method.evidence(method, seen);
 }
 
 /// The table. A new method is a row in the file of its family, and a function for its evidence.

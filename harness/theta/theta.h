@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "harness/theta/constant.h"
@@ -17,6 +17,7 @@
 #include "harness/theta/gate.h"
 #include "harness/theta/methods.h"
 #include "stats/means/betting_mean.h"
+#include "stats/planning/power.h"
 
 namespace assay::harness {
 
@@ -24,7 +25,6 @@ class Pilots;
 struct ChannelEvidence;
 struct ChannelOutcome;
 struct DrawnTest;
-struct Plan;
 struct TestOutcome;
 
 /// A channel's law as planning takes it: a secondary's standard deviation, at the pilot's upper
@@ -47,6 +47,17 @@ struct TestSize {
   std::uint64_t secondaries;
 };
 
+/// A test of that size, with a channel's law.
+struct Sized {
+  const TestOutcome& test;
+  TestSize size;
+  const PlannedChannel& channel;
+
+  /// The errors that the size is planned for, and the sizes of the two subjects.
+  stats::ErrorRates rates() const;
+  stats::SampleSizes sizes() const;
+};
+
 /// More secondaries than any test is given: a larger plan is impossible.
 inline constexpr std::uint64_t impossible_secondaries = std::uint64_t{1} << 53;
 
@@ -66,17 +77,20 @@ struct ThetaError {
 /// "nothing to say".
 class Theta {
  public:
-  explicit Theta(const ThetaTraits& traits) : is(traits) {}
+  Theta(const ThetaTraits& traits, std::vector<MethodRow> rows)
+      : is(traits), methods(std::move(rows)) {}
   virtual ~Theta() = default;
   Theta(const Theta&) = delete;
   Theta& operator=(const Theta&) = delete;
 
   const ThetaTraits is;
+  const std::vector<MethodRow> methods;  ///< Of the family, the default first.
 
   // ---- The claim
 
-  /// The methods of the family, the default first.
-  virtual const std::vector<MethodRow>& methods() const = 0;
+  /// Binds a claim to the suite's estimators: here of one source against an exact number, or of two
+  /// against each other. InputError at the claim's place if it cannot.
+  virtual Question bind(const TestEntry&, const Estimators&) const;
   virtual std::string channel_name(const Question&, std::size_t channel) const;
   /// The right side of the null hypothesis in words.
   virtual std::string claimed_value(const Question&, std::size_t channel) const;
@@ -98,10 +112,7 @@ class Theta {
 
   /// True if theta is in units of the reference.
   virtual bool is_relative(const Question&, std::size_t) const { return false; }
-  virtual std::optional<ThetaError> error(const Question&, std::size_t,
-                                          std::span<const ChannelData>) const {
-    return std::nullopt;
-  }
+  virtual std::optional<ThetaError> error(const Seen&) const { return std::nullopt; }
 
   // ---- The plan
 
@@ -109,49 +120,36 @@ class Theta {
   virtual void require_density(const Question&) const {}
   /// Chooses among the methods by the pilots, and notes their gates. Returns the fewest secondaries
   /// that the method takes.
-  virtual std::uint64_t choose(const Question&, const FamilyPlace&, const Pilots&,
-                               std::uint64_t most, Plan&) const;
+  virtual std::uint64_t choose(TestOutcome&, const Pilots&, std::uint64_t most) const;
   /// Secondaries of each subject that find `detect`, or prove `within`, with this share of errors
   /// in every channel. `impossible_secondaries` if no number does.
-  virtual std::optional<std::uint64_t> secondaries(const Question&, const ErrorShare&,
-                                                   const Pilots&, const Plan&) const = 0;
+  virtual std::optional<std::uint64_t> secondaries(const TestOutcome&, const ErrorShare&,
+                                                   const Pilots&) const = 0;
   /// Secondaries of a claim without a margin.
   virtual std::uint64_t usual_size() const;
   /// Why no number of secondaries is enough.
   virtual std::string why_impossible(const Question&) const;
   /// Why the planned secondaries are too few.
-  virtual std::string too_few(const Question&, const Plan&) const { return ""; }
+  virtual std::string too_few(const TestOutcome&) const { return ""; }
   /// A possible slip of the user that the pilots show.
   virtual std::string caution(const Question&, const Pilots&) const { return ""; }
-  /// A reason for a fail that the subjects show.
-  virtual std::string hint(const Question&) const { return ""; }
 
   // ---- Power. `channel` is from pilots or from the test's own data.
 
-  virtual std::optional<PlannedChannel> planned(const Question&, const Regions& regions,
-                                                const Pilots&, const Plan&) const {
+  virtual std::optional<PlannedChannel> planned(const TestOutcome&, const Regions& regions,
+                                                const Pilots&) const {
     return PlannedChannel{.regions = regions};
   }
-  virtual PlannedChannel observed(const Question&, const Regions& regions, std::size_t,
-                                  std::span<const ChannelData>) const {
+  virtual PlannedChannel observed(const Seen&, const Regions& regions) const {
     return {.regions = regions};
   }
   /// The least theta that a test of that size finds with probability 1 - beta.
-  virtual std::optional<double> detectable(const Question&, const TestSize&, const Plan&,
-                                           const PlannedChannel&) const {
-    return std::nullopt;
-  }
+  virtual std::optional<double> detectable(const Sized&) const { return std::nullopt; }
   /// True if no theta in the declared range is found with probability 1 - beta.
-  virtual bool finds_nothing(const Question&, const TestSize&, const Plan&,
-                             const PlannedChannel&) const {
-    return false;
-  }
+  virtual bool finds_nothing(const Sized&) const { return false; }
   /// Probability of failing the claim if theta is `effect`. For `<` and `>` it is that of passing
   /// with this advantage, for `within` that of passing at theta = 0.
-  virtual std::optional<double> power(const Question&, const TestSize&, const Plan&,
-                                      const PlannedChannel&, double) const {
-    return std::nullopt;
-  }
+  virtual std::optional<double> power(const Sized&, double) const { return std::nullopt; }
 
   // ---- The test's own data
 
@@ -160,26 +158,16 @@ class Theta {
     return std::nullopt;
   }
   /// The verdict on a channel without spread.
-  virtual std::optional<ConstantVerdict> settled(const Question&, std::size_t,
-                                                 std::span<const ChannelData>, const Regions&,
-                                                 const ErrorShare&) const {
+  virtual std::optional<ConstantVerdict> settled(const Seen&, const Regions&) const {
     return std::nullopt;
   }
   /// Why a channel's data cannot be tested.
-  virtual std::string lack_of_numbers(const DrawnTest&, std::size_t channel,
-                                      std::span<const ChannelData>) const;
+  virtual std::string lack_of_numbers(const TestOutcome&, const Seen&) const;
   /// Gates on one channel's data, beyond which tests at this critical value reject.
-  virtual std::vector<Gate> gates(const TestOutcome&, std::size_t, std::span<const ChannelData>,
-                                  double) const {
-    return {};
-  }
-  virtual ChannelEvidence evidence(const DrawnTest&, std::size_t channel,
-                                   std::span<const ChannelData>) const;
+  virtual std::vector<Gate> gates(const TestOutcome&, const Seen&, double) const { return {}; }
+  virtual ChannelEvidence evidence(const DrawnTest&, const Seen&) const;
   /// A number to mark among the observations.
-  virtual std::optional<double> marked(const Question&, std::size_t,
-                                       std::span<const ChannelData>) const {
-    return std::nullopt;
-  }
+  virtual std::optional<double> marked(const Seen&) const { return std::nullopt; }
 
   // ---- Words
 
@@ -189,12 +177,8 @@ class Theta {
   virtual const char* detectable_text() const { return " or more"; }
   /// The place where the data of a failed claim differ.
   virtual std::string where_it_differs(const DrawnTest&) const { return ""; }
-  /// The data that a failed claim takes for exact.
-  virtual std::string taken_as_exact(const Question&) const { return ""; }
+  /// A reason for a fail that the subjects show.
+  virtual std::string hint(const Question&) const { return ""; }
 };
-
-/// Binds `slope(…)`, the exponent s of a quantity that goes like (swept parameter)^s. Each subject
-/// is a point.
-Question bind_slope(const TestEntry&, const Estimators&);
 
 }  // namespace assay::harness

@@ -30,7 +30,8 @@ inline Prepared prepare_text(const std::string& text, std::uint64_t seed) {
       choose_primaries(prepared.asked->questions, prepared.place, prepared.pilots);
   for (std::size_t i = 0; i < prepared.place.size(); ++i) {
     prepared.plans.push_back(
-        plan_test(prepared.asked->questions[i], prepared.place[i], prepared.pilots, primaries));
+        plan_test(prepared.asked->questions[i], prepared.place[i], prepared.pilots, primaries)
+            .plan);
   }
   return prepared;
 }

@@ -57,7 +57,7 @@ std::string state_of(const std::string& test, ErrorShare share, std::span<const 
   const auto asked = ask_text(text);
   const TestOutcome outcome = outcome_of(*asked, test, share);
   const std::vector<Gate> gates = outcome.question.theta->gates(
-      outcome, 0, data,
+      outcome, {outcome.question, 0, data},
       critical_value(outcome.share().alpha, is_two_sided(outcome.question.test->claim.relation)));
   return gates.empty() ? "none" : gates.back().name + " " + gates.back().state;
 }
@@ -67,7 +67,7 @@ TEST(EvidenceOfSlope, WhereEverySlopeIsRejectedTheGateIsRed) {
   const auto asked = ask_text(suite);
   const std::array<ChannelData, 4> data = bent();
   const Question question = asked->question("within");
-  const Evidence evidence = evidence_of(methods_for(question).front(), question, 0, data);
+  const Evidence evidence = evidence_of(methods_for(question).front(), {question, 0, data});
   const Regions regions{.relation = Relation::within, .detect = 0.1};
   ASSERT_GT(std::abs(evidence.estimate), 0.1);
   ASSERT_LT(log_p_forbidden(evidence, regions), std::log(beta));
@@ -108,10 +108,10 @@ TEST(EvidenceOfSlope, PointsWithoutSpreadAreSaidToHaveNoError) {
     for (int k = 0; k < 100; ++k) data[static_cast<std::size_t>(i)].moments.add(std::ldexp(1, -i));
   }
   const TestOutcome outcome = outcome_of(*asked, "within", {.alpha = beta, .beta = beta});
-  const Theta& theta = *outcome.question.theta;
-  const std::string reason = theta.lack_of_numbers({outcome, {}}, 0, data);
+  const Question& question = outcome.question;
+  const std::string reason = question.theta->lack_of_numbers(outcome, {question, 0, data});
   EXPECT_THAT(reason, HasSubstr("`it (primaries = 1)` is 1 but for rounding"));
-  EXPECT_EQ(theta.lack_of_numbers({outcome, {}}, 0, bent()), "");
+  EXPECT_EQ(question.theta->lack_of_numbers(outcome, {question, 0, bent()}), "");
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ tests: [{name: t, claim: )" + claim +
   for (const stats::JointSums& joint : sums) data.joint.push_back(joint.moments());
   data.group_variances = data.joint[0].cost();
   return outcome.question.theta->gates(
-      outcome, 0, {&data, 1},
+      outcome, {outcome.question, 0, {&data, 1}},
       critical_value(outcome.share().alpha, is_two_sided(outcome.question.test->claim.relation)));
 }
 

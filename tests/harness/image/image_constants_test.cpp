@@ -45,7 +45,7 @@ class ImageConstants : public testing::Test {
     for (std::size_t i = 0; i < sides.size(); ++i) {
       data_[i].images = ImageViews(std::move(sides[i]));
     }
-    pair_.emplace(asked_->questions[test], data_);
+    pair_.emplace(Seen{asked_->questions[test], 0, data_});
     return VaryingPart<double>(asked_->questions[test], *pair_);
   }
 

@@ -46,7 +46,7 @@ ImageOutcome outcome_of(std::uint32_t key, const DrawImage& draw) {
   ChannelData data[1];
   data[0].images = ImageViews(std::move(images));
   const ImageTest test{.share = {.alpha = alpha, .beta = alpha}, .independent = false};
-  return evidence_of_images(question, test, data).outcome;
+  return evidence_of_images({question, 0, data}, test).image.value();
 }
 
 // Wrong alarms: 2.5e-6 each.

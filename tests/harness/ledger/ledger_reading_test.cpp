@@ -21,7 +21,7 @@ std::vector<LedgerNight> enough(double difference) {
 
 const LedgerSeries read_series{.reference_error = 0.1};
 
-double last_e(const std::vector<LedgerNight>& nights, const ThetaRange& claimed) {
+double last_e(const std::vector<LedgerNight>& nights, const stats::Range& claimed) {
   return log_e_path(read_series, nights, claimed).back();
 }
 

@@ -72,7 +72,7 @@ TEST(Decision, OfADistanceHasOneDirection) {
 TEST(Decision, ClaimedRangesFollowTheRelation) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const auto range = [](Relation relation) {
-    const ThetaRange r = Regions{.relation = relation, .allow = 0.1, .detect = 0.3}.claimed();
+    const stats::Range r = Regions{.relation = relation, .allow = 0.1, .detect = 0.3}.claimed();
     return std::pair(r.low, r.high);
   };
   EXPECT_EQ(range(Relation::equal), std::pair(-0.1, 0.1));
