@@ -210,16 +210,16 @@ std::shared_ptr<const Setup> prepare_brdf(Parameters& given) {
       brdf_samplers(techniques));
 }
 
-// For every heuristic of exponent 1 or more a weighted draw brings f / q_b at most, q_b = n_b p_b.
-//   Balance: w_i f / q_i = f / (q_l + q_b).
-//   Power: f q_i^(e-1) / (q_l^e + q_b^e) <= f / q_b, since x^(e-1) <= 1 + x^e.
-//   Maximum and cutoff: f / q_i with q_i the larger, if the other is left out.
-
 std::shared_ptr<const Setup> prepare_multi_sample(Parameters& given) {
   const SharedTechniques techniques = read_techniques(given);
   const Counts counts = read_counts(given);
   const Pair n = counts.shares();
   const WeightedByHeuristic combination(read_heuristic(given), n);
+  // For every heuristic of exponent 1 or more a weighted draw brings f / q_b at most, q_b = n_b
+  // p_b.
+  //   Balance: w_i f / q_i = f / (q_l + q_b).
+  //   Power: f q_i^(e-1) / (q_l^e + q_b^e) <= f / q_b, since x^(e-1) <= 1 + x^e.
+  //   Maximum and cutoff: f / q_i with q_i the larger, if the other is left out.
   const double high = highest_of_brdf(*techniques) * (n.light + n.brdf) / n.brdf;
   std::vector<NamedSampler> samplers = light_samplers(techniques);
   samplers.push_back(brdf_samplers(techniques)[0]);

@@ -140,8 +140,8 @@ Sums sums_of(const PairSource& pixel, std::uint64_t count, Stream& random, Cost&
   return all;
 }
 
-// One lambda for receivers side by side, from the very samples that it corrects. They are
-// a fiftieth of the luminaire's width apart.
+// One lambda for receivers side by side, from the very samples that it corrects. They are a
+// fiftieth of the luminaire's width apart.
 std::shared_ptr<const Setup> pooled_lambda(Parameters& given) {
   const auto own = read_area_pairs(given);
   luminaire::SceneDescription scene =

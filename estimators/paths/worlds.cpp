@@ -15,8 +15,7 @@ namespace {
 // Radiance does not change.
 class Fit {
  public:
-  explicit Fit(const TriangleMesh& mesh)
-      : centre_(render::Box(mesh).centre()), scale_(1 / render::Box(mesh).longest_side()) {}
+  explicit Fit(const render::Box& box) : centre_(box.centre()), scale_(1 / box.longest_side()) {}
   Vector3 operator()(const Vector3& v) const { return scale_ * (v - centre_); }
   TriangleMesh operator()(TriangleMesh mesh) const {
     for (Vector3& v : mesh.vertices) v = (*this)(v);
@@ -102,7 +101,7 @@ luminaire::ShareTable MeshWorld::light_shares(const std::vector<Triangle>& trian
 MeshWorld::MeshWorld(const MeshScene& scene, const Camera& camera)
     : surfaces_(scene.surfaces),
       surface_of_(scene.surface_of),
-      mesh_(Fit(scene.mesh)(scene.mesh)),
+      mesh_(Fit(render::Box(scene.mesh))(scene.mesh)),
       triangles_([&] {
         std::vector<Triangle> all;
         for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
@@ -111,7 +110,7 @@ MeshWorld::MeshWorld(const MeshScene& scene, const Camera& camera)
         return all;
       }()),
       light_(light_shares(triangles_, scene)),
-      camera_{Fit(scene.mesh)(camera.position), camera.direction},
+      camera_{Fit(render::Box(scene.mesh))(camera.position), camera.direction},
       scene_({mesh_}) {
   if (scene.furnace) furnace_ = {{{1, surfaces_[0]}}, 0};
 }
