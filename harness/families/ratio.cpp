@@ -116,9 +116,6 @@ TestResult over_truths(const LogRatio& ratio, TestResult as_known, double theta)
 
 // ---- Plans
 
-// Fewer observations do not show how heavy the tail of their squares is.
-constexpr std::uint64_t fewest_for_a_variance = usual_secondaries;
-
 bool varies(const PlannedChannel& channel) {
   return channel.standard_deviation > 0 || channel.other_deviation > 0;
 }
@@ -246,29 +243,22 @@ class LogTheta : public Theta {
     std::vector<Gate> gates;
     if (outcome.plan.method.keeps == Keeps::blocks) return gates;
     const std::string name = channel_suffix(question, seen.channel);
-    std::vector<Influence> sides;
+    std::vector<Moments> sides;
+    double spread = 0;
     for (std::size_t i = 0; i < question.compared(); ++i) {
-      const std::string mine = name + " of " + question.subjects[i].estimator->name;
-      const std::uint64_t count = seen.moments(i).count;
-      if (is.of_spread && count < fewest_for_a_variance) {
-        gates.push_back(gate_of(gate_of("observations of a variance", static_cast<double>(count),
-                                        fewest_for_a_variance, "red"),
-                                mine));
-      }
       const std::optional<Influence> influence = this->influence(seen, i);
       if (!influence) return gates;
-      sides.push_back(*influence);
-      if (influence->relative.m2 > 0) {
-        gates.push_back(gate_of(stats::dominance_gate(influence->relative), mine));
-      }
+      sides.push_back(influence->relative);
+      spread += influence->relative.m2;
     }
-    const auto& x = sides[0].relative;
-    if (sides.size() == 1 && x.m2 > 0) {
-      gates.push_back(gate_of(stats::residual_skewness_gate(x, {.value = 1}, critical), name));
-    } else if (sides.size() == 2 && x.m2 + sides[1].relative.m2 > 0) {
-      gates.push_back(
-          gate_of(stats::residual_skewness_gate(x, sides[1].relative, 1, critical), name));
-    }
+    if (spread == 0) return gates;
+    const bool two = sides.size() == 2;
+    gates.push_back(gate_of(two ? stats::effective_observations_gate(sides[0], sides[1])
+                                : stats::effective_observations_gate(sides[0]),
+                            name));
+    gates.push_back(gate_of(two ? stats::residual_skewness_gate(sides[0], sides[1], 1, critical)
+                                : stats::residual_skewness_gate(sides[0], {.value = 1}, critical),
+                            name));
     return gates;
   }
 
@@ -515,7 +505,7 @@ class VarianceTheta : public LogTheta {
     if (!question.test->method && !normal) test.plan.method = find_method(question, "influence-t");
     if (!test.plan.method.is.of_normal_values) return LogTheta::choose(test, pilots, most);
     for (std::size_t i = 0; i < channels.size(); ++i) note(test.plan, channels[i], gates[i]);
-    return least_secondaries;
+    return secondaries_of_floor(test);
   }
 
   std::string hint(const Question& question) const override {

@@ -59,7 +59,8 @@ double wanted(const Gate& gate) {
       return (1 / wanted_share - 1) / (1 / *gate.value - 1);
     }
     case Falls::inversely:
-      return *gate.limit / *gate.value;
+      // In a heavy tail the effective number grows like the root of all; it is green at twice.
+      return std::pow(2 * *gate.limit / *gate.value, 2);
     case Falls::not_known:
       break;
   }

@@ -18,7 +18,7 @@ constexpr double most_planned_primaries = 1e12;
 constexpr std::uint64_t dearest_looks = 4;
 // A test may draw so many times its first look, although it needs less, while a gate is red.
 constexpr std::uint64_t waiting_looks = 4;
-// The only look may be put off to so many times its size.
+// The last look may be put off to so many times its size.
 constexpr std::uint64_t most_postponed = 64;
 // Fewest secondaries that have a spread.
 constexpr std::uint64_t fewest_tested = 2;
@@ -157,16 +157,14 @@ stats::LookSchedule plan_looks(const TestOutcome& test, const Pilots& pilots, st
 std::vector<std::uint64_t> postponed_looks(const TestOutcome& test) {
   const Question& question = test.question;
   const Plan& plan = test.plan;
-  const bool chosen = question.test->secondaries || question.test->detect || has_rows(question);
-  if (chosen || plan.looks.count() > 1 ||
-      plan.method.is.over_looks != stats::LookLaw::independent_increments) {
-    return {};
-  }
+  const bool chosen = question.test->secondaries || has_rows(question);
+  if (chosen || plan.method.is.over_looks != stats::LookLaw::independent_increments) return {};
   const std::uint64_t most = most_available(test);
   std::vector<std::uint64_t> sizes;
-  for (std::uint64_t times = 2; times <= most_postponed; times *= 2) {
-    const std::uint64_t size = times * plan.looks.sizes.front();
-    if (size <= most) sizes.push_back(size);
+  std::uint64_t size = plan.most_secondaries();
+  for (std::uint64_t times = 2; times <= most_postponed && size < most; times *= 2) {
+    size = std::min(2 * size, most);
+    sizes.push_back(size);
   }
   return sizes;
 }

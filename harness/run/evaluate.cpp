@@ -302,9 +302,13 @@ std::vector<Replicate> replicates_of(const DrawnTest& test, std::size_t subject,
   return replicates;
 }
 
-/// True if the last look is void and will be taken again at a larger size.
+/// True if no look was sound and the last will be taken again at a larger size.
 bool is_put_off(const TestOutcome& outcome) {
-  return !outcome.plan.postponed.empty() && outcome.plan.gates_invalidate &&
+  const bool all_void = std::ranges::all_of(outcome.history, [](const ChannelHistory& history) {
+    return std::ranges::none_of(history.effect,
+                                [](const auto& effect) { return effect.has_value(); });
+  });
+  return !outcome.plan.postponed.empty() && outcome.plan.gates_invalidate && all_void &&
          need_more(outcome.gates) && !red_gates(outcome.gates).empty();
 }
 

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "harness/base/interrupt.h"
+#include "harness/plan/looks.h"
 
 namespace assay::harness {
 namespace {
@@ -58,8 +59,9 @@ void go_on(TestOutcome& outcome) {
     ++outcome.look;
     return;
   }
-  plan.looks.sizes.back() = plan.postponed.front();
+  plan.looks = one_look(plan.postponed.front(), outcome.place.share);
   plan.postponed.erase(plan.postponed.begin());
+  outcome.look = 0;
   outcome.history.clear();
 }
 

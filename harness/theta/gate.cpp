@@ -11,9 +11,9 @@ const std::vector<GateKind>& gate_kinds() {
                    "{0}, limit {1}",
        .needs_more = true,
        .falls = Falls::by_its_logarithm},
-      {.name = "observations of a variance",
-       .sentence = "{0} observations are too few to show how heavy the tail of their squares is: "
-                   "it takes {1}",
+      {.name = "effective observations",
+       .sentence = "few observations make up the spread: as much as {0} of equal weight would, and "
+                   "it takes {1} to tell how heavy its tail is",
        .needs_more = true,
        .falls = Falls::inversely},
       {.name = "level factor after correction",

@@ -11,7 +11,7 @@
 namespace assay::harness {
 
 /// How a red gate's value falls with the number of observations, towards its limit.
-/// `inversely`: it is the number of observations itself.
+/// `inversely`: it is a number of observations itself.
 enum class Falls { not_known, by_its_logarithm, as_one_observation, inversely };
 
 /// A row of the table of gates. A gate without a row is shown by its name.

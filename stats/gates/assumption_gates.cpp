@@ -18,6 +18,7 @@ constexpr double red_factor = 2;
 constexpr double kurtosis_limit = 0.2;
 constexpr double red_share = 0.5;
 constexpr double green_share = 0.25;
+constexpr double fewest_effective = 32;
 
 // ---- Normal-data quantiles of g1 and b2
 
@@ -107,6 +108,30 @@ Gate skewness_gate_of(SkewnessPart first, SkewnessPart second, double cube) {
 double checked_cube(double critical_value) {
   check::positive({"skewness_gate", "critical_value"}, critical_value);
   return critical_value * critical_value * critical_value;
+}
+
+// ---- Effective observations
+
+// Of w = (x - mean)^2 / n^2.
+struct Weights {
+  double sum = 0;
+  double sum_of_squares = 0;
+};
+
+Weights weights_of(const Moments& x) {
+  const double n = static_cast<double>(x.count);
+  const double largest = std::max(x.maximum - x.mean, x.mean - x.minimum);
+  const double fourth = x.m4 > 0 ? x.m4 : x.m2 * largest * largest;
+  return {x.m2 / n / n, fourth / n / n / n / n};
+}
+
+Gate effective_gate(const Weights& weights) {
+  if (weights.sum == 0) throw ZeroVariance("effective_observations_gate: zero variance");
+  const double value = weights.sum / weights.sum_of_squares * weights.sum;
+  const GateState state = value < fewest_effective       ? GateState::red
+                          : value < 2 * fewest_effective ? GateState::amber
+                                                         : GateState::green;
+  return {"effective observations", value, value, fewest_effective, state};
 }
 
 // Largest deviation over s that a sample of n shows at `probability`: n times the tail of one
@@ -274,6 +299,19 @@ Gate dominance_gate(const Moments& x) {
   Gate gate{"share of one observation", value, value, limit, GateState::green};
   gate.state = state_of(gate, std::max(green_share, critical(0.05)));
   return gate;
+}
+
+Gate effective_observations_gate(const Moments& x) {
+  check::at_least({"effective_observations_gate", "count"}, x.count, 2);
+  return effective_gate(weights_of(x));
+}
+
+Gate effective_observations_gate(const Moments& x, const Moments& y) {
+  check::at_least({"effective_observations_gate", "count of x"}, x.count, 2);
+  check::at_least({"effective_observations_gate", "count of y"}, y.count, 2);
+  const Weights first = weights_of(x);
+  const Weights second = weights_of(y);
+  return effective_gate({first.sum + second.sum, first.sum_of_squares + second.sum_of_squares});
 }
 
 Gate kurtosis_gate(const Moments& x) {

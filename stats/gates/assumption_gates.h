@@ -36,6 +36,15 @@ double normal_skewness_quantile(double n, double probability);
 // allowance, so low = value. Green up to .25 or the 5 % critical value.
 Gate dominance_gate(const Moments& x);
 
+// On influence values, such as squares. Value: (sum w)^2 / sum w^2, w = (x - mean)^2, the effective
+// number of observations in the sum of squares (Kish 1965). Its inverse is the relative variance of
+// the variance of the mean: at 32 the standard error is known to 9 %. Below that the tail that was
+// not seen may move it further than its law allows (measurements.md). Red below 32, green from 64
+// on. Without fourth powers sum w / max w takes its place, which is less.
+Gate effective_observations_gate(const Moments& x);
+// The same for the contrast mean x - mean y. Samples of n have w = (x - mean)^2 / n^2.
+Gate effective_observations_gate(const Moments& x, const Moments& y);
+
 // For F and chi-square tests of variances. Value: excess kurtosis b2 - 3. Green up to .2, limit .2.
 // The confidence limit subtracts the 1e-4 quantile of b2. That quantile is Anscombe & Glynn's
 // (1983) for normal data, widened to a gamma law whose excess is the limit.

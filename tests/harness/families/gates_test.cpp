@@ -50,8 +50,8 @@ TEST(Assumptions, RareCostsThatWeighAreRed) {
   for (const char* claim :
        {"cost(multi) == 2", "efficiency(multi) == 1", "total_variance(multi) == 1"}) {
     const std::vector<Gate> rare = gates_of_costs(claim, rare_ones);
-    EXPECT_TRUE(is_red(rare, "share of one observation")) << claim;
-    EXPECT_EQ(rare[0].name, "share of one observation of multi");
+    EXPECT_TRUE(is_red(rare, "effective observations")) << claim;
+    EXPECT_EQ(rare[0].name, "effective observations");
     for (const Gate& gate : gates_of_costs(claim, {.every = 2, .more = 1})) {
       EXPECT_EQ(gate.state, "green") << claim << ": " << gate.name;
     }
@@ -59,8 +59,7 @@ TEST(Assumptions, RareCostsThatWeighAreRed) {
   EXPECT_TRUE(gates_of_costs("cost(multi) == 2", {.every = 1, .more = 1}).empty())
       << "a cost that does not vary";
   // A pool keeps costs for all its tests.
-  EXPECT_FALSE(
-      is_red(gates_of_costs("variance(multi) == 1", rare_ones), "share of one observation"));
+  EXPECT_FALSE(is_red(gates_of_costs("variance(multi) == 1", rare_ones), "effective observations"));
   EXPECT_TRUE(gates_of_costs("cost(multi) == 1, cost: seconds", rare_ones).empty());
 }
 

@@ -43,6 +43,12 @@ TEST(GateText, OfOneObservationSaysHowManyOthersWouldDo) {
               HasSubstr("about 9000 `secondaries` would do"));
 }
 
+// 16 of 32: the number grows like the root of all, and twice the limit is wanted.
+TEST(GateText, OfEffectiveObservationsSaysHowManyWouldDo) {
+  EXPECT_THAT(help_for(red("effective observations", 16, 32)),
+              HasSubstr("about 16000 `secondaries` would do"));
+}
+
 TEST(GateText, NamesFewOfManyRedGates) {
   std::vector<Gate> gates;
   for (int i = 0; i < 1000; ++i) {
