@@ -41,8 +41,7 @@ std::size_t rows_at_a_time(const stats::ImageExtent& extent, std::size_t picture
 }
 
 std::size_t rows_there(const stats::ImageExtent& extent, std::size_t pictures) {
-  return std::min(rows_at_a_time(extent, pictures) + Pyramid::rows_before +
-                      rounded_up(Pyramid::rows_ahead, read_unit),
+  return std::min(rows_at_a_time(extent, pictures) + rounded_up(Pyramid::rows_ahead, read_unit),
                   extent.height);
 }
 
@@ -199,8 +198,7 @@ class Looking {
 
   void move_to(stats::RowRange rows) {
     const std::size_t ahead = rounded_up(rows.last + Pyramid::rows_ahead, read_unit);
-    const stats::RowRange there{rows.first - std::min(rows.first, Pyramid::rows_before),
-                                std::min(ahead, extent_.height)};
+    const stats::RowRange there{rows.first, std::min(ahead, extent_.height)};
     for (std::size_t s = 0; s < sides_.size(); ++s) {
       try {
         sides_[s].move_to(there);
