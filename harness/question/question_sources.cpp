@@ -81,8 +81,9 @@ std::vector<std::size_t> elements_named(ImageShape& shape, const std::string& pa
   if (!part.empty() && named == shape.components.end()) return elements;
   const bool whole = part.empty();
   const std::size_t first = whole ? 0 : static_cast<std::size_t>(named - shape.components.begin());
-  for (std::size_t i = first; i < shape.elements(); i += whole ? 1 : components) {
-    elements.push_back(i);
+  elements.resize(whole ? shape.elements() : shape.pixels());
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    elements[i] = first + i * (whole ? 1 : components);
   }
   if (!whole) shape.components = {part};
   return elements;

@@ -178,8 +178,9 @@ reports::Estimate image_mean(const ImageShape& shape, const Summary& summary, do
       if (moments.count < 2) return estimate;
       deviation += std::sqrt(moments.variance());
     }
-    sum += deviation * deviation;
-    squares += std::pow(deviation, 4);
+    const double square = deviation * deviation;
+    sum += square;
+    squares += square * square;
   }
   if (!(sum > 0) || !std::isfinite(squares) || !(squares > 0)) return estimate;
   const double degrees = sum * sum / squares * static_cast<double>(count - 1);

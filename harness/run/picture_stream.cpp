@@ -1,13 +1,16 @@
 #include "harness/run/picture_stream.h"
 
 #include <fmt/format.h>
+#include <sys/mman.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <functional>
 #include <limits>
+#include <new>
 #include <stdexcept>
 
 #include "estimators/ready_made.h"
@@ -41,12 +44,29 @@ std::size_t rows_at_a_time(const stats::ImageExtent& extent, std::size_t picture
 }
 
 std::size_t rows_there(const stats::ImageExtent& extent, std::size_t pictures) {
-  return std::min(rows_at_a_time(extent, pictures) + Pyramid::rows_before +
-                      rounded_up(Pyramid::rows_ahead, read_unit),
+  return std::min(rows_at_a_time(extent, pictures) + rounded_up(Pyramid::rows_ahead, read_unit),
                   extent.height);
 }
 
 std::uint64_t pictures_of(const Subject& side) { return side.setup->observations().value_or(0); }
+
+struct Freed {
+  void operator()(float* texels) const { std::free(texels); }
+};
+using Texels = std::unique_ptr<float[], Freed>;
+
+/// Room for so many, in large pages if the system has them: parts of many pictures are read in
+/// turn.
+Texels room_for(std::size_t count) {
+  constexpr std::size_t page = std::size_t{1} << 21;
+  const std::size_t bytes = rounded_up(count * sizeof(float), page);
+  void* const room = std::aligned_alloc(page, bytes);
+  if (room == nullptr) throw std::bad_alloc();
+#ifdef MADV_HUGEPAGE
+  madvise(room, bytes, MADV_HUGEPAGE);
+#endif
+  return Texels(static_cast<float*>(room));
+}
 
 /// One side's pictures, some rows at a time.
 class Side {
@@ -57,7 +77,9 @@ class Side {
         reader_(recorded::picture_rows(*side.setup)),
         pictures_(pictures_of(side)),
         size_(rows_there(extent_, 2 * pictures_) * extent_.row()),
-        texels_(std::make_unique_for_overwrite<float[]>(pictures_ * size_)),
+        texels_(room_for(pictures_ * size_)),
+        channel_sums_(pictures_ * extent_.channels),
+        extremes_(pictures_),
         seconds_(pictures_) {}
 
   /// Drops rows before the range and reads on to its last.
@@ -78,6 +100,26 @@ class Side {
     return stack;
   }
 
+  /// Frees the rows.
+  void end() {
+    texels_.reset();
+    there_ = {};
+  }
+
+  /// Sums of each picture's channels over the rows read so far.
+  const std::vector<double>& channel_sums() const { return channel_sums_; }
+  std::vector<double> averages() const {
+    std::vector<double> averages(pictures_);
+    for (std::size_t i = 0; i < channel_sums_.size(); ++i) {
+      averages[i / extent_.channels] += channel_sums_[i] / static_cast<double>(extent_.elements());
+    }
+    return averages;
+  }
+  Extremes extremes() const {
+    Extremes all;
+    for (const Extremes& each : extremes_) all.merge(each);
+    return all;
+  }
   double seconds() const {
     double sum = 0;
     for (const double seconds : seconds_) sum += seconds;
@@ -104,8 +146,13 @@ class Side {
     float* const begin = texels_.get() + picture * size_;
     const std::size_t kept = (there_.last - rows.first) * extent_.row();
     std::memmove(begin, begin + (rows.first - there_.first) * extent_.row(), kept * sizeof(float));
-    if (rows.last == there_.last) return;
-    reader_->read(picture, {begin + kept, (rows.last - there_.last) * extent_.row()});
+    const std::span<float> read(begin + kept, (rows.last - there_.last) * extent_.row());
+    if (read.empty()) return;
+    reader_->read(picture, read);
+    extremes_[picture].add(read);
+    stats::add_to_channel_sums<float>(
+        std::span(channel_sums_).subspan(picture * extent_.channels, extent_.channels), read,
+        extent_.row());
   }
 
   const Setup& setup_;
@@ -113,7 +160,9 @@ class Side {
   std::unique_ptr<recorded::PictureRows> reader_;
   std::size_t pictures_;
   std::size_t size_;  // capacity in texels of a picture
-  std::unique_ptr<float[]> texels_;
+  Texels texels_;
+  std::vector<double> channel_sums_;
+  std::vector<Extremes> extremes_;  // of each picture
   std::vector<double> seconds_;
   stats::RowRange there_;
 };
@@ -125,14 +174,10 @@ class Looking {
       : question_(question),
         extent_(extent_of(*question.subjects[0].image)),
         pictures_(pictures_of(question.subjects[0])),
-        sums_(extent_, pictures_) {
+        sums_(2, {.count = pictures_}) {
     look_->pictures = pictures_;
     look_->z.resize(extent_.elements());
-    for (const Subject& subject : question.subjects) {
-      sides_.emplace_back(subject);
-      of_pictures_.emplace_back(pictures_);
-      of_channels_.emplace_back(pictures_ * extent_.channels);
-    }
+    for (const Subject& subject : question.subjects) sides_.emplace_back(subject);
     if (question.is().of_pairs) zeros_.resize(extent_.elements());
   }
 
@@ -177,16 +222,16 @@ class Looking {
 
   /// Call it after the last rows.
   Pilots pilots() {
-    if (!sums_.sound()) throw std::domain_error("sums of pictures are not finite");
     finish();
-    std::vector<ElementSums> sums = sums_.finish(of_pictures_);
     Pilots pilots;
     for (std::size_t s = 0; s < sides_.size(); ++s) {
+      sums_[s].extremes = sides_[s].extremes();
+      sums_[s].take_averages(sides_[s].averages());
       auto summary = std::make_shared<Summary>();
       summary->count = pictures_;
       summary->cost.samples = pictures_;
       summary->seconds = sides_[s].seconds();
-      summary->elements = std::make_shared<const ElementSums>(std::move(sums[s]));
+      summary->elements = std::make_shared<const ElementSums>(std::move(sums_[s]));
       auto kept = std::make_shared<KeptObservations>();
       kept->costs.assign(pictures_, Cost{.samples = 1});
       kept->sums[pictures_] = summary;
@@ -199,8 +244,7 @@ class Looking {
 
   void move_to(stats::RowRange rows) {
     const std::size_t ahead = rounded_up(rows.last + Pyramid::rows_ahead, read_unit);
-    const stats::RowRange there{rows.first - std::min(rows.first, Pyramid::rows_before),
-                                std::min(ahead, extent_.height)};
+    const stats::RowRange there{rows.first, std::min(ahead, extent_.height)};
     for (std::size_t s = 0; s < sides_.size(); ++s) {
       try {
         sides_[s].move_to(there);
@@ -213,29 +257,21 @@ class Looking {
   void take(stats::RowRange rows) {
     const Stack stacks[] = {sides_[0].stack(), sides_[1].stack()};
     const stats::ImagePair<float> both = stats::pair_of(stacks[0], stacks[1]);
-    sums_.take(both, rows);
-    for (std::size_t s = 0; s < sides_.size(); ++s) {
-      stats::add_to_sums(of_pictures_[s], stacks[s], rows.elements(extent_), on_all_threads);
-    }
+    for (std::size_t s = 0; s < sides_.size(); ++s) sums_[s].take(stacks[s], rows);
     if (question_.is().of_pairs) {
       const Stack differences = difference(stacks[0], stacks[1], differences_);
       const stats::ImageReference zero{extent_, zeros_};
-      take(stats::pair_of(differences, zero), {differences, stacks[1]}, rows);
+      take(stats::pair_of(differences, zero), rows);
       norm_.take(stats::pair_of(stacks[1], zero), rows, on_all_threads);
     } else {
-      take(both, {stacks[0], stacks[1]}, rows);
+      take(both, rows);
     }
   }
 
-  /// Takes the pair that is tested, and the stacks whose means are compared.
-  void take(const stats::ImagePair<float>& pair,
-            std::array<std::reference_wrapper<const Stack>, 2> compared, stats::RowRange rows) {
+  /// Takes the pair that is tested.
+  void take(const stats::ImagePair<float>& pair, stats::RowRange rows) {
     if (rows.first == 0) {
       pyramid_.emplace(pair, stats::PyramidOptions{.z = look_->z, .for_each = on_all_threads});
-    }
-    for (std::size_t s = 0; s < sides_.size(); ++s) {
-      stats::add_to_channel_sums(of_channels_[s], compared[s].get(), rows.elements(extent_),
-                                 on_all_threads);
     }
     distance_.take(pair, rows, on_all_threads);
     dependence_.take(pair, rows, on_all_threads);
@@ -243,17 +279,20 @@ class Looking {
   }
 
   void finish() {
+    for (Side& side : sides_) side.end();
     look_->distance = distance_.distance();
     look_->dependence = dependence_.found();
     if (question_.is().of_pairs) {
       look_->distance = stats::relative_to(look_->distance, norm_.distance());
     }
     look_->family = pyramid_->family();
-    for (std::size_t s = 0; s < sides_.size(); ++s) {
-      look_->means.push_back(channel_means(of_channels_[s], extent_));
-      if (question_.is().of_pairs && s > 0) drop_errors(look_->means[s]);
-      for (double& sum : of_pictures_[s]) sum /= static_cast<double>(extent_.elements());
+    std::vector<double> of_first = sides_[0].channel_sums();
+    const std::vector<double>& of_second = sides_[1].channel_sums();
+    if (question_.is().of_pairs) {
+      std::ranges::transform(of_first, of_second, of_first.begin(), std::minus<>());
     }
+    look_->means = {channel_means(of_first, extent_), channel_means(of_second, extent_)};
+    if (question_.is().of_pairs) drop_errors(look_->means[1]);
   }
 
   const Question& question_;
@@ -261,9 +300,7 @@ class Looking {
   std::size_t pictures_;
   std::vector<Side> sides_;
   std::shared_ptr<PictureLook> look_ = std::make_shared<PictureLook>();
-  SumsOfTwo sums_;
-  std::vector<std::vector<double>> of_pictures_;  // sums, at last averages
-  std::vector<std::vector<double>> of_channels_;  // sums of each picture's channels
+  std::vector<ElementSums> sums_;
   stats::RowDistance<float> distance_;
   stats::RowDependence<float> dependence_;
   std::optional<Pyramid> pyramid_;
@@ -287,7 +324,7 @@ bool is_about(const Question& question, const Subject& side) {
 
 // For each number of a picture: itself, and its share of a sum over a block of 4 x 4.
 constexpr double bytes_of_number = 4;
-constexpr double bytes_of_block = .5;
+constexpr double bytes_of_block = .25;
 // For each element: moments of pilot, test and blocks in flight, weights and maps. A streamed
 // picture takes less.
 constexpr double bytes_of_element = 143;

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 
 #include "harness/base/parallel.h"
-#include "harness/sampling/summary.h"
 #include "stats/images/image_moments.h"
 
 namespace assay::harness {
@@ -12,31 +12,30 @@ namespace {
 
 constexpr std::size_t elements_at_a_time = 4096;
 
-/// Results of some elements of one side.
-struct SideResult {
-  Extremes extremes = {};
-  bool sound = true;
-};
-
-/// The extremes of these elements; `sums` keeps their moments.
-SideResult take_side(const stats::ImageStack<float>& stack, stats::ElementRange range,
-                     ElementSums& sums) {
-  std::vector<stats::Moments> moments(range.size());
-  stats::element_moments(stack, range.first, moments);
-  SideResult result;
-  for (std::size_t i = 0; i < moments.size(); ++i) {
-    const stats::Moments& each = moments[i];
-    sums.mean[range.first + i] = each.mean;
-    sums.m2[range.first + i] = each.m2;
-    result.extremes.merge({each.minimum, each.maximum, each.nonzero});
-    const bool varies = each.minimum < each.maximum;
-    result.sound = result.sound && (!varies || beyond_doubles(each, "").empty());
-  }
-  if (range.first == 0) sums.first = moments[0];
-  return result;
-}
-
 }  // namespace
+
+void Extremes::add(std::span<const float> values) {
+  // So many numbers have extremes of their own, so that none waits for the last.
+  constexpr std::size_t apart = 32;
+  std::array<float, apart> low;
+  std::array<float, apart> high;
+  std::array<std::uint32_t, apart> not_zero{};
+  low.fill(std::numeric_limits<float>::infinity());
+  high.fill(-std::numeric_limits<float>::infinity());
+  const auto take = [&](float value, std::size_t k) {
+    low[k] = value < low[k] ? value : low[k];
+    high[k] = value > high[k] ? value : high[k];
+    not_zero[k] += value != 0 ? 1 : 0;
+  };
+  const std::size_t whole = values.size() / apart * apart;
+  for (std::size_t i = 0; i < whole; i += apart) {
+    for (std::size_t k = 0; k < apart; ++k) take(values[i + k], k);
+  }
+  for (std::size_t i = whole; i < values.size(); ++i) take(values[i], i - whole);
+  minimum = std::min(minimum, double{*std::ranges::min_element(low)});
+  maximum = std::max(maximum, double{*std::ranges::max_element(high)});
+  nonzero += std::accumulate(not_zero.begin(), not_zero.end(), std::uint64_t{0});
+}
 
 void Extremes::merge(const Extremes& other) {
   minimum = std::min(minimum, other.minimum);
@@ -50,36 +49,23 @@ stats::Moments ElementSums::moments(std::size_t channel) const {
   return {.count = count, .mean = mean[channel], .m2 = m2[channel]};
 }
 
-SumsOfTwo::SumsOfTwo(const stats::ImageExtent& extent, std::uint64_t pictures)
-    : extent_(extent),
-      sides_(2, {.count = pictures,
-                 .mean = std::vector<double>(extent.elements()),
-                 .m2 = std::vector<double>(extent.elements())}) {}
-
-void SumsOfTwo::take(const stats::ImagePair<float>& pair, stats::RowRange rows) {
-  const stats::ElementRange range = rows.elements(extent_);
-  std::vector<std::array<SideResult, 2>> parts((range.size() + elements_at_a_time - 1) /
-                                               elements_at_a_time);
-  on_all_threads(parts.size(), [&](std::size_t i) {
-    const std::size_t first = range.first + i * elements_at_a_time;
-    const stats::ElementRange some{first, std::min(first + elements_at_a_time, range.last)};
-    parts[i] = {take_side(pair.a, some, sides_[0]), take_side(*pair.b, some, sides_[1])};
+void ElementSums::take(const stats::ImageStack<float>& stack, stats::RowRange rows) {
+  mean.resize(stack.extent.elements());
+  m2.resize(stack.extent.elements());
+  const stats::ElementRange range = rows.elements(stack.extent);
+  on_all_threads((range.size() + elements_at_a_time - 1) / elements_at_a_time, [&](std::size_t i) {
+    const std::size_t begin = range.first + i * elements_at_a_time;
+    const std::size_t size = std::min(elements_at_a_time, range.last - begin);
+    stats::moments_of_range(
+        stack, begin, {std::span(mean).subspan(begin, size), std::span(m2).subspan(begin, size)});
   });
-  for (const auto& part : parts) {
-    for (std::size_t s = 0; s < sides_.size(); ++s) {
-      sides_[s].extremes.merge(part[s].extremes);
-      sound_ = sound_ && part[s].sound;
-    }
-  }
+  if (range.first == 0) stats::element_moments(stack, 0, std::span(&first, 1));
 }
 
-std::vector<ElementSums> SumsOfTwo::finish(std::span<const std::vector<double>> averages) {
-  for (std::size_t s = 0; s < 2; ++s) {
-    stats::ImageStack<double> stack{{.width = 1, .height = 1}, {}};
-    for (const double& average : averages[s]) stack.images.emplace_back(&average, 1);
-    stats::element_moments(stack, 0, std::span(&sides_[s].average, 1));
-  }
-  return std::move(sides_);
+void ElementSums::take_averages(std::span<const double> averages) {
+  stats::ImageStack<double> stack{{.width = 1, .height = 1}, {}};
+  for (const double& each : averages) stack.images.emplace_back(&each, 1);
+  stats::element_moments(stack, 0, std::span(&average, 1));
 }
 
 }  // namespace assay::harness

@@ -23,6 +23,7 @@ struct Extremes {
   std::uint64_t nonzero = 0;  ///< values that are not zero
 
   void merge(const Extremes& other);
+  void add(std::span<const float> values);
 };
 
 /// The moments of every element that maps show. All values are finite.
@@ -36,24 +37,9 @@ struct ElementSums {
 
   /// The moments of an element, or of the average, which follows the elements.
   stats::Moments moments(std::size_t channel) const;
-};
-
-/// Sums of two stacks of pictures, read row by row, and of their differences.
-class SumsOfTwo {
- public:
-  SumsOfTwo(const stats::ImageExtent& extent, std::uint64_t pictures);
-
   /// Takes the rows that follow.
-  void take(const stats::ImagePair<float>& pair, stats::RowRange rows);
-  /// Call it after the last rows, with the averages of each side's pictures.
-  std::vector<ElementSums> finish(std::span<const std::vector<double>> averages);
-  /// True if every element that varies has finite moments.
-  bool sound() const { return sound_; }
-
- private:
-  stats::ImageExtent extent_;
-  std::vector<ElementSums> sides_;
-  bool sound_ = true;
+  void take(const stats::ImageStack<float>& stack, stats::RowRange rows);
+  void take_averages(std::span<const double> averages);
 };
 
 // Results of reading two stacks of pictures for one claim.

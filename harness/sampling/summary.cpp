@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "harness/base/parallel.h"
 #include "stats/images/image_moments.h"
 
 namespace assay::harness {
@@ -89,17 +90,12 @@ std::vector<ChannelSummary> sums_of(std::span<const std::vector<double>> observa
 }
 
 std::vector<double> averages_of(std::span<const std::span<const float>> pictures) {
-  constexpr std::size_t at_a_time = 8;
   const std::size_t elements = pictures.front().size();
-  std::vector<double> averages(pictures.size());
-  tbb::parallel_for(std::size_t{0}, pictures.size(), at_a_time, [&](std::size_t first) {
-    const auto some = pictures.subspan(first, std::min(at_a_time, pictures.size() - first));
-    const std::vector<double> sums = stats::image_sums(
-        stats::ImageStack<float>{{.width = elements, .height = 1}, {some.begin(), some.end()}});
-    for (std::size_t i = 0; i < sums.size(); ++i) {
-      averages[first + i] = sums[i] / static_cast<double>(elements);
-    }
-  });
+  std::vector<double> averages =
+      stats::image_channel_sums(stats::ImageStack<float>{{.width = elements, .height = 1},
+                                                         {pictures.begin(), pictures.end()}},
+                                on_all_threads);
+  for (double& average : averages) average /= static_cast<double>(elements);
   return averages;
 }
 

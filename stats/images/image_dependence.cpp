@@ -1,6 +1,8 @@
 #include "stats/images/image_dependence.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <map>
@@ -9,6 +11,7 @@
 
 #include "stats/basics/moments.h"
 #include "stats/basics/scores.h"
+#include "stats/basics/vector_copies.h"
 
 namespace assay::stats {
 namespace {
@@ -48,20 +51,50 @@ const Real* row_of(const ImageStack<Real>& stack, std::size_t image, const Recta
   return stack.at(image, ((tile.y + row) * stack.extent.width + tile.x) * stack.extent.channels);
 }
 
-// A hash of a quarter of the tile's elements. Tiles of one hash are compared whole.
+std::uint32_t bits_of(float value) { return std::bit_cast<std::uint32_t>(value); }
+std::uint32_t bits_of(double value) {
+  const auto bits = std::bit_cast<std::uint64_t>(value);
+  return static_cast<std::uint32_t>(bits ^ bits >> 29);
+}
+
+// The rows of a tile, or of all tiles beside each other.
 template <class Real>
-std::uint64_t digest(const ImageStack<Real>& stack, std::size_t image, const Rectangle& tile) {
-  std::uint64_t state = 0;
-  for (std::size_t row = 0; row < tile.height; ++row) {
-    const Real* const values = row_of(stack, image, tile, row);
-    for (std::size_t i = row % 4; i < tile.width * stack.extent.channels; i += 4) {
-      std::uint64_t bits = 0;
-      std::memcpy(&bits, values + i, sizeof(Real));
-      state = (state ^ bits) * 0x9e3779b97f4a7c15;
-      state ^= state >> 29;
-    }
+using TileRows = std::array<const Real*, tile_side>;
+
+// Products of numbers four rows apart, summed over a column. Each number is first disguised by its
+// place, so that no zero hides another.
+template <class Real>
+ASSAY_VECTOR_COPIES void hash_columns(const TileRows<Real>& rows, std::span<std::uint64_t> out) {
+  const auto [a, b, c, d, e, f, g, h] = rows;
+  std::uint64_t* const __restrict hash = out.data();
+  const auto product = [](Real one, std::uint32_t key, Real other) {
+    return std::uint64_t{bits_of(one) ^ key} * (bits_of(other) ^ ~key);
+  };
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    hash[i] = (product(a[i], 0x9e3779b9, e[i]) + product(b[i], 0x85ebca6b, f[i])) +
+              (product(c[i], 0xc2b2ae35, g[i]) + product(d[i], 0x27d4eb2f, h[i]));
   }
-  return state;
+}
+
+// Hashes of the image's tiles that begin in a row. Tiles of one hash are compared whole.
+template <class Real>
+std::vector<std::uint64_t> digests(const ImageStack<Real>& stack, std::size_t image,
+                                   RowRange rows) {
+  const std::size_t row = stack.extent.row();
+  const std::vector<Real> none(row);
+  TileRows<Real> numbers;
+  for (std::size_t y = 0; y < tile_side; ++y) {
+    numbers[y] = rows.first + y < rows.last ? stack.at(image, (rows.first + y) * row) : none.data();
+  }
+  std::vector<std::uint64_t> columns(row);
+  hash_columns(numbers, columns);
+  std::vector<std::uint64_t> tiles(tiles_across(stack.extent.width));
+  std::size_t i = 0;
+  for (std::uint64_t& tile : tiles) {
+    const std::size_t end = std::min(i + tile_side * stack.extent.channels, row);
+    for (; i < end; ++i) tile += columns[i] * (2 * i + 0x9e3779b97f4a7c15);
+  }
+  return tiles;
 }
 
 template <class Real>
@@ -112,13 +145,16 @@ struct Seen {
   WhichImage image;
 };
 
+// Digests of the tiles beside each other, of each image of the first side and then of the second.
+using Digests = std::vector<std::vector<std::uint64_t>>;
+
 template <class Real>
 std::optional<RepeatedTile> repeated_in(const std::vector<const ImageStack<Real>*>& sides,
-                                        const Rectangle& tile) {
+                                        const Rectangle& tile, const Digests& digests) {
   std::vector<Seen> seen;
   for (std::size_t s = 0; s < sides.size(); ++s) {
     for (std::size_t r = 0; r < sides[s]->images.size(); ++r) {
-      seen.push_back({digest(*sides[s], r, tile), {s, r}});
+      seen.push_back({digests[seen.size()][tile.x / tile_side], {s, r}});
     }
   }
   std::ranges::stable_sort(seen, {}, &Seen::digest);
@@ -213,17 +249,21 @@ void RowDependence<Real>::take(const ImagePair<Real>& pair, RowRange rows,
                                const ForEach& for_each) {
   const std::vector<const ImageStack<Real>*> sides = sides_of(pair);
   const ImageExtent& extent = pair.a.extent;
-  const std::size_t across = tiles_across(extent.width);
-  const std::size_t down = tiles_across(rows.last - rows.first);
-  std::vector<std::optional<RepeatedTile>> found(across * down);
-  for_each(found.size(), [&](std::size_t i) {
-    const Rectangle tile =
-        tile_at(extent, i % across * tile_side, rows.first + i / across * tile_side, rows.last);
-    found[i] = repeated_in(sides, tile);
-  });
-  for (const std::optional<RepeatedTile>& tile : found) {
-    if (tile && repeated_) ++repeated_->tiles;
-    if (tile && !repeated_) repeated_ = tile;
+  const std::size_t of_first = pair.a.images.size();
+  Digests all(of_first + (pair.b != nullptr ? pair.b->images.size() : 0));
+  std::vector<std::optional<RepeatedTile>> found(tiles_across(extent.width));
+  for (std::size_t y = rows.first; y < rows.last; y += tile_side) {
+    for_each(all.size(), [&](std::size_t i) {
+      const bool first = i < of_first;
+      all[i] = digests(*sides[first ? 0 : 1], first ? i : i - of_first, {y, rows.last});
+    });
+    for_each(found.size(), [&](std::size_t i) {
+      found[i] = repeated_in(sides, tile_at(extent, i * tile_side, y, rows.last), all);
+    });
+    for (const std::optional<RepeatedTile>& tile : found) {
+      if (tile && repeated_) ++repeated_->tiles;
+      if (tile && !repeated_) repeated_ = tile;
+    }
   }
   sampled_.resize(sides.size());
   // Coprime to a row, so that it meets all columns and channels.

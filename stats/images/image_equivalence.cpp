@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <span>
+#include <tuple>
 
 #include "stats/basics/check.h"
 #include "stats/basics/moments.h"
@@ -19,11 +21,9 @@ constexpr const char* function_name = "image_distance";
 using Terms = DistanceSums::Terms;
 
 constexpr std::size_t block_size = 512;
-// Elements that a thread takes at a time.
-constexpr std::size_t range_size = 64 * block_size;
 using Block = std::array<double, block_size>;
 
-// ---- A block of elements
+// ---- A block of elements, beyond whose end are zeros
 
 // Means and squared errors.
 struct Estimates {
@@ -31,146 +31,102 @@ struct Estimates {
   Block squared_error{};
 };
 
-struct LeftOut {
-  const Block& mean;
-  const Block& m2;
-  double count;
+// One side: a stack or a reference.
+template <class Real>
+void load(const ImageStack<Real>* stack, const ImageReference* reference, ElementRange range,
+          Estimates& out) {
+  out = {};
+  if (stack != nullptr) {
+    moments_of_range(*stack, range.first,
+                     {std::span(out.mean).first(range.size()),
+                      std::span(out.squared_error).first(range.size())});
+    const double count = static_cast<double>(stack->images.size());
+    for (double& m2 : out.squared_error) m2 /= count * (count - 1);
+    return;
+  }
+  for (std::size_t i = 0; i < range.size(); ++i) {
+    const double error = check::reference_error(function_name, *reference, range.first + i);
+    out.mean[i] = reference->value[range.first + i];
+    out.squared_error[i] = error * error;
+  }
+}
+
+// Adds up products of a replicate's deviations d: with the elements' differences and norms, and
+// with themselves. Each of eight numbers has sums of its own, the same on every machine.
+constexpr std::size_t lanes = 8;
+struct Lanes {
+  std::array<double, lanes> differences{};
+  std::array<double, lanes> norms{};
+  std::array<double, lanes> squares{};
 };
 
-// Leaves one replicate out of mean and m2, by Welford's step backwards.
 template <class Real>
-ASSAY_VECTOR_COPIES void leave_out(const Real* values, const LeftOut& of, Estimates& out,
-                                   std::size_t size) {
-  const double rest = of.count - 1;
-  const double scale = rest * (rest - 1);
-  const double count = of.count;
-  const double* const mean = of.mean.data();
-  const double* const m2 = of.m2.data();
-  double* const __restrict mean_out = out.mean.data();
-  double* const __restrict squared_error = out.squared_error.data();
-  for (std::size_t i = 0; i < size; ++i) {
-    const double delta = static_cast<double>(values[i]) - mean[i];
-    const double left = m2[i] - delta * delta * count / rest;
-    mean_out[i] = mean[i] - delta / rest;
-    squared_error[i] = (left < 0 ? 0.0 : left) / scale;
-  }
-}
-
-// One side: a stack, or a reference, of which nothing is left out.
-template <class Real>
-class Side {
- public:
-  Side(const ImageStack<Real>* stack, const ImageReference* reference)
-      : stack_(stack), reference_(reference) {}
-
-  std::size_t left_out() const { return stack_ != nullptr ? stack_->images.size() : 0; }
-  void load(std::size_t first, std::size_t size) {
-    first_ = first;
-    size_ = size;
-    if (stack_ == nullptr) return load_reference();
-    moments_of_range(*stack_, first,
-                     {std::span(all_.mean).first(size), std::span(m2_).first(size)});
-    for (std::size_t i = 0; i < size; ++i) {
-      all_.squared_error[i] = m2_[i] / (count() * (count() - 1));
+ASSAY_VECTOR_COPIES void add_products(const Real* values, const Block& means,
+                                      const Block& differences, const Block& norms, Lanes& to,
+                                      std::size_t first, std::size_t last) {
+  Lanes sums = to;
+  for (std::size_t i = first; i < last; i += lanes) {
+    for (std::size_t k = 0; k < lanes; ++k) {
+      const double d = static_cast<double>(values[i - first + k]) - means[i + k];
+      sums.differences[k] += differences[i + k] * d;
+      sums.norms[k] += norms[i + k] * d;
+      sums.squares[k] += d * d;
     }
   }
-  const Estimates& all() const { return all_; }
-  void without(std::size_t r, Estimates& out) const {
-    leave_out(stack_->at(r, first_), {all_.mean, m2_, count()}, out, size_);
-  }
-
- private:
-  double count() const { return static_cast<double>(left_out()); }
-  void load_reference() {
-    for (std::size_t i = 0; i < size_; ++i) {
-      const double error = check::reference_error(function_name, *reference_, first_ + i);
-      all_.mean[i] = reference_->value[first_ + i];
-      all_.squared_error[i] = error * error;
-    }
-  }
-
-  const ImageStack<Real>* stack_;
-  const ImageReference* reference_;
-  std::size_t first_ = 0;
-  std::size_t size_ = 0;
-  Estimates all_;
-  Block m2_{};
-};
-
-ASSAY_VECTOR_COPIES void squared_differences(const Estimates& a, const Estimates& b, Block& out,
-                                             std::size_t size) {
-  double* const __restrict term = out.data();
-  for (std::size_t i = 0; i < size; ++i) {
-    const double difference = a.mean[i] - b.mean[i];
-    term[i] = difference * difference - a.squared_error[i] - b.squared_error[i];
-  }
-}
-ASSAY_VECTOR_COPIES void squared_norms(const Estimates& b, Block& out, std::size_t size) {
-  double* const __restrict term = out.data();
-  for (std::size_t i = 0; i < size; ++i) term[i] = b.mean[i] * b.mean[i] - b.squared_error[i];
+  to = sums;
 }
 
-// The terms of a block: those of U for all its elements, and those of N, which do not depend on a.
-using BlockTerms = std::array<Block, std::tuple_size_v<Terms>>;
-constexpr std::size_t kinds_of_a = 1;
-
-void find_terms(const Estimates& a, const Estimates& b, BlockTerms& out, std::size_t size) {
-  squared_differences(a, b, out[0], size);
-  squared_norms(b, out[1], size);
+double sum_of(const std::array<double, lanes>& numbers) {
+  return std::accumulate(numbers.begin(), numbers.end(), 0.0);
 }
 
-// ---- DistanceSums over blocks
+// ---- Sums over blocks
 
-// DistanceSums of several replicates take their terms in step. Each keeps the order of the
-// elements, but none waits for the other's addition.
-constexpr std::size_t in_step = 8;
-using Step = std::array<BlockTerms, in_step>;
-
-void add_in_step(std::span<Terms> sums, const Step& terms, std::size_t kind, std::size_t size) {
-  std::array<double, in_step> sum{};
-  for (std::size_t k = 0; k < sums.size(); ++k) sum[k] = sums[k][kind];
-  for (std::size_t i = 0; i < size; ++i) {
-    for (std::size_t k = 0; k < in_step; ++k) sum[k] += terms[k][kind][i];
-  }
-  for (std::size_t k = 0; k < sums.size(); ++k) sums[k][kind] = sum[k];
-}
-
-// DistanceSums without each replicate in turn, of `kinds` kinds of terms. `terms_without` fills in
-// the terms without replicate r.
-template <class TermsWithout>
-void add_without(std::vector<Terms>& sums, std::size_t kinds, std::size_t size, Step& step,
-                 const TermsWithout& terms_without) {
-  for (std::size_t r = 0; r < sums.size(); r += in_step) {
-    const auto some = std::span(sums).subspan(r, std::min(in_step, sums.size() - r));
-    for (std::size_t k = 0; k < some.size(); ++k) terms_without(r + k, step[k]);
-    for (std::size_t kind = 0; kind < kinds; ++kind) add_in_step(some, step, kind, size);
-  }
-}
-
-// Adds up a range of elements that follows on those before.
+// Leaving out a replicate with the deviation d from the mean of n moves the mean by -d / (n - 1),
+// and its squared error takes d^2 along. So D^2 - va - vb becomes, but for what all replicates have
+// in common, -2 / (n - 1) (D d - d^2 / (n - 2)). D counts the other way if the replicate is of b.
 template <class Real>
-void add_range(DistanceSums& sums, ElementRange range, Side<Real> a, Side<Real> b) {
-  sums.without_a.resize(a.left_out());
-  sums.without_b.resize(b.left_out());
-  const auto step = std::make_unique<Step>();
-  const auto one = std::make_unique<Estimates>();
+void add_without(std::vector<Terms>& sums, const ImageStack<Real>& stack, ElementRange range,
+                 const Block& means, const Block& differences, const Block& norms) {
+  sums.resize(stack.images.size());
+  const double n = static_cast<double>(stack.images.size());
+  const std::size_t size = range.size();
+  const std::size_t whole = size / lanes * lanes;
+  for (std::size_t r = 0; r < sums.size(); ++r) {
+    const Real* const values = stack.at(r, range.first);
+    Lanes products;
+    add_products(values, means, differences, norms, products, 0, whole);
+    if (whole < size) {
+      std::array<Real, lanes> rest{};
+      std::copy(values + whole, values + size, rest.begin());
+      add_products(rest.data(), means, differences, norms, products, whole, whole + lanes);
+    }
+    const double squares = sum_of(products.squares) / (n - 2);
+    sums[r][0] += -2 / (n - 1) * (sum_of(products.differences) - squares);
+    sums[r][1] += -2 / (n - 1) * (sum_of(products.norms) - squares);
+  }
+}
+
+// Adds up a row.
+template <class Real>
+void add_row(DistanceSums& sums, const ImagePair<Real>& pair, std::size_t row) {
+  const ElementRange range = RowRange{row, row + 1}.elements(pair.a.extent);
+  const auto [a, b, differences, back] =
+      std::tuple(std::make_unique<Estimates>(), std::make_unique<Estimates>(),
+                 std::make_unique<Block>(), std::make_unique<Block>());
   for (std::size_t first = range.first; first < range.last; first += block_size) {
-    const std::size_t size = std::min(block_size, range.last - first);
-    a.load(first, size);
-    b.load(first, size);
-    find_terms(a.all(), b.all(), (*step)[0], size);
-    for (std::size_t kind = 0; kind < sums.whole.size(); ++kind) {
-      add_in_step(std::span(&sums.whole, 1), *step, kind, size);
+    const ElementRange block{first, std::min(first + block_size, range.last)};
+    load(&pair.a, nullptr, block, *a);
+    load(pair.b, pair.reference, block, *b);
+    for (std::size_t i = 0; i < block_size; ++i) {
+      const double difference = a->mean[i] - b->mean[i];
+      (*differences)[i] = difference;
+      (*back)[i] = -difference;
+      sums.whole[0] += difference * difference - a->squared_error[i] - b->squared_error[i];
+      sums.whole[1] += b->mean[i] * b->mean[i] - b->squared_error[i];
     }
-    add_without(sums.without_a, kinds_of_a, size, *step, [&](std::size_t r, BlockTerms& terms) {
-      a.without(r, *one);
-      find_terms(*one, b.all(), terms, size);
-    });
-    add_without(sums.without_b, sums.whole.size(), size, *step,
-                [&](std::size_t r, BlockTerms& terms) {
-                  b.without(r, *one);
-                  find_terms(a.all(), *one, terms, size);
-                });
+    add_without(sums.without_a, pair.a, block, a->mean, *differences, b->mean);
+    if (pair.b != nullptr) add_without(sums.without_b, *pair.b, block, b->mean, *back, b->mean);
   }
 }
 
@@ -201,17 +157,16 @@ double covariance(const std::vector<Terms>& values, std::size_t i, std::size_t j
 }
 
 ImageDistance distance_of(const DistanceSums& sums) {
-  const auto both = [&](std::size_t i, std::size_t j) {
-    return covariance(sums.without_a, i, j) + covariance(sums.without_b, i, j);
-  };
+  // The norm is of b alone.
+  const double bias_variance = covariance(sums.without_a, 0, 0) + covariance(sums.without_b, 0, 0);
   const std::size_t fewest = sums.without_b.empty()
                                  ? sums.without_a.size()
                                  : std::min(sums.without_a.size(), sums.without_b.size());
   return {.squared_bias = sums.whole[0],
           .squared_norm = sums.whole[1],
-          .bias_variance = both(0, 0),
-          .norm_variance = both(1, 1),
-          .covariance = both(0, 1),
+          .bias_variance = bias_variance,
+          .norm_variance = covariance(sums.without_b, 1, 1),
+          .covariance = covariance(sums.without_b, 0, 1),
           .degrees = static_cast<double>(fewest - 1)};
 }
 
@@ -251,35 +206,17 @@ Added added_by(const Element& x, ElementErrors errors) {
 
 }  // namespace
 
-// DistanceSums over equal ranges are added up in order.
+// Sums over rows are added up in order.
 template <class Real>
 void RowDistance<Real>::take(const ImagePair<Real>& pair, RowRange rows, const ForEach& for_each) {
   check::image_pair(function_name, pair);
-  const ElementRange elements = rows.elements(pair.a.extent);
-  const Side<Real> a(&pair.a, nullptr);
-  const Side<Real> b(pair.b, pair.reference);
-  const std::size_t begin = elements.first / range_size;
-  std::vector<DistanceSums> parts((elements.last - 1) / range_size + 1 - begin);
-  if (elements.first % range_size != 0) parts[0] = std::move(open_);
-  for_each(parts.size(), [&](std::size_t i) {
-    const std::size_t first = (begin + i) * range_size;
-    add_range(parts[i],
-              {std::max(first, elements.first), std::min(first + range_size, elements.last)}, a, b);
-  });
-  open_ = {};
-  if (elements.last % range_size != 0) {
-    open_ = std::move(parts.back());
-    parts.pop_back();
-  }
-  for (const DistanceSums& part : parts) add(sums_, part);
+  std::vector<DistanceSums> each(rows.last - rows.first);
+  for_each(each.size(), [&](std::size_t i) { add_row(each[i], pair, rows.first + i); });
+  for (const DistanceSums& row : each) add(sums_, row);
 }
 
 template <class Real>
-ImageDistance RowDistance<Real>::distance() {
-  if (!open_.without_a.empty()) add(sums_, open_);
-  for (Terms& without : sums_.without_a) {
-    std::copy(sums_.whole.begin() + kinds_of_a, sums_.whole.end(), without.begin() + kinds_of_a);
-  }
+ImageDistance RowDistance<Real>::distance() const {
   for (const double sum : sums_.whole) {
     if (!std::isfinite(sum)) check::fail({function_name, "sum over the image"}, sum, "finite");
   }

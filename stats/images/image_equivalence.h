@@ -26,7 +26,8 @@ struct ImageDistance {
   double degrees = 0;
 };
 
-// Internal: sums over elements of the terms of U and N, whole and without each replicate in turn.
+// Internal: sums over elements of the terms of U and N. They are whole, and without each replicate
+// in turn but for a summand that all of a side have in common.
 struct DistanceSums {
   using Terms = std::array<double, 2>;
   Terms whole = {};
@@ -42,11 +43,10 @@ class RowDistance {
   // than least_replicates images.
   void take(const ImagePair<Real>& pair, RowRange rows, const ForEach& for_each = one_by_one);
   // To be called after the last rows. Throws std::domain_error if a sum is not finite.
-  ImageDistance distance();
+  ImageDistance distance() const;
 
  private:
   DistanceSums sums_;
-  DistanceSums open_;  // The sums of a range of elements that is not complete.
 };
 
 // The same of whole images. Throws as above.

@@ -5,67 +5,56 @@
 #include <numeric>
 #include <span>
 
+#include "stats/basics/vector_copies.h"
 #include "stats/images/image_moments.h"
 
 namespace assay::stats {
 namespace {
 
-// Mean and squared standard error of every element over every other replicate.
-struct HalfMoments {
-  std::vector<double> mean;
-  std::vector<double> squared_error;
-};
-
 std::size_t half_count(std::size_t replicates, std::size_t half) {
   return (replicates + 1 - half) / halves;
 }
 
-template <class Real>
-HalfMoments half_moments(const ImageStack<Real>& stack, std::size_t half, ElementRange range,
-                         const ForEach& for_each) {
-  constexpr std::size_t at_a_time = std::size_t{1} << 15;
-  HalfMoments moments{std::vector<double>(range.size()), std::vector<double>(range.size())};
-  const double n = static_cast<double>(half_count(stack.images.size(), half));
-  for_each((range.size() + at_a_time - 1) / at_a_time, [&](std::size_t i) {
-    const std::size_t done = i * at_a_time;
-    const std::size_t size = std::min(at_a_time, range.size() - done);
-    const std::span<double> errors = std::span(moments.squared_error).subspan(done, size);
-    moments_of_range(stack, range.first + done,
-                     {std::span(moments.mean).subspan(done, size), errors}, {half, halves});
-    for (double& m2 : errors) m2 /= n * (n - 1);
-  });
-  return moments;
-}
-
-// Means over the 5 elements around each along rows or columns, fewer at the edge.
-struct Line {
-  std::size_t size;
-  std::size_t stride;
-};
-void smooth_line(std::vector<double>& values, std::size_t first, Line line) {
-  std::array<double, 2 * rows_beside + 1> around{};  // A ring of the unsmoothed values.
-  const auto value = [&](std::size_t i) -> double& { return values[first + i * line.stride]; };
-  const auto kept = [&](std::size_t i) -> double& { return around[i % around.size()]; };
-  for (std::size_t i = 0; i < std::min(rows_beside, line.size); ++i) kept(i) = value(i);
-  for (std::size_t i = 0; i < line.size; ++i) {
-    const std::size_t begin = i - std::min(i, rows_beside);
-    const std::size_t end = std::min(i + rows_beside + 1, line.size);
-    if (i + rows_beside < line.size) kept(i + rows_beside) = value(i + rows_beside);
-    double sum = 0;
-    for (std::size_t j = begin; j < end; ++j) sum += kept(j);
-    value(i) = sum / static_cast<double>(end - begin);
+// Means over numbers that are so far apart, of which the first are at `values`.
+constexpr std::size_t around = 2 * rows_beside + 1;
+ASSAY_VECTOR_COPIES void means_around(const double* values, std::size_t apart, double* to,
+                                      std::size_t size) {
+  double* const __restrict mean = to;
+  for (std::size_t i = 0; i < size; ++i) {
+    double sum = values[i];
+    for (std::size_t k = 1; k < around; ++k) sum += values[i + k * apart];
+    mean[i] = sum / static_cast<double>(around);
   }
 }
 
-std::vector<double> smoothed(const ImageExtent& extent, std::vector<double> values) {
-  const std::size_t row = extent.width * extent.channels;
-  for (std::size_t y = 0; y < extent.height; ++y) {
-    for (std::size_t c = 0; c < extent.channels; ++c) {
-      smooth_line(values, y * row + c, {extent.width, extent.channels});
+// Means over the 5 groups of `size` numbers around each, fewer at the ends.
+void smooth(std::span<const double> values, std::size_t size, std::span<double> means) {
+  const std::size_t count = values.size() / size;
+  const auto mean_at_end = [&](std::size_t group) {
+    const std::size_t begin = group - std::min(group, rows_beside);
+    const std::size_t end = std::min(group + rows_beside + 1, count);
+    for (std::size_t i = 0; i < size; ++i) {
+      double sum = 0;
+      for (std::size_t j = begin; j < end; ++j) sum += values[j * size + i];
+      means[group * size + i] = sum / static_cast<double>(end - begin);
     }
+  };
+  const std::size_t inner = count - std::min(count, around - 1);
+  const std::size_t first = inner > 0 ? rows_beside : count;
+  for (std::size_t group = 0; group < first; ++group) mean_at_end(group);
+  means_around(values.data(), size, means.data() + first * size, inner * size);
+  for (std::size_t group = first + inner; group < count; ++group) mean_at_end(group);
+}
+
+std::vector<double> smoothed(const ImageExtent& extent, std::span<const double> values) {
+  std::vector<double> along_rows(values.size());
+  for (std::size_t i = 0; i < values.size(); i += extent.row()) {
+    smooth(values.subspan(i, extent.row()), extent.channels,
+           std::span(along_rows).subspan(i, extent.row()));
   }
-  for (std::size_t i = 0; i < row; ++i) smooth_line(values, i, {extent.height, row});
-  return values;
+  std::vector<double> both(values.size());
+  smooth(along_rows, extent.row(), both);
+  return both;
 }
 
 // The mean of each element's variance and that of its neighbourhood in the channel.
@@ -75,54 +64,81 @@ std::vector<double> steadied(const ImageExtent& extent, const std::vector<double
   return steady;
 }
 
-// Subtracts the reference from the difference and adds its error to the variance. It joins no
-// weight: a reference that is bright by chance has a large error, and the sums would lean to the
-// dark.
-void add_reference(const ImageReference& reference, Half& half) {
-  for (std::size_t i = 0; i < half.difference.size(); ++i) {
-    const double error = check::reference_error("image_pyramid", reference, half.first + i);
-    half.difference[i] -= reference.value[half.first + i];
-    half.variance[i] += error * error;
+// Sets means, difference, variance and `varied` of these elements.
+template <class Real>
+void take(const ImagePair<Real>& pair, std::size_t which, ElementRange range, Half& half) {
+  const std::size_t here = range.first - half.first;
+  const std::size_t size = range.size();
+  const auto part = [&](std::vector<double>& all) { return std::span(all).subspan(here, size); };
+  const std::span<double> variance = part(half.variance);
+  const std::span<double> difference = part(half.difference);
+  const auto squared_errors = [&](const ImageStack<Real>& stack, std::size_t side,
+                                  std::span<double> errors) {
+    moments_of_range(stack, range.first, {part(half.mean[side]), errors}, {which, halves});
+    const double n = static_cast<double>(half_count(stack.images.size(), which));
+    for (double& m2 : errors) m2 /= n * (n - 1);
+  };
+  squared_errors(pair.a, 0, variance);
+  if (pair.b != nullptr) {
+    std::vector<double> errors(size);
+    squared_errors(*pair.b, 1, errors);
+    for (std::size_t i = 0; i < size; ++i) variance[i] += errors[i];
+  }
+  for (std::size_t i = 0; i < size; ++i) {
+    difference[i] =
+        half.mean[0][here + i] -
+        (pair.b != nullptr ? half.mean[1][here + i] : pair.reference->value[range.first + i]);
+    half.varied[here + i] = variance[i] > 0;
   }
 }
 
+// Drops elements before the range, and takes those that are new. A reference's error joins no
+// weight. A reference that is bright by chance has a large error, and the sums would lean to the
+// dark.
 template <class Real>
-Half half_of(const ImagePair<Real>& pair, std::size_t half, RowRange rows,
+void advance(const ImagePair<Real>& pair, std::size_t which, ElementRange range, Half& half,
              const ForEach& for_each) {
-  const ImageExtent& extent = pair.a.extent;
-  const ElementRange range = rows.elements(extent);
-  const ImageExtent part{extent.width, rows.last - rows.first, extent.channels};
-  HalfMoments a = half_moments(pair.a, half, range, for_each);
-  Half result{range.first, {a.mean, {}}, std::move(a.mean), std::move(a.squared_error), {}, {}};
-  if (pair.b != nullptr) {
-    HalfMoments b = half_moments(*pair.b, half, range, for_each);
-    for (std::size_t i = 0; i < b.mean.size(); ++i) {
-      result.difference[i] -= b.mean[i];
-      result.variance[i] += b.squared_error[i];
-    }
-    result.mean[1] = std::move(b.mean);
-  }
-  result.varied.reserve(range.size());
-  for (const double variance : result.variance) result.varied.push_back(variance > 0);
-  result.weight = steadied(part, result.variance);
-  if (pair.reference != nullptr) add_reference(*pair.reference, result);
-  for (double& weight : result.weight) weight = weight > 0 ? 1 / std::sqrt(weight) : 0;
-  return result;
+  constexpr std::size_t at_a_time = std::size_t{1} << 12;
+  const std::size_t gone = std::min(range.first - half.first, half.variance.size());
+  const std::size_t kept = half.variance.size() - gone;
+  half.first = range.first;
+  const auto move = [&](auto& all) {
+    all.erase(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(gone));
+    all.resize(range.size());
+  };
+  move(half.mean[0]);
+  if (pair.b != nullptr) move(half.mean[1]);
+  move(half.difference);
+  move(half.variance);
+  move(half.varied);
+  for_each((range.size() - kept + at_a_time - 1) / at_a_time, [&](std::size_t i) {
+    const std::size_t first = range.first + kept + i * at_a_time;
+    take(pair, which, {first, std::min(first + at_a_time, range.last)}, half);
+  });
+  const std::size_t row = pair.a.extent.row();
+  half.weight =
+      steadied({pair.a.extent.width, range.size() / row, pair.a.extent.channels}, half.variance);
+  for (double& weight : half.weight) weight = weight > 0 ? 1 / std::sqrt(weight) : 0;
 }
 
 }  // namespace
 
 template <class Real>
 std::array<Half, halves> halves_of(const ImagePair<Real>& pair, RowRange rows,
-                                   const ForEach& for_each) {
-  std::array<Half, halves> both;
+                                   const ForEach& for_each, std::array<Half, halves> before) {
   const RowRange wider{rows.first - std::min(rows.first, rows_beside),
                        std::min(rows.last + rows_beside, pair.a.extent.height)};
-  for_each(halves, [&](std::size_t half) { both[half] = half_of(pair, half, wider, for_each); });
-  return both;
+  const ElementRange range = wider.elements(pair.a.extent);
+  for (std::size_t e = range.first; pair.reference != nullptr && e < range.last; ++e) {
+    check::reference_error("image_pyramid", *pair.reference, e);
+  }
+  for_each(halves, [&](std::size_t half) { advance(pair, half, range, before[half], for_each); });
+  return before;
 }
 
-template std::array<Half, halves> halves_of(const ImagePair<float>&, RowRange, const ForEach&);
-template std::array<Half, halves> halves_of(const ImagePair<double>&, RowRange, const ForEach&);
+template std::array<Half, halves> halves_of(const ImagePair<float>&, RowRange, const ForEach&,
+                                            std::array<Half, halves>);
+template std::array<Half, halves> halves_of(const ImagePair<double>&, RowRange, const ForEach&,
+                                            std::array<Half, halves>);
 
 }  // namespace assay::stats

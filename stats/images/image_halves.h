@@ -24,7 +24,7 @@ struct Half {
   std::size_t first = 0;                    // The element that they begin with.
   std::array<std::vector<double>, 2> mean;  // Of either side; a reference has none.
   std::vector<double> difference;
-  std::vector<double> variance;
+  std::vector<double> variance;       // Without a reference's error.
   std::vector<unsigned char> varied;  // Nonzero if any replicate of the half differs from another.
   std::vector<double> weight;
 };
@@ -33,9 +33,11 @@ struct Half {
 inline constexpr std::size_t rows_beside = 2;
 
 // Halves of the elements of these rows and of rows_beside more at either side, as far as the image
-// has them. Weights are right in `rows` alone.
+// has them. Weights are right in `rows` alone. `before` are those of rows before: what they know of
+// an element is kept, and the images need not have it.
 template <class Real>
 std::array<Half, halves> halves_of(const ImagePair<Real>& pair, RowRange rows,
-                                   const ForEach& for_each = one_by_one);
+                                   const ForEach& for_each = one_by_one,
+                                   std::array<Half, halves> before = {});
 
 }  // namespace assay::stats

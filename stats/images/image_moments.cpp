@@ -130,42 +130,28 @@ void moments_of_block(const ImageStack<Real>& stack, std::size_t first, std::spa
 
 // ---- Sums of images
 
-constexpr std::size_t in_step = 8;
-
-// The last image, repeated, fills up the last eight.
+// Adds up numbers that are sums.size() apart.
 template <class Real>
-void add_in_step(std::span<double> sums, const ImageStack<Real>& stack, std::size_t first,
-                 ElementRange range) {
-  std::array<const Real*, in_step> image{};
-  std::array<double, in_step> sum{};
-  for (std::size_t k = 0; k < in_step; ++k) {
-    image[k] = stack.at(std::min(first + k, stack.images.size() - 1), range.first);
+ASSAY_VECTOR_COPIES void add_apart(std::span<const Real> numbers, std::span<double> sums) {
+  const std::size_t apart = sums.size();
+  double* const __restrict sum = sums.data();
+  for (std::size_t i = 0; i < numbers.size(); i += apart) {
+    for (std::size_t k = 0; k < apart; ++k) sum[k] += static_cast<double>(numbers[i + k]);
   }
-  std::ranges::copy(sums, sum.begin());
-  for (std::size_t i = 0; i < range.size(); ++i) {
-    for (std::size_t k = 0; k < in_step; ++k) sum[k] += static_cast<double>(image[k][i]);
-  }
-  std::copy_n(sum.begin(), sums.size(), sums.begin());
 }
 
-// The number of channels is known at compile time, so their sums stay in registers.
-template <std::size_t channels, class Real>
-void add_channels(std::span<double> sums, std::span<const Real> elements) {
-  std::array<double, channels> sum{};
-  std::ranges::copy(sums, sum.begin());
-  for (std::size_t i = 0; i < elements.size(); i += channels) {
-    for (std::size_t c = 0; c < channels; ++c) sum[c] += static_cast<double>(elements[i + c]);
-  }
-  std::ranges::copy(sum, sums.begin());
-}
+// So many places have sums of their own, so that few additions wait for the last.
+constexpr std::size_t places_in_step = 32;
 
 template <class Real>
-void add_channels_of(std::span<double> sums, std::span<const Real> elements) {
-  if (sums.size() == 1) return add_channels<1>(sums, elements);
-  if (sums.size() == 3) return add_channels<3>(sums, elements);
-  for (std::size_t i = 0; i < elements.size(); ++i) {
-    sums[i % sums.size()] += static_cast<double>(elements[i]);
+void add_row(std::span<const Real> row, std::vector<double>& apart, std::span<double> sums) {
+  apart.assign(places_in_step * sums.size(), 0);
+  const std::size_t whole = row.size() / apart.size() * apart.size();
+  add_apart(row.first(whole), std::span(apart));
+  for (std::size_t i = whole; i < row.size(); ++i) {
+    apart[i - whole] += static_cast<double>(row[i]);
   }
+  for (std::size_t i = 0; i < apart.size(); ++i) sums[i % sums.size()] += apart[i];
 }
 
 }  // namespace
@@ -194,36 +180,28 @@ void element_moments(const ImageStack<Real>& stack, std::size_t first, std::span
 }
 
 template <class Real>
-void add_to_sums(std::vector<double>& sums, const ImageStack<Real>& stack, ElementRange range,
-                 const ForEach& for_each) {
-  for_each((sums.size() + in_step - 1) / in_step, [&](std::size_t i) {
-    const std::size_t first = i * in_step;
-    const std::size_t size = std::min(in_step, sums.size() - first);
-    add_in_step(std::span(sums).subspan(first, size), stack, first, range);
-  });
+void add_to_channel_sums(std::span<double> sums, std::span<const Real> rows, std::size_t row) {
+  std::vector<double> apart;
+  for (std::size_t i = 0; i < rows.size(); i += row) add_row(rows.subspan(i, row), apart, sums);
 }
 
 template <class Real>
-void add_to_channel_sums(std::vector<double>& sums, const ImageStack<Real>& stack,
-                         ElementRange range, const ForEach& for_each) {
+std::vector<double> image_channel_sums(const ImageStack<Real>& stack, const ForEach& for_each) {
   const std::size_t channels = stack.extent.channels;
+  std::vector<double> sums(stack.images.size() * channels);
   for_each(stack.images.size(), [&](std::size_t i) {
-    add_channels_of<Real>(std::span(sums).subspan(i * channels, channels),
-                          {stack.at(i, range.first), range.size()});
+    add_to_channel_sums(std::span(sums).subspan(i * channels, channels), stack.images[i],
+                        stack.extent.row());
   });
+  return sums;
 }
 
 template void moments_of_range(const ImageStack<float>&, std::size_t, MomentArrays, EveryImage);
 template void moments_of_range(const ImageStack<double>&, std::size_t, MomentArrays, EveryImage);
 template void element_moments(const ImageStack<float>&, std::size_t, std::span<Moments>);
 template void element_moments(const ImageStack<double>&, std::size_t, std::span<Moments>);
-template void add_to_sums(std::vector<double>&, const ImageStack<float>&, ElementRange,
-                          const ForEach&);
-template void add_to_sums(std::vector<double>&, const ImageStack<double>&, ElementRange,
-                          const ForEach&);
-template void add_to_channel_sums(std::vector<double>&, const ImageStack<float>&, ElementRange,
-                                  const ForEach&);
-template void add_to_channel_sums(std::vector<double>&, const ImageStack<double>&, ElementRange,
-                                  const ForEach&);
+template void add_to_channel_sums(std::span<double>, std::span<const float>, std::size_t);
+template std::vector<double> image_channel_sums(const ImageStack<float>&, const ForEach&);
+template std::vector<double> image_channel_sums(const ImageStack<double>&, const ForEach&);
 
 }  // namespace assay::stats

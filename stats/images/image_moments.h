@@ -40,32 +40,14 @@ void element_moments(const ImageStack<Real>& stack, std::size_t first, std::span
 
 // ---- Sums of images over their elements
 
-// Adds an image's elements to its sum in their order; they follow those in `sums`. Several images
-// are added up in step, so that no addition waits for the last. Each sum has the bits of adding up
-// that image alone.
+// Adds whole rows of so many numbers each to the sums of their channels. Rows that follow on each
+// other give the same bits in any portions.
 template <class Real>
-void add_to_sums(std::vector<double>& sums, const ImageStack<Real>& stack, ElementRange range,
-                 const ForEach& for_each = one_by_one);
+void add_to_channel_sums(std::span<double> sums, std::span<const Real> rows, std::size_t row);
 
-template <class Real>
-std::vector<double> image_sums(const ImageStack<Real>& stack,
-                               const ForEach& for_each = one_by_one) {
-  std::vector<double> sums(stack.images.size());
-  add_to_sums(sums, stack, {0, stack.extent.elements()}, for_each);
-  return sums;
-}
-
-// The same for whole pixels and the sums of each image's channels, those of an image together.
-template <class Real>
-void add_to_channel_sums(std::vector<double>& sums, const ImageStack<Real>& stack,
-                         ElementRange range, const ForEach& for_each = one_by_one);
-
+// The sums of each image's channels, those of an image together.
 template <class Real>
 std::vector<double> image_channel_sums(const ImageStack<Real>& stack,
-                                       const ForEach& for_each = one_by_one) {
-  std::vector<double> sums(stack.images.size() * stack.extent.channels);
-  add_to_channel_sums(sums, stack, {0, stack.extent.elements()}, for_each);
-  return sums;
-}
+                                       const ForEach& for_each = one_by_one);
 
 }  // namespace assay::stats

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
+
+#include "stats/basics/vector_copies.h"
 
 namespace assay::stats {
 namespace {
@@ -15,18 +18,50 @@ bool beats(const ImageFinding& a, const ImageFinding& b) {
                                                  std::tuple(b.channel, b.window.y, b.window.x));
 }
 
+struct PartSums {
+  double* variance;
+  double* of_half;
+  double* reciprocal_degrees;
+};
+
+// Adds a part's squared errors, and makes its squares zero.
+ASSAY_VECTOR_COPIES void add_part(std::vector<double>& from, double count, const PartSums& to) {
+  double* const __restrict squares = from.data();
+  double* const __restrict variance = to.variance;
+  double* const __restrict of_half = to.of_half;
+  double* const __restrict reciprocal_degrees = to.reciprocal_degrees;
+  const std::size_t size = from.size();
+  const double scale = factor_of_half * factor_of_half / (count * (count - 1));
+  for (std::size_t i = 0; i < size; ++i) {
+    const double part = scale * squares[i];
+    variance[i] += part;
+    of_half[i] += part;
+    reciprocal_degrees[i] += part * part / (count - 1);
+    squares[i] = 0;
+  }
+}
+
+ASSAY_VECTOR_COPIES void find_t(const std::array<const double*, 5>& from, std::span<double> t) {
+  const auto [effect, one, other, first_half, second_half] = from;
+  double* const __restrict out = t.data();
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    const double value = effect[i] / std::sqrt(one[i] + other[i]);
+    const bool varied = first_half[i] > 0 && second_half[i] > 0;
+    out[i] = varied ? value : std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
 }  // namespace
 
 StudentValue own_value(const CellNoise& noise) {
   return {noise.effect / std::sqrt(noise.variance[0] + noise.variance[1]), noise.degrees};
 }
 
-bool Candidates::wants(StudentValue value) {
+bool Candidates::wants(double t) {
   // Student's tails are heavier than the normal law's: |z| <= |t|, but for the rounding of z.
   constexpr double rounding = 1e-6;
   ++windows_;
-  return kept_.size() < most ||
-         std::abs(value.t) * (1 + rounding) >= std::abs(kept_.back().finding.z);
+  return kept_.size() < most || std::abs(t) * (1 + rounding) >= std::abs(kept_.back().finding.z);
 }
 
 void Candidates::keep(const Candidate& candidate) {
@@ -56,23 +91,21 @@ void offer(BestCell& best, const Candidate& candidate, const NoisePyramid& noise
 }
 
 void WelchCells::start(std::size_t cells) {
-  for (std::vector<double>* each :
-       {&mean, &m2, &effect, &variance[0], &variance[1], &reciprocal_degrees}) {
+  for (std::vector<double>* each : {&squares, &effect, &variance[0], &variance[1], &of_half[0],
+                                    &of_half[1], &reciprocal_degrees}) {
     each->assign(cells, 0.0);
   }
-  halves_that_vary.assign(cells, 0);
 }
 
-void WelchCells::finish_part(std::size_t half, std::size_t side, double count, double factor) {
-  for (std::size_t i = 0; i < mean.size(); ++i) {
-    const double part = factor * factor * m2[i] / (count * (count - 1));
-    effect[i] += factor * mean[i];
-    variance[side][i] += part;
-    if (part > 0) halves_that_vary[i] |= static_cast<unsigned char>(1U << half);
-    reciprocal_degrees[i] += part * part / (count - 1);
-  }
-  std::ranges::fill(mean, 0.0);
-  std::ranges::fill(m2, 0.0);
+void WelchCells::finish_part(std::size_t half, std::size_t side, double count) {
+  add_part(squares, count,
+           {variance[side].data(), of_half[half].data(), reciprocal_degrees.data()});
+}
+
+void WelchCells::statistics(std::size_t first, std::span<double> t) const {
+  find_t({effect.data() + first, variance[0].data() + first, variance[1].data() + first,
+          of_half[0].data() + first, of_half[1].data() + first},
+         t);
 }
 
 void WelchCells::put(std::size_t cell, CellNoise& noise) const {

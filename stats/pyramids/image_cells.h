@@ -17,26 +17,28 @@ namespace assay::stats {
 
 // ---- Statistics of cells
 
+// Half of the difference of a half counts in the mean of both halves.
+inline constexpr double factor_of_half = 1.0 / halves;
+
 // Welch's statistic of the mean difference of many cells. Replicates come in parts, the halves of
-// either side. Each part has means and variances of its own. The difference is the sum over the
-// parts of factor * mean.
+// either side, each with variances of its own.
 struct WelchCells {
-  // The current part: mean and sum of squared deviations of each cell's sums (Welford 1962).
-  std::vector<double> mean;
-  std::vector<double> m2;
+  // The current part: sums over replicates of squared deviations of each cell's sum from its mean.
+  std::vector<double> squares;
+  std::vector<double> effect;  // Estimate of a - b, which the caller adds up.
   // The parts that are done.
-  std::vector<double> effect;                               // Estimate of a - b.
-  std::array<std::vector<double>, sides_of_pair> variance;  // Its squared error, by side.
-  std::vector<double> reciprocal_degrees;       // Sum of variance_g^2 / (n_g - 1) over the parts.
-  std::vector<unsigned char> halves_that_vary;  // A bit each.
+  std::array<std::vector<double>, sides_of_pair> variance;  // Squared error of effect, by side.
+  std::array<std::vector<double>, halves> of_half;          // The same, by half.
+  std::vector<double> reciprocal_degrees;  // Sum of variance_g^2 / (n_g - 1) over the parts.
 
   void start(std::size_t cells);
-  // The replicates since the last call are a part of that half and side. Its mean enters with this
-  // factor.
-  void finish_part(std::size_t half, std::size_t side, double count, double factor);
+  // The replicates since the last call are a part of that half and side.
+  void finish_part(std::size_t half, std::size_t side, double count);
 
   // Sums that did not vary in both halves are too little known to be tested.
-  bool varied(std::size_t cell) const { return halves_that_vary[cell] == 3; }
+  bool varied(std::size_t cell) const { return of_half[0][cell] > 0 && of_half[1][cell] > 0; }
+  // The statistic of cells from this one on, not a number of those that did not vary.
+  void statistics(std::size_t first, std::span<double> t) const;
   // Sets effect, variance and degrees.
   void put(std::size_t cell, CellNoise& noise) const;
 };
@@ -51,8 +53,8 @@ struct Candidate {
 // cells that they were chosen from.
 class Candidates {
  public:
-  // Counts a cell with this value. True if it may be one of those that are kept.
-  bool wants(StudentValue value);
+  // Counts a cell with this t. True if it may be one of those that are kept.
+  bool wants(double t);
   // finding.z must be set.
   void keep(const Candidate& candidate);
   const std::vector<Candidate>& kept() const { return kept_; }
@@ -94,21 +96,24 @@ inline constexpr std::uint32_t coarse_size = 16;
 // True if the cells of a group are tested here.
 bool is_fine(const WindowGroup& group);
 
-// One image's weighted sums over blocks of 4 x 4 elements, the last cut off at the edge. Beside
+// Sums of an image's numbers over blocks of 4 x 4 elements, the last cut off at the edge. Beside
 // them its sums with alternating signs, `alternations` a channel.
+template <class Number>
 struct BlockSums {
-  std::vector<double> blocks;
+  std::vector<Number> blocks;
   std::vector<double> alternating;
 };
 
 struct CoarseImages {
   ImageExtent extent;  // In blocks.
-  // [half][side][replicate of the half]
-  std::array<std::array<std::vector<BlockSums>, sides_of_pair>, halves> images;
-  std::array<BlockSums, halves> varied;  // Number of elements that vary and have a weight.
-  BlockSums squared_error;               // Of a reference, weighted; empty if it has none.
-  BlockSums weights;                     // The elements', averaged over the halves.
-  BlockSums squared_weights;
+  // [half][side][replicate of the half]: weighted deviations from the mean of the half. They only
+  // serve variances, so single precision does.
+  std::array<std::array<std::vector<BlockSums<float>>, sides_of_pair>, halves> images;
+  std::array<BlockSums<double>, halves> effect;  // Weighted differences of the means.
+  std::array<BlockSums<double>, halves> varied;  // Number of elements that vary and have a weight.
+  BlockSums<double> squared_error;               // Of a reference, weighted; empty if it has none.
+  BlockSums<double> weights;                     // The elements', averaged over the halves.
+  BlockSums<double> squared_weights;
   std::vector<double> third;  // Third cumulants of the effects of elements, by block.
 };
 
@@ -116,7 +121,7 @@ struct ElementCounts {
   std::size_t tested = 0;
   std::size_t equal_constants = 0;
   std::size_t different_constants = 0;
-  std::size_t first_different = 0;  // An element, if there is any.
+  std::size_t first_different = 0;  // The first such element, if there is any.
   double difference = 0;            // Its own.
   void merge(const ElementCounts& other);
 };
@@ -146,7 +151,7 @@ FineFindings empty_findings(const ImagePair<Real>& pair, std::span<double> z);
 
 // Rows are taken in multiples of fine_rows, but for the image's last. Cells that begin in them
 // reach fine_rows_ahead rows further. The images and halves must have those rows.
-inline constexpr std::size_t fine_rows = 64;
+inline constexpr std::size_t fine_rows = 32;
 inline constexpr std::size_t fine_rows_ahead = 8;
 
 // Collects the candidates among the fine cells that begin in these rows, and fills in their blocks

@@ -5,12 +5,6 @@
 namespace assay::stats {
 namespace {
 
-void add(WelchCells& cells, std::size_t window, double value, double inverse_count) {
-  const double delta = value - cells.mean[window];
-  cells.mean[window] += delta * inverse_count;
-  cells.m2[window] += delta * (value - cells.mean[window]);
-}
-
 using Groups = std::vector<WindowGroup>;
 
 // Cells of groups that are not fine, as rectangles of blocks
@@ -51,17 +45,16 @@ class CoarseSums {
         sums_(extent),
         values_(extent.width * extent.height) {}
 
-  void load(const BlockSums& image) {
-    image_ = &image;
+  template <class Number>
+  void load(const BlockSums<Number>& image) {
+    alternating_ = image.alternating.data() + channel_ * alternations;
     for (std::size_t i = 0; i < values_.size(); ++i) {
-      values_[i] = image.blocks[i * channels_ + channel_];
+      values_[i] = static_cast<double>(image.blocks[i * channels_ + channel_]);
     }
     sums_.load(values_);
   }
   double of(const WindowGroup& group, std::size_t index) const {
-    if (group.grid == Grid::alternating) {
-      return image_->alternating[channel_ * alternations + index];
-    }
+    if (group.grid == Grid::alternating) return alternating_[index];
     return sums_.of(group, index);
   }
   // Sum over all elements in the window, also for those that alternate.
@@ -74,7 +67,7 @@ class CoarseSums {
   std::size_t channel_;
   WindowSums sums_;
   std::vector<double> values_;
-  const BlockSums* image_ = nullptr;
+  const double* alternating_ = nullptr;
 };
 
 // Moments of one channel's windows, all groups in a row.
@@ -83,24 +76,27 @@ WelchCells window_moments(const CoarseImages& coarse, const Groups& groups, std:
   moments.start(count_windows(groups));
   CoarseSums sums(coarse.extent, channel);
   for (std::size_t h = 0; h < halves; ++h) {
+    sums.load(coarse.effect[h]);
+    for_each_window(groups, [&](const WindowGroup& group, std::size_t i, std::size_t window) {
+      moments.effect[window] += factor_of_half * sums.of(group, i);
+    });
     for (std::size_t side = 0; side < sides_of_pair; ++side) {
-      const std::vector<BlockSums>& images = coarse.images[h][side];
+      const std::vector<BlockSums<float>>& images = coarse.images[h][side];
       if (images.empty()) continue;
-      double count = 0;
-      for (const BlockSums& image : images) {
+      for (const BlockSums<float>& image : images) {
         sums.load(image);
-        const double inverse = 1 / ++count;
         for_each_window(groups, [&](const WindowGroup& group, std::size_t i, std::size_t window) {
-          add(moments, window, sums.of(group, i), inverse);
+          const double deviation = sums.of(group, i);
+          moments.squares[window] += deviation * deviation;
         });
       }
       sums.load(coarse.varied[h]);
       for_each_window(groups, [&](const WindowGroup& group, std::size_t i, std::size_t window) {
         // The sum did not vary. The value is only the rounding of the larger sums it was taken
         // from.
-        if (sums.total_of(group, i) == 0) moments.m2[window] = 0;
+        if (sums.total_of(group, i) == 0) moments.squares[window] = 0;
       });
-      moments.finish_part(h, side, count, side == 0 ? 0.5 : -0.5);
+      moments.finish_part(h, side, static_cast<double>(images.size()));
     }
   }
   if (coarse.squared_error.blocks.empty()) return moments;

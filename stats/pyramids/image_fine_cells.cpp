@@ -13,25 +13,27 @@ namespace {
 
 // ---- Tiles
 
-// A tile of an image, and the sums over the squares that begin in it. All channels stand side by
-// side as in the image. Everything beyond the image's edge is zero, so a cell cut off by the edge
-// is a whole square here.
+// A tile of an image. All channels stand side by side as in the image. Everything beyond the
+// image's edge is zero, so a cell cut off by the edge is a whole square here.
 struct Tile {
   static constexpr std::size_t rows = 16;
   static constexpr std::size_t columns = 128;
   static constexpr std::size_t halo = 8;  // Rows and columns beyond, into which its squares reach.
 
-  static std::size_t padded(std::size_t count) { return (count + 7) / 8 * 8; }
-
   ImageExtent extent;
   std::size_t x = 0;
   std::size_t y = 0;
 
-  // Columns and rows that begin here, in multiples of 8.
-  std::size_t width() const { return std::min(columns, padded(extent.width - x)); }
-  std::size_t height() const { return std::min(rows, padded(extent.height - y)); }
-  // Distance from one row of values to the next.
+  std::size_t width() const { return std::min(columns, extent.width - x); }
+  std::size_t height() const { return std::min(rows, extent.height - y); }
+  // Numbers of a row that begin in the tile.
+  std::size_t size() const { return width() * extent.channels; }
+  // Distance from one row of numbers to the next.
   std::size_t stride() const { return (columns + halo) * extent.channels; }
+  // The element that a row begins with.
+  std::size_t first(std::size_t row) const {
+    return ((y + row) * extent.width + x) * extent.channels;
+  }
 };
 
 // Sides of the squares, and distance from one square to the next.
@@ -48,133 +50,68 @@ ASSAY_VECTOR_COPIES void add(const std::array<const double*, 4>& from, double* t
   for (std::size_t i = 0; i < size; ++i) sum[i] = (a[i] + b[i]) + (c[i] + d[i]);
 }
 
-// Sums squares of twice the side from squares that are `apart` numbers and `lines` rows from each
-// other.
-struct Doubling {
-  std::size_t rows;
-  std::size_t size;  // Length of a row of sums.
-  std::size_t stride;
-  std::size_t apart;
-  std::size_t lines;
-};
-
-void double_side(const std::vector<double>& from, std::vector<double>& to, const Doubling& by) {
-  for (std::size_t row = 0; row < by.rows; ++row) {
-    const double* const top = from.data() + row * by.stride;
-    const double* const bottom = top + by.lines * by.stride;
-    add({top, top + by.apart, bottom, bottom + by.apart}, to.data() + row * by.stride, by.size);
-  }
-}
-
+// Sums over the squares that begin in a tile, row after row. A square is four of half its side. Of
+// each side only as many rows are kept as the next side needs.
 class TileSums {
  public:
-  explicit TileSums(const ImageExtent& extent);
-
-  // Rows of Tile::stride() values, Tile::height() + halo of them. The caller fills them.
-  std::span<double> values() { return values_; }
-  void add_up(const Tile& tile);
-
-  // Sums by index in fine_squares, row after row of Tile::stride() / step.
-  const std::vector<double>& of(std::size_t squares) const { return sums_[squares]; }
-
- private:
-  std::size_t channels_;
-  std::vector<double> values_;
-  std::vector<double> blocks_;  // Blocks of 2 x 2, at even columns and rows.
-  std::vector<double> fours_;   // Blocks of 2 x 2 of these, at each of them.
-  std::array<std::vector<double>, fine_squares.size()> sums_;
-};
-
-TileSums::TileSums(const ImageExtent& extent) : channels_(extent.channels) {
-  const std::size_t stride = Tile{extent}.stride();
-  const std::size_t size = (Tile::rows + Tile::halo) * stride;
-  values_.resize(size);
-  blocks_.resize(size / 4);
-  fours_.resize(size / 4);
-  for (std::size_t i = 0; i < sums_.size(); ++i) {
-    sums_[i].resize(size / (fine_squares[i].step * fine_squares[i].step));
+  explicit TileSums(const ImageExtent& extent) : channels_(extent.channels) {
+    stride_ = Tile{extent}.stride();
+    for (std::size_t k = 0; k < kept_.size(); ++k) kept_[k].resize(depth(k) * stride_);
   }
-}
 
-void TileSums::add_up(const Tile& tile) {
-  const std::size_t c = channels_;
-  const std::size_t stride = tile.stride();
-  const std::size_t rows = tile.height();
-  const std::size_t width = tile.width();
-  std::vector<double>& twos = sums_[0];
-  // Side 2 as far as side 8 reaches: it begins at most 2 before the end and
-  // takes 8.
-  double_side(values_, twos, {rows + 7, (width + 7) * c, stride, c, 1});
-  double_side(twos, sums_[1], {rows, width * c, stride, 2 * c, 2});
-  const std::size_t half = stride / 2;
-  for (std::size_t row = 0; row < rows / 2 + 3; ++row) {
-    for (std::size_t block = 0; block < width / 2 + 3; ++block) {
-      const double* const from = twos.data() + 2 * row * stride + 2 * block * c;
-      std::copy(from, from + c, blocks_.data() + row * half + block * c);
+  // Calls fill(row, numbers) for the tile's rows of numbers and those beyond. Calls visit(index in
+  // fine_squares, row, sums) for rows of squares, of which one begins at each column.
+  template <class Fill, class Visit>
+  void add_up(const Tile& tile, const Fill& fill, const Visit& visit) {
+    for (std::size_t y = 0; y < tile.height() + Tile::halo - 1; ++y) {
+      fill(y, row(0, y));
+      for (std::size_t k = 0; k < fine_squares.size(); ++k) {
+        const auto [side, step] = fine_squares[k];
+        const std::size_t first = y + 1 - side;
+        if (y + 1 < side || first % step != 0) break;
+        const double* const top = row(k, first);
+        const double* const bottom = row(k, first + side / 2);
+        const std::size_t apart = side / 2 * channels_;
+        double* const sums = row(k + 1, first);
+        add({top, top + apart, bottom, bottom + apart}, sums,
+            (tile.width() + Tile::halo - side) * channels_);
+        if (first < tile.height()) visit(k, first, sums);
+      }
     }
   }
-  double_side(blocks_, fours_, {rows / 2 + 2, (width / 2 + 2) * c, half, c, 1});
-  double_side(fours_, sums_[2], {rows / 2, width / 2 * c, half, 2 * c, 2});
-}
+
+ private:
+  // Of numbers, and then of the squares of each side.
+  static constexpr std::size_t depth(std::size_t k) {
+    return k < fine_squares.size() ? fine_squares[k].side / 2 + 1 : 1;
+  }
+  double* row(std::size_t k, std::size_t y) { return kept_[k].data() + y % depth(k) * stride_; }
+
+  std::size_t channels_;
+  std::size_t stride_;
+  std::array<std::vector<double>, fine_squares.size() + 1> kept_;
+};
 
 // ---- Loops over elements
 
-template <class Real, class Centre>
-ASSAY_VECTOR_COPIES void weigh(const Real* value, const Centre* centre, const double* weight,
+template <class Real>
+ASSAY_VECTOR_COPIES void weigh(const Real* value, const double* mean, const double* weight,
                                std::span<double> out) {
+  double* const __restrict deviation = out.data();
   for (std::size_t i = 0; i < out.size(); ++i) {
-    out[i] = weight[i] * (static_cast<double>(value[i]) - static_cast<double>(centre[i]));
+    deviation[i] = weight[i] * (static_cast<double>(value[i]) - mean[i]);
   }
 }
 
-// Calls fill(first element, where to) for each row of the tile that the image
-// has, zeros elsewhere.
-template <class Fill>
-void fill_tile(const Tile& tile, std::span<double> values, const Fill& fill) {
-  const ImageExtent& extent = tile.extent;
-  const std::size_t stride = tile.stride();
-  const std::size_t size = std::min(stride, (extent.width - tile.x) * extent.channels);
-  for (std::size_t row = 0; row < tile.height() + Tile::halo; ++row) {
-    const std::span<double> line = values.subspan(row * stride, stride);
-    const bool there = tile.y + row < extent.height;
-    if (there) {
-      fill(((tile.y + row) * extent.width + tile.x) * extent.channels, line.first(size));
-    }
-    std::ranges::fill(line.subspan(there ? size : 0), 0.0);
-  }
+ASSAY_VECTOR_COPIES void add_squares(const double* from, double* to, std::size_t size) {
+  double* const __restrict squares = to;
+  for (std::size_t i = 0; i < size; ++i) squares[i] += from[i] * from[i];
 }
 
-struct Updated {
-  const double* sum;
-  double* mean;
-  double* m2;
-};
-
-ASSAY_VECTOR_COPIES void update(const Updated& row, double inverse_count, std::size_t size) {
-  const double* const sum = row.sum;
-  double* const __restrict mean = row.mean;
-  double* const __restrict m2 = row.m2;
-  for (std::size_t i = 0; i < size; ++i) {
-    const double delta = sum[i] - mean[i];
-    mean[i] += delta * inverse_count;
-    m2[i] += delta * (sum[i] - mean[i]);
-  }
-}
-
-struct ColumnSums {
-  const double* row;
-  double* sum;
-  double* signed_sum;
-};
-
-ASSAY_VECTOR_COPIES void add_row(const ColumnSums& to, double sign, std::size_t size) {
-  const double* const row = to.row;
-  double* const __restrict sum = to.sum;
-  double* const __restrict signed_sum = to.signed_sum;
-  for (std::size_t i = 0; i < size; ++i) {
-    sum[i] += row[i];
-    signed_sum[i] += sign * row[i];
-  }
+ASSAY_VECTOR_COPIES void add_scaled(const double* from, double factor, double* to,
+                                    std::size_t size) {
+  double* const __restrict sum = to;
+  for (std::size_t i = 0; i < size; ++i) sum[i] += factor * from[i];
 }
 
 // Sums of powers of a row of elements' weighted deviations.
@@ -184,35 +121,63 @@ struct RowPowers {
   double* sixths;
 };
 
-template <class Real>
-ASSAY_VECTOR_COPIES void add_powers(const Real* value, const double* mean, const double* weight,
+// True if a deviation is beyond its limit.
+ASSAY_VECTOR_COPIES bool add_powers(const double* deviation, const double* limit,
                                     const RowPowers& to, std::size_t size) {
   double* const __restrict squares = to.squares;
   double* const __restrict cubes = to.cubes;
   double* const __restrict sixths = to.sixths;
+  std::uint64_t beyond = 0;
   for (std::size_t i = 0; i < size; ++i) {
-    const double d = weight[i] * (static_cast<double>(value[i]) - mean[i]);
+    const double d = deviation[i];
     const double square = d * d;
     const double cube = square * d;
     squares[i] += square;
     cubes[i] += cube;
     sixths[i] += cube * cube;
+    beyond |= std::abs(d) > limit[i] ? 1U : 0U;
+  }
+  return beyond != 0;
+}
+
+// What a part adds to an element.
+struct PartSums {
+  double* variance;
+  double* reciprocal_degrees;
+  double* third;
+};
+
+// Adds a part's sums over `count` replicates, which is below 0 of the second side. Makes powers of
+// weighted deviations those of plain ones, the squares without bias.
+ASSAY_VECTOR_COPIES void finish_row(const RowPowers& powers, const double* weight, double count,
+                                    const PartSums& to, std::size_t size) {
+  double* const __restrict squares = powers.squares;
+  double* const __restrict cubes = powers.cubes;
+  double* const __restrict sixths = powers.sixths;
+  double* const __restrict variance = to.variance;
+  double* const __restrict reciprocal_degrees = to.reciprocal_degrees;
+  double* const __restrict third = to.third;
+  const double n = std::abs(count);
+  const double factor = factor_of_half * factor_of_half;
+  for (std::size_t i = 0; i < size; ++i) {
+    const double part = factor * squares[i] / (n * (n - 1));
+    variance[i] += part;
+    reciprocal_degrees[i] += part * part / (n - 1);
+    third[i] += factor * factor_of_half / (count * count * count) * cubes[i];
+    const double inverse = weight[i] > 0 ? 1 / weight[i] : 0.0;
+    const double cube = inverse * inverse * inverse;
+    squares[i] *= inverse * inverse * n / (n - 1);
+    cubes[i] *= cube;
+    sixths[i] *= cube * cube;
   }
 }
 
-// Asks for the rows of a tile before they are needed. A tile's rows are too short for the machine
-// to foresee the next.
+// Asks for numbers before they are needed. A tile's rows are too short for the machine to foresee
+// the next.
 template <class Real>
-void fetch_ahead(const Tile& tile, const ImageStack<Real>& stack, std::size_t image) {
+void fetch_ahead(const Real* first, std::size_t size) {
   constexpr std::size_t line = 64 / sizeof(Real);
-  const ImageExtent& extent = tile.extent;
-  const std::size_t size = std::min(tile.stride(), (extent.width - tile.x) * extent.channels);
-  const std::size_t rows = std::min(tile.height() + Tile::halo, extent.height - tile.y);
-  for (std::size_t row = 0; row < rows; ++row) {
-    const Real* const first =
-        stack.at(image, ((tile.y + row) * extent.width + tile.x) * extent.channels);
-    for (std::size_t i = 0; i < size; i += line) __builtin_prefetch(first + i);
-  }
+  for (std::size_t i = 0; i < size; i += line) __builtin_prefetch(first + i);
 }
 
 // The group of aligned and the group of shifted cells of one side, where there
@@ -231,19 +196,17 @@ GroupsOfSide groups_of_side(const std::vector<WindowGroup>& groups, std::uint32_
   return found;
 }
 
+// Column of tiles, whose sums with alternating signs stand by themselves until all rows are there.
 template <class Real>
 class FineTiles {
  public:
-  FineTiles(const FineCells<Real>& cells, std::size_t band, FineFindings& found)
+  FineTiles(const FineCells<Real>& cells, std::size_t column, FineFindings& found)
       : cells_(cells),
         extent_(cells.pair.a.extent),
         found_(found),
         coarse_(found.coarse),
-        alternating_(band * extent_.channels * alternations),
-        sums_(extent_),
-        column_sums_(Tile{extent_}.stride()),
-        signed_column_sums_(column_sums_.size()),
-        elements_(extent_) {
+        alternating_(column * extent_.channels * alternations),
+        sums_(extent_) {
     for (std::size_t k = 0; k < fine_squares.size(); ++k) {
       groups_[k] = groups_of_side(cells.groups, fine_squares[k].side);
     }
@@ -253,23 +216,18 @@ class FineTiles {
 
   void take(const Tile& tile) {
     candidates_.assign(cells_.groups.size(), {});
-    elements_.start();
-    find_light(tile);
     const std::size_t size = Tile::rows * tile.stride();
-    for (std::size_t k = 0; k < fine_squares.size(); ++k) {
-      moments_[k].start(size / (fine_squares[k].step * fine_squares[k].step));
-    }
+    elements_.start(size);
+    for (WelchCells& moments : moments_) moments.start(size);
+    find_light(tile);
     for (std::size_t h = 0; h < halves; ++h) {
-      take_half(tile, cells_.pair.a, {h, 0}, 0.5);
-      take_elements(tile, cells_.pair.a, {h, 0}, 0.5);
-      if (cells_.pair.b != nullptr) {
-        take_half(tile, *cells_.pair.b, {h, 1}, -0.5);
-        take_elements(tile, *cells_.pair.b, {h, 1}, -0.5);
-      }
+      take_part(tile, cells_.pair.a, {h, 0});
+      if (cells_.pair.b != nullptr) take_part(tile, *cells_.pair.b, {h, 1});
+      add_effect(tile, h);
       count_varied(tile, h);
     }
     if (!coarse_.squared_error.blocks.empty()) add_reference_error(tile);
-    add_weights(tile);
+    add_weights(tile, size);
     offer_elements(tile);
     for (std::size_t k = 0; k < fine_squares.size(); ++k) offer_squares(tile, k);
     const std::size_t across = (extent_.width + Tile::columns - 1) / Tile::columns;
@@ -282,26 +240,23 @@ class FineTiles {
     std::size_t side;
   };
 
-  // Elements that begin in a tile, row after row, without those beyond it.
+  // Elements that begin in a tile, rows as far apart as the tile's.
   struct Elements {
-    explicit Elements(const ImageExtent& extent) : stride(Tile::columns * extent.channels) {}
-    void start() {
+    void start(std::size_t size) {
       for (std::vector<double>* each :
            {&effect, &variance[0], &variance[1], &reciprocal_degrees, &third, &light}) {
-        each->assign(Tile::rows * stride, 0.0);
+        each->assign(size, 0.0);
       }
     }
-    void start_part() {
-      for (std::vector<double>* each : {&squares, &cubes, &sixths}) {
-        each->assign(Tile::rows * stride, 0.0);
-      }
+    void start_part(std::size_t size) {
+      for (std::vector<double>* each : {&squares, &cubes, &sixths, &limit}) each->assign(size, 0.0);
     }
-    std::size_t stride;
     std::vector<double> light;
     // These are of the current part.
     std::vector<double> squares;
     std::vector<double> cubes;
     std::vector<double> sixths;
+    std::vector<double> limit;  // Weighted deviations beyond are rare.
     // These add up the parts that are done.
     std::vector<double> effect;
     std::array<std::vector<double>, sides_of_pair> variance;
@@ -309,19 +264,13 @@ class FineTiles {
     std::vector<double> third;
   };
 
-  std::size_t rows_of(const Tile& tile) const {
-    return std::min(Tile::rows, extent_.height - tile.y);
-  }
-  std::size_t columns_of(const Tile& tile) const {
-    return std::min(Tile::columns, extent_.width - tile.x);
-  }
   // Calls visit(index here, element of the image, x, y, channel).
   template <class Visit>
   void for_each_element(const Tile& tile, const Visit& visit) const {
-    for (std::size_t y = 0; y < rows_of(tile); ++y) {
-      std::size_t i = y * elements_.stride;
-      std::size_t element = ((tile.y + y) * extent_.width + tile.x) * extent_.channels;
-      for (std::size_t x = 0; x < columns_of(tile); ++x) {
+    for (std::size_t y = 0; y < tile.height(); ++y) {
+      std::size_t i = y * tile.stride();
+      std::size_t element = tile.first(y);
+      for (std::size_t x = 0; x < tile.width(); ++x) {
         for (std::size_t c = 0; c < extent_.channels; ++c) {
           visit(i++, element++, tile.x + x, tile.y + y, c);
         }
@@ -329,65 +278,104 @@ class FineTiles {
     }
   }
 
-  void take_elements(const Tile& tile, const ImageStack<Real>& stack, Part part, double factor) {
-    Elements& all = elements_;
-    all.start_part();
+  // Adds up numbers that fill(row, first element, where to) gives for rows of the image, and zeros
+  // beyond. Keeps the sums over blocks and with alternating signs. Calls visit as TileSums does.
+  template <class Number, class Fill, class Visit>
+  void add_up(const Tile& tile, BlockSums<Number>& kept, const Fill& fill, const Visit& visit) {
+    for (std::vector<double>& sums : column_sums_) sums.assign(tile.size(), 0.0);
+    const std::size_t size = std::min(tile.stride(), (extent_.width - tile.x) * extent_.channels);
+    const auto fill_row = [&](std::size_t y, double* numbers) {
+      const bool there = tile.y + y < extent_.height;
+      if (there) fill(y, tile.first(y), std::span(numbers, size));
+      std::fill(numbers + (there ? size : 0), numbers + tile.stride(), 0.0);
+      if (y < tile.height()) add_scaled(numbers, 1, column_sums_[y % 2].data(), tile.size());
+    };
+    sums_.add_up(tile, fill_row, [&](std::size_t k, std::size_t y, const double* sums) {
+      if (fine_squares[k].side == block_side && y % block_side == 0) {
+        keep_blocks(tile, y, sums, kept.blocks);
+      }
+      visit(k, y, sums);
+    });
+    add_alternating(tile, kept);
+  }
+
+  void take_part(const Tile& tile, const ImageStack<Real>& stack, Part part) {
     const Half& own = cells_.half[part.half];
-    const Half& other = cells_.half[1 - part.half];
-    const std::size_t size = columns_of(tile) * extent_.channels;
+    const double* const mean = own.mean[part.side].data();
+    const double* const weights = cells_.half[1 - part.half].weight.data();
+    start_part(tile, weights);
+    Elements& all = elements_;
     std::size_t count = 0;
     for (std::size_t r = part.half; r < stack.images.size(); r += halves) {
-      ++count;
-      for (std::size_t y = 0; y < rows_of(tile); ++y) {
-        const std::size_t element = ((tile.y + y) * extent_.width + tile.x) * extent_.channels;
-        const std::size_t here = element - own.first;
-        const std::size_t row = y * all.stride;
-        add_powers(
-            stack.at(r, element), own.mean[part.side].data() + here, other.weight.data() + here,
-            {all.squares.data() + row, all.cubes.data() + row, all.sixths.data() + row}, size);
-        note_rare(tile, stack.at(r, element), part, y, size);
-      }
+      const auto fill = [&](std::size_t y, std::size_t first, std::span<double> out) {
+        const Real* const values = stack.at(r, first);
+        if (r + halves < stack.images.size()) fetch_ahead(stack.at(r + halves, first), out.size());
+        const std::size_t here = first - own.first;
+        weigh(values, mean + here, weights + here, out);
+        if (y >= tile.height()) return;
+        const std::size_t i = y * tile.stride();
+        const RowPowers powers{&all.squares[i], &all.cubes[i], &all.sixths[i]};
+        if (add_powers(out.data(), &all.limit[i], powers, tile.size())) {
+          note_rare(tile, y, part, values, out);
+        }
+      };
+      add_up(tile, coarse_.images[part.half][part.side][count++], fill,
+             [&](std::size_t k, std::size_t y, const double* sums) {
+               add_squares(sums, moments_[k].squares.data() + y * tile.stride(), tile.size());
+             });
     }
-    finish_elements(tile, part, static_cast<double>(count), factor);
+    for (WelchCells& moments : moments_) {
+      moments.finish_part(part.half, part.side, static_cast<double>(count));
+    }
+    finish_elements(tile, part, static_cast<double>(count));
   }
 
   // Deviations beyond twice the light of the block are rare.
-  void note_rare(const Tile& tile, const Real* value, Part part, std::size_t y, std::size_t size) {
-    const std::size_t here =
-        ((tile.y + y) * extent_.width + tile.x) * extent_.channels - cells_.half[0].first;
-    const double* const mean = cells_.half[part.half].mean[part.side].data() + here;
-    const double* const weight = cells_.half[1 - part.half].weight.data() + here;
-    const double* const light = elements_.light.data() + y * elements_.stride;
+  void start_part(const Tile& tile, const double* weights) {
     constexpr double rare = 2;
-    for (std::size_t i = 0; i < size; ++i) {
-      const double deviation = static_cast<double>(value[i]) - mean[i];
-      if (std::abs(deviation) <= rare * light[i] || weight[i] == 0) continue;
+    elements_.start_part(Tile::rows * tile.stride());
+    for_each_element(tile, [&](std::size_t i, std::size_t element, auto...) {
+      elements_.limit[i] = rare * elements_.light[i] * weights[element - cells_.half[0].first];
+    });
+  }
+
+  void note_rare(const Tile& tile, std::size_t y, Part part, const Real* values,
+                 std::span<const double> weighted) {
+    const double* const limit = elements_.limit.data() + y * tile.stride();
+    const double* const mean =
+        cells_.half[part.half].mean[part.side].data() + (tile.first(y) - cells_.half[0].first);
+    for (std::size_t i = 0; i < tile.size(); ++i) {
+      if (!(std::abs(weighted[i]) > limit[i])) continue;
       found_.noise.at(part.side, tile.x + i / extent_.channels, tile.y + y, i % extent_.channels)
-          .add_rare(deviation);
+          .add_rare(static_cast<double>(values[i]) - mean[i]);
     }
   }
 
-  void finish_elements(const Tile& tile, Part part, double count, double factor) {
-    const Half& own = cells_.half[part.half];
-    const Half& other = cells_.half[1 - part.half];
+  void finish_elements(const Tile& tile, Part part, double count) {
+    constexpr std::size_t block = NoisePyramid::block;
+    const double sign = part.side == 0 ? 1 : -1;
     Elements& all = elements_;
-    const double third_factor = factor * factor * factor / (count * count * count);
-    for_each_element(
-        tile, [&](std::size_t i, std::size_t element, std::size_t x, std::size_t y, std::size_t c) {
-          const std::size_t here = element - own.first;
-          const double weight = other.weight[here];
-          if (part.side == 0) all.effect[i] += factor * weight * own.difference[here];
-          if (weight == 0) return;
-          const double variance = factor * factor * all.squares[i] / (count * (count - 1));
-          all.variance[part.side][i] += variance;
-          all.reciprocal_degrees[i] += variance * variance / (count - 1);
-          all.third[i] += third_factor * all.cubes[i];
-          found_.noise.at(part.side, x, y, c)
-              .add({.count = count,
-                    .squares = all.squares[i] / (weight * weight) * count / (count - 1),
-                    .cubes = all.cubes[i] / (weight * weight * weight),
-                    .sixths = all.sixths[i] / std::pow(weight, 6)});
-        });
+    for (std::size_t y = 0; y < tile.height(); ++y) {
+      const std::size_t i = y * tile.stride();
+      const double* const weight =
+          cells_.half[1 - part.half].weight.data() + (tile.first(y) - cells_.half[0].first);
+      finish_row({&all.squares[i], &all.cubes[i], &all.sixths[i]}, weight, sign * count,
+                 {&all.variance[part.side][i], &all.reciprocal_degrees[i], &all.third[i]},
+                 tile.size());
+      for (std::size_t x = 0; x < tile.width(); x += block) {
+        const std::size_t end = std::min(x + block, tile.width()) * extent_.channels;
+        for (std::size_t c = 0; c < extent_.channels; ++c) {
+          PooledNoise::Powers powers;
+          for (std::size_t e = x * extent_.channels + c; e < end; e += extent_.channels) {
+            powers.count += weight[e] > 0 ? count : 0;
+            powers.squares += all.squares[i + e];
+            powers.cubes += all.cubes[i + e];
+            powers.sixths += all.sixths[i + e];
+          }
+          found_.noise.at(part.side, tile.x + x, tile.y + y, c).add(powers);
+        }
+      }
+    }
   }
 
   // Tests each element.
@@ -407,18 +395,16 @@ class FineTiles {
           }
           ++counts_.tested;
           note_noisier(i, element, x, y, c);
-          Candidate candidate;
-          candidate.finding.window = {static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
-                                      1, 1};
-          candidate.finding.channel = c;
-          candidate.noise.effect = all.effect[i];
-          candidate.noise.variance = {all.variance[0][i], all.variance[1][i] + error_of(element)};
-          const double total = candidate.noise.variance[0] + candidate.noise.variance[1];
-          candidate.noise.degrees = total * total / all.reciprocal_degrees[i];
-          candidate.noise.weight = weight;
-          const StudentValue value = own_value(candidate.noise);
-          found_.z[element] = candidate.finding.z = t_to_z(value);
-          if (candidates_[0].wants(value)) candidates_[0].keep(candidate);
+          CellNoise noise{.effect = all.effect[i],
+                          .variance = {all.variance[0][i], all.variance[1][i] + error_of(element)},
+                          .weight = weight};
+          const double total = noise.variance[0] + noise.variance[1];
+          noise.degrees = total * total / all.reciprocal_degrees[i];
+          const StudentValue value = own_value(noise);
+          found_.z[element] = t_to_z(value);
+          if (!candidates_[0].wants(value.t)) return;
+          const Rectangle place{static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 1, 1};
+          candidates_[0].keep({{.window = place, .channel = c, .z = found_.z[element]}, noise});
         });
   }
 
@@ -474,17 +460,28 @@ class FineTiles {
   }
 
   // Sums of the weights and of their squares.
-  void add_weights(const Tile& tile) {
-    fill_tile(tile, sums_.values(), [&](std::size_t first, std::span<double> out) {
-      for (std::size_t i = 0; i < out.size(); ++i) out[i] = weight_of(first + i);
-    });
-    sums_.add_up(tile);
-    keep_blocks(tile, coarse_.weights);
-    for (std::size_t k = 0; k < fine_squares.size(); ++k) weights_[k] = sums_.of(k);
-    for (double& weight : sums_.values()) weight *= weight;
-    sums_.add_up(tile);
-    keep_blocks(tile, coarse_.squared_weights);
-    add_alternating(tile, coarse_.squared_weights);
+  void add_weights(const Tile& tile, std::size_t size) {
+    const auto keep_in = [&](std::array<std::vector<double>, fine_squares.size()>& kept) {
+      for (std::vector<double>& each : kept) each.resize(size);
+      return [&](std::size_t k, std::size_t y, const double* sums) {
+        std::copy_n(sums, tile.size(), kept[k].data() + y * tile.stride());
+      };
+    };
+    add_up(
+        tile, coarse_.weights,
+        [&](std::size_t, std::size_t first, std::span<double> out) {
+          for (std::size_t i = 0; i < out.size(); ++i) out[i] = weight_of(first + i);
+        },
+        keep_in(weights_));
+    add_up(
+        tile, coarse_.squared_weights,
+        [&](std::size_t, std::size_t first, std::span<double> out) {
+          for (std::size_t i = 0; i < out.size(); ++i) {
+            const double weight = weight_of(first + i);
+            out[i] = weight * weight;
+          }
+        },
+        keep_in(squared_weights_));
   }
 
   // A reference's squared error, weighted as the element is.
@@ -516,129 +513,108 @@ class FineTiles {
     counts_.merge(one);
   }
 
-  void take_half(const Tile& tile, const ImageStack<Real>& stack, Part part, double factor) {
-    const Half& other = cells_.half[1 - part.half];
-    std::vector<BlockSums>& kept = coarse_.images[part.half][part.side];
-    double count = 0;
-    for (std::size_t r = part.half; r < stack.images.size(); r += halves) {
-      if (r + halves < stack.images.size()) fetch_ahead(tile, stack, r + halves);
-      fill_tile(tile, sums_.values(), [&](std::size_t first, std::span<double> out) {
-        const Real* const value = stack.at(r, first);
-        const double* const weight = other.weight.data() + (first - other.first);
-        if (cells_.pair.b != nullptr) {
-          weigh(value, cells_.pair.b->at(0, first), weight, out);
-        } else {
-          weigh(value, cells_.pair.reference->value.data() + first, weight, out);
-        }
-      });
-      sums_.add_up(tile);
-      const double inverse = 1 / ++count;
-      for (std::size_t k = 0; k < fine_squares.size(); ++k) update_squares(tile, k, inverse);
-      BlockSums& blocks = kept[r / halves];
-      keep_blocks(tile, blocks);
-      add_alternating(tile, blocks);
-    }
-    for (WelchCells& moments : moments_) moments.finish_part(part.half, part.side, count, factor);
-  }
-
-  void update_squares(const Tile& tile, std::size_t k, double inverse) {
-    const std::size_t step = fine_squares[k].step;
-    const std::size_t stride = tile.stride() / step;
-    for (std::size_t row = 0; row < tile.height() / step; ++row) {
-      update({sums_.of(k).data() + row * stride, moments_[k].mean.data() + row * stride,
-              moments_[k].m2.data() + row * stride},
-             inverse, tile.width() / step * extent_.channels);
-    }
-  }
-
-  // Calls visit(index of the block, of its sum) for the first channel of each
-  // block of the tile.
-  template <class Visit>
-  void for_each_block(const Tile& tile, const Visit& visit) const {
-    for (std::size_t y = 0; y < tile.height() && tile.y + y < extent_.height; y += block_side) {
-      for (std::size_t x = 0; x < tile.width() && tile.x + x < extent_.width; x += block_side) {
-        const std::size_t row = (tile.y + y) / block_side;
-        const std::size_t block = row * coarse_.extent.width + (tile.x + x) / block_side;
-        visit(block * extent_.channels, y * tile.stride() + x * extent_.channels);
-      }
-    }
-  }
-  void keep_blocks(const Tile& tile, BlockSums& to) const {
-    const double* const sums = sums_.of(1).data();
-    for_each_block(tile, [&](std::size_t block, std::size_t sum) {
-      std::copy_n(sums + sum, extent_.channels, to.blocks.data() + block);
-    });
-  }
-
-  void add_alternating(const Tile& tile, BlockSums& to) {
-    const std::size_t size = tile.width() * extent_.channels;
-    std::fill_n(column_sums_.begin(), size, 0.0);
-    std::fill_n(signed_column_sums_.begin(), size, 0.0);
-    for (std::size_t y = 0; y < tile.height(); ++y) {
-      add_row({sums_.values().data() + y * tile.stride(), column_sums_.data(),
-               signed_column_sums_.data()},
-              y % 2 == 0 ? 1 : -1, size);
-    }
-    for (std::size_t x = 0; x < tile.width(); ++x) {
-      const double sign = x % 2 == 0 ? 1 : -1;
+  void keep_blocks(const Tile& tile, std::size_t y, const double* sums, auto& blocks) const {
+    const std::size_t row = (tile.y + y) / block_side * coarse_.extent.width;
+    for (std::size_t x = 0; x < tile.width(); x += block_side) {
       for (std::size_t c = 0; c < extent_.channels; ++c) {
-        const std::size_t i = x * extent_.channels + c;
-        double* const channel = to.alternating.data() + alternating_ + c * alternations;
-        channel[0] += sign * column_sums_[i];
-        channel[1] += signed_column_sums_[i];
-        channel[2] += sign * signed_column_sums_[i];
+        blocks[(row + (tile.x + x) / block_side) * extent_.channels + c] =
+            static_cast<std::remove_cvref_t<decltype(blocks[0])>>(sums[x * extent_.channels + c]);
       }
     }
   }
 
-  // Squares of that side did not vary if none of their elements did. Their sums are then equal in
+  template <class Number>
+  void add_alternating(const Tile& tile, BlockSums<Number>& to) const {
+    for (std::size_t c = 0; c < extent_.channels; ++c) {
+      const auto of = [&](std::size_t odd_row, std::size_t odd_column) {
+        double sum = 0;
+        for (std::size_t x = odd_column; x < tile.width(); x += 2) {
+          sum += column_sums_[odd_row][x * extent_.channels + c];
+        }
+        return sum;
+      };
+      const double even[] = {of(0, 0), of(0, 1)};
+      const double odd[] = {of(1, 0), of(1, 1)};
+      double* const channel = to.alternating.data() + alternating_ + c * alternations;
+      channel[0] += (even[0] + odd[0]) - (even[1] + odd[1]);
+      channel[1] += (even[0] + even[1]) - (odd[0] + odd[1]);
+      channel[2] += (even[0] + odd[1]) - (even[1] + odd[0]);
+    }
+  }
+
+  // Differences of the means of a half.
+  void add_effect(const Tile& tile, std::size_t h) {
+    const Half& own = cells_.half[h];
+    const Half& other = cells_.half[1 - h];
+    add_up(
+        tile, coarse_.effect[h],
+        [&](std::size_t y, std::size_t first, std::span<double> out) {
+          const std::size_t here = first - own.first;
+          for (std::size_t i = 0; i < out.size(); ++i) {
+            out[i] = other.weight[here + i] * own.difference[here + i];
+          }
+          if (y >= tile.height()) return;
+          add_scaled(out.data(), factor_of_half, elements_.effect.data() + y * tile.stride(),
+                     tile.size());
+        },
+        [&](std::size_t k, std::size_t y, const double* sums) {
+          add_scaled(sums, factor_of_half, moments_[k].effect.data() + y * tile.stride(),
+                     tile.size());
+        });
+  }
+
+  // Squares of that side did not vary if none of their elements did. Deviations are then zero in
   // every replicate, to the last bit. Sums of larger cells need the count.
   void count_varied(const Tile& tile, std::size_t h) {
-    fill_tile(tile, sums_.values(), [&](std::size_t first, std::span<double> out) {
-      const double* const weight =
-          cells_.half[1 - h].weight.data() + (first - cells_.half[h].first);
-      const unsigned char* const varied =
-          cells_.half[h].varied.data() + (first - cells_.half[h].first);
-      for (std::size_t i = 0; i < out.size(); ++i) {
-        out[i] = weight[i] > 0 && varied[i] > 0 ? 1 : 0;
-      }
-    });
-    sums_.add_up(tile);
-    keep_blocks(tile, coarse_.varied[h]);
+    const Half& own = cells_.half[h];
+    const Half& other = cells_.half[1 - h];
+    add_up(
+        tile, coarse_.varied[h],
+        [&](std::size_t, std::size_t first, std::span<double> out) {
+          const std::size_t here = first - own.first;
+          for (std::size_t i = 0; i < out.size(); ++i) {
+            out[i] = other.weight[here + i] > 0 && own.varied[here + i] > 0 ? 1 : 0;
+          }
+        },
+        [](auto...) {});
   }
 
   // A reference's error is one for both halves, independent between elements, and known without
   // degrees of freedom. A sum that did not vary stays untested, without variance. The error says
   // nothing of values never seen.
   void add_reference_error(const Tile& tile) {
-    fill_tile(tile, sums_.values(), [&](std::size_t first, std::span<double> out) {
-      for (std::size_t i = 0; i < out.size(); ++i) out[i] = error_of(first + i);
-    });
-    sums_.add_up(tile);
-    keep_blocks(tile, coarse_.squared_error);
-    for (std::size_t k = 0; k < fine_squares.size(); ++k) {
-      for (std::size_t i = 0; i < moments_[k].variance[0].size(); ++i) {
-        if (moments_[k].variance[0][i] > 0) moments_[k].variance[1][i] += sums_.of(k)[i];
-      }
-    }
+    add_up(
+        tile, coarse_.squared_error,
+        [&](std::size_t, std::size_t first, std::span<double> out) {
+          for (std::size_t i = 0; i < out.size(); ++i) out[i] = error_of(first + i);
+        },
+        [&](std::size_t k, std::size_t y, const double* sums) {
+          for (std::size_t i = 0; i < tile.size(); ++i) {
+            const std::size_t cell = y * tile.stride() + i;
+            if (moments_[k].variance[0][cell] > 0) moments_[k].variance[1][cell] += sums[i];
+          }
+        });
   }
 
   void offer_squares(const Tile& tile, std::size_t k) {
     const auto [side, step] = fine_squares[k];
-    const std::size_t stride = tile.stride() / step;
-    for (std::size_t row = 0; row < tile.height() / step; ++row) {
-      for (std::size_t column = 0; column < tile.width() / step; ++column) {
-        const Rectangle square{static_cast<std::uint32_t>(tile.x + column * step),
-                               static_cast<std::uint32_t>(tile.y + row * step), side, side};
-        offer_square(square, k, row * stride + column * extent_.channels);
+    t_.resize(tile.size());
+    for (std::size_t y = 0; y < tile.height(); y += step) {
+      moments_[k].statistics(y * tile.stride(), t_);
+      for (std::size_t x = 0; x < tile.width(); x += step) {
+        const Rectangle square{static_cast<std::uint32_t>(tile.x + x),
+                               static_cast<std::uint32_t>(tile.y + y), side, side};
+        const std::size_t first = x * extent_.channels;
+        offer_square(square, k, y * tile.stride() + first,
+                     std::span(t_).subspan(first, extent_.channels));
       }
     }
   }
 
-  void offer_square(Rectangle square, std::size_t k, std::size_t first) {
+  // Offers the channels' cells, which are known by the first and by their statistics.
+  void offer_square(Rectangle square, std::size_t k, std::size_t first, std::span<const double> t) {
     const auto width = static_cast<std::uint32_t>(extent_.width);
     const auto height = static_cast<std::uint32_t>(extent_.height);
-    if (square.x >= width || square.y >= height) return;
     const bool aligned = square.x % square.width == 0 && square.y % square.height == 0;
     const std::optional<std::size_t> group = aligned ? groups_[k].aligned : groups_[k].shifted;
     if (!group) return;
@@ -647,18 +623,14 @@ class FineTiles {
     if (!aligned && (square.x + wide > width || square.y + high > height)) return;
     square.width = std::min(wide, width - square.x);
     square.height = std::min(high, height - square.y);
-    const WelchCells& moments = moments_[k];
-    Candidate candidate;
-    candidate.finding.size = cells_.groups[*group].size;
-    candidate.finding.window = square;
     for (std::size_t c = 0; c < extent_.channels; ++c) {
-      if (!moments.varied(first + c)) continue;
-      candidate.finding.channel = c;
-      moments.put(first + c, candidate.noise);
-      const StudentValue value = own_value(candidate.noise);
-      if (!candidates_[*group].wants(value)) continue;
-      candidate.noise.weight = sums_.of(k)[first + c] / weights_[k][first + c];
-      candidate.finding.z = t_to_z(value);
+      if (std::isnan(t[c]) || !candidates_[*group].wants(t[c])) continue;
+      const std::size_t cell = first + c;
+      Candidate candidate{
+          .finding = {.size = cells_.groups[*group].size, .window = square, .channel = c},
+          .noise = {.weight = squared_weights_[k][cell] / weights_[k][cell]}};
+      moments_[k].put(cell, candidate.noise);
+      candidate.finding.z = t_to_z(own_value(candidate.noise));
       candidates_[*group].keep(candidate);
     }
   }
@@ -669,29 +641,33 @@ class FineTiles {
   ElementCounts counts_;
   FineFindings& found_;
   CoarseImages& coarse_;
-  std::size_t alternating_;  // Index of the band's sums with alternating signs.
+  std::size_t alternating_;  // Index of the column's sums with alternating signs.
   TileSums sums_;
-  std::vector<double> column_sums_;
-  std::vector<double> signed_column_sums_;
-  std::array<WelchCells, fine_squares.size()> moments_;  // Squares that begin in the tile.
+  std::array<std::vector<double>, 2> column_sums_;  // Of even and of odd rows.
+  std::vector<double> t_;                           // Statistics of a row of squares.
   std::array<GroupsOfSide, fine_squares.size()> groups_;
-  std::array<std::vector<double>, fine_squares.size()> weights_;  // Sums over the squares.
+  // These are of the squares that begin in the tile.
+  std::array<WelchCells, fine_squares.size()> moments_;
+  std::array<std::vector<double>, fine_squares.size()> weights_;
+  std::array<std::vector<double>, fine_squares.size()> squared_weights_;
   Elements elements_;
 };
 
-// Rows of an image are looked at in bands of tiles. Each band has alternating sums of its own until
-// all are there.
-constexpr std::size_t band_rows = 2 * Tile::rows;
-static_assert(fine_rows % band_rows == 0 && fine_rows_ahead == Tile::halo);
+static_assert(fine_rows % Tile::rows == 0 && fine_rows_ahead == Tile::halo);
+
+std::size_t tiles_across(const ImageExtent& extent) {
+  return (extent.width + Tile::columns - 1) / Tile::columns;
+}
 
 template <class Real>
 CoarseImages empty_blocks(const ImagePair<Real>& pair) {
   const ImageExtent& extent = pair.a.extent;
-  const std::size_t bands = (extent.height + band_rows - 1) / band_rows;
   CoarseImages coarse;
   coarse.extent = {blocks_of(extent.width), blocks_of(extent.height), extent.channels};
-  const BlockSums none{std::vector<double>(coarse.extent.elements()),
-                       std::vector<double>(bands * extent.channels * alternations)};
+  const BlockSums<double> none{
+      std::vector<double>(coarse.extent.elements()),
+      std::vector<double>(tiles_across(extent) * extent.channels * alternations)};
+  const BlockSums<float> no_image{std::vector<float>(none.blocks.size()), none.alternating};
   const auto per_half = [](const ImageStack<Real>& stack, std::size_t h) {
     return (stack.images.size() + 1 - h) / halves;
   };
@@ -699,8 +675,9 @@ CoarseImages empty_blocks(const ImagePair<Real>& pair) {
   coarse.weights = none;
   coarse.squared_weights = none;
   for (std::size_t h = 0; h < halves; ++h) {
-    coarse.images[h][0].assign(per_half(pair.a, h), none);
-    if (pair.b != nullptr) coarse.images[h][1].assign(per_half(*pair.b, h), none);
+    coarse.images[h][0].assign(per_half(pair.a, h), no_image);
+    if (pair.b != nullptr) coarse.images[h][1].assign(per_half(*pair.b, h), no_image);
+    coarse.effect[h] = none;
     coarse.varied[h] = none;
   }
   if (pair.reference != nullptr && !pair.reference->standard_error.empty()) {
@@ -721,20 +698,20 @@ template <class Real>
 void offer_fine_cells(const FineCells<Real>& cells, RowRange rows, FineFindings& found,
                       const ForEach& for_each) {
   const ImageExtent& extent = cells.pair.a.extent;
-  std::vector<ElementCounts> counts((rows.last - rows.first + band_rows - 1) / band_rows);
-  for_each(counts.size(), [&](std::size_t i) {
-    const std::size_t first = rows.first + i * band_rows;
-    FineTiles<Real> tiles(cells, first / band_rows, found);
-    for (std::size_t y = first; y < std::min(first + band_rows, rows.last); y += Tile::rows) {
-      for (std::size_t x = 0; x < extent.width; x += Tile::columns) tiles.take({extent, x, y});
+  std::vector<ElementCounts> counts(tiles_across(extent));
+  for_each(counts.size(), [&](std::size_t column) {
+    FineTiles<Real> tiles(cells, column, found);
+    for (std::size_t y = rows.first; y < rows.last; y += Tile::rows) {
+      tiles.take({extent, column * Tile::columns, y});
     }
-    counts[i] = tiles.counts();
+    counts[column] = tiles.counts();
   });
-  for (const ElementCounts& of_band : counts) found.counts.merge(of_band);
+  for (const ElementCounts& of_column : counts) found.counts.merge(of_column);
 }
 
 void ElementCounts::merge(const ElementCounts& other) {
-  if (different_constants == 0) {
+  const bool first = different_constants == 0 || other.first_different < first_different;
+  if (other.different_constants > 0 && first) {
     first_different = other.first_different;
     difference = other.difference;
   }
@@ -746,11 +723,10 @@ void ElementCounts::merge(const ElementCounts& other) {
 template <class Real>
 FineFindings empty_findings(const ImagePair<Real>& pair, std::span<double> z) {
   const ImageExtent& extent = pair.a.extent;
-  const std::size_t across = (extent.width + Tile::columns - 1) / Tile::columns;
   const std::size_t down = (extent.height + Tile::rows - 1) / Tile::rows;
   return {.coarse = empty_blocks(pair),
           .noise = {extent, {pair.a.images.size(), pair.b != nullptr ? pair.b->images.size() : 0}},
-          .tiles = std::vector<std::vector<Candidates>>(across * down),
+          .tiles = std::vector<std::vector<Candidates>>(tiles_across(extent) * down),
           .counts = {},
           .weights = std::vector<float>(extent.elements()),
           .z = z};
@@ -758,16 +734,17 @@ FineFindings empty_findings(const ImagePair<Real>& pair, std::span<double> z) {
 
 void add_up_alternating(CoarseImages& coarse) {
   const std::size_t size = coarse.extent.channels * alternations;
-  for (auto& half : coarse.images) {
-    for (std::vector<BlockSums>& side : half) {
-      for (BlockSums& image : side) {
-        for (std::size_t i = size; i < image.alternating.size(); ++i) {
-          image.alternating[i % size] += image.alternating[i];
-        }
-        image.alternating.resize(size);
-      }
+  const auto add_up = [&](auto& image) {
+    for (std::size_t i = size; i < image.alternating.size(); ++i) {
+      image.alternating[i % size] += image.alternating[i];
     }
+    image.alternating.resize(size);
+  };
+  for (std::size_t h = 0; h < halves; ++h) {
+    add_up(coarse.effect[h]);
+    for (auto& side : coarse.images[h]) std::ranges::for_each(side, add_up);
   }
+  add_up(coarse.squared_weights);
 }
 
 template FineFindings empty_findings(const ImagePair<float>&, std::span<double>);

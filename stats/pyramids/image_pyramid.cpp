@@ -53,8 +53,8 @@ RowPyramid<Real>::RowPyramid(const ImagePair<Real>& pair, const PyramidOptions& 
 template <class Real>
 void RowPyramid<Real>::take(const ImagePair<Real>& pair, RowRange rows) {
   const RowRange reached{rows.first, std::min(rows.last + fine_rows_ahead, extent_.height)};
-  const std::array<Half, halves> half = halves_of(pair, reached, for_each_);
-  for (const Half& each : half) {
+  half_ = halves_of(pair, reached, for_each_, std::move(half_));
+  for (const Half& each : half_) {
     const auto wrong = std::ranges::find_if_not(
         each.variance, [](double variance) { return std::isfinite(variance); });
     if (wrong == each.variance.end()) continue;
@@ -63,7 +63,7 @@ void RowPyramid<Real>::take(const ImagePair<Real>& pair, RowRange rows) {
                                                               wrong - each.variance.begin()))},
                 *wrong, "a finite difference with a finite variance");
   }
-  offer_fine_cells<Real>({pair, half, groups_, constants_decide_}, rows, found_, for_each_);
+  offer_fine_cells<Real>({pair, half_, groups_, constants_decide_}, rows, found_, for_each_);
 }
 
 template <class Real>

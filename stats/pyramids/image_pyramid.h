@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -54,9 +55,8 @@ class RowPyramid {
   RowPyramid(const ImagePair<Real>& pair, const PyramidOptions& options);
 
   // Takes rows that follow on those before, in multiples of row_unit but for the last. The pair
-  // must have `rows_before` and `rows_ahead` more, as far as the image has.
+  // must have `rows_ahead` more, as far as the image has.
   static constexpr std::size_t row_unit = fine_rows;
-  static constexpr std::size_t rows_before = rows_beside;
   static constexpr std::size_t rows_ahead = fine_rows_ahead + rows_beside;
   void take(const ImagePair<Real>& pair, RowRange rows);
 
@@ -72,6 +72,7 @@ class RowPyramid {
   bool constants_decide_;
   std::vector<double> own_z_;
   std::vector<WindowGroup> groups_;
+  std::array<Half, halves> half_;  // Of the rows taken last.
   FineFindings found_;
   std::vector<BestCell> best_;  // One per group.
 };
