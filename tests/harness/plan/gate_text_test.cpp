@@ -37,14 +37,11 @@ TEST(GateText, OfSkewnessSaysHowManyObservationsWouldHelp) {
   EXPECT_THAT(help, Not(HasSubstr("heavy-tailed")));
 }
 
-// A share of .5: nine times as many others leave it a tenth.
+// A share of .5: nine times as many others leave it a tenth. 16 effective observations of 32: they
+// grow like the root of all, and twice the limit is wanted.
 TEST(GateText, OfOneObservationSaysHowManyOthersWouldDo) {
   EXPECT_THAT(help_for(red("share of one observation", 0.5, 0.5)),
               HasSubstr("about 9000 `secondaries` would do"));
-}
-
-// 16 of 32: the number grows like the root of all, and twice the limit is wanted.
-TEST(GateText, OfEffectiveObservationsSaysHowManyWouldDo) {
   EXPECT_THAT(help_for(red("effective observations", 16, 32)),
               HasSubstr("about 16000 `secondaries` would do"));
 }
