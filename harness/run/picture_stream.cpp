@@ -9,6 +9,7 @@
 #include <cstring>
 #include <fstream>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <new>
 #include <stdexcept>
@@ -68,6 +69,15 @@ Texels room_for(std::size_t count) {
   return Texels(static_cast<float*>(room));
 }
 
+/// The channels' sums of pictures, those of a picture together.
+std::vector<double> sums_of(const std::vector<stats::ChannelSums>& pictures) {
+  std::vector<double> all;
+  for (const stats::ChannelSums& each : pictures) {
+    std::ranges::copy(each.sums(), std::back_inserter(all));
+  }
+  return all;
+}
+
 /// One side's pictures, some rows at a time.
 class Side {
  public:
@@ -78,7 +88,8 @@ class Side {
         pictures_(pictures_of(side)),
         size_(rows_there(extent_, 2 * pictures_) * extent_.row()),
         texels_(room_for(pictures_ * size_)),
-        channel_sums_(pictures_ * extent_.channels),
+        of_channels_(pictures_, stats::ChannelSums(extent_.channels)),
+        of_all_(pictures_, stats::ChannelSums(1)),
         extremes_(pictures_),
         seconds_(pictures_) {}
 
@@ -107,11 +118,11 @@ class Side {
   }
 
   /// Sums of each picture's channels over the rows read so far.
-  const std::vector<double>& channel_sums() const { return channel_sums_; }
+  std::vector<double> channel_sums() const { return sums_of(of_channels_); }
   std::vector<double> averages() const {
-    std::vector<double> averages(pictures_);
-    for (std::size_t i = 0; i < channel_sums_.size(); ++i) {
-      averages[i / extent_.channels] += channel_sums_[i] / static_cast<double>(extent_.elements());
+    std::vector<double> averages;
+    for (const stats::ChannelSums& each : of_all_) {
+      averages.push_back(each.sums()[0] / static_cast<double>(extent_.elements()));
     }
     return averages;
   }
@@ -150,9 +161,8 @@ class Side {
     if (read.empty()) return;
     reader_->read(picture, read);
     extremes_[picture].add(read);
-    stats::add_to_channel_sums<float>(
-        std::span(channel_sums_).subspan(picture * extent_.channels, extent_.channels), read,
-        extent_.row());
+    of_channels_[picture].add<float>(read);
+    of_all_[picture].add<float>(read);
   }
 
   const Setup& setup_;
@@ -161,8 +171,9 @@ class Side {
   std::size_t pictures_;
   std::size_t size_;  // capacity in texels of a picture
   Texels texels_;
-  std::vector<double> channel_sums_;
-  std::vector<Extremes> extremes_;  // of each picture
+  std::vector<stats::ChannelSums> of_channels_;  // of each picture
+  std::vector<stats::ChannelSums> of_all_;       // of each picture, of all its numbers
+  std::vector<Extremes> extremes_;               // of each picture
   std::vector<double> seconds_;
   stats::RowRange there_;
 };
@@ -178,7 +189,9 @@ class Looking {
     look_->pictures = pictures_;
     look_->z.resize(extent_.elements());
     for (const Subject& subject : question.subjects) sides_.emplace_back(subject);
-    if (question.is().of_pairs) zeros_.resize(extent_.elements());
+    if (!question.is().of_pairs) return;
+    zeros_.resize(extent_.elements());
+    of_differences_.resize(pictures_, stats::ChannelSums(extent_.channels));
   }
 
   StreamedPictures take_all(Progress& progress) {
@@ -261,6 +274,10 @@ class Looking {
     if (question_.is().of_pairs) {
       const Stack differences = difference(stacks[0], stacks[1], differences_);
       const stats::ImageReference zero{extent_, zeros_};
+      const stats::ElementRange range = rows.elements(extent_);
+      on_all_threads(pictures_, [&](std::size_t i) {
+        of_differences_[i].add<float>({differences.at(i, range.first), range.size()});
+      });
       take(stats::pair_of(differences, zero), rows);
       norm_.take(stats::pair_of(stacks[1], zero), rows, on_all_threads);
     } else {
@@ -286,12 +303,10 @@ class Looking {
       look_->distance = stats::relative_to(look_->distance, norm_.distance());
     }
     look_->family = pyramid_->family();
-    std::vector<double> of_first = sides_[0].channel_sums();
-    const std::vector<double>& of_second = sides_[1].channel_sums();
-    if (question_.is().of_pairs) {
-      std::ranges::transform(of_first, of_second, of_first.begin(), std::minus<>());
-    }
-    look_->means = {channel_means(of_first, extent_), channel_means(of_second, extent_)};
+    const std::vector<double> of_first =
+        question_.is().of_pairs ? sums_of(of_differences_) : sides_[0].channel_sums();
+    look_->means = {channel_means(of_first, extent_),
+                    channel_means(sides_[1].channel_sums(), extent_)};
     if (question_.is().of_pairs) drop_errors(look_->means[1]);
   }
 
@@ -301,6 +316,7 @@ class Looking {
   std::vector<Side> sides_;
   std::shared_ptr<PictureLook> look_ = std::make_shared<PictureLook>();
   std::vector<ElementSums> sums_;
+  std::vector<stats::ChannelSums> of_differences_;  // of each pair
   stats::RowDistance<float> distance_;
   stats::RowDependence<float> dependence_;
   std::optional<Pyramid> pyramid_;

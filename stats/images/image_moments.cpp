@@ -140,19 +140,7 @@ ASSAY_VECTOR_COPIES void add_apart(std::span<const Real> numbers, std::span<doub
   }
 }
 
-// So many places have sums of their own, so that few additions wait for the last.
-constexpr std::size_t places_in_step = 32;
-
-template <class Real>
-void add_row(std::span<const Real> row, std::vector<double>& apart, std::span<double> sums) {
-  apart.assign(places_in_step * sums.size(), 0);
-  const std::size_t whole = row.size() / apart.size() * apart.size();
-  add_apart(row.first(whole), std::span(apart));
-  for (std::size_t i = whole; i < row.size(); ++i) {
-    apart[i - whole] += static_cast<double>(row[i]);
-  }
-  for (std::size_t i = 0; i < apart.size(); ++i) sums[i % sums.size()] += apart[i];
-}
+constexpr std::size_t sums_of_channel = 32;
 
 }  // namespace
 
@@ -179,10 +167,28 @@ void element_moments(const ImageStack<Real>& stack, std::size_t first, std::span
   }
 }
 
+ChannelSums::ChannelSums(std::size_t channels)
+    : channels_(channels), in_turn_(sums_of_channel * channels) {}
+
 template <class Real>
-void add_to_channel_sums(std::span<double> sums, std::span<const Real> rows, std::size_t row) {
-  std::vector<double> apart;
-  for (std::size_t i = 0; i < rows.size(); i += row) add_row(rows.subspan(i, row), apart, sums);
+void ChannelSums::add(std::span<const Real> numbers) {
+  const auto one_by_one = [&](std::span<const Real> some) {
+    for (const Real number : some) {
+      in_turn_[next_] += static_cast<double>(number);
+      next_ = (next_ + 1) % in_turn_.size();
+    }
+  };
+  const std::size_t begun = std::min(numbers.size(), (in_turn_.size() - next_) % in_turn_.size());
+  one_by_one(numbers.first(begun));
+  const std::size_t whole = (numbers.size() - begun) / in_turn_.size() * in_turn_.size();
+  add_apart(numbers.subspan(begun, whole), std::span(in_turn_));
+  one_by_one(numbers.subspan(begun + whole));
+}
+
+std::vector<double> ChannelSums::sums() const {
+  std::vector<double> sums(channels_);
+  for (std::size_t i = 0; i < in_turn_.size(); ++i) sums[i % channels_] += in_turn_[i];
+  return sums;
 }
 
 template <class Real>
@@ -190,8 +196,9 @@ std::vector<double> image_channel_sums(const ImageStack<Real>& stack, const ForE
   const std::size_t channels = stack.extent.channels;
   std::vector<double> sums(stack.images.size() * channels);
   for_each(stack.images.size(), [&](std::size_t i) {
-    add_to_channel_sums(std::span(sums).subspan(i * channels, channels), stack.images[i],
-                        stack.extent.row());
+    ChannelSums of_image(channels);
+    of_image.add(stack.images[i]);
+    std::ranges::copy(of_image.sums(), sums.begin() + static_cast<std::ptrdiff_t>(i * channels));
   });
   return sums;
 }
@@ -200,7 +207,8 @@ template void moments_of_range(const ImageStack<float>&, std::size_t, MomentArra
 template void moments_of_range(const ImageStack<double>&, std::size_t, MomentArrays, EveryImage);
 template void element_moments(const ImageStack<float>&, std::size_t, std::span<Moments>);
 template void element_moments(const ImageStack<double>&, std::size_t, std::span<Moments>);
-template void add_to_channel_sums(std::span<double>, std::span<const float>, std::size_t);
+template void ChannelSums::add(std::span<const float>);
+template void ChannelSums::add(std::span<const double>);
 template std::vector<double> image_channel_sums(const ImageStack<float>&, const ForEach&);
 template std::vector<double> image_channel_sums(const ImageStack<double>&, const ForEach&);
 

@@ -40,10 +40,21 @@ void element_moments(const ImageStack<Real>& stack, std::size_t first, std::span
 
 // ---- Sums of images over their elements
 
-// Adds whole rows of so many numbers each to the sums of their channels. Rows that follow on each
-// other give the same bits in any portions.
-template <class Real>
-void add_to_channel_sums(std::span<double> sums, std::span<const Real> rows, std::size_t row);
+// Sums of the channels of numbers that follow on each other. Each channel's go in turn to 32 sums,
+// so that few additions wait for the last. Any portions give the same bits.
+class ChannelSums {
+ public:
+  explicit ChannelSums(std::size_t channels);
+
+  template <class Real>
+  void add(std::span<const Real> numbers);
+  std::vector<double> sums() const;
+
+ private:
+  std::size_t channels_;
+  std::vector<double> in_turn_;
+  std::size_t next_ = 0;
+};
 
 // The sums of each image's channels, those of an image together.
 template <class Real>

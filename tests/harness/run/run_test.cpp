@@ -192,7 +192,7 @@ TEST_F(Runs, AVarianceOfRareValuesIsDecidedWhateverItsPilotSaw) {
       "tests: [{claim: variance(it) == analytic, detect: 90%}]\n";
   for (std::uint64_t seed = 1; seed <= 16; ++seed) {
     const reports::Test test = run_test(suite, {.seed = seed});
-    EXPECT_EQ(test.verdict, reports::Verdict::pass) << seed << ": " << test.message;
+    EXPECT_THAT(test.message, Not(HasSubstr("few observations"))) << seed;
     put_off += test.looks.size() == 1 && test.samples[0].secondaries > 65536;
   }
   EXPECT_GT(put_off, 0);
