@@ -100,18 +100,36 @@ ASSAY_VECTOR_COPIES void add_powers(const Real* values, Sums& sums, std::size_t 
 }
 
 template <class Real>
+ASSAY_VECTOR_COPIES void add_squares(const Real* values, const double* mean, double* m2,
+                                     std::size_t size) {
+  double* const __restrict squares = m2;
+  for (std::size_t i = 0; i < size; ++i) {
+    const double deviation = static_cast<double>(values[i]) - mean[i];
+    squares[i] += deviation * deviation;
+  }
+}
+
+template <class Real>
+void means_of_block(const ImageStack<Real>& stack, std::size_t first, std::span<double> mean) {
+  const Real* const origin = stack.at(0, first);
+  std::ranges::fill(mean, 0.0);
+  for (std::size_t r = 0; r < stack.images.size(); ++r) {
+    add_differences(stack.at(r, first), origin, mean.data(), mean.size());
+  }
+  const double count = static_cast<double>(stack.images.size());
+  for (std::size_t i = 0; i < mean.size(); ++i) {
+    mean[i] = static_cast<double>(origin[i]) + mean[i] / count;
+  }
+}
+
+template <class Real>
 void moments_of_block(const ImageStack<Real>& stack, std::size_t first, std::span<Moments> out) {
   Sums sums;
-  const double count = static_cast<double>(stack.images.size());
+  means_of_block(stack, first, std::span(sums.mean).first(out.size()));
   const Real* const origin = stack.at(0, first);
-  for (std::size_t r = 0; r < stack.images.size(); ++r) {
-    add_differences(stack.at(r, first), origin, sums.mean.data(), out.size());
-  }
   for (std::size_t i = 0; i < out.size(); ++i) {
-    const double value = static_cast<double>(origin[i]);
-    sums.mean[i] = value + sums.mean[i] / count;
-    sums.minimum[i] = value;
-    sums.maximum[i] = value;
+    sums.minimum[i] = static_cast<double>(origin[i]);
+    sums.maximum[i] = static_cast<double>(origin[i]);
   }
   for (std::size_t r = 0; r < stack.images.size(); ++r) {
     add_powers(stack.at(r, first), sums, out.size());
@@ -167,6 +185,19 @@ void element_moments(const ImageStack<Real>& stack, std::size_t first, std::span
   }
 }
 
+template <class Real>
+void element_variances(const ImageStack<Real>& stack, std::size_t first, MomentArrays out) {
+  std::ranges::fill(out.m2, 0.0);
+  for (std::size_t i = 0; i < out.mean.size(); i += block_size) {
+    const std::size_t size = std::min(block_size, out.mean.size() - i);
+    const std::span<double> mean = out.mean.subspan(i, size);
+    means_of_block(stack, first + i, mean);
+    for (std::size_t r = 0; r < stack.images.size(); ++r) {
+      add_squares(stack.at(r, first + i), mean.data(), out.m2.data() + i, size);
+    }
+  }
+}
+
 ChannelSums::ChannelSums(std::size_t channels)
     : channels_(channels), in_turn_(sums_of_channel * channels) {}
 
@@ -207,6 +238,7 @@ template void moments_of_range(const ImageStack<float>&, std::size_t, MomentArra
 template void moments_of_range(const ImageStack<double>&, std::size_t, MomentArrays, EveryImage);
 template void element_moments(const ImageStack<float>&, std::size_t, std::span<Moments>);
 template void element_moments(const ImageStack<double>&, std::size_t, std::span<Moments>);
+template void element_variances(const ImageStack<float>&, std::size_t, MomentArrays);
 template void ChannelSums::add(std::span<const float>);
 template void ChannelSums::add(std::span<const double>);
 template std::vector<double> image_channel_sums(const ImageStack<float>&, const ForEach&);

@@ -38,6 +38,10 @@ void moments_of_range(const ImageStack<Real>& stack, std::size_t first, MomentAr
 template <class Real>
 void element_moments(const ImageStack<Real>& stack, std::size_t first, std::span<Moments> out);
 
+// The mean and m2 of element_moments alone, with the same bits.
+template <class Real>
+void element_variances(const ImageStack<Real>& stack, std::size_t first, MomentArrays out);
+
 // ---- Sums of images over their elements
 
 // Sums of the channels of numbers that follow on each other. Each channel's go in turn to 32 sums,
