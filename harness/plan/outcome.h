@@ -31,8 +31,8 @@ struct Plan {
   Method method;
   std::vector<std::uint64_t> primaries = {};  ///< One a subject.
   stats::LookSchedule looks = {};             ///< Sizes are the most that any subject takes.
-  /// Larger sizes that the last look is put off to while no look is sound and more observations mend
-  /// the red gates. It is the only look then.
+  /// Larger sizes that the last look is put off to while no look is sound. More observations must
+  /// mend the red gates. It is the only look then.
   std::vector<std::uint64_t> postponed = {};
   std::vector<Regions> regions = {};  ///< One a channel.
   std::vector<Gate> gates = {};       ///< Gates of the pilot.

@@ -82,9 +82,9 @@ double sum_of(const std::array<double, lanes>& numbers) {
 
 // ---- Sums over blocks
 
-// Leaving out a replicate with the deviation d from the mean of n moves the mean by -d / (n - 1),
-// and its squared error takes d^2 along. So D^2 - va - vb becomes, but for what all replicates have
-// in common, -2 / (n - 1) (D d - d^2 / (n - 2)). D counts the other way if the replicate is of b.
+// A replicate deviates from the mean of n by d. Leaving it out moves the mean by -d / (n - 1), and
+// the squared error takes d^2 along. Let the common part of all replicates aside. Then D^2 - va -
+// vb moves by -2 / (n - 1) (D d - d^2 / (n - 2)). D counts the other way if the replicate is of b.
 template <class Real>
 void add_without(std::vector<Terms>& sums, const ImageStack<Real>& stack, ElementRange range,
                  const Block& means, const Block& differences, const Block& norms) {

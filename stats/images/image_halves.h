@@ -33,7 +33,7 @@ struct Half {
 inline constexpr std::size_t rows_beside = 2;
 
 // Halves of the elements of these rows and of rows_beside more at either side, as far as the image
-// has them. Weights are right in `rows` alone. `before` are those of rows before: what they know of
+// has them. Weights are right in `rows` alone. `before` are those of rows before. What they know of
 // an element is kept, and the images need not have it.
 template <class Real>
 std::array<Half, halves> halves_of(const ImagePair<Real>& pair, RowRange rows,

@@ -33,8 +33,8 @@ Influence influence_of_error_and_cost(const JointMoments& sample, double truth);
 
 // Null hypothesis: ln of the quantity = log_value. Student's t of the influence values with Hall's
 // correction for skewness (stats/means/skewness_corrected_t.h). Asymptotic: use it where
-// residual_skewness_gate and effective_observations_gate of the influence values are green. A quantity without
-// spread is compared exactly but for influence_rounding: the law is "bound".
+// residual_skewness_gate and effective_observations_gate of the influence values are green. A
+// quantity without spread is compared exactly but for influence_rounding: the law is "bound".
 TestResult influence_t(const Influence& x, double log_value);
 
 // Null hypothesis: ln of the ratio x / y = log_ratio. Tests E psi_x - ratio E psi_y = 0 (Fieller

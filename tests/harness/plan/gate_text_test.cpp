@@ -37,8 +37,8 @@ TEST(GateText, OfSkewnessSaysHowManyObservationsWouldHelp) {
   EXPECT_THAT(help, Not(HasSubstr("heavy-tailed")));
 }
 
-// A share of .5: nine times as many others leave it a tenth. 16 effective observations of 32: they
-// grow like the root of all, and twice the limit is wanted.
+// A share of .5: nine times as many others leave it a tenth. Effective observations are taken to
+// grow like the root of all, and twice the limit is wanted: (64 / 16)^2 times 1000.
 TEST(GateText, OfOneObservationSaysHowManyOthersWouldDo) {
   EXPECT_THAT(help_for(red("share of one observation", 0.5, 0.5)),
               HasSubstr("about 9000 `secondaries` would do"));
