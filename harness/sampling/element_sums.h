@@ -23,6 +23,7 @@ struct Extremes {
   std::uint64_t nonzero = 0;  ///< values that are not zero
 
   void merge(const Extremes& other);
+  /// Takes values, all of them finite.
   void add(std::span<const float> values);
 };
 
@@ -39,6 +40,7 @@ struct ElementSums {
   stats::Moments moments(std::size_t channel) const;
   /// Takes the rows that follow.
   void take(const stats::ImageStack<float>& stack, stats::RowRange rows);
+  /// Takes each picture's average over its elements.
   void take_averages(std::span<const double> averages);
 };
 

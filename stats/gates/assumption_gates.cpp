@@ -112,7 +112,7 @@ double checked_cube(double critical_value) {
 
 // ---- Effective observations
 
-// Of w = (x - mean)^2 / n^2.
+// Sums over a sample's weights w = (x - mean)^2 / n^2.
 struct Weights {
   double sum = 0;
   double sum_of_squares = 0;

@@ -36,6 +36,10 @@ struct Tile {
   }
 };
 
+std::size_t tiles_across(const ImageExtent& extent) {
+  return (extent.width + Tile::columns - 1) / Tile::columns;
+}
+
 // Sides of the squares, and distance from one square to the next.
 struct Squares {
   std::uint32_t side;
@@ -81,7 +85,7 @@ class TileSums {
   }
 
  private:
-  // Of numbers, and then of the squares of each side.
+  // How many rows are kept of numbers, and then of the squares of each side.
   static constexpr std::size_t depth(std::size_t k) {
     return k < fine_squares.size() ? fine_squares[k].side / 2 + 1 : 1;
   }
@@ -230,8 +234,8 @@ class FineTiles {
     add_weights(tile, size);
     offer_elements(tile);
     for (std::size_t k = 0; k < fine_squares.size(); ++k) offer_squares(tile, k);
-    const std::size_t across = (extent_.width + Tile::columns - 1) / Tile::columns;
-    found_.tiles[tile.y / Tile::rows * across + tile.x / Tile::columns] = std::move(candidates_);
+    found_.tiles[tile.y / Tile::rows * tiles_across(extent_) + tile.x / Tile::columns] =
+        std::move(candidates_);
   }
 
  private:
@@ -654,10 +658,6 @@ class FineTiles {
 };
 
 static_assert(fine_rows % Tile::rows == 0 && fine_rows_ahead == Tile::halo);
-
-std::size_t tiles_across(const ImageExtent& extent) {
-  return (extent.width + Tile::columns - 1) / Tile::columns;
-}
 
 template <class Real>
 CoarseImages empty_blocks(const ImagePair<Real>& pair) {

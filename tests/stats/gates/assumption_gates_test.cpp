@@ -223,8 +223,8 @@ TEST(AssumptionGates, EffectiveObservationsWeighSquaresByTheirShare) {
   EXPECT_LT(effective_observations_gate(x).value, one);
 }
 
-// Of n values k are 1, the others 0. With p = k / n the number is n p (1 - p) / (1 - 3 p (1 - p)).
-// That is nearly k.
+// The first k of n values are 1, the others 0. With p = k / n the number is
+// n p (1 - p) / (1 - 3 p (1 - p)). That is nearly k.
 TEST(AssumptionGates, RareValuesCountAsEffectiveObservations) {
   const auto state = [](int rare) {
     return effective_observations_gate(
