@@ -1,12 +1,13 @@
 #include "stats/gates/dependence.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstdint>
 #include <numeric>
 
 #include "stats/basics/check.h"
-#include "stats/basics/splitmix64.h"
+#include "stats/basics/scores.h"
+#include "stats/basics/vector_copies.h"
 #include "stats/tails/tails.h"
 
 namespace assay::stats {
@@ -56,6 +57,18 @@ class Sequence {
 
 constexpr std::size_t most_lags = 1000;
 constexpr std::size_t most_products = 200'000'000;
+
+// The sum of a_i b_i, in a fixed order whatever the machine. `b` is at least as long as `a`.
+ASSAY_VECTOR_COPIES double sum_of_products(std::span<const double> a, std::span<const double> b) {
+  constexpr std::size_t lanes = 16;  // products that are added side by side
+  std::array<double, lanes> parts{};
+  std::size_t i = 0;
+  for (; i + lanes <= a.size(); i += lanes) {
+    for (std::size_t l = 0; l < lanes; ++l) parts[l] += a[i + l] * b[i + l];
+  }
+  for (std::size_t l = 0; i < a.size(); ++i, ++l) parts[l] += a[i] * b[i];
+  return std::accumulate(parts.begin(), parts.end(), 0.0);
+}
 
 }  // namespace
 
@@ -111,20 +124,6 @@ double batch_variance(std::span<const double> values, std::size_t length) {
   return static_cast<double>(length) * batch_means(values, length).variance();
 }
 
-std::vector<double> centred_ranks(std::span<const double> values) {
-  std::vector<std::size_t> order(values.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  // A fixed number that is as good as random.
-  const auto scattered = [](std::size_t i) { return splitmix64_finalised(i + 0x9e3779b97f4a7c15); };
-  std::ranges::sort(order, [&](std::size_t i, std::size_t j) {
-    return values[i] != values[j] ? values[i] < values[j] : scattered(i) < scattered(j);
-  });
-  const double middle = static_cast<double>(values.size() - 1) / 2;
-  std::vector<double> ranks(values.size());
-  for (std::size_t i = 0; i < order.size(); ++i) ranks[order[i]] = static_cast<double>(i) - middle;
-  return ranks;
-}
-
 std::vector<LaggedCorrelation> lagged_correlations(std::span<const double> values,
                                                    std::size_t first) {
   const std::size_t n = values.size();
@@ -132,13 +131,12 @@ std::vector<LaggedCorrelation> lagged_correlations(std::span<const double> value
       std::ranges::adjacent_find(values, std::ranges::not_equal_to{}) == values.end();
   if (n < 8 || constant) return {};
   const std::vector<double> ranks = centred_ranks(values);
-  const double squares = std::inner_product(ranks.begin(), ranks.end(), ranks.begin(), 0.0);
+  const double squares = sum_of_products(ranks, ranks);
   const std::size_t farthest = std::min({n / 4, most_lags, most_products / n});
   const double count = static_cast<double>(n);
   std::vector<LaggedCorrelation> all;
   for (std::size_t lag = first; lag <= farthest; ++lag) {
-    const auto later = ranks.begin() + static_cast<std::ptrdiff_t>(lag);
-    const double r = std::inner_product(later, ranks.end(), ranks.begin(), 0.0) / squares;
+    const double r = sum_of_products(std::span(ranks).subspan(lag), ranks) / squares;
     const double z = (r + 1 / count) * count / std::sqrt(count - static_cast<double>(lag));
     all.push_back({.lag = lag, .correlation = r, .z = z});
   }

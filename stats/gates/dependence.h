@@ -54,10 +54,6 @@ struct LaggedCorrelation {
   double z = 0;
 };
 
-// The ranks of the values, less their mean. Equal values are ranked in an order drawn by their
-// places.
-std::vector<double> centred_ranks(std::span<const double> values);
-
 // All of them; none if n < 8 or all values are equal. Time n K.
 std::vector<LaggedCorrelation> lagged_correlations(std::span<const double> values,
                                                    std::size_t first = 2);

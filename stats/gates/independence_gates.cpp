@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "stats/basics/check.h"
+#include "stats/basics/scores.h"
 #include "stats/gates/dependence.h"
 #include "stats/tails/tails.h"
 

@@ -177,7 +177,7 @@ std::optional<RepeatedTile> repeated_in(const std::vector<const ImageStack<Real>
 
 // Standardised midranks; empty if all values are equal.
 std::vector<double> scores_of(const std::vector<float>& values) {
-  std::vector<std::uint32_t> order;
+  std::vector<Placed<float>> order;
   std::vector<double> scores;
   midranks(std::span<const float>(values), order, scores);
   if (!standardise(scores)) scores.clear();

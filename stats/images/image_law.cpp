@@ -161,7 +161,7 @@ class Element {
 
  private:
   std::vector<double> values_;
-  std::vector<std::uint32_t> order_;
+  std::vector<Placed<double>> order_;
   std::array<std::vector<double>, scores> scores_;
 };
 

@@ -1,17 +1,18 @@
-// The page in Chromium: viewer_test.mjs VIEWER_FOLDER CHROMIUM PAGES_FOLDER [SCREENSHOT_FOLDER]
-// PAGES_FOLDER holds what assay_write_example writes.
+// The page in Chromium: viewer_test.mjs VIEWER_FOLDER CHROMIUM PAGES_FOLDER times | views [SCREENSHOT_FOLDER]
+// PAGES_FOLDER holds what assay_write_example writes. The tests of times want the machine alone.
 import assert from "node:assert/strict";
 import { mkdirSync, readFileSync, statSync } from "node:fs";
 import { createRequire } from "node:module";
 import { join, resolve } from "node:path";
 
-const [viewer, chromium_path, pages, screenshots] = process.argv.slice(2);
+const [viewer, chromium_path, pages, part, screenshots] = process.argv.slice(2);
 const require = createRequire(join(resolve(viewer), "package.json"));
 const { chromium } = require("playwright-core");
 const axe = readFileSync(require.resolve("axe-core/axe.min.js"), "utf8");
 
 const widths = { wide: [1400, 1000], middle: [800, 1000], phone: [390, 844] };
 const browser = await chromium.launch({ executablePath: chromium_path, args: ["--no-sandbox"] });
+const reader = await (await browser.newContext()).newPage();
 
 /// A page that is ready, with all that it said on the console and all that it asked the network.
 async function opened(name, { size = "wide", scheme = "light", hash = "", scripts = true } = {}) {
@@ -32,7 +33,7 @@ async function opened(name, { size = "wide", scheme = "light", hash = "", script
   });
   page.on("request", (request) => page.asked.push(request.url()));
   await page.goto(`file://${resolve(pages, name)}.html${hash}`);
-  page.setDefaultTimeout(5000);
+  page.setDefaultTimeout(20000);
   if (scripts) await page.waitForFunction(() => document.documentElement.dataset.ready === "yes");
   return page;
 }
@@ -109,23 +110,42 @@ async function parts_open(size) {
   await closed(page);
 }
 
-const tests = {
+/// How long this browser takes to unpack what the page holds, in milliseconds: the machine's own speed.
+function bare_reading(name) {
+  const held = readFileSync(resolve(pages, `${name}.html`), "utf8").match(/<script[^>]*id="record"[^>]*>([^<]*)/)[1];
+  return reader.evaluate(async (base64) => {
+    const start = performance.now();
+    const packed = Uint8Array.from(atob(base64.trim()), (letter) => letter.charCodeAt(0));
+    const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
+    const bytes = await new Response(stream).arrayBuffer();
+    JSON.parse(new TextDecoder().decode(new Uint8Array(bytes, 4, new DataView(bytes).getUint32(0, true))));
+    return performance.now() - start;
+  }, held);
+}
+
+const times = {
   async "1508 claims are small, soon ready and few elements"() {
     const bytes = statSync(resolve(pages, "many.html")).size;
-    const times = [];
+    assert.ok(bytes < 5e6, `${bytes} bytes`);
+    const [ready, bare] = [[], []];
     for (let i = 0; i < 3; ++i) {
+      bare.push(await bare_reading("many"));
       const page = await opened("many");
-      times.push(await page.evaluate(() => performance.getEntriesByName("ready")[0].startTime));
+      ready.push(await page.evaluate(() => performance.getEntriesByName("ready")[0].startTime));
       const count = await elements(page);
       assert.ok(count < 3000, `${count} elements`);
       assert.match(await page.title(), /8 of 1508/);
-      if (i === 2) console.log(`    ${bytes} bytes, ready after ${Math.round(Math.min(...times))} ms, ${count} elements`);
+      if (i === 2) console.log(`    ${bytes} bytes, ${count} elements`);
       await closed(page);
     }
-    assert.ok(bytes < 5e6, `${bytes} bytes`);
-    assert.ok(Math.min(...times) < 1500, `ready after ${times} ms`);
+    const [page, reading] = [ready, bare].map((each) => Math.round(Math.min(...each)));
+    console.log(`    ready after ${page} ms, bare reading takes ${reading} ms`);
+    // On a slow machine the bound grows with the time of bare reading.
+    assert.ok(page < Math.max(1500, 3 * reading), `ready after ${ready} ms, bare reading ${bare} ms`);
   },
+};
 
+const views = {
   async "failures are on the first screen at every width"() {
     for (const size of Object.keys(widths)) {
       for (const name of ["many", "example", "ellipse"]) {
@@ -345,13 +365,10 @@ async function tried([name, run]) {
     console.log(`FAIL ${name}\n${error.message}`);
   }
 }
-// The first one takes times, so it runs alone; of the others two at a time.
-const [first, ...others] = Object.entries(tests);
-await tried(first);
-const queue = others.values();
+const queue = Object.entries({ times, views }[part]).values();
 const worker = async () => {
   for (const test of queue) await tried(test);
 };
-await Promise.all([worker(), worker()]);
+await Promise.all(part === "times" ? [worker()] : [worker(), worker()]);
 await browser.close();
 process.exit(failed === 0 ? 0 : 1);

@@ -1,0 +1,83 @@
+#include "stats/basics/scores.h"
+
+#include <algorithm>
+#include <boost/sort/pdqsort/pdqsort.hpp>
+#include <cmath>
+#include <numeric>
+
+#include "stats/basics/splitmix64.h"
+
+namespace assay::stats {
+namespace {
+
+// The values from the smallest on; equal ones in any order.
+template <class Real>
+void put_in_order(std::span<const Real> values, std::vector<Placed<Real>>& order) {
+  order.resize(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) order[i] = {values[i], i};
+  boost::sort::pdqsort_branchless(
+      order.begin(), order.end(),
+      [](const Placed<Real>& a, const Placed<Real>& b) { return a.value < b.value; });
+}
+
+// Calls visit(first, end) for each run of equal values.
+template <class Real, class Visit>
+void for_each_tie(const std::vector<Placed<Real>>& order, const Visit& visit) {
+  for (std::size_t first = 0, end = 0; first < order.size(); first = end) {
+    while (end < order.size() && order[end].value == order[first].value) ++end;
+    visit(first, end);
+  }
+}
+
+}  // namespace
+
+template <class Real>
+void midranks(std::span<const Real> values, std::vector<Placed<Real>>& order,
+              std::vector<double>& ranks) {
+  put_in_order(values, order);
+  ranks.resize(values.size());
+  for_each_tie(order, [&](std::size_t first, std::size_t end) {
+    const double shared = static_cast<double>(first + end - 1) / 2;
+    for (std::size_t i = first; i < end; ++i) ranks[order[i].place] = shared;
+  });
+}
+template void midranks(std::span<const float>, std::vector<Placed<float>>&, std::vector<double>&);
+template void midranks(std::span<const double>, std::vector<Placed<double>>&, std::vector<double>&);
+
+std::vector<double> centred_ranks(std::span<const double> values) {
+  std::vector<Placed<double>> order;
+  put_in_order(values, order);
+  // A fixed number that is as good as random.
+  const auto scattered = [](const Placed<double>& each) {
+    return splitmix64_finalised(each.place + 0x9e3779b97f4a7c15);
+  };
+  const auto at = [&](std::size_t i) { return order.begin() + static_cast<std::ptrdiff_t>(i); };
+  for_each_tie(order, [&](std::size_t first, std::size_t end) {
+    if (end - first > 1) std::ranges::sort(at(first), at(end), {}, scattered);
+  });
+  const double middle = static_cast<double>(values.size() - 1) / 2;
+  std::vector<double> ranks(values.size());
+  for (std::size_t i = 0; i < order.size(); ++i)
+    ranks[order[i].place] = static_cast<double>(i) - middle;
+  return ranks;
+}
+
+bool standardise(std::span<double> values) {
+  const auto [least, most] = std::ranges::minmax(values);
+  if (least == most) {
+    std::ranges::fill(values, 0);
+    return false;
+  }
+  const auto count = static_cast<double>(values.size());
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / count;
+  double squares = 0;
+  for (double& value : values) {
+    value -= mean;
+    squares += value * value;
+  }
+  const double scale = 1 / std::sqrt(squares / count);
+  for (double& value : values) value *= scale;
+  return true;
+}
+
+}  // namespace assay::stats
