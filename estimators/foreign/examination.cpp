@@ -121,7 +121,7 @@ bool ignores_index(const Source& source, const Others& others, std::size_t numbe
 
 constexpr const char* rule =
     "an observation must be a function of key and index alone, so seed its random numbers with "
-    "both for each";
+    "both for each, and add in one order whatever the threads do";
 constexpr const char* rule_of_samplers =
     "a draw must be a function of its stream alone, a density and an evaluation of their point";
 
