@@ -122,7 +122,6 @@ ASSAY_VECTOR_COPIES void add_scaled(const double* from, double factor, double* t
 struct RowPowers {
   double* squares;
   double* cubes;
-  double* sixths;
 };
 
 // True if a deviation is beyond its limit.
@@ -130,15 +129,12 @@ ASSAY_VECTOR_COPIES bool add_powers(const double* deviation, const double* limit
                                     const RowPowers& to, std::size_t size) {
   double* const __restrict squares = to.squares;
   double* const __restrict cubes = to.cubes;
-  double* const __restrict sixths = to.sixths;
   std::uint64_t beyond = 0;
   for (std::size_t i = 0; i < size; ++i) {
     const double d = deviation[i];
     const double square = d * d;
-    const double cube = square * d;
     squares[i] += square;
-    cubes[i] += cube;
-    sixths[i] += cube * cube;
+    cubes[i] += square * d;
     beyond |= std::abs(d) > limit[i] ? 1U : 0U;
   }
   return beyond != 0;
@@ -157,7 +153,6 @@ ASSAY_VECTOR_COPIES void finish_row(const RowPowers& powers, const double* weigh
                                     const PartSums& to, std::size_t size) {
   double* const __restrict squares = powers.squares;
   double* const __restrict cubes = powers.cubes;
-  double* const __restrict sixths = powers.sixths;
   double* const __restrict variance = to.variance;
   double* const __restrict reciprocal_degrees = to.reciprocal_degrees;
   double* const __restrict third = to.third;
@@ -169,10 +164,8 @@ ASSAY_VECTOR_COPIES void finish_row(const RowPowers& powers, const double* weigh
     reciprocal_degrees[i] += part * part / (n - 1);
     third[i] += factor * factor_of_half / (count * count * count) * cubes[i];
     const double inverse = weight[i] > 0 ? 1 / weight[i] : 0.0;
-    const double cube = inverse * inverse * inverse;
     squares[i] *= inverse * inverse * n / (n - 1);
-    cubes[i] *= cube;
-    sixths[i] *= cube * cube;
+    cubes[i] *= inverse * inverse * inverse;
   }
 }
 
@@ -253,13 +246,12 @@ class FineTiles {
       }
     }
     void start_part(std::size_t size) {
-      for (std::vector<double>* each : {&squares, &cubes, &sixths, &limit}) each->assign(size, 0.0);
+      for (std::vector<double>* each : {&squares, &cubes, &limit}) each->assign(size, 0.0);
     }
     std::vector<double> light;
     // These are of the current part.
     std::vector<double> squares;
     std::vector<double> cubes;
-    std::vector<double> sixths;
     std::vector<double> limit;  // Weighted deviations beyond are rare.
     // These add up the parts that are done.
     std::vector<double> effect;
@@ -318,7 +310,7 @@ class FineTiles {
         weigh(values, mean + here, weights + here, out);
         if (y >= tile.height()) return;
         const std::size_t i = y * tile.stride();
-        const RowPowers powers{&all.squares[i], &all.cubes[i], &all.sixths[i]};
+        const RowPowers powers{&all.squares[i], &all.cubes[i]};
         if (add_powers(out.data(), &all.limit[i], powers, tile.size())) {
           note_rare(tile, y, part, values, out);
         }
@@ -363,7 +355,7 @@ class FineTiles {
       const std::size_t i = y * tile.stride();
       const double* const weight =
           cells_.half[1 - part.half].weight.data() + (tile.first(y) - cells_.half[0].first);
-      finish_row({&all.squares[i], &all.cubes[i], &all.sixths[i]}, weight, sign * count,
+      finish_row({&all.squares[i], &all.cubes[i]}, weight, sign * count,
                  {&all.variance[part.side][i], &all.reciprocal_degrees[i], &all.third[i]},
                  tile.size());
       for (std::size_t x = 0; x < tile.width(); x += block) {
@@ -374,7 +366,6 @@ class FineTiles {
             powers.count += weight[e] > 0 ? count : 0;
             powers.squares += all.squares[i + e];
             powers.cubes += all.cubes[i + e];
-            powers.sixths += all.sixths[i + e];
           }
           found_.noise.at(part.side, tile.x + x, tile.y + y, c).add(powers);
         }

@@ -9,9 +9,7 @@ namespace {
 double square(double x) { return x * x; }
 
 PooledNoise::Powers powers_of(double x, double count) {
-  const double cube = x * x * x;
-  return {
-      .count = 0, .squares = count * x * x, .cubes = count * cube, .sixths = count * cube * cube};
+  return {.count = 0, .squares = count * x * x, .cubes = count * x * x * x};
 }
 
 }  // namespace
@@ -20,7 +18,6 @@ void PooledNoise::add(const Powers& powers) {
   common_.count += powers.count;
   common_.squares += powers.squares;
   common_.cubes += powers.cubes;
-  common_.sixths += powers.sixths;
 }
 
 void PooledNoise::add_element(bool noisier) {
@@ -90,12 +87,9 @@ PooledNoise::Moments PooledNoise::cut_off(int octave) const {
       const Powers powers = stats::powers_of(d == 0 ? x : -x, bin.count);
       all.squares += powers.squares;
       all.cubes += powers.cubes;
-      all.sixths += powers.sixths;
     }
   }
-  return {.second = all.squares / all.count,
-          .third = all.cubes / all.count,
-          .squared_error = all.sixths / square(all.count)};
+  return {.second = all.squares / all.count, .third = all.cubes / all.count};
 }
 
 double PooledNoise::rare(int octave) const {
@@ -176,7 +170,7 @@ double NoisePyramid::inverse(std::size_t side) const {
 
 bool NoisePyramid::of_one_law(const Around& near, double toward) const {
   constexpr double errors_of_signs = 6;
-  constexpr double errors_of_rates = 4;
+  constexpr double errors_of_rates = 3.5;
   if (replicates_[1] == 0) return false;
   return std::ranges::all_of(near.blocks, [&](const Sides& here) {
     const double more = std::abs(here[0]->noisier() - here[1]->noisier());
@@ -193,15 +187,12 @@ bool NoisePyramid::of_one_law(const Around& near, double toward) const {
   });
 }
 
-double NoisePyramid::growth(const Sides& here, int octave, double toward, bool one_law) const {
+double NoisePyramid::growth(const Sides& here, int octave, double toward) const {
   const PooledNoise::Moments a = here[0]->cut_off(octave);
   const PooledNoise::Moments b = here[1]->cut_off(octave);
   const double second = a.second * inverse(0) + b.second * inverse(1);
   if (!(second > 0)) return 0;
-  const double a2 = square(inverse(0));
-  const double b2 = square(inverse(1));
-  const double error = std::sqrt(a.squared_error * square(a2) + b.squared_error * square(b2));
-  return (toward * (a.third * a2 - b.third * b2) - (one_law ? error : 0)) / second;
+  return toward * (a.third * square(inverse(0)) - b.third * square(inverse(1))) / second;
 }
 
 NoisePyramid::Kept NoisePyramid::kept(const CellNoise& cell, const Rectangle& window,
@@ -209,12 +200,9 @@ NoisePyramid::Kept NoisePyramid::kept(const CellNoise& cell, const Rectangle& wi
   const double direction = cell.effect < 0 ? 1 : -1;
   const double toward = cell.weight < 0 ? -direction : direction;
   const Around near = around(window, channel);
-  const bool one_law = of_one_law(near, toward);
   double largest = 0;
-  for (int octave = near.first; octave <= near.last; ++octave) {
-    for (const Sides& here : near.blocks) {
-      largest = std::max(largest, growth(here, octave, toward, one_law));
-    }
+  for (int octave = near.first; octave <= near.last && !of_one_law(near, toward); ++octave) {
+    for (const Sides& here : near.blocks) largest = std::max(largest, growth(here, octave, toward));
   }
   const double variance = cell.variance[0] + cell.variance[1];
   const double own = direction * cell.third / variance;

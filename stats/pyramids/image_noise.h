@@ -27,7 +27,6 @@ class PooledNoise {
     double count = 0;
     double squares = 0;
     double cubes = 0;
-    double sixths = 0;  // The squared error of the cubes.
   };
   void add(const Powers& powers);
   // Takes a deviation, not 0, that is among those that are added.
@@ -36,12 +35,10 @@ class PooledNoise {
   void add_element(bool noisier);
   void merge(const PooledNoise& other);
 
-  // Mean square and mean cube of the deviations cut off at +-2^octave, and the cube's squared
-  // error.
+  // Mean square and mean cube of the deviations cut off at +-2^octave.
   struct Moments {
     double second = 0;
     double third = 0;
-    double squared_error = 0;
   };
   Moments cut_off(int octave) const;
   static constexpr int octaves = 16;
@@ -104,10 +101,9 @@ class NoisePyramid {
   // its side up to the whole image. A block's deviations are cut off at every octave, so that the
   // rarest do not drown the others.
   //
-  // Two sides of one law have k3 = 0, and a block's k3 counts beyond its error. It counts whole
-  // where the sides have different laws in one of these blocks. Then one is noisier for its mean in
-  // too many elements (sign test), or the darker has too many rare values beyond an octave. A
-  // reference has a law of its own.
+  // Two sides of one law have k3 = 0. So the blocks count only where the sides have different laws
+  // in one of them: one is noisier for its mean in too many elements (sign test), or the darker has
+  // too many rare values beyond an octave. A reference has a law of its own.
   struct Kept {
     double t = 0;
     double standard_error = 0;
@@ -139,7 +135,7 @@ class NoisePyramid {
   Around around(const Rectangle& window, std::size_t channel) const;
   double inverse(std::size_t side) const;  // 1 / replicates_, 0 of a reference.
   bool of_one_law(const Around& near, double toward) const;
-  double growth(const Sides& here, int octave, double toward, bool one_law) const;
+  double growth(const Sides& here, int octave, double toward) const;
 
   std::array<double, sides_of_pair> replicates_ = {};  // 0: no side, but a reference.
   std::vector<Level> levels_;
