@@ -331,6 +331,19 @@ class ImageTheta : public Theta {
     }
     return std::min(count, impossible_secondaries);
   }
+  /// The root mean square of an element.
+  double piloted_size(const Question& question, const Pilots& pilots) const override {
+    if (!question.of_two() || !all_pictured(question, pilots)) return 0;
+    const Subject& second = question.subjects[1];
+    const Pilot& pilot = *pilot_of(second, pilots);
+    const auto squares = [&](const auto& images) {
+      return stats::image_squared_mean(stats::ImageStack{extent_of(*second.image), images});
+    };
+    const double sum = pilot.look ? pilot.look->distance.squared_norm
+                                  : ImageViews(pilot.images, second.channels).with(squares);
+    const auto elements = static_cast<double>(second.channels.size());
+    return std::abs(question.factor) * std::sqrt(std::max(0.0, sum) / elements);
+  }
   std::uint64_t usual_size() const override { return classical_replicates; }
   std::string too_few(const TestOutcome& test) const override {
     const Question& question = test.question;

@@ -722,11 +722,11 @@ class MeanTheta : public Theta {
     });
   }
 
-  std::string caution(const Question& question, const Pilots& pilots) const override {
-    if (!question.of_two()) return "";
+  double piloted_size(const Question& question, const Pilots& pilots) const override {
+    if (!question.of_two()) return 0;
     const Subject& second = question.subjects[1];
     const Pilot* const pilot = pilot_of(second, pilots);
-    if (pilot == nullptr) return "";
+    if (pilot == nullptr) return 0;
     double size = 0;
     for (std::size_t channel = 0; channel < second.channels.size(); ++channel) {
       const Moments moments = pilot_channel(second, *pilot, channel).moments;
@@ -734,12 +734,7 @@ class MeanTheta : public Theta {
         size = std::max(size, std::abs(question.factor * moments.mean));
       }
     }
-    for (const Margin& margin : margins_of(*question.test)) {
-      if (std::string text = missing_per_cent(margin, size); !text.empty()) {
-        return "the margin " + text;
-      }
-    }
-    return "";
+    return size;
   }
 
   PlannedChannel observed(const Seen& seen, const Regions& regions) const override {

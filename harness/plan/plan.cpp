@@ -99,11 +99,18 @@ std::string misdeclared(const Question& question, const Pilots& pilots) {
   return "";
 }
 
-/// Possible slip of the user: a `detect` by default, or what the family sees in the pilots.
+/// Possible slip of the user: a `detect` by default, or a margin larger than what it is about.
 std::string caution_of(const Question& question, const Pilots& pilots) {
-  if (!question.test->detect_by_default) return question.theta->caution(question, pilots);
-  return fmt::format("`detect` is {}, the default of claims about laws",
-                     question.test->detect->value);
+  if (question.test->detect_by_default) {
+    return fmt::format("`detect` is {}, the default of claims about laws",
+                       question.test->detect->value);
+  }
+  for (const Margin& margin : margins_of(*question.test)) {
+    const std::string text =
+        missing_per_cent(margin, question.theta->piloted_size(question, pilots));
+    if (!text.empty()) return "the margin " + text;
+  }
+  return "";
 }
 
 /// Chooses the method by the pilots' shapes, then judges the order of rows and draws. Returns the

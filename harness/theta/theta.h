@@ -131,8 +131,8 @@ class Theta {
   virtual std::string why_impossible(const Question&) const;
   /// Why the planned secondaries are too few.
   virtual std::string too_few(const TestOutcome&) const { return ""; }
-  /// A possible slip of the user that the pilots show.
-  virtual std::string caution(const Question&, const Pilots&) const { return ""; }
+  /// The size of the second of two sides as its pilot shows it; 0 if nothing tells.
+  virtual double piloted_size(const Question&, const Pilots&) const { return 0; }
 
   // ---- Power. `channel` is from pilots or from the test's own data.
 

@@ -10,6 +10,14 @@ namespace assay::stats {
 namespace {
 
 constexpr double alternating_share = 0.025;
+// A cell is as clear as one that holds it from this part of its z on.
+constexpr double as_clear = 0.99;
+
+bool is_inside(const Rectangle& inner, const Rectangle& outer) {
+  return inner.x >= outer.x && inner.y >= outer.y &&
+         inner.x + inner.width <= outer.x + outer.width &&
+         inner.y + inner.height <= outer.y + outer.height;
+}
 
 std::uint32_t narrow(std::size_t value) { return static_cast<std::uint32_t>(value); }
 
@@ -148,6 +156,17 @@ void decide(ImageFamily& family) {
                                       return a.adjusted_log_p < b.adjusted_log_p;
                                     });
   family.log_p = family.winner.adjusted_log_p;
+  const ImageFinding winner = family.winner;
+  const auto lies_in = [&](const ImageFinding& cell) {
+    return cell.statistic == winner.statistic && cell.channel == winner.channel &&
+           is_inside(cell.window, winner.window) &&
+           cell.z * winner.z >= as_clear * winner.z * winner.z;
+  };
+  if (winner.statistic != ImageStatistic::window) return;
+  const auto finest = std::ranges::find_if(family.groups, lies_in);
+  if (finest == family.groups.end()) return;
+  family.winner = *finest;
+  family.winner.adjusted_log_p = winner.adjusted_log_p;
 }
 
 ImageFinding certain_finding(const ImageExtent& extent, std::size_t element, double sign) {

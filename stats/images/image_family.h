@@ -111,7 +111,8 @@ struct GroupSize {
 };
 double adjusted(double log_p, GroupSize group);
 
-// Sets the family's p-value, the smallest over the groups.
+// Sets the family's p-value, the smallest over the groups. The winner is the finest best cell that
+// lies in the cell of this p-value and is as far from zero: elements around it tell nothing.
 void decide(ImageFamily& family);
 
 // A certain finding: different constants.

@@ -161,8 +161,8 @@ CALIBRATED(ImagePyramid, RarerLightOfOneSideKeepsTheLevel, 846, tests::repetitio
   return image_pyramid(a.view(), smooth_stack(random).view()).log_p;
 }
 
-// Four highlights of 4 x 4 in a dull picture. One side has their light in one of 75 values, of sizes
-// up to 200 times the least. The other side is smooth there.
+// Four highlights of 4 x 4 in a dull picture. One side has their light in one of 75 values, of
+// sizes up to 200 times the least. The other side is smooth there.
 constexpr double largest_over_least = 200;
 OwnedStack highlight_stack(Philox& random, bool rare) {
   constexpr double least = 0.5;
@@ -364,6 +364,24 @@ TEST(ImagePyramid, OneDifferentConstantIsCertainAndPlaced) {
   EXPECT_EQ(different.log_p, std::numeric_limits<double>::lowest());
   EXPECT_EQ(different.winner.window, (Rectangle{3, 2, 1, 1}));
   EXPECT_LT(different.winner.z, 0);
+}
+
+// Elements around it that never vary make coarser cells neither clearer nor less clear.
+TEST(ImagePyramid, AFindingIsTheFinestCellThatHoldsIt) {
+  Philox random(855);
+  const ImageExtent extent{64, 48, 1};
+  const auto stack_of = [&](double mean) {
+    return draw_stack(extent, 32, [&](std::size_t e) {
+      const bool varies = e % 64 / 8 == 2 && e / 64 / 8 == 1;
+      return varies ? mean + random.normal() : 1;
+    });
+  };
+  const OwnedStack a = stack_of(1.5);
+  const OwnedStack b = stack_of(1);
+  const ImageFamily family = image_pyramid(a.view(), b.view());
+  EXPECT_LT(family.log_p, std::log(1e-6));
+  EXPECT_EQ(family.winner.window, (Rectangle{16, 8, 8, 8}));
+  EXPECT_EQ(family.winner.adjusted_log_p, family.log_p);
 }
 
 TEST(ImagePyramid, EqualConstantsEverywhereAreNoEvidence) {
