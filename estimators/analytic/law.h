@@ -8,7 +8,6 @@
 #include <numbers>
 #include <optional>
 #include <span>
-#include <string>
 #include <string_view>
 #include <vector>
 

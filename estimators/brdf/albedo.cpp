@@ -114,23 +114,7 @@ Prepared by_brdf_cosine(SharedBrdf brdf, const render::BrdfIntegrals& i) {
   return {constant, std::make_shared<RejectionSampler>(brdf, Target::brdf_cosine, i.albedo)};
 }
 
-}  // namespace
-
-std::shared_ptr<const Sampler> published_sampler(SharedBrdf brdf) {
-  return std::make_shared<PublishedSampler>(std::move(brdf));
-}
-
-Channel published_channel(const render::HalfVectorBrdf& brdf) {
-  const render::BrdfIntegrals integrals = integrate(brdf);
-  return channel(integrals, integrals.second_moment, brdf.weight_bound());
-}
-
-std::shared_ptr<const Setup> albedo(Channel channel, std::shared_ptr<const Sampler> sampler) {
-  return averaging(std::move(channel),
-                   [sampler](Stream& random) { return sampler->sample(random).weight; },
-                   {{"direction", sampler}});
-}
-
+/// Reads `sampler` and prepares that one. Mean and variance come from quadrature.
 std::shared_ptr<const Setup> prepare_albedo(SharedBrdf brdf, Parameters& parameters) {
   const std::string kind = parameters.string("sampler");
   if (kind == "published") return albedo(published_channel(*brdf), published_sampler(brdf));
@@ -146,6 +130,23 @@ std::vector<ParameterInformation> incident_parameters() {
       number_parameter("theta_i", "polar angle of the incident direction", "0.8", {0, 1.5}, "rad"),
       number_parameter("phi_i", "azimuth of the incident direction, from the x axis of the lobe",
                        "0.5", {0, 6.283185307179586}, "rad")};
+}
+
+}  // namespace
+
+std::shared_ptr<const Sampler> published_sampler(SharedBrdf brdf) {
+  return std::make_shared<PublishedSampler>(std::move(brdf));
+}
+
+Channel published_channel(const render::HalfVectorBrdf& brdf) {
+  const render::BrdfIntegrals integrals = integrate(brdf);
+  return channel(integrals, integrals.second_moment, brdf.weight_bound());
+}
+
+std::shared_ptr<const Setup> albedo(Channel channel, std::shared_ptr<const Sampler> sampler) {
+  return averaging(std::move(channel),
+                   [sampler](Stream& random) { return sampler->sample(random).weight; },
+                   {{"direction", sampler}});
 }
 
 ParameterInformation sampler_parameter() {

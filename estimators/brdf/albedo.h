@@ -22,13 +22,8 @@ std::shared_ptr<const Sampler> published_sampler(SharedBrdf);
 /// the weights f cos / p of `sampler`.
 std::shared_ptr<const Setup> albedo(Channel channel, std::shared_ptr<const Sampler> sampler);
 
-/// Reads `sampler` and prepares that one. Mean and variance come from quadrature.
-std::shared_ptr<const Setup> prepare_albedo(SharedBrdf, Parameters&);
-
 Channel published_channel(const render::HalfVectorBrdf&);
 
-/// theta_i, phi_i: shared by all reflectances.
-std::vector<ParameterInformation> incident_parameters();
 /// sampler.
 ParameterInformation sampler_parameter();
 
@@ -51,9 +46,6 @@ Brdf ashikhmin_shirley(Parameters& parameters) {
 std::vector<ParameterInformation> ward_parameters();
 /// Reads them; `Brdf` is constructible as Ward is.
 template <class Brdf = render::Ward>
-Brdf ward(Parameters&);
-
-template <class Brdf>
 Brdf ward(Parameters& parameters) {
   const double x = parameters.number("alpha_x");
   const double y = parameters.number("alpha_y");

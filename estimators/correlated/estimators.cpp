@@ -169,6 +169,18 @@ std::shared_ptr<const Setup> ratio(SharedPairs source) {
 
 namespace {
 
+ParameterInformation lambda_parameter() {
+  return number_parameter(
+      "lambda", "weight of the control: 0 importance sampling, 1 correlated sampling", "1");
+}
+
+std::vector<ParameterInformation> rule_parameters() {
+  return {text_parameter("centre",
+                         "what the spread of g/p is measured about: its integral J or its mean",
+                         "integral", {"integral", "mean"}),
+          boolean_parameter("clamped", "whether lambda is moved into [0, 1]", false)};
+}
+
 Entry fixed_entry(const Family& family) {
   return {{.name = family.name,
            .summary = family.integral + " with a control of known integral, lambda given.",
@@ -234,18 +246,6 @@ Entry ratio_entry(const Family& family) {
 }
 
 }  // namespace
-
-ParameterInformation lambda_parameter() {
-  return number_parameter(
-      "lambda", "weight of the control: 0 importance sampling, 1 correlated sampling", "1");
-}
-
-std::vector<ParameterInformation> rule_parameters() {
-  return {text_parameter("centre",
-                         "what the spread of g/p is measured about: its integral J or its mean",
-                         "integral", {"integral", "mean"}),
-          boolean_parameter("clamped", "whether lambda is moved into [0, 1]", false)};
-}
 
 LambdaRule read_rule(Parameters& given) {
   const Centre centre = given.string("centre") == "mean" ? Centre::mean : Centre::integral;

@@ -126,10 +126,7 @@ std::shared_ptr<const Setup> ratio(SharedPairs);
 /// The channels of same_samples() and cross_fitted().
 std::vector<Channel> channels_with_lambda(const PairSource&);
 
-/// `lambda`, of the estimator that is given it.
-ParameterInformation lambda_parameter();
-/// `centre` and `clamped`, of those that estimate it.
-std::vector<ParameterInformation> rule_parameters();
+/// Reads `centre` and `clamped`.
 LambdaRule read_rule(Parameters&);
 
 /// A source of pairs from a plugin's parameters.

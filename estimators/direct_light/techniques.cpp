@@ -148,10 +148,6 @@ class SolidAngleSampling final : public LightSampling {
 
 }  // namespace
 
-SharedLightSampling area_sampling(SharedSetting setting) {
-  return std::make_shared<AreaSampling>(std::move(setting));
-}
-
 SharedLightSampling solid_angle_sampling(SharedSetting setting) {
   return std::make_shared<SolidAngleSampling>(std::move(setting));
 }
@@ -163,8 +159,8 @@ ParameterInformation light_sampling_parameter() {
 }
 
 SharedLightSampling read_light_sampling(Parameters& given, SharedSetting setting) {
-  return given.string("light_sampling") == "area" ? area_sampling(std::move(setting))
-                                                  : solid_angle_sampling(std::move(setting));
+  if (given.string("light_sampling") == "solid_angle") return solid_angle_sampling(setting);
+  return std::make_shared<AreaSampling>(std::move(setting));
 }
 
 Techniques::Techniques(luminaire::SharedSetting setting, SharedReflectance reflectance,

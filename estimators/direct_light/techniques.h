@@ -61,8 +61,6 @@ class LightSampling {
 
 using SharedLightSampling = std::shared_ptr<const LightSampling>;
 
-/// Points uniform in area: density distance^2 / (area light_cosine).
-SharedLightSampling area_sampling(luminaire::SharedSetting);
 /// Directions uniform in the solid angle Omega of the triangles that emit towards the receiver
 /// (Arvo 1995): density 1 / Omega.
 SharedLightSampling solid_angle_sampling(luminaire::SharedSetting);

@@ -154,12 +154,6 @@ class CosineSampler final : public Sampler {
   SharedSky sky_;
 };
 
-Rgb primary(const Sky& sky, Stream& random, Cost& cost) {
-  Rgb value = radiance(sky, draw(random), cost);
-  for (double& x : value) x *= pi;
-  return value;
-}
-
 Rgb largest(const render::EnvironmentMap& map) {
   Rgb most{};
   for (std::size_t texel = 0; texel < map.size(); ++texel) {
@@ -174,8 +168,12 @@ std::shared_ptr<const Setup> prepare_cosine(Parameters& given) {
       *sky,
       {.second_moment = [](std::size_t, const render::CosineMoments& m) { return pi * m.first; },
        .largest = largest(sky->map())});
-  const auto draw_one = [sky](Stream& random, Cost& cost) { return primary(*sky, random, cost); };
-  return rgb_setup(std::move(channels), draw_one,
+  const auto primary = [sky](Stream& random, Cost& cost) {
+    Rgb value = radiance(*sky, draw(random), cost);
+    for (double& x : value) x *= pi;
+    return value;
+  };
+  return rgb_setup(std::move(channels), primary,
                    NamedSampler{"direction", std::make_shared<CosineSampler>(sky)});
 }
 

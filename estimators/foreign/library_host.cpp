@@ -19,7 +19,6 @@
 #include "estimators/core/flush_denormals.h"
 #include "estimators/foreign/protocol.h"
 #include "estimators/foreign/shared_library.h"
-#include "estimators/foreign/words.h"
 
 namespace assay {
 

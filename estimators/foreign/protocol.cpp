@@ -43,11 +43,8 @@ bool is_name(std::string_view word) {
   const auto letter = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
   };
-  if (word.empty() || !letter(word[0])) return false;
-  for (const char c : word) {
-    if (!letter(c) && !(c >= '0' && c <= '9')) return false;
-  }
-  return true;
+  return !word.empty() && letter(word[0]) &&
+         std::ranges::all_of(word, [&](char c) { return letter(c) || (c >= '0' && c <= '9'); });
 }
 
 class Reader {

@@ -24,12 +24,10 @@ std::optional<double> variance(double mean, const std::optional<double>& second_
 }  // namespace
 
 Information information(std::string name, std::string summary, std::string description) {
-  Information out;
-  out.name = std::move(name);
-  out.summary = std::move(summary);
-  out.description = std::move(description);
-  out.parameters = {scene_parameter};
-  return out;
+  return {.name = std::move(name),
+          .summary = std::move(summary),
+          .description = std::move(description),
+          .parameters = {scene_parameter}};
 }
 
 SharedSetting read_setting(Parameters& parameters) {

@@ -198,16 +198,6 @@ Entry wrapped(const Defect& defect) {
           }};
 }
 
-template <class Mutant>
-Entry ward(const Defect& defect) {
-  return exchanged<OfWard, Mutant>(defect);
-}
-
-template <class Mutant>
-Entry ashikhmin_shirley(const Defect& defect) {
-  return exchanged<OfAshikhminShirley, Mutant>(defect);
-}
-
 }  // namespace
 
 std::vector<Entry> mutants_brdf() {
@@ -217,13 +207,15 @@ std::vector<Entry> mutants_brdf() {
   const std::string redrawn_what =
       "directions below the horizon are drawn again, and the density is not renormalised.";
   return {
-      ward<SingleQuadrant<Ward>>({"ward_single_quadrant", quadrant}),
-      ward<UniformAzimuth<Ward>>({"ward_uniform_azimuth", uniform}),
-      ward<NoJacobian<Ward>>({"ward_no_jacobian", jacobian}),
-      ward<NoArctangent>({"ward_no_arctangent",
-                          "the azimuth is (ay / ax) tan 2 pi u without the arctangent, as printed "
-                          "in the paper of 1992."}),
-      ward<NoSineOfAzimuth>({"ward_no_sine", "the y component of h lacks the factor sin phi."}),
+      exchanged<OfWard, SingleQuadrant<Ward>>({"ward_single_quadrant", quadrant}),
+      exchanged<OfWard, UniformAzimuth<Ward>>({"ward_uniform_azimuth", uniform}),
+      exchanged<OfWard, NoJacobian<Ward>>({"ward_no_jacobian", jacobian}),
+      exchanged<OfWard, NoArctangent>(
+          {"ward_no_arctangent",
+           "the azimuth is (ay / ax) tan 2 pi u without the arctangent, as printed "
+           "in the paper of 1992."}),
+      exchanged<OfWard, NoSineOfAzimuth>(
+          {"ward_no_sine", "the y component of h lacks the factor sin phi."}),
       wrapped<OfWard, Redrawn>({"ward_redrawn", redrawn_what}),
       wrapped<OfWard, WeightWithoutCosine>(
           {"ward_weight_without_cosine", "the weight is f / p, without the cosine."}),
@@ -234,16 +226,17 @@ std::vector<Entry> mutants_brdf() {
       wrapped<OfWard, MirroredWeight>(
           {"ward_weight_mirrored",
            "the weight takes the BRDF of the direction with its x and y exchanged."}),
-      ashikhmin_shirley<SingleQuadrant<AshikhminShirley>>(
+      exchanged<OfAshikhminShirley, SingleQuadrant<AshikhminShirley>>(
           {"ashikhmin_shirley_single_quadrant", quadrant}),
-      ashikhmin_shirley<UniformAzimuth<AshikhminShirley>>(
+      exchanged<OfAshikhminShirley, UniformAzimuth<AshikhminShirley>>(
           {"ashikhmin_shirley_uniform_azimuth", uniform}),
-      ashikhmin_shirley<UnmirroredQuadrants>(
+      exchanged<OfAshikhminShirley, UnmirroredQuadrants>(
           {"ashikhmin_shirley_unmirrored",
            "the second and fourth quadrant turn the first instead of mirroring it."}),
-      ashikhmin_shirley<ExponentWithoutOne>(
+      exchanged<OfAshikhminShirley, ExponentWithoutOne>(
           {"ashikhmin_shirley_exponent", "cos d = v^(1/e) instead of v^(1/(e+1))."}),
-      ashikhmin_shirley<NoJacobian<AshikhminShirley>>({"ashikhmin_shirley_no_jacobian", jacobian}),
+      exchanged<OfAshikhminShirley, NoJacobian<AshikhminShirley>>(
+          {"ashikhmin_shirley_no_jacobian", jacobian}),
       wrapped<OfAshikhminShirley, Redrawn>({"ashikhmin_shirley_redrawn", redrawn_what}),
   };
 }

@@ -7,8 +7,6 @@
 // the distance 2 in the mirror direction. The reflectance is Ashikhmin-Shirley with exponents 1000
 // and 100.
 
-#include <utility>
-
 #include "direct_light/family.h"
 #include "estimators/mutant.h"
 

@@ -5,7 +5,6 @@
 #include <sstream>
 
 #include "estimators/core/quoting.h"
-#include "estimators/parameters.h"
 #include "harness/base/refuse.h"
 #include "reports/report_formats.h"
 

@@ -7,7 +7,6 @@
 #include <functional>
 #include <iostream>
 #include <memory>
-#include <ostream>
 
 #include "harness/base/progress.h"
 

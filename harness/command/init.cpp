@@ -8,7 +8,6 @@
 #include "estimators/core/quoting.h"
 #include "estimators/core/value.h"
 #include "harness/base/whole_file.h"
-#include "harness/command/options.h"
 #include "harness/suite/yaml.h"
 
 namespace assay::harness {

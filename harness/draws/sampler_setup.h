@@ -4,7 +4,6 @@
 // cell. Samplers are thus drawn, counted and replayed as estimators are.
 
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>

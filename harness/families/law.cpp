@@ -229,8 +229,7 @@ std::string describe(const stats::SampledCells& cells, const Subject& side, std:
 }
 
 const stats::PooledPair& farthest(const stats::ChiSquareTwoSample& fit) {
-  return *std::ranges::max_element(fit.cells,
-                                   [](const auto& a, const auto& b) { return a.part < b.part; });
+  return *std::ranges::max_element(fit.cells, {}, [](const auto& cell) { return cell.part; });
 }
 
 /// Name of a tested cell, or of sparse cells that were pooled.
@@ -246,8 +245,7 @@ std::string worst_of(const stats::ChiSquareFit& fit, const DrawCells& cells) {
     const double difference = static_cast<double>(cell.observed) - cell.expected;
     return difference * difference / cell.expected;
   };
-  const auto worst = std::ranges::max_element(
-      fit.cells, [&](const auto& a, const auto& b) { return part(a) < part(b); });
+  const auto worst = std::ranges::max_element(fit.cells, {}, part);
   const auto describe = [&](std::size_t cell) { return cells.describe(cell); };
   std::string text;
   if (fit.impossible > 0) text = fmt::format("; {} draws where the density is 0", fit.impossible);

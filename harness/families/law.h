@@ -5,7 +5,6 @@
 // point.
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "harness/draws/declared_density.h"

@@ -4,7 +4,6 @@
 // unseen.
 
 #include <cstddef>
-#include <span>
 #include <vector>
 
 #include "harness/image/image_pair.h"

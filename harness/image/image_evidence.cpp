@@ -52,9 +52,7 @@ void add_unseen(const stats::ImageExtent& extent, ImageOutcome& outcome) {
   for (stats::ImageFinding& group : family.groups) {
     group.adjusted_log_p = std::min(0.0, group.adjusted_log_p - std::log1p(-unseen_share));
   }
-  const auto least = std::min_element(
-      outcome.unseen.begin(), outcome.unseen.end(),
-      [](const UnseenElement& a, const UnseenElement& b) { return a.log_p < b.log_p; });
+  const auto least = std::ranges::min_element(outcome.unseen, {}, &UnseenElement::log_p);
   if (least != outcome.unseen.end()) family.groups.push_back(finding_of(*least, extent));
   stats::decide(family);
 }

@@ -20,10 +20,8 @@ namespace assay::harness {
 namespace {
 
 const ChannelOutcome* outcome_of(const TestOutcome& test, std::size_t channel) {
-  for (const ChannelOutcome& outcome : test.channels) {
-    if (outcome.index == channel) return &outcome;
-  }
-  return nullptr;
+  const auto found = std::ranges::find(test.channels, channel, &ChannelOutcome::index);
+  return found == test.channels.end() ? nullptr : &*found;
 }
 
 /// Why a test gives nothing that nights could pool; "" if it does.

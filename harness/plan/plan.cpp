@@ -13,7 +13,6 @@
 #include "harness/plan/pilot_shape.h"
 #include "harness/plan/sizes.h"
 #include "harness/question/question_sources.h"
-#include "harness/sampling/pool.h"
 #include "harness/sampling/summary.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/constant.h"

@@ -105,8 +105,7 @@ std::vector<Part> parts_of(const std::vector<ShardFile>& shards, std::size_t sui
           .message = fmt::format("shard {} of {} is missing", test.shard, any.shard->count)},
          {.position = test.position}});
   }
-  std::ranges::sort(
-      parts, [](const Part& a, const Part& b) { return a.family.position < b.family.position; });
+  std::ranges::sort(parts, {}, [](const Part& part) { return part.family.position; });
   return parts;
 }
 
@@ -338,9 +337,7 @@ void add_shard(const SuiteRuns& runs, const RunOptions& options, reports::Record
 
 reports::Record merge(std::vector<ShardFile> shards) {
   check_shards(shards);
-  std::ranges::sort(shards, [](const ShardFile& a, const ShardFile& b) {
-    return a.record.shard->index < b.record.shard->index;
-  });
+  std::ranges::sort(shards, {}, [](const ShardFile& each) { return each.record.shard->index; });
   reports::Record record = shards.front().record;
   record.shard.reset();
   record.suites.clear();

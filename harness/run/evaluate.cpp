@@ -197,10 +197,9 @@ void remember(TestOutcome& outcome, bool counts) {
     channel.decision.rejected =
         channel.decision.log_p_claimed <= std::log(outcome.place.share.alpha);
   }
-  std::stable_sort(outcome.channels.begin(), outcome.channels.end(),
-                   [](const ChannelOutcome& a, const ChannelOutcome& b) {
-                     return a.decision.log_p_claimed < b.decision.log_p_claimed;
-                   });
+  std::ranges::stable_sort(outcome.channels, {}, [](const ChannelOutcome& channel) {
+    return channel.decision.log_p_claimed;
+  });
 }
 
 Verdict verdict_of_channels(const TestOutcome& outcome) {

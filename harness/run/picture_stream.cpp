@@ -8,7 +8,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
-#include <functional>
 #include <iterator>
 #include <limits>
 #include <new>
@@ -239,7 +238,7 @@ class Looking {
     Pilots pilots;
     for (std::size_t s = 0; s < sides_.size(); ++s) {
       sums_[s].extremes = sides_[s].extremes();
-      sums_[s].take_averages(sides_[s].averages());
+      sums_[s].average = sum_of(sides_[s].averages()).moments;
       auto summary = std::make_shared<Summary>();
       summary->count = pictures_;
       summary->cost.samples = pictures_;
@@ -445,10 +444,8 @@ void require_memory(const std::map<std::string, PreparedEstimator>& estimators,
                     const StreamedClaims& streamed, double available, const std::string& fault) {
   const double needed = picture_bytes(estimators, streamed);
   if (needed <= available) return;
-  const auto largest =
-      std::max_element(estimators.begin(), estimators.end(), [&](const auto& a, const auto& b) {
-        return bytes_of(a.second, streamed) < bytes_of(b.second, streamed);
-      });
+  const auto largest = std::ranges::max_element(
+      estimators, {}, [&](const auto& each) { return bytes_of(each.second, streamed); });
   const PreparedEstimator& estimator = largest->second;
   const ImageShape shape = *estimator.setup->image();
   const std::string why = fault.empty() ? "" : fault + ", so that all are to be kept: ";

@@ -46,10 +46,9 @@ std::string in_channel(const TestOutcome& outcome, const ChannelOutcome& channel
 }
 
 const ChannelOutcome& least_excluded(const TestOutcome& outcome) {
-  return *std::max_element(outcome.channels.begin(), outcome.channels.end(),
-                           [](const ChannelOutcome& a, const ChannelOutcome& b) {
-                             return a.decision.log_p_forbidden < b.decision.log_p_forbidden;
-                           });
+  return *std::ranges::max_element(outcome.channels, {}, [](const ChannelOutcome& channel) {
+    return channel.decision.log_p_forbidden;
+  });
 }
 
 /// The theta that is shown as the larger. For ratios -14.3 % is shown as less than +16.2 %, though

@@ -62,10 +62,4 @@ void ElementSums::take(const stats::ImageStack<float>& stack, stats::RowRange ro
   if (range.first == 0) stats::element_moments(stack, 0, std::span(&first, 1));
 }
 
-void ElementSums::take_averages(std::span<const double> averages) {
-  stats::ImageStack<double> stack{{.width = 1, .height = 1}, {}};
-  for (const double& each : averages) stack.images.emplace_back(&each, 1);
-  stats::element_moments(stack, 0, std::span(&average, 1));
-}
-
 }  // namespace assay::harness

@@ -40,8 +40,6 @@ struct ElementSums {
   stats::Moments moments(std::size_t channel) const;
   /// Takes the rows that follow.
   void take(const stats::ImageStack<float>& stack, stats::RowRange rows);
-  /// Takes each picture's average over its elements.
-  void take_averages(std::span<const double> averages);
 };
 
 // Results of reading two stacks of pictures for one claim.

@@ -6,7 +6,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "estimators/estimator.h"
 #include "harness/suite/suite.h"

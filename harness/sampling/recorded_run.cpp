@@ -56,12 +56,10 @@ stats::Moments moments_of(const reports::Sample& sample) {
 }
 
 Cost cost_of(const reports::Cost& recorded) {
-  Cost cost;
-  cost.camera_rays = recorded.camera_rays;
-  cost.closest_hit_rays = recorded.closest_hit_rays;
-  cost.shadow_rays = recorded.shadow_rays;
-  cost.samples = recorded.samples;
-  return cost;
+  return {.camera_rays = recorded.camera_rays,
+          .closest_hit_rays = recorded.closest_hit_rays,
+          .shadow_rays = recorded.shadow_rays,
+          .samples = recorded.samples};
 }
 
 constexpr const char* kinds[] = {"rays", "samples"};

@@ -99,14 +99,6 @@ std::vector<double> averages_of(std::span<const std::span<const float>> pictures
   return averages;
 }
 
-ChannelSummary sum_of(std::span<const double> averages) {
-  stats::ImageStack<double> stack{{.width = 1, .height = 1}, {}};
-  for (const double& average : averages) stack.images.emplace_back(&average, 1);
-  ChannelSummary sum;
-  take(stack, 0, {&sum, 1});
-  return sum;
-}
-
 std::vector<ChannelSummary> sums_of(std::span<const std::span<const float>> pictures) {
   const std::size_t elements = pictures.front().size();
   std::vector<ChannelSummary> sums(elements + 1);
@@ -185,6 +177,14 @@ std::string beyond_doubles(const stats::Moments& moments, const std::string& nam
                      std::isfinite(moments.skewness()) && std::isfinite(moments.kurtosis());
   if (sound) return "";
   return refusal(name, spread, "fourth");
+}
+
+ChannelSummary sum_of(std::span<const double> averages) {
+  stats::ImageStack<double> stack{{.width = 1, .height = 1}, {}};
+  for (const double& average : averages) stack.images.emplace_back(&average, 1);
+  ChannelSummary sum;
+  take(stack, 0, {&sum, 1});
+  return sum;
 }
 
 std::vector<ChannelSummary> sums_of_kept(const Observations& observations) {

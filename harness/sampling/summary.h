@@ -165,6 +165,9 @@ std::string beyond_doubles(const stats::Moments& moments, const std::string& nam
 /// gives the same bits for any number of threads.
 std::vector<ChannelSummary> sums_of_kept(const Observations& observations);
 
+/// The summary of each picture's average over its elements.
+ChannelSummary sum_of(std::span<const double> averages);
+
 /// Observations of a group (GroupVariance). Block sizes are multiples of it, so that no group spans
 /// two blocks.
 inline constexpr std::uint64_t variance_group = 8;

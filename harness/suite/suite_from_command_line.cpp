@@ -6,7 +6,6 @@
 
 #include "estimators/catalogue.h"
 #include "estimators/core/quoting.h"
-#include "harness/language/quantities.h"
 #include "harness/suite/suite.h"
 #include "harness/suite/yaml.h"
 
@@ -197,10 +196,7 @@ TestEntry test_of_claim(const CheckArguments& arguments) {
 
 Suite suite_of_claim(const CheckArguments& arguments) {
   TestEntry test = test_of_claim(arguments);
-  Suite suite;
-  suite.name = "check";
-  suite.stem = "check";
-  suite.folder = ".";
+  Suite suite{.name = "check", .stem = "check", .folder = "."};
   std::vector<Source> sources = sources_of(test.claim);
   if (test.reference) sources.push_back(*test.reference);
   suite.estimators = estimators_of(sources, arguments.estimators, arguments.primaries);

@@ -295,10 +295,7 @@ Suite suite_of_images(const ImagesArguments& arguments) {
            "candidate");
   }
   const FirstPictures first = first_pictures(arguments, candidates[0], references[0]);
-  Suite suite;
-  suite.name = "images";
-  suite.stem = "images";
-  suite.folder = ".";
+  Suite suite{.name = "images", .stem = "images", .folder = "."};
   for (const Layer& layer : layers_of(arguments, first)) {
     suite.estimators.push_back(
         stack_entry("candidate" + layer.suffix,

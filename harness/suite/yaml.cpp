@@ -5,7 +5,6 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <sstream>
@@ -23,35 +22,28 @@ constexpr std::string_view no_aliases =
 
 /// Replaces yaml-cpp's messages by what to do.
 std::string readable(const std::string& message) {
-  struct Translation {
-    std::string_view terse, plain;
+  static const std::pair<std::string_view, std::string_view> translations[] = {
+      {YAML::ErrorMsg::FLOW_END, "a closing bracket that was never opened"},
+      {YAML::ErrorMsg::END_OF_MAP_FLOW, "a `{` is not closed, or a comma is missing before this"},
+      {YAML::ErrorMsg::END_OF_SEQ_FLOW, "a `[` is not closed, or a comma is missing before this"},
+      {YAML::ErrorMsg::END_OF_MAP,
+       "expected a key of the map here; is the indentation that of the other keys, and "
+       "the line `key: value`?"},
+      {YAML::ErrorMsg::END_OF_SEQ,
+       "expected another `- ` item here; indent all items alike, and all keys of an item"},
+      {YAML::ErrorMsg::MAP_VALUE,
+       "a `:` cannot stand here; indent all keys of a map alike, and put text that "
+       "contains `: ` in quotes"},
+      {YAML::ErrorMsg::MAP_KEY, "a key cannot stand here"},
+      {YAML::ErrorMsg::BLOCK_ENTRY, "a `- ` item cannot stand here"},
+      {YAML::ErrorMsg::TAB_IN_INDENTATION, "indent with spaces, not with a tab"},
+      {YAML::ErrorMsg::EOF_IN_SCALAR, "a quote is opened and never closed"},
+      {YAML::ErrorMsg::DOC_IN_SCALAR, "a quote is opened and never closed"},
+      {YAML::ErrorMsg::UNKNOWN_ANCHOR, no_aliases},
+      {YAML::ErrorMsg::UNKNOWN_TOKEN, "text cannot begin with this character; put it in quotes"},
   };
-  static const std::array translations{
-      Translation{YAML::ErrorMsg::FLOW_END, "a closing bracket that was never opened"},
-      Translation{YAML::ErrorMsg::END_OF_MAP_FLOW,
-                  "a `{` is not closed, or a comma is missing before this"},
-      Translation{YAML::ErrorMsg::END_OF_SEQ_FLOW,
-                  "a `[` is not closed, or a comma is missing before this"},
-      Translation{YAML::ErrorMsg::END_OF_MAP,
-                  "expected a key of the map here; is the indentation that of the other keys, and "
-                  "the line `key: value`?"},
-      Translation{
-          YAML::ErrorMsg::END_OF_SEQ,
-          "expected another `- ` item here; indent all items alike, and all keys of an item"},
-      Translation{YAML::ErrorMsg::MAP_VALUE,
-                  "a `:` cannot stand here; indent all keys of a map alike, and put text that "
-                  "contains `: ` in quotes"},
-      Translation{YAML::ErrorMsg::MAP_KEY, "a key cannot stand here"},
-      Translation{YAML::ErrorMsg::BLOCK_ENTRY, "a `- ` item cannot stand here"},
-      Translation{YAML::ErrorMsg::TAB_IN_INDENTATION, "indent with spaces, not with a tab"},
-      Translation{YAML::ErrorMsg::EOF_IN_SCALAR, "a quote is opened and never closed"},
-      Translation{YAML::ErrorMsg::DOC_IN_SCALAR, "a quote is opened and never closed"},
-      Translation{YAML::ErrorMsg::UNKNOWN_ANCHOR, no_aliases},
-      Translation{YAML::ErrorMsg::UNKNOWN_TOKEN,
-                  "text cannot begin with this character; put it in quotes"},
-  };
-  for (const Translation& t : translations) {
-    if (message.find(t.terse) != std::string::npos) return std::string(t.plain);
+  for (const auto& [terse, plain] : translations) {
+    if (message.find(terse) != std::string::npos) return std::string(plain);
   }
   return "not YAML: " + message;
 }

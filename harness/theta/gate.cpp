@@ -9,22 +9,18 @@ const std::vector<GateKind>& gate_kinds() {
       {.name = "level factor by skewness",
        .sentence = "the observations are so skewed that one tail of the test is off by a factor of "
                    "{0}, limit {1}",
-       .needs_more = true,
        .falls = Falls::by_its_logarithm},
       {.name = "effective observations",
        .sentence = "few observations make up the spread: as much as {0} of equal weight would, and "
                    "it takes {1} to tell how heavy its tail is",
-       .needs_more = true,
        .falls = Falls::inversely},
       {.name = "level factor after correction",
        .sentence = "the observations are so skewed that one tail of the test is off by a factor of "
                    "{0} even after correction, limit {1}",
-       .needs_more = true,
        .falls = Falls::by_its_logarithm},
       {.name = "share of one observation",
        .sentence =
            "one observation outweighs the others: it has {0} of the sum of squares, limit {1}",
-       .needs_more = true,
        .falls = Falls::as_one_observation},
       {.name = "excess kurtosis",
        .sentence = "the observations are not normal enough for this test of their variance: their "
@@ -69,7 +65,7 @@ const GateKind& Gate::row() const {
 
 bool need_more(const std::vector<Gate>& gates) {
   return std::ranges::all_of(
-      gates, [](const Gate& gate) { return !gate.is_red() || gate.row().needs_more; });
+      gates, [](const Gate& gate) { return !gate.is_red() || gate.row().needs_more(); });
 }
 
 Gate gate_of(const reports::Gate& gate, const std::string& where) {

@@ -20,8 +20,10 @@ struct GateKind {
   std::string sentence = "";     ///< if it is red; {0} is its value, {1} its limit
   bool heavy_tail = false;       ///< more observations may only show more of the tail
   bool says_what_helps = false;  ///< its sentence does
-  bool needs_more = false;       ///< If it is red the test goes on, and ends inconclusive.
   Falls falls = Falls::not_known;
+
+  /// If it is red the test goes on, and ends inconclusive.
+  bool needs_more() const { return falls != Falls::not_known; }
 };
 
 const std::vector<GateKind>& gate_kinds();

@@ -81,10 +81,7 @@ Json tree(const T& value) {
 }
 
 bool flat(const Json& node) {
-  for (const Json& child : node) {
-    if (child.is_structured()) return false;
-  }
-  return true;
+  return std::ranges::none_of(node, [](const Json& child) { return child.is_structured(); });
 }
 
 constexpr std::size_t longest_line = 240;

@@ -74,9 +74,7 @@ std::vector<std::string> answers(const Suite& suite) {
 std::vector<Witness> witnesses(const Suite& suite, const std::vector<std::string>& names) {
   std::vector<Witness> all;
   for (const std::string& name : names) all.push_back({name, place_of(suite, name)});
-  std::stable_sort(all.begin(), all.end(), [&](const Witness& a, const Witness& b) {
-    return voice_of(suite, a.test) < voice_of(suite, b.test);
-  });
+  std::ranges::stable_sort(all, {}, [&](const Witness& w) { return voice_of(suite, w.test); });
   return all;
 }
 

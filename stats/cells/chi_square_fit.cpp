@@ -72,9 +72,9 @@ void flush_rest(Pools& pools) {
   if (!pools.gathered.empty()) {
     absorb(pools.gathered.back(), pools.rest);
   } else if (!pools.large.empty()) {
-    absorb(*std::min_element(pools.large.begin(), pools.large.end(),
-                             [](const auto& a, const auto& b) { return a.expected < b.expected; }),
-           pools.rest);
+    absorb(
+        *std::ranges::min_element(pools.large, {}, [](const auto& cell) { return cell.expected; }),
+        pools.rest);
   } else {
     pools.gathered.push_back(pools.rest);
   }
@@ -85,8 +85,7 @@ std::vector<PooledCell> pooled(const CellCounts& counts, double observations, do
   flush_rest(pools);
   std::vector<PooledCell> cells = std::move(pools.large);
   cells.insert(cells.end(), pools.gathered.begin(), pools.gathered.end());
-  std::sort(cells.begin(), cells.end(),
-            [](const auto& a, const auto& b) { return a.members.front() < b.members.front(); });
+  std::ranges::sort(cells, {}, [](const auto& cell) { return cell.members.front(); });
   return cells;
 }
 

@@ -47,8 +47,7 @@ SampledCells sampled_cells(std::vector<PlanePoint> points, CellNumbers numbers) 
     check::finite({"sampled_cells", "first coordinate"}, point.first);
     check::finite({"sampled_cells", "second coordinate"}, point.second);
   }
-  std::sort(points.begin(), points.end(),
-            [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::ranges::sort(points, {}, &PlanePoint::first);
   SampledCells cells{.band_borders = borders(points, numbers.bands, first_of)};
   std::size_t behind = 0;
   auto begin = points.begin();

@@ -151,10 +151,7 @@ double adjusted(double log_p, GroupSize group) {
 
 void decide(ImageFamily& family) {
   if (family.groups.empty()) return;
-  family.winner = *std::min_element(family.groups.begin(), family.groups.end(),
-                                    [](const ImageFinding& a, const ImageFinding& b) {
-                                      return a.adjusted_log_p < b.adjusted_log_p;
-                                    });
+  family.winner = *std::ranges::min_element(family.groups, {}, &ImageFinding::adjusted_log_p);
   family.log_p = family.winner.adjusted_log_p;
   const ImageFinding winner = family.winner;
   const auto lies_in = [&](const ImageFinding& cell) {

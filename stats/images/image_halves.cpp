@@ -11,10 +11,6 @@
 namespace assay::stats {
 namespace {
 
-std::size_t half_count(std::size_t replicates, std::size_t half) {
-  return (replicates + 1 - half) / halves;
-}
-
 // Means over numbers that are so far apart, of which the first are at `values`.
 constexpr std::size_t around = 2 * rows_beside + 1;
 ASSAY_VECTOR_COPIES void means_around(const double* values, std::size_t apart, double* to,

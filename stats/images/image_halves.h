@@ -11,6 +11,9 @@ namespace assay::stats {
 
 // Internal to image_pyramid: replicates are dealt to two halves, even and odd indices.
 inline constexpr std::size_t halves = 2;
+inline std::size_t half_count(std::size_t replicates, std::size_t half) {
+  return (replicates + 1 - half) / halves;
+}
 
 // One half: D = mean a - mean b, its squared error v, and the weight that the other half takes. The
 // weight is 1 / sqrt of the mean of v and of v smoothed over 5 x 5 elements of the channel, and

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numeric>
 
 #include "stats/basics/check.h"
 #include "stats/basics/search.h"

@@ -659,15 +659,13 @@ CoarseImages empty_blocks(const ImagePair<Real>& pair) {
       std::vector<double>(coarse.extent.elements()),
       std::vector<double>(tiles_across(extent) * extent.channels * alternations)};
   const BlockSums<float> no_image{std::vector<float>(none.blocks.size()), none.alternating};
-  const auto per_half = [](const ImageStack<Real>& stack, std::size_t h) {
-    return (stack.images.size() + 1 - h) / halves;
-  };
   coarse.third.resize(coarse.extent.elements());
   coarse.weights = none;
   coarse.squared_weights = none;
   for (std::size_t h = 0; h < halves; ++h) {
-    coarse.images[h][0].assign(per_half(pair.a, h), no_image);
-    if (pair.b != nullptr) coarse.images[h][1].assign(per_half(*pair.b, h), no_image);
+    coarse.images[h][0].assign(half_count(pair.a.images.size(), h), no_image);
+    if (pair.b != nullptr)
+      coarse.images[h][1].assign(half_count(pair.b->images.size(), h), no_image);
     coarse.effect[h] = none;
     coarse.varied[h] = none;
   }

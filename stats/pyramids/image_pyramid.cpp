@@ -1,7 +1,6 @@
 #include "stats/pyramids/image_pyramid.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 

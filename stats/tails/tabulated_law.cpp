@@ -128,8 +128,7 @@ class Table {
   }
 
   TabulatedLaw result() {
-    std::sort(parts_.begin(), parts_.end(),
-              [](const Part& a, const Part& b) { return a.span.low < b.span.low; });
+    std::ranges::sort(parts_, {}, [](const Part& part) { return part.span.low; });
     TabulatedLaw law{.place = {parts_.front().span.low}, .cumulated = {0}};
     double departure = 0;
     for (const Part& part : parts_) {

@@ -34,8 +34,7 @@ void check_points(const char* function, const SlopeData& data) {
 }
 
 SlopeData ordered(const char* function, SlopeData data) {
-  std::sort(data.points.begin(), data.points.end(),
-            [](const SlopePoint& a, const SlopePoint& b) { return a.size < b.size; });
+  std::ranges::sort(data.points, {}, &SlopePoint::size);
   check_points(function, data);
   return data;
 }
@@ -153,8 +152,7 @@ std::vector<Node> scan(const Misfit& misfit) {
     const double at = minimum_between(misfit, nodes[i - 1].slope, nodes[i + 1].slope);
     nodes.push_back({at, misfit(at)});
   }
-  std::sort(nodes.begin(), nodes.end(),
-            [](const Node& a, const Node& b) { return a.slope < b.slope; });
+  std::ranges::sort(nodes, {}, &Node::slope);
   return nodes;
 }
 
@@ -219,8 +217,7 @@ SlopeEstimate slope_estimate(const SlopeData& unordered) {
   const SlopeData data = ordered("slope_estimate", unordered);
   const Misfit misfit(data);
   const std::vector<Node> nodes = candidates(data, misfit);
-  const auto best = std::min_element(
-      nodes.begin(), nodes.end(), [](const Node& a, const Node& b) { return a.misfit < b.misfit; });
+  const auto best = std::ranges::min_element(nodes, {}, &Node::misfit);
   SlopeEstimate estimate{.slope = best->slope, .log_p_best = log_p(best->misfit, degrees_of(data))};
   if (best == nodes.begin()) estimate.slope = -infinity;
   if (best + 1 == nodes.end()) estimate.slope = infinity;

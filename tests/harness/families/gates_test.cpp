@@ -40,7 +40,7 @@ tests: [{name: t, claim: )" + claim +
 
 bool is_red(const std::vector<Gate>& gates, const std::string& kind) {
   return std::ranges::any_of(gates, [&](const Gate& gate) {
-    return gate.is_red() && gate.kind == kind && gate.row().needs_more;
+    return gate.is_red() && gate.kind == kind && gate.row().needs_more();
   });
 }
 
