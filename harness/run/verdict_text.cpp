@@ -10,6 +10,7 @@
 #include "harness/plan/independence.h"
 #include "harness/plan/looks.h"
 #include "harness/theta/ask.h"
+#include "harness/theta/constant.h"
 #include "harness/theta/theta.h"
 #include "reports/words/number.h"
 #include "reports/words/text.h"
@@ -256,8 +257,8 @@ std::string what_would_decide(const TestOutcome& outcome, const ChannelOutcome& 
   const double half = (interval.high - interval.low) / 2;
   const Room room = room_of(outcome, channel);
   if (outcome.plan.method.is.in_range && !std::isfinite(half)) {
-    return "no number of samples would decide: what rare values could add is not bounded; declare "
-           "the range";
+    return "no number of samples would decide: what rare values could add is not bounded; " +
+           range_advice(outcome.question);
   }
   if (!(half > 0) || !std::isfinite(half) || !(room.size > 0)) {
     return "the estimate lies where the claim must not pass, yet not clearly so";
