@@ -352,6 +352,7 @@ test_explain_tells_of_the_last_run() {
   expect 1 run mixed.yaml --report json=run.json
   expect 0 explain open
   contains out 'The samples do not suffice'
+  contains out 'The last run with tests began'
   contains out 'secondaries: '
   expect 0 explain run.json mixed/wrong
   contains out 'The claim is wrong.'
