@@ -137,8 +137,11 @@ struct Pair {
 [[noreturn]] void refuse_pair(const Question& question, const Pair& pair, const std::string& why) {
   refuse(question.test->claim.left.where,
          "`{}` and `{}` are no independent samples: {}, bit for bit; give the two sides seeds of "
-         "their own, none of them twice",
-         pair.first.estimator->name, pair.second.estimator->name, why);
+         "their own, none of them twice{}",
+         pair.first.estimator->name, pair.second.estimator->name, why,
+         question.theta->of_pairs() == nullptr ? ""
+                                               : ", or compare pairs of one seed with " +
+                                                     written_key(*question.test, "paired", "true"));
 }
 
 void refuse_shared_pictures(const Question& question, std::uint64_t count) {
