@@ -209,6 +209,7 @@ void allow_for_dependence(const std::vector<Rows>& all, Plan& plan) {
         {.subject = rows.subject, .channel = rows.channel, .factor = factor});
     plan.gates.push_back(
         gate_of("variance of the mean, allowed for dependence, " + rows.label, factor, 1, "amber"));
+    plan.caution = "the interval is wider because successive " + rows.label + " seem correlated";
   }
 }
 
