@@ -215,9 +215,9 @@ double reference_error(const TestOutcome& outcome, const ChannelOutcome& channel
   return reference.standard_error / (relative ? std::abs(reference.value) : 1);
 }
 
-/// So many times the secondaries, or the number for a `budget`.
+/// So many times the observations, and their primaries.
 std::string times_as_many(const TestOutcome& outcome, double factor) {
-  const std::string text = sizes_text(outcome, factor) + " secondaries";
+  const std::string text = sizes_text(outcome, factor) + " observations";
   if (primaries_of_each(outcome) == 1) return text;
   const auto primaries = static_cast<double>(primaries_of_look(outcome, outcome.secondaries()));
   return fmt::format("{} ({} primaries)", text, reports::human(factor * primaries, 2));
@@ -259,7 +259,7 @@ std::string what_would_decide(const TestOutcome& outcome, const ChannelOutcome& 
   const double half = (interval.high - interval.low) / 2;
   const Room room = room_of(outcome, channel);
   if (outcome.plan.method.is.in_range && !std::isfinite(half)) {
-    return "no number of samples would decide: what rare values could add is not bounded; " +
+    return "no number of observations would decide: what rare values could add is not bounded; " +
            range_advice(outcome.question);
   }
   if (!(half > 0) || !std::isfinite(half) || !(room.size > 0)) {
@@ -271,7 +271,7 @@ std::string what_would_decide(const TestOutcome& outcome, const ChannelOutcome& 
   const double sampled = error * error - fixed * fixed;
   const double wanted = std::pow(room.size / room.standard_errors, 2) - fixed * fixed;
   if (!(wanted > 0)) {
-    return "no number of samples would decide: the reference's own error forbids it";
+    return "no number of observations would decide: the reference's own error forbids it";
   }
   const double factor = std::max(1.1, std::max(0.0, sampled) / wanted);
   if (has_rows(outcome.question))

@@ -329,7 +329,7 @@ std::string meaning(const Test& test) {
     case Verdict::fail:
       return "The claim is wrong.";
     case Verdict::inconclusive:
-      return "The samples do not suffice to say whether the claim holds.";
+      return "The observations do not suffice to say whether the claim holds.";
     case Verdict::invalid:
       return "Nothing was decided, because the data break what the test relies on.";
     case Verdict::error:

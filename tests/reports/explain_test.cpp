@@ -23,7 +23,7 @@ TEST(Explain, AnUndecidedTestHasTheLineToAdd) {
   reports::Test test = undecided();
   test.message = "about 1100 secondaries would decide; write `secondaries: 1100`";
   const std::string text = explain(suite, test, 1000);
-  EXPECT_THAT(text, HasSubstr("The samples do not suffice to say whether the claim holds."));
+  EXPECT_THAT(text, HasSubstr("The observations do not suffice to say whether the claim holds."));
   EXPECT_THAT(text, HasSubstr("What to do next\n  write into the test:\n    secondaries: 1100\n"));
   test.message = "about 1100 secondaries would decide; write `--secondaries 1100`";
   test.replay = "assay check 'mean(a) == 1' --secondaries 50 --seed 1";
