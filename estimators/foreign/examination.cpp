@@ -119,9 +119,11 @@ bool ignores_index(const Source& source, const Others& others, std::size_t numbe
   return true;
 }
 
-constexpr const char* rule =
-    "an observation must be a function of key and index alone, so seed its random numbers with "
-    "both for each, and add in one order whatever the threads do";
+/// A program of the package `assay` knows neither key nor index.
+const std::string seeding =
+    "take random numbers only from a generator seeded with key and index (in Python: from `rng`)";
+const std::string rule = "an observation must be a function of key and index alone: " + seeding +
+                         ", and add in one order whatever the threads do";
 constexpr const char* rule_of_samplers =
     "a draw must be a function of its stream alone, a density and an evaluation of their point";
 
@@ -162,8 +164,8 @@ std::string why_unfit(const Asking& ask, const FirstObservations& first, const s
   if (ignores_key(source, most)) {
     return "`" + name +
            "` gave the same numbers for two keys: runs of other seeds would repeat each other, and "
-           "so would estimators that must be independent; seed its random numbers with key and "
-           "index";
+           "so would estimators that must be independent; " +
+           seeding;
   }
   if (!first.usual()) return "";
   const std::size_t count = std::min(numbers_twice, most);
@@ -172,8 +174,7 @@ std::string why_unfit(const Asking& ask, const FirstObservations& first, const s
   const std::string same =
       "`" + name + "` ignores the index: observations 0 to " + std::to_string(count - 1);
   const std::string again =
-      " they all have the same ones again, but others than before; seed its random numbers with "
-      "key and index";
+      " they all have the same ones again, but others than before; " + seeding;
   if (ignores_index(source, other_key, first.width, count, primaries)) {
     return same + " all have the same numbers; under another key" + again;
   }
@@ -197,9 +198,9 @@ std::optional<std::size_t> first_unusual(std::span<const double> numbers,
 
 std::string other_numbers(const std::string& name, const Question& question) {
   return gave_other_numbers(
-      name, to_text(question) + (question.is_to_sampler()
-                                     ? std::string(" again: ") + rule_of_samplers
-                                     : std::string(" of the same key again: ") + rule));
+      name,
+      to_text(question) + (question.is_to_sampler() ? std::string(" again: ") + rule_of_samplers
+                                                    : " of the same key again: " + rule));
 }
 
 std::string other_numbers_alone(const std::string& name, const Question& question) {

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <map>
 
 #include "estimators/core/quoting.h"
@@ -42,8 +43,15 @@ void refuse_extras(const CLI::App& sub) {
     const std::string help = fmt::format("see `assay {} --help`", sub.get_name());
     if (!extra.starts_with("-")) {
       std::string mend = help;
-      if (extra.ends_with(".exr")) mend = "quote a pattern, so that the shell leaves it alone";
-      if (sub.get_name() == "check") mend = "quote the claim: `assay check 'mean(a) == 3'`";
+      if (sub.get_name() == "images") {
+        const std::filesystem::path file = extra;
+        mend = fmt::format("quote the pattern, as in '{}'",
+                           (file.parent_path() / ("*" + file.extension().string())).string());
+      }
+      if (sub.get_name() == "check")
+        mend =
+            "quote the claim and what has blanks: `assay check 'mean(a) == 3'`, `--estimator "
+            "'a=process,command=[python3, a.py]'`";
       refuse({}, "`{}` is one argument too many; {}", extra, mend);
     }
     const std::string name = extra.substr(0, extra.find('='));

@@ -73,7 +73,8 @@ std::string failure_text(const InputError& error, const std::string& claim) {
   const Location& where = error.where();
   const bool in_claim = where.file == "claim" && where.line == 1 && !claim.empty();
   const auto* const with_line = dynamic_cast<const LineError*>(&error);
-  return in_lines(reports::clean(error.what())) +
+  const bool is_own_claim = where.file == "claim" && claim.empty();
+  return in_lines(reports::clean(is_own_claim ? error.message() : error.what())) +
          (with_line != nullptr ? caret_below(with_line->line(), where.column)
           : in_claim           ? caret_below(claim, where.column)
                                : excerpt(where));

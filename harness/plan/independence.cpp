@@ -137,8 +137,11 @@ struct Pair {
 [[noreturn]] void refuse_pair(const Question& question, const Pair& pair, const std::string& why) {
   refuse(question.test->claim.left.where,
          "`{}` and `{}` are no independent samples: {}, bit for bit; give the two sides seeds of "
-         "their own, none of them twice",
-         pair.first.estimator->name, pair.second.estimator->name, why);
+         "their own, none of them twice{}",
+         pair.first.estimator->name, pair.second.estimator->name, why,
+         question.theta->of_pairs() == nullptr ? ""
+                                               : ", or compare pairs of one seed with " +
+                                                     written_key(*question.test, "paired", "true"));
 }
 
 void refuse_shared_pictures(const Question& question, std::uint64_t count) {
@@ -206,6 +209,7 @@ void allow_for_dependence(const std::vector<Rows>& all, Plan& plan) {
         {.subject = rows.subject, .channel = rows.channel, .factor = factor});
     plan.gates.push_back(
         gate_of("variance of the mean, allowed for dependence, " + rows.label, factor, 1, "amber"));
+    plan.caution = "the interval is wider because successive " + rows.label + " seem correlated";
   }
 }
 

@@ -206,7 +206,8 @@ TestOutcome plan_test(const Question& question, const FamilyPlace& place, const 
     } else {
       plan.looks = look_for_its_picture(test);
     }
-    plan.caution = caution_of(question, pilots);
+    const std::string slip = caution_of(question, pilots);
+    plan.caution += (plan.caution.empty() || slip.empty() ? "" : "; ") + slip;
   } catch (const std::domain_error& error) {
     plan.looks = one_look(2, place.share);
     plan.invalid = in_words(error);

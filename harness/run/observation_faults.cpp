@@ -33,7 +33,7 @@ std::string not_finite(const TestOutcome& outcome, const Subject& side, const Dr
   const auto place = recorded::observation_place(
       *side.setup,
       {.index = summary.first_nonfinite, .key = pool.key(), .primaries = pool.primaries()});
-  if (!place.empty()) return text + ", `" + place + "`";
+  if (!place.empty()) return text + ", `" + place + "`; mend or delete it";
   return text + "; " + replay_line(outcome, summary.first_nonfinite);
 }
 

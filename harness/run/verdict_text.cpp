@@ -10,6 +10,7 @@
 #include "harness/plan/independence.h"
 #include "harness/plan/looks.h"
 #include "harness/theta/ask.h"
+#include "harness/theta/constant.h"
 #include "harness/theta/theta.h"
 #include "reports/words/number.h"
 #include "reports/words/text.h"
@@ -171,7 +172,7 @@ ErrorShare last_levels(const TestOutcome& outcome) {
 }
 
 /// The room between margins in standard errors. An alarm needs z_alpha and z_beta of them, then any
-/// estimate decides. A proof needs the estimate's distance from the forbidden region, and one to
+/// estimate decides. A proof needs the estimate's distance from the border of the claim, and one to
 /// spare.
 struct Room {
   double size = 0;
@@ -185,14 +186,16 @@ Room room_of(const TestOutcome& outcome, const ChannelOutcome& channel) {
   const Regions& regions = channel.regions;
   const ErrorShare share = last_levels(outcome);
   const double estimate = channel.evidence.estimate;
-  const double beyond = z(share.beta) + 1;
+  const auto proof = [&](double spare) {
+    return Room{std::abs(spare), z(spare < 0 ? share.alpha : share.beta) + 1};
+  };
   switch (regions.relation) {
     case Relation::within:
-      return {*regions.detect - std::abs(estimate), beyond};
+      return proof(*regions.detect - std::abs(estimate));
     case Relation::less:
-      return {-estimate, beyond};
+      return proof(-estimate);
     case Relation::greater:
-      return {estimate, beyond};
+      return proof(estimate);
     case Relation::equal:
     case Relation::at_most:
     case Relation::at_least:
@@ -211,18 +214,17 @@ double reference_error(const TestOutcome& outcome, const ChannelOutcome& channel
   return reference.standard_error / (relative ? std::abs(reference.value) : 1);
 }
 
-/// So many times the secondaries, or the number for a `budget`.
+/// So many times the observations, and their primaries.
 std::string times_as_many(const TestOutcome& outcome, double factor) {
-  const std::string text = sizes_text(outcome, factor) + " secondaries";
+  const std::string text = sizes_text(outcome, factor) + " observations";
   if (primaries_of_each(outcome) == 1) return text;
   const auto primaries = static_cast<double>(primaries_of_look(outcome, outcome.secondaries()));
   return fmt::format("{} ({} primaries)", text, reports::human(factor * primaries, 2));
 }
 
-/// "; write `secondaries: 12000`"; "" of rows, which are all there are.
+/// "; write `secondaries: 12000`"
 std::string line_to_write(const TestOutcome& outcome, double factor) {
   const TestEntry& test = *outcome.question.test;
-  if (has_rows(outcome.question)) return "";
   const bool budget = test.budget && test.budget->primaries;
   const std::uint64_t secondaries = outcome.secondaries();
   const auto now =
@@ -245,9 +247,10 @@ double interval_errors(const ChannelOutcome& channel, double tail) {
 std::string what_would_decide(const TestOutcome& outcome, const ChannelOutcome& channel) {
   if (channel.image) {
     if (channel.image->wanted == 0) {
-      return "the estimate lies where the claim must not pass, yet not clearly so";
+      return "the estimate lies where the claim must not pass, yet not clearly so; give twice as "
+             "many pictures";
     }
-    return fmt::format("about {} images would decide if the estimate stands",
+    return fmt::format("give about {} pictures a side, which decide if the estimate stands",
                        reports::human(channel.image->wanted, 2));
   }
   const double beta = last_levels(outcome).beta;
@@ -255,8 +258,8 @@ std::string what_would_decide(const TestOutcome& outcome, const ChannelOutcome& 
   const double half = (interval.high - interval.low) / 2;
   const Room room = room_of(outcome, channel);
   if (outcome.plan.method.is.in_range && !std::isfinite(half)) {
-    return "no number of samples would decide: what rare values could add is not bounded; declare "
-           "the range";
+    return "no number of observations would decide: what rare values could add is not bounded; " +
+           range_advice(outcome.question);
   }
   if (!(half > 0) || !std::isfinite(half) || !(room.size > 0)) {
     return "the estimate lies where the claim must not pass, yet not clearly so";
@@ -267,9 +270,11 @@ std::string what_would_decide(const TestOutcome& outcome, const ChannelOutcome& 
   const double sampled = error * error - fixed * fixed;
   const double wanted = std::pow(room.size / room.standard_errors, 2) - fixed * fixed;
   if (!(wanted > 0)) {
-    return "no number of samples would decide: the reference's own error forbids it";
+    return "no number of observations would decide: the reference's own error forbids it";
   }
   const double factor = std::max(1.1, std::max(0.0, sampled) / wanted);
+  if (has_rows(outcome.question))
+    return fmt::format("give about {} rows in all", sizes_text(outcome, factor));
   return fmt::format("about {} would decide{}{}", times_as_many(outcome, factor),
                      channel.regions.proof() ? " if the estimate stands" : "",
                      line_to_write(outcome, factor));

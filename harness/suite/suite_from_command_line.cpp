@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "estimators/catalogue.h"
 #include "estimators/core/quoting.h"
@@ -151,6 +152,12 @@ EstimatorEntry parse_estimator_option(const std::string& text) {
            shell_quoted("x=" + text));
   }
   require_estimator_name(head->first, where);
+  if (std::filesystem::is_regular_file(head->second)) {
+    refuse(where,
+           "`{1}` is a file: `{0}=recorded,file={1}` reads numbers, and "
+           "`{0}=process,command=[{1}]` runs a program",
+           head->first, head->second);
+  }
   EstimatorEntry entry{.name = head->first,
                        .plugin = find_plugin(head->second, where).information.name,
                        .parameters = Value::map({}, where),

@@ -82,6 +82,14 @@ double unseen_shift(const Seen& seen, std::size_t subject, double level) {
          rounding_of(seen.question, subject, seen.channel);
 }
 
+std::string range_advice(const Question& question) {
+  const bool in_files = std::ranges::any_of(question.subjects, [](const Subject& each) {
+    return each.setup->observations().has_value();
+  });
+  return std::string(in_files ? "a file has no range: let a program draw the values and " : "") +
+         "declare the range of its channel, `low` to `high`";
+}
+
 bool all_constant(const Seen& seen) {
   for (std::size_t subject = 0; subject < seen.data.size(); ++subject) {
     if (!is_constant(seen, subject)) return false;
@@ -98,13 +106,14 @@ ConstantVerdict judge_constant(const Seen& seen, const Regions& regions) {
     }
     return {Verdict::inconclusive,
             "every observation is the same and as claimed, but what values never seen could add is "
-            "bounded by no number of observations; declare the range"};
+            "bounded by no number of observations; " +
+                range_advice(seen.question)};
   }
   return {Verdict::invalid,
           fmt::format("every observation is {:.10g}, which differs from the reference by {:.3g}; "
-                      "without a spread there is no test, and a rare value may be unseen: declare "
-                      "the range, or take more observations{}",
-                      seen.moments(0).mean, difference.value, seeds(seen.question))};
+                      "without a spread there is no test, and a rare value may be unseen; {}{}",
+                      seen.moments(0).mean, difference.value, range_advice(seen.question),
+                      seeds(seen.question))};
 }
 
 std::optional<ConstantVerdict> judge_constant_variance(const Seen& seen, const Regions& regions) {

@@ -41,6 +41,9 @@ std::optional<ConstantVerdict> judge_constant_variance(const Seen& seen, const R
 /// the worse side, plus rounding.
 double unseen_shift(const Seen& seen, std::size_t subject, double level);
 
+/// Says how to declare the range that bounds what was never seen.
+std::string range_advice(const Question& question);
+
 /// Why a channel's variance cannot be tested: a sample without spread; "" if it can.
 std::string lack_of_variance(const Seen& seen);
 

@@ -299,8 +299,10 @@ std::string exclusion_text(const Test& test) {
   const NamedP p = other_p(test);
   if (!p.exists()) return {};
   if (rests_on_contrary(test)) return p.text() + about_the_claim(test);
-  const char* of = is_proof(test) ? "" : " of an effect that must not pass";
-  return p.text() + of + about_the_contrary(test);
+  const std::string text = p.text() + about_the_contrary(test);
+  if (is_proof(test) || !test.detect) return text;
+  return fmt::format("an error of {} would give such data with {}",
+                     margin_text(*test.detect, deciding_channel(test).effect), text);
 }
 
 std::string map_title(const Map& map) {

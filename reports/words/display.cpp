@@ -161,13 +161,21 @@ std::string in_many(double rate, const char* noun) {
   return fmt::format("{:.0f} {}{} in {}", some, noun, some == 1 ? "" : "s", in_commas(runs));
 }
 
-/// The text that a message asks to write; "" if it asks for nothing.
-std::string asked_for(const std::string& message) {
-  constexpr std::string_view lead = "write `";
+/// The text of a message from its last `lead` to `end`; "" if it has none.
+std::string asked_for(const std::string& message, std::string_view lead, char end) {
   const std::size_t at = message.rfind(lead);
   if (at == std::string::npos) return "";
   const std::size_t begin = at + lead.size();
-  return message.substr(begin, message.find('`', begin) - begin);
+  return message.substr(begin, message.find(end, begin) - begin);
+}
+
+/// The command with this option instead of its own of the same name.
+std::string with_option(std::string command, const std::string& option) {
+  const std::string name = " " + option.substr(0, option.find(' ') + 1);
+  const std::size_t at = command.find(name);
+  if (at == std::string::npos) return command + " " + option;
+  const std::size_t end = std::min(command.find(' ', at + name.size()), command.size());
+  return command.replace(at + 1, end - at - 1, option);
 }
 
 std::vector<Suspect> suspects(const Suite& suite, Standing how) {
@@ -321,7 +329,7 @@ std::string meaning(const Test& test) {
     case Verdict::fail:
       return "The claim is wrong.";
     case Verdict::inconclusive:
-      return "Too few samples were drawn to say whether the claim holds.";
+      return "The observations do not suffice to say whether the claim holds.";
     case Verdict::invalid:
       return "Nothing was decided, because the data break what the test relies on.";
     case Verdict::error:
@@ -407,8 +415,13 @@ std::string trouble(const Test& test) {
 
 std::vector<Step> steps(const Test& test) {
   std::vector<Step> all;
-  if (const std::string text = asked_for(test.message); !text.empty()) {
-    all.push_back({text.starts_with("--") ? "give the command" : "write into the test", text});
+  const std::string text = asked_for(test.message, "write `", '`');
+  if (text.starts_with("--")) {
+    all.push_back({"to decide", with_option(test.replay, text)});
+  } else if (!text.empty()) {
+    all.push_back({"write into the test", text});
+  } else if (const std::string data = asked_for(test.message, "; give ", ';'); !data.empty()) {
+    all.push_back({"to decide", "give " + data});
   }
   const bool missed = test.expected == Verdict::fail && test.verdict == Verdict::pass;
   const Effect effect = deciding_channel(test).effect;

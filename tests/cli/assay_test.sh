@@ -351,7 +351,8 @@ test_explain_tells_of_the_last_run() {
   write_suite mixed.yaml "$good" "$wrong" "$open"
   expect 1 run mixed.yaml --report json=run.json
   expect 0 explain open
-  contains out 'Too few samples were drawn'
+  contains out 'The observations do not suffice'
+  contains out 'The last run with tests began'
   contains out 'secondaries: '
   expect 0 explain run.json mixed/wrong
   contains out 'The claim is wrong.'

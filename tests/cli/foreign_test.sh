@@ -173,7 +173,7 @@ test_a_program_that_says_no_hello_is_an_error_of_its_tests() {
   for name in ended greets; do verdict_is run.json "$name" error; done
   message run.json ended
   tells err '`ended` cannot be prepared: `sh none.sh` ended with exit status'
-  tells err 'before it had said its whole hello'
+  tells err 'before it printed the line `ready`'
   message run.json greets
   tells err 'the first is `assay 1 text`'
   none_left

@@ -31,6 +31,13 @@ test_init_plugin_runs_at_once() {
 test_init_process_python_runs_at_once() { runs_at_once 'All 2 claims are as they should be' process python; }
 test_init_process_cpp_runs_at_once() { runs_at_once 'All 2 claims are as they should be' process c++; }
 test_init_gtest_runs_at_once() { runs_at_once '2 tests' gtest; }
+test_init_gtest_says_how_to_build_its_library() {
+  expect 0 init gtest mine
+  cp -rL "$(dirname "$assay")/../prefix/lib" lib
+  sed -i 's|".*/libassay_googletest.a"|"/no/such.a"|' lib/cmake/assay/assayTargets.cmake
+  cmake -S mine -B build -D CMAKE_PREFIX_PATH="$PWD" >out 2>err && fail 'a library that is not there is found'
+  contains err "run in Assay's own folder: cmake build && cmake --build build"
+}
 test_init_github_runs_at_once() {
   runs_at_once 'All 2 claims are as they should be' github
   is_a_job 'a folder/.github/workflows/assay.yml'

@@ -69,6 +69,8 @@ TABLE
 test_mistakes_on_the_command_line_say_what_to_write() {
   suite_of '{name: first, claim: mean(area) == analytic, tags: [mean]}'
   answers 2 'cannot read `t.yaml`: there is no such file; did you mean `s.yaml`?' run t.yaml
+  answers 2 "quote the pattern, as in 'new/*.pfm'" images --candidate new/1.pfm new/2.pfm
+  answers 2 '`x=recorded,file=s.yaml` reads numbers' check 'mean(x) == 1' --estimator x=s.yaml
   answers 2 'unknown command `s.yaml`; did you mean `assay run s.yaml`?' s.yaml
   answers 2 'unknown command `mean(x) == 1`; did you mean `assay check' 'mean(x) == 1'
   answers 2 'has no option `--detect`; write it into the suite, as the key `detect`' \
@@ -92,7 +94,7 @@ test_mistakes_on_the_command_line_say_what_to_write() {
 test_mistakes_in_a_check_say_what_to_write() {
   local claim='mean(luminaire/area) == analytic'
   echo 3 >one.txt
-  answers 2 '`==` is one argument too many; quote the claim: `assay check' check 'mean(a)' == 3
+  answers 2 '`==` is one argument too many; quote the claim and what has blanks: `assay check' check 'mean(a)' == 3
   answers 2 'claim:1:6: there is no plugin `luminare/area`; did you mean `luminaire/area`?' \
     check 'mean(luminare/area) == analytic'
   answers 2 '--detect 5: the margin 5 is larger than the reference' \

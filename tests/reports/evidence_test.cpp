@@ -41,8 +41,10 @@ TEST(Evidence, AProofOfSeveralChannelsRestsOnTheOneLeastExcluded) {
 TEST(Evidence, AnAlarmRestsOnThePValueOfTheClaim) {
   reports::Test test = proof(Verdict::pass);
   test.claim = "mean(area) == analytic";
+  test.detect = 0.5;
   EXPECT_EQ(headline_p(test).text(), "p = 1");
-  EXPECT_EQ(exclusion_text(test), "p = 2.5e-812 of an effect that must not pass; beta is 0.01");
+  EXPECT_EQ(exclusion_text(test),
+            "an error of 0.5 would give such data with p = 2.5e-812; beta is 0.01");
 }
 
 TEST(Evidence, WhatUnderflowedAfterHolmIsWrittenFromItsLogarithm) {

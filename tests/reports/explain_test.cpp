@@ -23,11 +23,16 @@ TEST(Explain, AnUndecidedTestHasTheLineToAdd) {
   reports::Test test = undecided();
   test.message = "about 1100 secondaries would decide; write `secondaries: 1100`";
   const std::string text = explain(suite, test, 1000);
-  EXPECT_THAT(text, HasSubstr("Too few samples were drawn to say whether the claim holds."));
+  EXPECT_THAT(text, HasSubstr("The observations do not suffice to say whether the claim holds."));
   EXPECT_THAT(text, HasSubstr("What to do next\n  write into the test:\n    secondaries: 1100\n"));
   test.message = "about 1100 secondaries would decide; write `--secondaries 1100`";
+  test.replay = "assay check 'mean(a) == 1' --secondaries 50 --seed 1";
   EXPECT_THAT(explain(suite, test, 1000),
-              HasSubstr("  give the command:\n    --secondaries 1100\n"));
+              HasSubstr("  to decide:\n"
+                        "    assay check 'mean(a) == 1' --secondaries 1100 --seed 1\n"));
+  test.message = "neither shown nor refuted; give about 1100 rows in all; the margin is small";
+  EXPECT_THAT(explain(suite, test, 1000),
+              HasSubstr("  to decide:\n    give about 1100 rows in all\n"));
 }
 
 // A command to paste is whole.

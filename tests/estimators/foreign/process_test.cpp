@@ -197,12 +197,12 @@ TEST_F(Process, RefusesObservationsThatAreNoFunctionOfKeyAndIndex) {
            {"$((i == 200))", nothing},
            {"$low",
             "ignores the index: observations 0 to 31 all have the same numbers; under another key "
-            "they all have the same ones again, but others than before; seed its random numbers "
-            "with key and index"},
+            "they all have the same ones again, but others than before; take random numbers only "
+            "from a generator seeded with key and index (in Python: from `rng`)"},
            {"$((7 * primaries % 31))",
             "ignores the index: observations 0 to 31, means of 1 primary, all have the same "
             "numbers; as means of 2 primaries they all have the same ones again, but others than "
-            "before; seed its random numbers with key and index",
+            "before; take random numbers only from a generator seeded with key and index",
             averages},
            // Constant; but for single precision; and so far, as a rare event leaves them.
            {"5", nothing, averages},
@@ -363,10 +363,10 @@ TEST_F(Process, SaysWhyThereIsNoHello) {
   EXPECT_THAT(fault({"sh", "-c", junk}), HasSubstr("cannot be understood"));
   EXPECT_THAT(fault({"head", "-c", "3000000", "/dev/zero"}), HasSubstr("hello has no end"));
   EXPECT_THAT(fault({"sh", "-c", "echo wrong licence >&2; exit 7"}),
-              Says("ended with exit status 7 before it had said its whole hello", "wrong licence"));
+              Says("ended with exit status 7 before it printed the line `ready`", "wrong licence"));
   EXPECT_THAT(fault({"sh", "-c", "echo hello; sleep 987658"}), HasSubstr("`hello`"));
   EXPECT_THAT(fault({"sh", "-c", "echo assay 1 text; sleep 987658"}, 0.2),
-              HasSubstr("no whole hello within 0.2 seconds"));
+              HasSubstr("did not print the line `ready` within 0.2 seconds"));
   EXPECT_TRUE(is_soon_gone("987658"));
   // A program that refuses says so of what its user gave; one that ends does not.
   EXPECT_THAT(refusal({"sh", "-c", "echo assay 1 text; echo error no scene"}),

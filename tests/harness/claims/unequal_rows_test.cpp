@@ -151,7 +151,7 @@ TEST_F(UnequalRows, SayHowManyOfEachWouldDecide) {
       judged(place, lehmer_rows(6, 400, 240), "  - {claim: mean(a) == mean(b), detect: 0.01}\n");
   EXPECT_EQ(suite.tests[0].verdict, Verdict::inconclusive);
   EXPECT_THAT(suite.tests[0].message,
-              testing::ContainsRegex("about [0-9.,k]+M? and [0-9.,k]+M? secondaries"));
+              testing::ContainsRegex("give about [0-9.,k]+M? and [0-9.,k]+M? rows"));
 }
 
 TEST_F(UnequalRows, AreReplayedWhileTheyAreAsManyAsTheyWere) {

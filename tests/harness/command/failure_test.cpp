@@ -26,6 +26,8 @@ TEST(Failure, ShowsPlaceLineAndCaretOfASuite) {
 TEST(Failure, ShowsTheClaimOfTheCommandLine) {
   EXPECT_EQ(failure_text(InputError({"claim", 1, 6}, "no such estimator"), "mean(x) == 1"),
             "assay: claim:1:6: no such estimator\n  mean(x) == 1\n       ^\n");
+  EXPECT_EQ(failure_text(InputError({"claim", 1, 6}, "of Assay's own claim"), ""),
+            "assay: of Assay's own claim\n");
 }
 
 TEST(Failure, IsInLinesOfEightyColumnsThatBreakNothingToPaste) {

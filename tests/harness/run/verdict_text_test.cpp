@@ -80,7 +80,7 @@ TEST(Narrate, InconclusiveSaysHowManyPrimariesThatWouldBe) {
   double primaries = 0;
   const std::size_t at = test.message.find("about ");
   ASSERT_NE(at, std::string::npos);
-  ASSERT_EQ(std::sscanf(test.message.c_str() + at, "about %lf secondaries (%lf primaries)",
+  ASSERT_EQ(std::sscanf(test.message.c_str() + at, "about %lf observations (%lf primaries)",
                         &secondaries, &primaries),
             2);
   EXPECT_NEAR(primaries / secondaries, 16, 1) << "two digits of each are shown";

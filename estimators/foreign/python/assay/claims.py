@@ -24,6 +24,9 @@ class Claim:
     text: str
     keys: dict[str, typing.Any]
 
+    def __str__(self) -> str:
+        return f"@assay.claim({', '.join([repr(self.text), *(f'{key}={value!r}' for key, value in self.keys.items())])})"
+
 
 def claim(text: str, **keys: typing.Any) -> typing.Callable[[Function], Function]:
     """Claims something of the decorated function, which `serve` could serve, under the name `it`.
@@ -53,14 +56,16 @@ def tests_of(module: types.ModuleType) -> list[tuple[str, str, Claim]]:
             for function, value in vars(module).items() for each in claims_of(value)]
 
 
-def write_suite(module: types.ModuleType, file: Path) -> None:
-    """Writes the suite of a module's claims, and a script beside it that serves its functions.
+def write_suite(module: types.ModuleType, file: Path, names: typing.Container[str] | None = None) -> None:
+    """Writes the suite of a module's claims, or of those of these names, and a script beside it that serves its functions.
 
     The suite names no folder: its numbers are the same wherever the module is.
     """
     estimators: dict[str, dict[str, typing.Any]] = {}
     tests = []
     for function, name, each in tests_of(module):
+        if names is not None and name not in names:
+            continue
         text = _SOURCE.sub(lambda found: found[1] + (function if found[2] == "it" else found[2]), each.text)
         tests.append({**each.keys, "name": name, "claim": text})
         for source in [*(name for _, name in _SOURCE.findall(text)), str(each.keys.get("reference"))]:

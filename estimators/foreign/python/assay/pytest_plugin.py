@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import os
 import random
+import re
 import shutil
 import subprocess
 import tempfile
@@ -101,9 +102,10 @@ def pytest_pycollect_makeitem(collector: pytest.Collector, name: str, obj: objec
     if _RUN not in collector.stash:
         settings = collector.config.stash[_SETTINGS]
         suite = settings.file(collector.nodeid, ".yaml")
-        names = [test for _, test, _ in tests_of(collector.obj)]
-        collector.stash[_RUN] = _Run(settings, suite, settings.record(collector.nodeid), len(names),
-                                     lambda: write_suite(collector.obj, suite))
+        claims = {f"{suite.stem}/{test}": str(each) for _, test, each in tests_of(collector.obj)}
+        collector.stash[_RUN] = _Run(
+            settings, suite, settings.record(collector.nodeid), claims,
+            lambda ids, file: write_suite(collector.obj, file, [id.split("/", 1)[1] for id in ids]))
     stem = collector.stash[_RUN].suite.stem
     return [ClaimItem.from_parent(collector, name=test, run=collector.stash[_RUN], id=f"{stem}/{test}",
                                   line=obj.__code__.co_firstlineno)  # type: ignore[attr-defined]
@@ -117,58 +119,76 @@ class SuiteFile(pytest.File):
         settings = self.config.stash[_SETTINGS]
         try:
             listed = settings.run("list", "tests", str(self.path))
+            ids, trouble = listed.stdout.splitlines(), listed.stderr.strip() if listed.returncode else ""
         except AssayError as error:
-            raise self.CollectError(str(error)) from None
-        if listed.returncode != 0:
-            raise self.CollectError(listed.stderr.strip())
-        ids = listed.stdout.splitlines()
-        run = _Run(settings, self.path, settings.record(self.nodeid), len(ids))
+            ids, trouble = [], str(error)
+        if trouble:
+            ids = [f"/{self.path.name}"]  # the one item of a suite that cannot be read
+        run = _Run(settings, self.path, settings.record(self.nodeid), dict.fromkeys(ids, ""), trouble=trouble)
         for each in ids:
             yield ClaimItem.from_parent(self, name=each.split("/", 1)[1], run=run, id=each)
-
-    def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException]) -> typing.Any:
-        if isinstance(excinfo.value, self.CollectError):
-            return str(excinfo.value)
-        return super().repr_failure(excinfo)
 
 
 class _Run:
     """The one run of a suite, for all of its claims that are selected."""
 
-    def __init__(self, settings: _Settings, suite: Path, record: Path, claims: int,
-                 prepare: typing.Callable[[], None] = lambda: None):
+    def __init__(self, settings: _Settings, suite: Path, record: Path, claims: dict[str, str],
+                 write: typing.Callable[[typing.Iterable[str], Path], None] | None = None, trouble: str = ""):
+        """The claims are ids with the text of each; `write` makes a suite of some of them."""
         self.suite = suite
-        self._settings, self._record, self._claims, self._prepare = settings, record, claims, prepare
-        self._tests: dict[str, typing.Any] | None = None
-        self._trouble = ""
+        self._settings, self._record, self._claims, self._write = settings, record, claims, write
+        self._tests: dict[str, typing.Any] | None = {} if trouble else None
+        self._trouble = trouble
+        self._faults: dict[str, str] = {}
 
     def result(self, item: ClaimItem) -> dict[str, typing.Any]:
         if self._tests is None:
             self._tests = {}
-            self._start([each.id for each in item.session.items
-                         if isinstance(each, ClaimItem) and each.run is self])
+            ids = [each.id for each in item.session.items if isinstance(each, ClaimItem) and each.run is self]
+            try:
+                self._start(ids)
+            except (AssayError, OSError) as error:
+                self._trouble = str(error)
         if item.id not in self._tests:
-            raise AssayError(self._trouble or f"Assay's record has no test `{item.id}`")
+            raise AssayError(self._faults.get(item.id) or self._trouble or f"Assay's record has no test `{item.id}`")
         return self._tests[item.id]
 
     def _start(self, ids: list[str]) -> None:
-        words = ["run", str(self.suite), "--report", f"json={self._record}", "--report", "console=/dev/null",
-                 "--quiet", "--github", "never"]
-        words += ["--seed", self._settings.seed] if self._settings.seed else []
-        words += [word for id in ids for word in ("--filter", id)] if len(ids) < self._claims else []
         self._record.parent.mkdir(parents=True, exist_ok=True)
         self._record.unlink(missing_ok=True)
-        try:
-            self._prepare()
-            ended = self._settings.run(*words)
-        except (AssayError, OSError) as error:
-            self._trouble = str(error)
-            return
-        if not self._record.exists():
-            self._trouble = ended.stderr.strip() or f"`assay run` ended with exit code {ended.returncode}"
-            return
-        record = json.loads(self._record.read_text(encoding="utf-8"))
-        self._tests = {test["id"]: test for suite in record["suites"] for test in suite["tests"]}
+        if self._write:
+            self._write(self._claims, self.suite)
+        self._test(ids, len(self._claims), self.suite)
+        if self._write and not self._record.exists():
+            self._faults = {id: fault for id in self._claims if (fault := self._fault(id))}
+            sound = [id for id in self._claims if id not in self._faults]
+            ids = [id for id in ids if id in sound]
+            if self._faults and ids:  # in another file: workers of xdist share the first
+                suite = self.suite.parent / "sound" / self.suite.name
+                self._write(sound, suite)
+                self._test(ids, len(sound), suite)
+        if self._record.exists():
+            record = json.loads(self._record.read_text(encoding="utf-8"))
+            self._tests = {test["id"]: test for suite in record["suites"] for test in suite["tests"]}
+
+    def _fault(self, id: str) -> str:
+        """Why no suite can hold this claim; "" if one can."""
+        suite = self.suite.with_suffix(f".{os.getpid()}.yaml")
+        self._write([id], suite)  # type: ignore[misc]
+        listed = self._settings.run("list", "tests", str(suite))
+        for file in (suite, suite.with_suffix(".sh")):
+            file.unlink()
+        # The place in a file that the user did not write says nothing, nor does its line.
+        said = re.sub(r"\Aassay: .*?:\d+:\d+:\s|\n.*\n *\^\s*\Z", "", listed.stderr, flags=re.DOTALL)
+        return f"{self._claims[id]}: {' '.join(said.split())}" if listed.returncode else ""
+
+    def _test(self, ids: list[str], claims: int, suite: Path) -> None:
+        words = ["run", str(suite), "--report", f"json={self._record}", "--report", "console=/dev/null",
+                 "--quiet", "--github", "never"]
+        words += ["--seed", self._settings.seed] if self._settings.seed else []
+        words += [word for id in ids for word in ("--filter", id)] if len(ids) < claims else []
+        ended = self._settings.run(*words)
+        self._trouble = ended.stderr.strip() or f"`assay run` ended with exit code {ended.returncode}"
 
 
 class ClaimItem(pytest.Item):
