@@ -30,10 +30,6 @@ const std::vector<GateKind>& gate_kinds() {
        .sentence = "the points lie on no power law: p {0} of the best one, limit {1}; let `over` "
                    "begin where one holds, often at larger values",
        .says_what_helps = true},
-      {.name = "skewness of the images, theirs alone",
-       .sentence =
-           "rare bright pixels (fireflies), of which the pilot saw too few, move the tails of the "
-           "test by a factor of {0} at least, limit {1}; take more samples a picture"},
       {.name = "rounding",
        .sentence = "the values are rounded too coarsely to be held against a continuous law: a "
                    "step is {0} of the distance that is rejected, limit {1}; write more digits",

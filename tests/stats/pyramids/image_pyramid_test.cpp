@@ -148,12 +148,6 @@ CALIBRATED(ImagePyramid, RarelyLitElementsAgainstTheirMeansKeepTheLevel, 848, 80
       .log_p;
 }
 
-CALIBRATED(ImagePyramid, RareLightOfOneSideKeepsTheLevel, 846, tests::repetitions(2000),
-           Shape::at_most_uniform) {
-  const OwnedStack a = lit_stack(random, {});
-  return image_pyramid(a.view(), smooth_stack(random).view()).log_p;
-}
-
 // Half of the mean is in a fiftieth of the values: a cell often misses all of them.
 CALIBRATED(ImagePyramid, RarerLightOfOneSideKeepsTheLevel, 846, tests::repetitions(2000),
            Shape::at_most_uniform) {
@@ -192,28 +186,6 @@ CAUGHT(ImagePyramid, ElementsWithoutTheirNeighboursAreCaughtOnRareLight, 846, 20
     least = std::min(least, log_p_two_sided(test));
   }
   return adjusted(least, {static_cast<double>(lit.elements()), 1});
-}
-
-// A block of 6 x 6 is 30 % too dark in one of two images with rare light, or with none. Neighbours
-// take little away where both sides have the same law.
-TEST(ImagePyramid, NeighboursLeaveADefectToTwoImagesOfOneLaw) {
-  for (const double share : {0.0, 0.1}) {
-    Philox random(847);
-    int found = 0;
-    for (int run = 0; run < 20; ++run) {
-      const Fireflies rare{.rate = 0.2, .share = share};
-      OwnedStack a = lit_stack(random, rare);
-      for (auto& image : a.images) {
-        for (std::size_t e = 0; e < image.size(); ++e) {
-          const std::size_t x = e % lit.width;
-          const std::size_t y = e / lit.width;
-          if (x >= 10 && x < 16 && y >= 5 && y < 11) image[e] *= 0.7F;
-        }
-      }
-      found += image_pyramid(a.view(), lit_stack(random, rare).view()).log_p < std::log(1e-2);
-    }
-    EXPECT_GE(found, 18) << share;
-  }
 }
 
 CAUGHT(ImagePyramid, AddingTheElementsOwnZIsCaughtOnSkewedData, 825, 2000) {
@@ -296,16 +268,16 @@ TEST(ImagePyramid, DefectsOfEveryScaleAreFound) {
 
 // The first of 16 to 128 pictures a side, of one law with rare light. All are 4 % too bright, or a
 // block of 4 x 4 is half as bright. Two counts of 100 with one probability differ by more than 21
-// with probability .003 at most. (stats/measurements.md has a pixel that luck finds more often.)
+// with probability .003 at most. As neighbours counted in images of one law, 16 found 41 blocks.
 TEST(ImagePyramid, MorePicturesNeverLosePower) {
   const Fireflies rare{.rate = 0.05, .share = 0.3};
   const auto all = [](std::size_t, std::size_t) { return 1.04F; };
   const auto block = [](std::size_t x, std::size_t y) {
     return x >= 12 && x < 16 && y >= 4 && y < 8 ? .5F : 1.F;
   };
-  const std::function<float(std::size_t, std::size_t)> defects[] = {all, block};
+  using Factor = std::function<float(std::size_t, std::size_t)>;
   Philox random(848);
-  for (const auto& factor : defects) {
+  for (const auto& [factor, least] : {std::pair<Factor, int>{all, 10}, {block, 70}}) {
     std::map<std::size_t, int> found;
     for (int run = 0; run < 100; ++run) {
       OwnedStack a = lit_stack(random, rare, 128);
@@ -323,6 +295,7 @@ TEST(ImagePyramid, MorePicturesNeverLosePower) {
     }
     std::cout << "  found of 100 in 16, 32, 64, 128 pictures: " << found[16] << ", " << found[32]
               << ", " << found[64] << ", " << found[128] << "\n";
+    EXPECT_GE(found[16], least);
     EXPECT_LE(found[16], found[32] + 21);
     EXPECT_LE(found[32], found[64] + 21);
     EXPECT_LE(found[64], found[128] + 21);
