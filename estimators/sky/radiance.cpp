@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "estimators/core/value_checks.h"
 #include "estimators/parameters.h"
 #include "luminaire/scene_description.h"
 #include "render/environment_map.h"
@@ -163,46 +164,24 @@ class Picture final : public Radiance {
 };
 
 // The members of a map, all of `keys` and nothing else.
-void require_keys(const Value& value, const std::vector<std::string>& keys,
-                  const std::string& what) {
-  if (value.kind() != Value::Kind::map) {
-    throw InputError(
-        value.where(), what + " must be a map with the keys " + [&] {
-          std::string list;
-          for (const std::string& key : keys) list += (list.empty() ? "`" : ", `") + key + "`";
-          return list;
-        }());
-  }
-  for (const auto& [key, member] : value.members()) {
-    if (std::ranges::find(keys, key) != keys.end()) continue;
-    throw InputError(member.where(), what + " has no key `" + key + "`" + did_you_mean(key, keys));
-  }
-  for (const std::string& key : keys) {
-    if (!value.find(key)) throw InputError(value.where(), what + " lacks the key `" + key + "`");
-  }
-}
-
-double finite(const Value& value, const std::string& what) {
-  const double x = value.number(what);
-  if (!std::isfinite(x)) throw InputError(value.where(), what + " must be a finite number");
-  return x;
-}
-
 [[noreturn]] void refuse_negative(const Value& at, double least) {
   throw InputError(at.where(), "parameter `sky`: the radiance falls to " + std::to_string(least) +
                                    "; it must not be negative in any direction");
 }
 
 SharedRadiance read_uniform(const Value& value) {
-  const double level = finite(value, "`uniform`");
+  const double level = finite_number(value, "`uniform`");
   if (level < 0) refuse_negative(value, level);
   return std::make_shared<Gradient>(level, Vector3{});
 }
 
 SharedRadiance read_gradient(const Value& value) {
-  require_keys(value, {"base", "slope"}, "`gradient`");
-  const double base = finite(*value.find("base"), "`base`");
-  const Vector3 slope = luminaire::read_vector(*value.find("slope"), "`slope`");
+  luminaire::require_keys(value, "`gradient`", {"base", "slope"});
+  const auto at = [&](const char* key) -> const Value& {
+    return luminaire::required_key(value, "`gradient`", key);
+  };
+  const double base = finite_number(at("base"), "`base`");
+  const Vector3 slope = luminaire::read_vector(at("slope"), "`slope`");
   if (base < length(slope)) refuse_negative(value, base - length(slope));
   return std::make_shared<Gradient>(base, slope);
 }
@@ -213,7 +192,7 @@ SharedRadiance read_harmonics(const Value& value) {
     throw InputError(value.where(), "`harmonics` must be a list of nine coefficients");
   }
   for (std::size_t i = 0; i < coefficients.size(); ++i) {
-    coefficients[i] = finite(value.items()[i], "a coefficient of `harmonics`");
+    coefficients[i] = finite_number(value.items()[i], "a coefficient of `harmonics`");
   }
   const auto sky = std::make_shared<HarmonicSky>(coefficients);
   const Octahedron grid(6);
@@ -224,18 +203,17 @@ SharedRadiance read_harmonics(const Value& value) {
 }
 
 SharedRadiance read_peak(const Value& value) {
-  require_keys(value, {"base", "height", "sharpness", "direction"}, "`peak`");
-  const auto number = [&](const char* key) {
-    return finite(*value.find(key), std::string("`") + key + "`");
+  luminaire::require_keys(value, "`peak`", {"base", "height", "sharpness", "direction"});
+  const auto at = [&](const char* key) -> const Value& {
+    return luminaire::required_key(value, "`peak`", key);
   };
-  const Lobe lobe{
-      .base = number("base"),
-      .height = number("height"),
-      .sharpness = number("sharpness"),
-      .direction = luminaire::read_unit_vector(*value.find("direction"), "`direction`")};
-  if (!(lobe.sharpness > 0)) {
-    throw InputError(value.find("sharpness")->where(), "`sharpness` must be above 0");
-  }
+  const auto number = [&](const char* key) {
+    return finite_number(at(key), std::string("`") + key + "`");
+  };
+  const Lobe lobe{.base = number("base"),
+                  .height = number("height"),
+                  .sharpness = above_zero(at("sharpness"), "`sharpness`"),
+                  .direction = luminaire::read_unit_vector(at("direction"), "`direction`")};
   const double least =
       lobe.base + std::min(lobe.height, lobe.height * std::exp(-2 * lobe.sharpness));
   if (least < 0) refuse_negative(value, least);
