@@ -104,10 +104,11 @@ std::string caution_of(const Question& question, const Pilots& pilots) {
     return fmt::format("`detect` is {}, the default of claims about laws",
                        question.test->detect->value);
   }
+  if (!has_margin(*question.test, false)) return "";
+  const double size = question.theta->piloted_size(question, pilots);
   for (const Margin& margin : margins_of(*question.test)) {
-    const std::string text =
-        missing_per_cent(margin, question.theta->piloted_size(question, pilots));
-    if (!text.empty()) return "the margin " + text;
+    if (const auto text = missing_per_cent(margin, size); !text.empty())
+      return "the margin " + text;
   }
   return "";
 }

@@ -201,7 +201,9 @@ NoisePyramid::Kept NoisePyramid::kept(const CellNoise& cell, const Rectangle& wi
   const double toward = cell.weight < 0 ? -direction : direction;
   const Around near = around(window, channel);
   double largest = 0;
-  for (int octave = near.first; octave <= near.last && !of_one_law(near, toward); ++octave) {
+  // Nothing is left of the octaves if there is one law.
+  const int last = of_one_law(near, toward) ? near.first - 1 : near.last;
+  for (int octave = near.first; octave <= last; ++octave) {
     for (const Sides& here : near.blocks) largest = std::max(largest, growth(here, octave, toward));
   }
   const double variance = cell.variance[0] + cell.variance[1];
