@@ -608,7 +608,7 @@ void require_plane(const Question& question) {
 std::string channel_names(const Subject& side) {
   const std::vector<Channel> channels = side.setup->channels();
   std::vector<std::string> names;
-  for (const std::size_t channel : side.channels) names.push_back(channels[channel].name);
+  for (const std::size_t channel : side.channels.all()) names.push_back(channels[channel].name);
   return fmt::format("{}", fmt::join(names, ", "));
 }
 

@@ -335,7 +335,7 @@ std::vector<Constant> recorded_means(const Question& question, const Subject& re
   }
   std::vector<Constant> means;
   const std::vector<Channel> channels = reference.setup->channels();
-  for (const std::size_t i : reference.channels) {
+  for (const std::size_t i : reference.channels.all()) {
     means.push_back({question.factor * channels[i].mean.value_or(0),
                      std::abs(question.factor) * channels[i].mean_error});
   }
@@ -669,7 +669,7 @@ class MeanTheta : public Theta {
     double largest = Theta::known_size(question).value_or(0);
     if (question.of_two()) {
       const std::vector<Channel> others = question.subjects[1].setup->channels();
-      for (const std::size_t channel : question.subjects[1].channels) {
+      for (const std::size_t channel : question.subjects[1].channels.all()) {
         const double mean = question.factor * others[channel].mean.value_or(0);
         const double error = std::abs(question.factor) * others[channel].rounding;
         if (exceeds_its_error(mean, error)) largest = std::max(largest, std::abs(mean));

@@ -410,7 +410,7 @@ Question SlopeTheta::bind(const TestEntry& test, const Estimators& estimators) c
       question.truths.push_back(test.reference ? std::vector<Constant>(subject.channels.size())
                                                : truths_of(test, subject, claim.left.source));
     }
-    if (claim.left.row->counts_cost) subject.channels.resize(1);
+    if (claim.left.row->counts_cost) subject.channels = std::vector{subject.channels[0]};
     subject.own = std::move(point);
     question.subjects.push_back(std::move(subject));
     question.sizes.push_back(value.number("a value of `over`"));

@@ -58,7 +58,7 @@ void Theta::check_margin(const Question& question, const Margin& margin) const {
 std::optional<double> Theta::known_size(const Question& question) const {
   double largest = 0;
   if (question.references.empty()) return std::nullopt;
-  const std::vector<std::size_t>& first = question.subjects[0].channels;
+  const ChannelList& first = question.subjects[0].channels;
   const std::vector<Channel> channels = question.subjects[0].setup->channels();
   for (std::size_t i = 0; i < question.references.size(); ++i) {
     const Constant& reference = question.references[i];

@@ -54,7 +54,7 @@ class DeclaredElements {
     if (recorded::unknown_channels(*subject.setup)) return;
     const std::vector<Channel> all = subject.setup->channels();
     each_.reserve(subject.channels.size());
-    for (const std::size_t channel : subject.channels) {
+    for (const std::size_t channel : subject.channels.all()) {
       each_.push_back({all[channel].low, all[channel].high, all[channel].rounding});
     }
   }

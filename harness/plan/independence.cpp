@@ -337,7 +337,7 @@ void judge_drawn_order(TestOutcome& test, const Pilots& pilots) {
   for (const Subject& side : test.question.subjects) {
     const Pilot* pilot = pilot_of(side, pilots);
     if (!shows_order(side) || pilot == nullptr) continue;
-    for (const std::size_t channel : side.channels) {
+    for (const std::size_t channel : side.channels.all()) {
       if (channel >= pilot->order_gates.size()) continue;
       std::string why = why_dependent(side, pilot->order_gates[channel], test.plan.gates);
       if (test.plan.invalid.empty()) test.plan.invalid = std::move(why);

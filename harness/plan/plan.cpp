@@ -42,7 +42,7 @@ std::string not_finite_in_pilot(const Question& question, const Pilots& pilots) 
   for (const Subject& subject : question.subjects) {
     const Pilot* const pilot = pilot_of(subject, pilots);
     if (pilot == nullptr || pilot->sums->elements || subject.setup->observations()) continue;
-    for (const std::size_t channel : subject.channels) {
+    for (const std::size_t channel : subject.channels.all()) {
       const ChannelSummary& seen = pilot->sums->channels[channel];
       if (seen.nonfinite == 0) continue;
       return fmt::format(

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/sampling/channel_list.h"
 #include "harness/sampling/prepare.h"
 #include "harness/suite/suite.h"
 
@@ -23,7 +24,7 @@ struct Subject {
   std::string purpose = "";  ///< Separates a sampler's streams from its estimator's.
   std::uint32_t copy = 0;
   std::optional<StreamKey> stream = {};  ///< Given by a record, of a replay.
-  std::vector<std::size_t> channels;     ///< The channels that the claim is about.
+  ChannelList channels;                  ///< The channels that the claim is about.
   bool averages = true;                  ///< True if the variance falls like 1 / primaries.
   std::optional<ImageShape> image = {};
   /// Owns `estimator` if it is a point of a sweep.

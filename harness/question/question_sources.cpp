@@ -74,19 +74,13 @@ std::vector<std::size_t> channels_named(const std::vector<Channel>& channels,
 
 /// The elements of an image: all, or those of the component that the part names; none for another
 /// name.
-std::vector<std::size_t> elements_named(ImageShape& shape, const std::string& part) {
-  const std::size_t components = shape.components.size();
+ChannelList elements_named(ImageShape& shape, const std::string& part) {
+  if (part.empty()) return {0, 1, shape.elements()};
   const auto named = std::ranges::find(shape.components, part);
-  std::vector<std::size_t> elements;
-  if (!part.empty() && named == shape.components.end()) return elements;
-  const bool whole = part.empty();
-  const std::size_t first = whole ? 0 : static_cast<std::size_t>(named - shape.components.begin());
-  elements.resize(whole ? shape.elements() : shape.pixels());
-  for (std::size_t i = 0; i < elements.size(); ++i) {
-    elements[i] = first + i * (whole ? 1 : components);
-  }
-  if (!whole) shape.components = {part};
-  return elements;
+  if (named == shape.components.end()) return {};
+  const auto first = static_cast<std::size_t>(named - shape.components.begin());
+  const std::size_t components = std::exchange(shape.components, {part}).size();
+  return {first, components, shape.pixels()};
 }
 
 /// The sampler that the part names, alone or before a marginal; the only sampler if none is named.
@@ -158,7 +152,7 @@ Subject draws(const Source& source, const Estimators& estimators, Draws what) {
     subject.channels = channels_named(channels, inconsistent_channel);
   } else if (!rest.empty() && what != Draws::consistency) {
     subject.channels = channels_named(channels, rest);
-    if (rest == cell_channel) subject.channels.clear();
+    if (rest == cell_channel) subject.channels = {};
   } else if (what == Draws::cells) {
     subject.channels = channels_named(channels, cell_channel);
   } else {
@@ -196,7 +190,7 @@ std::vector<Constant> references_of(const Claim& claim, const Subject& subject,
                                     Constant (*analytic)(const Channel&, const Source&)) {
   std::vector<Constant> numbers;
   const std::vector<Channel> channels = subject.setup->channels();
-  for (const std::size_t i : subject.channels) {
+  for (const std::size_t i : subject.channels.all()) {
     const auto* const number = std::get_if<Constant>(&claim.right);
     numbers.push_back(number != nullptr ? *number : analytic(channels[i], claim.left.source));
   }
@@ -256,7 +250,7 @@ std::vector<Constant> truths_of(const TestEntry& test, const Subject& subject,
                                 const Source& source) {
   std::vector<Constant> truths;
   const std::vector<Channel> channels = subject.setup->channels();
-  for (const std::size_t i : subject.channels) {
+  for (const std::size_t i : subject.channels.all()) {
     if (!test.reference_number && !channels[i].mean) {
       refuse(source.where,
              "the true mean of `{}` is not known to its plugin; give the test a `reference:`, a "
@@ -303,7 +297,7 @@ std::string outside_of_range(const Subject& subject, const Summary& drawn) {
   if (mutant || drawn.elements || subject.setup->observations()) return "";
   const std::vector<Channel> channels = subject.setup->channels();
   const auto finite = [](double end) { return std::isfinite(end) ? std::abs(end) : 0; };
-  for (const std::size_t i : subject.channels) {
+  for (const std::size_t i : subject.channels.all()) {
     const Channel& channel = channels[i];
     const double slack = 1e-9 * (finite(channel.low) + finite(channel.high));
     const stats::Moments& seen = drawn.channels[i].moments;

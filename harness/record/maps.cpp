@@ -149,10 +149,10 @@ std::string file_name(const std::string& id) {
   return fmt::format("{}-{:08x}.exr", name, text_hash(id) & 0xffffffff);
 }
 
-Extremes extremes_of(const Summary& summary, const std::vector<std::size_t>& channels) {
+Extremes extremes_of(const Summary& summary, const ChannelList& channels) {
   if (summary.elements) return summary.elements->extremes;
   Extremes extremes;
-  for (const std::size_t channel : channels) {
+  for (const std::size_t channel : channels.all()) {
     const ChannelSummary& kept = summary.channels[channel];
     extremes.nonzero += kept.moments.nonzero;
     if (kept.moments.count >= 2) extremes.merge({kept.moments.minimum, kept.moments.maximum, 0});
@@ -200,7 +200,7 @@ void add_elements(const Subject& side, const Summary& summary, reports::Sample& 
   sample.nonzero = extremes.nonzero;
   stats::Moments means;
   double variance = 0;
-  for (const std::size_t channel : side.channels) {
+  for (const std::size_t channel : side.channels.all()) {
     if (!summary.elements) sample.nonfinite += summary.channels[channel].nonfinite;
     const stats::Moments moments = summary.moments(channel);
     if (moments.count < 2) continue;

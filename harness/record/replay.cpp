@@ -151,7 +151,8 @@ std::uint64_t most_recorded(const reports::Test& test) {
 const reports::Sample* recorded_of(const reports::Test& test, const Question& question,
                                    std::size_t subject, std::size_t channel) {
   const Subject& side = question.subjects[subject];
-  if (std::ranges::find(side.channels, channel) == side.channels.end()) return nullptr;
+  const auto channels = side.channels.all();
+  if (std::ranges::find(channels, channel) == channels.end()) return nullptr;
   // Samples of two subjects with one estimator are in the subjects' order.
   auto earlier = std::ranges::count_if(
       std::span(question.subjects).first(subject),

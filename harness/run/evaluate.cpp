@@ -243,7 +243,7 @@ void judge_drawn_order(TestOutcome& outcome, const DrawnTest& test) {
   for (std::size_t subject = 0; subject < test.samples.size(); ++subject) {
     const Subject& side = outcome.question.subjects[subject];
     if (!shows_order(side)) continue;
-    for (const std::size_t channel : side.channels) {
+    for (const std::size_t channel : side.channels.all()) {
       std::string why =
           why_dependent(side, test.samples[subject].order_gates(channel), outcome.gates);
       if (outcome.plan.invalid.empty()) outcome.plan.invalid = std::move(why);
@@ -373,7 +373,7 @@ std::vector<ChannelData> data_of(const DrawnTest& test, std::size_t channel) {
   const Plan& plan = test.outcome.plan;
   for (std::size_t subject = 0; subject < test.samples.size(); ++subject) {
     const Drawn& sample = test.samples[subject];
-    const std::vector<std::size_t>& channels = test.outcome.question.subjects[subject].channels;
+    const ChannelList& channels = test.outcome.question.subjects[subject].channels;
     const std::size_t index = channels[channel];
     const Summary& summary = sample.summary();
     const std::span<const double> values = sample.values(index);
@@ -386,7 +386,8 @@ std::vector<ChannelData> data_of(const DrawnTest& test, std::size_t channel) {
                                  : joint_moments(summary.details(index)),
                     .group_variances = summary.group_variances});
     if (plan.method.keeps == Keeps::points) {
-      for (const std::size_t each : channels) data.back().all_values.push_back(sample.values(each));
+      for (const std::size_t each : channels.all())
+        data.back().all_values.push_back(sample.values(each));
     }
     if (plan.method.keeps == Keeps::images) data.back().images = images_of(test, subject);
     if (plan.method.keeps == Keeps::blocks) {

@@ -117,7 +117,7 @@ std::string unusable(const DrawnTest& test) {
     const Subject& side = outcome.question.subjects[subject];
     const Summary& drawn = test.samples[subject].summary();
     if (drawn.elements) continue;  // all finite
-    for (const std::size_t channel : side.channels) {
+    for (const std::size_t channel : side.channels.all()) {
       if (drawn.channels[channel].nonfinite == 0) continue;
       return not_finite(outcome, side, test.samples[subject], channel);
     }

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "harness/draws/consistency_setup.h"
 #include "harness/plan/independence.h"
@@ -96,12 +99,16 @@ void count_cells(const Subject& side, Pool& pool) {
 }
 
 void keep_for(const Method& method, const Subject& side, Pool& pool) {
-  for (const std::size_t channel : side.channels) {
+  for (const std::size_t channel : side.channels.all()) {
     if (powers_of(method.keeps) == Powers::none) break;
     Powers& powers = pool.plans()[channel].powers;
     powers = std::max(powers, powers_of(method.keeps));
   }
-  if (method.keeps == Keeps::group_variances) pool.keep_group_variances(side.channels);
+  if (method.keeps == Keeps::group_variances) {
+    std::vector<std::size_t> channels;
+    std::ranges::copy(side.channels.all(), std::back_inserter(channels));
+    pool.keep_group_variances(std::move(channels));
+  }
   if (method.keeps == Keeps::blocks) pool.keep_blocks();
   if (method.keeps == Keeps::cells) count_cells(side, pool);
 }
@@ -154,7 +161,7 @@ std::shared_ptr<Pool> Pools::for_subject(const Question& question, std::size_t s
   const std::shared_ptr<Pool> pool = find_or_make(side, plan.primaries[subject], seed, pilots);
   const std::uint64_t most = plan.most_secondaries();
   const auto keep_values = [&](std::uint64_t count) {
-    for (const std::size_t channel : side.channels) {
+    for (const std::size_t channel : side.channels.all()) {
       std::uint64_t& keep = pool->plans()[channel].keep;
       keep = std::max(keep, count);
     }

@@ -3,7 +3,7 @@
 namespace assay::harness {
 namespace {
 
-bool side_by_side(std::span<const std::size_t> channels) {
+bool side_by_side(const ChannelList& channels) {
   for (std::size_t i = 1; i < channels.size(); ++i) {
     if (channels[i] != channels[0] + i) return false;
   }
@@ -14,7 +14,7 @@ bool side_by_side(std::span<const std::size_t> channels) {
 
 template <class Real, class Observation>
 ImageViews::Kept<Real> ImageViews::kept_of(std::span<const Observation> observations,
-                                           std::span<const std::size_t> channels) {
+                                           const ChannelList& channels) {
   Kept<Real> kept;
   const bool whole = side_by_side(channels);
   for (const Observation& observation : observations) {
@@ -25,13 +25,13 @@ ImageViews::Kept<Real> ImageViews::kept_of(std::span<const Observation> observat
     }
     std::vector<Real>& copy = kept.copies.emplace_back();
     copy.reserve(channels.size());
-    for (const std::size_t channel : channels) copy.push_back(observation[channel]);
+    for (const std::size_t channel : channels.all()) copy.push_back(observation[channel]);
     kept.images.emplace_back(copy);
   }
   return kept;
 }
 
-ImageViews::ImageViews(const Observations& observations, std::span<const std::size_t> channels) {
+ImageViews::ImageViews(const Observations& observations, const ChannelList& channels) {
   if (const auto* const pictures =
           std::get_if<std::span<const std::span<const float>>>(&observations)) {
     kept_ = kept_of<float>(*pictures, channels);

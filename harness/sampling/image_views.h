@@ -5,6 +5,8 @@
 #include <variant>
 #include <vector>
 
+#include "harness/sampling/channel_list.h"
+
 namespace assay::harness {
 
 /// Whole observations: as they were drawn, or pictures of files in their own precision.
@@ -20,7 +22,7 @@ class ImageViews {
 
   ImageViews() = default;
   /// The observations must outlive it.
-  ImageViews(const Observations& observations, std::span<const std::size_t> channels);
+  ImageViews(const Observations& observations, const ChannelList& channels);
   /// Owns the images.
   template <class Real>
   explicit ImageViews(std::vector<std::vector<Real>> images);
@@ -49,8 +51,7 @@ class ImageViews {
     Images<Real> images;
   };
   template <class Real, class Observation>
-  static Kept<Real> kept_of(std::span<const Observation> observations,
-                            std::span<const std::size_t> channels);
+  static Kept<Real> kept_of(std::span<const Observation> observations, const ChannelList& channels);
 
   std::variant<Kept<double>, Kept<float>> kept_;
 };

@@ -17,7 +17,7 @@ TestWork judged_by_p(double p, double weight, Verdict verdict, const TestEntry& 
   TestOutcome& outcome = work.outcome;
   outcome.question.test = &test;
   outcome.question.theta = &theta_of_means();
-  outcome.question.subjects = {Subject{.channels = {0}}};
+  outcome.question.subjects = {Subject{.channels = {0, 1, 1}}};
   outcome.place = {.inside = true, .weight = weight, .share = {alpha * weight, 0.01}};
   outcome.plan.regions = {Regions{.relation = Relation::equal}};
   outcome.plan.looks = one_look(1000, outcome.place.share);
