@@ -85,12 +85,12 @@ require_mpi() {
 
 test_ranks_give_the_record_of_one_process() {
   require_mpi
-  local suites=("$source_folder/tests/suites/kinds.yaml") suite n
-  [ -z "$long" ] || suites+=("$source_folder"/suites/{luminaire,images,analytic}.yaml)
-  for suite in "${suites[@]}"; do
+  local suite n counts=(3)
+  [ -z "$long" ] || counts=(1 2 3 4)
+  for suite in "$source_folder"/{tests/suites/kinds,suites/luminaire,suites/images,suites/analytic}.yaml; do
     of_one_thread "$suite" --coarsen 8
-    for n in 1 2 3; do
-      ranks $n run "$suite" --coarsen 8 --quiet --report json=other/run.json
+    for n in "${counts[@]}"; do
+      ranks "$n" run "$suite" --coarsen 8 --quiet --report json=other/run.json
       [ $? -le 3 ] || fail "$n ranks of $suite"
       same_as_of_one_thread "$n ranks of $suite"
     done
@@ -110,6 +110,15 @@ test_ranks_that_stall_are_done_without() {
     wait $!
     same_as_of_one_thread "SIG$signal"
   done
+}
+
+test_ranks_that_never_meet_end() {
+  require_mpi
+  [ -n "$long" ] || { echo 'skipped: it takes two minutes'; exit 77; }
+  timeout 200 mpirun --allow-run-as-root --oversubscribe -n 2 "$assay" run "$source_folder/tests/suites/kinds.yaml" \
+    : -n 1 sleep 400 >out 2>err </dev/null
+  [ $? -eq 2 ] || fail 'ranks wait for one that does not come'
+  contains err 'the ranks have not met after two minutes'
 }
 
 # A signal to rank 2, or to all of the job, at random times; then the same command goes on.

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 #include <mpi.h>
+#include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <list>
 #include <map>
@@ -132,9 +134,28 @@ class MpiMessages final : public Messages {
   std::map<int, std::string> parts_;
 };
 
-int joined_program(const std::vector<std::string>& arguments) {
+// Seconds. Thousands of ranks meet in a fraction of it.
+constexpr unsigned most_until_met = 120;
+
+void end_unmet(int) {
+  constexpr char words[] =
+      "assay: the ranks have not met after two minutes: one of them hangs or was stopped; start "
+      "the job again\n";
+  [[maybe_unused]] const auto written = write(STDERR_FILENO, words, sizeof words - 1);
+  _exit(2);
+}
+
+/// MPI_Init waits for all ranks, for ever. A rank that ends makes the launcher end the others.
+void meet() {
+  std::signal(SIGALRM, end_unmet);
+  alarm(most_until_met);
   int granted = 0;
   MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &granted);
+  alarm(0);
+}
+
+int joined_program(const std::vector<std::string>& arguments) {
+  meet();
   MpiMessages messages;
   int code = 2;
   const unsigned tasks = launched_tasks();
