@@ -74,7 +74,7 @@ auto jackknife(const auto& replicate) {
 }
 
 /// `draw` makes a pair, `combine` the estimate of all.
-std::shared_ptr<const Setup> ratio_setup(Channel channel, const auto& draw, const auto& combine) {
+std::shared_ptr<const Setup> ratio_setup(Channel channel, auto draw, auto combine) {
   const auto estimate = [draw, combine, pairs = std::vector<RatioPair>()](
                             Stream& random, std::uint64_t primaries, std::span<double> out,
                             Cost& cost) mutable {

@@ -1,11 +1,6 @@
 // Claims as users type them (harness/claim.h). Every text is a claim, or is refused with a column.
 // A claim is written and read again as the same.
 
-// sources: harness/language/claim.cpp
-// sources: harness/language/laws.cpp harness/suite/yaml.cpp
-// sources: harness/base/text_file.cpp estimators/core/value.cpp estimators/core/value_checks.cpp
-// libraries: -lfmt -lyaml-cpp
-
 #include "estimators/core/value.h"
 #include "harness/language/claim.h"
 #include "tests/fuzz/case.h"

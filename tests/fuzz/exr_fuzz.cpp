@@ -1,16 +1,6 @@
 // Pictures of other programs (estimators/picture_file.h, estimators/pictures.h). Every file is
 // read, or refused with its name.
 
-// sources: estimators/render/exr/exr_file.cpp estimators/render/exr/exr_reader.cpp
-// sources: estimators/render/picture_file.cpp estimators/render/pfm_file.cpp
-// sources: estimators/render/png_file.cpp
-// sources: estimators/pictures.cpp estimators/core/value.cpp estimators/estimator.cpp
-// sources: estimators/core/flow.cpp estimators/render/environment_map.cpp
-// sources: estimators/render/alias_table.cpp
-// sources: estimators/parameters.cpp estimators/core/text_pattern.cpp
-// libraries: -isystem /usr/include/OpenEXR -isystem /usr/include/Imath
-// libraries: -lOpenEXR -lOpenEXRCore -lIex -lIlmThread -lImath -lpng
-
 #include <vector>
 
 #include "estimators/core/value.h"

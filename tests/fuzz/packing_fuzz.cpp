@@ -1,32 +1,11 @@
 // Blocks and recipes of other processes (harness/sampling/packing.h). All bytes are unpacked or
 // refused. A block that was unpacked can be folded, and is packed and read again as the same.
 
-// sources: harness/sampling/packing.cpp harness/sampling/pool.cpp harness/sampling/summary.cpp
-// sources: stats/basics/moments.cpp stats/basics/joint_moments.cpp stats/basics/check.cpp
-// sources: stats/basics/search.cpp stats/images/image_moments.cpp stats/tails/tails.cpp
-// sources: stats/tails/quantiles.cpp stats/tails/special.cpp stats/tails/noncentral_tails.cpp
-// sources: estimators/core/value.cpp estimators/estimator.cpp
-// libraries: -lfmt -ltbb -fno-sanitize=vptr
-
 #include "estimators/ready_made.h"
 #include "harness/sampling/packing.h"
 #include "harness/sampling/recorded_run.h"
 #include "stats/gates/independence_gates.h"
 #include "tests/fuzz/case.h"
-
-// Nothing here is of files, and no order is judged.
-namespace assay::recorded {
-std::optional<std::size_t> unknown_channels(const Setup&) { return std::nullopt; }
-void read_picture(Estimator&, std::uint64_t, std::span<float>, Cost&) {}
-double average_of(std::span<const float>) { return 0; }
-bool keeps_files(const Setup&) { return false; }
-}  // namespace assay::recorded
-namespace assay::harness {
-const RecordedRun* as_recorded_run(const Setup&) { return nullptr; }
-}  // namespace assay::harness
-namespace assay::stats {
-std::vector<Gate> drawn_order_gates(std::span<const double>) { return {}; }
-}  // namespace assay::stats
 
 namespace {
 

@@ -1,9 +1,6 @@
 // Hellos and replies of other programs (estimators/foreign/). All bytes are understood or refused,
 // in pieces as in one. A reply that was understood is written and read again as the same.
 
-// sources: estimators/estimator.cpp estimators/foreign/protocol.cpp
-// sources: estimators/core/quoting.cpp
-
 #include <algorithm>
 #include <cstring>
 #include <optional>

@@ -3,8 +3,6 @@
 // report can be made from it.
 
 // options: -max_len=32768
-// sources: reports/*.cpp reports/*/*.cpp build/reports/page.cpp
-// libraries: -lfmt -lz
 
 #include "reports/report_formats.h"
 #include "tests/fuzz/case.h"

@@ -2,12 +2,6 @@
 // All bytes are read, or refused with the file's name and a place in it. A table that was read is
 // whole.
 
-// sources: estimators/recorded/table.cpp estimators/recorded/byte_source.cpp
-// sources: estimators/recorded/npy.cpp
-// sources: estimators/core/quoting.cpp estimators/core/waiting.cpp
-// sources: estimators/core/value.cpp
-// libraries: -lz
-
 #include "estimators/core/value.h"
 #include "recorded/table.h"
 #include "tests/fuzz/case.h"
