@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
@@ -15,7 +16,6 @@
 #include "reports/formats/base64.h"
 #include "reports/report_formats.h"
 #include "reports/viewer/page.h"
-#include "reports/words/describe.h"
 #include "reports/words/display.h"
 #include "reports/words/text.h"
 
@@ -115,8 +115,18 @@ Map reduced(const Map& map, std::uint64_t factor) {
   return means;
 }
 
-bool is_shown(const Map& map) {
-  return map.name != "p_adjusted" && map.name != "variance" && map.name != "other_variance";
+/// The title of a map that the viewer shows; it does not show variances and adjusted p-values.
+std::string title_of(const Map& map) {
+  if (map.name == "mean" || map.name == "other_mean") return "mean of " + map.source;
+  static const std::map<std::string_view, const char*> titles{
+      {"z", "signed z"},
+      {"reference", "reference"},
+      {"cells_observed", "Draws in each cell"},
+      {"cells_expected", "Draws expected"},
+      {"cells_z", "Drawn - expected, in standard deviations"},
+      {"cells_z_close", "Where most is drawn, cell by cell, in standard deviations"}};
+  const auto title = titles.find(map.name);
+  return title == titles.end() ? "" : title->second;
 }
 
 std::string bytes_of_length(std::size_t length) {
@@ -169,7 +179,8 @@ std::string packed(Record record) {
   for (Suite& suite : record.suites) {
     for (Test& test : suite.tests) {
       for (const Map& whole_map : test.maps) {
-        if (!is_shown(whole_map) || whole_map.components.empty()) continue;
+        const std::string title = title_of(whole_map);
+        if (title.empty() || whole_map.components.empty()) continue;
         const std::uint64_t factor = reduction(whole_map);
         const Map map = reduced(whole_map, factor);
         const bool whole = map.texels.values.size() <= small;
@@ -185,7 +196,7 @@ std::string packed(Record record) {
         for (const std::string& name : map.components) components.push_back(clean(name));
         pictures.push_back({{"test", clean(test.id)},
                             {"name", clean(map.name)},
-                            {"title", clean(map_title(map))},
+                            {"title", clean(title)},
                             {"width", map.width},
                             {"height", map.height},
                             {"reduced", factor},

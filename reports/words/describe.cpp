@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/join.hpp>
 #include <cmath>
 #include <set>
 #include <string_view>
@@ -28,13 +29,14 @@ const Channel* least_excluded(const Test& test) {
   return least;
 }
 
-NamedP p_of_claim(const Test& test, const char* name) {
+NamedP p_of_claim(const Test& test) {
   const Channel channel = worst_channel(test);
-  return {name, channel.p_value, channel.log10_p};
+  return {is_proof(test) ? "p(claim)" : "p", channel.p_value, channel.log10_p};
 }
 
-NamedP p_of_contrary(const Test& test, const char* name) {
+NamedP p_of_contrary(const Test& test) {
   const Channel* least = least_excluded(test);
+  const char* const name = is_proof(test) ? "p(contrary)" : "p";
   return least ? NamedP{name, least->p_pass, least->log10_p_pass} : NamedP{name, {}, {}};
 }
 
@@ -80,25 +82,6 @@ std::string about_the_contrary(const Test& test) {
   return test.beta ? fmt::format("; beta is {}", human(*test.beta, 3)) : std::string();
 }
 
-std::string components_text(const Image& image) {
-  std::string text;
-  for (const std::string& component : image.components) {
-    text += (text.empty() ? " of " : ", ") + component;
-  }
-  return text;
-}
-
-std::string constants_text(const Image& image) {
-  std::string text;
-  if (image.constant > 0) text += fmt::format("; constant elements: {}", image.constant);
-  if (image.unseen > 0) {
-    text += fmt::format(
-        "; constant elements that are not at their reference: {}, rarer values may be unseen",
-        image.unseen);
-  }
-  return text;
-}
-
 /// "24 images", or "24 and 32 images" where the sides have not as many.
 std::string counted_images(const Test& test) {
   const std::vector<Sample>& sides = test.samples;
@@ -111,13 +94,18 @@ std::string counted_images(const Test& test) {
 std::string image_fact(const Test& test) {
   if (!test.image) return {};
   const Image& image = *test.image;
-  std::string text = fmt::format("{} of {} x {} pixels{}", counted_images(test), image.width,
-                                 image.height, components_text(image));
-  if (!image.winner.place.empty()) {
-    text += fmt::format("; differs most at {}, p = {} in all", image.winner.place,
-                        p_text({}, image.winner.log10_p_adjusted));
-  }
-  return text + constants_text(image);
+  std::vector<std::string> parts{
+      fmt::format("{} of {} x {} pixels{}{}", counted_images(test), image.width, image.height,
+                  image.components.empty() ? "" : " of ", boost::join(image.components, ", "))};
+  if (!image.winner.place.empty())
+    parts.push_back(fmt::format("differs most at {}, p = {} in all", image.winner.place,
+                                p_text({}, image.winner.log10_p_adjusted)));
+  if (image.constant > 0) parts.push_back(fmt::format("constant elements: {}", image.constant));
+  if (image.unseen > 0)
+    parts.push_back(fmt::format(
+        "constant elements that are not at their reference: {}, rarer values may be unseen",
+        image.unseen));
+  return boost::join(parts, "; ");
 }
 
 std::string estimate_fact(const Effect& effect) {
@@ -154,19 +142,17 @@ std::string power_text(double power) {
 
 std::string margins_fact(const Test& test) {
   const Effect effect = deciding_channel(test).effect;
-  std::string text;
+  std::vector<std::string> parts;
   const auto add = [&](const char* words, Number margin) {
-    if (!margin) return;
-    if (!text.empty()) text += "; ";
-    text += fmt::format("{} {}{}", words, margin_text(*margin, effect),
-                        both_ends(test, effect, *margin));
+    if (margin)
+      parts.push_back(fmt::format("{} {}{}", words, margin_text(*margin, effect),
+                                  both_ends(test, effect, *margin)));
   };
   if (test.allow.value_or(0) != 0) add("allowed up to", test.allow);
   add(detect_words(test), test.detect);
   add("would be noticed from", test.detectable);
-  if (!test.power) return text;
-  return text +
-         fmt::format("{}planned power {}", text.empty() ? "" : "; ", power_text(*test.power));
+  if (test.power) parts.push_back("planned power " + power_text(*test.power));
+  return boost::join(parts, "; ");
 }
 
 std::string channels_fact(const Test& test) {
@@ -278,13 +264,7 @@ std::string NamedP::text() const {
 }
 
 NamedP headline_p(const Test& test) {
-  if (rests_on_contrary(test)) return p_of_contrary(test, "p(contrary)");
-  return p_of_claim(test, is_proof(test) ? "p(claim)" : "p");
-}
-
-NamedP other_p(const Test& test) {
-  if (rests_on_contrary(test)) return p_of_claim(test, "p(claim)");
-  return p_of_contrary(test, is_proof(test) ? "p(contrary)" : "p");
+  return rests_on_contrary(test) ? p_of_contrary(test) : p_of_claim(test);
 }
 
 std::string evidence_text(const Test& test) {
@@ -296,26 +276,13 @@ std::string evidence_text(const Test& test) {
 }
 
 std::string exclusion_text(const Test& test) {
-  const NamedP p = other_p(test);
+  const bool of_claim = rests_on_contrary(test);
+  const NamedP p = of_claim ? p_of_claim(test) : p_of_contrary(test);
   if (!p.exists()) return {};
-  if (rests_on_contrary(test)) return p.text() + about_the_claim(test);
-  const std::string text = p.text() + about_the_contrary(test);
+  const std::string text = p.text() + (of_claim ? about_the_claim(test) : about_the_contrary(test));
   if (is_proof(test) || !test.detect) return text;
   return fmt::format("an error of {} would give such data with {}",
                      margin_text(*test.detect, deciding_channel(test).effect), text);
-}
-
-std::string map_title(const Map& map) {
-  if (map.name == "z") return "signed z";
-  if (map.name == "p_adjusted") return "p of each pixel, adjusted for all pixels";
-  if (map.name == "reference") return "reference";
-  if (map.name == "cells_observed") return "Draws in each cell";
-  if (map.name == "cells_expected") return "Draws expected";
-  if (map.name == "cells_z") return "Drawn - expected, in standard deviations";
-  if (map.name == "cells_z_close")
-    return "Where most is drawn, cell by cell, in standard deviations";
-  const bool variance = map.name == "variance" || map.name == "other_variance";
-  return fmt::format("{} of {}", variance ? "variance of one image" : "mean", map.source);
 }
 
 std::vector<const Sample*> worst_samples(const Test& test) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/replace.hpp>
 #include <cmath>
 #include <map>
 #include <set>
@@ -28,19 +29,13 @@ int urgency(const Test& test) {
   return ranks[static_cast<int>(outcome(test))];
 }
 
-bool is_finite(const Number& value) { return value && std::isfinite(*value); }
-
-/// "+0.06 % to +2.1 %", "at least +0.12 %"; empty where there is no interval.
-std::string range(const Effect& effect) {
-  const auto end = [&](const Number& value) { return theta_text(*value, effect); };
-  if (is_finite(effect.low) && is_finite(effect.high))
-    return fmt::format("{} to {}", end(effect.low), end(effect.high));
-  if (is_finite(effect.low)) return "at least " + end(effect.low);
-  return is_finite(effect.high) ? "at most " + end(effect.high) : std::string();
+/// A planted bug that passed.
+bool is_missed(const Test& test) {
+  return test.expected == Verdict::fail && test.verdict == Verdict::pass;
 }
 
 std::string bracket(const Effect& effect) {
-  const std::string text = range(effect);
+  const std::string text = range_text(effect);
   return text.empty() ? text : fmt::format(" ({})", text);
 }
 
@@ -307,37 +302,25 @@ const char* to_string(Standing standing) {
 }
 
 Standing standing(const Test& test) {
-  switch (outcome(test)) {
-    case Outcome::passed:
-      return test.expected == Verdict::pass ? Standing::holds : Standing::caught;
-    case Outcome::failed:
-      return is_evidence(test) ? Standing::broken : Standing::no_verdict;
-    case Outcome::inconclusive:
-      return Standing::undecided;
-    case Outcome::skipped:
-      break;
-  }
-  return Standing::not_run;
+  const Outcome how = outcome(test);
+  if (how == Outcome::passed)
+    return test.expected == Verdict::pass ? Standing::holds : Standing::caught;
+  if (how == Outcome::failed) return is_evidence(test) ? Standing::broken : Standing::no_verdict;
+  return how == Outcome::inconclusive ? Standing::undecided : Standing::not_run;
 }
 
 std::string meaning(const Test& test) {
-  if (test.expected == Verdict::fail && test.verdict == Verdict::pass) return "";
+  if (is_missed(test)) return "";
   if (standing(test) == Standing::caught) return "This is as the suite expects.";
-  switch (test.verdict) {
-    case Verdict::pass:
-      return is_proof(test) ? "The claim is shown." : "Nothing speaks against the claim.";
-    case Verdict::fail:
-      return "The claim is wrong.";
-    case Verdict::inconclusive:
-      return "The observations do not suffice to say whether the claim holds.";
-    case Verdict::invalid:
-      return "Nothing was decided, because the data break what the test relies on.";
-    case Verdict::error:
-      return "There are no numbers to judge, because drawing them failed.";
-    case Verdict::skipped:
-      break;
-  }
-  return "The claim was not tested.";
+  if (test.verdict == Verdict::pass && is_proof(test)) return "The claim is shown.";
+  constexpr const char* meanings[] = {
+      "Nothing speaks against the claim.",
+      "The claim is wrong.",
+      "The observations do not suffice to say whether the claim holds.",
+      "Nothing was decided, because the data break what the test relies on.",
+      "There are no numbers to judge, because drawing them failed.",
+      "The claim was not tested."};
+  return meanings[static_cast<int>(test.verdict)];
 }
 
 TestDisplay display(const Test& test) {
@@ -353,7 +336,7 @@ TestDisplay display(const Test& test) {
   words.sentence = sentence_of(test, effect, words.margin);
   if (shown) {
     words.effect = theta_text(*effect.estimate, effect);
-    words.interval = range(effect);
+    words.interval = range_text(effect);
   }
   if (is_evidence(test) && !is_proof(test)) words.chance = one_in(worst_channel(test).log10_p);
   return words;
@@ -406,8 +389,7 @@ RecordDisplay display(const Record& record) {
 }
 
 std::string trouble(const Test& test) {
-  const bool missed = test.expected == Verdict::fail && test.verdict == Verdict::pass;
-  if (missed) return "The planted bug was not caught. " + display(test).sentence;
+  if (is_missed(test)) return "The planted bug was not caught. " + display(test).sentence;
   if (test.verdict == Verdict::fail && test.expected == Verdict::pass)
     return display(test).sentence;
   return test.verdict == Verdict::skipped ? test.message : headline(test);
@@ -423,22 +405,19 @@ std::vector<Step> steps(const Test& test) {
   } else if (const std::string data = asked_for(test.message, "; give ", ';'); !data.empty()) {
     all.push_back({"to decide", "give " + data});
   }
-  const bool missed = test.expected == Verdict::fail && test.verdict == Verdict::pass;
   const Effect effect = deciding_channel(test).effect;
-  if (missed && test.detect && effect.relative)
+  if (is_missed(test) && test.detect && effect.relative)
     all.push_back({"write into the test", fmt::format("detect: {:.2g}%", 50 * *test.detect)});
   if (test.replay.empty()) return all;
-  if (test.verdict != Verdict::skipped) all.push_back({"again", test.replay});
-  if (test.verdict == Verdict::skipped) all.push_back({"then", test.replay});
+  all.push_back({test.verdict == Verdict::skipped ? "then" : "again", test.replay});
   if (test.image && test.verdict == Verdict::fail)
     all.push_back({"see it", test.replay + " --report html=difference.html"});
   return all;
 }
 
 Step explanation(const Test& test) {
-  std::string quoted = "'";
-  for (const char c : test.id) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return {"more", "assay explain " + quoted + "'"};
+  return {"more",
+          fmt::format("assay explain '{}'", boost::replace_all_copy(test.id, "'", "'\\''"))};
 }
 
 }  // namespace assay::reports

@@ -20,12 +20,10 @@ std::string non_finite(double value) {
   return value > 0 ? "Infinity" : "-Infinity";
 }
 
-bool bounded(const Number& end) { return end && std::isfinite(*end); }
-
 // Factors near one are read as per cent; all numbers of one effect take the same form.
 bool near_one(const Effect& effect) {
   const auto near = [](const Number& theta) {
-    return !bounded(theta) || std::abs(*theta) <= std::numbers::ln2;
+    return !is_finite(theta) || std::abs(*theta) <= std::numbers::ln2;
   };
   return near(effect.estimate) && near(effect.low) && near(effect.high);
 }
@@ -37,7 +35,18 @@ std::string factor(double log_ratio) {
                                        : scientific(log_ratio / std::numbers::ln10);
 }
 
+/// The ends of the interval that exist, in the text for both, the lower one or the upper one.
+std::string ends_text(const Effect& effect, const char* both, const char* from, const char* to) {
+  const auto end = [&](const Number& value) { return theta_text(*value, effect); };
+  if (is_finite(effect.low) && is_finite(effect.high))
+    return fmt::format(fmt::runtime(both), end(effect.low), end(effect.high));
+  if (is_finite(effect.low)) return fmt::format(fmt::runtime(from), end(effect.low));
+  return is_finite(effect.high) ? fmt::format(fmt::runtime(to), end(effect.high)) : "";
+}
+
 }  // namespace
+
+bool is_finite(const Number& value) { return value && std::isfinite(*value); }
 
 std::string round_trip(double value) {
   if (!std::isfinite(value)) return non_finite(value);
@@ -161,11 +170,11 @@ std::string theta_text(double theta, const Effect& effect) {
 }
 
 std::string interval_text(const Effect& effect) {
-  const auto end = [&](const Number& value) { return theta_text(*value, effect); };
-  if (bounded(effect.low) && bounded(effect.high))
-    return fmt::format("[{}, {}]", end(effect.low), end(effect.high));
-  if (bounded(effect.low)) return fmt::format("[from {}]", end(effect.low));
-  return bounded(effect.high) ? fmt::format("[to {}]", end(effect.high)) : std::string();
+  return ends_text(effect, "[{}, {}]", "[from {}]", "[to {}]");
+}
+
+std::string range_text(const Effect& effect) {
+  return ends_text(effect, "{} to {}", "at least {}", "at most {}");
 }
 
 std::string interval_name(const Effect& effect) {

@@ -15,6 +15,8 @@ namespace assay::reports {
 /// The text for a number that does not exist.
 inline constexpr const char* no_number = "n/a";
 
+bool is_finite(const Number&);
+
 /// The shortest decimal form that reads back as the same double; NaN, Infinity, -Infinity.
 std::string round_trip(double value);
 
@@ -67,6 +69,9 @@ std::string theta_text(double theta, const Effect&);
 
 /// "[-0.094 %, +0.156 %]", "[from +0.12 %]" where one-sided, empty where there is none.
 std::string interval_text(const Effect&);
+
+/// "-0.094 % to +0.156 %", "at least +0.12 %"; empty where there is none.
+std::string range_text(const Effect&);
 
 /// "99.98 % interval"; empty where there is no interval.
 std::string interval_name(const Effect&);
