@@ -111,7 +111,9 @@ std::string p_text(Number p, Number log10_p) {
   if (*p >= 0 && *p < std::numeric_limits<double>::min()) return "below 1e-307";
   if (*p < 1e-4) return *p < 0 ? human(*p, 2) : scientific(std::log10(*p));
   // Two digits would turn 0.9996 into 1: a p-value near one is itself a finding.
-  return *p > 0.99 && *p < 1 ? fmt::format("1 - {:.1g}", 1 - *p) : fmt::format("{:.2g}", *p);
+  constexpr double near_one = 0.99, nearest = 0.9999;
+  if (!(*p > near_one && *p < 1)) return fmt::format("{:.2g}", *p);
+  return *p > nearest ? "above 0.9999" : human(*p);
 }
 
 std::string count_text(std::uint64_t count) {
