@@ -108,7 +108,8 @@ class Screen {
     if (place(test).empty()) {
       most = static_cast<int>(text.size());
     } else if (most < static_cast<int>(text.size()) && test.verdict != Verdict::fail) {
-      next = {explanation(test)};
+      // What a user is asked for stands at the end of the words, and is a step of its own.
+      if (next.empty() || next[0].paste == test.replay) next = {explanation(test)};
       most = std::max(1, block_lines - used - below());
     }
     indented(text, most);

@@ -27,14 +27,6 @@ std::string what_was_found(const Test& test, const TestDisplay& words) {
   return words.sentence;
 }
 
-/// The effect whose range the sentence of every report shows, or an empty one.
-Effect effect_in_sentence(const Test& test) {
-  if (!is_evidence(test)) return {};
-  const bool at_place =
-      test.image && test.verdict == Verdict::fail && !test.image->winner.place.empty();
-  return at_place ? test.image->winner.effect.value_or(Effect{}) : deciding_channel(test).effect;
-}
-
 /// How sure the finding is.
 std::string how_sure(const Test& test, const TestDisplay& words, const std::string& found) {
   std::string text;

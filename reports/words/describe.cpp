@@ -224,6 +224,13 @@ Channel deciding_channel(const Test& test) {
   return least != nullptr ? *least : worst_channel(test);
 }
 
+Effect effect_in_sentence(const Test& test) {
+  if (!is_evidence(test)) return {};
+  const bool at_place =
+      test.image && test.verdict == Verdict::fail && !test.image->winner.place.empty();
+  return at_place ? test.image->winner.effect.value_or(Effect{}) : deciding_channel(test).effect;
+}
+
 Sides sides_of(const std::string& claim) {
   static constexpr std::string_view relations[] = {"==", "<=", ">=", "<", ">", " within "};
   const auto trimmed = [](std::string_view text) {

@@ -40,6 +40,10 @@ Channel worst_channel(const Test&);
 /// channel most against the claim. Else it is the channel whose forbidden region is excluded least.
 Channel deciding_channel(const Test&);
 
+/// The effect that the sentence on a test shows: of the finding in an image that fails, else of the
+/// deciding channel. Without an estimate where the sentence has no number.
+Effect effect_in_sentence(const Test&);
+
 /// The p-value that the verdict rests on: of the claim; in a proof that did not fail, of its
 /// contrary, the largest over the channels.
 NamedP headline_p(const Test&);

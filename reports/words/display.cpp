@@ -325,7 +325,8 @@ std::string meaning(const Test& test) {
 
 TestDisplay display(const Test& test) {
   const Effect effect = deciding_channel(test).effect;
-  const bool shown = is_evidence(test) && effect.estimate.has_value();
+  Effect shown = effect_in_sentence(test);
+  if (!shown.estimate && is_evidence(test)) shown = effect;
   TestDisplay words{.standing = to_string(standing(test)),
                     .verdict = verdict_text(test),
                     .meaning = meaning(test),
@@ -334,9 +335,9 @@ TestDisplay display(const Test& test) {
                     .facts = facts(test)};
   if (test.detect) words.margin = margin_text(*test.detect, effect);
   words.sentence = sentence_of(test, effect, words.margin);
-  if (shown) {
-    words.effect = theta_text(*effect.estimate, effect);
-    words.interval = range_text(effect);
+  if (shown.estimate) {
+    words.effect = theta_text(*shown.estimate, shown);
+    words.interval = range_text(shown);
   }
   if (is_evidence(test) && !is_proof(test)) words.chance = one_in(worst_channel(test).log10_p);
   return words;
@@ -402,8 +403,11 @@ std::vector<Step> steps(const Test& test) {
     all.push_back({"to decide", with_option(test.replay, text)});
   } else if (!text.empty()) {
     all.push_back({"write into the test", text});
-  } else if (const std::string data = asked_for(test.message, "; give ", ';'); !data.empty()) {
-    all.push_back({"to decide", "give " + data});
+  } else {
+    for (const std::string lead : {"; give ", ": give about "}) {
+      const std::string data = asked_for(test.message, lead, ';');
+      if (!data.empty()) all.push_back({"to decide", lead.substr(2) + data});
+    }
   }
   const Effect effect = deciding_channel(test).effect;
   if (is_missed(test) && test.detect && effect.relative)
