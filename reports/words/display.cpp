@@ -18,8 +18,8 @@
 namespace assay::reports {
 namespace {
 
-std::string of_claims(int some, int total) {
-  return fmt::format("{} of {}", some,
+std::string of_claims(int some, int total, const char* of = "of") {
+  return fmt::format("{} {} {}", some, of,
                      counted(static_cast<std::uint64_t>(total), "claim", "claims"));
 }
 
@@ -186,26 +186,23 @@ std::vector<Suspect> suspects(const Suite& suite, Standing how) {
     for (const Test* test : broken) {
       for (const std::string& name : estimators_of(*test)) ++count[name];
     }
-    // A tie goes to the estimator whose claims are broken most often.
-    const auto worst =
-        std::max_element(count.begin(), count.end(), [&](const auto& a, const auto& b) {
-          return std::pair(a.second, -claims[a.first]) < std::pair(b.second, -claims[b.first]);
-        });
     Suspect suspect{.suite = suite.name, .standing = to_string(how)};
-    if (worst == count.end()) {
+    const auto take = [&](const Test* test) { suspect.tests.push_back(test->id); };
+    if (count.empty()) {
       suspect.name = broken.front()->name;
-      suspect.tests = {broken.front()->id};
+      take(broken.front());
       broken.erase(broken.begin());
     } else {
+      // A tie goes to the estimator whose claims are broken most often.
+      const auto worst = std::ranges::max_element(
+          count, {}, [&](const auto& each) { return std::pair(each.second, -claims[each.first]); });
       suspect.name = worst->first;
-      std::erase_if(broken, [&](const Test* test) {
-        const bool shared = estimators_of(*test).contains(suspect.name);
-        if (shared) suspect.tests.push_back(test->id);
-        return shared;
-      });
+      const auto others = std::ranges::stable_partition(
+          broken, [&](const Test* test) { return !estimators_of(*test).contains(suspect.name); });
+      std::ranges::for_each(others, take);
+      broken.erase(others.begin(), others.end());
       suspect.sentence =
-          fmt::format("{} of its {} {}", worst->second,
-                      counted(static_cast<std::uint64_t>(claims[suspect.name]), "claim", "claims"),
+          fmt::format("{} {}", of_claims(worst->second, claims[suspect.name], "of its"),
                       how == Standing::broken ? "broken" : "without a verdict");
     }
     all.push_back(std::move(suspect));
@@ -246,10 +243,10 @@ std::string verdict_counts(const Record& record) {
   std::map<std::tuple<int, bool, std::string>, int> counts;
   for (const Test* test : tests_of(record))
     ++counts[{urgency(*test), test->verdict != Verdict::pass, verdict_text(*test)}];
-  std::string out;
+  std::vector<std::string> parts;
   for (const auto& [key, count] : counts)
-    out += fmt::format("{}{}\u00A0{}", out.empty() ? "" : "; ", count, std::get<2>(key));
-  return out;
+    parts.push_back(fmt::format("{}\u00A0{}", count, std::get<2>(key)));
+  return fmt::format("{}", fmt::join(parts, "; "));
 }
 
 std::string false_alarms(double alpha) {
@@ -278,21 +275,20 @@ std::string counts_text(const Suite& suite) {
   std::map<Standing, std::uint64_t> count;
   for (const Test& test : suite.tests) ++count[standing(test)];
   const std::uint64_t held = count[Standing::holds], caught = count[Standing::caught];
-  std::string text;
-  const auto add = [&](std::uint64_t some, const char* words) {
-    if (some > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", some, words);
-  };
-  if (held + caught == suite.tests.size()) {
-    add(held, held == 1 ? "holds" : "hold");
-    add(caught, caught == 1 ? "planted bug caught" : "planted bugs caught");
-    return text;
+  const bool well = held + caught == suite.tests.size();
+  const std::pair<std::uint64_t, const char*> all[] = {
+      {well ? held : 0, held == 1 ? "holds" : "hold"},
+      {well ? caught : 0, caught == 1 ? "planted bug caught" : "planted bugs caught"},
+      {count[Standing::broken], "broken"},
+      {count[Standing::no_verdict], "without a verdict"},
+      {count[Standing::undecided], "undecided"},
+      {count[Standing::not_run], "not run"},
+      {well ? 0 : held + caught, "ok"}};
+  std::vector<std::string> parts;
+  for (const auto& [some, words] : all) {
+    if (some > 0) parts.push_back(fmt::format("{} {}", some, words));
   }
-  add(count[Standing::broken], "broken");
-  add(count[Standing::no_verdict], "without a verdict");
-  add(count[Standing::undecided], "undecided");
-  add(count[Standing::not_run], "not run");
-  add(held + caught, "ok");
-  return text;
+  return fmt::format("{}", fmt::join(parts, ", "));
 }
 
 const char* to_string(Standing standing) {

@@ -7,7 +7,6 @@
 #include <boost/locale/utf.hpp>
 #include <cctype>
 #include <iterator>
-#include <span>
 
 namespace assay::reports {
 namespace {
@@ -27,12 +26,6 @@ bool showable(char32_t c) {
   return c == '\n' || c == '\t' || !(control(c) || layout_control(c) || non_character(c));
 }
 
-/// A character and what is written for it.
-struct Form {
-  char character;
-  std::string_view written;
-};
-
 constexpr Form xml_forms[] = {
     {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
 
@@ -43,16 +36,6 @@ constexpr Form markdown_forms[] = {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"},
                                    {'#', "&#35;"}, {'|', "\\|"},  {'*', "\\*"},  {'_', "\\_"},
                                    {'`', "\\`"},   {'~', "\\~"},  {'[', "\\["},  {']', "\\]"},
                                    {'$', "\\$"},   {'\\', "\\\\"}};
-
-std::string replace(std::string_view text, std::span<const Form> forms) {
-  std::string result;
-  result.reserve(text.size() + text.size() / 8);
-  for (const char& c : text) {
-    const auto form = std::ranges::find(forms, c, &Form::character);
-    result.append(form == forms.end() ? std::string_view(&c, 1) : form->written);
-  }
-  return result;
-}
 
 struct Range {
   char32_t first, last;
@@ -176,14 +159,23 @@ std::string plain_spaces(std::string text) {
   return text;
 }
 
-std::string escape_xml(std::string_view text) { return replace(clean(text), xml_forms); }
+std::string escape(std::string_view text, std::span<const Form> forms) {
+  std::string result;
+  for (const char& c : text) {
+    const auto form = std::ranges::find(forms, c, &Form::character);
+    result.append(form == forms.end() ? std::string_view(&c, 1) : form->written);
+  }
+  return result;
+}
+
+std::string escape_xml(std::string_view text) { return escape(clean(text), xml_forms); }
 
 std::string escape_attribute(std::string_view text) {
-  return replace(escape_xml(text), white_forms);
+  return escape(escape_xml(text), white_forms);
 }
 
 std::string escape_markdown(std::string_view text) {
-  return replace(one_line(text), markdown_forms);
+  return escape(one_line(text), markdown_forms);
 }
 
 std::string cap(std::string text, std::size_t bytes) {
