@@ -45,19 +45,15 @@ std::string found(const Test& test, const Effect& effect) {
   const auto [left, relation, right] = sides_of(test.claim);
   const bool signed_effect =
       is_ratio(effect) || effect.quantity.find("difference") != std::string::npos;
-  const bool of_image = test.image.has_value();
-  const std::string size = size_text(theta, effect);
-  if (right.empty() || !signed_effect || of_image || relation == "within" ||
-      !std::isfinite(theta)) {
-    return fmt::format("{} is {}{}", effect_name(effect), theta_text(theta, effect),
-                       bracket(effect));
-  }
-  if (theta == 0) return fmt::format("{} equals {}{}", left, right, bracket(effect));
   const std::string text = theta_text(theta, effect);
-  if (text.starts_with("×"))
-    return fmt::format("{} is {} {}{}", left, text, right, bracket(effect));
-  return fmt::format("{} is {} {} {}{}", left, size, theta > 0 ? "above" : "below", right,
-                     bracket(effect));
+  const auto is = [&](const std::string& what) { return what + bracket(effect); };
+  if (right.empty() || !signed_effect || test.image || relation == "within" ||
+      !std::isfinite(theta))
+    return is(fmt::format("{} is {}", effect_name(effect), text));
+  if (theta == 0) return is(fmt::format("{} equals {}", left, right));
+  if (text.starts_with("×")) return is(fmt::format("{} is {} {}", left, text, right));
+  return is(fmt::format("{} is {} {} {}", left, size_text(theta, effect),
+                        theta > 0 ? "above" : "below", right));
 }
 
 /// "x 152-183, y 136-167 of red".
