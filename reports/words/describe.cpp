@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/algorithm/string/join.hpp>
+#include <boost/algorithm/string.hpp>
 #include <cmath>
+#include <map>
 #include <set>
 #include <string_view>
 #include <tuple>
@@ -195,22 +196,23 @@ std::string expectation_fact(const Test& test) {
 }
 
 std::string observations_fact(const Test& test) {
-  std::string text;
+  constexpr std::size_t most = 12;
+  std::vector<std::string> parts;
   // Channels that are counted together have samples of the same observations.
   std::set<std::tuple<std::string, std::string, std::uint64_t, std::uint64_t>> said;
   for (const Sample* sample : worst_samples(test)) {
-    if (text.size() > 1000) break;
+    if (parts.size() == most) break;
     if (!said.insert({sample->estimator, sample->stream, sample->primaries, sample->nonfinite})
              .second) {
       continue;
     }
-    if (!text.empty()) text += "; ";
-    text += fmt::format("{} of {} with {} each", count_text(sample->secondaries), sample->estimator,
-                        counted(sample->primaries, "primary", "primaries"));
+    parts.push_back(fmt::format("{} of {} with {} each", count_text(sample->secondaries),
+                                sample->estimator,
+                                counted(sample->primaries, "primary", "primaries")));
     if (sample->nonfinite > 0)
-      text += fmt::format(", {} not finite", count_text(sample->nonfinite));
+      parts.back() += fmt::format(", {} not finite", count_text(sample->nonfinite));
   }
-  return text;
+  return boost::join(parts, "; ");
 }
 
 }  // namespace
@@ -232,21 +234,15 @@ Effect effect_in_sentence(const Test& test) {
 }
 
 Sides sides_of(const std::string& claim) {
-  static constexpr std::string_view relations[] = {"==", "<=", ">=", "<", ">", " within "};
-  const auto trimmed = [](std::string_view text) {
-    const std::size_t first = std::min(text.find_first_not_of(' '), text.size());
-    return std::string(text.substr(first, text.find_last_not_of(' ') + 1 - first));
-  };
-  const std::string_view text = claim;
   int depth = 0;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == '(') ++depth;
-    if (text[i] == ')') --depth;
+  for (std::size_t i = 0; i < claim.size(); ++i) {
+    depth += (claim[i] == '(') - (claim[i] == ')');
     if (depth != 0) continue;
-    for (const std::string_view relation : relations) {
-      if (!text.substr(i).starts_with(relation)) continue;
-      return {trimmed(text.substr(0, i)), trimmed(relation),
-              trimmed(text.substr(i + relation.size()))};
+    for (const std::string relation : {"==", "<=", ">=", "<", ">", " within "}) {
+      if (claim.compare(i, relation.size(), relation) != 0) continue;
+      Sides sides{claim.substr(0, i), relation, claim.substr(i + relation.size())};
+      for (std::string* part : {&sides.left, &sides.relation, &sides.right}) boost::trim(*part);
+      return sides;
     }
   }
   return {.left = claim};
@@ -259,11 +255,10 @@ bool is_proof(const Test& test) {
 
 std::string contrary(const std::string& claim) {
   const auto [left, relation, right] = sides_of(claim);
-  const char* const other = relation == "<"        ? ">="
-                            : relation == ">"      ? "<="
-                            : relation == "within" ? "not within"
-                                                   : nullptr;
-  return other == nullptr ? std::string() : fmt::format("{} {} {}", left, other, right);
+  const std::map<std::string, const char*> others{
+      {"<", ">="}, {">", "<="}, {"within", "not within"}};
+  const auto other = others.find(relation);
+  return other == others.end() ? "" : fmt::format("{} {} {}", left, other->second, right);
 }
 
 std::string NamedP::text() const {
