@@ -177,13 +177,9 @@ std::string packed(Record record) {
         const Map map = reduced(whole_map, factor);
         const bool whole = map.texels.values.size() <= small;
         const Coding& coding = codings[map.name == "z" ? 0 : 1];
-        std::string bytes;
-        if (whole) {
-          const auto floats = bytes_of(map.texels.values);
-          bytes.assign(floats.begin(), floats.end());
-        } else {
-          bytes = plane(map, coding);
-        }
+        const auto floats = bytes_of(map.texels.values);
+        const std::string bytes =
+            whole ? std::string(floats.begin(), floats.end()) : plane(map, coding);
         std::vector<std::string> components;
         for (const std::string& name : map.components) components.push_back(clean(name));
         pictures.push_back({{"test", clean(test.id)},

@@ -180,8 +180,7 @@ std::string gates_fact(const Test& test) {
     for (const Gate& gate : test.gates) {
       if (gate.state != state || ++named > most) continue;
       text += fmt::format("{}{}{} {} (limit {})", text.empty() ? "" : "; ", lead, gate.name,
-                          gate.value ? human(*gate.value, 3) : no_number,
-                          gate.limit ? human(*gate.limit, 3) : no_number);
+                          human(gate.value, 3), human(gate.limit, 3));
       lead = "";
     }
   }

@@ -36,11 +36,18 @@ std::string method_of(const Test& test) {
   return quantity;
 }
 
-std::optional<std::size_t> mutant_of(const Suite& suite, const Test& test) {
+/// A mutant's place among the suite's estimators, and the sample that a test has of it.
+struct Mutant {
+  std::size_t place;
+  const Sample* sample;
+};
+
+std::optional<Mutant> mutant_of(const Suite& suite, const Test& test) {
   for (const Sample& sample : test.samples) {
     for (std::size_t i = 0; i < suite.estimators.size(); ++i) {
       const EstimatorSummary& estimator = suite.estimators[i];
-      if (estimator.name == sample.estimator && !estimator.original.empty()) return i;
+      if (estimator.name == sample.estimator && !estimator.original.empty())
+        return Mutant{i, &sample};
     }
   }
   return std::nullopt;
@@ -58,13 +65,6 @@ Fate fate_of(const Test& test) {
   if (test.verdict == Verdict::fail) return Fate::killed;
   if (test.verdict == Verdict::error) return Fate::broken;
   return test.verdict == Verdict::pass ? Fate::survived : Fate::open;
-}
-
-std::uint64_t samples_of(const Test& test, const std::string& mutant) {
-  for (const Sample& sample : test.samples) {
-    if (sample.estimator == mutant) return sample.primaries * sample.secondaries;
-  }
-  return 0;
 }
 
 Number found_from(const Test& test) { return test.detectable ? test.detectable : test.detect; }
@@ -150,11 +150,11 @@ KillMatrix kill_matrix(const Suite& suite) {
   KillMatrix matrix{.legend = legend};
   std::map<std::size_t, Best> mutants;
   for (const Test& test : suite.tests) {
-    const std::optional<std::size_t> mutant = mutant_of(suite, test);
+    const std::optional<Mutant> mutant = mutant_of(suite, test);
     if (!mutant || test.verdict == Verdict::skipped) continue;
     const std::string method = method_of(test);
-    const Tested one{&test, fate_of(test), samples_of(test, suite.estimators[*mutant].name)};
-    const auto [best, is_first] = mutants[*mutant].emplace(method, one);
+    const Tested one{&test, fate_of(test), mutant->sample->primaries * mutant->sample->secondaries};
+    const auto [best, is_first] = mutants[mutant->place].emplace(method, one);
     if (!is_first && better(one, best->second)) best->second = one;
     if (std::ranges::find(matrix.methods, method) == matrix.methods.end())
       matrix.methods.push_back(method);

@@ -33,11 +33,6 @@ std::string theta_sentence(const LedgerSeries& series) {
                                 : "");
 }
 
-bool several_channels(const Ledger& ledger, const std::string& test) {
-  return std::count_if(ledger.series.begin(), ledger.series.end(),
-                       [&](const LedgerSeries& series) { return series.test == test; }) > 1;
-}
-
 double distance(const LedgerSeries& series) {
   return series.limit.value_or(0) - series.log_e().value_or(0);
 }
@@ -57,8 +52,8 @@ std::string ledger_title(const Ledger& ledger) {
 }
 
 std::string series_name(const Ledger& ledger, const LedgerSeries& series) {
-  if (!several_channels(ledger, series.test)) return series.test;
-  return fmt::format("{} [{}]", series.test, series.channel);
+  const bool alone = std::ranges::count(ledger.series, series.test, &LedgerSeries::test) < 2;
+  return alone ? series.test : fmt::format("{} [{}]", series.test, series.channel);
 }
 
 std::string e_text(const Number& log_e) {

@@ -64,7 +64,7 @@ std::string human(double value, int digits) {
   return fmt::format("{:.0f}", std::strtod(text.c_str(), nullptr));
 }
 
-std::string human(Number value) { return value ? human(*value) : no_number; }
+std::string human(Number value, int digits) { return value ? human(*value, digits) : no_number; }
 
 std::string percent(double fraction) {
   if (!std::isfinite(fraction)) return non_finite(fraction);

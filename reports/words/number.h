@@ -1,8 +1,6 @@
 #pragma once
 
-// Numbers as a reader wants them. Every function is locale-independent.
-
-// The effect of a claim in readable units. Differences are in per cent or the output's unit;
+// Numbers as a reader wants them, in any locale. Effects are in per cent or the output's unit;
 // logarithms of ratios become factors.
 
 #include <cstdint>
@@ -23,7 +21,7 @@ std::string round_trip(double value);
 /// Rounded to `digits` significant digits (default 4), without trailing zeros: 0.4811, 12350,
 /// 1.235e+07, 3.2e-05.
 std::string human(double value, int digits = 4);
-std::string human(Number value);
+std::string human(Number value, int digits = 4);
 
 /// A fraction as per cent with three significant digits: 0.00312 gives "0.312 %".
 std::string percent(double fraction);
