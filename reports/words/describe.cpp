@@ -54,33 +54,28 @@ std::string over_looks(const Test& test, Number Look::*log10_p) {
                      test.looks.size() == 1 ? "" : "s", p_text({}, at_last));
 }
 
-// ", 1 after Holm", where the family changes what is written: of a single test it does not.
-std::string after_holm(const Channel& channel) {
-  if (!channel.p_adjusted && !channel.log10_p_adjusted) return {};
-  const std::string adjusted = p_text(channel.p_adjusted, channel.log10_p_adjusted);
-  if (adjusted == p_text(channel.p_value, channel.log10_p)) return {};
-  return fmt::format(", {} after Holm", adjusted);
-}
-
 // "welch", "forced F".
 std::string method_text(const Test& test) {
   return test.forced ? "forced " + test.method : test.method;
 }
 
-// "(welch, two-sided), 1 after Holm; its share of alpha is 0.00125".
+// "(welch, two-sided), 1 after Holm; its share of alpha is 0.00125". Holm's number stands where the
+// family changes what is written: of a single test it does not.
 std::string about_the_claim(const Test& test) {
   const Channel channel = worst_channel(test);
-  std::string how = method_text(test), text;
+  std::string how = method_text(test);
   if (!test.tail.empty()) how += how.empty() ? test.tail : ", " + test.tail;
-  text += over_looks(test, &Look::log10_p);
+  std::string text = over_looks(test, &Look::log10_p);
   if (!how.empty()) text += fmt::format(" ({})", how);
-  text += after_holm(channel);
-  if (test.alpha) text += fmt::format("; its share of alpha is {}", human(*test.alpha, 3));
+  const std::string adjusted = p_text(channel.p_adjusted, channel.log10_p_adjusted);
+  if (adjusted != no_number && adjusted != p_text(channel.p_value, channel.log10_p))
+    text += fmt::format(", {} after Holm", adjusted);
+  if (test.alpha) text += fmt::format("; its share of alpha is {}", human(test.alpha, 3));
   return text;
 }
 
 std::string about_the_contrary(const Test& test) {
-  return test.beta ? fmt::format("; beta is {}", human(*test.beta, 3)) : std::string();
+  return test.beta ? "; beta is " + human(test.beta, 3) : "";
 }
 
 /// "24 images", or "24 and 32 images" where the sides have not as many.

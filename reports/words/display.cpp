@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <boost/algorithm/string/replace.hpp>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <tuple>
@@ -95,18 +96,18 @@ std::string found_in_image(const Image& image) {
                      winner.z.value_or(0) > 0 ? "bright" : "dark");
 }
 
-/// True where the interval leaves out all that is claimed or allowed.
-bool leaves_claim_out(const Test& test, const Effect& effect) {
-  const double allow = test.allow.value_or(0);
-  return sides_of(test.claim).relation == "==" &&
-         ((is_finite(effect.low) && *effect.low > allow) ||
-          (is_finite(effect.high) && *effect.high < -allow));
-}
-
-/// True where the interval lies within the margin on both sides.
-bool lies_within(const Effect& effect, const Number& margin) {
-  return margin && is_finite(effect.low) && is_finite(effect.high) && *effect.low > -*margin &&
-         *effect.high < *margin;
+/// A pass whose interval leaves out all that is claimed or allowed says so.
+std::string exclusion_of_claim(const Test& test, const Effect& effect, const std::string& margin) {
+  const double allow = test.allow.value_or(0), detect = test.detect.value_or(0);
+  const double infinity = std::numeric_limits<double>::infinity();
+  const double low = is_finite(effect.low) ? *effect.low : -infinity;
+  const double high = is_finite(effect.high) ? *effect.high : infinity;
+  if (test.verdict != Verdict::pass || sides_of(test.claim).relation != "==" ||
+      !(low > allow || high < -allow))
+    return "";
+  if (low > -detect && high < detect)
+    return fmt::format(" It is off, but by less than {}.", margin);
+  return " Its range leaves the claim out, which at this test's level is no rejection.";
 }
 
 std::string sentence_of(const Test& test, const Effect& effect, const std::string& margin) {
@@ -117,13 +118,7 @@ std::string sentence_of(const Test& test, const Effect& effect, const std::strin
   if (text.empty() && effect.estimate) text = found(test, effect);
   if (text.empty()) return headline(test);
   if (!margin.empty()) text += fmt::format("; you asked to catch {}", margin);
-  text += ".";
-  if (test.verdict == Verdict::pass && leaves_claim_out(test, effect)) {
-    text += lies_within(effect, test.detect)
-                ? fmt::format(" It is off, but by less than {}.", margin)
-                : " Its range leaves the claim out, which at this test's level is no rejection.";
-  }
-  return text;
+  return text + "." + exclusion_of_claim(test, effect, margin);
 }
 
 /// "1 in 17,000" of a p-value; empty where there is none.
