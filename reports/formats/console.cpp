@@ -106,7 +106,7 @@ class Screen {
       return place(test).empty() ? unlimited
                                  : std::max(1, block_lines - used - static_cast<int>(next.size()));
     };
-    // What a user is asked for stands at the end of the words, and is a step of its own.
+    // The words end with what a user is asked for; it is a step of its own.
     const bool asked = !all.empty() && all[0].paste != test.replay;
     if (room() < static_cast<int>(text.size()) && test.verdict != Verdict::fail && !asked)
       next = step_lines(explanation(test));

@@ -53,35 +53,27 @@ std::optional<Mutant> mutant_of(const Suite& suite, const Test& test) {
   return std::nullopt;
 }
 
-/// The fate of a mutant under one method.
-enum class Fate {
-  killed,    ///< the claim was refuted
-  broken,    ///< an observation was not finite, which is seen as well
-  survived,  ///< no evidence against the claim
-  open       ///< undecided, or no valid test
-};
-
-Fate fate_of(const Test& test) {
-  if (test.verdict == Verdict::fail) return Fate::killed;
-  if (test.verdict == Verdict::error) return Fate::broken;
-  return test.verdict == Verdict::pass ? Fate::survived : Fate::open;
-}
-
 Number found_from(const Test& test) { return test.detectable ? test.detectable : test.detect; }
 
 /// A test's word on one mutant.
 struct Tested {
   const Test* test;
-  Fate fate;
   std::uint64_t samples;
 
-  bool kills() const { return fate == Fate::killed || fate == Fate::broken; }
+  /// An observation that was not finite is seen as well.
+  bool kills() const { return test->verdict == Verdict::fail || test->verdict == Verdict::error; }
 };
+
+/// The order in which verdicts tell of a method: a kill first, what is undecided last.
+int rank(const Tested& one) {
+  constexpr int ranks[] = {2, 0, 3, 3, 1, 3};  // in the order of verdicts
+  return ranks[static_cast<int>(one.test->verdict)];
+}
 
 /// True if the first says more of the method than the second.
 bool better(const Tested& one, const Tested& other) {
-  if (one.fate != other.fate) return one.fate < other.fate;
-  if (one.fate != Fate::survived) return one.samples < other.samples;
+  if (rank(one) != rank(other)) return rank(one) < rank(other);
+  if (one.test->verdict != Verdict::pass) return one.samples < other.samples;
   constexpr double none = std::numeric_limits<double>::infinity();
   return found_from(*one.test).value_or(none) < found_from(*other.test).value_or(none);
 }
@@ -99,17 +91,12 @@ KillCell cell_of(const Tested& one) {
   const auto cell = [&](const std::string& text, const std::string& sentence) {
     return KillCell{one.test->id, text, sentence, one.kills()};
   };
-  switch (one.fate) {
-    case Fate::killed:
-      return cell(count_text(one.samples), "killed by " + samples);
-    case Fate::broken:
-      return cell("not finite", "not finite among " + samples);
-    case Fate::open:
-      return cell(one.test->verdict == Verdict::invalid ? "invalid" : "undecided",
-                  fmt::format("{} after {}", to_string(one.test->verdict), samples));
-    case Fate::survived:
-      break;
-  }
+  const Verdict verdict = one.test->verdict;
+  if (verdict == Verdict::fail) return cell(count_text(one.samples), "killed by " + samples);
+  if (verdict == Verdict::error) return cell("not finite", "not finite among " + samples);
+  if (verdict != Verdict::pass)
+    return cell(verdict == Verdict::invalid ? "invalid" : "undecided",
+                fmt::format("{} after {}", to_string(verdict), samples));
   if (least.empty()) return cell("survives", "survives " + samples);
   return cell(
       "< " + least,
@@ -153,7 +140,7 @@ KillMatrix kill_matrix(const Suite& suite) {
     const std::optional<Mutant> mutant = mutant_of(suite, test);
     if (!mutant || test.verdict == Verdict::skipped) continue;
     const std::string method = method_of(test);
-    const Tested one{&test, fate_of(test), mutant->sample->primaries * mutant->sample->secondaries};
+    const Tested one{&test, mutant->sample->primaries * mutant->sample->secondaries};
     const auto [best, is_first] = mutants[mutant->place].emplace(method, one);
     if (!is_first && better(one, best->second)) best->second = one;
     if (std::ranges::find(matrix.methods, method) == matrix.methods.end())

@@ -101,7 +101,7 @@ TEST(Console, NoNumberIsCutAtAnyWidth) {
   }
 }
 
-// What a user is asked for stands at the end of the message.
+// The message ends with what a user is asked for.
 TEST(Console, NeverCutsTheNumberThatAUserIsAskedFor) {
   Record record = with_one_test();
   reports::Test& test = record.suites[0].tests[0];
