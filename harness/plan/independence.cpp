@@ -202,6 +202,7 @@ std::string too_few_to_tell(TestOutcome& test, const Pilots& pilots, std::uint64
 
 /// Allows for a dependence of rows that is too weak for a gate.
 void allow_for_dependence(const std::vector<Rows>& all, Plan& plan) {
+  std::vector<std::string> allowed;
   for (const Rows& rows : all) {
     const double factor = stats::allowance_for_dependence(rows.values);
     if (!(factor > 1)) continue;
@@ -209,8 +210,13 @@ void allow_for_dependence(const std::vector<Rows>& all, Plan& plan) {
         {.subject = rows.subject, .channel = rows.channel, .factor = factor});
     plan.gates.push_back(
         gate_of("variance of the mean, allowed for dependence, " + rows.label, factor, 1, "amber"));
-    plan.caution = "the interval is wider because successive " + rows.label + " seem correlated";
+    allowed.push_back(rows.label);
   }
+  if (allowed.empty()) return;
+  const std::size_t others = allowed.size() - 1;
+  if (others > 1) allowed = {allowed[0], fmt::format("{} others", others)};
+  plan.caution = fmt::format("the interval is wider because successive {} seem correlated",
+                             fmt::join(allowed, " and "));
 }
 
 }  // namespace
@@ -300,17 +306,23 @@ stats::Moments as_tested(const Plan& plan, std::size_t subject, std::size_t chan
   return moments;
 }
 
+std::string passing_rows(const Suite& suite, const EstimatorEntry& entry) {
+  const Value* const file = entry.plugin == "recorded" ? entry.parameters.find("file") : nullptr;
+  if (file == nullptr) return "";
+  const std::string& name = file->text();
+  const std::string path = (std::filesystem::path(suite.folder) / name).string();
+  if (!recorded::is_read_once(name) && !recorded::is_read_once(path)) return "";
+  return name == "-" || name == "/dev/stdin" ? "standard input" : "`" + name + "`";
+}
+
 void require_lasting_rows(const Suite& suite, const std::string& record) {
   for (const EstimatorEntry& entry : suite.estimators) {
-    const Value* const file = entry.plugin == "recorded" ? entry.parameters.find("file") : nullptr;
-    if (file == nullptr) continue;
-    const std::string& name = file->text();
-    const std::string path = (std::filesystem::path(suite.folder) / name).string();
-    if (!recorded::is_read_once(name) && !recorded::is_read_once(path)) continue;
+    const std::string source = passing_rows(suite, entry);
+    if (source.empty()) continue;
     refuse({.file = record},
            "the data of `{}` came from {} and cannot be read\n  again; write them to a file and "
            "test that: its record can be replayed",
-           entry.name, name == "-" || name == "/dev/stdin" ? "standard input" : "`" + name + "`");
+           entry.name, source);
   }
 }
 

@@ -42,6 +42,10 @@ void judge_independence(TestOutcome& test, const Pilots& pilots, std::uint64_t c
 stats::Moments as_tested(const Plan& plan, std::size_t subject, std::size_t channel,
                          std::span<const double> values, stats::Moments moments);
 
+/// Names the source of an estimator's rows if it cannot be read again. It is "standard input", or a
+/// pipe or device in backquotes; else empty.
+std::string passing_rows(const Suite& suite, const EstimatorEntry& entry);
+
 /// Throws InputError at the record if rows of the suite came from standard input, a pipe or a
 /// device: they cannot be replayed.
 void require_lasting_rows(const Suite& suite, const std::string& record);

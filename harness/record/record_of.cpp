@@ -15,6 +15,7 @@
 #include "estimators/rendered.h"
 #include "harness/base/numbers.h"
 #include "harness/base/version.h"
+#include "harness/plan/independence.h"
 #include "harness/question/question_sources.h"
 #include "harness/record/maps.h"
 #include "harness/record/merge.h"
@@ -335,6 +336,13 @@ void note_retries(reports::Record& record) {
 
 std::string replay_line(const TestEntry& entry, const SuiteRun& run, const SuiteRuns& runs,
                         const RunOptions& options) {
+  for (const Source& source : sources_of(entry.claim)) {
+    for (const EstimatorEntry& estimator : run.suite.estimators) {
+      if (estimator.name != source.estimator) continue;
+      if (const std::string from = passing_rows(run.suite, estimator); !from.empty())
+        return fmt::format("# {} cannot be read again: write it to a file", from);
+    }
+  }
   const std::string command = "assay run";
   std::string line = options.command;
   if (line.starts_with(command)) {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <limits>
-#include <string_view>
+#include <span>
 #include <vector>
 
 #include "reports/report_formats.h"
@@ -17,24 +17,14 @@ namespace {
 constexpr std::size_t message_limit = 4000;
 constexpr std::size_t title_limit = 200;
 
-std::string escaped(const std::string& text, std::string_view special) {
-  std::string out;
-  for (const char c : text) {
-    if (special.find(c) == special.npos) {
-      out += c;
-    } else {
-      out += fmt::format("%{:02X}", static_cast<unsigned>(static_cast<unsigned char>(c)));
-    }
-  }
-  return out;
-}
+constexpr Form forms[] = {{'%', "%25"}, {'\r', "%0D"}, {'\n', "%0A"}, {':', "%3A"}, {',', "%2C"}};
 
 std::string message(const std::string& text) {
-  return escaped(cap(clean(text), message_limit), "%\r\n");
+  return escape(cap(clean(text), message_limit), std::span(forms).first<3>());
 }
 
 std::string property(const std::string& text) {
-  return escaped(cap(one_line(text), title_limit), "%\r\n:,");
+  return escape(cap(one_line(text), title_limit), forms);
 }
 
 /// Errors first, then what is refuted most, then the rest in order.
@@ -43,14 +33,6 @@ double badness(const Test& test) {
   if (test.verdict == Verdict::error) return first;
   if (test.verdict != Verdict::fail || test.channels.empty()) return 0;
   return -worst_channel(test).log10_p.value_or(0);
-}
-
-std::vector<const Test*> tests_that_are(const Record& record, Outcome kind) {
-  std::vector<const Test*> tests = tests_of(record);
-  std::erase_if(tests, [kind](const Test* test) { return outcome(*test) != kind; });
-  std::stable_sort(tests.begin(), tests.end(),
-                   [](const Test* a, const Test* b) { return badness(*a) > badness(*b); });
-  return tests;
 }
 
 std::string annotation(const char* kind, const Test& test) {
@@ -65,18 +47,25 @@ std::string annotation(const char* kind, const Test& test) {
                      message(text.empty() ? headline(test) : text));
 }
 
+/// Adds the tests that came out so, the worst first.
+void add_tests(const Record& record, Outcome how, const char* kind,
+               std::vector<std::string>& lines) {
+  std::vector<const Test*> tests = tests_of(record);
+  std::erase_if(tests, [how](const Test* test) { return outcome(*test) != how; });
+  std::ranges::stable_sort(tests, {}, [](const Test* test) { return -badness(*test); });
+  for (const Test* test : tests) lines.push_back(annotation(kind, *test));
+}
+
 std::string all_of(const char* kind, const std::vector<std::string>& lines) {
   const bool all = lines.size() <= most_annotations;
   const std::size_t shown = all ? lines.size() : most_annotations - 1;
-  std::string out;
-  for (std::size_t i = 0; i < shown; ++i) out += lines[i];
-  if (!all) {
-    out += fmt::format(
-        "::{} title={}::{} more are not shown here; the summary of the job and the "
-        "reports have all\n",
-        kind, property("assay"), lines.size() - shown);
-  }
-  return out;
+  const std::string out = fmt::format(
+      "{}", fmt::join(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(shown), ""));
+  if (all) return out;
+  return out + fmt::format(
+                   "::{} title={}::{} more are not shown here; the summary of the job and "
+                   "the reports have all\n",
+                   kind, property("assay"), lines.size() - shown);
 }
 
 }  // namespace
@@ -89,13 +78,9 @@ std::string annotations(const Record& record) {
                                  property("alarm of the ledger: " + series.test),
                                  message(alarm_sentence(series))));
   }
-  for (const Test* test : tests_that_are(record, Outcome::failed)) {
-    errors.push_back(annotation("error", *test));
-  }
+  add_tests(record, Outcome::failed, "error", errors);
   std::vector<std::string> warnings;
-  for (const Test* test : tests_that_are(record, Outcome::inconclusive)) {
-    warnings.push_back(annotation("warning", *test));
-  }
+  add_tests(record, Outcome::inconclusive, "warning", warnings);
   return all_of("error", errors) + all_of("warning", warnings);
 }
 

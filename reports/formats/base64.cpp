@@ -12,19 +12,6 @@ static_assert(std::endian::native == std::endian::little, "floats are kept as th
 constexpr std::string_view digits =
     "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
-std::optional<std::uint32_t> value_of(char digit) {
-  const std::size_t value = digits.find(digit);
-  if (value == std::string_view::npos) return std::nullopt;
-  return static_cast<std::uint32_t>(value);
-}
-
-/// Number of padding characters in the last group; npos if there are more than two.
-std::size_t padding_of(std::string_view text) {
-  std::size_t padding = 0;
-  while (padding < 2 && padding < text.size() && text[text.size() - 1 - padding] == '=') ++padding;
-  return padding;
-}
-
 }  // namespace
 
 std::string base64(std::span<const std::uint8_t> bytes) {
@@ -43,16 +30,15 @@ std::string base64(std::span<const std::uint8_t> bytes) {
 
 std::optional<std::vector<std::uint8_t>> from_base64(std::string_view text) {
   if (text.size() % 4 != 0) return std::nullopt;
-  const std::size_t padding = padding_of(text);
-  const std::string_view data = text.substr(0, text.size() - padding);
+  const bool padded = text.ends_with('=');
+  text.remove_suffix(text.ends_with("==") ? 2 : padded ? 1 : 0);
   std::vector<std::uint8_t> bytes;
   bytes.reserve(text.size() / 4 * 3);
-  std::uint32_t group = 0;
-  std::uint32_t bits = 0;
-  for (const char digit : data) {
-    const auto value = value_of(digit);
-    if (!value) return std::nullopt;
-    group = (group << 6 | *value) & 0xffff;
+  std::uint32_t group = 0, bits = 0;
+  for (const char digit : text) {
+    const std::size_t value = digits.find(digit);
+    if (value == std::string_view::npos) return std::nullopt;
+    group = (group << 6 | static_cast<std::uint32_t>(value)) & 0xffff;
     bits += 6;
     if (bits < 8) continue;
     bits -= 8;

@@ -63,8 +63,9 @@ const std::vector<Column>& table_columns() {
   return all;
 }
 
+/// At least one space before the text.
 std::string padded(const std::string& text, int width) {
-  return std::string(static_cast<std::size_t>(std::max(1, width - columns(text))), ' ') + text;
+  return fmt::format(" {:>{}}", text, width - 1);
 }
 
 const char* mark_of(const Calibration& calibration, const CalibrationCell& cell) {
@@ -98,12 +99,6 @@ errs    the exact lower limit of the rate of mistakes: true claims that fail, or
         proofs claims off by `detect` that pass
 !!  mistaken too often for certain        !  alone mistaken too often for certain without a red gate
 )";
-
-std::string wrapped_detect(const Calibration& calibration) {
-  std::string out;
-  for (const std::string& line : wrap("detect    " + calibration.detect, 100)) out += line + "\n";
-  return out;
-}
 
 }  // namespace
 
@@ -146,8 +141,9 @@ std::string console(const Calibration& calibration) {
     }
     out += console_rows(calibration, cell);
   }
-  return out + "\n" + legend + wrapped_detect(calibration) + "\n" + verdict_sentence(calibration) +
-         "\n";
+  return fmt::format("{}\n{}{}\n\n{}\n", out, legend,
+                     fmt::join(wrap("detect    " + calibration.detect, 100), "\n"),
+                     verdict_sentence(calibration));
 }
 
 std::string markdown(const Calibration& calibration) {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <map>
 #include <set>
@@ -97,22 +98,20 @@ class Screen {
   void block(const std::string& suite, const Test& test) {
     const Outcome how = outcome(test);
     const int used = head(fmt::format("{} {}: {}", mark(how), suite, test.name), place(test), how);
-    std::vector<Step> next = steps(test);
-    next.resize(std::min<std::size_t>(next.size(), 1));
-    std::vector<std::string> text = wrapped(trouble(test), options_.width - block_indent);
-    std::erase(text, "");
-    const auto below = [&] {
-      return next.empty() ? 0 : static_cast<int>(step_lines(next[0]).size());
+    const std::vector<std::string> text = wrapped(trouble(test), options_.width - block_indent);
+    const std::vector<Step> all = steps(test);
+    std::vector<std::string> next;
+    if (!all.empty()) next = step_lines(all[0]);
+    const auto room = [&] {
+      return place(test).empty() ? unlimited
+                                 : std::max(1, block_lines - used - static_cast<int>(next.size()));
     };
-    int most = std::max(1, block_lines - used - below());
-    if (place(test).empty()) {
-      most = static_cast<int>(text.size());
-    } else if (most < static_cast<int>(text.size()) && test.verdict != Verdict::fail) {
-      next = {explanation(test)};
-      most = std::max(1, block_lines - used - below());
-    }
-    indented(text, most);
-    for (const Step& step : next) paste(step);
+    // The words end with what a user is asked for; it is a step of its own.
+    const bool asked = !all.empty() && all[0].paste != test.replay;
+    if (room() < static_cast<int>(text.size()) && test.verdict != Verdict::fail && !asked)
+      next = step_lines(explanation(test));
+    indented(text, room());
+    put(next);
     blank();
   }
 
@@ -141,11 +140,13 @@ class Screen {
     out_ += options_.colour && *style != '\0' ? style + text + "\x1b[0m\n" : text + "\n";
   }
 
-  // Lines that are empty in the text say nothing on a terminal.
   void paragraph(const std::string& text, const char* style = "") {
-    for (const std::string& part : wrapped(text, options_.width)) {
-      if (!part.empty()) line(part, style);
-    }
+    for (const std::string& part : wrapped(text, options_.width)) line(part, style);
+  }
+
+  // Lines to paste are never cut.
+  void put(const std::vector<std::string>& lines) {
+    for (const std::string& part : lines) out_ += part + "\n";
   }
 
   // One empty line, never two.
@@ -153,10 +154,12 @@ class Screen {
     if (!out_.empty() && !out_.ends_with("\n\n")) out_ += "\n";
   }
 
-  // No-break spaces keep numbers and units together until the lines are made.
+  // No-break spaces keep numbers and units together until the lines are made. Lines that are empty
+  // in the text say nothing on a terminal.
   static std::vector<std::string> wrapped(const std::string& text, int width) {
     std::vector<std::string> lines = wrap(clean(text), width);
     for (std::string& part : lines) part = plain_spaces(part);
+    std::erase(lines, "");
     return lines;
   }
 
@@ -173,18 +176,11 @@ class Screen {
     return pad_right("      " + label, label_width + 6);
   }
 
-  // A command is never cut, because it is meant to be pasted.
-  void command(const std::string& label, const std::string& text) {
-    for (const std::string& part : beside(in_column(label), wrap_command(text, beside_width())))
-      out_ += part + "\n";
-  }
-
   int beside_width() const { return options_.width - label_width - 6; }
 
   void fact(const std::string& label, const std::string& text) {
-    std::vector<std::string> lines = wrapped(text, beside_width());
-    std::erase(lines, "");
-    for (const std::string& part : beside(in_column(label), lines)) line(part);
+    for (const std::string& part : beside(in_column(label), wrapped(text, beside_width())))
+      line(part);
   }
 
   /// Seconds as a reader of a summary wants them: "0.4 s", "25 s".
@@ -207,7 +203,6 @@ class Screen {
 
   /// So many lines at most; what is cut ends in an ellipsis.
   void indented(std::vector<std::string> text, int most) {
-    std::erase(text, "");
     if (text.size() > static_cast<std::size_t>(most)) {
       text.resize(static_cast<std::size_t>(most));
       text.back() = shorten(text.back() + "…", options_.width - block_indent);
@@ -231,11 +226,7 @@ class Screen {
       id.erase(id.find_last_not_of("'\\") + 1);  // no half of a quoted quote
       text = text.substr(0, at + 1) + id + end;
     }
-    return beside(label, wrap_command(text, room));
-  }
-
-  void paste(const Step& step) {
-    for (const std::string& part : step_lines(step)) out_ += spaces(block_indent) + part + "\n";
+    return beside(spaces(block_indent) + label, wrap_command(text, room));
   }
 
   static Outcome worst(const Tally& counts) {
@@ -320,7 +311,7 @@ class Screen {
     rows(suite);
     out_.erase(out_.size() - 1);  // no empty line between
     indented(test.message, block_lines);
-    for (const Step& step : steps(test)) paste(step);
+    for (const Step& step : steps(test)) put(step_lines(step));
   }
 
   /// Tests that were left out, those of one reason together.
@@ -353,16 +344,15 @@ class Screen {
   }
 
   void slowest(const Record& record) {
-    std::vector<std::pair<double, const Test*>> all;
-    for (const Test* test : tests_of(record)) all.emplace_back(total_cost(*test).seconds, test);
-    std::stable_sort(all.begin(), all.end(),
-                     [](const auto& a, const auto& b) { return a.first > b.first; });
+    const auto seconds = [](const Test* test) { return total_cost(*test).seconds; };
+    std::vector<const Test*> all = tests_of(record);
+    std::ranges::stable_sort(all, std::greater(), seconds);
     all.resize(std::min<std::size_t>(all.size(), options_.slowest));
     if (all.empty()) return;
     blank();
     line("Slowest, by CPU time of their draws:");
-    for (const auto& [seconds, test] : all)
-      line(fmt::format("{:>12}  {}", time(seconds), plain(test->id)));
+    for (const Test* test : all)
+      line(fmt::format("{:>12}  {}", time(seconds(test)), plain(test->id)));
   }
 
   // The answers stand in a column, with the statement and its tests beside them.
@@ -388,13 +378,11 @@ class Screen {
     const KillMatrix matrix = kill_matrix(suite);
     if (!is_worth_showing(matrix)) return;
     for (const KillRow& row : matrix.rows) {
-      std::string text;
+      std::vector<std::string> parts;
       for (std::size_t m = 0; m < row.cells.size(); ++m) {
-        if (row.cells[m])
-          text += fmt::format("{} {} {}", text.empty() ? ":" : ",", matrix.methods[m],
-                              row.cells[m]->text);
+        if (row.cells[m]) parts.push_back(matrix.methods[m] + " " + row.cells[m]->text);
       }
-      indented(one_line(row.mutant + text));
+      indented(one_line(fmt::format("{}: {}", row.mutant, fmt::join(parts, ", "))));
     }
     blank();
     paragraph(matrix.totals);
@@ -404,7 +392,8 @@ class Screen {
 
   void explain(const Test& test) {
     for (const auto& [label, sentence] : facts(test)) fact(label, sentence);
-    if (!test.replay.empty()) command("replay", plain(test.replay));
+    if (!test.replay.empty())
+      put(beside(in_column("replay"), wrap_command(plain(test.replay), beside_width())));
     blank();
   }
 

@@ -19,22 +19,6 @@ std::string sentence(std::string text) {
   return text.empty() || text.ends_with('.') ? text : text + ".";
 }
 
-std::string what_was_found(const Test& test, const TestDisplay& words) {
-  if (test.verdict == Verdict::inconclusive || !is_evidence(test) ||
-      test.verdict == Verdict::skipped || test.expected != Verdict::pass) {
-    return trouble(test);
-  }
-  return words.sentence;
-}
-
-/// The effect whose range the sentence of every report shows, or an empty one.
-Effect effect_in_sentence(const Test& test) {
-  if (!is_evidence(test)) return {};
-  const bool at_place =
-      test.image && test.verdict == Verdict::fail && !test.image->winner.place.empty();
-  return at_place ? test.image->winner.effect.value_or(Effect{}) : deciding_channel(test).effect;
-}
-
 /// How sure the finding is.
 std::string how_sure(const Test& test, const TestDisplay& words, const std::string& found) {
   std::string text;
@@ -70,7 +54,8 @@ std::string explain(const Suite& suite, const Test& test, int width) {
   say(fmt::format("{} {}{}", mark(outcome(test)), one_line(test.id), where));
   out += "\n";
   std::string text = fmt::format("The claim is `{}`. ", one_line(test.claim));
-  const std::string found = what_was_found(test, words);
+  const bool passed = test.verdict == Verdict::pass && test.expected == Verdict::pass;
+  const std::string found = passed ? words.sentence : trouble(test);
   for (const std::string& part : {words.meaning, sentence(found)}) {
     if (!part.empty()) text += part + " ";
   }

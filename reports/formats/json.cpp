@@ -115,98 +115,6 @@ std::string printed(const Json& root) {
   return out + "\n";
 }
 
-[[noreturn]] void fail(const std::string& place, const std::string& sentence) {
-  throw ReadError(place.empty() ? sentence : place + ": " + sentence);
-}
-
-[[noreturn]] void wrong_type(const std::string& place, const char* wanted, const Json& node) {
-  // Only a scalar is shown: printing recurses, and nesting may be as deep as the file is long.
-  std::string found = node.type_name();
-  if (node.is_primitive()) found = node.dump(-1, ' ', false, Json::error_handler_t::replace);
-  if (found.size() > 60) found = "a long " + std::string(node.type_name());
-  fail(place, fmt::format("should be {}, but is {}", wanted, found));
-}
-
-template <class T>
-void read(const Json& node, const std::string& place, T& value);
-
-double number_of(const Json& node, const std::string& place, const char* wanted) {
-  using Limits = std::numeric_limits<double>;
-  if (node.is_number()) return node.get<double>();
-  for (const double special : {Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity()}) {
-    if (node == round_trip(special)) return special;
-  }
-  wrong_type(place, wanted, node);
-}
-
-void leaf(const Json& node, const std::string& place, double& value) {
-  value = number_of(node, place, "a number");
-}
-
-void leaf(const Json& node, const std::string& place, Number& value) {
-  value = node.is_null() ? Number() : number_of(node, place, "a number or null");
-}
-
-void leaf(const Json& node, const std::string& place, std::string& value) {
-  if (!node.is_string()) wrong_type(place, "text", node);
-  value = clean(node.get<std::string>());  // as it would be written
-}
-
-void leaf(const Json& node, const std::string& place, Texels& value) {
-  if (!node.is_string()) wrong_type(place, "base64 of 32-bit floats", node);
-  const auto bytes = from_base64(node.get_ref<const std::string&>());
-  if (!bytes || bytes->size() % sizeof(float) != 0) {
-    fail(place, "should be base64 of 32-bit floats");
-  }
-  value.values = floats_of(*bytes);
-}
-
-template <class T>
-void leaf(const Json& node, const std::string& place, std::optional<T>& value) {
-  value.reset();
-  if (node.is_null()) return;
-  T held{};
-  read(node, place, held);
-  value = std::move(held);
-}
-
-void leaf(const Json& node, const std::string& place, bool& value) {
-  if (!node.is_boolean()) wrong_type(place, "true or false", node);
-  value = node.get<bool>();
-}
-
-void leaf(const Json& node, const std::string& place, std::uint64_t& value) {
-  if (!node.is_number_unsigned()) wrong_type(place, "a whole number from 0", node);
-  value = node.get<std::uint64_t>();
-}
-
-void leaf(const Json& node, const std::string& place, int& value) {
-  if (!node.is_number_integer() || node.get<double>() > std::numeric_limits<int>::max() ||
-      node.get<double>() < std::numeric_limits<int>::min())
-    wrong_type(place, "a whole number", node);
-  value = node.get<int>();
-}
-
-void leaf(const Json& node, const std::string& place, Verdict& value) {
-  const auto* const name =
-      std::ranges::find_if(verdict_names, [&](auto each) { return node == each; });
-  if (name == std::end(verdict_names))
-    wrong_type(place, "pass, fail, inconclusive, invalid, error or skipped", node);
-  value = static_cast<Verdict>(name - verdict_names);
-}
-
-template <class T>
-void leaf(const Json& node, const std::string& place, std::vector<T>& values) {
-  if (!node.is_array()) wrong_type(place, "an array", node);
-  values.clear();
-  values.reserve(node.size());
-  for (const Json& item : node) {
-    T value{};
-    read(item, fmt::format("{}[{}]", place, values.size()), value);
-    values.push_back(std::move(value));
-  }
-}
-
 /// True for a key that follows from others: it is written for readers, never read.
 template <class T>
 bool is_derived(std::string_view key) {
@@ -219,30 +127,148 @@ bool is_derived(std::string_view key) {
   return key == "display" && requires(const T& value) { display(value); };
 }
 
-const Json& member(const Json& object, const std::string& place, const std::string& key) {
-  const auto found = object.find(key);
-  if (found == object.end()) fail(place, fmt::format("the key \"{}\" is missing", key));
-  return *found;
+/// True for a key that records of earlier versions need not have.
+template <class T>
+bool is_new(std::string_view key) {
+  if constexpr (std::same_as<T, Look> || std::same_as<T, ImageFinding>) return key == "effect";
+  if constexpr (std::same_as<T, Test>) return key == "paired";
+  if constexpr (std::same_as<T, LedgerNight>) return key == "mean";
+  return false;
 }
 
-template <class T>
-void read(const Json& node, const std::string& place, T& value) {
-  if constexpr (has_fields<T>) {
-    if (!node.is_object()) wrong_type(place, "an object", node);
+/// Reads values, and knows the place of the one that it reads.
+class Reader {
+ public:
+  void read_record(const Json& root, Record& record) {
+    if (!root.is_object() || !root.contains("schema"))
+      fail("not a record of assay: the key \"schema\" is missing");
+    const Json& version = root["schema"];
+    const auto is = [&](int known) { return version == known; };
+    if (std::ranges::none_of(std::views::iota(1, schema_version + 1), is))
+      fail(fmt::format("schema: written with version {} of the record, this program reads 1 to {}",
+                       version.is_number() ? version.dump() : version.type_name(), schema_version));
+    is_old_ = !is(schema_version);
+    read(root, record);
+    record.schema = schema_version;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& sentence) const {
+    throw ReadError(place_.empty() ? sentence : place_ + ": " + sentence);
+  }
+
+  void require(bool fits, const char* wanted, const Json& node) const {
+    if (fits) return;
+    // Only a scalar is shown: printing recurses, and nesting may be as deep as the file is long.
+    std::string found = node.type_name();
+    if (node.is_primitive()) found = node.dump(-1, ' ', false, Json::error_handler_t::replace);
+    if (found.size() > 60) found = "a long " + std::string(node.type_name());
+    fail(fmt::format("should be {}, but is {}", wanted, found));
+  }
+
+  /// Reads a value at a place inside this one.
+  template <class T>
+  void read_at(const std::string& place, const Json& node, T& value) {
+    const std::size_t length = place_.size();
+    place_ += place;
+    read(node, value);
+    place_.resize(length);
+  }
+
+  template <has_fields T>
+  void read(const Json& node, T& value) {
+    require(node.is_object(), "an object", node);
     std::set<std::string_view> known;
     for_each_field(value, [&](std::string_view name, auto& field) {
       const std::string key(name);
-      read(member(node, place, key), place.empty() ? key : place + "." + key, field);
       known.insert(name);
+      if (const auto found = node.find(key); found != node.end()) {
+        read_at(place_.empty() ? key : "." + key, *found, field);
+      } else if (!is_old_ || !is_new<T>(name)) {
+        fail(fmt::format("the key \"{}\" is missing", key));
+      }
     });
     for (const auto& item : node.items()) {
       if (!known.contains(item.key()) && !is_derived<T>(item.key()))
-        fail(place, fmt::format("the key \"{}\" is unknown", item.key()));
+        fail(fmt::format("the key \"{}\" is unknown", item.key()));
     }
-  } else {
-    leaf(node, place, value);
   }
-}
+
+  template <class T>
+  void read(const Json& node, std::vector<T>& values) {
+    require(node.is_array(), "an array", node);
+    values.clear();
+    values.reserve(node.size());
+    for (const Json& item : node) {
+      T value{};
+      read_at(fmt::format("[{}]", values.size()), item, value);
+      values.push_back(std::move(value));
+    }
+  }
+
+  template <class T>
+  void read(const Json& node, std::optional<T>& value) {
+    value.reset();
+    if (!node.is_null()) read(node, value.emplace());
+  }
+
+  double number_of(const Json& node, const char* wanted) const {
+    using Limits = std::numeric_limits<double>;
+    for (const double special : {Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity()}) {
+      if (node == round_trip(special)) return special;
+    }
+    require(node.is_number(), wanted, node);
+    return node.get<double>();
+  }
+
+  void read(const Json& node, double& value) { value = number_of(node, "a number"); }
+
+  void read(const Json& node, Number& value) {
+    value = node.is_null() ? Number() : number_of(node, "a number or null");
+  }
+
+  void read(const Json& node, std::string& value) {
+    require(node.is_string(), "text", node);
+    value = clean(node.get<std::string>());  // as it would be written
+  }
+
+  void read(const Json& node, Texels& value) {
+    constexpr const char* wanted = "base64 of 32-bit floats";
+    require(node.is_string(), wanted, node);
+    const auto bytes = from_base64(node.get_ref<const std::string&>());
+    if (!bytes || bytes->size() % sizeof(float) != 0) fail(fmt::format("should be {}", wanted));
+    value.values = floats_of(*bytes);
+  }
+
+  void read(const Json& node, bool& value) {
+    require(node.is_boolean(), "true or false", node);
+    value = node.get<bool>();
+  }
+
+  void read(const Json& node, std::uint64_t& value) {
+    require(node.is_number_unsigned(), "a whole number from 0", node);
+    value = node.get<std::uint64_t>();
+  }
+
+  void read(const Json& node, int& value) {
+    using Limits = std::numeric_limits<int>;
+    require(node.is_number_integer() && node.get<double>() <= Limits::max() &&
+                node.get<double>() >= Limits::min(),
+            "a whole number", node);
+    value = node.get<int>();
+  }
+
+  void read(const Json& node, Verdict& value) {
+    const auto* const name =
+        std::ranges::find_if(verdict_names, [&](auto each) { return node == each; });
+    require(name != std::end(verdict_names), "pass, fail, inconclusive, invalid, error or skipped",
+            node);
+    value = static_cast<Verdict>(name - verdict_names);
+  }
+
+  std::string place_;
+  bool is_old_ = false;
+};
 
 // Refuses a key that stands twice in an object: a parser would silently take the last.
 class RepeatedKeys {
@@ -253,7 +279,7 @@ class RepeatedKeys {
     if (event == Json::parse_event_t::key) {
       const auto key = value.get<std::string>();
       if (!open_.back().insert(key).second)
-        fail("", fmt::format("the key \"{}\" stands twice in one object", key));
+        throw ReadError(fmt::format("the key \"{}\" stands twice in one object", key));
     }
     return true;
   }
@@ -275,50 +301,11 @@ Json parse(std::string_view text) {
   try {
     return Json::parse(text.begin(), text.end(), std::ref(repeated));
   } catch (const Json::parse_error& error) {
-    if (error.byte >= text.size()) fail("", "not a whole JSON text: it ends too early");
-    fail("", fmt::format("not JSON: syntax error at {}", place_in(text, error.byte)));
+    if (error.byte >= text.size()) throw ReadError("not a whole JSON text: it ends too early");
+    throw ReadError(fmt::format("not JSON: syntax error at {}", place_in(text, error.byte)));
   } catch (const Json::out_of_range&) {
-    fail("", "not readable: a number is out of a double's range");
+    throw ReadError("not readable: a number is out of a double's range");
   }
-}
-
-/// Adds the keys that earlier versions had not.
-void upgrade(Json& root) {
-  const auto each = [](Json& node, const char* key, const auto& visit) {
-    if (!node.is_object() || !node.contains(key) || !node[key].is_array()) return;
-    for (Json& child : node[key]) visit(child);
-  };
-  const auto add_effect = [](Json& node) {
-    if (node.is_object()) node.emplace("effect", nullptr);
-  };
-  each(root, "suites", [&](Json& suite) {
-    each(suite, "tests", [&](Json& test) {
-      each(test, "looks", add_effect);
-      if (test.is_object()) test.emplace("paired", false);
-      if (!test.is_object() || !test.contains("image") || !test["image"].is_object()) return;
-      each(test["image"], "groups", add_effect);
-      if (test["image"].contains("winner")) add_effect(test["image"]["winner"]);
-    });
-  });
-  if (root.contains("ledger")) {
-    each(root["ledger"], "series", [&](Json& series) {
-      each(series, "nights", [](Json& night) {
-        if (night.is_object()) night.emplace("mean", nullptr);
-      });
-    });
-  }
-  root["schema"] = schema_version;
-}
-
-void check_version(const Json& root) {
-  if (!root.is_object() || !root.contains("schema"))
-    fail("", "not a record of assay: the key \"schema\" is missing");
-  const Json& version = root["schema"];
-  const auto is = [&](int known) { return version == known; };
-  if (std::ranges::none_of(std::views::iota(1, schema_version + 1), is))
-    fail("schema",
-         fmt::format("written with version {} of the record, this program reads 1 to {}",
-                     version.is_number() ? version.dump() : version.type_name(), schema_version));
 }
 
 /// A map has a number for each element.
@@ -327,8 +314,8 @@ void check_maps(const Record& record) {
     for (const Map& map : test->maps) {
       const std::size_t wanted = map.width * map.height * map.components.size();
       if (map.texels.values.size() == wanted) continue;
-      fail("maps", fmt::format("{} of \"{}\" should have {} numbers, but has {}", map.name,
-                               test->id, wanted, map.texels.values.size()));
+      throw ReadError(fmt::format("maps: {} of \"{}\" should have {} numbers, but has {}", map.name,
+                                  test->id, wanted, map.texels.values.size()));
     }
   }
 }
@@ -343,11 +330,8 @@ std::string json(const Calibration& calibration) { return printed(tree(calibrati
 
 Record read_json(std::string_view text, std::string_view file_name) {
   try {
-    Json root = parse(text);
-    check_version(root);
-    if (root["schema"] != schema_version) upgrade(root);
     Record record;
-    read(root, "", record);
+    Reader().read_record(parse(text), record);
     check_maps(record);
     return record;
   } catch (const ReadError& error) {

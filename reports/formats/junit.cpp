@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <boost/algorithm/string.hpp>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -26,69 +27,62 @@ std::string attribute(const std::string& name, const std::string& value) {
 // Servers read times with a plain decimal point and no exponent.
 std::string time_attribute(double seconds) { return fmt::format(" time=\"{:.6f}\"", seconds); }
 
-std::string property(const std::string& name, const std::string& value) {
-  return fmt::format("    <property{}{}/>\n", attribute("name", name), attribute("value", value));
+std::string exact(const Number& value) { return value ? round_trip(*value) : ""; }
+
+/// All digits, or what the logarithm tells of a p-value that underflowed.
+std::string exact(const Number& p, const Number& log10_p) {
+  if (!p && !log10_p) return "";
+  const bool whole = p && (*p >= std::numeric_limits<double>::min() || std::isnan(*p));
+  return whole ? round_trip(*p) : p_text(p, log10_p);
 }
 
-void add(std::string& out, const std::string& name, const Number& value) {
-  if (value) out += property(name, round_trip(*value));
-}
+/// Names and values; what has no value is left out.
+using Properties = std::vector<std::pair<std::string, std::string>>;
 
-// All digits, or what the logarithm tells of a p-value that underflowed.
-void add_p(std::string& out, const std::string& name, const NamedP& p) {
-  if (!p.exists()) return;
-  const bool whole = p.p && (*p.p >= std::numeric_limits<double>::min() || std::isnan(*p.p));
-  out += property(name, whole ? round_trip(*p.p) : p_text(p.p, p.log10_p));
-}
-
-void add(std::string& out, const std::string& name, const std::string& value) {
-  if (!value.empty()) out += property(name, value);
-}
-
-std::string sample_properties(const Test& test) {
-  std::string out;
-  const std::vector<const Sample*> samples = worst_samples(test);
-  for (std::size_t i = 0; i < samples.size() && i < 2; ++i) {
-    const Sample& sample = *samples[i];
-    const auto key = [&sample](const char* name) {
-      return fmt::format("{}.{}", name, sample.estimator);
-    };
-    add(out, key("mean"), sample.mean);
-    add(out, key("variance"), sample.variance);
-    out += property(key("primaries"), fmt::format("{}", sample.primaries));
-    out += property(key("secondaries"), fmt::format("{}", sample.secondaries));
+std::string properties(const char* indent, const Properties& all) {
+  std::string out = fmt::format("{}<properties>\n", indent);
+  for (const auto& [name, value] : all) {
+    if (!value.empty())
+      out += fmt::format("{} <property{}{}/>\n", indent, attribute("name", name),
+                         attribute("value", value));
   }
-  return out;
+  return out + fmt::format("{}</properties>\n", indent);
 }
 
 std::string test_properties(const Test& test) {
   const Channel channel = worst_channel(test);
-  std::string out;
-  add(out, "id", test.id);
-  add(out, "claim", test.claim);
-  add(out, "verdict", std::string(to_string(test.verdict)));
-  add(out, "expected", std::string(to_string(test.expected)));
-  add(out, "outcome", verdict_text(test));
-  add(out, "method", test.method);
-  add(out, "channel", channel.name);
-  add(out, "quantity", channel.effect.quantity);
-  add(out, "estimate", channel.effect.estimate);
-  add(out, "low", channel.effect.low);
-  add(out, "high", channel.effect.high);
-  if (!interval_name(channel.effect).empty())
-    add(out, "confidence", Number(channel.effect.confidence));
-  add(out, "statistic", channel.statistic);
-  add_p(out, "p_value", {"", channel.p_value, channel.log10_p});
-  add(out, "log10_p", channel.log10_p);
-  add_p(out, "p_adjusted", {"", channel.p_adjusted, channel.log10_p_adjusted});
-  add_p(out, "p_pass", {"", channel.p_pass, channel.log10_p_pass});
-  add(out, "alpha", test.alpha);
-  add(out, "detect", test.detect);
-  add(out, "detectable", test.detectable);
-  out += sample_properties(test);
-  out += property("rays", fmt::format("{}", rays(total_cost(test))));
-  add(out, "replay", test.replay);
-  return "   <properties>\n" + out + "   </properties>\n";
+  const Effect& effect = channel.effect;
+  Properties all{{"id", test.id},
+                 {"claim", test.claim},
+                 {"verdict", to_string(test.verdict)},
+                 {"expected", to_string(test.expected)},
+                 {"outcome", verdict_text(test)},
+                 {"method", test.method},
+                 {"channel", channel.name},
+                 {"quantity", effect.quantity},
+                 {"estimate", exact(effect.estimate)},
+                 {"low", exact(effect.low)},
+                 {"high", exact(effect.high)},
+                 {"confidence", interval_name(effect).empty() ? "" : exact(effect.confidence)},
+                 {"statistic", exact(channel.statistic)},
+                 {"p_value", exact(channel.p_value, channel.log10_p)},
+                 {"log10_p", exact(channel.log10_p)},
+                 {"p_adjusted", exact(channel.p_adjusted, channel.log10_p_adjusted)},
+                 {"p_pass", exact(channel.p_pass, channel.log10_p_pass)},
+                 {"alpha", exact(test.alpha)},
+                 {"detect", exact(test.detect)},
+                 {"detectable", exact(test.detectable)}};
+  const std::vector<const Sample*> samples = worst_samples(test);
+  for (std::size_t i = 0; i < samples.size() && i < 2; ++i) {
+    const Sample& sample = *samples[i];
+    all.emplace_back("mean." + sample.estimator, exact(sample.mean));
+    all.emplace_back("variance." + sample.estimator, exact(sample.variance));
+    all.emplace_back("primaries." + sample.estimator, std::to_string(sample.primaries));
+    all.emplace_back("secondaries." + sample.estimator, std::to_string(sample.secondaries));
+  }
+  all.emplace_back("rays", std::to_string(rays(total_cost(test))));
+  all.emplace_back("replay", test.replay);
+  return properties("   ", all);
 }
 
 std::string element(const char* name, const std::string& attributes, const std::string& text) {
@@ -109,38 +103,34 @@ std::string outcome_element(const Test& test) {
 // GitLab and Jenkins know a case by its class name and name, and drop a second one silently.
 class UniqueNames {
  public:
-  std::pair<std::string, std::string> of(const Suite& suite, const Test& test) {
-    const std::size_t slash = test.id.find('/');
-    const std::string group = slash == std::string::npos ? suite.name : test.id.substr(0, slash);
-    return of(group, slash == std::string::npos ? test.name : test.id.substr(slash + 1));
-  }
+  using Name = std::pair<std::string, std::string>;
 
-  std::pair<std::string, std::string> of(std::string group, std::string name) {
-    group = tidy(group, "suite");
-    name = tidy(name, "test");
-    std::string unique = name;
-    for (int copy = 2; !taken_.emplace(group, unique).second; ++copy)
-      unique = fmt::format("{} ({})", name, copy);
-    return {group, unique};
+  Name of(const std::string& group, const std::string& name) {
+    Name unique{tidy(group, "suite"), tidy(name, "test")};
+    const std::string first = unique.second;
+    for (int copy = 2; !taken_.insert(unique).second; ++copy)
+      unique.second = fmt::format("{} ({})", first, copy);
+    return unique;
   }
 
  private:
   static std::string tidy(const std::string& text, const char* otherwise) {
-    const std::string line = one_line(text);
-    const std::size_t first = line.find_first_not_of(' ');
-    if (first == std::string::npos) return otherwise;
-    return cap(line.substr(first, line.find_last_not_of(' ') - first + 1), attribute_limit / 2);
+    const std::string line = boost::trim_copy_if(one_line(text), boost::is_any_of(" "));
+    return line.empty() ? otherwise : cap(line, attribute_limit / 2);
   }
 
-  std::set<std::pair<std::string, std::string>> taken_;
+  std::set<Name> taken_;
 };
 
-std::string case_opening(const std::pair<std::string, std::string>& name) {
+std::string case_opening(const UniqueNames::Name& name) {
   return "  <testcase" + attribute("classname", name.first) + attribute("name", name.second);
 }
 
 std::string test_case(const Suite& suite, const Test& test, UniqueNames& names) {
-  std::string out = case_opening(names.of(suite, test));
+  const std::size_t slash = test.id.find('/');
+  std::string out = case_opening(
+      slash == std::string::npos ? names.of(suite.name, test.name)
+                                 : names.of(test.id.substr(0, slash), test.id.substr(slash + 1)));
   if (!test.file.empty()) out += attribute("file", test.file);
   if (test.line > 0) out += fmt::format(" line=\"{}\"", test.line);
   out += time_attribute(total_cost(test).seconds) + ">\n";
@@ -185,47 +175,39 @@ std::string suite_opening(const Record& record, const std::string& name, const s
   return out + ">\n";
 }
 
-std::string suite_properties(const Record& record, const Suite& suite) {
-  std::string out;
-  add(out, "seed", fmt::format("{}", suite.seed));
-  add(out, "alpha", Number(suite.alpha));
-  add(out, "beta", Number(suite.beta));
-  add(out, "tool", record.tool.name);
-  add(out, "version", record.tool.version);
-  add(out, "commit", record.tool.commit);
-  add(out, "isa", record.environment.isa);
-  add(out, "threads", fmt::format("{}", record.environment.threads));
-  return "  <properties>\n" + out + "  </properties>\n";
-}
-
 std::string test_suite(const Record& record, const Suite& suite, UniqueNames& names) {
   Counts counts;
   for (const Test& test : suite.tests) counts.add(test);
   std::string out =
-      suite_opening(record, suite.name.empty() ? "suite" : suite.name, suite.file, counts) +
-      suite_properties(record, suite);
+      suite_opening(record, suite.name.empty() ? "suite" : suite.name, suite.file, counts);
+  out += properties("  ", {{"seed", std::to_string(suite.seed)},
+                           {"alpha", exact(suite.alpha)},
+                           {"beta", exact(suite.beta)},
+                           {"tool", record.tool.name},
+                           {"version", record.tool.version},
+                           {"commit", record.tool.commit},
+                           {"isa", record.environment.isa},
+                           {"threads", std::to_string(record.environment.threads)}});
   for (const Test& test : suite.tests) out += test_case(suite, test, names);
   return out + " </testsuite>\n";
 }
 
 std::string series_case(const Ledger& ledger, const LedgerSeries& series, UniqueNames& names) {
-  std::string out = case_opening(names.of("ledger", series_name(ledger, series))) +
-                    time_attribute(0) + ">\n   <properties>\n";
-  add(out, "series", series.series);
-  add(out, "nights", fmt::format("{}", series.nights.size()));
-  add(out, "estimate", series.estimate);
-  add(out, "standard_error", series.standard_error);
-  add(out, "log_e", series.log_e());
-  add(out, "limit", series.limit);
-  add(out, "since", series.since);
-  add(out, "moved", series.moved);
-  out += "   </properties>\n";
-  const std::string text = series_sentence(series) + "\n" +
-                           (series.alarm ? alarm_sentence(series) + "\n" : "") + series.note;
-  if (series.alarm) {
-    out += element("failure",
-                   attribute("message", alarm_sentence(series)) + attribute("type", "alarm"), text);
-  }
+  std::string out =
+      case_opening(names.of("ledger", series_name(ledger, series))) + time_attribute(0) + ">\n";
+  out += properties("   ", {{"series", series.series},
+                            {"nights", std::to_string(series.nights.size())},
+                            {"estimate", exact(series.estimate)},
+                            {"standard_error", exact(series.standard_error)},
+                            {"log_e", exact(series.log_e())},
+                            {"limit", exact(series.limit)},
+                            {"since", series.since},
+                            {"moved", series.moved}});
+  const std::string alarm = alarm_sentence(series);
+  const std::string text =
+      series_sentence(series) + "\n" + (series.alarm ? alarm + "\n" : "") + series.note;
+  if (series.alarm)
+    out += element("failure", attribute("message", alarm) + attribute("type", "alarm"), text);
   return out + element("system-out", "", text) + "  </testcase>\n";
 }
 

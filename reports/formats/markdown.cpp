@@ -62,12 +62,10 @@ std::string kill_section(const Suite& suite) {
   std::string out =
       fmt::format("### Which method sees which defect\n\n{}\n\n{}\n\n| mutant |",
                   cell(matrix.totals, paragraph_limit), cell(matrix.legend, paragraph_limit));
-  std::string rule = "|---|";
-  for (const std::string& method : matrix.methods) {
-    out += fmt::format(" {} |", cell(method));
-    rule += "---|";
-  }
-  out += "\n" + rule + "\n";
+  for (const std::string& method : matrix.methods) out += fmt::format(" {} |", cell(method));
+  out += "\n|---|";
+  for (std::size_t m = 0; m < matrix.methods.size(); ++m) out += "---|";
+  out += "\n";
   for (const KillRow& row : matrix.rows) {
     out += fmt::format("| {} |", cell(row.mutant));
     for (const auto& one : row.cells) out += fmt::format(" {} |", one ? cell(one->text) : "");
@@ -81,10 +79,12 @@ class Page {
  public:
   explicit Page(std::size_t limit) : limit_(limit > note_room ? limit - note_room : 0) {}
 
-  bool add(const std::string& piece) {
-    if (text_.size() + piece.size() > limit_) return false;
-    text_ += piece;
-    return true;
+  /// Adds the piece, or what is missing without it to a count.
+  bool add(const std::string& piece, std::size_t& missing, std::size_t lost = 1) {
+    const bool fits = text_.size() + piece.size() <= limit_;
+    if (fits) text_ += piece;
+    if (!fits) missing += lost;
+    return fits;
   }
   std::string take() { return std::move(text_); }
 
@@ -142,37 +142,27 @@ std::string statements_section(const Record& record) {
   return out + "\n";
 }
 
-int add_problems(const Record& record, Outcome kind, Page& page) {
-  int missing = 0;
-  for (const Test* test : tests_of(record)) {
-    if (outcome(*test) == kind && !page.add(problem(*test))) ++missing;
-  }
-  return missing;
-}
-
-int add_table(const Suite& suite, Page& page) {
-  if (suite.tests.empty()) return 0;
-  if (!page.add(suite_heading(suite))) return static_cast<int>(suite.tests.size());
-  int missing = 0;
-  for (const Test& test : suite.tests) {
-    if (!page.add(row(test))) ++missing;
-  }
-  page.add("\n");
-  if (const std::string text = kill_section(suite); !page.add(text)) ++missing;
-  return missing;
+void add_table(const Suite& suite, Page& page, std::size_t& missing) {
+  if (suite.tests.empty() || !page.add(suite_heading(suite), missing, suite.tests.size())) return;
+  for (const Test& test : suite.tests) page.add(row(test), missing);
+  page.add("\n", missing, 0);
+  page.add(kill_section(suite), missing);
 }
 
 }  // namespace
 
 std::string markdown(const Record& record, std::size_t limit) {
   Page page(limit);
-  page.add(title(record));
-  const bool statements = page.add(statements_section(record));
-  if (!record.ledger.file.empty()) page.add(ledger_section(record.ledger));
-  int problems = add_problems(record, Outcome::failed, page);
-  problems += add_problems(record, Outcome::inconclusive, page);
-  int rows = statements ? 0 : static_cast<int>(statement_count(record));
-  for (const Suite& suite : record.suites) rows += add_table(suite, page);
+  std::size_t problems = 0, rows = 0;
+  page.add(title(record), rows, 0);
+  page.add(statements_section(record), rows, statement_count(record));
+  if (!record.ledger.file.empty()) page.add(ledger_section(record.ledger), rows, 0);
+  for (const Outcome kind : {Outcome::failed, Outcome::inconclusive}) {
+    for (const Test* test : tests_of(record)) {
+      if (outcome(*test) == kind) page.add(problem(*test), problems);
+    }
+  }
+  for (const Suite& suite : record.suites) add_table(suite, page, rows);
   std::string out = page.take();
   if (problems > 0 || rows > 0)
     out += fmt::format(

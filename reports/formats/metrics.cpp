@@ -15,18 +15,10 @@ constexpr std::size_t label_limit = 1024;
 
 using Labels = std::vector<std::pair<const char*, std::string>>;
 
-/// A label's value: back-slash, quote and line feed are escaped.
+/// A label's value.
 std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : cap(clean(text), label_limit)) {
-    if (c == '\\' || c == '"') out += '\\';
-    if (c == '\n') {
-      out += "\\n";
-    } else {
-      out += c;
-    }
-  }
-  return out + "\"";
+  constexpr Form forms[] = {{'\\', "\\\\"}, {'"', "\\\""}, {'\n', "\\n"}};
+  return "\"" + escape(cap(clean(text), label_limit), forms) + "\"";
 }
 
 std::string number(double value) {
@@ -58,11 +50,10 @@ class Family {
 
  private:
   static std::string written(const Labels& labels) {
-    std::string text;
-    for (const auto& [name, value] : labels) {
-      text += fmt::format("{}{}={}", text.empty() ? "" : ",", name, quoted(value));
-    }
-    return text;
+    std::vector<std::string> all;
+    for (const auto& [name, value] : labels)
+      all.push_back(fmt::format("{}={}", name, quoted(value)));
+    return fmt::format("{}", fmt::join(all, ","));
   }
 
   const char* name_;

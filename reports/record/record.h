@@ -332,7 +332,7 @@ struct Test {
   std::optional<Image> image;
   std::vector<Map> maps;  ///< of an image
   std::string message;    ///< what a reader needs to know: what was excluded, or what would decide
-  std::string replay;     ///< command that gives the same numbers again
+  std::string replay;     ///< command that repeats the numbers, or "# why not"
   ASSAY_FIELDS(Test, name, id, claim, file, line, tags, over, reference, cost, paired, verdict,
                expected, ok, method, forced, null_hypothesis, tail, alpha, beta, detect, allow,
                detectable, power, planned_looks, looks, gates, samples, channels, image, maps,

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
@@ -15,7 +16,6 @@
 #include "reports/formats/base64.h"
 #include "reports/report_formats.h"
 #include "reports/viewer/page.h"
-#include "reports/words/describe.h"
 #include "reports/words/display.h"
 #include "reports/words/text.h"
 
@@ -115,8 +115,18 @@ Map reduced(const Map& map, std::uint64_t factor) {
   return means;
 }
 
-bool is_shown(const Map& map) {
-  return map.name != "p_adjusted" && map.name != "variance" && map.name != "other_variance";
+/// The title of a map that the viewer shows; it does not show variances and adjusted p-values.
+std::string title_of(const Map& map) {
+  if (map.name == "mean" || map.name == "other_mean") return "mean of " + map.source;
+  static const std::map<std::string_view, const char*> titles{
+      {"z", "signed z"},
+      {"reference", "reference"},
+      {"cells_observed", "Draws in each cell"},
+      {"cells_expected", "Draws expected"},
+      {"cells_z", "Drawn - expected, in standard deviations"},
+      {"cells_z_close", "Where most is drawn, cell by cell, in standard deviations"}};
+  const auto title = titles.find(map.name);
+  return title == titles.end() ? "" : title->second;
 }
 
 std::string bytes_of_length(std::size_t length) {
@@ -125,22 +135,14 @@ std::string bytes_of_length(std::size_t length) {
   return bytes;
 }
 
-/// The bytes as gzip without a date: the same bytes give the same file.
+/// The bytes as zlib data: the same bytes give the same text.
 std::vector<std::uint8_t> compressed(std::string_view bytes) {
-  constexpr int with_gzip_header = 16 + MAX_WBITS;
-  z_stream stream{};
-  if (deflateInit2(&stream, 9, Z_DEFLATED, with_gzip_header, 9, Z_DEFAULT_STRATEGY) != Z_OK)
+  uLongf length = compressBound(static_cast<uLong>(bytes.size()));
+  std::vector<std::uint8_t> out(length);
+  if (compress2(out.data(), &length, reinterpret_cast<const Bytef*>(bytes.data()),
+                static_cast<uLong>(bytes.size()), Z_BEST_COMPRESSION) != Z_OK)
     throw std::runtime_error("zlib has no memory to compress the page");
-  std::vector<std::uint8_t> out(deflateBound(&stream, static_cast<uLong>(bytes.size())));
-  std::vector<Bytef> in(bytes.begin(), bytes.end());
-  stream.next_in = in.data();
-  stream.avail_in = static_cast<uInt>(in.size());
-  stream.next_out = out.data();
-  stream.avail_out = static_cast<uInt>(out.size());
-  const int code = deflate(&stream, Z_FINISH);
-  out.resize(stream.total_out);
-  deflateEnd(&stream);
-  if (code != Z_STREAM_END) throw std::runtime_error("zlib did not compress the page");
+  out.resize(length);
   return out;
 }
 
@@ -169,23 +171,20 @@ std::string packed(Record record) {
   for (Suite& suite : record.suites) {
     for (Test& test : suite.tests) {
       for (const Map& whole_map : test.maps) {
-        if (!is_shown(whole_map) || whole_map.components.empty()) continue;
+        const std::string title = title_of(whole_map);
+        if (title.empty() || whole_map.components.empty()) continue;
         const std::uint64_t factor = reduction(whole_map);
         const Map map = reduced(whole_map, factor);
         const bool whole = map.texels.values.size() <= small;
         const Coding& coding = codings[map.name == "z" ? 0 : 1];
-        std::string bytes;
-        if (whole) {
-          const auto floats = bytes_of(map.texels.values);
-          bytes.assign(floats.begin(), floats.end());
-        } else {
-          bytes = plane(map, coding);
-        }
+        const auto floats = bytes_of(map.texels.values);
+        const std::string bytes =
+            whole ? std::string(floats.begin(), floats.end()) : plane(map, coding);
         std::vector<std::string> components;
         for (const std::string& name : map.components) components.push_back(clean(name));
         pictures.push_back({{"test", clean(test.id)},
                             {"name", clean(map.name)},
-                            {"title", clean(map_title(map))},
+                            {"title", clean(title)},
                             {"width", map.width},
                             {"height", map.height},
                             {"reduced", factor},

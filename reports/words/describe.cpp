@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/algorithm/string.hpp>
 #include <cmath>
+#include <map>
 #include <set>
 #include <string_view>
 #include <tuple>
@@ -28,13 +30,14 @@ const Channel* least_excluded(const Test& test) {
   return least;
 }
 
-NamedP p_of_claim(const Test& test, const char* name) {
+NamedP p_of_claim(const Test& test) {
   const Channel channel = worst_channel(test);
-  return {name, channel.p_value, channel.log10_p};
+  return {is_proof(test) ? "p(claim)" : "p", channel.p_value, channel.log10_p};
 }
 
-NamedP p_of_contrary(const Test& test, const char* name) {
+NamedP p_of_contrary(const Test& test) {
   const Channel* least = least_excluded(test);
+  const char* const name = is_proof(test) ? "p(contrary)" : "p";
   return least ? NamedP{name, least->p_pass, least->log10_p_pass} : NamedP{name, {}, {}};
 }
 
@@ -51,52 +54,28 @@ std::string over_looks(const Test& test, Number Look::*log10_p) {
                      test.looks.size() == 1 ? "" : "s", p_text({}, at_last));
 }
 
-// ", 1 after Holm", where the family changes what is written: of a single test it does not.
-std::string after_holm(const Channel& channel) {
-  if (!channel.p_adjusted && !channel.log10_p_adjusted) return {};
-  const std::string adjusted = p_text(channel.p_adjusted, channel.log10_p_adjusted);
-  if (adjusted == p_text(channel.p_value, channel.log10_p)) return {};
-  return fmt::format(", {} after Holm", adjusted);
-}
-
 // "welch", "forced F".
 std::string method_text(const Test& test) {
   return test.forced ? "forced " + test.method : test.method;
 }
 
-// "(welch, two-sided), 1 after Holm; its share of alpha is 0.00125".
+// "(welch, two-sided), 1 after Holm; its share of alpha is 0.00125". Holm's number stands where the
+// family changes what is written: of a single test it does not.
 std::string about_the_claim(const Test& test) {
   const Channel channel = worst_channel(test);
-  std::string how = method_text(test), text;
+  std::string how = method_text(test);
   if (!test.tail.empty()) how += how.empty() ? test.tail : ", " + test.tail;
-  text += over_looks(test, &Look::log10_p);
+  std::string text = over_looks(test, &Look::log10_p);
   if (!how.empty()) text += fmt::format(" ({})", how);
-  text += after_holm(channel);
-  if (test.alpha) text += fmt::format("; its share of alpha is {}", human(*test.alpha, 3));
+  const std::string adjusted = p_text(channel.p_adjusted, channel.log10_p_adjusted);
+  if (adjusted != no_number && adjusted != p_text(channel.p_value, channel.log10_p))
+    text += fmt::format(", {} after Holm", adjusted);
+  if (test.alpha) text += fmt::format("; its share of alpha is {}", human(test.alpha, 3));
   return text;
 }
 
 std::string about_the_contrary(const Test& test) {
-  return test.beta ? fmt::format("; beta is {}", human(*test.beta, 3)) : std::string();
-}
-
-std::string components_text(const Image& image) {
-  std::string text;
-  for (const std::string& component : image.components) {
-    text += (text.empty() ? " of " : ", ") + component;
-  }
-  return text;
-}
-
-std::string constants_text(const Image& image) {
-  std::string text;
-  if (image.constant > 0) text += fmt::format("; constant elements: {}", image.constant);
-  if (image.unseen > 0) {
-    text += fmt::format(
-        "; constant elements that are not at their reference: {}, rarer values may be unseen",
-        image.unseen);
-  }
-  return text;
+  return test.beta ? "; beta is " + human(test.beta, 3) : "";
 }
 
 /// "24 images", or "24 and 32 images" where the sides have not as many.
@@ -111,13 +90,18 @@ std::string counted_images(const Test& test) {
 std::string image_fact(const Test& test) {
   if (!test.image) return {};
   const Image& image = *test.image;
-  std::string text = fmt::format("{} of {} x {} pixels{}", counted_images(test), image.width,
-                                 image.height, components_text(image));
-  if (!image.winner.place.empty()) {
-    text += fmt::format("; differs most at {}, p = {} in all", image.winner.place,
-                        p_text({}, image.winner.log10_p_adjusted));
-  }
-  return text + constants_text(image);
+  std::vector<std::string> parts{
+      fmt::format("{} of {} x {} pixels{}{}", counted_images(test), image.width, image.height,
+                  image.components.empty() ? "" : " of ", boost::join(image.components, ", "))};
+  if (!image.winner.place.empty())
+    parts.push_back(fmt::format("differs most at {}, p = {} in all", image.winner.place,
+                                p_text({}, image.winner.log10_p_adjusted)));
+  if (image.constant > 0) parts.push_back(fmt::format("constant elements: {}", image.constant));
+  if (image.unseen > 0)
+    parts.push_back(fmt::format(
+        "constant elements that are not at their reference: {}, rarer values may be unseen",
+        image.unseen));
+  return boost::join(parts, "; ");
 }
 
 std::string estimate_fact(const Effect& effect) {
@@ -154,19 +138,17 @@ std::string power_text(double power) {
 
 std::string margins_fact(const Test& test) {
   const Effect effect = deciding_channel(test).effect;
-  std::string text;
+  std::vector<std::string> parts;
   const auto add = [&](const char* words, Number margin) {
-    if (!margin) return;
-    if (!text.empty()) text += "; ";
-    text += fmt::format("{} {}{}", words, margin_text(*margin, effect),
-                        both_ends(test, effect, *margin));
+    if (margin)
+      parts.push_back(fmt::format("{} {}{}", words, margin_text(*margin, effect),
+                                  both_ends(test, effect, *margin)));
   };
   if (test.allow.value_or(0) != 0) add("allowed up to", test.allow);
   add(detect_words(test), test.detect);
   add("would be noticed from", test.detectable);
-  if (!test.power) return text;
-  return text +
-         fmt::format("{}planned power {}", text.empty() ? "" : "; ", power_text(*test.power));
+  if (test.power) parts.push_back("planned power " + power_text(*test.power));
+  return boost::join(parts, "; ");
 }
 
 std::string channels_fact(const Test& test) {
@@ -193,8 +175,7 @@ std::string gates_fact(const Test& test) {
     for (const Gate& gate : test.gates) {
       if (gate.state != state || ++named > most) continue;
       text += fmt::format("{}{}{} {} (limit {})", text.empty() ? "" : "; ", lead, gate.name,
-                          gate.value ? human(*gate.value, 3) : no_number,
-                          gate.limit ? human(*gate.limit, 3) : no_number);
+                          human(gate.value, 3), human(gate.limit, 3));
       lead = "";
     }
   }
@@ -209,22 +190,23 @@ std::string expectation_fact(const Test& test) {
 }
 
 std::string observations_fact(const Test& test) {
-  std::string text;
+  constexpr std::size_t most = 12;
+  std::vector<std::string> parts;
   // Channels that are counted together have samples of the same observations.
   std::set<std::tuple<std::string, std::string, std::uint64_t, std::uint64_t>> said;
   for (const Sample* sample : worst_samples(test)) {
-    if (text.size() > 1000) break;
+    if (parts.size() == most) break;
     if (!said.insert({sample->estimator, sample->stream, sample->primaries, sample->nonfinite})
              .second) {
       continue;
     }
-    if (!text.empty()) text += "; ";
-    text += fmt::format("{} of {} with {} each", count_text(sample->secondaries), sample->estimator,
-                        counted(sample->primaries, "primary", "primaries"));
+    parts.push_back(fmt::format("{} of {} with {} each", count_text(sample->secondaries),
+                                sample->estimator,
+                                counted(sample->primaries, "primary", "primaries")));
     if (sample->nonfinite > 0)
-      text += fmt::format(", {} not finite", count_text(sample->nonfinite));
+      parts.back() += fmt::format(", {} not finite", count_text(sample->nonfinite));
   }
-  return text;
+  return boost::join(parts, "; ");
 }
 
 }  // namespace
@@ -238,22 +220,23 @@ Channel deciding_channel(const Test& test) {
   return least != nullptr ? *least : worst_channel(test);
 }
 
+Effect effect_in_sentence(const Test& test) {
+  if (!is_evidence(test)) return {};
+  const bool at_place =
+      test.image && test.verdict == Verdict::fail && !test.image->winner.place.empty();
+  return at_place ? test.image->winner.effect.value_or(Effect{}) : deciding_channel(test).effect;
+}
+
 Sides sides_of(const std::string& claim) {
-  static constexpr std::string_view relations[] = {"==", "<=", ">=", "<", ">", " within "};
-  const auto trimmed = [](std::string_view text) {
-    const std::size_t first = std::min(text.find_first_not_of(' '), text.size());
-    return std::string(text.substr(first, text.find_last_not_of(' ') + 1 - first));
-  };
-  const std::string_view text = claim;
   int depth = 0;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == '(') ++depth;
-    if (text[i] == ')') --depth;
+  for (std::size_t i = 0; i < claim.size(); ++i) {
+    depth += (claim[i] == '(') - (claim[i] == ')');
     if (depth != 0) continue;
-    for (const std::string_view relation : relations) {
-      if (!text.substr(i).starts_with(relation)) continue;
-      return {trimmed(text.substr(0, i)), trimmed(relation),
-              trimmed(text.substr(i + relation.size()))};
+    for (const std::string relation : {"==", "<=", ">=", "<", ">", " within "}) {
+      if (claim.compare(i, relation.size(), relation) != 0) continue;
+      Sides sides{claim.substr(0, i), relation, claim.substr(i + relation.size())};
+      for (std::string* part : {&sides.left, &sides.relation, &sides.right}) boost::trim(*part);
+      return sides;
     }
   }
   return {.left = claim};
@@ -266,25 +249,20 @@ bool is_proof(const Test& test) {
 
 std::string contrary(const std::string& claim) {
   const auto [left, relation, right] = sides_of(claim);
-  const char* const other = relation == "<"        ? ">="
-                            : relation == ">"      ? "<="
-                            : relation == "within" ? "not within"
-                                                   : nullptr;
-  return other == nullptr ? std::string() : fmt::format("{} {} {}", left, other, right);
+  const std::map<std::string, const char*> others{
+      {"<", ">="}, {">", "<="}, {"within", "not within"}};
+  const auto other = others.find(relation);
+  return other == others.end() ? "" : fmt::format("{} {} {}", left, other->second, right);
 }
 
 std::string NamedP::text() const {
-  return exists() ? fmt::format("{} = {}", name, p_text(p, log10_p)) : std::string();
+  const std::string value = p_text(p, log10_p);
+  const bool is_bound = value.starts_with("above") || value.starts_with("below");
+  return exists() ? fmt::format("{} {} {}", name, is_bound ? "is" : "=", value) : std::string();
 }
 
 NamedP headline_p(const Test& test) {
-  if (rests_on_contrary(test)) return p_of_contrary(test, "p(contrary)");
-  return p_of_claim(test, is_proof(test) ? "p(claim)" : "p");
-}
-
-NamedP other_p(const Test& test) {
-  if (rests_on_contrary(test)) return p_of_claim(test, "p(claim)");
-  return p_of_contrary(test, is_proof(test) ? "p(contrary)" : "p");
+  return rests_on_contrary(test) ? p_of_contrary(test) : p_of_claim(test);
 }
 
 std::string evidence_text(const Test& test) {
@@ -296,26 +274,13 @@ std::string evidence_text(const Test& test) {
 }
 
 std::string exclusion_text(const Test& test) {
-  const NamedP p = other_p(test);
+  const bool of_claim = rests_on_contrary(test);
+  const NamedP p = of_claim ? p_of_claim(test) : p_of_contrary(test);
   if (!p.exists()) return {};
-  if (rests_on_contrary(test)) return p.text() + about_the_claim(test);
-  const std::string text = p.text() + about_the_contrary(test);
+  const std::string text = p.text() + (of_claim ? about_the_claim(test) : about_the_contrary(test));
   if (is_proof(test) || !test.detect) return text;
   return fmt::format("an error of {} would give such data with {}",
                      margin_text(*test.detect, deciding_channel(test).effect), text);
-}
-
-std::string map_title(const Map& map) {
-  if (map.name == "z") return "signed z";
-  if (map.name == "p_adjusted") return "p of each pixel, adjusted for all pixels";
-  if (map.name == "reference") return "reference";
-  if (map.name == "cells_observed") return "Draws in each cell";
-  if (map.name == "cells_expected") return "Draws expected";
-  if (map.name == "cells_z") return "Drawn - expected, in standard deviations";
-  if (map.name == "cells_z_close")
-    return "Where most is drawn, cell by cell, in standard deviations";
-  const bool variance = map.name == "variance" || map.name == "other_variance";
-  return fmt::format("{} of {}", variance ? "variance of one image" : "mean", map.source);
 }
 
 std::vector<const Sample*> worst_samples(const Test& test) {

@@ -40,19 +40,18 @@ Channel worst_channel(const Test&);
 /// channel most against the claim. Else it is the channel whose forbidden region is excluded least.
 Channel deciding_channel(const Test&);
 
+/// The effect that the sentence on a test shows: of the finding in an image that fails, else of the
+/// deciding channel. Without an estimate where the sentence has no number.
+Effect effect_in_sentence(const Test&);
+
 /// The p-value that the verdict rests on: of the claim; in a proof that did not fail, of its
 /// contrary, the largest over the channels.
 NamedP headline_p(const Test&);
 
-/// The other p-value: of an effect that must not pass, or of the claim that was not refuted.
-NamedP other_p(const Test&);
-
-/// Sentences on the two: how each was found and what it is held against.
+/// Sentences on this p-value, and on the other: of an effect that must not pass, or of the claim
+/// that was not refuted. They say how each was found and what it is held against.
 std::string evidence_text(const Test&);
 std::string exclusion_text(const Test&);
-
-/// "z", "adjusted p", "mean of luminaire/floor": a map for people.
-std::string map_title(const Map&);
 
 /// The samples of the worst channel, and those of estimators that have none of its name.
 std::vector<const Sample*> worst_samples(const Test&);

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/replace.hpp>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <tuple>
@@ -17,8 +19,8 @@
 namespace assay::reports {
 namespace {
 
-std::string of_claims(int some, int total) {
-  return fmt::format("{} of {}", some,
+std::string of_claims(int some, int total, const char* of = "of") {
+  return fmt::format("{} {} {}", some, of,
                      counted(static_cast<std::uint64_t>(total), "claim", "claims"));
 }
 
@@ -28,19 +30,13 @@ int urgency(const Test& test) {
   return ranks[static_cast<int>(outcome(test))];
 }
 
-bool is_finite(const Number& value) { return value && std::isfinite(*value); }
-
-/// "+0.06 % to +2.1 %", "at least +0.12 %"; empty where there is no interval.
-std::string range(const Effect& effect) {
-  const auto end = [&](const Number& value) { return theta_text(*value, effect); };
-  if (is_finite(effect.low) && is_finite(effect.high))
-    return fmt::format("{} to {}", end(effect.low), end(effect.high));
-  if (is_finite(effect.low)) return "at least " + end(effect.low);
-  return is_finite(effect.high) ? "at most " + end(effect.high) : std::string();
+/// A planted bug that passed.
+bool is_missed(const Test& test) {
+  return test.expected == Verdict::fail && test.verdict == Verdict::pass;
 }
 
 std::string bracket(const Effect& effect) {
-  const std::string text = range(effect);
+  const std::string text = range_text(effect);
   return text.empty() ? text : fmt::format(" ({})", text);
 }
 
@@ -50,19 +46,15 @@ std::string found(const Test& test, const Effect& effect) {
   const auto [left, relation, right] = sides_of(test.claim);
   const bool signed_effect =
       is_ratio(effect) || effect.quantity.find("difference") != std::string::npos;
-  const bool of_image = test.image.has_value();
-  const std::string size = size_text(theta, effect);
-  if (right.empty() || !signed_effect || of_image || relation == "within" ||
-      !std::isfinite(theta)) {
-    return fmt::format("{} is {}{}", effect_name(effect), theta_text(theta, effect),
-                       bracket(effect));
-  }
-  if (theta == 0) return fmt::format("{} equals {}{}", left, right, bracket(effect));
   const std::string text = theta_text(theta, effect);
-  if (text.starts_with("×"))
-    return fmt::format("{} is {} {}{}", left, text, right, bracket(effect));
-  return fmt::format("{} is {} {} {}{}", left, size, theta > 0 ? "above" : "below", right,
-                     bracket(effect));
+  const auto is = [&](const std::string& what) { return what + bracket(effect); };
+  if (right.empty() || !signed_effect || test.image || relation == "within" ||
+      !std::isfinite(theta))
+    return is(fmt::format("{} is {}", effect_name(effect), text));
+  if (theta == 0) return is(fmt::format("{} equals {}", left, right));
+  if (text.starts_with("×")) return is(fmt::format("{} is {} {}", left, text, right));
+  return is(fmt::format("{} is {} {} {}", left, size_text(theta, effect),
+                        theta > 0 ? "above" : "below", right));
 }
 
 /// "x 152-183, y 136-167 of red".
@@ -104,18 +96,18 @@ std::string found_in_image(const Image& image) {
                      winner.z.value_or(0) > 0 ? "bright" : "dark");
 }
 
-/// True where the interval leaves out all that is claimed or allowed.
-bool leaves_claim_out(const Test& test, const Effect& effect) {
-  const double allow = test.allow.value_or(0);
-  return sides_of(test.claim).relation == "==" &&
-         ((is_finite(effect.low) && *effect.low > allow) ||
-          (is_finite(effect.high) && *effect.high < -allow));
-}
-
-/// True where the interval lies within the margin on both sides.
-bool lies_within(const Effect& effect, const Number& margin) {
-  return margin && is_finite(effect.low) && is_finite(effect.high) && *effect.low > -*margin &&
-         *effect.high < *margin;
+/// A pass whose interval leaves out all that is claimed or allowed says so.
+std::string exclusion_of_claim(const Test& test, const Effect& effect, const std::string& margin) {
+  const double allow = test.allow.value_or(0), detect = test.detect.value_or(0);
+  const double infinity = std::numeric_limits<double>::infinity();
+  const double low = is_finite(effect.low) ? *effect.low : -infinity;
+  const double high = is_finite(effect.high) ? *effect.high : infinity;
+  if (test.verdict != Verdict::pass || sides_of(test.claim).relation != "==" ||
+      !(low > allow || high < -allow))
+    return "";
+  if (low > -detect && high < detect)
+    return fmt::format(" It is off, but by less than {}.", margin);
+  return " Its range leaves the claim out, which at this test's level is no rejection.";
 }
 
 std::string sentence_of(const Test& test, const Effect& effect, const std::string& margin) {
@@ -126,13 +118,7 @@ std::string sentence_of(const Test& test, const Effect& effect, const std::strin
   if (text.empty() && effect.estimate) text = found(test, effect);
   if (text.empty()) return headline(test);
   if (!margin.empty()) text += fmt::format("; you asked to catch {}", margin);
-  text += ".";
-  if (test.verdict == Verdict::pass && leaves_claim_out(test, effect)) {
-    text += lies_within(effect, test.detect)
-                ? fmt::format(" It is off, but by less than {}.", margin)
-                : " Its range leaves the claim out, which at this test's level is no rejection.";
-  }
-  return text;
+  return text + "." + exclusion_of_claim(test, effect, margin);
 }
 
 /// "1 in 17,000" of a p-value; empty where there is none.
@@ -191,26 +177,23 @@ std::vector<Suspect> suspects(const Suite& suite, Standing how) {
     for (const Test* test : broken) {
       for (const std::string& name : estimators_of(*test)) ++count[name];
     }
-    // A tie goes to the estimator whose claims are broken most often.
-    const auto worst =
-        std::max_element(count.begin(), count.end(), [&](const auto& a, const auto& b) {
-          return std::pair(a.second, -claims[a.first]) < std::pair(b.second, -claims[b.first]);
-        });
     Suspect suspect{.suite = suite.name, .standing = to_string(how)};
-    if (worst == count.end()) {
+    const auto take = [&](const Test* test) { suspect.tests.push_back(test->id); };
+    if (count.empty()) {
       suspect.name = broken.front()->name;
-      suspect.tests = {broken.front()->id};
+      take(broken.front());
       broken.erase(broken.begin());
     } else {
+      // A tie goes to the estimator whose claims are broken most often.
+      const auto worst = std::ranges::max_element(
+          count, {}, [&](const auto& each) { return std::pair(each.second, -claims[each.first]); });
       suspect.name = worst->first;
-      std::erase_if(broken, [&](const Test* test) {
-        const bool shared = estimators_of(*test).contains(suspect.name);
-        if (shared) suspect.tests.push_back(test->id);
-        return shared;
-      });
+      const auto others = std::ranges::stable_partition(
+          broken, [&](const Test* test) { return !estimators_of(*test).contains(suspect.name); });
+      std::ranges::for_each(others, take);
+      broken.erase(others.begin(), others.end());
       suspect.sentence =
-          fmt::format("{} of its {} {}", worst->second,
-                      counted(static_cast<std::uint64_t>(claims[suspect.name]), "claim", "claims"),
+          fmt::format("{} {}", of_claims(worst->second, claims[suspect.name], "of its"),
                       how == Standing::broken ? "broken" : "without a verdict");
     }
     all.push_back(std::move(suspect));
@@ -251,10 +234,10 @@ std::string verdict_counts(const Record& record) {
   std::map<std::tuple<int, bool, std::string>, int> counts;
   for (const Test* test : tests_of(record))
     ++counts[{urgency(*test), test->verdict != Verdict::pass, verdict_text(*test)}];
-  std::string out;
+  std::vector<std::string> parts;
   for (const auto& [key, count] : counts)
-    out += fmt::format("{}{}\u00A0{}", out.empty() ? "" : "; ", count, std::get<2>(key));
-  return out;
+    parts.push_back(fmt::format("{}\u00A0{}", count, std::get<2>(key)));
+  return fmt::format("{}", fmt::join(parts, "; "));
 }
 
 std::string false_alarms(double alpha) {
@@ -283,21 +266,20 @@ std::string counts_text(const Suite& suite) {
   std::map<Standing, std::uint64_t> count;
   for (const Test& test : suite.tests) ++count[standing(test)];
   const std::uint64_t held = count[Standing::holds], caught = count[Standing::caught];
-  std::string text;
-  const auto add = [&](std::uint64_t some, const char* words) {
-    if (some > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", some, words);
-  };
-  if (held + caught == suite.tests.size()) {
-    add(held, held == 1 ? "holds" : "hold");
-    add(caught, caught == 1 ? "planted bug caught" : "planted bugs caught");
-    return text;
+  const bool well = held + caught == suite.tests.size();
+  const std::pair<std::uint64_t, const char*> all[] = {
+      {well ? held : 0, held == 1 ? "holds" : "hold"},
+      {well ? caught : 0, caught == 1 ? "planted bug caught" : "planted bugs caught"},
+      {count[Standing::broken], "broken"},
+      {count[Standing::no_verdict], "without a verdict"},
+      {count[Standing::undecided], "undecided"},
+      {count[Standing::not_run], "not run"},
+      {well ? 0 : held + caught, "ok"}};
+  std::vector<std::string> parts;
+  for (const auto& [some, words] : all) {
+    if (some > 0) parts.push_back(fmt::format("{} {}", some, words));
   }
-  add(count[Standing::broken], "broken");
-  add(count[Standing::no_verdict], "without a verdict");
-  add(count[Standing::undecided], "undecided");
-  add(count[Standing::not_run], "not run");
-  add(held + caught, "ok");
-  return text;
+  return fmt::format("{}", fmt::join(parts, ", "));
 }
 
 const char* to_string(Standing standing) {
@@ -307,42 +289,31 @@ const char* to_string(Standing standing) {
 }
 
 Standing standing(const Test& test) {
-  switch (outcome(test)) {
-    case Outcome::passed:
-      return test.expected == Verdict::pass ? Standing::holds : Standing::caught;
-    case Outcome::failed:
-      return is_evidence(test) ? Standing::broken : Standing::no_verdict;
-    case Outcome::inconclusive:
-      return Standing::undecided;
-    case Outcome::skipped:
-      break;
-  }
-  return Standing::not_run;
+  const Outcome how = outcome(test);
+  if (how == Outcome::passed)
+    return test.expected == Verdict::pass ? Standing::holds : Standing::caught;
+  if (how == Outcome::failed) return is_evidence(test) ? Standing::broken : Standing::no_verdict;
+  return how == Outcome::inconclusive ? Standing::undecided : Standing::not_run;
 }
 
 std::string meaning(const Test& test) {
-  if (test.expected == Verdict::fail && test.verdict == Verdict::pass) return "";
+  if (is_missed(test)) return "";
   if (standing(test) == Standing::caught) return "This is as the suite expects.";
-  switch (test.verdict) {
-    case Verdict::pass:
-      return is_proof(test) ? "The claim is shown." : "Nothing speaks against the claim.";
-    case Verdict::fail:
-      return "The claim is wrong.";
-    case Verdict::inconclusive:
-      return "The observations do not suffice to say whether the claim holds.";
-    case Verdict::invalid:
-      return "Nothing was decided, because the data break what the test relies on.";
-    case Verdict::error:
-      return "There are no numbers to judge, because drawing them failed.";
-    case Verdict::skipped:
-      break;
-  }
-  return "The claim was not tested.";
+  if (test.verdict == Verdict::pass && is_proof(test)) return "The claim is shown.";
+  constexpr const char* meanings[] = {
+      "Nothing speaks against the claim.",
+      "The claim is wrong.",
+      "The observations do not suffice to say whether the claim holds.",
+      "Nothing was decided, because the data break what the test relies on.",
+      "There are no numbers to judge, because drawing them failed.",
+      "The claim was not tested."};
+  return meanings[static_cast<int>(test.verdict)];
 }
 
 TestDisplay display(const Test& test) {
   const Effect effect = deciding_channel(test).effect;
-  const bool shown = is_evidence(test) && effect.estimate.has_value();
+  Effect shown = effect_in_sentence(test);
+  if (!shown.estimate && is_evidence(test)) shown = effect;
   TestDisplay words{.standing = to_string(standing(test)),
                     .verdict = verdict_text(test),
                     .meaning = meaning(test),
@@ -351,9 +322,9 @@ TestDisplay display(const Test& test) {
                     .facts = facts(test)};
   if (test.detect) words.margin = margin_text(*test.detect, effect);
   words.sentence = sentence_of(test, effect, words.margin);
-  if (shown) {
-    words.effect = theta_text(*effect.estimate, effect);
-    words.interval = range(effect);
+  if (shown.estimate) {
+    words.effect = theta_text(*shown.estimate, shown);
+    words.interval = range_text(shown);
   }
   if (is_evidence(test) && !is_proof(test)) words.chance = one_in(worst_channel(test).log10_p);
   return words;
@@ -406,8 +377,7 @@ RecordDisplay display(const Record& record) {
 }
 
 std::string trouble(const Test& test) {
-  const bool missed = test.expected == Verdict::fail && test.verdict == Verdict::pass;
-  if (missed) return "The planted bug was not caught. " + display(test).sentence;
+  if (is_missed(test)) return "The planted bug was not caught. " + display(test).sentence;
   if (test.verdict == Verdict::fail && test.expected == Verdict::pass)
     return display(test).sentence;
   return test.verdict == Verdict::skipped ? test.message : headline(test);
@@ -420,25 +390,25 @@ std::vector<Step> steps(const Test& test) {
     all.push_back({"to decide", with_option(test.replay, text)});
   } else if (!text.empty()) {
     all.push_back({"write into the test", text});
-  } else if (const std::string data = asked_for(test.message, "; give ", ';'); !data.empty()) {
-    all.push_back({"to decide", "give " + data});
+  } else {
+    for (const std::string lead : {"; give ", ": give about "}) {
+      const std::string data = asked_for(test.message, lead, ';');
+      if (!data.empty()) all.push_back({"to decide", lead.substr(2) + data});
+    }
   }
-  const bool missed = test.expected == Verdict::fail && test.verdict == Verdict::pass;
   const Effect effect = deciding_channel(test).effect;
-  if (missed && test.detect && effect.relative)
+  if (is_missed(test) && test.detect && effect.relative)
     all.push_back({"write into the test", fmt::format("detect: {:.2g}%", 50 * *test.detect)});
   if (test.replay.empty()) return all;
-  if (test.verdict != Verdict::skipped) all.push_back({"again", test.replay});
-  if (test.verdict == Verdict::skipped) all.push_back({"then", test.replay});
+  all.push_back({test.verdict == Verdict::skipped ? "then" : "again", test.replay});
   if (test.image && test.verdict == Verdict::fail)
     all.push_back({"see it", test.replay + " --report html=difference.html"});
   return all;
 }
 
 Step explanation(const Test& test) {
-  std::string quoted = "'";
-  for (const char c : test.id) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return {"more", "assay explain " + quoted + "'"};
+  return {"more",
+          fmt::format("assay explain '{}'", boost::replace_all_copy(test.id, "'", "'\\''"))};
 }
 
 }  // namespace assay::reports

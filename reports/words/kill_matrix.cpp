@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/algorithm/string/join.hpp>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -24,12 +25,9 @@ constexpr const char* legend =
     "chi-square and F variances, KS laws of one coordinate, fit counts in cells, image all "
     "pixels; the pilot may put a method in their place that keeps its level.";
 
-/// The word before the first bracket of a claim: "mean", "variance", "slope".
-std::string quantity_of(const std::string& claim) { return claim.substr(0, claim.find('(')); }
-
 /// The column of a test, by what it claims and of how many sources.
-std::string column_of(const Test& test) {
-  const std::string quantity = quantity_of(test.claim);
+std::string method_of(const Test& test) {
+  const std::string quantity = test.claim.substr(0, test.claim.find('('));
   if (test.image || test.method == "image") return "image";
   const bool of_two = worst_samples(test).size() > 1;
   if (quantity == "mean" || quantity == "bias") return of_two ? "Welch" : "t";
@@ -38,35 +36,21 @@ std::string column_of(const Test& test) {
   return quantity;
 }
 
-std::optional<std::size_t> mutant_of(const Suite& suite, const Test& test) {
+/// A mutant's place among the suite's estimators, and the sample that a test has of it.
+struct Mutant {
+  std::size_t place;
+  const Sample* sample;
+};
+
+std::optional<Mutant> mutant_of(const Suite& suite, const Test& test) {
   for (const Sample& sample : test.samples) {
     for (std::size_t i = 0; i < suite.estimators.size(); ++i) {
       const EstimatorSummary& estimator = suite.estimators[i];
-      if (estimator.name == sample.estimator && !estimator.original.empty()) return i;
+      if (estimator.name == sample.estimator && !estimator.original.empty())
+        return Mutant{i, &sample};
     }
   }
   return std::nullopt;
-}
-
-/// The fate of a mutant under one method.
-enum class Fate {
-  killed,    ///< the claim was refuted
-  broken,    ///< an observation was not finite, which is seen as well
-  survived,  ///< no evidence against the claim
-  open       ///< undecided, or no valid test
-};
-
-Fate fate_of(const Test& test) {
-  if (test.verdict == Verdict::fail) return Fate::killed;
-  if (test.verdict == Verdict::error) return Fate::broken;
-  return test.verdict == Verdict::pass ? Fate::survived : Fate::open;
-}
-
-std::uint64_t samples_of(const Test& test, const std::string& mutant) {
-  for (const Sample& sample : test.samples) {
-    if (sample.estimator == mutant) return sample.primaries * sample.secondaries;
-  }
-  return 0;
 }
 
 Number found_from(const Test& test) { return test.detectable ? test.detectable : test.detect; }
@@ -74,18 +58,22 @@ Number found_from(const Test& test) { return test.detectable ? test.detectable :
 /// A test's word on one mutant.
 struct Tested {
   const Test* test;
-  std::size_t mutant;  ///< in the suite's estimators
-  std::string column;
-  Fate fate;
   std::uint64_t samples;
 
-  bool kills() const { return fate == Fate::killed || fate == Fate::broken; }
+  /// An observation that was not finite is seen as well.
+  bool kills() const { return test->verdict == Verdict::fail || test->verdict == Verdict::error; }
 };
+
+/// The order in which verdicts tell of a method: a kill first, what is undecided last.
+int rank(const Tested& one) {
+  constexpr int ranks[] = {2, 0, 3, 3, 1, 3};  // in the order of verdicts
+  return ranks[static_cast<int>(one.test->verdict)];
+}
 
 /// True if the first says more of the method than the second.
 bool better(const Tested& one, const Tested& other) {
-  if (one.fate != other.fate) return one.fate < other.fate;
-  if (one.fate != Fate::survived) return one.samples < other.samples;
+  if (rank(one) != rank(other)) return rank(one) < rank(other);
+  if (one.test->verdict != Verdict::pass) return one.samples < other.samples;
   constexpr double none = std::numeric_limits<double>::infinity();
   return found_from(*one.test).value_or(none) < found_from(*other.test).value_or(none);
 }
@@ -98,112 +86,85 @@ std::string margin(const Test& test) {
                           : magnitude(*least, effect.relative);
 }
 
-/// Columns that hold something: the textbook's in their order, then others as they come.
-std::vector<std::string> columns_of(const std::vector<Tested>& all) {
-  std::vector<std::string> columns;
-  for (const char* name : textbook) {
-    if (std::ranges::find(all, name, &Tested::column) != all.end()) columns.emplace_back(name);
-  }
-  for (const Tested& one : all) {
-    if (std::ranges::find(columns, one.column) == columns.end()) columns.push_back(one.column);
-  }
-  return columns;
+KillCell cell_of(const Tested& one) {
+  const std::string samples = counted(one.samples, "sample", "samples"), least = margin(*one.test);
+  const auto cell = [&](const std::string& text, const std::string& sentence) {
+    return KillCell{one.test->id, text, sentence, one.kills()};
+  };
+  const Verdict verdict = one.test->verdict;
+  if (verdict == Verdict::fail) return cell(count_text(one.samples), "killed by " + samples);
+  if (verdict == Verdict::error) return cell("not finite", "not finite among " + samples);
+  if (verdict != Verdict::pass)
+    return cell(verdict == Verdict::invalid ? "invalid" : "undecided",
+                fmt::format("{} after {}", to_string(verdict), samples));
+  if (least.empty()) return cell("survives", "survives " + samples);
+  return cell(
+      "< " + least,
+      fmt::format("survives {}: an effect of {} or more would have been found", samples, least));
 }
 
-std::vector<Tested> tested(const Suite& suite) {
-  std::vector<Tested> all;
-  for (const Test& test : suite.tests) {
-    const std::optional<std::size_t> mutant = mutant_of(suite, test);
-    if (!mutant || test.verdict == Verdict::skipped) continue;
-    all.push_back({.test = &test,
-                   .mutant = *mutant,
-                   .column = column_of(test),
-                   .fate = fate_of(test),
-                   .samples = samples_of(test, suite.estimators[*mutant].name)});
-  }
-  return all;
-}
-
-std::string short_text(const Tested& one) {
-  if (one.fate == Fate::killed) return count_text(one.samples);
-  if (one.fate == Fate::broken) return "not finite";
-  if (one.fate == Fate::open)
-    return one.test->verdict == Verdict::invalid ? "invalid" : "undecided";
-  const std::string least = margin(*one.test);
-  return least.empty() ? "survives" : "< " + least;
-}
-
-std::string sentence(const Tested& one) {
-  const std::string samples = counted(one.samples, "sample", "samples");
-  if (one.fate == Fate::killed) return "killed by " + samples;
-  if (one.fate == Fate::broken) return "not finite among " + samples;
-  if (one.fate == Fate::open)
-    return fmt::format("{} after {}", to_string(one.test->verdict), samples);
-  const std::string least = margin(*one.test);
-  return least.empty() ? "survives " + samples
-                       : fmt::format("survives {}: an effect of {} or more would have been found",
-                                     samples, least);
-}
-
-/// The best results by mutant, one a method.
-using Best = std::map<std::size_t, std::vector<const Tested*>>;
+/// The best results on a mutant by method.
+using Best = std::map<std::string, Tested>;
 
 std::string totals_of(const Suite& suite, const std::vector<std::string>& methods,
-                      const Best& best) {
-  std::set<std::string> mutants, killed;
-  std::vector<int> tested_by(methods.size()), killed_by(methods.size());
-  for (const auto& [mutant, cells] : best) {
+                      const std::map<std::size_t, Best>& mutants) {
+  std::set<std::string> plugins, killed;
+  for (const auto& [mutant, best] : mutants) {
     const std::string& plugin = suite.estimators[mutant].plugin;
-    mutants.insert(plugin);
-    for (std::size_t m = 0; m < cells.size(); ++m) {
-      if (cells[m] == nullptr) continue;
-      ++tested_by[m];
-      if (!cells[m]->kills()) continue;
-      ++killed_by[m];
-      killed.insert(plugin);
+    plugins.insert(plugin);
+    for (const auto& [method, one] : best) {
+      if (one.kills()) killed.insert(plugin);
     }
   }
-  std::string text = fmt::format(
-      "{} of {} mutants are killed. Rows that each method kills:", killed.size(), mutants.size());
-  for (std::size_t m = 0; m < methods.size(); ++m) {
-    text += fmt::format("{} {} {} of {}", m > 0 ? "," : "", methods[m], killed_by[m], tested_by[m]);
+  std::vector<std::string> rows;
+  for (const std::string& method : methods) {
+    int tested = 0, kills = 0;
+    for (const auto& [mutant, best] : mutants) {
+      const auto one = best.find(method);
+      if (one == best.end()) continue;
+      ++tested;
+      kills += one->second.kills();
+    }
+    rows.push_back(fmt::format(" {} {} of {}", method, kills, tested));
   }
-  return text + ".";
+  return fmt::format("{} of {} mutants are killed. Rows that each method kills:{}.", killed.size(),
+                     plugins.size(), boost::join(rows, ","));
 }
 
 }  // namespace
 
 KillMatrix kill_matrix(const Suite& suite) {
-  const std::vector<Tested> all = tested(suite);
-  KillMatrix matrix{.methods = columns_of(all), .legend = legend};
-  Best best;
-  for (const Tested& one : all) {
-    std::vector<const Tested*>& cells = best[one.mutant];
-    cells.resize(matrix.methods.size());
-    const auto column = std::ranges::find(matrix.methods, one.column) - matrix.methods.begin();
-    const Tested*& cell = cells[static_cast<std::size_t>(column)];
-    if (cell == nullptr || better(one, *cell)) cell = &one;
+  KillMatrix matrix{.legend = legend};
+  std::map<std::size_t, Best> mutants;
+  for (const Test& test : suite.tests) {
+    const std::optional<Mutant> mutant = mutant_of(suite, test);
+    if (!mutant || test.verdict == Verdict::skipped) continue;
+    const std::string method = method_of(test);
+    const Tested one{&test, mutant->sample->primaries * mutant->sample->secondaries};
+    const auto [best, is_first] = mutants[mutant->place].emplace(method, one);
+    if (!is_first && better(one, best->second)) best->second = one;
+    if (std::ranges::find(matrix.methods, method) == matrix.methods.end())
+      matrix.methods.push_back(method);
   }
-  for (const auto& [mutant, cells] : best) {
+  // The textbook's in their order, then others as they come.
+  std::ranges::stable_sort(matrix.methods, {}, [](const std::string& method) {
+    return std::ranges::find(textbook, method) - textbook.begin();
+  });
+  for (const auto& [mutant, best] : mutants) {
     KillRow row{suite.estimators[mutant].name, suite.estimators[mutant].defect, {}};
-    for (const Tested* one : cells) {
-      if (one == nullptr) {
-        row.cells.emplace_back();
-      } else {
-        row.cells.push_back(
-            KillCell{one->test->id, short_text(*one), sentence(*one), one->kills()});
-      }
+    for (const std::string& method : matrix.methods) {
+      const auto one = best.find(method);
+      row.cells.push_back(one == best.end() ? std::optional<KillCell>() : cell_of(one->second));
     }
     matrix.rows.push_back(std::move(row));
   }
-  matrix.totals = totals_of(suite, matrix.methods, best);
+  matrix.totals = totals_of(suite, matrix.methods, mutants);
   return matrix;
 }
 
 bool is_worth_showing(const KillMatrix& matrix) {
-  return std::any_of(matrix.rows.begin(), matrix.rows.end(), [](const KillRow& row) {
-    return std::count_if(row.cells.begin(), row.cells.end(),
-                         [](const auto& cell) { return cell.has_value(); }) > 1;
+  return std::ranges::any_of(matrix.rows, [](const KillRow& row) {
+    return std::ranges::count(row.cells, true, &std::optional<KillCell>::has_value) > 1;
   });
 }
 

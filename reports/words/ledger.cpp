@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <map>
 
 #include "reports/words/number.h"
 
@@ -33,11 +33,6 @@ std::string theta_sentence(const LedgerSeries& series) {
                                 : "");
 }
 
-bool several_channels(const Ledger& ledger, const std::string& test) {
-  return std::count_if(ledger.series.begin(), ledger.series.end(),
-                       [&](const LedgerSeries& series) { return series.test == test; }) > 1;
-}
-
 double distance(const LedgerSeries& series) {
   return series.limit.value_or(0) - series.log_e().value_or(0);
 }
@@ -57,8 +52,8 @@ std::string ledger_title(const Ledger& ledger) {
 }
 
 std::string series_name(const Ledger& ledger, const LedgerSeries& series) {
-  if (!several_channels(ledger, series.test)) return series.test;
-  return fmt::format("{} [{}]", series.test, series.channel);
+  const bool alone = std::ranges::count(ledger.series, series.test, &LedgerSeries::test) < 2;
+  return alone ? series.test : fmt::format("{} [{}]", series.test, series.channel);
 }
 
 std::string e_text(const Number& log_e) {
@@ -115,25 +110,19 @@ std::string quiet_sentence(const Ledger& ledger) {
 }
 
 std::vector<std::string> ledger_notes(const Ledger& ledger) {
-  std::vector<std::pair<std::string, std::vector<std::string>>> by_note;
+  std::vector<std::string> order;
+  std::map<std::string, std::vector<std::string>> names;
   for (const LedgerSeries& series : ledger.series) {
     if (series.note.empty()) continue;
-    const auto known = std::find_if(by_note.begin(), by_note.end(),
-                                    [&](const auto& entry) { return entry.first == series.note; });
-    const std::string name = series_name(ledger, series);
-    if (known != by_note.end()) {
-      known->second.push_back(name);
-    } else {
-      by_note.push_back({series.note, {name}});
-    }
+    if (!names.contains(series.note)) order.push_back(series.note);
+    names[series.note].push_back(series_name(ledger, series));
   }
-  std::vector<std::string> notes;
-  for (const auto& [note, names] : by_note) {
-    const std::string more =
-        names.size() > 1 ? fmt::format(" and {} more", names.size() - 1) : std::string();
-    notes.push_back(fmt::format("{}{}: {}", names.front(), more, note));
+  for (std::string& note : order) {
+    const std::vector<std::string>& its = names[note];
+    const std::string more = its.size() > 1 ? fmt::format(" and {} more", its.size() - 1) : "";
+    note = fmt::format("{}{}: {}", its.front(), more, note);
   }
-  return notes;
+  return order;
 }
 
 }  // namespace assay::reports

@@ -20,12 +20,10 @@ std::string non_finite(double value) {
   return value > 0 ? "Infinity" : "-Infinity";
 }
 
-bool bounded(const Number& end) { return end && std::isfinite(*end); }
-
 // Factors near one are read as per cent; all numbers of one effect take the same form.
 bool near_one(const Effect& effect) {
   const auto near = [](const Number& theta) {
-    return !bounded(theta) || std::abs(*theta) <= std::numbers::ln2;
+    return !is_finite(theta) || std::abs(*theta) <= std::numbers::ln2;
   };
   return near(effect.estimate) && near(effect.low) && near(effect.high);
 }
@@ -37,7 +35,18 @@ std::string factor(double log_ratio) {
                                        : scientific(log_ratio / std::numbers::ln10);
 }
 
+/// The ends of the interval that exist, in the text for both, the lower one or the upper one.
+std::string ends_text(const Effect& effect, const char* both, const char* from, const char* to) {
+  const auto end = [&](const Number& value) { return theta_text(*value, effect); };
+  if (is_finite(effect.low) && is_finite(effect.high))
+    return fmt::format(fmt::runtime(both), end(effect.low), end(effect.high));
+  if (is_finite(effect.low)) return fmt::format(fmt::runtime(from), end(effect.low));
+  return is_finite(effect.high) ? fmt::format(fmt::runtime(to), end(effect.high)) : "";
+}
+
 }  // namespace
+
+bool is_finite(const Number& value) { return value && std::isfinite(*value); }
 
 std::string round_trip(double value) {
   if (!std::isfinite(value)) return non_finite(value);
@@ -55,7 +64,7 @@ std::string human(double value, int digits) {
   return fmt::format("{:.0f}", std::strtod(text.c_str(), nullptr));
 }
 
-std::string human(Number value) { return value ? human(*value) : no_number; }
+std::string human(Number value, int digits) { return value ? human(*value, digits) : no_number; }
 
 std::string percent(double fraction) {
   if (!std::isfinite(fraction)) return non_finite(fraction);
@@ -102,7 +111,9 @@ std::string p_text(Number p, Number log10_p) {
   if (*p >= 0 && *p < std::numeric_limits<double>::min()) return "below 1e-307";
   if (*p < 1e-4) return *p < 0 ? human(*p, 2) : scientific(std::log10(*p));
   // Two digits would turn 0.9996 into 1: a p-value near one is itself a finding.
-  return *p > 0.99 && *p < 1 ? fmt::format("1 - {:.1g}", 1 - *p) : fmt::format("{:.2g}", *p);
+  constexpr double near_one = 0.99, nearest = 0.9999;
+  if (!(*p > near_one && *p < 1)) return fmt::format("{:.2g}", *p);
+  return *p > nearest ? "above 0.9999" : human(*p);
 }
 
 std::string count_text(std::uint64_t count) {
@@ -161,11 +172,11 @@ std::string theta_text(double theta, const Effect& effect) {
 }
 
 std::string interval_text(const Effect& effect) {
-  const auto end = [&](const Number& value) { return theta_text(*value, effect); };
-  if (bounded(effect.low) && bounded(effect.high))
-    return fmt::format("[{}, {}]", end(effect.low), end(effect.high));
-  if (bounded(effect.low)) return fmt::format("[from {}]", end(effect.low));
-  return bounded(effect.high) ? fmt::format("[to {}]", end(effect.high)) : std::string();
+  return ends_text(effect, "[{}, {}]", "[from {}]", "[to {}]");
+}
+
+std::string range_text(const Effect& effect) {
+  return ends_text(effect, "{} to {}", "at least {}", "at most {}");
 }
 
 std::string interval_name(const Effect& effect) {

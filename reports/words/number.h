@@ -1,8 +1,6 @@
 #pragma once
 
-// Numbers as a reader wants them. Every function is locale-independent.
-
-// The effect of a claim in readable units. Differences are in per cent or the output's unit;
+// Numbers as a reader wants them, in any locale. Effects are in per cent or the output's unit;
 // logarithms of ratios become factors.
 
 #include <cstdint>
@@ -15,13 +13,15 @@ namespace assay::reports {
 /// The text for a number that does not exist.
 inline constexpr const char* no_number = "n/a";
 
+bool is_finite(const Number&);
+
 /// The shortest decimal form that reads back as the same double; NaN, Infinity, -Infinity.
 std::string round_trip(double value);
 
 /// Rounded to `digits` significant digits (default 4), without trailing zeros: 0.4811, 12350,
 /// 1.235e+07, 3.2e-05.
 std::string human(double value, int digits = 4);
-std::string human(Number value);
+std::string human(Number value, int digits = 4);
 
 /// A fraction as per cent with three significant digits: 0.00312 gives "0.312 %".
 std::string percent(double fraction);
@@ -67,6 +67,9 @@ std::string theta_text(double theta, const Effect&);
 
 /// "[-0.094 %, +0.156 %]", "[from +0.12 %]" where one-sided, empty where there is none.
 std::string interval_text(const Effect&);
+
+/// "-0.094 % to +0.156 %", "at least +0.12 %"; empty where there is none.
+std::string range_text(const Effect&);
 
 /// "99.98 % interval"; empty where there is no interval.
 std::string interval_name(const Effect&);

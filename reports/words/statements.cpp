@@ -100,15 +100,11 @@ std::string statement_totals(const Record& record) {
   for (const Suite& suite : record.suites) {
     for (const Statement& statement : suite.statements) ++counts[answer(suite, statement)];
   }
-  constexpr Answer order[] = {Answer::yes, Answer::only_if, Answer::no, Answer::open,
-                              Answer::contradicted};
-  std::string text;
-  for (const Answer given : order) {
-    if (counts[given] > 0)
-      text +=
-          fmt::format("{}{}\u00A0{}", text.empty() ? "" : ", ", counts[given], to_string(given));
-  }
-  return fmt::format("{}: {}.", counted(statement_count(record), "statement", "statements"), text);
+  std::vector<std::string> parts;
+  for (const auto& [given, count] : counts)
+    parts.push_back(fmt::format("{}\u00A0{}", count, to_string(given)));
+  return fmt::format("{}: {}.", counted(statement_count(record), "statement", "statements"),
+                     fmt::join(parts, ", "));
 }
 
 std::string finding(const Suite& suite, const Witness& witness) {
@@ -121,13 +117,14 @@ std::string finding(const Suite& suite, const Witness& witness) {
 }
 
 std::string findings(const Suite& suite, const std::vector<std::string>& names) {
-  std::string text;
-  const std::vector<Witness> all = witnesses(suite, names);
-  for (std::size_t i = 0; i < all.size() && i < findings_shown; ++i)
-    text += fmt::format("{}{}: {}", i > 0 ? "; " : "", all[i].name, finding(suite, all[i]));
-  if (all.size() > findings_shown)
-    text += fmt::format("; and {} more", all.size() - findings_shown);
-  return text;
+  std::vector<std::string> parts;
+  for (const Witness& witness : witnesses(suite, names))
+    parts.push_back(fmt::format("{}: {}", witness.name, finding(suite, witness)));
+  if (parts.size() > findings_shown) {
+    parts[findings_shown] = fmt::format("and {} more", parts.size() - findings_shown);
+    parts.resize(findings_shown + 1);
+  }
+  return fmt::format("{}", fmt::join(parts, "; "));
 }
 
 }  // namespace assay::reports

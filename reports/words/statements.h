@@ -1,9 +1,7 @@
 #pragma once
 
-// The answers that a run gives to the statements of its suites. They follow from the verdicts
-// alone.
-
-// Statements and their answers in words, the same in every format.
+// The answers that a run gives to the statements of its suites, in words. They follow from the
+// verdicts alone.
 
 #include <cstddef>
 #include <optional>

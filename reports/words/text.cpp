@@ -3,28 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <boost/algorithm/string/replace.hpp>
+#include <boost/locale/utf.hpp>
 #include <cctype>
-#include <span>
+#include <iterator>
 
 namespace assay::reports {
 namespace {
 
-struct Lead {
-  std::size_t length;
-  char32_t bits;
-  char32_t least;  // smaller values would have had a shorter form
-};
-
-Lead lead(unsigned char byte) {
-  if (byte < 0x80) return {1, byte, 0};
-  if (byte >= 0xC2 && byte < 0xE0) return {2, byte & 0x1Fu, 0x80};
-  if (byte >= 0xE0 && byte < 0xF0) return {3, byte & 0x0Fu, 0x800};
-  if (byte >= 0xF0 && byte < 0xF5) return {4, byte & 0x07u, 0x10000};
-  return {0, 0, 0};
-}
-
-bool surrogate(char32_t c) { return c >= 0xD800 && c <= 0xDFFF; }
+using Utf8 = boost::locale::utf::utf_traits<char>;
 
 bool non_character(char32_t c) { return (c & 0xFFFE) == 0xFFFE || (c >= 0xFDD0 && c <= 0xFDEF); }
 
@@ -39,12 +26,6 @@ bool showable(char32_t c) {
   return c == '\n' || c == '\t' || !(control(c) || layout_control(c) || non_character(c));
 }
 
-/// A character and what is written for it.
-struct Form {
-  char character;
-  std::string_view written;
-};
-
 constexpr Form xml_forms[] = {
     {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
 
@@ -56,47 +37,22 @@ constexpr Form markdown_forms[] = {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"},
                                    {'`', "\\`"},   {'~', "\\~"},  {'[', "\\["},  {']', "\\]"},
                                    {'$', "\\$"},   {'\\', "\\\\"}};
 
-std::string replace(std::string_view text, std::span<const Form> forms) {
-  std::string result;
-  result.reserve(text.size() + text.size() / 8);
-  for (const char& c : text) {
-    const auto form = std::ranges::find(forms, c, &Form::character);
-    result.append(form == forms.end() ? std::string_view(&c, 1) : form->written);
-  }
-  return result;
-}
-
 struct Range {
   char32_t first, last;
 };
 
-constexpr std::array<Range, 6> combining = {{{0x0300, 0x036F},
-                                             {0x1AB0, 0x1ACE},
-                                             {0x1DC0, 0x1DFF},
-                                             {0x200B, 0x200F},
-                                             {0x20D0, 0x20F0},
-                                             {0xFE00, 0xFE0F}}};
+constexpr Range combining[] = {{0x0300, 0x036F}, {0x1AB0, 0x1ACE}, {0x1DC0, 0x1DFF},
+                               {0x200B, 0x200F}, {0x20D0, 0x20F0}, {0xFE00, 0xFE0F}};
 
 // Supersets of Unicode's East Asian Width W and F: counting too many columns is harmless.
-constexpr std::array<Range, 11> wide = {{{0x1100, 0x115F},
-                                         {0x231A, 0x231B},
-                                         {0x2329, 0x232A},
-                                         {0x23E9, 0x23FF},
-                                         {0x25FD, 0x26FF},
-                                         {0x2705, 0x27BF},
-                                         {0x2B1B, 0x2B55},
-                                         {0x2E80, 0xA4CF},
-                                         {0xA960, 0xA97C},
-                                         {0xAC00, 0xD7FF},
-                                         {0xF900, 0xFAFF}}};
+constexpr Range wide[] = {
+    {0x1100, 0x115F}, {0x231A, 0x231B}, {0x2329, 0x232A},   {0x23E9, 0x23FF},
+    {0x25FD, 0x26FF}, {0x2705, 0x27BF}, {0x2B1B, 0x2B55},   {0x2E80, 0xA4CF},
+    {0xA960, 0xA97C}, {0xAC00, 0xD7FF}, {0xF900, 0xFAFF},   {0xFE10, 0xFE6F},
+    {0xFF01, 0xFF60}, {0xFFE0, 0xFFE6}, {0x16FE0, 0x1FFFF}, {0x20000, 0x3FFFF}};
 
-constexpr std::array<Range, 5> wide_above = {
-    {{0xFE10, 0xFE6F}, {0xFF01, 0xFF60}, {0xFFE0, 0xFFE6}, {0x16FE0, 0x1FFFF}, {0x20000, 0x3FFFF}}};
-
-template <class Ranges>
-bool within(const Ranges& ranges, char32_t c) {
-  return std::any_of(ranges.begin(), ranges.end(),
-                     [c](Range r) { return c >= r.first && c <= r.last; });
+bool within(std::span<const Range> ranges, char32_t c) {
+  return std::ranges::any_of(ranges, [c](Range r) { return c >= r.first && c <= r.last; });
 }
 
 // The marks of the verdicts lie in a range that is otherwise wide.
@@ -148,22 +104,19 @@ std::string take_line(std::string_view& rest, int width) {
 std::vector<std::string> words_outside_quotes(std::string_view command) {
   std::vector<std::string> words(1);
   char quote = 0;
-  bool escaped = false;  // by a backslash outside quotes
-  for (const char c : command) {
-    if (escaped || (quote == 0 && c == '\\')) {
-      escaped = !escaped;
-      words.back() += c;
-      continue;
-    }
-    if (quote == 0 && (c == '\'' || c == '"')) {
-      quote = c;
-    } else if (c == quote) {
-      quote = 0;
-    }
+  for (std::size_t i = 0; i < command.size(); ++i) {
+    const char c = command[i];
     if (quote == 0 && c == ' ') {
       words.emplace_back();
-    } else {
-      words.back() += c;
+      continue;
+    }
+    words.back() += c;
+    if (c == quote) {
+      quote = 0;
+    } else if (quote == 0 && (c == '\'' || c == '"')) {
+      quote = c;
+    } else if (quote == 0 && c == '\\' && i + 1 < command.size()) {
+      words.back() += command[++i];
     }
   }
   std::erase(words, "");
@@ -173,38 +126,15 @@ std::vector<std::string> words_outside_quotes(std::string_view command) {
 }  // namespace
 
 char32_t next_code_point(std::string_view text, std::size_t& position) {
-  const std::size_t start = position++;
-  const Lead first = lead(static_cast<unsigned char>(text[start]));
-  if (first.length == 0 || start + first.length > text.size()) return replacement_character;
-  char32_t value = first.bits;
-  for (std::size_t i = 1; i < first.length; ++i) {
-    const auto byte = static_cast<unsigned char>(text[start + i]);
-    if ((byte & 0xC0) != 0x80) return replacement_character;
-    value = value << 6 | (byte & 0x3Fu);
-  }
-  if (value < first.least || value > 0x10FFFF || surrogate(value)) return replacement_character;
-  position = start + first.length;
-  return value;
+  const char* const start = text.data() + position;
+  const char* end = start;
+  const boost::locale::utf::code_point c = Utf8::decode(end, text.data() + text.size());
+  const bool valid = boost::locale::utf::is_valid_codepoint(c);
+  position += valid ? static_cast<std::size_t>(end - start) : 1;
+  return valid ? c : replacement_character;
 }
 
-void append_code_point(std::string& text, char32_t c) {
-  const auto byte = [&text](char32_t bits) { text.push_back(static_cast<char>(bits)); };
-  if (c < 0x80) {
-    byte(c);
-  } else if (c < 0x800) {
-    byte(0xC0 | c >> 6);
-    byte(0x80 | (c & 0x3F));
-  } else if (c < 0x10000) {
-    byte(0xE0 | c >> 12);
-    byte(0x80 | (c >> 6 & 0x3F));
-    byte(0x80 | (c & 0x3F));
-  } else {
-    byte(0xF0 | c >> 18);
-    byte(0x80 | (c >> 12 & 0x3F));
-    byte(0x80 | (c >> 6 & 0x3F));
-    byte(0x80 | (c & 0x3F));
-  }
-}
+void append_code_point(std::string& text, char32_t c) { Utf8::encode(c, std::back_inserter(text)); }
 
 std::string clean(std::string_view text) {
   std::string result;
@@ -225,20 +155,27 @@ std::string one_line(std::string_view text) {
 }
 
 std::string plain_spaces(std::string text) {
-  constexpr std::string_view no_break = "\u00A0";
-  for (std::size_t at = 0; (at = text.find(no_break, at)) != std::string::npos;)
-    text.replace(at, no_break.size(), " ");
+  boost::replace_all(text, "\u00A0", " ");
   return text;
 }
 
-std::string escape_xml(std::string_view text) { return replace(clean(text), xml_forms); }
+std::string escape(std::string_view text, std::span<const Form> forms) {
+  std::string result;
+  for (const char& c : text) {
+    const auto form = std::ranges::find(forms, c, &Form::character);
+    result.append(form == forms.end() ? std::string_view(&c, 1) : form->written);
+  }
+  return result;
+}
+
+std::string escape_xml(std::string_view text) { return escape(clean(text), xml_forms); }
 
 std::string escape_attribute(std::string_view text) {
-  return replace(escape_xml(text), white_forms);
+  return escape(escape_xml(text), white_forms);
 }
 
 std::string escape_markdown(std::string_view text) {
-  return replace(one_line(text), markdown_forms);
+  return escape(one_line(text), markdown_forms);
 }
 
 std::string cap(std::string text, std::size_t bytes) {
@@ -254,7 +191,7 @@ std::string cap(std::string text, std::size_t bytes) {
 int columns(char32_t c) {
   if (within(combining, c)) return 0;
   if (narrow_mark(c)) return 1;
-  return within(wide, c) || within(wide_above, c) ? 2 : 1;
+  return within(wide, c) ? 2 : 1;
 }
 
 int columns(std::string_view text) {

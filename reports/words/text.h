@@ -4,6 +4,7 @@
 // in columns of a terminal.
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -31,6 +32,13 @@ std::string one_line(std::string_view text);
 
 /// No-break spaces as plain ones: terminals and programs treat them in their own ways.
 std::string plain_spaces(std::string text);
+
+/// A character and what is written for it.
+struct Form {
+  char character;
+  std::string_view written;
+};
+std::string escape(std::string_view text, std::span<const Form> forms);
 
 /// clean(), with & < > " ' as references: for text between XML or HTML tags.
 std::string escape_xml(std::string_view text);

@@ -95,10 +95,35 @@ TEST(Console, NoNumberIsCutAtAnyWidth) {
     std::string flat;
     for (const std::string& line : lines(console(record, {.width = width, .detail = 2})))
       flat += line.substr(std::min(line.size(), line.find_first_not_of(' '))) + " ";
-    for (const char* number : {"-2.04 % (-2.25 % to -1.83 %)", "×0.252 (at most ×0.267)",
+    for (const char* number : {"-1.62 % (-2.27 % to -0.97 %)", "×0.252 (at most ×0.267)",
                                "+0.031 % (-0.094 % to +0.156 %)", "-9.5 % to +1.5 %)"})
       EXPECT_NE(flat.find(number), std::string::npos) << number << " at " << width;
   }
+}
+
+// The message ends with what a user is asked for.
+TEST(Console, NeverCutsTheNumberThatAUserIsAskedFor) {
+  Record record = with_one_test();
+  reports::Test& test = record.suites[0].tests[0];
+  record.suites[0].tests.push_back(test);
+  for (const auto& [verdict, lead] :
+       {std::pair(Verdict::inconclusive, "; give "), std::pair(Verdict::invalid, ": give ")}) {
+    test.verdict = verdict;
+    test.ok = false;
+    test.message = "neither shown nor refuted" + std::string(300, 'x') + lead +
+                   "about 44000 rows in all; the interval is wider";
+    const std::string text = console(record);
+    EXPECT_THAT(text, HasSubstr("\n    to decide: give about 44000 rows in all\n"));
+  }
+}
+
+TEST(Console, TheRowOfAFailedImageIsTheFindingAtItsPlace) {
+  Record record = first_suite();
+  record.suites[0].tests = {failing(), failing()};
+  ImageFinding& winner = record.suites[0].tests[0].image->winner;
+  winner.place = "x 1, y 2";
+  winner.effect = mean_effect(0.0162, 0.002);
+  EXPECT_THAT(console(record, {.detail = 1}), HasSubstr("+1.62 % ("));
 }
 
 TEST(Console, NoTwoLinesInARowAreEmpty) {

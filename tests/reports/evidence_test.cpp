@@ -22,6 +22,11 @@ TEST(Evidence, AProofThatPassedRestsOnThePValueOfTheContrary) {
             "p(claim) = 1 (F, upper); its share of alpha is 0.001");
 }
 
+TEST(Evidence, APValueNearOneIsPlain) {
+  EXPECT_EQ((NamedP{"p", 0.9995, {}}.text()), "p = 0.9995");
+  EXPECT_EQ((NamedP{"p", 0.99999, {}}.text()), "p is above 0.9999");
+}
+
 TEST(Evidence, AProofThatFailedRestsOnThePValueOfTheClaim) {
   reports::Test test = proof(Verdict::fail);
   test.channels[0].log10_p = -9;

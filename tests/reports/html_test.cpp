@@ -19,20 +19,16 @@ std::string between(const std::string& text, std::string_view open, std::string_
   return text.substr(start, text.find(close, start) - start);
 }
 
-/// The bytes of the page's record, by zlib's reader of gzip.
+/// The bytes of the page's record.
 std::string unpacked(const std::string& page) {
   std::vector<std::uint8_t> packed_bytes =
       from_base64(between(page, "id=\"record\">", "</script>")).value();
   std::string bytes(std::size_t{1} << 26, '\0');
-  z_stream stream{};
-  EXPECT_EQ(inflateInit2(&stream, 16 + MAX_WBITS), Z_OK);
-  stream.next_in = packed_bytes.data();
-  stream.avail_in = static_cast<uInt>(packed_bytes.size());
-  stream.next_out = reinterpret_cast<Bytef*>(bytes.data());
-  stream.avail_out = static_cast<uInt>(bytes.size());
-  EXPECT_EQ(inflate(&stream, Z_FINISH), Z_STREAM_END);
-  bytes.resize(stream.total_out);
-  inflateEnd(&stream);
+  uLongf length = bytes.size();
+  EXPECT_EQ(uncompress(reinterpret_cast<Bytef*>(bytes.data()), &length, packed_bytes.data(),
+                       packed_bytes.size()),
+            Z_OK);
+  bytes.resize(length);
   return bytes;
 }
 

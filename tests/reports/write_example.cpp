@@ -20,6 +20,10 @@ int main(int argc, char** argv) {
     std::ofstream(folder / name, std::ios::binary) << page;
   };
   write("example.html", html(example_record()));
+  Record without_detect = example_record();
+  for (Suite& suite : without_detect.suites)
+    for (Test& test : suite.tests) test.detect.reset();
+  write("without-detect.html", html(without_detect));
   write("many.html", html(many_claims(1508)));
   write("ellipse.html", html(planted_ellipse()));
   write("hot.html", html(hot_pixel()));

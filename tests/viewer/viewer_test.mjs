@@ -116,7 +116,7 @@ function bare_reading(name) {
   return reader.evaluate(async (base64) => {
     const start = performance.now();
     const packed = Uint8Array.from(atob(base64.trim()), (letter) => letter.charCodeAt(0));
-    const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("gzip"));
+    const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
     const bytes = await new Response(stream).arrayBuffer();
     JSON.parse(new TextDecoder().decode(new Uint8Array(bytes, 4, new DataView(bytes).getUint32(0, true))));
     return performance.now() - start;
@@ -179,6 +179,15 @@ const views = {
     assert.equal(await card.locator('figure path[stroke-dasharray], figure [stroke-dasharray] path').count(), 1);
     assert.doesNotMatch(await plain(card), /e-value/);
     await closed(page);
+  },
+
+  async "the axis is shown where some claim has what must be caught"() {
+    for (const [name, axes] of [["example", 1], ["without-detect", 0]]) {
+      const page = await opened(name);
+      assert.equal(await page.locator(".row.head", { hasText: "must be caught" }).count(), axes);
+      assert.equal(await page.locator(".row.head svg.axis").count(), axes);
+      await closed(page);
+    }
   },
 
   async "claims are filtered by keyboard within three tabs"() {

@@ -6,11 +6,16 @@ const height = 18;
 const at = (value: number) => ((value + reach) / (2 * reach)) * width;
 const inside = (value: number) => Math.max(-reach, Math.min(reach, value));
 
-/// The effect on the axis that all rows share; null where a test has nothing that must be caught.
+/// Tells whether a test has an effect, and a least one that must be caught.
+export function hasBar(test: Test) {
+  return (finite(test.detect) ?? 0) > 0 && finite(test.effect.estimate) !== null && test.display.effect !== "";
+}
+
+/// The effect on the axis that all rows share.
 export function Bar({ test }: { test: Test }) {
-  const unit = finite(test.detect);
-  const value = finite(test.effect.estimate);
-  if (!unit || unit <= 0 || value === null || test.display.effect === "") return null;
+  if (!hasBar(test)) return null;
+  const unit = finite(test.detect)!;
+  const value = finite(test.effect.estimate)!;
   const low = inside((finite(test.effect.low) ?? -Infinity) / unit);
   const high = inside((finite(test.effect.high) ?? Infinity) / unit);
   const middle = height / 2;

@@ -68,6 +68,24 @@ TEST(DependentRows, ThatMayDependOnEachOtherAreAllowedFor) {
   EXPECT_GE(allowed, 4);
 }
 
+// Streams 1 to 20 hold pairs of which both sides are allowed for.
+TEST(DependentRows, OfBothSidesAreNamed) {
+  int both = 0;
+  for (std::uint32_t stream = 1; stream <= 20; stream += 2) {
+    const reports::Test test =
+        compared(Workplace(), chain(0.12, 400, stream), chain(0.12, 400, stream + 1),
+                 "  - {claim: mean(a) == mean(b)}\n")
+            .tests[0];
+    const auto allowed = std::ranges::count_if(test.gates, [](const reports::Gate& gate) {
+      return gate.name.starts_with("variance of the mean, allowed for dependence");
+    });
+    if (allowed < 2 || test.verdict != Verdict::pass) continue;
+    ++both;
+    EXPECT_THAT(test.message, HasSubstr("successive rows of a and rows of b seem correlated"));
+  }
+  EXPECT_GE(both, 1);
+}
+
 // A side is worth 420 independent rows. Nobody can force Welch's test of the rows, which would fail
 // under half of the seeds. Its test of batches fails under more than 3 of 30 with probability 3e-4,
 // and under more than 2 of 10 with 1.1e-4.
