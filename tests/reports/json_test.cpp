@@ -88,9 +88,10 @@ TEST(Json, ASavedRunGivesTheSamePage) {
   EXPECT_EQ(html(read_json(json(record), "run.json")), html(record));
 }
 
-std::string without_display(const std::string& text) {
+/// Without the members that are written and never read.
+std::string as_read(const std::string& text) {
   const auto keep = [](int, Json::parse_event_t event, Json& parsed) {
-    return event != Json::parse_event_t::key || parsed != "display";
+    return event != Json::parse_event_t::key || (parsed != "display" && parsed != "answers");
   };
   return Json::parse(text, keep).dump();
 }
@@ -99,8 +100,8 @@ RC_GTEST_PROP(Json, WritingAndReadingLoseNothing, ()) {
   const std::string once = json(random_record());
   RC_ASSERT(clean(once) == once);
   const std::string twice = json(read_json(once, "run.json"));
-  RC_ASSERT(without_display(twice) == without_display(once));
-  // Cleaning a text may change the order of names, and so which of two equal suspects comes first.
+  RC_ASSERT(as_read(twice) == as_read(once));
+  // Cleaning may change the order of names. From then on suspects and answers stay the same.
   RC_ASSERT(json(read_json(twice, "run.json")) == twice);
 }
 
