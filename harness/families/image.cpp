@@ -186,6 +186,12 @@ bool all_pictured(const Question& question, const Pilots& pilots) {
 constexpr double errors_above = 2;
 
 template <class Real>
+stats::ImageStack<Real> stack_of(const Subject& side,
+                                 const std::vector<std::span<const Real>>& images) {
+  return {extent_of(*side.image), images};
+}
+
+template <class Real>
 PlannedImage pilot_image(const stats::ImageStack<Real>& pilot) {
   const stats::ImageCovariance found = stats::image_covariance(pilot, on_all_threads);
   const double square = found.squared_trace + errors_above * found.squared_trace_error;
@@ -196,9 +202,7 @@ PlannedImage pilot_image(const stats::ImageStack<Real>& pilot) {
 
 PlannedImage pilot_image(const Subject& subject, const Pilot& pilot) {
   const ImageViews views(pilot.images, subject.channels);
-  return views.with([&](const auto& images) {
-    return pilot_image(stats::ImageStack{extent_of(*subject.image), images});
-  });
+  return views.with([&](const auto& images) { return pilot_image(stack_of(subject, images)); });
 }
 
 /// The noise of differences, and the brightness of what is subtracted.
@@ -337,7 +341,7 @@ class ImageTheta : public Theta {
     const Subject& second = question.subjects[1];
     const Pilot& pilot = *pilot_of(second, pilots);
     const auto squares = [&](const auto& images) {
-      return stats::image_squared_mean(stats::ImageStack{extent_of(*second.image), images});
+      return stats::image_squared_mean(stack_of(second, images));
     };
     const double sum = pilot.look ? pilot.look->distance.squared_norm
                                   : ImageViews(pilot.images, second.channels).with(squares);
