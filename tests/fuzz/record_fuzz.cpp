@@ -1,6 +1,6 @@
-// Records of runs (reports/report_formats.h), and the reports made from them. All bytes are a record, or
-// are refused with the file's name. A record is written and read again as the same, and every
-// report can be made from it.
+// Records of runs (reports/report_formats.h), and the reports made from them. All bytes are a
+// record, or are refused with the file's name. A record is written and read again as the same, and
+// every report can be made from it.
 
 // options: -max_len=32768
 

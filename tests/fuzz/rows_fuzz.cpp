@@ -3,7 +3,7 @@
 // whole.
 
 #include "estimators/core/value.h"
-#include "recorded/table.h"
+#include "estimators/recorded/table.h"
 #include "tests/fuzz/case.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
