@@ -16,6 +16,8 @@
 namespace assay::harness {
 namespace {
 
+using stats::Moments;
+
 // ---- Evidence
 
 std::vector<double> sorted(std::span<const double> values, double factor) {
@@ -75,17 +77,37 @@ Evidence quantile(const Method&, const Seen& seen) {
 
 double normal_density(double z) { return std::exp(-z * z / 2) / std::sqrt(2 * std::numbers::pi); }
 
-/// Least slope of the distribution function beside a quantile, from sorted distances, less two
-/// standard errors of a count. It reaches to `distance`, or as far as 64 values do. Returns 0 if
-/// there are fewer.
+// Beyond it the first term means nothing.
+constexpr double least_stretch = 0.2;
+// Fewer values beside a quantile do not show the density there.
+constexpr std::size_t fewest_beside = 64;
+
+/// Two standard errors of so many values, as a part of them.
+double uncertain_part(std::size_t count) { return 2 / std::sqrt(static_cast<double>(count)); }
+
+/// Slope of the distribution function over the distance, or as far as the fewest values reach.
 double slope_beside(std::span<const double> distances, double distance, double total) {
-  constexpr std::size_t fewest = 64;
-  if (distances.size() < fewest) return 0;
   const auto beyond = std::ranges::upper_bound(distances, distance);
-  const auto within = static_cast<std::size_t>(beyond - distances.begin());
-  const double count = static_cast<double>(std::max(within, fewest));
-  const double reach = std::max(distance, distances[fewest - 1]);
-  return (count - 2 * std::sqrt(count)) / total / reach;
+  const std::size_t count =
+      std::max(static_cast<std::size_t>(beyond - distances.begin()), fewest_beside);
+  const double reach = std::max(distance, distances[fewest_beside - 1]);
+  return static_cast<double>(count) * (1 - uncertain_part(count)) / total / reach;
+}
+
+/// The same on the sparser side of a quantile that has a part `beyond` of the outermost values
+/// farther out. Their excesses over the next value count as generalised Pareto, by their mean and
+/// variance (Hosking & Wallis 1987). `share` is their part of all values.
+double slope_in_tail(const Moments& excesses, double beyond, double distance, double share) {
+  const double shape = (1 - excesses.mean * excesses.mean / excesses.variance()) / 2;
+  const double scale = excesses.mean * (1 - shape);
+  const auto survival = [&](double excess) {
+    return std::pow(std::max(0.0, 1 + shape * excess / scale), -1 / shape);
+  };
+  const double quantile = scale / shape * (std::pow(beyond, -shape) - 1);
+  const double inner = std::min(distance, quantile);
+  const double outwards = (beyond - survival(quantile + distance)) / distance;
+  const double inwards = (survival(quantile - inner) - beyond) / inner;
+  return share * std::min(outwards, inwards) * (1 - uncertain_part(excesses.count));
 }
 
 /// quantile_standard_deviation with the density that the pilot shows over this distance, on the
@@ -94,22 +116,34 @@ std::optional<double> observed_deviation(std::span<const double> pilot, double p
                                          double distance) {
   std::vector<double> values(pilot.begin(), pilot.end());
   std::erase_if(values, [](double value) { return !std::isfinite(value); });
-  if (values.empty()) return std::nullopt;
+  if (values.size() < 4 * fewest_beside) return std::nullopt;
   values = stats::sorted(std::move(values));
   const double total = static_cast<double>(values.size());
   const std::size_t rank = stats::sample_quantile_rank(values.size(), probability);
-  const double middle = values[rank];
-  std::vector<double> below;
-  for (std::size_t i = rank; i-- > 0;) below.push_back(middle - values[i]);
-  std::vector<double> above;
-  for (std::size_t i = rank + 1; i < values.size(); ++i) above.push_back(values[i] - middle);
-  const double slope =
-      std::min(slope_beside(below, distance, total), slope_beside(above, distance, total));
+  const bool low = rank < fewest_beside;
+  double slope = 0;
+  if (low || rank + fewest_beside >= values.size()) {
+    if (!low) std::ranges::reverse(values);
+    constexpr std::size_t outermost = 2 * fewest_beside;
+    Moments excesses;
+    for (std::size_t i = 0; i < outermost; ++i) {
+      excesses.add(std::abs(values[i] - values[outermost]));
+    }
+    const double share = static_cast<double>(outermost) / total;
+    slope = slope_in_tail(excesses, (low ? probability : 1 - probability) / share, distance, share);
+  } else {
+    std::vector<double> below, above;
+    for (std::size_t i = rank; i-- > 0;) below.push_back(values[rank] - values[i]);
+    for (std::size_t i = rank + 1; i < values.size(); ++i)
+      above.push_back(values[i] - values[rank]);
+    slope = std::min(slope_beside(below, distance, total), slope_beside(above, distance, total));
+  }
   if (!(slope > 0) || !std::isfinite(slope)) return std::nullopt;
   return stats::quantile_standard_deviation(probability, slope);
 }
 
-/// Deviation of one secondary; means of several primaries count as normal.
+/// Deviation of one secondary. A mean of several primaries has a density by Cornish and Fisher's
+/// first term.
 double quantile_deviation(const TestOutcome& test, std::size_t subject, std::size_t channel,
                           double distance, const Pilots& pilots) {
   const double probability = test.question.test->claim.left.arguments[0];
@@ -120,8 +154,9 @@ double quantile_deviation(const TestOutcome& test, std::size_t subject, std::siz
     if (observed) return *observed;
   }
   const double z = stats::normal_quantile({stats::Tail::lower, std::log(probability)});
+  const double stretch = 1 + pilot.moments.skewness() / std::sqrt(averaged) * z / 3;
   return stats::quantile_standard_deviation(probability, normal_density(z)) *
-         std::sqrt(pilot.moments.variance() / averaged);
+         std::max(stretch, least_stretch) * std::sqrt(pilot.moments.variance() / averaged);
 }
 
 /// theta = v - r of the values' quantile v, over |r| if a margin is relative; of two, v - c w.
@@ -159,9 +194,8 @@ class QuantileTheta final : public Theta {
     return !question.of_two() && has_margin(*question.test, true);
   }
 
-  /// The size is planned by the pilot's counts over the distance to be found; means of several
-  /// primaries count as normal. If the density at the quantile differs, the size is off by its
-  /// ratio and the verdict may be inconclusive. The test itself is exact for every law.
+  /// The size is planned by the density at the quantile that the pilot shows. If it differs, the
+  /// size is off by its ratio and the verdict may be inconclusive. The test is exact for every law.
   std::optional<std::uint64_t> secondaries(const TestOutcome& test, const ErrorShare& share,
                                            const Pilots& pilots) const override {
     const Question& question = test.question;
