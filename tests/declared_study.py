@@ -9,8 +9,8 @@ verdict came. harness/measurements.md has the results.
 
 import argparse
 import collections
+import json
 import pathlib
-import re
 import subprocess
 import tempfile
 
@@ -145,8 +145,8 @@ def verdicts(assay, library, claim, seeds):
     counts = collections.Counter()
     for seed in seeds:
         said = subprocess.run([assay, "check", claim[0], *claim[1:], "--estimator", f"mine=library,file={library}",
-                               "--seed", str(seed)], capture_output=True, text=True, check=False).stdout
-        counts[re.search(r"\b(pass|fail|inconclusive|invalid|error)\b", said)[0]] += 1
+                               "--seed", str(seed), "--report", "json=-"], capture_output=True, text=True, check=False)
+        counts[json.loads(said.stdout)["suites"][0]["tests"][0]["verdict"]] += 1
     return counts
 
 

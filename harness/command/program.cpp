@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <new>
 #include <stdexcept>
 
 #include "estimators/core/line_error.h"
@@ -208,6 +209,10 @@ int program(const std::vector<std::string>& arguments, Messages* ranks) {
   } catch (const std::runtime_error& e) {
     // An outside cause: a full disk, a vanished file.
     fmt::print(stderr, "{}", in_lines(e.what()));
+  } catch (const std::bad_alloc&) {
+    fmt::print(
+        stderr, "{}",
+        in_lines("there is not enough memory; give a test a `budget`, or run fewer at a time"));
   } catch (const std::exception& e) {
     fmt::print(stderr, "{}", in_lines(fmt::format("internal error: {}", e.what())));
   } catch (...) {

@@ -53,7 +53,7 @@ const std::vector<QuantityRow>& quantities() {
        .told_by_moments = true},
       {.word = "quantile",
        .example = "quantile(a, 0.5) == 1",
-       .summary = "The value that an observation exceeds with a given probability.",
+       .summary = "The value that an observation stays below with a given probability.",
        .theta = &theta_of_quantiles(),
        .of_a_probability = true,
        .relative_effect = true},

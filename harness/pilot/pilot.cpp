@@ -16,7 +16,7 @@ namespace {
 constexpr std::uint64_t many_observations = 8192;
 // Primaries of an observation that shows whether an averaging estimator averages: these, or the
 // suite's `primaries` if they are fewer.
-constexpr std::uint64_t averaged_primaries = 32;
+constexpr std::uint64_t averaged_primaries = 8;
 // The pilot of an estimator that does not average has as many primaries as the floor of evidence.
 // It has 512 observations at least and many_observations at most. Such an estimator may be a chain.
 constexpr std::uint64_t few_observations = 512;

@@ -135,8 +135,8 @@ std::string what_would_help(const TestOutcome& outcome) {
                        or_if_normal(outcome));
   }
   return fmt::format(
-      "; {} `secondaries` would do: no test knows of a rare bright value that it never drew, so "
-      "that without a declared range none decides on fewer than {} primaries{}",
+      "; {} `secondaries` would do. Without a declared range no test decides on fewer than {} "
+      "primaries: it knows nothing of a rare bright value that it never drew{}",
       more, floor_of_evidence, or_if_normal(outcome));
 }
 

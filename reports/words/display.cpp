@@ -52,7 +52,8 @@ std::string found(const Test& test, const Effect& effect) {
       !std::isfinite(theta))
     return is(fmt::format("{} is {}", effect_name(effect), text));
   if (theta == 0) return is(fmt::format("{} equals {}", left, right));
-  if (text.starts_with("×")) return is(fmt::format("{} is {} {}", left, text, right));
+  if (constexpr std::string_view times = "×"; text.starts_with(times))
+    return is(fmt::format("{} is {} times {}", left, text.substr(times.size()), right));
   return is(fmt::format("{} is {} {} {}", left, size_text(theta, effect),
                         theta > 0 ? "above" : "below", right));
 }
