@@ -33,7 +33,8 @@ TEST(GateText, OfHeavyTailsAdvisesNoMoreObservations) {
 TEST(GateText, OfSkewnessSaysHowManyObservationsWouldHelp) {
   const std::string help = help_for(red("level factor by skewness"));
   EXPECT_THAT(
-      help, HasSubstr("about 39000 `secondaries` would do: no test knows of a rare bright value"));
+      help,
+      HasSubstr("about 39000 `secondaries` would do. Without a declared range no test decides"));
   EXPECT_THAT(help, Not(HasSubstr("heavy-tailed")));
 }
 
