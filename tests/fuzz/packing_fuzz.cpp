@@ -1,10 +1,7 @@
 // Blocks and recipes of other processes (harness/sampling/packing.h). All bytes are unpacked or
 // refused. A block that was unpacked can be folded, and is packed and read again as the same.
 
-#include "estimators/ready_made.h"
 #include "harness/sampling/packing.h"
-#include "harness/sampling/recorded_run.h"
-#include "stats/gates/independence_gates.h"
 #include "tests/fuzz/case.h"
 
 namespace {
