@@ -258,7 +258,7 @@ std::string contrary(const std::string& claim) {
 std::string NamedP::text() const {
   const std::string value = p_text(p, log10_p);
   const bool is_bound = value.starts_with("above") || value.starts_with("below");
-  return exists() ? fmt::format("{} {} {}", name, is_bound ? "is" : "=", value) : std::string();
+  return exists() ? fmt::format("{} {}{}", name, is_bound ? "" : "= ", value) : std::string();
 }
 
 NamedP headline_p(const Test& test) {

@@ -24,7 +24,7 @@ TEST(Evidence, AProofThatPassedRestsOnThePValueOfTheContrary) {
 
 TEST(Evidence, APValueNearOneIsPlain) {
   EXPECT_EQ((NamedP{"p", 0.9995, {}}.text()), "p = 0.9995");
-  EXPECT_EQ((NamedP{"p", 0.99999, {}}.text()), "p is above 0.9999");
+  EXPECT_EQ((NamedP{"p", 0.99999, {}}.text()), "p above 0.9999");
 }
 
 TEST(Evidence, AProofThatFailedRestsOnThePValueOfTheClaim) {
