@@ -8,6 +8,7 @@
 
 #include "stats/basics/check.h"
 #include "stats/basics/scores.h"
+#include "stats/gates/copies.h"
 #include "stats/gates/dependence.h"
 #include "stats/tails/tails.h"
 
@@ -153,9 +154,16 @@ Gate lagged_gate(std::span<const double> values) {
 std::vector<Gate> drawn_order_gates(std::span<const double> values) {
   if (values.size() < 8) return {};
   const auto first = values.first(std::min(values.size(), most_lagged));
-  return {gate_of_lags(lagged_correlations(first, 1), "rank correlation of drawn observations",
-                       false_red_of_draws),
-          gate_of_rank_batches(values)};
+  std::vector<Gate> gates{
+      gate_of_lags(lagged_correlations(first, 1), "rank correlation of drawn observations",
+                   false_red_of_draws),
+      gate_of_rank_batches(values)};
+  if (const auto again = repeated_run(values)) {
+    const auto length = static_cast<double>(again->length);
+    gates.push_back(
+        {.name = "longest repetition", .value = length, .low = length, .state = GateState::red});
+  }
+  return gates;
 }
 
 double autocorrelation_time(std::span<const double> values) {

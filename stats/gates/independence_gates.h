@@ -28,9 +28,10 @@ Gate batch_gate(std::span<const double> values);
 // if there are no such lags.
 Gate lagged_gate(std::span<const double> values);
 
-// Null hypothesis: what an estimator draws is independent, of any one law. Both gates rest on
-// ranks, whose law is that of a random order, whatever the values. Each is red with probability
-// 1e-7 at most, and amber below .01. Below 8 values there are none.
+// Null hypothesis: what an estimator draws is independent, of any one law. Two gates rest on ranks,
+// whose law is that of a random order, whatever the values. Each is red with probability 1e-7 at
+// most, and amber below .01. A third stands there, red, if a run of values comes again (copies.h),
+// as from seeds that do. Below 8 values there are none.
 //
 // The first has the rank correlation r_k that is farthest from 0, over the lags k = 1 ... K of the
 // first 2048 values (dependence.h). The second has the largest H / B, over batches of

@@ -119,6 +119,8 @@ TEST(IndependenceGates, OfDrawsSeeMovingAveragesChainsAndSharedOffsets) {
                                        noise.begin() + static_cast<std::ptrdiff_t>(i + 5), 0.0));
     }
     EXPECT_EQ(worst_of_draws(moving), GateState::red);
+    noise.insert(noise.end(), noise.begin(), noise.end());
+    EXPECT_EQ(worst_of_draws(noise), GateState::red) << "seeds that come again";
     EXPECT_EQ(worst_of_draws(autoregressive(.5, 1000, random)), GateState::red);
     EXPECT_EQ(worst_of_draws(autoregressive(-.5, 1000, random)), GateState::red);
     const auto sharing = [&](std::size_t size, std::size_t length, double share) {
