@@ -77,8 +77,6 @@ Evidence quantile(const Method&, const Seen& seen) {
 
 double normal_density(double z) { return std::exp(-z * z / 2) / std::sqrt(2 * std::numbers::pi); }
 
-// Beyond it the first term means nothing.
-constexpr double least_stretch = 0.2;
 // Fewer values beside a quantile do not show the density there.
 constexpr std::size_t fewest_beside = 64;
 
@@ -94,20 +92,45 @@ double slope_beside(std::span<const double> distances, double distance, double t
   return static_cast<double>(count) * (1 - uncertain_part(count)) / total / reach;
 }
 
-/// The same on the sparser side of a quantile that has a part `beyond` of the outermost values
-/// farther out. Their excesses over the next value count as generalised Pareto, by their mean and
-/// variance (Hosking & Wallis 1987). `share` is their part of all values.
-double slope_in_tail(const Moments& excesses, double beyond, double distance, double share) {
+/// The same on the sparser side of a quantile that has this part of the law beyond it. Values are
+/// in their order from that end. Excesses of the outermost over the next value count as generalised
+/// Pareto, by their mean and variance (Hosking & Wallis 1987).
+double slope_in_tail(std::span<const double> values, double part, double distance) {
+  constexpr std::size_t outermost = 2 * fewest_beside;
+  Moments excesses;
+  for (const double value : values.first(outermost)) {
+    excesses.add(std::abs(value - values[outermost]));
+  }
   const double shape = (1 - excesses.mean * excesses.mean / excesses.variance()) / 2;
   const double scale = excesses.mean * (1 - shape);
   const auto survival = [&](double excess) {
     return std::pow(std::max(0.0, 1 + shape * excess / scale), -1 / shape);
   };
+  const double share = static_cast<double>(outermost) / static_cast<double>(values.size());
+  const double beyond = part / share;
   const double quantile = scale / shape * (std::pow(beyond, -shape) - 1);
   const double inner = std::min(distance, quantile);
   const double outwards = (beyond - survival(quantile + distance)) / distance;
   const double inwards = (survival(quantile - inner) - beyond) / inner;
-  return share * std::min(outwards, inwards) * (1 - uncertain_part(excesses.count));
+  return share * std::min(outwards, inwards) * (1 - uncertain_part(outermost));
+}
+
+/// The same on the sparser side of the value at this rank.
+double slope_around(std::span<const double> sorted, std::size_t rank, double distance) {
+  std::vector<double> below, above;
+  for (std::size_t i = rank; i-- > 0;) below.push_back(sorted[rank] - sorted[i]);
+  for (const double value : sorted.subspan(rank + 1)) above.push_back(value - sorted[rank]);
+  const double total = static_cast<double>(sorted.size());
+  return std::min(slope_beside(below, distance, total), slope_beside(above, distance, total));
+}
+
+double observed_slope(std::vector<double> values, double probability, double distance) {
+  values = stats::sorted(std::move(values));
+  const std::size_t rank = stats::sample_quantile_rank(values.size(), probability);
+  if (rank < fewest_beside) return slope_in_tail(values, probability, distance);
+  if (rank + fewest_beside < values.size()) return slope_around(values, rank, distance);
+  std::ranges::reverse(values);
+  return slope_in_tail(values, 1 - probability, distance);
 }
 
 /// quantile_standard_deviation with the density that the pilot shows over this distance, on the
@@ -117,30 +140,13 @@ std::optional<double> observed_deviation(std::span<const double> pilot, double p
   std::vector<double> values(pilot.begin(), pilot.end());
   std::erase_if(values, [](double value) { return !std::isfinite(value); });
   if (values.size() < 4 * fewest_beside) return std::nullopt;
-  values = stats::sorted(std::move(values));
-  const double total = static_cast<double>(values.size());
-  const std::size_t rank = stats::sample_quantile_rank(values.size(), probability);
-  const bool low = rank < fewest_beside;
-  double slope = 0;
-  if (low || rank + fewest_beside >= values.size()) {
-    if (!low) std::ranges::reverse(values);
-    constexpr std::size_t outermost = 2 * fewest_beside;
-    Moments excesses;
-    for (std::size_t i = 0; i < outermost; ++i) {
-      excesses.add(std::abs(values[i] - values[outermost]));
-    }
-    const double share = static_cast<double>(outermost) / total;
-    slope = slope_in_tail(excesses, (low ? probability : 1 - probability) / share, distance, share);
-  } else {
-    std::vector<double> below, above;
-    for (std::size_t i = rank; i-- > 0;) below.push_back(values[rank] - values[i]);
-    for (std::size_t i = rank + 1; i < values.size(); ++i)
-      above.push_back(values[i] - values[rank]);
-    slope = std::min(slope_beside(below, distance, total), slope_beside(above, distance, total));
-  }
+  const double slope = observed_slope(std::move(values), probability, distance);
   if (!(slope > 0) || !std::isfinite(slope)) return std::nullopt;
   return stats::quantile_standard_deviation(probability, slope);
 }
+
+// Cornish and Fisher's first term means nothing where it shrinks the deviation below this part.
+constexpr double least_stretch = 0.2;
 
 /// Deviation of one secondary. A mean of several primaries has a density by Cornish and Fisher's
 /// first term.
