@@ -12,28 +12,29 @@ class Draws {
  public:
   template <class Source>
   void add(const Source& source) {
-    auto& [secondaries, cost] =
+    Longest& longest =
         longest_[{source.plugin, source.parameters, source.stream, source.primaries}];
-    if (source.secondaries >= secondaries)
-      std::tie(secondaries, cost) = std::tie(source.secondaries, source.cost);
+    if (source.secondaries >= longest.secondaries) longest = {source.secondaries, source.cost};
   }
 
   Cost total() const {
     Cost sum;
     for (const auto& [draws, longest] : longest_) {
-      const Cost& cost = longest.second;
-      sum.camera_rays += cost.camera_rays;
-      sum.closest_hit_rays += cost.closest_hit_rays;
-      sum.shadow_rays += cost.shadow_rays;
-      sum.samples += cost.samples;
-      sum.seconds += cost.seconds;
+      sum.camera_rays += longest.cost.camera_rays;
+      sum.closest_hit_rays += longest.cost.closest_hit_rays;
+      sum.shadow_rays += longest.cost.shadow_rays;
+      sum.samples += longest.cost.samples;
+      sum.seconds += longest.cost.seconds;
     }
     return sum;
   }
 
  private:
-  using Key = std::tuple<std::string, std::string, std::string, std::uint64_t>;
-  std::map<Key, std::pair<std::uint64_t, Cost>> longest_;
+  struct Longest {
+    std::uint64_t secondaries = 0;
+    Cost cost;
+  };
+  std::map<std::tuple<std::string, std::string, std::string, std::uint64_t>, Longest> longest_;
 };
 
 }  // namespace
