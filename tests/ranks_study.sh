@@ -5,12 +5,10 @@ set -uo pipefail
 assay=$(realpath "${1:?ranks_study.sh ASSAY [RANKS…]}")
 ranks=("${@:2}")
 root=$(realpath "$(dirname "$0")/..")
-source <(sed -n '/^timeless()/,/^}/p' "$root/tests/cli/program.sh")
-folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cd "$folder" && mkdir one other
+source "$root/tests/cli/program.sh" "$assay" "$root"
+mkdir one other
 differ=0
-for suite in "$root"/suites/*.yaml; do
+for suite in "$source_folder"/suites/*.yaml; do
   case $suite in */cycles.yaml | */termination-time.yaml) continue ;; esac
   "$assay" run "$suite" --quiet --threads 1 --report json=one/run.json >/dev/null 2>&1 </dev/null
   code=$?
