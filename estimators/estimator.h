@@ -111,7 +111,8 @@ class Setup {
   virtual std::vector<Channel> channels() const = 0;
   virtual std::unique_ptr<Estimator> make() const = 0;
   virtual std::vector<NamedSampler> samplers() const { return {}; }
-  /// The shape of an observation whose first channels are an image.
+  /// The shape of an observation whose first channels are an image. They are rounded to single
+  /// precision.
   virtual std::optional<ImageShape> image() const { return {}; }
   /// The most secondary estimates there are (recorded data), if bounded.
   virtual std::optional<std::uint64_t> observations() const { return {}; }

@@ -38,9 +38,6 @@ class PictureRows {
 /// The rows of a set-up of pictures, all from their first row on; null for other set-ups.
 std::unique_ptr<PictureRows> picture_rows(const Setup& setup);
 
-/// The average of texels that follows them in an observation.
-double average_of(std::span<const float> texels);
-
 /// True if a file name of the plugin `recorded` can be read only once: standard input, a pipe, a
 /// device. Also true of a name below /dev or /proc that is gone already.
 bool is_read_once(const std::string& file);

@@ -262,12 +262,6 @@ std::unique_ptr<PictureRows> picture_rows(const Setup& setup) {
   return pictures == nullptr ? nullptr : pictures->rows();
 }
 
-double average_of(std::span<const float> texels) {
-  double sum = 0;
-  for (const float texel : texels) sum += double{texel};
-  return sum / static_cast<double>(texels.size());
-}
-
 std::string observation_place(const Setup& setup, const WhichObservation& which) {
   const auto* const files = dynamic_cast<const InFiles*>(&setup);
   return files == nullptr ? "" : files->place_of(which);
@@ -293,8 +287,12 @@ std::optional<std::pair<std::string, std::string>> shared_picture(const Setup& f
 Channel average_channel() { return {.name = "average", .diagnostic = true}; }
 
 void write_observation(std::span<const float> texels, std::span<double> out) {
-  std::ranges::copy(texels, out.begin());
-  out[texels.size()] = average_of(texels);
+  double sum = 0;
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    out[i] = double{texels[i]};
+    sum += out[i];
+  }
+  out[texels.size()] = sum / static_cast<double>(texels.size());
 }
 
 std::shared_ptr<const Setup> picture_setup(PictureStack stack, bool independent,

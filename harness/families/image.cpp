@@ -185,14 +185,11 @@ bool all_pictured(const Question& question, const Pilots& pilots) {
 // Standard errors above the estimate of tr C^2: pilots of heavy noise differ.
 constexpr double errors_above = 2;
 
-template <class Real>
-stats::ImageStack<Real> stack_of(const Subject& side,
-                                 const std::vector<std::span<const Real>>& images) {
-  return {extent_of(*side.image), images};
+ImageViews pilot_views(const Subject& side, const Pilot& pilot) {
+  return {pilot.images, side.channels};
 }
 
-template <class Real>
-PlannedImage pilot_image(const stats::ImageStack<Real>& pilot) {
+PlannedImage pilot_image(const stats::ImageStack& pilot) {
   const stats::ImageCovariance found = stats::image_covariance(pilot, on_all_threads);
   const double square = found.squared_trace + errors_above * found.squared_trace_error;
   return {.trace = found.trace,
@@ -200,23 +197,16 @@ PlannedImage pilot_image(const stats::ImageStack<Real>& pilot) {
           .squared_norm = found.squared_mean};
 }
 
-PlannedImage pilot_image(const Subject& subject, const Pilot& pilot) {
-  const ImageViews views(pilot.images, subject.channels);
-  return views.with([&](const auto& images) { return pilot_image(stack_of(subject, images)); });
-}
-
 /// The noise of differences, and the brightness of what is subtracted.
 PlannedImage pilot_of_differences(const Question& question, const Pilots& pilots) {
-  std::vector<ChannelData> data(2);
+  std::vector<ChannelData> data;
   for (std::size_t s = 0; s < 2; ++s) {
-    data[s].images =
-        ImageViews(pilot_at(question, s, pilots).images, question.subjects[s].channels);
+    data.push_back({.images = pilot_views(question.subjects[s], pilot_at(question, s, pilots))});
   }
-  return with_pair({question, 0, data}, [](const auto& pair) {
-    PlannedImage image = pilot_image(pair.first);
-    image.squared_norm = stats::image_squared_mean(*pair.subtracted);
-    return image;
-  });
+  const ImagePair pair({question, 0, data});
+  PlannedImage image = pilot_image(pair.first);
+  image.squared_norm = stats::image_squared_mean(*pair.subtracted);
+  return image;
 }
 
 /// The noise of an observation, and the brightness that margins are relative to. The root of two
@@ -233,7 +223,8 @@ PlannedImage planned_image(const TestOutcome& test, const Pilots& pilots) {
   PlannedImage all;
   for (std::size_t s = 0; s < question.subjects.size(); ++s) {
     const Subject& side = question.subjects[s];
-    const PlannedImage image = pilot_image(side, pilot_at(question, s, pilots));
+    const ImageViews views = pilot_views(side, pilot_at(question, s, pilots));
+    const PlannedImage image = pilot_image({extent_of(*side.image), views.images()});
     const double square = s == 0 ? 1 : question.factor * question.factor;
     all.trace += square * image.trace / side.averaged(primaries[s]);
     all.root += square * image.root / side.averaged(primaries[s]);
@@ -340,11 +331,10 @@ class ImageTheta : public Theta {
     if (!question.of_two() || !all_pictured(question, pilots)) return 0;
     const Subject& second = question.subjects[1];
     const Pilot& pilot = *pilot_of(second, pilots);
-    const auto squares = [&](const auto& images) {
-      return stats::image_squared_mean(stack_of(second, images));
-    };
-    const double sum = pilot.look ? pilot.look->distance.squared_norm
-                                  : ImageViews(pilot.images, second.channels).with(squares);
+    const ImageViews views = pilot_views(second, pilot);
+    const double sum = pilot.look
+                           ? pilot.look->distance.squared_norm
+                           : stats::image_squared_mean({extent_of(*second.image), views.images()});
     const auto elements = static_cast<double>(second.channels.size());
     return std::abs(question.factor) * std::sqrt(std::max(0.0, sum) / elements);
   }

@@ -13,10 +13,23 @@
 namespace assay::harness {
 namespace {
 
+/// A channel's declaration of its values.
+struct Declared {
+  double low;
+  double high;
+  double rounding;
+  double precision = 0;  ///< relative rounding of an image's numbers when they are drawn
+  double offset = 0;     ///< added after that
+  /// The largest error of a value.
+  double error(double value) const {
+    return rounding + precision * (std::abs(value) + std::abs(value - offset));
+  }
+};
+
 struct Span {
   double low;
   double high;
-  bool constant(double rounding) const { return high - low <= 2 * rounding; }
+  bool constant(const Declared& channel) const { return high - low <= 2 * channel.error(low); }
 };
 
 /// A number of one image that replaces an element in every image of a stack.
@@ -26,26 +39,22 @@ struct Replacement {
 };
 
 /// The stack with these elements replaced; changed images are kept in `copies`.
-template <class Real>
-stats::ImageStack<Real> replaced(const stats::ImageStack<Real>& stack,
-                                 const std::vector<Replacement>& replacements,
-                                 std::vector<std::vector<Real>>& copies) {
+stats::ImageStack replaced(const stats::ImageStack& stack,
+                           const std::vector<Replacement>& replacements,
+                           std::vector<std::vector<float>>& copies) {
   if (replacements.empty()) return stack;
-  stats::ImageStack<Real> out{stack.extent, {}};
-  for (const std::span<const Real> image : stack.images) {
-    std::vector<Real>& copy = copies.emplace_back(image.begin(), image.end());
-    for (const Replacement& each : replacements) copy[each.element] = static_cast<Real>(each.value);
+  stats::ImageStack out{stack.extent, {}};
+  for (const std::span<const float> image : stack.images) {
+    std::vector<float>& copy = copies.emplace_back(image.begin(), image.end());
+    for (const Replacement& each : replacements)
+      copy[each.element] = static_cast<float>(each.value);
     out.images.emplace_back(copy);
   }
   return out;
 }
 
-/// A channel's declaration of its values.
-struct Declared {
-  double low;
-  double high;
-  double rounding;
-};
+/// Half a unit in the last place of a float.
+constexpr double half_unit = std::numeric_limits<float>::epsilon() / 2;
 
 /// Declarations of every element; pictures of files share one.
 class DeclaredElements {
@@ -55,7 +64,7 @@ class DeclaredElements {
     const std::vector<Channel> all = subject.setup->channels();
     each_.reserve(subject.channels.size());
     for (const std::size_t channel : subject.channels.all()) {
-      each_.push_back({all[channel].low, all[channel].high, all[channel].rounding});
+      each_.push_back({all[channel].low, all[channel].high, all[channel].rounding, half_unit});
     }
   }
   const Declared& operator[](std::size_t element) const {
@@ -67,10 +76,12 @@ class DeclaredElements {
     for (Declared& channel : each_) channel = mapped(channel);
   }
 
-  /// Makes them the declarations of differences, but for their range.
-  void subtract(const DeclaredElements& other) {
+  /// Makes them the declarations of differences from images near `image`, but for their range.
+  void subtract(const DeclaredElements& other, std::span<const float> image) {
     each_.resize(std::max(each_.size(), other.each_.size()), any_);
-    for (std::size_t i = 0; i < each_.size(); ++i) each_[i].rounding += other[i].rounding;
+    for (std::size_t i = 0; i < each_.size(); ++i) {
+      each_[i].rounding = each_[i].error(image[i]) + other[i].error(image[i]);
+    }
     any_.rounding += other.any_.rounding;
   }
 
@@ -84,9 +95,8 @@ using Spans = std::array<Span, at_a_time>;
 
 /// Ranges of the elements from `first` on. An element's scan ends as soon as it is seen to vary,
 /// nearly always at the second image. Returns whether any may be constant.
-template <class Real>
-bool find_spans(const stats::ImageStack<Real>& stack, const DeclaredElements& channels,
-                std::size_t first, Spans& spans) {
+bool find_spans(const stats::ImageStack& stack, const DeclaredElements& channels, std::size_t first,
+                Spans& spans) {
   const std::size_t size = std::min(at_a_time, stack.extent.elements() - first);
   for (std::size_t i = 0; i < size; ++i) {
     const double value = stack.images[0][first + i];
@@ -94,13 +104,13 @@ bool find_spans(const stats::ImageStack<Real>& stack, const DeclaredElements& ch
   }
   bool constants = true;
   for (std::size_t r = 1; r < stack.images.size() && constants; ++r) {
-    const Real* const image = stack.images[r].data() + first;
+    const float* const image = stack.images[r].data() + first;
     constants = false;
     for (std::size_t i = 0; i < size; ++i) {
       const double value = image[i];
       spans[i].low = std::min(spans[i].low, value);
       spans[i].high = std::max(spans[i].high, value);
-      constants |= spans[i].constant(channels[first + i].rounding);
+      constants |= spans[i].constant(channels[first + i]);
     }
   }
   return constants;
@@ -119,10 +129,9 @@ struct Missing : stats::ConstantSample {
   }
 };
 
-template <class Real>
-Constant mean_of(const stats::ImageStack<Real>& stack, std::size_t element) {
+Constant mean_of(const stats::ImageStack& stack, std::size_t element) {
   stats::Moments moments;
-  for (const std::span<const Real> image : stack.images) moments.add(image[element]);
+  for (const std::span<const float> image : stack.images) moments.add(image[element]);
   return {moments.mean, moments.standard_error()};
 }
 
@@ -132,7 +141,9 @@ Declared mapped(const Declared& channel, const Question& question) {
   const double high = question.factor * channel.high + question.offset;
   return {.low = std::min(low, high),
           .high = std::max(low, high),
-          .rounding = channel.rounding * std::abs(question.factor)};
+          .rounding = channel.rounding * std::abs(question.factor),
+          .precision = channel.precision,
+          .offset = question.offset};
 }
 
 DeclaredElements mapped_elements(const Question& question) {
@@ -150,17 +161,20 @@ double z_of(const UnseenElement& unseen) {
   return unseen.sign * stats::normal_quantile({stats::Tail::upper, unseen.log_p - std::log(2.0)});
 }
 
-template <class Real>
-VaryingPart<Real>::VaryingPart(const Question& question, const ComparedImages<Real>& pair)
-    : ComparedImages<Real>(pair) {
-  this->second ? settle_two(question) : settle_against_reference(question);
+VaryingPart::VaryingPart(const Question& question, const ImagePair& pair) : ComparedImages(pair) {
+  if (second) {
+    settle_two(question);
+  } else {
+    settle_against_reference(
+        question, pair.subtracted ? pair.subtracted->images[0] : std::span<const float>());
+  }
 }
 
-template <class Real>
-void VaryingPart<Real>::settle_against_reference(const Question& question) {
-  auto& [images, none, numbers, errors] = static_cast<ComparedImages<Real>&>(*this);
+void VaryingPart::settle_against_reference(const Question& question,
+                                           std::span<const float> subtracted) {
+  auto& [images, none, numbers, errors] = static_cast<ComparedImages&>(*this);
   DeclaredElements channels(question.subjects[0]);
-  if (question.is().of_pairs) channels.subtract(mapped_elements(question));
+  if (!subtracted.empty()) channels.subtract(mapped_elements(question), subtracted);
   Spans spans;
   bool constants = false;
   std::vector<Replacement> replacements;
@@ -168,10 +182,10 @@ void VaryingPart<Real>::settle_against_reference(const Question& question) {
     if (i % at_a_time == 0) constants = find_spans(images, channels, i, spans);
     if (!constants) continue;
     const Span span = spans[i % at_a_time];
-    if (!span.constant(channels[i].rounding)) continue;
+    if (!span.constant(channels[i])) continue;
     const double constant = images.images[0][i];
     const Constant expected{numbers[i], errors.empty() ? 0 : errors[i]};
-    const bool differs = std::abs(constant - expected.value) > channels[i].rounding;
+    const bool differs = std::abs(constant - expected.value) > channels[i].error(expected.value);
     if (differs && question.is().of_pairs) continue;  // it fails, as of two images
     ++constants_;
     if (differs) {
@@ -183,14 +197,13 @@ void VaryingPart<Real>::settle_against_reference(const Question& question) {
     numbers[i] = constant;
     if (!errors.empty()) errors[i] = 0;
   }
-  this->drop_zero_errors();
+  drop_zero_errors();
   images = replaced(images, replacements, settled_);
 }
 
-template <class Real>
-void VaryingPart<Real>::settle_two(const Question& question) {
-  auto& stack = this->first;
-  auto& other = *this->second;
+void VaryingPart::settle_two(const Question& question) {
+  auto& stack = first;
+  auto& other = *second;
   const DeclaredElements one(question.subjects[0]);
   const DeclaredElements two = mapped_elements(question);
   std::vector<Replacement> of_first;
@@ -204,20 +217,20 @@ void VaryingPart<Real>::settle_two(const Question& question) {
       constants |= find_spans(other, two, i, second_spans);
     }
     if (!constants) continue;
-    const bool first_constant = first_spans[i % at_a_time].constant(one[i].rounding);
-    const bool second_constant = second_spans[i % at_a_time].constant(two[i].rounding);
+    const bool first_constant = first_spans[i % at_a_time].constant(one[i]);
+    const bool second_constant = second_spans[i % at_a_time].constant(two[i]);
     if (!first_constant && !second_constant) continue;
     const double a = stack.images[0][i];
     const double b = other.images[0][i];
     if (first_constant && second_constant) {
       ++constants_;
-      const bool equal = std::abs(a - b) <= one[i].rounding + two[i].rounding;
+      const bool equal = std::abs(a - b) <= one[i].error(a) + two[i].error(b);
       of_first.push_back({i, a});
       of_second.push_back({i, equal ? a : b});
       continue;
     }
     const Declared& channel = first_constant ? one[i] : two[i];
-    const stats::ImageStack<Real>& constant = first_constant ? stack : other;
+    const stats::ImageStack& constant = first_constant ? stack : other;
     const Constant mean = mean_of(first_constant ? other : stack, i);
     const Missing missing{first_constant ? a : b, channel.low, channel.high,
                           constant.images.size()};
@@ -230,8 +243,5 @@ void VaryingPart<Real>::settle_two(const Question& question) {
   stack = replaced(stack, of_first, settled_);
   other = replaced(other, of_second, settled_);
 }
-
-template struct VaryingPart<float>;
-template struct VaryingPart<double>;
 
 }  // namespace assay::harness

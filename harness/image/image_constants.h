@@ -4,6 +4,7 @@
 // unseen.
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "harness/image/image_pair.h"
@@ -23,26 +24,26 @@ struct UnseenElement {
 /// The normal z of its p-value, with the difference's sign.
 double z_of(const UnseenElement& unseen);
 
-/// The elements of an image pair that varied by more than their channels' declared rounding.
+/// The elements of an image pair that varied by more than their channels' declared rounding. Images
+/// that are drawn are also rounded to single precision.
 ///
 /// An element that did not vary is tested in sums with its neighbours. By itself it is held against
 /// its range, in `unseen`. Constants that differ by rounding only are equal. If one of two images
 /// alone varied, its standard error tests the other's constant, provided that the other declares a
 /// range. Without a range Welch's test takes the values seen.
-template <class Real>
-struct VaryingPart : ComparedImages<Real> {
-  VaryingPart(const Question& question, const ComparedImages<Real>& pair);
+struct VaryingPart : ComparedImages {
+  VaryingPart(const Question& question, const ImagePair& pair);
   VaryingPart(const VaryingPart&) = delete;  // spans point inside
   VaryingPart& operator=(const VaryingPart&) = delete;
 
   const std::vector<UnseenElement>& unseen() const { return unseen_; }
-  bool any() const { return constants_ < this->first.extent.elements(); }
+  bool any() const { return constants_ < first.extent.elements(); }
 
  private:
-  void settle_against_reference(const Question& question);
+  void settle_against_reference(const Question& question, std::span<const float> subtracted);
   void settle_two(const Question& question);
 
-  std::vector<std::vector<Real>> settled_;  // images with a rounded element
+  std::vector<std::vector<float>> settled_;  // images with a rounded element
   std::vector<UnseenElement> unseen_;
   std::size_t constants_ = 0;
 };

@@ -27,8 +27,7 @@ constexpr double unseen_share = 0.02;
 
 // ---- theta = 0
 
-template <class Real>
-void look_at_family(const VaryingPart<Real>& varying, const stats::ImageExtent& extent,
+void look_at_family(const VaryingPart& varying, const stats::ImageExtent& extent,
                     bool constants_decide, ImageOutcome& outcome) {
   outcome.z.resize(extent.elements());
   const stats::PyramidOptions options{
@@ -71,17 +70,15 @@ stats::ImageDistance in_units_of_margin(const stats::ImageDistance& distance,
   return distance;
 }
 
-template <class Real>
 stats::ImageDistance relative_to(const stats::ImageDistance& distance,
-                                 const stats::ImageStack<Real>& other) {
+                                 const stats::ImageStack& other) {
   const std::vector<double> zeros(other.extent.elements());
   return stats::relative_to(
       distance,
       stats::image_distance(other, stats::ImageReference{other.extent, zeros}, on_all_threads));
 }
 
-template <class Real>
-stats::ImageDistance distance_of(const ImagePair<Real>& pair, bool relative,
+stats::ImageDistance distance_of(const ImagePair& pair, bool relative,
                                  stats::ElementErrors errors) {
   stats::ImageDistance distance = pair.with([](const auto& first, const auto& second) {
     return stats::image_distance(first, second, on_all_threads);
@@ -94,8 +91,7 @@ stats::ImageDistance distance_of(const ImagePair<Real>& pair, bool relative,
   return in_units_of_margin(distance, pair.first.extent, relative);
 }
 
-template <class Real>
-double uniform_error(const ImagePair<Real>& pair, bool relative) {
+double uniform_error(const ImagePair& pair, bool relative) {
   ChannelMeans other = pair.second ? channel_means(*pair.second) : channel_means(pair.reference());
   if (pair.subtracted) {
     other = channel_means(*pair.subtracted);
@@ -177,14 +173,12 @@ void require_spread(const Question& question, bool varies) {
       all_alike(question)));
 }
 
-template <class Real>
-bool varies(const stats::ImageStack<Real>& stack) {
+bool varies(const stats::ImageStack& stack) {
   return std::ranges::any_of(
       stack.images, [&](const auto& image) { return !std::ranges::equal(image, stack.images[0]); });
 }
 
-template <class Real>
-void require_independent(const ImageTest& test, const ImagePair<Real>& pair) {
+void require_independent(const ImageTest& test, const ImagePair& pair) {
   if (!test.require_independent) return;
   test.require_independent(pair.with([](const auto& first, const auto& second) {
     return stats::image_dependence(stats::pair_of(first, second), on_all_threads);
@@ -192,9 +186,8 @@ void require_independent(const ImageTest& test, const ImagePair<Real>& pair) {
 }
 
 /// Tests the pair and measures its distance.
-template <class Real>
-stats::ImageDistance look_at(const Question& question, const ImageTest& test,
-                             const ImagePair<Real>& pair, ImageOutcome& outcome) {
+stats::ImageDistance look_at(const Question& question, const ImageTest& test, const ImagePair& pair,
+                             ImageOutcome& outcome) {
   const auto [fewest, most] = pair.replicates();
   const stats::ImageExtent& extent = pair.first.extent;
   stats::check::replicates("image", fewest);
@@ -283,9 +276,8 @@ void until_interrupted(std::size_t count, const std::function<void(std::size_t)>
   stop_if_interrupted();
 }
 
-template <class Real>
 stats::ImageLawTest law_test_of(const Question& question, const ImageTest& test,
-                                const ImagePair<Real>& pair) {
+                                const ImagePair& pair) {
   require_independent(test, pair);
   require_spread(question, varies(pair.first) || varies(*pair.second));
   return stats::image_law_test(
@@ -302,10 +294,9 @@ stats::ImageLawTest law_test_of(const Question& question, const ImageTest& test,
 ChannelEvidence evidence_of_image_laws(const Seen& seen, const ImageTest& test) {
   const Question& question = seen.question;
   ImageOutcome outcome;
-  stats::ImageLawTest law = with_pair(seen, [&](const auto& pair) {
-    outcome.replicates = pair.replicates().second;
-    return law_test_of(question, test, pair);
-  });
+  const ImagePair pair(seen);
+  outcome.replicates = pair.replicates().second;
+  stats::ImageLawTest law = law_test_of(question, test, pair);
   const stats::ImageExtent extent = extent_of(*question.subjects[0].image);
   stats::ImageFinding most{.size = law.most.window.width,
                            .window = law.most.window,
@@ -366,9 +357,9 @@ ChannelEvidence evidence_of_images(const Seen& seen, const ImageTest& test) {
   const Question& question = seen.question;
   const bool relative = question.theta->is_relative(question, 0);
   ImageOutcome outcome;
-  const auto look = [&](const auto& images) { return look_at(question, test, images, outcome); };
-  const stats::ImageDistance distance =
-      test.look != nullptr ? look(*test.look) : with_pair(seen, look);
+  const stats::ImageDistance distance = test.look != nullptr
+                                            ? look_at(question, test, *test.look, outcome)
+                                            : look_at(question, test, ImagePair(seen), outcome);
   const TestEntry& entry = *question.test;
   const bool within = entry.claim.relation == Relation::within;
   if (within || entry.detect) {

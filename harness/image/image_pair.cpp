@@ -17,35 +17,17 @@ struct Mapping {
   double factor;
   double offset;
   bool changes() const { return factor != 1 || offset != 0; }
+  double operator()(double value) const { return factor * value + offset; }
 };
 
-Mapping mapping_of(const Question& question, std::size_t subject) {
-  return subject == 0 || !question.of_two() ? Mapping{1, 0}
-                                            : Mapping{question.factor, question.offset};
-}
-
-ImageViews mapped(const ImageViews& views, const Mapping& mapping) {
-  std::vector<std::vector<double>> copies;
-  views.with([&](const auto& images) {
-    for (const auto& image : images) {
-      std::vector<double>& copy = copies.emplace_back(image.begin(), image.end());
-      for (double& value : copy) value = mapping.factor * value + mapping.offset;
-    }
-  });
-  return ImageViews(std::move(copies));
-}
-
-template <class Real>
-const ImageViews::Images<Real>& images_of(const ImageViews& views, const Mapping& mapping,
-                                          ImageViews& made) {
-  if (mapping.changes()) {
-    made = mapped(views, mapping);
-  } else if (views.single_precision() && !std::is_same_v<Real, float>) {
-    made = widened(views.images<float>());
-  } else {
-    return views.images<Real>();
+std::vector<std::vector<float>> mapped(const std::vector<std::span<const float>>& images,
+                                       const Mapping& mapping) {
+  std::vector<std::vector<float>> copies;
+  for (const std::span<const float> image : images) {
+    std::vector<float>& copy = copies.emplace_back(image.begin(), image.end());
+    for (float& value : copy) value = static_cast<float>(mapping(value));
   }
-  return made.images<Real>();
+  return copies;
 }
 
 }  // namespace
@@ -54,47 +36,31 @@ stats::ImageExtent extent_of(const ImageShape& shape) {
   return {.width = shape.width, .height = shape.height, .channels = shape.components.size()};
 }
 
-template <class Real>
-ImagePair<Real>::ImagePair(const Seen& seen) {
+ImagePair::ImagePair(const Seen& seen) {
   const Question& question = seen.question;
-  const auto stack = [&](std::size_t side) {
-    return stats::ImageStack<Real>{
-        extent_of(*question.subjects[0].image),
-        images_of<Real>(seen.data[side].images, mapping_of(question, side), made_[side])};
-  };
-  this->first = stack(0);
+  const stats::ImageExtent extent = extent_of(*question.subjects[0].image);
+  first = {extent, seen.data[0].images.images()};
   if (question.of_two()) {
-    this->second = stack(1);
+    const Mapping mapping{question.factor, question.offset};
+    const ImageViews& other = seen.data[1].images;
+    if (mapping.changes()) scaled_ = ImageViews(mapped(other.images(), mapping));
+    second = {extent, (mapping.changes() ? scaled_ : other).images()};
     if (!question.is().of_pairs) return;
-    subtracted.swap(this->second);
-    this->first = difference(this->first, *subtracted, differences_);
-    this->value.assign(this->first.extent.elements(), 0);
+    subtracted.swap(second);
+    first = difference(first, *subtracted, differences_);
+    value.assign(extent.elements(), 0);
     return;
   }
   for (const Constant& reference : question.references) {
-    this->value.push_back(reference.value + question.offset);
-    this->error.push_back(reference.standard_error);
+    value.push_back(reference.value + question.offset);
+    error.push_back(reference.standard_error);
   }
-  this->drop_zero_errors();
+  drop_zero_errors();
 }
 
-bool in_single_precision(const Seen& seen) {
-  for (std::size_t i = 0; i < seen.data.size(); ++i) {
-    if (!seen.data[i].images.single_precision() || mapping_of(seen.question, i).changes()) {
-      return false;
-    }
-  }
-  return true;
-}
-
-template struct ImagePair<float>;
-template struct ImagePair<double>;
-
-template <class Real>
-stats::ImageStack<Real> difference(const stats::ImageStack<Real>& one,
-                                   const stats::ImageStack<Real>& other,
-                                   std::vector<Real>& texels) {
-  stats::ImageStack<Real> differences{one.extent, {}, one.there};
+stats::ImageStack difference(const stats::ImageStack& one, const stats::ImageStack& other,
+                             std::vector<float>& texels) {
+  stats::ImageStack differences{one.extent, {}, one.there};
   const std::size_t count = std::min(one.images.size(), other.images.size());
   const std::size_t size = count == 0 ? 0 : one.images[0].size();
   texels.resize(count * size);
@@ -107,15 +73,10 @@ stats::ImageStack<Real> difference(const stats::ImageStack<Real>& one,
   });
   return differences;
 }
-template stats::ImageStack<float> difference(const stats::ImageStack<float>&,
-                                             const stats::ImageStack<float>&, std::vector<float>&);
 
-template <class Real>
-ChannelMeans channel_means(const stats::ImageStack<Real>& stack) {
+ChannelMeans channel_means(const stats::ImageStack& stack) {
   return channel_means(stats::image_channel_sums(stack, on_all_threads), stack.extent);
 }
-template ChannelMeans channel_means(const stats::ImageStack<float>&);
-template ChannelMeans channel_means(const stats::ImageStack<double>&);
 
 ChannelMeans channel_means(const std::vector<double>& sums, const stats::ImageExtent& extent) {
   const auto pixels = static_cast<double>(extent.width * extent.height);

@@ -15,10 +15,9 @@ stats::ImageExtent extent_of(const ImageShape& shape);
 
 /// Replicates of an image, and their comparison: replicates of another image, or a number for each
 /// element.
-template <class Real>
 struct ComparedImages {
-  stats::ImageStack<Real> first = {};
-  std::optional<stats::ImageStack<Real>> second = {};
+  stats::ImageStack first = {};
+  std::optional<stats::ImageStack> second = {};
   std::vector<double> value = {};
   std::vector<double> error = {};  ///< Empty if no number has one.
 
@@ -35,45 +34,30 @@ struct ComparedImages {
 
 /// The images of a claim, with the second's scaled. Of a paired claim the replicates are
 /// differences, which are held against 0.
-template <class Real>
-struct ImagePair : ComparedImages<Real> {
-  /// Single precision requires in_single_precision().
+struct ImagePair : ComparedImages {
   explicit ImagePair(const Seen& seen);
   ImagePair(const ImagePair&) = delete;  // spans point inside
   ImagePair& operator=(const ImagePair&) = delete;
 
   /// The fewest replicates of a side, and the most.
   auto replicates() const {
-    return std::minmax(
-        {this->first.images.size(), (this->second ? *this->second : this->first).images.size()});
+    return std::minmax({first.images.size(), (second ? *second : first).images.size()});
   }
 
   /// The replicates that were subtracted in pairs.
-  std::optional<stats::ImageStack<Real>> subtracted = {};
+  std::optional<stats::ImageStack> subtracted = {};
 
  private:
-  ImageViews made_[2];  // for a side that is scaled or widened
-  std::vector<Real> differences_;
+  ImageViews scaled_;  // the second side, if it is
+  std::vector<float> differences_;
 };
 
 /// The images of one stack less those of another, in `texels`.
-template <class Real>
-stats::ImageStack<Real> difference(const stats::ImageStack<Real>& one,
-                                   const stats::ImageStack<Real>& other, std::vector<Real>& texels);
-
-/// True if both sides are pictures of files and are compared unchanged.
-bool in_single_precision(const Seen& seen);
-
-/// Calls `use` with the pair in its precision, and returns the result.
-template <class Use>
-auto with_pair(const Seen& seen, const Use& use) {
-  if (in_single_precision(seen)) return use(ImagePair<float>(seen));
-  return use(ImagePair<double>(seen));
-}
+stats::ImageStack difference(const stats::ImageStack& one, const stats::ImageStack& other,
+                             std::vector<float>& texels);
 
 /// Means of replicates. The spread of these means shows how far pixels depend on each other.
-template <class Real>
-ChannelMeans channel_means(const stats::ImageStack<Real>& stack);
+ChannelMeans channel_means(const stats::ImageStack& stack);
 
 /// Means from the sums of stats::image_channel_sums.
 ChannelMeans channel_means(const std::vector<double>& sums, const stats::ImageExtent& extent);

@@ -120,7 +120,7 @@ std::variant<Pilot, Fault> read(const Pool& pool) {
     pilot.order_gates.push_back(drawn.order_gates(i));
   }
   pilot.kept = pool.kept();
-  pilot.images = drawn.observations(usual_images(*pool.setup(), pool.primaries()).value_or(0));
+  pilot.images = drawn.images(usual_images(*pool.setup(), pool.primaries()).value_or(0));
   return pilot;
 }
 

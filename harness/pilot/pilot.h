@@ -25,14 +25,14 @@ struct Pilot {
   std::vector<std::vector<stats::Gate>> order_gates = {};  ///< of the same
   std::uint64_t primaries = 1;
   /// Whole observations of an image, and their owner.
-  Observations images = {};
+  Images images = {};
   std::shared_ptr<const KeptObservations> kept = {};
   /// The look at pictures while reading them, in place of `images`.
   std::shared_ptr<const PictureLook> look = {};
 
   std::size_t image_count() const {
     if (look) return look->pictures;
-    return std::visit([](const auto& each) { return each.size(); }, images);
+    return images.size();
   }
   stats::Moments moments(std::size_t channel) const { return sums->moments(channel); }
 };

@@ -135,7 +135,7 @@ ImageTest image_test(const DrawnTest& test) {
 }
 
 ImageViews images_of(const DrawnTest& test, std::size_t subject) {
-  return {test.samples[subject].observations(), test.outcome.question.subjects[subject].channels};
+  return {test.samples[subject].images(), test.outcome.question.subjects[subject].channels};
 }
 
 std::optional<PlaceEffect> effect_at_place(const DrawnTest& test) {

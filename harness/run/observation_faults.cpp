@@ -87,14 +87,14 @@ bool estimates_differ(const Subject& subject, const Pool& pool, std::uint64_t ob
   const FlushDenormals flush;
   const std::unique_ptr<Estimator> one = subject.setup->make();
   const std::unique_ptr<Estimator> other = original.make();
-  const std::vector<std::vector<double>>& kept = pool.kept()->values;
+  const KeptObservations& kept = *pool.kept();
   std::vector<double> a(mine.size());
   std::vector<double> b(theirs.size());
   for (std::uint64_t i = 0; i < observations; ++i) {
     // One observation, such as an image, may cost as much as the rest of a look.
     if (i >= kept.size()) pool.draw_again(*one, i, a);
     pool.draw_again(*other, i, b);
-    if (!std::ranges::equal(i < kept.size() ? kept[i] : a, b)) return true;
+    if (!std::ranges::equal(i < kept.size() ? kept.whole(i, a) : a, b)) return true;
   }
   return false;
 }

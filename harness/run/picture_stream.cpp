@@ -25,8 +25,8 @@
 namespace assay::harness {
 namespace {
 
-using Stack = stats::ImageStack<float>;
-using Pyramid = stats::RowPyramid<float>;
+using Stack = stats::ImageStack;
+using Pyramid = stats::RowPyramid;
 
 constexpr std::size_t row_unit = Pyramid::row_unit;
 // Row counts are multiples of it: files compress 16 or 32 rows together.
@@ -160,8 +160,8 @@ class Side {
     if (read.empty()) return;
     reader_->read(picture, read);
     extremes_[picture].add(read);
-    of_channels_[picture].add<float>(read);
-    of_all_[picture].add<float>(read);
+    of_channels_[picture].add(read);
+    of_all_[picture].add(read);
   }
 
   const Setup& setup_;
@@ -238,7 +238,7 @@ class Looking {
     Pilots pilots;
     for (std::size_t s = 0; s < sides_.size(); ++s) {
       sums_[s].extremes = sides_[s].extremes();
-      sums_[s].average = sum_of(sides_[s].averages()).moments;
+      for (const double average : sides_[s].averages()) sums_[s].average.add(average);
       auto summary = std::make_shared<Summary>();
       summary->count = pictures_;
       summary->cost.samples = pictures_;
@@ -268,14 +268,14 @@ class Looking {
 
   void take(stats::RowRange rows) {
     const Stack stacks[] = {sides_[0].stack(), sides_[1].stack()};
-    const stats::ImagePair<float> both = stats::pair_of(stacks[0], stacks[1]);
+    const stats::ImagePair both = stats::pair_of(stacks[0], stacks[1]);
     for (std::size_t s = 0; s < sides_.size(); ++s) sums_[s].take(stacks[s], rows);
     if (question_.is().of_pairs) {
       const Stack differences = difference(stacks[0], stacks[1], differences_);
       const stats::ImageReference zero{extent_, zeros_};
       const stats::ElementRange range = rows.elements(extent_);
       on_all_threads(pictures_, [&](std::size_t i) {
-        of_differences_[i].add<float>({differences.at(i, range.first), range.size()});
+        of_differences_[i].add({differences.at(i, range.first), range.size()});
       });
       take(stats::pair_of(differences, zero), rows);
       norm_.take(stats::pair_of(stacks[1], zero), rows, on_all_threads);
@@ -285,7 +285,7 @@ class Looking {
   }
 
   /// Takes the pair that is tested.
-  void take(const stats::ImagePair<float>& pair, stats::RowRange rows) {
+  void take(const stats::ImagePair& pair, stats::RowRange rows) {
     if (rows.first == 0) {
       pyramid_.emplace(pair, stats::PyramidOptions{.z = look_->z, .for_each = on_all_threads});
     }
@@ -316,13 +316,13 @@ class Looking {
   std::shared_ptr<PictureLook> look_ = std::make_shared<PictureLook>();
   std::vector<ElementSums> sums_;
   std::vector<stats::ChannelSums> of_differences_;  // of each pair
-  stats::RowDistance<float> distance_;
-  stats::RowDependence<float> dependence_;
+  stats::RowDistance distance_;
+  stats::RowDependence dependence_;
   std::optional<Pyramid> pyramid_;
   // A paired claim alone has these.
   std::vector<float> differences_;
   std::vector<double> zeros_;
-  stats::RowDistance<float> norm_;
+  stats::RowDistance norm_;
 };
 
 bool is_streamed(const Subject& side, const Subject& other) {

@@ -49,7 +49,7 @@ stats::Moments ElementSums::moments(std::size_t channel) const {
   return {.count = count, .mean = mean[channel], .m2 = m2[channel]};
 }
 
-void ElementSums::take(const stats::ImageStack<float>& stack, stats::RowRange rows) {
+void ElementSums::take(const stats::ImageStack& stack, stats::RowRange rows) {
   mean.resize(stack.extent.elements());
   m2.resize(stack.extent.elements());
   const stats::ElementRange range = rows.elements(stack.extent);

@@ -39,7 +39,7 @@ struct ElementSums {
   /// The moments of an element, or of the average, which follows the elements.
   stats::Moments moments(std::size_t channel) const;
   /// Takes the rows that follow.
-  void take(const stats::ImageStack<float>& stack, stats::RowRange rows);
+  void take(const stats::ImageStack& stack, stats::RowRange rows);
 };
 
 // Results of reading two stacks of pictures for one claim.

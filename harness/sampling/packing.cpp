@@ -12,7 +12,7 @@ namespace assay::harness {
 namespace {
 
 constexpr std::string_view magic = "assay ";
-constexpr char format = '2';  // Another one for each change of what is packed.
+constexpr char format = '3';  // Another one for each change of what is packed.
 
 struct Head {
   std::array<char, 8> name{'a', 's', 's', 'a', 'y', ' ', format, '\n'};
@@ -37,40 +37,6 @@ std::uint64_t checksum_of(std::string_view bytes) {
   return sum;
 }
 
-/// True of one drawn block whose sums follow from its observations.
-bool keeps_all(const Pool::Block& block) {
-  const std::size_t kept = block.observations->values.size();
-  return block.size > 0 && kept > 0 && kept == block.whole.count;
-}
-
-constexpr std::size_t channels_at_a_time = 4096;
-
-/// Sums up kept observations as they were drawn: one by one, from `first` on.
-void add_sums(Pool::Block& block, const std::vector<std::shared_ptr<Summary>>& partial,
-              std::span<const ChannelPlan> plan, std::uint64_t first) {
-  const KeptObservations& kept = *block.observations;
-  const bool with_costs = counts_costs(plan);
-  const auto take = [&](std::size_t channel) {
-    auto next = partial.begin();
-    ChannelSummary& sums = block.whole.channels[channel];
-    for (std::size_t i = 0; i < kept.values.size(); ++i) {
-      add_observation(sums, kept.values[i][channel], first + i,
-                      with_costs ? counted(kept.costs[i]) : ObservationCost{});
-      if (next == partial.end() || (*next)->count != i + 1) continue;
-      (*next++)->channels[channel] = sums;
-    }
-  };
-  const tbb::blocked_range<std::size_t> all(0, block.whole.channels.size(), channels_at_a_time);
-  try {
-    tbb::parallel_for(all, [&](const tbb::blocked_range<std::size_t>& some) {
-      const FlushDenormals flush;
-      for (std::size_t channel = some.begin(); channel < some.end(); ++channel) take(channel);
-    });
-  } catch (const std::logic_error& outside) {
-    throw Unpackable(outside.what());
-  }
-}
-
 /// The number of observations [first, first + count) that lie below `end`.
 std::uint64_t below(std::uint64_t end, std::uint64_t first, std::uint64_t count) {
   return std::min(std::max(end, first) - first, count);
@@ -81,18 +47,23 @@ void require_shape(const Pool::Block& block, const Recipe& recipe, const Pool& p
                    std::uint64_t first) {
   const std::uint64_t count = block.whole.count;
   const auto require = Unpacker::require;
-  require(block.values.size() == (most_kept(recipe.plan) > 0 ? pool.channels() : 0),
+  const bool has_values = !pool.sums_later() && most_kept(recipe.plan) > 0;
+  require(block.values.size() == (has_values ? pool.channels() : 0),
           "values of other channels than the pool has");
   for (std::size_t c = 0; c < block.values.size(); ++c) {
     require(block.values[c].size() == below(recipe.plan[c].keep, first, count),
             "other values than its plan says");
   }
   const KeptObservations& kept = *block.observations;
-  require(kept.costs.size() == below(recipe.kept_observations, first, count) &&
-              kept.values.size() == kept.costs.size(),
+  const std::size_t elements = pool.elements();
+  const std::size_t whole = below(recipe.kept_observations, first, count);
+  require(kept.costs.size() == whole && kept.values.size() == whole &&
+              kept.images.size() == (elements > 0 ? whole : 0),
           "other observations than its plan says");
-  for (const std::vector<double>& values : kept.values) {
-    require(values.size() == pool.channels(), "an observation of other channels than the pool has");
+  for (std::size_t i = 0; i < whole; ++i) {
+    require(elements + kept.values[i].size() == pool.channels() &&
+                (elements == 0 || kept.images[i].size() == elements),
+            "an observation of other channels than the pool has");
   }
 }
 
@@ -180,9 +151,15 @@ void parts(Archive& a, T& channel) {
 }
 
 template <class Archive, maybe_const<Summary> T>
-void summary_parts(Archive& a, T& summary, bool with_channels) {
+void parts(Archive& a, T& summary) {
   a(summary.count, summary.group_variances, summary.cost, summary.seconds);
-  if (with_channels) a.fixed(summary.channels);
+  a.fixed(summary.channels);
+}
+
+void parts(Packer& a, const KeptObservations& kept) { a(kept.images, kept.values, kept.costs); }
+void parts(Unpacker& a, KeptObservations& kept) {
+  a(kept.texels, kept.values, kept.costs);
+  for (const std::vector<float>& image : kept.texels) kept.images.emplace_back(image);
 }
 
 template <class Archive, maybe_const<Fault> T>
@@ -215,48 +192,32 @@ Pool pool_of(const Recipe& recipe, std::shared_ptr<const Setup> setup) {
 
 std::string packed_block(const Pool::Block& block) {
   Packer pack;
-  const bool with_channels = !keeps_all(block);
-  pack(with_channels, block.fault, block.values, block.observations->values,
-       block.observations->costs);
-  summary_parts(pack, block.whole, with_channels);
-  pack(static_cast<std::uint64_t>(block.partial.size()));
-  for (const auto& [count, sums] : block.partial) {
-    pack(count);
-    summary_parts(pack, *sums, with_channels);
-  }
+  pack(block.fault, block.values, *block.observations, block.whole,
+       static_cast<std::uint64_t>(block.partial.size()));
+  for (const auto& [count, sums] : block.partial) pack(count, *sums);
   return std::move(pack).bytes();
 }
 
 Pool::Block unpacked_block(std::string_view bytes, const Pool& pool, std::uint64_t first) {
   Unpacker unpack(bytes);
   const Recipe recipe = pool.recipe();
-  Pool::Block block{.whole = Summary(pool.channels(), recipe.plan)};
-  bool with_channels = true;
-  unpack(with_channels, block.fault, block.values, block.observations->values,
-         block.observations->costs);
-  summary_parts(unpack, block.whole, with_channels);
+  Pool::Block block{.whole = pool.no_sums()};
+  std::uint64_t partials = 0;
+  unpack(block.fault, block.values, *block.observations, block.whole, partials);
   require_shape(block, recipe, pool, first);
-  Unpacker::require(with_channels || block.observations->values.size() == block.whole.count,
-                    "sums that do not follow from its observations");
   const std::uint64_t end = first + block.whole.count;
   const auto begin = std::ranges::upper_bound(recipe.marks, first);
   const std::vector<std::uint64_t> marks(begin, std::ranges::upper_bound(recipe.marks, end));
-  std::uint64_t partials = 0;
-  unpack(partials);
   Unpacker::require(partials == marks.size(), "other marks than its plan says");
-  std::vector<std::shared_ptr<Summary>> partial;
   for (const std::uint64_t mark : marks) {
     std::uint64_t count = 0;
-    const auto& sums =
-        partial.emplace_back(std::make_shared<Summary>(pool.channels(), recipe.plan));
-    unpack(count);
-    summary_parts(unpack, *sums, with_channels);
+    auto sums = std::make_shared<Summary>(pool.no_sums());
+    unpack(count, *sums);
     Unpacker::require(count == mark && sums->count == mark - first,
                       "other marks than its plan says");
-    block.partial.emplace_back(mark, sums);
+    block.partial.emplace_back(mark, std::move(sums));
   }
   unpack.end();
-  if (!with_channels) add_sums(block, partial, recipe.plan, first);
   return block;
 }
 

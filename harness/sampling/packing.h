@@ -10,6 +10,7 @@
 #include <cstring>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -66,6 +67,10 @@ class Packer {
   void put(const std::string& text) { put(std::string_view(text)); }
   template <class T>
   void put(const std::vector<T>& list) {
+    fixed(list);
+  }
+  template <PlainNumber T>
+  void put(std::span<const T> list) {
     fixed(list);
   }
   template <class T>
@@ -200,12 +205,10 @@ void parts(Archive& a, T& recipe) {
 /// A pool that draws by the recipe. Throws Unpackable if the set-up cannot.
 Pool pool_of(const Recipe& recipe, std::shared_ptr<const Setup> setup);
 
-/// Packs a block that was drawn, or all that a pool has drawn, to stand in a frame. A drawn block
-/// whose observations are all kept goes without its sums, which follow from them.
+/// Packs a block that was drawn, or all that a pool has drawn, to stand in a frame.
 std::string packed_block(const Pool::Block& block);
 /// Reads it as a block of the pool that begins at observation `first`. Throws Unpackable unless it
-/// has the shape that the pool's plan says, so that it can be folded. Sums on all threads of the
-/// caller's arena.
+/// has the shape that the pool's plan says, so that it can be folded.
 Pool::Block unpacked_block(std::string_view bytes, const Pool& pool, std::uint64_t first);
 
 }  // namespace assay::harness

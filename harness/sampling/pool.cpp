@@ -14,6 +14,7 @@
 #include "harness/base/parallel.h"
 #include "harness/sampling/recorded_run.h"
 #include "stats/gates/independence_gates.h"
+#include "stats/images/image_moments.h"
 
 namespace assay::harness {
 namespace {
@@ -31,8 +32,14 @@ std::vector<stats::Moments> moments_of(std::span<const ChannelSummary> channels)
   return moments;
 }
 
-bool stays(const Setup& setup) {
-  return as_recorded_run(setup) == nullptr && setup.image() && setup.observations();
+std::size_t elements_of(const Setup& setup) {
+  const std::optional<ImageShape> image = setup.image();
+  return image ? image->elements() : 0;
+}
+
+/// Files of pictures are read once.
+std::uint64_t kept_anyway(const Setup& setup) {
+  return setup.image() ? setup.observations().value_or(0) : 0;
 }
 
 const Summary* ready_made(const Setup& setup) {
@@ -137,7 +144,7 @@ const std::vector<stats::Gate>& Drawn::order_gates(std::size_t channel) const {
   return found->second;
 }
 
-Observations Drawn::observations(std::uint64_t most) const {
+Images Drawn::images(std::uint64_t most) const {
   return pool_->all_kept().range(0, std::min(count_, most));
 }
 
@@ -168,15 +175,15 @@ Pool::Pool(std::shared_ptr<const Setup> setup, StreamKey key, std::uint64_t prim
       primaries_(primaries),
       block_size_(block_size_of(primaries_of_observation(*setup_, primaries))),
       channels_(channels_of(*setup_)),
-      sums_later_(stays(*setup_)),
-      kept_observations_(sums_later_ ? *setup_->observations() : 0) {}
+      elements_(elements_of(*setup_)),
+      kept_observations_(kept_anyway(*setup_)) {}
 
 std::vector<ChannelPlan>& Pool::plans() {
   plan_.resize(channels_);
   return plan_;
 }
 
-Summary Pool::no_sums() const { return sums_later_ ? Summary() : Summary(channels_, plan_); }
+Summary Pool::no_sums() const { return sums_later() ? Summary() : Summary(channels_, plan_); }
 
 void Pool::mark(std::uint64_t count) {
   const bool known = !prefixes_.try_emplace(count, std::make_shared<const Summary>()).second;
@@ -207,25 +214,38 @@ std::uint64_t Pool::block_end(std::uint64_t first) const {
       {first + block_size_, most_marked(), setup_->observations().value_or(most_observations)});
 }
 
-/// Reads a picture to where it is kept.
-void Pool::keep_picture(Estimator& estimator, std::uint64_t index, Block& block) const {
-  const std::size_t elements = channels_ - 1;
+std::span<float> Pool::room_for_image(Block& block) const {
   KeptObservations& kept = *block.observations;
-  if (kept.texels.empty()) {
-    kept.texels.push_back(std::make_unique_for_overwrite<float[]>(block.size * elements));
-  }
-  const std::span<float> picture(kept.texels[0].get() + kept.pictures.size() * elements, elements);
-  recorded::read_picture(estimator, index, picture, block.whole.cost);
-  kept.pictures.emplace_back(picture);
+  if (kept.texels.empty()) kept.texels.emplace_back(block.size * elements_);
+  const std::span<float> room =
+      std::span(kept.texels[0]).subspan(kept.images.size() * elements_, elements_);
+  kept.images.emplace_back(room);
+  return room;
 }
 
-/// One observation, in `out` or in kept storage. A picture that is summed later stays in its
-/// precision.
+/// Reads a picture to where it is kept. Its average follows it.
+void Pool::read_picture(Estimator& estimator, std::uint64_t index, Block& block) const {
+  const std::span<float> picture = room_for_image(block);
+  recorded::read_picture(estimator, index, picture, block.whole.cost);
+  stats::ChannelSums sum(1);
+  sum.add(picture);
+  block.observations->values.push_back({sum.sums()[0] / static_cast<double>(elements_)});
+}
+
+/// Draws one observation; an image in single precision.
+void Pool::draw_one(Estimator& estimator, std::uint64_t index, std::span<double> out,
+                    Cost& cost) const {
+  Stream random(key_, index);
+  estimator.secondary(random, primaries_, out, cost);
+  for (double& number : out.first(elements_)) number = static_cast<float>(number);
+}
+
+/// One observation, in `out` or in kept storage.
 std::span<const double> Pool::observe(Estimator& estimator, std::uint64_t index,
                                       std::span<double> out, Block& block) const {
   if (known_ && index < known_->size()) {
     block.whole.cost += known_->costs[index];
-    return sums_later_ ? std::span<const double>() : known_->whole(index, out);
+    return sums_later() ? std::span<const double>() : known_->whole(index, out);
   }
   const bool kept = !known_ && index < kept_observations_;
   // Counted at the sum: reading back at once what an estimator just stored in parts stalls the
@@ -234,11 +254,15 @@ std::span<const double> Pool::observe(Estimator& estimator, std::uint64_t index,
   if (kept) before = block.whole.cost;
   std::span<const double> drawn = out;
   if (kept && recorded::unknown_channels(*setup_)) {
-    keep_picture(estimator, index, block);
+    read_picture(estimator, index, block);
   } else {
-    Stream random(key_, index);
-    estimator.secondary(random, primaries_, out, block.whole.cost);
-    if (kept) drawn = block.observations->values.emplace_back(out.begin(), out.end());
+    draw_one(estimator, index, out, block.whole.cost);
+    if (kept) {
+      if (elements_ > 0) std::ranges::copy(out.first(elements_), room_for_image(block).begin());
+      const std::span<const double> rest = out.subspan(elements_);
+      const auto& values = block.observations->values.emplace_back(rest.begin(), rest.end());
+      if (elements_ == 0) drawn = values;
+    }
   }
   if (kept) block.observations->costs.push_back(block.whole.cost - before);
   return drawn;
@@ -246,11 +270,12 @@ std::span<const double> Pool::observe(Estimator& estimator, std::uint64_t index,
 
 Pool::Block Pool::draw(const std::function<Estimator&()>& estimator, std::uint64_t first,
                        std::uint64_t last) const {
-  const std::uint64_t values_kept = sums_later_ ? 0 : most_kept(plan_);
+  const bool later = sums_later();
+  const std::uint64_t values_kept = later ? 0 : most_kept(plan_);
   Block block{.whole = no_sums(),
               .values = std::vector<std::vector<double>>(values_kept > 0 ? channels_ : 0),
               .size = last - first};
-  std::vector<double> unsummed(sums_later_ && !recorded::unknown_channels(*setup_) ? channels_ : 0);
+  std::vector<double> unsummed(later && !recorded::unknown_channels(*setup_) ? channels_ : 0);
   Intake intake(block.whole.channels);
   auto mark = prefixes_.upper_bound(first);
   Estimator* source = nullptr;
@@ -259,8 +284,8 @@ Pool::Block Pool::draw(const std::function<Estimator&()>& estimator, std::uint64
   };
   double start = seconds();
   std::uint64_t index = first;
-  GroupVariance groups(sums_later_ ? std::vector<std::size_t>() : grouped_channels_);
-  const bool with_costs = !sums_later_ && counts_costs(plan_);
+  GroupVariance groups(later ? std::vector<std::size_t>() : grouped_channels_);
+  const bool with_costs = !later && counts_costs(plan_);
   ObservationCost cost{};
   const FlushDenormals flush;
   try {
@@ -270,10 +295,10 @@ Pool::Block Pool::draw(const std::function<Estimator&()>& estimator, std::uint64
     for (; index < last; ++index) {
       Cost before;
       if (with_costs) before = block.whole.cost;
-      const std::span<double> out = sums_later_ ? std::span(unsummed) : intake.row();
+      const std::span<double> out = later ? std::span(unsummed) : intake.row();
       const std::span<const double> drawn = observe(*source, index, out, block);
       if (with_costs) cost = counted(block.whole.cost - before);
-      if (!sums_later_) intake.take(drawn, index, cost);
+      if (!later) intake.take(drawn, index, cost);
       for (std::size_t c = 0; index < values_kept && c < drawn.size(); ++c) {
         if (index < plan_[c].keep) block.values[c].push_back(drawn[c]);
       }
@@ -300,7 +325,7 @@ std::shared_ptr<const Summary> Pool::sums_of_first(std::uint64_t count, const Su
   const auto shared = all_kept().sums.find(count);
   if (shared != all_kept().sums.end()) return shared->second;
   auto summed = std::make_shared<Summary>(drawn);
-  summed->channels = sums_of_kept(all_kept().range(0, count));
+  summed->channels = all_kept().sums_of(0, count);
   if (!known_) kept_->sums[count] = summed;
   return summed;
 }
@@ -343,7 +368,7 @@ void Pool::keep_values() {
 }
 
 void Pool::end_drawing() {
-  if (!sums_later_) return;
+  if (!sums_later()) return;
   keep_values();
   const bool plain =
       grouped_channels_.empty() && std::ranges::none_of(plan_, &ChannelPlan::has_details);
@@ -374,18 +399,26 @@ bool Pool::can_be_drawn_elsewhere() const {
          !recorded::unknown_channels(*setup_) && !recorded::keeps_files(*setup_);
 }
 
+/// Without what end_drawing() makes again.
 Pool::Block Pool::drawn_block() const {
-  Block block{.whole = running_, .values = values_, .observations = kept_, .fault = fault_};
+  Block block{.whole = running_, .observations = kept_, .fault = fault_};
+  if (!sums_later()) block.values = values_;
   for (const auto& [count, sums] : prefixes_) {
-    if (count > 0 && count <= drawn()) block.partial.emplace_back(count, sums);
+    if (count == 0 || count > drawn()) continue;
+    auto partial = std::make_shared<Summary>(*sums);
+    if (sums_later()) {
+      partial->channels.clear();
+      partial->group_variances = {};
+    }
+    block.partial.emplace_back(count, std::move(partial));
   }
   return block;
 }
 
 void Pool::keep_block(const Summary& block, std::uint64_t first) {
   const auto channels = [&] {
-    return sums_later_ ? moments_of(sums_of_kept(all_kept().range(first, first + block.count)))
-                       : moments_of(block.channels);
+    return sums_later() ? moments_of(all_kept().sums_of(first, first + block.count))
+                        : moments_of(block.channels);
   };
   blocks_.push_back({.count = block.count,
                      .channels = block.count == 0 ? std::vector<stats::Moments>() : channels(),
@@ -395,7 +428,7 @@ void Pool::keep_block(const Summary& block, std::uint64_t first) {
 void Pool::fold(Block&& block) {
   if (drawn() == 0) {
     running_ = no_sums();
-    if (most_kept(plan_) > 0 && !sums_later_) values_.resize(channels_);
+    if (most_kept(plan_) > 0 && !sums_later()) values_.resize(channels_);
   }
   if (fault_) return;
   for (auto& [count, partial] : block.partial) {
@@ -405,7 +438,7 @@ void Pool::fold(Block&& block) {
   }
   const std::uint64_t before = running_.count;
   running_.append(block.whole);
-  for (std::size_t c = 0; c < values_.size(); ++c) {
+  for (std::size_t c = 0; c < block.values.size(); ++c) {
     values_[c].insert(values_[c].end(), block.values[c].begin(), block.values[c].end());
   }
   kept_->append(std::move(*block.observations));
@@ -414,9 +447,8 @@ void Pool::fold(Block&& block) {
 }
 
 void Pool::draw_again(Estimator& estimator, std::uint64_t index, std::span<double> out) const {
-  Stream random(key_, index);
   Cost unused;
-  estimator.secondary(random, primaries_, out, unused);
+  draw_one(estimator, index, out, unused);
 }
 
 std::vector<double> draw_observation(const Setup& setup, StreamKey key, std::uint64_t primaries,
@@ -429,25 +461,36 @@ std::vector<double> draw_observation(const Setup& setup, StreamKey key, std::uin
   return out;
 }
 
-Observations KeptObservations::range(std::uint64_t begin, std::uint64_t end) const {
-  const std::size_t last = std::min<std::size_t>(size(), end);
+Images KeptObservations::range(std::uint64_t begin, std::uint64_t end) const {
+  const std::size_t last = std::min<std::size_t>(images.size(), end);
   const std::size_t first = std::min<std::size_t>(begin, last);
-  if (!pictures.empty()) return std::span(pictures).subspan(first, last - first);
-  if (values.empty()) return {};  // read but not kept
-  return std::span(values).subspan(first, last - first);
+  return std::span(images).subspan(first, last - first);
 }
 
 std::span<const double> KeptObservations::whole(std::size_t index, std::span<double> out) const {
-  if (pictures.empty()) return values[index];
-  std::ranges::copy(pictures[index], out.begin());
-  out.back() = recorded::average_of(pictures[index]);
+  if (images.empty()) return values[index];
+  const auto rest = std::ranges::copy(images[index], out.begin()).out;
+  std::ranges::copy(values[index], rest);
   return out;
 }
 
+std::vector<ChannelSummary> KeptObservations::sums_of(std::uint64_t begin,
+                                                      std::uint64_t end) const {
+  std::vector<ChannelSummary> all = sums_of_images(range(begin, end));
+  const std::size_t elements = all.size();
+  all.resize(elements + values[begin].size());
+  for (std::uint64_t index = begin; index < end; ++index) {
+    for (std::size_t i = 0; i < values[index].size(); ++i) {
+      add_observation(all[elements + i], values[index][i], index - begin);
+    }
+  }
+  return all;
+}
+
 void KeptObservations::append(KeptObservations&& next) {
-  std::ranges::move(next.values, std::back_inserter(values));
   std::ranges::move(next.texels, std::back_inserter(texels));
-  std::ranges::move(next.pictures, std::back_inserter(pictures));
+  std::ranges::move(next.images, std::back_inserter(images));
+  std::ranges::move(next.values, std::back_inserter(values));
   std::ranges::move(next.costs, std::back_inserter(costs));
 }
 

@@ -48,18 +48,20 @@ struct BlockSums {
 };
 
 struct KeptObservations {
-  std::vector<std::vector<double>> values = {};       ///< as they were drawn; empty for pictures
-  std::vector<std::unique_ptr<float[]>> texels = {};  ///< of pictures, one block each
-  std::vector<std::span<const float>> pictures = {};  ///< the texels without averages
+  std::vector<std::vector<float>> texels = {};      ///< of images, a block each
+  std::vector<std::span<const float>> images = {};  ///< of the texels; empty if there is no image
+  std::vector<std::vector<double>> values = {};     ///< of the channels that follow the image
   std::vector<Cost> costs = {};
   /// Moments of the first observations, by their number.
   std::map<std::uint64_t, std::shared_ptr<const Summary>> sums = {};
 
   std::size_t size() const { return costs.size(); }
-  /// The observations of [begin, end) that exist.
-  Observations range(std::uint64_t begin, std::uint64_t end) const;
+  /// The images of [begin, end) that exist.
+  Images range(std::uint64_t begin, std::uint64_t end) const;
   /// All channels of one observation: a view, or `out`, which must have room for them.
   std::span<const double> whole(std::size_t index, std::span<double> out) const;
+  /// The summary of every channel over observations [begin, end) of images.
+  std::vector<ChannelSummary> sums_of(std::uint64_t begin, std::uint64_t end) const;
   /// Appends the observations that follow.
   void append(KeptObservations&& next);
 };
@@ -101,6 +103,8 @@ class Pool {
   std::uint64_t primaries() const { return primaries_; }
 
   std::size_t channels() const { return channels_; }
+  /// The first channels, of an image; 0 without one.
+  std::size_t elements() const { return elements_; }
   /// Sets what to keep of each channel beyond moments, before anything is drawn. An image's
   /// millions of channels need no plans.
   void plan(std::vector<ChannelPlan> channels) { plan_ = std::move(channels); }
@@ -116,7 +120,8 @@ class Pool {
   /// is drawn.
   void keep_blocks() { keeps_blocks_ = true; }
   bool keeps_blocks() const { return keeps_blocks_; }
-  /// Stores the first `count` observations whole. Call it before anything is drawn.
+  /// Stores the first `count` observations whole. Call it before anything is drawn. An image's
+  /// numbers are rounded to single precision when they are drawn, as those of files.
   void keep_observations(std::uint64_t count) {
     kept_observations_ = std::max(kept_observations_, count);
   }
@@ -165,6 +170,11 @@ class Pool {
   };
   /// Draws one observation again.
   void draw_again(Estimator& estimator, std::uint64_t index, std::span<double> out) const;
+  /// True for images that are all kept. Their blocks have neither sums of channels nor values,
+  /// which end_drawing() makes.
+  bool sums_later() const { return elements_ > 0 && kept_observations_ >= most_marked(); }
+  /// Sums of no observations, as those of a block begin.
+  Summary no_sums() const;
   /// All that is drawn, as one block.
   Block drawn_block() const;
   /// Draws observations [first, last) of one block with a worker's estimator, made if needed.
@@ -173,8 +183,8 @@ class Pool {
              std::uint64_t last) const;
   /// Adds the next block, in order.
   void fold(Block&& block);
-  /// Call it on one thread after the last block of a round. Pictures of files are summed here over
-  /// all of them, element by element (sums_of_kept).
+  /// Call it on one thread after the last block of a round. Images that are all kept are summed
+  /// here, element by element (sums_of_images).
   void end_drawing();
   std::uint64_t drawn() const { return running_.count; }
   /// True for moments of an earlier run: nothing is drawn, and every prefix is the whole.
@@ -187,19 +197,19 @@ class Pool {
   std::uint64_t primaries_;
   std::uint64_t block_size_;
   std::size_t channels_;
-  /// True for pictures of files, which are kept and summed in end_drawing().
-  bool sums_later_;
+  std::size_t elements_;
   std::vector<ChannelPlan> plan_;
   friend class Drawn;
 
-  Summary no_sums() const;
   const KeptObservations& all_kept() const { return known_ ? *known_ : *kept_; }
   std::shared_ptr<const Summary> sums_of_first(std::uint64_t count, const Summary& drawn);
   void take_details(Summary& summary) const;
   void keep_values();
   std::span<const double> observe(Estimator& estimator, std::uint64_t index, std::span<double> out,
                                   Block& block) const;
-  void keep_picture(Estimator& estimator, std::uint64_t index, Block& block) const;
+  std::span<float> room_for_image(Block& block) const;
+  void read_picture(Estimator& estimator, std::uint64_t index, Block& block) const;
+  void draw_one(Estimator& estimator, std::uint64_t index, std::span<double> out, Cost& cost) const;
   void keep_block(const Summary& block, std::uint64_t first);
 
   std::map<std::uint64_t, std::shared_ptr<const Summary>> prefixes_;
@@ -229,8 +239,8 @@ class Drawn {
   /// Gates on the order of a channel's first kept values (stats::drawn_order_gates). Values that
   /// are not finite have no order.
   const std::vector<stats::Gate>& order_gates(std::size_t channel) const;
-  /// The first kept observations, at most `most`, with all channels.
-  Observations observations(std::uint64_t most = std::numeric_limits<std::uint64_t>::max()) const;
+  /// The first kept images, at most `most`.
+  Images images(std::uint64_t most = std::numeric_limits<std::uint64_t>::max()) const;
   /// All blocks drawn so far, also of later observations, if the pool keeps them.
   std::span<const BlockSums> blocks() const { return pool_->blocks_; }
 

@@ -48,8 +48,7 @@ std::string refusal(const std::string& name, double spread, const char* power) {
 constexpr std::size_t channels_at_a_time = 4096;
 
 /// Adds values one by one, as elsewhere; non-finite ones are counted apart.
-template <class Real>
-ChannelSummary one_by_one(const stats::ImageStack<Real>& stack, std::size_t channel) {
+ChannelSummary one_by_one(const stats::ImageStack& stack, std::size_t channel) {
   ChannelSummary summary;
   for (std::size_t i = 0; i < stack.images.size(); ++i) {
     add_observation(summary, *stack.at(i, channel), i);
@@ -57,8 +56,7 @@ ChannelSummary one_by_one(const stats::ImageStack<Real>& stack, std::size_t chan
   return summary;
 }
 
-template <class Real>
-void take(const stats::ImageStack<Real>& stack, std::size_t first, std::span<ChannelSummary> out) {
+void take(const stats::ImageStack& stack, std::size_t first, std::span<ChannelSummary> out) {
   std::vector<stats::Moments> moments(out.size());
   stats::element_moments(stack, first, moments);
   for (std::size_t i = 0; i < out.size(); ++i) {
@@ -68,44 +66,6 @@ void take(const stats::ImageStack<Real>& stack, std::size_t first, std::span<Cha
       out[i] = one_by_one(stack, first + i);
     }
   }
-}
-
-/// Sums of a range of the elements.
-template <class Real>
-void take_all(const stats::ImageStack<Real>& stack, stats::ElementRange range,
-              std::span<ChannelSummary> out) {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(range.first, range.last, channels_at_a_time),
-                    [&](const tbb::blocked_range<std::size_t>& some) {
-                      take(stack, some.begin(),
-                           out.subspan(some.begin() - range.first, some.size()));
-                    });
-}
-
-std::vector<ChannelSummary> sums_of(std::span<const std::vector<double>> observations) {
-  const std::size_t channels = observations.front().size();
-  std::vector<ChannelSummary> sums(channels);
-  take_all<double>({{.width = channels, .height = 1}, {observations.begin(), observations.end()}},
-                   {0, channels}, sums);
-  return sums;
-}
-
-std::vector<double> averages_of(std::span<const std::span<const float>> pictures) {
-  const std::size_t elements = pictures.front().size();
-  std::vector<double> averages =
-      stats::image_channel_sums(stats::ImageStack<float>{{.width = elements, .height = 1},
-                                                         {pictures.begin(), pictures.end()}},
-                                on_all_threads);
-  for (double& average : averages) average /= static_cast<double>(elements);
-  return averages;
-}
-
-std::vector<ChannelSummary> sums_of(std::span<const std::span<const float>> pictures) {
-  const std::size_t elements = pictures.front().size();
-  std::vector<ChannelSummary> sums(elements + 1);
-  take_all<float>({{.width = elements, .height = 1}, {pictures.begin(), pictures.end()}},
-                  {0, elements}, sums);
-  sums.back() = sum_of(averages_of(pictures));
-  return sums;
 }
 
 }  // namespace
@@ -179,16 +139,15 @@ std::string beyond_doubles(const stats::Moments& moments, const std::string& nam
   return refusal(name, spread, "fourth");
 }
 
-ChannelSummary sum_of(std::span<const double> averages) {
-  stats::ImageStack<double> stack{{.width = 1, .height = 1}, {}};
-  for (const double& average : averages) stack.images.emplace_back(&average, 1);
-  ChannelSummary sum;
-  take(stack, 0, {&sum, 1});
-  return sum;
-}
-
-std::vector<ChannelSummary> sums_of_kept(const Observations& observations) {
-  return std::visit([](const auto& each) { return sums_of(each); }, observations);
+std::vector<ChannelSummary> sums_of_images(Images images) {
+  const std::size_t elements = images.front().size();
+  const stats::ImageStack stack{{.width = elements, .height = 1}, {images.begin(), images.end()}};
+  std::vector<ChannelSummary> sums(elements);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, elements, channels_at_a_time),
+                    [&](const tbb::blocked_range<std::size_t>& some) {
+                      take(stack, some.begin(), std::span(sums).subspan(some.begin(), some.size()));
+                    });
+  return sums;
 }
 
 }  // namespace assay::harness

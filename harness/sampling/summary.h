@@ -160,13 +160,9 @@ std::string beyond_doubles(const stats::JointMoments& powers, const std::string&
 /// spread may overflow, or underflow to nothing. The observations must not all be equal.
 std::string beyond_doubles(const stats::Moments& moments, const std::string& name);
 
-/// The summary of every channel over the observations, at least one; for pictures also of their
-/// average. It has moments of the finite values. It works on all threads of the caller's arena and
-/// gives the same bits for any number of threads.
-std::vector<ChannelSummary> sums_of_kept(const Observations& observations);
-
-/// The summary of each picture's average over its elements.
-ChannelSummary sum_of(std::span<const double> averages);
+/// The summary of every element over the images, at least one. It has moments of the finite values.
+/// It works on all threads of the caller's arena and gives the same bits for any number of threads.
+std::vector<ChannelSummary> sums_of_images(Images images);
 
 /// Observations of a group (GroupVariance). Block sizes are multiples of it, so that no group spans
 /// two blocks.

@@ -49,8 +49,7 @@ void replicates(const char* function, std::size_t count) {
   }
 }
 
-template <class Real>
-void image_stack(const char* function, const ImageStack<Real>& stack) {
+void image_stack(const char* function, const ImageStack& stack) {
   extent_of(function, stack.extent);
   replicates(function, stack.images.size());
   const std::size_t elements = stack.extent.elements();
@@ -62,9 +61,6 @@ void image_stack(const char* function, const ImageStack<Real>& stack) {
   }
 }
 
-template void image_stack(const char*, const ImageStack<float>&);
-template void image_stack(const char*, const ImageStack<double>&);
-
 double reference_error(const char* function, const ImageReference& reference, std::size_t element) {
   if (reference.standard_error.empty()) return 0;
   const double error = reference.standard_error[element];
@@ -72,8 +68,7 @@ double reference_error(const char* function, const ImageReference& reference, st
   return error;
 }
 
-template <class Real>
-void image_pair(const char* function, const ImagePair<Real>& pair) {
+void image_pair(const char* function, const ImagePair& pair) {
   image_stack(function, pair.a);
   if (pair.b != nullptr) {
     image_stack(function, *pair.b);
@@ -83,8 +78,5 @@ void image_pair(const char* function, const ImagePair<Real>& pair) {
     same_extent(function, pair.a.extent, pair.reference->extent);
   }
 }
-
-template void image_pair(const char*, const ImagePair<float>&);
-template void image_pair(const char*, const ImagePair<double>&);
 
 }  // namespace assay::stats::check

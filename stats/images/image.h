@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <limits>
 #include <span>
-#include <variant>
 #include <vector>
 
 namespace assay::stats {
@@ -36,28 +35,18 @@ struct RowRange {
   }
 };
 
-// Replicates of one image: independent, of one law. Each has extent.elements() finite values, or
-// only those that are `there`.
-template <class Real>
+// Replicates of one image: independent, of one law, in single precision as renderers write them.
+// Each has extent.elements() finite values, or only those that are `there`.
 struct ImageStack {
   ImageExtent extent;
-  std::vector<std::span<const Real>> images;
+  std::vector<std::span<const float>> images;
   ElementRange there = {};
 
   // Pointer to that element of an image.
-  const Real* at(std::size_t image, std::size_t element) const {
+  const float* at(std::size_t image, std::size_t element) const {
     return images[image].data() + (element - there.first);
   }
 };
-
-// A stack in whichever precision it is kept.
-using AnyImageStack = std::variant<ImageStack<double>, ImageStack<float>>;
-inline const ImageExtent& extent_of(const AnyImageStack& any) {
-  return std::visit([](const auto& stack) -> const ImageExtent& { return stack.extent; }, any);
-}
-inline std::size_t replicates_of(const AnyImageStack& any) {
-  return std::visit([](const auto& stack) { return stack.images.size(); }, any);
-}
 
 // An image known exactly (standard_error empty) or with a standard error for each element.
 struct ImageReference {
@@ -68,21 +57,14 @@ struct ImageReference {
 
 // A stack, and a second stack or a reference to hold it against. Exactly one of the two is not
 // null.
-template <class Real>
 struct ImagePair {
-  const ImageStack<Real>& a;
-  const ImageStack<Real>* b = nullptr;
+  const ImageStack& a;
+  const ImageStack* b = nullptr;
   const ImageReference* reference = nullptr;
 };
 
-template <class Real>
-ImagePair<Real> pair_of(const ImageStack<Real>& a, const ImageStack<Real>& b) {
-  return {a, &b, nullptr};
-}
-template <class Real>
-ImagePair<Real> pair_of(const ImageStack<Real>& a, const ImageReference& b) {
-  return {a, nullptr, &b};
-}
+inline ImagePair pair_of(const ImageStack& a, const ImageStack& b) { return {a, &b, nullptr}; }
+inline ImagePair pair_of(const ImageStack& a, const ImageReference& b) { return {a, nullptr, &b}; }
 
 // Methods on images need this many replicates for a variance of their own. With fewer, Student's
 // tails at the level of thousands of elements reject nothing (15 degrees: |t| > 12 at 5e-9).
@@ -92,10 +74,8 @@ namespace check {
 // These throw std::domain_error: empty or unequal extents, wrong sizes, fewer than least_replicates
 // images. A stack's size must match what it says is there. reference_error is 0 without standard
 // errors, and throws if negative or not finite.
-template <class Real>
-void image_stack(const char* function, const ImageStack<Real>& stack);
-template <class Real>
-void image_pair(const char* function, const ImagePair<Real>& pair);
+void image_stack(const char* function, const ImageStack& stack);
+void image_pair(const char* function, const ImagePair& pair);
 double reference_error(const char* function, const ImageReference& reference, std::size_t element);
 void replicates(const char* function, std::size_t count);
 }  // namespace check

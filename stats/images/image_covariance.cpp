@@ -20,12 +20,11 @@ double dot(const std::vector<float>& a, const std::vector<float>& b) {
 }
 
 // Differences of neighbours over the square root of 2: mean 0 and covariance C.
-template <class Real>
-std::vector<std::vector<float>> differences_of(const ImageStack<Real>& stack, std::size_t pairs) {
+std::vector<std::vector<float>> differences_of(const ImageStack& stack, std::size_t pairs) {
   std::vector<std::vector<float>> differences(pairs);
   for (std::size_t k = 0; k < pairs; ++k) {
-    const std::span<const Real> first = stack.images[2 * k];
-    const std::span<const Real> second = stack.images[2 * k + 1];
+    const std::span<const float> first = stack.images[2 * k];
+    const std::span<const float> second = stack.images[2 * k + 1];
     differences[k].resize(first.size());
     for (std::size_t i = 0; i < first.size(); ++i) {
       const double difference = static_cast<double>(first[i]) - static_cast<double>(second[i]);
@@ -48,28 +47,25 @@ double mean_of(const std::vector<double>& norms) {
   return mean;
 }
 
-template <class Real>
-double squared_mean_of(const ImageStack<Real>& stack, double trace) {
+double squared_mean_of(const ImageStack& stack, double trace) {
   const auto count = static_cast<double>(stack.images.size());
   double sum = 0;
   for (std::size_t i = 0; i < stack.extent.elements(); ++i) {
     double mean = 0;
-    for (const std::span<const Real> image : stack.images) mean += static_cast<double>(image[i]);
+    for (const std::span<const float> image : stack.images) mean += static_cast<double>(image[i]);
     sum += mean / count * (mean / count);
   }
   return sum - trace / count;
 }
 
-template <class Real>
-std::vector<std::vector<float>> checked_differences(const ImageStack<Real>& stack) {
+std::vector<std::vector<float>> checked_differences(const ImageStack& stack) {
   check::image_stack(function_name, stack);
   return differences_of(stack, std::min(stack.images.size() / 2, most_pairs));
 }
 
 }  // namespace
 
-template <class Real>
-ImageCovariance image_covariance(const ImageStack<Real>& stack, const ForEach& for_each) {
+ImageCovariance image_covariance(const ImageStack& stack, const ForEach& for_each) {
   const std::vector<std::vector<float>> differences = checked_differences(stack);
   const std::size_t pairs = differences.size();
   std::vector<std::vector<double>> squares(pairs, std::vector<double>(pairs));
@@ -100,14 +96,8 @@ ImageCovariance image_covariance(const ImageStack<Real>& stack, const ForEach& f
   return covariance;
 }
 
-template <class Real>
-double image_squared_mean(const ImageStack<Real>& stack) {
+double image_squared_mean(const ImageStack& stack) {
   return squared_mean_of(stack, mean_of(norms_of(checked_differences(stack), one_by_one)));
 }
-
-template ImageCovariance image_covariance(const ImageStack<float>&, const ForEach&);
-template ImageCovariance image_covariance(const ImageStack<double>&, const ForEach&);
-template double image_squared_mean(const ImageStack<float>&);
-template double image_squared_mean(const ImageStack<double>&);
 
 }  // namespace assay::stats

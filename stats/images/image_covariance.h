@@ -19,12 +19,9 @@ struct ImageCovariance {
 
 // Unbiased for each but the degrees: from differences y of pairs of replicates, E (y_k . y_l)^2 =
 // tr C^2. At most 256 replicates are used. Throws std::domain_error for fewer than 16.
-template <class Real>
-ImageCovariance image_covariance(const ImageStack<Real>& stack,
-                                 const ForEach& for_each = one_by_one);
+ImageCovariance image_covariance(const ImageStack& stack, const ForEach& for_each = one_by_one);
 
 // squared_mean alone, with the same bits.
-template <class Real>
-double image_squared_mean(const ImageStack<Real>& stack);
+double image_squared_mean(const ImageStack& stack);
 
 }  // namespace assay::stats

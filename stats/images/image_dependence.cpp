@@ -26,9 +26,8 @@ constexpr std::size_t most_apart = 8;
 constexpr double errors_beyond = 8;
 constexpr double least_correlation = .05;
 
-template <class Real>
-std::vector<const ImageStack<Real>*> sides_of(const ImagePair<Real>& pair) {
-  std::vector<const ImageStack<Real>*> sides{&pair.a};
+std::vector<const ImageStack*> sides_of(const ImagePair& pair) {
+  std::vector<const ImageStack*> sides{&pair.a};
   if (pair.b != nullptr) sides.push_back(pair.b);
   return sides;
 }
@@ -45,29 +44,22 @@ Rectangle tile_at(const ImageExtent& extent, std::size_t x, std::size_t y, std::
           static_cast<std::uint32_t>(std::min(tile_side, rows_end - y))};
 }
 
-template <class Real>
-const Real* row_of(const ImageStack<Real>& stack, std::size_t image, const Rectangle& tile,
-                   std::size_t row) {
+const float* row_of(const ImageStack& stack, std::size_t image, const Rectangle& tile,
+                    std::size_t row) {
   return stack.at(image, ((tile.y + row) * stack.extent.width + tile.x) * stack.extent.channels);
 }
 
 std::uint32_t bits_of(float value) { return std::bit_cast<std::uint32_t>(value); }
-std::uint32_t bits_of(double value) {
-  const auto bits = std::bit_cast<std::uint64_t>(value);
-  return static_cast<std::uint32_t>(bits ^ bits >> 29);
-}
 
 // The rows of a tile, or of all tiles beside each other.
-template <class Real>
-using TileRows = std::array<const Real*, tile_side>;
+using TileRows = std::array<const float*, tile_side>;
 
 // Products of numbers four rows apart, summed over a column. Each number is first disguised by its
 // place, so that no zero hides another.
-template <class Real>
-ASSAY_VECTOR_COPIES void hash_columns(const TileRows<Real>& rows, std::span<std::uint64_t> out) {
+ASSAY_VECTOR_COPIES void hash_columns(const TileRows& rows, std::span<std::uint64_t> out) {
   const auto [a, b, c, d, e, f, g, h] = rows;
   std::uint64_t* const __restrict hash = out.data();
-  const auto product = [](Real one, std::uint32_t key, Real other) {
+  const auto product = [](float one, std::uint32_t key, float other) {
     return std::uint64_t{bits_of(one) ^ key} * (bits_of(other) ^ ~key);
   };
   for (std::size_t i = 0; i < out.size(); ++i) {
@@ -77,12 +69,10 @@ ASSAY_VECTOR_COPIES void hash_columns(const TileRows<Real>& rows, std::span<std:
 }
 
 // Hashes of the image's tiles that begin in a row. Tiles of one hash are compared whole.
-template <class Real>
-std::vector<std::uint64_t> digests(const ImageStack<Real>& stack, std::size_t image,
-                                   RowRange rows) {
+std::vector<std::uint64_t> digests(const ImageStack& stack, std::size_t image, RowRange rows) {
   const std::size_t row = stack.extent.row();
-  const std::vector<Real> none(row);
-  TileRows<Real> numbers;
+  const std::vector<float> none(row);
+  TileRows numbers;
   for (std::size_t y = 0; y < tile_side; ++y) {
     numbers[y] = rows.first + y < rows.last ? stack.at(image, (rows.first + y) * row) : none.data();
   }
@@ -97,12 +87,11 @@ std::vector<std::uint64_t> digests(const ImageStack<Real>& stack, std::size_t im
   return tiles;
 }
 
-template <class Real>
-bool equal_in(const Rectangle& tile, const ImageStack<Real>& a, std::size_t i,
-              const ImageStack<Real>& b, std::size_t j) {
+bool equal_in(const Rectangle& tile, const ImageStack& a, std::size_t i, const ImageStack& b,
+              std::size_t j) {
   for (std::size_t row = 0; row < tile.height; ++row) {
     if (std::memcmp(row_of(a, i, tile, row), row_of(b, j, tile, row),
-                    tile.width * a.extent.channels * sizeof(Real)) != 0) {
+                    tile.width * a.extent.channels * sizeof(float)) != 0) {
       return false;
     }
   }
@@ -110,21 +99,20 @@ bool equal_in(const Rectangle& tile, const ImageStack<Real>& a, std::size_t i,
 }
 
 // The logarithm of a bound on the probability that another image repeats this one's tile.
-template <class Real>
-double log_chance(const std::vector<const ImageStack<Real>*>& sides, const WhichImage& image,
+double log_chance(const std::vector<const ImageStack*>& sides, const WhichImage& image,
                   const Rectangle& tile) {
   const std::size_t channels = sides[0]->extent.channels;
   std::map<std::string_view, double> by_value;
   for (std::size_t i = 0; i < std::size_t{tile.width} * tile.height; ++i) {
-    const auto place_of = [&](const ImageStack<Real>& stack, std::size_t index) {
-      const Real* const row = row_of(stack, index, tile, i / tile.width);
+    const auto place_of = [&](const ImageStack& stack, std::size_t index) {
+      const float* const row = row_of(stack, index, tile, i / tile.width);
       return std::string_view(reinterpret_cast<const char*>(row + i % tile.width * channels),
-                              channels * sizeof(Real));
+                              channels * sizeof(float));
     };
     const std::string_view value = place_of(*sides[image.side], image.index);
     double equal = 0;
     double all = 0;
-    for (const ImageStack<Real>* stack : sides) {
+    for (const ImageStack* stack : sides) {
       for (std::size_t r = 0; r < stack->images.size(); ++r, ++all) {
         equal += place_of(*stack, r) == value ? 1 : 0;
       }
@@ -148,8 +136,7 @@ struct Seen {
 // Digests of the tiles beside each other, of each image of the first side and then of the second.
 using Digests = std::vector<std::vector<std::uint64_t>>;
 
-template <class Real>
-std::optional<RepeatedTile> repeated_in(const std::vector<const ImageStack<Real>*>& sides,
+std::optional<RepeatedTile> repeated_in(const std::vector<const ImageStack*>& sides,
                                         const Rectangle& tile, const Digests& digests) {
   std::vector<Seen> seen;
   for (std::size_t s = 0; s < sides.size(); ++s) {
@@ -244,10 +231,8 @@ std::optional<AlikeImages> alike_in(const std::vector<Scores>& sides) {
 
 }  // namespace
 
-template <class Real>
-void RowDependence<Real>::take(const ImagePair<Real>& pair, RowRange rows,
-                               const ForEach& for_each) {
-  const std::vector<const ImageStack<Real>*> sides = sides_of(pair);
+void RowDependence::take(const ImagePair& pair, RowRange rows, const ForEach& for_each) {
+  const std::vector<const ImageStack*> sides = sides_of(pair);
   const ImageExtent& extent = pair.a.extent;
   const std::size_t of_first = pair.a.images.size();
   Digests all(of_first + (pair.b != nullptr ? pair.b->images.size() : 0));
@@ -280,12 +265,14 @@ void RowDependence<Real>::take(const ImagePair<Real>& pair, RowRange rows,
   }
 }
 
-template <class Real>
-ImageDependence RowDependence<Real>::found() const {
+ImageDependence RowDependence::found() const {
   return {.repeated = repeated_, .alike = alike_in(scored(sampled_))};
 }
 
-template class RowDependence<float>;
-template class RowDependence<double>;
+ImageDependence image_dependence(const ImagePair& pair, const ForEach& for_each) {
+  RowDependence rows;
+  rows.take(pair, {0, pair.a.extent.height}, for_each);
+  return rows.found();
+}
 
 }  // namespace assay::stats

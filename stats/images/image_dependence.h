@@ -53,11 +53,10 @@ struct ImageDependence {
 // At most 16384 elements are ranked among the side's images. The mean correlation of neighbours,
 // and of equal indices across, is held against that of other pairs with indices near each other. It
 // is a dependence from 8 standard errors and .05 on.
-template <class Real>
 class RowDependence {
  public:
   // Takes rows that follow on those before, in multiples of 8 but for the last.
-  void take(const ImagePair<Real>& pair, RowRange rows, const ForEach& for_each = one_by_one);
+  void take(const ImagePair& pair, RowRange rows, const ForEach& for_each = one_by_one);
   // To be called after the last rows.
   ImageDependence found() const;
 
@@ -66,12 +65,7 @@ class RowDependence {
   std::vector<std::vector<std::vector<float>>> sampled_;  // [side][element][image]
 };
 
-template <class Real>
-ImageDependence image_dependence(const ImagePair<Real>& pair,
-                                 const ForEach& for_each = one_by_one) {
-  RowDependence<Real> rows;
-  rows.take(pair, {0, pair.a.extent.height}, for_each);
-  return rows.found();
-}
+// The same of whole images.
+ImageDependence image_dependence(const ImagePair& pair, const ForEach& for_each = one_by_one);
 
 }  // namespace assay::stats

@@ -32,8 +32,7 @@ struct Estimates {
 };
 
 // One side: a stack or a reference.
-template <class Real>
-void load(const ImageStack<Real>* stack, const ImageReference* reference, ElementRange range,
+void load(const ImageStack* stack, const ImageReference* reference, ElementRange range,
           Estimates& out) {
   out = {};
   if (stack != nullptr) {
@@ -60,8 +59,7 @@ struct Lanes {
   std::array<double, lanes> squares{};
 };
 
-template <class Real>
-ASSAY_VECTOR_COPIES void add_products(const Real* values, const Block& means,
+ASSAY_VECTOR_COPIES void add_products(const float* values, const Block& means,
                                       const Block& differences, const Block& norms, Lanes& to,
                                       std::size_t first, std::size_t last) {
   Lanes sums = to;
@@ -85,19 +83,18 @@ double sum_of(const std::array<double, lanes>& numbers) {
 // A replicate deviates from the mean of n by d. Leaving it out moves the mean by -d / (n - 1), and
 // the squared error takes d^2 along. Let the common part of all replicates aside. Then D^2 - va -
 // vb moves by -2 / (n - 1) (D d - d^2 / (n - 2)). D counts the other way if the replicate is of b.
-template <class Real>
-void add_without(std::vector<Terms>& sums, const ImageStack<Real>& stack, ElementRange range,
+void add_without(std::vector<Terms>& sums, const ImageStack& stack, ElementRange range,
                  const Block& means, const Block& differences, const Block& norms) {
   sums.resize(stack.images.size());
   const double n = static_cast<double>(stack.images.size());
   const std::size_t size = range.size();
   const std::size_t whole = size / lanes * lanes;
   for (std::size_t r = 0; r < sums.size(); ++r) {
-    const Real* const values = stack.at(r, range.first);
+    const float* const values = stack.at(r, range.first);
     Lanes products;
     add_products(values, means, differences, norms, products, 0, whole);
     if (whole < size) {
-      std::array<Real, lanes> rest{};
+      std::array<float, lanes> rest{};
       std::copy(values + whole, values + size, rest.begin());
       add_products(rest.data(), means, differences, norms, products, whole, whole + lanes);
     }
@@ -108,8 +105,7 @@ void add_without(std::vector<Terms>& sums, const ImageStack<Real>& stack, Elemen
 }
 
 // Adds up a row.
-template <class Real>
-void add_row(DistanceSums& sums, const ImagePair<Real>& pair, std::size_t row) {
+void add_row(DistanceSums& sums, const ImagePair& pair, std::size_t row) {
   const ElementRange range = RowRange{row, row + 1}.elements(pair.a.extent);
   const auto [a, b, differences, back] =
       std::tuple(std::make_unique<Estimates>(), std::make_unique<Estimates>(),
@@ -207,16 +203,14 @@ Added added_by(const Element& x, ElementErrors errors) {
 }  // namespace
 
 // Sums over rows are added up in order.
-template <class Real>
-void RowDistance<Real>::take(const ImagePair<Real>& pair, RowRange rows, const ForEach& for_each) {
+void RowDistance::take(const ImagePair& pair, RowRange rows, const ForEach& for_each) {
   check::image_pair(function_name, pair);
   std::vector<DistanceSums> each(rows.last - rows.first);
   for_each(each.size(), [&](std::size_t i) { add_row(each[i], pair, rows.first + i); });
   for (const DistanceSums& row : each) add(sums_, row);
 }
 
-template <class Real>
-ImageDistance RowDistance<Real>::distance() const {
+ImageDistance RowDistance::distance() const {
   for (const double sum : sums_.whole) {
     if (!std::isfinite(sum)) check::fail({function_name, "sum over the image"}, sum, "finite");
   }
@@ -238,8 +232,7 @@ ImageDistance relative_to(ImageDistance distance, const ImageDistance& norm) {
   return distance;
 }
 
-template <class Real>
-ImageDistance with_reference_error(ImageDistance distance, const ImageStack<Real>& a,
+ImageDistance with_reference_error(ImageDistance distance, const ImageStack& a,
                                    const ImageReference& b, ElementErrors errors) {
   constexpr const char* function = "with_reference_error";
   check::image_pair(function, pair_of(a, b));
@@ -282,12 +275,5 @@ TestResult squared_margin_test(const ImageDistance& distance, double squared_mar
   const LogTails tails = student_t_tails(t, distance.degrees);
   return {t, {"student-t", {distance.degrees}}, tails.lower, tails.upper, Exactness::asymptotic};
 }
-
-template class RowDistance<float>;
-template class RowDistance<double>;
-template ImageDistance with_reference_error(ImageDistance, const ImageStack<float>&,
-                                            const ImageReference&, ElementErrors);
-template ImageDistance with_reference_error(ImageDistance, const ImageStack<double>&,
-                                            const ImageReference&, ElementErrors);
 
 }  // namespace assay::stats

@@ -36,12 +36,11 @@ struct DistanceSums {
 };
 
 // The distance of images that are read rows after rows.
-template <class Real>
 class RowDistance {
  public:
   // Takes rows that follow on those before. Throws std::domain_error for unequal extents and fewer
   // than least_replicates images.
-  void take(const ImagePair<Real>& pair, RowRange rows, const ForEach& for_each = one_by_one);
+  void take(const ImagePair& pair, RowRange rows, const ForEach& for_each = one_by_one);
   // To be called after the last rows. Throws std::domain_error if a sum is not finite.
   ImageDistance distance() const;
 
@@ -50,10 +49,10 @@ class RowDistance {
 };
 
 // The same of whole images. Throws as above.
-template <class Real, class Second>
-ImageDistance image_distance(const ImageStack<Real>& a, const Second& b,
+template <class Second>
+ImageDistance image_distance(const ImageStack& a, const Second& b,
                              const ForEach& for_each = one_by_one) {
-  RowDistance<Real> rows;
+  RowDistance rows;
   rows.take(pair_of(a, b), {0, a.extent.height}, for_each);
   return rows.distance();
 }
@@ -77,8 +76,7 @@ enum class ElementErrors { independent, unknown };
 // unknown ones the squares of the sums of the roots are added, and the largest covariance. There
 // |d| plus two standard errors replaces the root of max(0, ...) in the first. An exact reference
 // adds nothing. Throws std::domain_error as image_distance does.
-template <class Real>
-ImageDistance with_reference_error(ImageDistance distance, const ImageStack<Real>& a,
+ImageDistance with_reference_error(ImageDistance distance, const ImageStack& a,
                                    const ImageReference& b, ElementErrors errors);
 
 // Null hypothesis: ||E a - E b||^2 >= squared_margin N. Statistic: (U - squared_margin N) / its

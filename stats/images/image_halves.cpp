@@ -61,14 +61,13 @@ std::vector<double> steadied(const ImageExtent& extent, const std::vector<double
 }
 
 // Sets means, difference, variance and `varied` of these elements.
-template <class Real>
-void take(const ImagePair<Real>& pair, std::size_t which, ElementRange range, Half& half) {
+void take(const ImagePair& pair, std::size_t which, ElementRange range, Half& half) {
   const std::size_t here = range.first - half.first;
   const std::size_t size = range.size();
   const auto part = [&](std::vector<double>& all) { return std::span(all).subspan(here, size); };
   const std::span<double> variance = part(half.variance);
   const std::span<double> difference = part(half.difference);
-  const auto squared_errors = [&](const ImageStack<Real>& stack, std::size_t side,
+  const auto squared_errors = [&](const ImageStack& stack, std::size_t side,
                                   std::span<double> errors) {
     moments_of_range(stack, range.first, {part(half.mean[side]), errors}, {which, halves});
     const double n = static_cast<double>(half_count(stack.images.size(), which));
@@ -91,8 +90,7 @@ void take(const ImagePair<Real>& pair, std::size_t which, ElementRange range, Ha
 // Drops elements before the range, and takes those that are new. A reference's error joins no
 // weight. A reference that is bright by chance has a large error, and the sums would lean to the
 // dark.
-template <class Real>
-void advance(const ImagePair<Real>& pair, std::size_t which, ElementRange range, Half& half,
+void advance(const ImagePair& pair, std::size_t which, ElementRange range, Half& half,
              const ForEach& for_each) {
   constexpr std::size_t at_a_time = std::size_t{1} << 12;
   const std::size_t gone = std::min(range.first - half.first, half.variance.size());
@@ -119,9 +117,8 @@ void advance(const ImagePair<Real>& pair, std::size_t which, ElementRange range,
 
 }  // namespace
 
-template <class Real>
-std::array<Half, halves> halves_of(const ImagePair<Real>& pair, RowRange rows,
-                                   const ForEach& for_each, std::array<Half, halves> before) {
+std::array<Half, halves> halves_of(const ImagePair& pair, RowRange rows, const ForEach& for_each,
+                                   std::array<Half, halves> before) {
   const RowRange wider{rows.first - std::min(rows.first, rows_beside),
                        std::min(rows.last + rows_beside, pair.a.extent.height)};
   const ElementRange range = wider.elements(pair.a.extent);
@@ -131,10 +128,5 @@ std::array<Half, halves> halves_of(const ImagePair<Real>& pair, RowRange rows,
   for_each(halves, [&](std::size_t half) { advance(pair, half, range, before[half], for_each); });
   return before;
 }
-
-template std::array<Half, halves> halves_of(const ImagePair<float>&, RowRange, const ForEach&,
-                                            std::array<Half, halves>);
-template std::array<Half, halves> halves_of(const ImagePair<double>&, RowRange, const ForEach&,
-                                            std::array<Half, halves>);
 
 }  // namespace assay::stats

@@ -38,8 +38,7 @@ inline constexpr std::size_t rows_beside = 2;
 // Halves of the elements of these rows and of rows_beside more at either side, as far as the image
 // has them. Weights are right in `rows` alone. `before` are those of rows before. What they know of
 // an element is kept, and the images need not have it.
-template <class Real>
-std::array<Half, halves> halves_of(const ImagePair<Real>& pair, RowRange rows,
+std::array<Half, halves> halves_of(const ImagePair& pair, RowRange rows,
                                    const ForEach& for_each = one_by_one,
                                    std::array<Half, halves> before = {});
 

@@ -171,11 +171,10 @@ struct Place {
   std::size_t channel;
 };
 
-template <class Real>
 class Pooled {
  public:
-  Pooled(const ImageStack<Real>& a, const ImageStack<Real>& b) : extent_(a.extent) {
-    for (const ImageStack<Real>* stack : {&a, &b}) {
+  Pooled(const ImageStack& a, const ImageStack& b) : extent_(a.extent) {
+    for (const ImageStack* stack : {&a, &b}) {
       images_.insert(images_.end(), stack->images.begin(), stack->images.end());
     }
   }
@@ -220,7 +219,7 @@ class Pooled {
 
  private:
   ImageExtent extent_;
-  std::vector<std::span<const Real>> images_;
+  std::vector<std::span<const float>> images_;
 };
 
 std::size_t level_of(std::size_t side) { return static_cast<std::size_t>(std::countr_zero(side)); }
@@ -250,8 +249,7 @@ void note_elements(const Cells& values, const Place& at, const ImageExtent& exte
   }
 }
 
-template <class Real>
-Groups groups_of(const Pooled<Real>& pooled, const Labels& labels, const ForEach& for_each,
+Groups groups_of(const Pooled& pooled, const Labels& labels, const ForEach& for_each,
                  std::span<double> z) {
   Groups all;
   // By tile, score and image.
@@ -339,11 +337,10 @@ ImageLawFinding most_of(const Groups& groups, const ImageExtent& extent) {
 
 }  // namespace
 
-template <class Real>
-ImageLawTest image_law_test(const ImageStack<Real>& a, const ImageStack<Real>& b,
+ImageLawTest image_law_test(const ImageStack& a, const ImageStack& b,
                             const ImageLawOptions& options) {
   check::image_pair("image_law_test", pair_of(a, b));
-  const Pooled<Real> pooled(a, b);
+  const Pooled pooled(a, b);
   const std::size_t first = a.images.size();
   const std::size_t all = first + b.images.size();
   ImageLawTest test{.z = std::vector<double>(a.extent.elements())};
@@ -377,10 +374,5 @@ ImageLawTest image_law_test(const ImageStack<Real>& a, const ImageStack<Real>& b
   test.log_p = std::log(as_small < enough ? (count + 1) / (drawn + 1) : count / drawn);
   return test;
 }
-
-template ImageLawTest image_law_test(const ImageStack<float>&, const ImageStack<float>&,
-                                     const ImageLawOptions&);
-template ImageLawTest image_law_test(const ImageStack<double>&, const ImageStack<double>&,
-                                     const ImageLawOptions&);
 
 }  // namespace assay::stats

@@ -58,8 +58,7 @@ struct ImageLawOptions {
 //
 // It finds differences of means, of typical values and of spreads. Other differences of laws it may
 // miss. Throws std::domain_error for unequal extents and fewer than least_replicates images.
-template <class Real>
-ImageLawTest image_law_test(const ImageStack<Real>& a, const ImageStack<Real>& b,
+ImageLawTest image_law_test(const ImageStack& a, const ImageStack& b,
                             const ImageLawOptions& options);
 
 }  // namespace assay::stats

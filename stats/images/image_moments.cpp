@@ -15,13 +15,12 @@ namespace {
 constexpr std::size_t elements_at_once = 1024;
 
 // Four images a pass: sums are loaded and stored once for all four.
-template <class Real>
-ASSAY_VECTOR_COPIES void add_four(const Real* origin, const std::array<const Real*, 4>& image,
+ASSAY_VECTOR_COPIES void add_four(const float* origin, const std::array<const float*, 4>& image,
                                   double* to_sum, double* to_squares, std::size_t size) {
-  const Real* const a = image[0];
-  const Real* const b = image[1];
-  const Real* const c = image[2];
-  const Real* const d = image[3];
+  const float* const a = image[0];
+  const float* const b = image[1];
+  const float* const c = image[2];
+  const float* const d = image[3];
   double* const __restrict sum = to_sum;
   double* const __restrict squares = to_squares;
   for (std::size_t i = 0; i < size; ++i) {
@@ -36,17 +35,16 @@ ASSAY_VECTOR_COPIES void add_four(const Real* origin, const std::array<const Rea
 }
 
 // The origin itself, which adds nothing, fills up the last four images.
-template <class Real>
-void two_moments_of_block(const ImageStack<Real>& stack, std::size_t first, MomentArrays out,
+void two_moments_of_block(const ImageStack& stack, std::size_t first, MomentArrays out,
                           EveryImage which) {
   std::array<double, elements_at_once> sum{};
   std::array<double, elements_at_once> squares{};
   const std::size_t size = out.mean.size();
   const auto& images = stack.images;
-  const Real* const origin = stack.at(which.start, first);
+  const float* const origin = stack.at(which.start, first);
   std::size_t count = 1;
   for (std::size_t i = which.start + which.step; i < images.size();) {
-    std::array<const Real*, 4> four{origin, origin, origin, origin};
+    std::array<const float*, 4> four{origin, origin, origin, origin};
     for (std::size_t k = 0; k < 4 && i < images.size(); ++k, i += which.step, ++count) {
       four[k] = stack.at(i, first);
     }
@@ -76,16 +74,14 @@ struct Sums {
   Block nonzero{};
 };
 
-template <class Real>
-ASSAY_VECTOR_COPIES void add_differences(const Real* values, const Real* origin, double* sum,
+ASSAY_VECTOR_COPIES void add_differences(const float* values, const float* origin, double* sum,
                                          std::size_t size) {
   for (std::size_t i = 0; i < size; ++i) {
     sum[i] += static_cast<double>(values[i]) - static_cast<double>(origin[i]);
   }
 }
 
-template <class Real>
-ASSAY_VECTOR_COPIES void add_powers(const Real* values, Sums& sums, std::size_t size) {
+ASSAY_VECTOR_COPIES void add_powers(const float* values, Sums& sums, std::size_t size) {
   for (std::size_t i = 0; i < size; ++i) {
     const double value = static_cast<double>(values[i]);
     const double deviation = value - sums.mean[i];
@@ -99,8 +95,7 @@ ASSAY_VECTOR_COPIES void add_powers(const Real* values, Sums& sums, std::size_t 
   }
 }
 
-template <class Real>
-ASSAY_VECTOR_COPIES void add_squares(const Real* values, const double* mean, double* m2,
+ASSAY_VECTOR_COPIES void add_squares(const float* values, const double* mean, double* m2,
                                      std::size_t size) {
   double* const __restrict squares = m2;
   for (std::size_t i = 0; i < size; ++i) {
@@ -109,9 +104,8 @@ ASSAY_VECTOR_COPIES void add_squares(const Real* values, const double* mean, dou
   }
 }
 
-template <class Real>
-void means_of_block(const ImageStack<Real>& stack, std::size_t first, std::span<double> mean) {
-  const Real* const origin = stack.at(0, first);
+void means_of_block(const ImageStack& stack, std::size_t first, std::span<double> mean) {
+  const float* const origin = stack.at(0, first);
   std::ranges::fill(mean, 0.0);
   for (std::size_t r = 0; r < stack.images.size(); ++r) {
     add_differences(stack.at(r, first), origin, mean.data(), mean.size());
@@ -122,11 +116,10 @@ void means_of_block(const ImageStack<Real>& stack, std::size_t first, std::span<
   }
 }
 
-template <class Real>
-void moments_of_block(const ImageStack<Real>& stack, std::size_t first, std::span<Moments> out) {
+void moments_of_block(const ImageStack& stack, std::size_t first, std::span<Moments> out) {
   Sums sums;
   means_of_block(stack, first, std::span(sums.mean).first(out.size()));
-  const Real* const origin = stack.at(0, first);
+  const float* const origin = stack.at(0, first);
   for (std::size_t i = 0; i < out.size(); ++i) {
     sums.minimum[i] = static_cast<double>(origin[i]);
     sums.maximum[i] = static_cast<double>(origin[i]);
@@ -149,8 +142,7 @@ void moments_of_block(const ImageStack<Real>& stack, std::size_t first, std::spa
 // ---- Sums of images
 
 // Adds up numbers that are sums.size() apart.
-template <class Real>
-ASSAY_VECTOR_COPIES void add_apart(std::span<const Real> numbers, std::span<double> sums) {
+ASSAY_VECTOR_COPIES void add_apart(std::span<const float> numbers, std::span<double> sums) {
   const std::size_t apart = sums.size();
   double* const __restrict sum = sums.data();
   for (std::size_t i = 0; i < numbers.size(); i += apart) {
@@ -162,8 +154,7 @@ constexpr std::size_t sums_of_channel = 32;
 
 }  // namespace
 
-template <class Real>
-void moments_of_range(const ImageStack<Real>& stack, std::size_t first, MomentArrays out,
+void moments_of_range(const ImageStack& stack, std::size_t first, MomentArrays out,
                       EveryImage which) {
   for (std::size_t done = 0; done < out.mean.size(); done += elements_at_once) {
     const std::size_t size = std::min(elements_at_once, out.mean.size() - done);
@@ -172,8 +163,7 @@ void moments_of_range(const ImageStack<Real>& stack, std::size_t first, MomentAr
   }
 }
 
-template <class Real>
-void element_moments(const ImageStack<Real>& stack, std::size_t first, std::span<Moments> out) {
+void element_moments(const ImageStack& stack, std::size_t first, std::span<Moments> out) {
   check::at_least({"element_moments", "images"}, stack.images.size(), 1);
   for (const auto& image : stack.images) {
     check::at_least({"element_moments", "size of an image"}, image.size() + stack.there.first,
@@ -185,8 +175,7 @@ void element_moments(const ImageStack<Real>& stack, std::size_t first, std::span
   }
 }
 
-template <class Real>
-void element_variances(const ImageStack<Real>& stack, std::size_t first, MomentArrays out) {
+void element_variances(const ImageStack& stack, std::size_t first, MomentArrays out) {
   std::ranges::fill(out.m2, 0.0);
   for (std::size_t i = 0; i < out.mean.size(); i += block_size) {
     const std::size_t size = std::min(block_size, out.mean.size() - i);
@@ -201,10 +190,9 @@ void element_variances(const ImageStack<Real>& stack, std::size_t first, MomentA
 ChannelSums::ChannelSums(std::size_t channels)
     : channels_(channels), in_turn_(sums_of_channel * channels) {}
 
-template <class Real>
-void ChannelSums::add(std::span<const Real> numbers) {
-  const auto one_by_one = [&](std::span<const Real> some) {
-    for (const Real number : some) {
+void ChannelSums::add(std::span<const float> numbers) {
+  const auto one_by_one = [&](std::span<const float> some) {
+    for (const float number : some) {
       in_turn_[next_] += static_cast<double>(number);
       next_ = (next_ + 1) % in_turn_.size();
     }
@@ -222,8 +210,7 @@ std::vector<double> ChannelSums::sums() const {
   return sums;
 }
 
-template <class Real>
-std::vector<double> image_channel_sums(const ImageStack<Real>& stack, const ForEach& for_each) {
+std::vector<double> image_channel_sums(const ImageStack& stack, const ForEach& for_each) {
   const std::size_t channels = stack.extent.channels;
   std::vector<double> sums(stack.images.size() * channels);
   for_each(stack.images.size(), [&](std::size_t i) {
@@ -233,15 +220,5 @@ std::vector<double> image_channel_sums(const ImageStack<Real>& stack, const ForE
   });
   return sums;
 }
-
-template void moments_of_range(const ImageStack<float>&, std::size_t, MomentArrays, EveryImage);
-template void moments_of_range(const ImageStack<double>&, std::size_t, MomentArrays, EveryImage);
-template void element_moments(const ImageStack<float>&, std::size_t, std::span<Moments>);
-template void element_moments(const ImageStack<double>&, std::size_t, std::span<Moments>);
-template void element_variances(const ImageStack<float>&, std::size_t, MomentArrays);
-template void ChannelSums::add(std::span<const float>);
-template void ChannelSums::add(std::span<const double>);
-template std::vector<double> image_channel_sums(const ImageStack<float>&, const ForEach&);
-template std::vector<double> image_channel_sums(const ImageStack<double>&, const ForEach&);
 
 }  // namespace assay::stats

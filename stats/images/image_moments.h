@@ -26,8 +26,7 @@ struct EveryImage {
   std::size_t start = 0;
   std::size_t step = 1;
 };
-template <class Real>
-void moments_of_range(const ImageStack<Real>& stack, std::size_t first, MomentArrays out,
+void moments_of_range(const ImageStack& stack, std::size_t first, MomentArrays out,
                       EveryImage which = {});
 
 // Moments up to order four of the elements [first, first + out.size()) over the images of a stack.
@@ -35,12 +34,10 @@ void moments_of_range(const ImageStack<Real>& stack, std::size_t first, MomentAr
 // from it. An element that never varied has m2 = 0 exactly. Each element's moments depend on its
 // own values alone, so a caller may split the elements in any way. A non-finite value makes its
 // element's m2 non-finite.
-template <class Real>
-void element_moments(const ImageStack<Real>& stack, std::size_t first, std::span<Moments> out);
+void element_moments(const ImageStack& stack, std::size_t first, std::span<Moments> out);
 
 // The mean and m2 of element_moments alone, with the same bits.
-template <class Real>
-void element_variances(const ImageStack<Real>& stack, std::size_t first, MomentArrays out);
+void element_variances(const ImageStack& stack, std::size_t first, MomentArrays out);
 
 // ---- Sums of images over their elements
 
@@ -50,8 +47,7 @@ class ChannelSums {
  public:
   explicit ChannelSums(std::size_t channels);
 
-  template <class Real>
-  void add(std::span<const Real> numbers);
+  void add(std::span<const float> numbers);
   std::vector<double> sums() const;
 
  private:
@@ -61,8 +57,7 @@ class ChannelSums {
 };
 
 // The sums of each image's channels, those of an image together.
-template <class Real>
-std::vector<double> image_channel_sums(const ImageStack<Real>& stack,
+std::vector<double> image_channel_sums(const ImageStack& stack,
                                        const ForEach& for_each = one_by_one);
 
 }  // namespace assay::stats

@@ -128,9 +128,8 @@ struct ElementCounts {
 
 // Input of the test of fine cells: replicates, halves with the weights that each gives the other,
 // groups of cells, and whether constants that differ are a finding.
-template <class Real>
 struct FineCells {
-  const ImagePair<Real>& pair;
+  const ImagePair& pair;
   const std::array<Half, halves>& half;
   const std::vector<WindowGroup>& groups;
   bool constants_decide;
@@ -146,8 +145,7 @@ struct FineFindings {
 };
 
 // Nothing found yet; z has room for every element.
-template <class Real>
-FineFindings empty_findings(const ImagePair<Real>& pair, std::span<double> z);
+FineFindings empty_findings(const ImagePair& pair, std::span<double> z);
 
 // Rows are taken in multiples of fine_rows, but for the image's last. Cells that begin in them
 // reach fine_rows_ahead rows further. The images and halves must have those rows.
@@ -156,8 +154,7 @@ inline constexpr std::size_t fine_rows_ahead = 8;
 
 // Collects the candidates among the fine cells that begin in these rows, and fills in their blocks
 // and noise.
-template <class Real>
-void offer_fine_cells(const FineCells<Real>& cells, RowRange rows, FineFindings& found,
+void offer_fine_cells(const FineCells& cells, RowRange rows, FineFindings& found,
                       const ForEach& for_each = one_by_one);
 
 // To be called after the last rows.

@@ -98,8 +98,7 @@ class TileSums {
 
 // ---- Loops over elements
 
-template <class Real>
-ASSAY_VECTOR_COPIES void weigh(const Real* value, const double* mean, const double* weight,
+ASSAY_VECTOR_COPIES void weigh(const float* value, const double* mean, const double* weight,
                                std::span<double> out) {
   double* const __restrict deviation = out.data();
   for (std::size_t i = 0; i < out.size(); ++i) {
@@ -171,9 +170,8 @@ ASSAY_VECTOR_COPIES void finish_row(const RowPowers& powers, const double* weigh
 
 // Asks for numbers before they are needed. A tile's rows are too short for the machine to foresee
 // the next.
-template <class Real>
-void fetch_ahead(const Real* first, std::size_t size) {
-  constexpr std::size_t line = 64 / sizeof(Real);
+void fetch_ahead(const float* first, std::size_t size) {
+  constexpr std::size_t line = 64 / sizeof(float);
   for (std::size_t i = 0; i < size; i += line) __builtin_prefetch(first + i);
 }
 
@@ -194,10 +192,9 @@ GroupsOfSide groups_of_side(const std::vector<WindowGroup>& groups, std::uint32_
 }
 
 // Column of tiles, whose sums with alternating signs stand by themselves until all rows are there.
-template <class Real>
 class FineTiles {
  public:
-  FineTiles(const FineCells<Real>& cells, std::size_t column, FineFindings& found)
+  FineTiles(const FineCells& cells, std::size_t column, FineFindings& found)
       : cells_(cells),
         extent_(cells.pair.a.extent),
         found_(found),
@@ -295,7 +292,7 @@ class FineTiles {
     add_alternating(tile, kept);
   }
 
-  void take_part(const Tile& tile, const ImageStack<Real>& stack, Part part) {
+  void take_part(const Tile& tile, const ImageStack& stack, Part part) {
     const Half& own = cells_.half[part.half];
     const double* const mean = own.mean[part.side].data();
     const double* const weights = cells_.half[1 - part.half].weight.data();
@@ -304,7 +301,7 @@ class FineTiles {
     std::size_t count = 0;
     for (std::size_t r = part.half; r < stack.images.size(); r += halves) {
       const auto fill = [&](std::size_t y, std::size_t first, std::span<double> out) {
-        const Real* const values = stack.at(r, first);
+        const float* const values = stack.at(r, first);
         if (r + halves < stack.images.size()) fetch_ahead(stack.at(r + halves, first), out.size());
         const std::size_t here = first - own.first;
         weigh(values, mean + here, weights + here, out);
@@ -335,7 +332,7 @@ class FineTiles {
     });
   }
 
-  void note_rare(const Tile& tile, std::size_t y, Part part, const Real* values,
+  void note_rare(const Tile& tile, std::size_t y, Part part, const float* values,
                  std::span<const double> weighted) {
     const double* const limit = elements_.limit.data() + y * tile.stride();
     const double* const mean =
@@ -630,7 +627,7 @@ class FineTiles {
     }
   }
 
-  const FineCells<Real>& cells_;
+  const FineCells& cells_;
   const ImageExtent& extent_;
   std::vector<Candidates> candidates_;  // A tile's, of each group.
   ElementCounts counts_;
@@ -650,8 +647,7 @@ class FineTiles {
 
 static_assert(fine_rows % Tile::rows == 0 && fine_rows_ahead == Tile::halo);
 
-template <class Real>
-CoarseImages empty_blocks(const ImagePair<Real>& pair) {
+CoarseImages empty_blocks(const ImagePair& pair) {
   const ImageExtent& extent = pair.a.extent;
   CoarseImages coarse;
   coarse.extent = {blocks_of(extent.width), blocks_of(extent.height), extent.channels};
@@ -683,13 +679,12 @@ bool is_fine(const WindowGroup& group) {
                              [&](const Squares& squares) { return squares.side == group.size; });
 }
 
-template <class Real>
-void offer_fine_cells(const FineCells<Real>& cells, RowRange rows, FineFindings& found,
+void offer_fine_cells(const FineCells& cells, RowRange rows, FineFindings& found,
                       const ForEach& for_each) {
   const ImageExtent& extent = cells.pair.a.extent;
   std::vector<ElementCounts> counts(tiles_across(extent));
   for_each(counts.size(), [&](std::size_t column) {
-    FineTiles<Real> tiles(cells, column, found);
+    FineTiles tiles(cells, column, found);
     for (std::size_t y = rows.first; y < rows.last; y += Tile::rows) {
       tiles.take({extent, column * Tile::columns, y});
     }
@@ -709,8 +704,7 @@ void ElementCounts::merge(const ElementCounts& other) {
   different_constants += other.different_constants;
 }
 
-template <class Real>
-FineFindings empty_findings(const ImagePair<Real>& pair, std::span<double> z) {
+FineFindings empty_findings(const ImagePair& pair, std::span<double> z) {
   const ImageExtent& extent = pair.a.extent;
   const std::size_t down = (extent.height + Tile::rows - 1) / Tile::rows;
   return {.coarse = empty_blocks(pair),
@@ -735,10 +729,5 @@ void add_up_alternating(CoarseImages& coarse) {
   }
   add_up(coarse.squared_weights);
 }
-
-template FineFindings empty_findings(const ImagePair<float>&, std::span<double>);
-template FineFindings empty_findings(const ImagePair<double>&, std::span<double>);
-template void offer_fine_cells(const FineCells<float>&, RowRange, FineFindings&, const ForEach&);
-template void offer_fine_cells(const FineCells<double>&, RowRange, FineFindings&, const ForEach&);
 
 }  // namespace assay::stats

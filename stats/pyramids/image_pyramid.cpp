@@ -34,8 +34,7 @@ void divide_by_weights(ImageFinding& finding, const std::vector<float>& weights,
 
 }  // namespace
 
-template <class Real>
-RowPyramid<Real>::RowPyramid(const ImagePair<Real>& pair, const PyramidOptions& options)
+RowPyramid::RowPyramid(const ImagePair& pair, const PyramidOptions& options)
     : extent_(pair.a.extent),
       for_each_(options.for_each),
       constants_decide_(options.constants_decide) {
@@ -49,8 +48,7 @@ RowPyramid<Real>::RowPyramid(const ImagePair<Real>& pair, const PyramidOptions& 
   best_.resize(groups_.size());
 }
 
-template <class Real>
-void RowPyramid<Real>::take(const ImagePair<Real>& pair, RowRange rows) {
+void RowPyramid::take(const ImagePair& pair, RowRange rows) {
   const RowRange reached{rows.first, std::min(rows.last + fine_rows_ahead, extent_.height)};
   half_ = halves_of(pair, reached, for_each_, std::move(half_));
   for (const Half& each : half_) {
@@ -62,11 +60,10 @@ void RowPyramid<Real>::take(const ImagePair<Real>& pair, RowRange rows) {
                                                               wrong - each.variance.begin()))},
                 *wrong, "a finite difference with a finite variance");
   }
-  offer_fine_cells<Real>({pair, half_, groups_, constants_decide_}, rows, found_, for_each_);
+  offer_fine_cells({pair, half_, groups_, constants_decide_}, rows, found_, for_each_);
 }
 
-template <class Real>
-void RowPyramid<Real>::offer_cells() {
+void RowPyramid::offer_cells() {
   found_.noise.build();
   for (const std::vector<Candidates>& tile : found_.tiles) {
     for (std::size_t g = 0; g < tile.size(); ++g) {
@@ -80,8 +77,7 @@ void RowPyramid<Real>::offer_cells() {
   }
 }
 
-template <class Real>
-void RowPyramid<Real>::add_best(ImageFamily& family) const {
+void RowPyramid::add_best(ImageFamily& family) const {
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     const BestCell& best = best_[g];
     if (best.windows == 0) continue;
@@ -93,8 +89,7 @@ void RowPyramid<Real>::add_best(ImageFamily& family) const {
   }
 }
 
-template <class Real>
-ImageFamily RowPyramid<Real>::family() {
+ImageFamily RowPyramid::family() {
   const ElementCounts& counts = found_.counts;
   ImageFamily family{.log_p = 0,
                      .winner = {},
@@ -114,8 +109,5 @@ ImageFamily RowPyramid<Real>::family() {
   decide(family);
   return family;
 }
-
-template class RowPyramid<float>;
-template class RowPyramid<double>;
 
 }  // namespace assay::stats

@@ -48,17 +48,16 @@ struct PyramidOptions {
 
 // image_pyramid for images that are read rows after rows, with the same bits. It keeps z and a
 // weight for each element, and for each 4 x 4 elements one number a replicate.
-template <class Real>
 class RowPyramid {
  public:
   // Only the extent and the number of replicates of `pair` are read.
-  RowPyramid(const ImagePair<Real>& pair, const PyramidOptions& options);
+  RowPyramid(const ImagePair& pair, const PyramidOptions& options);
 
   // Takes rows that follow on those before, in multiples of row_unit but for the last. The pair
   // must have `rows_ahead` more, as far as the image has.
   static constexpr std::size_t row_unit = fine_rows;
   static constexpr std::size_t rows_ahead = fine_rows_ahead + rows_beside;
-  void take(const ImagePair<Real>& pair, RowRange rows);
+  void take(const ImagePair& pair, RowRange rows);
 
   // To be called after the last rows.
   ImageFamily family();
@@ -77,13 +76,13 @@ class RowPyramid {
   std::vector<BestCell> best_;  // One per group.
 };
 
-template <class Real, class Second>
-ImageFamily image_pyramid(const ImageStack<Real>& a, const Second& b,
+template <class Second>
+ImageFamily image_pyramid(const ImageStack& a, const Second& b,
                           const PyramidOptions& options = {}) {
   // Intermediate data is not kept for all elements of a large image.
   constexpr std::size_t rows_at_a_time = 512;
-  const ImagePair<Real> pair = pair_of(a, b);
-  RowPyramid<Real> pyramid(pair, options);
+  const ImagePair pair = pair_of(a, b);
+  RowPyramid pyramid(pair, options);
   for (std::size_t row = 0; row < a.extent.height; row += rows_at_a_time) {
     pyramid.take(pair, {row, std::min(row + rows_at_a_time, a.extent.height)});
   }

@@ -1,6 +1,6 @@
 // The family of an image pair with its z map, on two stacks of 64 images of WIDTH x HEIGHT x 3
-// floats in memory. It runs on one thread and on all processors, and also prints the rate of reading
-// memory. tests/bench/image_scipy.py has Welch's test of every element by scipy.
+// floats in memory. It runs on one thread and on all processors, and also prints the rate of
+// reading memory. tests/bench/image_scipy.py has Welch's test of every element by scipy.
 
 //   image_bench [WIDTH HEIGHT]      Default 1920 1080: 3.2 GB.
 
@@ -26,7 +26,7 @@ constexpr std::size_t repetitions = 5;
 
 struct Stack {
   std::vector<std::vector<float>> images;
-  stats::ImageStack<float> view;
+  stats::ImageStack view;
 };
 
 // Squares of uniforms from a multiplicative hash of the index: any values will do for the time.
@@ -110,8 +110,8 @@ int main(int argc, char** argv) {
         for (std::size_t i = next++; i < count; i = next++) work(i);
       });
     };
-    const Times family = median_times(
-        [&] { stats::image_pyramid(a.view, b.view, {.z = z, .for_each = for_each}); });
+    const Times family =
+        median_times([&] { stats::image_pyramid(a.view, b.view, {.z = z, .for_each = for_each}); });
     std::atomic<std::uint64_t> sink = 0;
     const Times read = median_times([&] {
       on_threads(threads, extent.elements(), [&](std::size_t first, std::size_t size) {

@@ -38,18 +38,18 @@ constexpr std::size_t elements = width * height * channels;
 constexpr std::uint64_t paths = 8;
 constexpr double alpha = 0.01;
 
-using Stack = std::vector<std::vector<double>>;
+using Stack = std::vector<std::vector<float>>;
 
 Stack pictures(const Picture& picture, const std::string& stream, std::uint64_t seed,
                std::size_t first, std::size_t count) {
   const StreamKey key = stream_key(seed, "picture_study", stream, 0);
-  Stack stack(count, std::vector<double>(elements));
+  Stack stack(count);
+  std::vector<double> drawn(elements);
   for (std::size_t i = 0; i < count; ++i) {
     Stream random(key, first + i);
     Cost cost;
-    path_tracing::render(picture, random, paths, stack[i], cost);
-    // A file would round them so.
-    for (double& value : stack[i]) value = static_cast<double>(static_cast<float>(value));
+    path_tracing::render(picture, random, paths, drawn, cost);
+    for (const double value : drawn) stack[i].push_back(static_cast<float>(value));
   }
   return stack;
 }
@@ -61,13 +61,13 @@ struct Found {
   std::uint32_t size = 0;
 };
 
-double mean(const std::vector<double>& image) {
+double mean(const std::vector<float>& image) {
   return std::accumulate(image.begin(), image.end(), 0.0) / static_cast<double>(image.size());
 }
 
 Found look(const Stack& a, const Stack& b) {
   const auto view = [&](const Stack& stack) {
-    stats::ImageStack<double> views{{width, height, channels}, {}};
+    stats::ImageStack views{{width, height, channels}, {}};
     for (const auto& image : stack) views.images.emplace_back(image);
     return views;
   };
@@ -84,7 +84,7 @@ Found look(const Stack& a, const Stack& b) {
   const double share = -std::expm1(std::log1p(-alpha) / static_cast<double>(elements));
   std::size_t beyond = 0;
   for (std::size_t e = 0; e < elements; ++e) {
-    const auto element = [e](const std::vector<double>& image) { return image[e]; };
+    const auto element = [e](const std::vector<float>& image) { return double{image[e]}; };
     const stats::Moments x = moments(a, element);
     const stats::Moments y = moments(b, element);
     if (x.m2 + y.m2 == 0) {

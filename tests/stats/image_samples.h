@@ -14,14 +14,12 @@
 namespace assay::tests {
 
 // Replicates of an image that own their values.
-template <class Value>
-struct StackOf {
+struct OwnedStack {
   stats::ImageExtent extent;
-  std::vector<std::vector<Value>> images;
+  std::vector<std::vector<float>> images;
 
-  stats::ImageStack<Value> view() const { return {extent, {images.begin(), images.end()}}; }
+  stats::ImageStack view() const { return {extent, {images.begin(), images.end()}}; }
 };
-using OwnedStack = StackOf<float>;
 
 // More than one block of elements and no multiple of anything.
 inline constexpr stats::ImageExtent uneven{37, 31, 3};

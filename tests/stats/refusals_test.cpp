@@ -324,10 +324,10 @@ TEST(Refusals, OfImages) {
   const ImageDistance distance = image_distance(stack.view(), stack.view());
   const ImageDistance no_distance = image_distance(still.view(), still.view());
   Values short_of_one(extent.elements() - 1);
-  const Values image(3);
+  const std::vector<float> image(3);
   std::vector<Moments> moments(3);
-  const ImageStack<double> empty{{3, 1, 1}, {}};
-  const ImageStack<double> whole{{3, 1, 1}, {image}};
+  const ImageStack empty{{3, 1, 1}, {}};
+  const ImageStack whole{{3, 1, 1}, {image}};
   REFUSED(image_pyramid(stack.view(), few.view()));
   REFUSED(image_pyramid(stack.view(), stack.view(), {.z = short_of_one}));
   REFUSED(image_pyramid(infinite.view(), stack.view()));

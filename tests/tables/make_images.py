@@ -13,14 +13,14 @@ WIDTH, HEIGHT, CHANNELS = 13, 9, 2
 
 
 def images(k, replicates):
-    """Replicates of image k, as images_of in tests/stats/image_tables_test.cpp."""
+    """Replicates of image k in single precision, as images_of in tests/stats/images/image_tables_test.cpp."""
     e = np.arange(WIDTH * HEIGHT * CHANNELS)
     stack = []
     for r in range(replicates):
         wave = np.sin(1 + 0.37 * e + 1.7 * r * r + 0.9 * k * e)
         tooth = 1 + (7 * r + 3 * e + k) % 5 / 4
         stack.append(wave * tooth + 0.4 + 0.05 * k + 0.01 * (e % 11))
-    return np.array(stack)
+    return np.array(stack, dtype=np.float32).astype(float)
 
 
 def show(*cells):

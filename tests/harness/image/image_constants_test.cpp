@@ -11,7 +11,7 @@ namespace {
 
 using reports::Verdict;
 
-// Values from 0.02 to 8, rounding 8 x 2^-40, means to about 1e-16.
+// Values from 0.02 to 8, in single precision, means to about 1e-16.
 constexpr const char* suite = R"(suite: constants
 alpha: 0.00001
 estimators:
@@ -23,46 +23,47 @@ tests:
   - {name: two, claim: mean(predicted) == mean(uniform)}
   - {name: pairs, claim: mean(predicted) == mean(uniform), paired: true}
 )";
-constexpr double rounding = 8 * 0x1p-40;
 constexpr std::size_t dark = 16 * 24 + 6;  // its mean is 0.0250, in 64 images it may stay at 0.02
 
-using Images = std::vector<std::vector<double>>;
+using Stack = std::vector<std::vector<float>>;
+
+/// The next larger number: half a unit in the last place may be an image's, half another's.
+void round_up(float& value) { value = std::nextafter(value, std::numeric_limits<float>::max()); }
 
 class ImageConstants : public testing::Test {
  protected:
   /// Images that are the reference everywhere.
-  Images at_reference(std::size_t count) const {
-    std::vector<double> image;
+  Stack at_reference(std::size_t count) const {
+    std::vector<float> image;
     for (const Constant& reference : asked_->questions[0].references) {
-      image.push_back(reference.value);
+      image.push_back(static_cast<float>(reference.value));
     }
-    return Images(count, image);
+    return Stack(count, image);
   }
 
   /// What varies of these sides of a test.
-  VaryingPart<double> varying(std::size_t test, std::vector<Images> sides) {
+  VaryingPart varying(std::size_t test, std::vector<Stack> sides) {
     data_.resize(sides.size());
     for (std::size_t i = 0; i < sides.size(); ++i) {
       data_[i].images = ImageViews(std::move(sides[i]));
     }
     pair_.emplace(Seen{asked_->questions[test], 0, data_});
-    return VaryingPart<double>(asked_->questions[test], *pair_);
+    return VaryingPart(asked_->questions[test], *pair_);
   }
 
   std::unique_ptr<Asked> asked_ = ask_text(suite);
   std::vector<ChannelData> data_;
-  std::optional<ImagePair<double>> pair_;
+  std::optional<ImagePair> pair_;
 };
 
 TEST_F(ImageConstants, AConstantWithinRoundingOfItsReferenceIsAtIt) {
-  Images images = at_reference(64);
+  Stack images = at_reference(64);
   for (auto& image : images) {
-    image[3] -= 5e-16;
-    image[dark] += 0.9 * rounding;
+    round_up(image[dark]);
   }
-  images[5][7] += rounding;  // varies, but not by more than rounding
-  images[5][8] += 1e-3;
-  const VaryingPart<double> part = varying(0, {images});
+  round_up(images[5][7]);  // varies, but not by more than rounding
+  images[5][8] += 1e-3F;
+  const VaryingPart part = varying(0, {images});
   EXPECT_TRUE(part.any());
   EXPECT_TRUE(part.unseen().empty());
   part.with([&](const auto& a, const auto& b) {
@@ -80,14 +81,14 @@ TEST_F(ImageConstants, APixelThatWasNeverLitIsHeldAgainstItsRangeAlone) {
   const Constant& reference = asked_->questions[0].references[dark];
   ASSERT_NEAR(reference.value, 0.025014548794971263, 1e-15);
   ASSERT_GT(reference.standard_error, 0);
-  Images images = at_reference(64);
-  for (auto& image : images) image[dark] = 0.02;
-  const VaryingPart<double> part = varying(0, {images});
+  Stack images = at_reference(64);
+  for (auto& image : images) image[dark] = 0.02F;
+  const VaryingPart part = varying(0, {images});
   EXPECT_FALSE(part.any());
   ASSERT_EQ(part.unseen().size(), 1u);
   EXPECT_EQ(part.unseen()[0].element, dark);
   EXPECT_EQ(part.unseen()[0].sign, -1);
-  EXPECT_NEAR(part.unseen()[0].log_p, 64 * std::log1p(-0.005014548794971263 / 7.98), 1e-9);
+  EXPECT_NEAR(part.unseen()[0].log_p, 64 * std::log1p(-0.005014548794971263 / 7.98), 1e-8);
   // Sums with its neighbours see it where it is.
   part.with([&](const auto&, const auto& b) {
     if constexpr (requires { b.value; }) {
@@ -97,9 +98,9 @@ TEST_F(ImageConstants, APixelThatWasNeverLitIsHeldAgainstItsRangeAlone) {
 }
 
 TEST_F(ImageConstants, BeyondTheRangeAConstantIsCertainlyWrong) {
-  Images images = at_reference(64);
+  Stack images = at_reference(64);
   for (auto& image : images) image[17 * 24] = 8;  // where nothing but the background is seen
-  const VaryingPart<double> part = varying(0, {images});
+  const VaryingPart part = varying(0, {images});
   ASSERT_EQ(part.unseen().size(), 1u);
   EXPECT_LT(part.unseen()[0].log_p, std::log(1e-100));
   EXPECT_GT(z_of(part.unseen()[0]), 20);
@@ -108,14 +109,14 @@ TEST_F(ImageConstants, BeyondTheRangeAConstantIsCertainlyWrong) {
 // As constants of two images that differ fail, a difference of pairs that never varies stays as it
 // is.
 TEST_F(ImageConstants, OfTwoImagesAndOfPairsAreEqualWithinRoundingOnly) {
-  const Images first = at_reference(16);
-  Images second = first;
+  const Stack first = at_reference(16);
+  Stack second = first;
   for (auto& image : second) {
-    image[3] += rounding;
-    image[4] += 4 * rounding;
+    round_up(image[3]);
+    image[4] *= 1 + 1e-6F;
   }
-  Images varied = first;
-  varied[2][5] += rounding;
+  Stack varied = first;
+  round_up(varied[2][5]);
   varying(2, {varied, second}).with([&](const auto& a, const auto& b) {
     if constexpr (requires { b.images; }) {
       for (std::size_t r = 0; r < a.images.size(); ++r) {
@@ -125,7 +126,7 @@ TEST_F(ImageConstants, OfTwoImagesAndOfPairsAreEqualWithinRoundingOnly) {
       }
     }
   });
-  const VaryingPart<double> pairs = varying(3, {first, second});
+  const VaryingPart pairs = varying(3, {first, second});
   EXPECT_TRUE(pairs.any());
   EXPECT_TRUE(pairs.unseen().empty());
   pairs.with([&](const auto& a, const auto& b) {
@@ -141,13 +142,13 @@ TEST_F(ImageConstants, OfTwoImagesAndOfPairsAreEqualWithinRoundingOnly) {
 // One image never lit a pixel, and the other did now and then; that is no contradiction. At 0.0052
 // above 0.02 a value of 8 has probability 0.0007.
 TEST_F(ImageConstants, APixelThatOneOfTwoImagesNeverLitIsHeldAgainstItsRange) {
-  Images first = at_reference(16);
-  Images second = first;
+  Stack first = at_reference(16);
+  Stack second = first;
   for (std::size_t r = 0; r < 16; ++r) {
-    first[r][dark] = 0.02;
-    second[r][dark] = 0.025 + 0.0001 * static_cast<double>(r % 5);
+    first[r][dark] = 0.02F;
+    second[r][dark] = 0.025F + 0.0001F * static_cast<float>(r % 5);
   }
-  const VaryingPart<double> part = varying(2, {first, second});
+  const VaryingPart part = varying(2, {first, second});
   ASSERT_EQ(part.unseen().size(), 1u);
   EXPECT_EQ(part.unseen()[0].sign, -1);
   EXPECT_NEAR(part.unseen()[0].log_p, 16 * std::log1p(-0.0052 / 7.98), 1e-3);

@@ -40,9 +40,13 @@ void shared_noise(Philox& random, std::vector<double>& image) {
 ImageOutcome outcome_of(std::uint32_t key, const DrawImage& draw) {
   const auto asked = ask_text(dependent);
   const Question& question = asked->question("t");
-  std::vector<std::vector<double>> images(replicates, std::vector<double>(width * width));
+  std::vector<std::vector<float>> images(replicates);
   Philox random(key);
-  for (std::vector<double>& image : images) draw(random, image);
+  std::vector<double> drawn(width * width);
+  for (std::vector<float>& image : images) {
+    draw(random, drawn);
+    for (const double value : drawn) image.push_back(static_cast<float>(value));
+  }
   ChannelData data[1];
   data[0].images = ImageViews(std::move(images));
   const ImageTest test{.share = {.alpha = alpha, .beta = alpha}, .independent = false};

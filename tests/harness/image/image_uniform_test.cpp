@@ -6,11 +6,13 @@ namespace {
 
 // Two images of two pixels and two channels.
 const std::vector<double> dark{1, 10, 3, 30};
-const std::vector<double> bright{2, 14, 4, 42};
+const std::vector<float> first_of_two{1, 10, 3, 30};
+const std::vector<float> second_of_two{2, 14, 4, 42};
 const stats::ImageExtent extent{2, 1, 2};
 
 TEST(ImageUniform, OfReplicatesEachChannelHasTheSpreadOfItsOwnMeans) {
-  const ChannelMeans means = channel_means(stats::ImageStack<double>{extent, {dark, bright}});
+  const ChannelMeans means =
+      channel_means(stats::ImageStack{extent, {first_of_two, second_of_two}});
   ASSERT_EQ(means.size(), 2U);
   EXPECT_DOUBLE_EQ(means[0].value, 2.5);  // of 2 and 3
   EXPECT_DOUBLE_EQ(means[0].standard_error, 0.5);

@@ -12,10 +12,15 @@ namespace {
 constexpr std::size_t channel_count = 3;
 const std::string nothing = thrown([] {});
 
-/// Two sums and the number of a cell; one observation may be no number, and one may throw.
+/// Two sums, which may be an image, and the number of a cell. One observation may be no number, and
+/// one may throw.
 class OddSetup final : public Setup {
  public:
-  explicit OddSetup(std::optional<std::uint64_t> throws = {}) : throws_(throws) {}
+  explicit OddSetup(std::optional<std::uint64_t> throws = {}, bool image = false)
+      : throws_(throws), image_(image) {}
+  std::optional<ImageShape> image() const override {
+    return image_ ? std::optional(ImageShape{.width = 2, .height = 1}) : std::nullopt;
+  }
   std::vector<Channel> channels() const override {
     return {{.name = "sum"}, {.name = "odd"}, {.name = "cell"}};
   }
@@ -39,6 +44,7 @@ class OddSetup final : public Setup {
 
  private:
   std::optional<std::uint64_t> throws_;
+  bool image_;
 };
 
 Recipe some_recipe() {
@@ -55,7 +61,7 @@ Recipe some_recipe() {
     recipe.plan[2].cells = *rc::gen::element<std::size_t>(0, 5);
   }
   if (*rc::gen::arbitrary<bool>()) recipe.grouped_channels = {0, 1};
-  recipe.kept_observations = *rc::gen::element<std::uint64_t>(0, 1, 50);
+  recipe.kept_observations = *rc::gen::element<std::uint64_t>(0, 1, 50, 200);
   recipe.marks =
       *rc::gen::unique<std::vector<std::uint64_t>>(rc::gen::inRange<std::uint64_t>(1, 200));
   recipe.marks.push_back(200);
@@ -97,7 +103,8 @@ std::vector<std::string> blocks_elsewhere(const Recipe& recipe, const OddSetup& 
 }
 
 RC_GTEST_PROP(Packing, GivesThePoolThatIsDrawnHere, ()) {
-  const OddSetup setup(*rc::gen::element<std::optional<std::uint64_t>>({}, 0, 10, 150));
+  const OddSetup setup(*rc::gen::element<std::optional<std::uint64_t>>({}, 0, 10, 150),
+                       *rc::gen::arbitrary<bool>());
   const Recipe recipe = some_recipe();
   const std::shared_ptr<Pool> here = fresh(recipe, setup);
   draw_all_of(here);

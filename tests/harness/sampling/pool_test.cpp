@@ -306,15 +306,14 @@ TEST(Pool, TakesWhatIsKnownWithoutDrawingIt) {
   EXPECT_EQ(sample_of(*second, 30).summary().channels[1].moments.m4,
             sample_of(*first, 30).summary().channels[1].moments.m4);
   EXPECT_EQ(sample_of(*second, 30).summary().cost, sample_of(*first, 30).summary().cost);
-  const auto drawn = std::get<0>(sample_of(*second, 30).observations(20));
-  EXPECT_EQ(drawn.size(), 20U);
-  EXPECT_EQ(drawn.data(), std::get<0>(sample_of(*first, 30).observations(20)).data());
 }
 
-// Pictures of files are summed when all are there, once for the pilot and the test.
-TEST(Pool, PicturesOfFilesHaveTheSumsOfOneByOne) {
-  const Behaviour pictures{.not_a_number = 11, .rows = 30, .image = true};
-  const auto one_by_one = drawn_from(pool_of(pictures), 1);
+// Images that are all kept are summed when all are there, once for the pilot and the test.
+TEST(Pool, KeptImagesHaveTheSumsOfOneByOne) {
+  const Behaviour pictures{.not_a_number = 11, .image = true};
+  const auto one_by_one = pool_of(pictures);
+  one_by_one->keep_observations(20);
+  drawn_from(one_by_one, 1);
   const auto kept = pool_of(pictures);
   kept->keep_observations(30);
   drawn_from(kept, 1);
@@ -337,10 +336,15 @@ TEST(Pool, PicturesOfFilesHaveTheSumsOfOneByOne) {
     }
     expect_same(sums, sample_of(*two_threads, count).summary());
   }
-  const auto known = pool_of(pictures);
+  const auto known = pool_of({.not_a_number = 11, .rows = 30, .image = true});
   known->take_known(kept->kept());
   drawn_from(known, 1);
   EXPECT_EQ(&sample_of(*known, 30).summary(), &sample_of(*kept, 30).summary()) << "sums are shared";
+  const Images some = sample_of(*known, 30).images(20);
+  ASSERT_EQ(some.size(), 20U);
+  const Images of_one_by_one = sample_of(*one_by_one, 30).images();
+  ASSERT_EQ(of_one_by_one.size(), 20U);
+  for (std::size_t i = 0; i < 20; ++i) EXPECT_EQ(some[i][0], of_one_by_one[i][0]);
 }
 
 // A sampler's tests do not read its estimator: the estimator's death is none of theirs.

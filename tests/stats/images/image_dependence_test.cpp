@@ -21,8 +21,8 @@ OwnedStack independent(Philox& random, double (*law)(Philox&), std::size_t repli
 }
 
 ImageDependence found(const OwnedStack& a, const OwnedStack& b) {
-  const ImageStack<float> first = a.view();
-  const ImageStack<float> second = b.view();
+  const ImageStack first = a.view();
+  const ImageStack second = b.view();
   return image_dependence(pair_of(first, second));
 }
 
@@ -152,9 +152,9 @@ TEST(ImageDependence, IsTheSameRowByRow) {
   OwnedStack same_seed = sound;
   for (float& value : same_seed.images[0]) value *= 2;
   for (const OwnedStack* other : {&repeats, &neighbours, &same_seed}) {
-    const ImageStack<float> first = sound.view();
-    const ImageStack<float> second = other->view();
-    RowDependence<float> rows;
+    const ImageStack first = sound.view();
+    const ImageStack second = other->view();
+    RowDependence rows;
     for (std::size_t y = 0; y < extent.height; y += 8) {
       rows.take(pair_of(first, second), {y, y + 8});
     }

@@ -133,7 +133,7 @@ TestResult at_margin(Philox& random, const Case& given) {
   for (double& v : value) v = 10 + error * (given.common ? common : random.normal());
   const std::vector<double> errors(extent.elements(), error);
   const ImageReference reference{extent, value, errors};
-  const ImageStack<float> a = stack.view();
+  const ImageStack a = stack.view();
   ImageDistance distance = image_distance(a, reference);
   if (given.taken) distance = with_reference_error(distance, a, reference, *given.taken);
   return below_half(squared_margin_test(distance, margin * margin));

@@ -48,11 +48,11 @@ TEST(ImageMoments, EveryOtherImageIsAHalf) {
 }
 
 TEST(ImageMoments, ADistantFirstValueCostsNoAccuracy) {
-  tests::StackOf<double> stack{{1, 1, 1}, {}};
+  OwnedStack stack{{1, 1, 1}, {}};
   Moments expected;
   for (int r = 0; r < 64; ++r) {
-    stack.images.push_back({r == 0 ? 1e12 : 1 + 1e-3 * r});
-    expected.add(stack.images.back()[0]);
+    stack.images.push_back({r == 0 ? 1e12F : 1 + 1e-3F * static_cast<float>(r)});
+    expected.add(static_cast<double>(stack.images.back()[0]));
   }
   double mean = 0;
   double m2 = 0;
@@ -64,7 +64,7 @@ TEST(ImageMoments, ADistantFirstValueCostsNoAccuracy) {
 TEST(ImageMoments, OnlyConstantsHaveNoVariance) {
   const std::vector<float> constant{0.1F, 0.3F};
   const std::vector<float> other{0.1F, std::nextafter(0.3F, 1.0F)};
-  ImageStack<float> stack{{2, 1, 1}, {constant, constant, constant, other}};
+  ImageStack stack{{2, 1, 1}, {constant, constant, constant, other}};
   std::vector<double> mean(2);
   std::vector<double> m2(2);
   moments_of_range(stack, 0, {mean, m2});
@@ -131,15 +131,13 @@ TEST(ImageSums, OfChannelsAreThoseOfTheirElements) {
   tests::Philox random(876);
   for (const std::size_t channels : {1U, 2U, 3U, 5U}) {
     const ImageExtent small{71, 4, channels};
-    std::vector<std::vector<double>> images;
-    for (int r = 0; r < 3; ++r) images.push_back(tests::normals(random, small.elements()));
-    const std::vector<double> sums =
-        image_channel_sums(ImageStack<double>{small, {images.begin(), images.end()}});
+    const OwnedStack stack = draw_stack(small, 3, [&](std::size_t) { return random.normal(); });
+    const std::vector<double> sums = image_channel_sums(stack.view());
     ASSERT_EQ(sums.size(), 3 * channels);
     for (std::size_t i = 0; i < sums.size(); ++i) {
       double expected = 0;
       for (std::size_t e = i % channels; e < small.elements(); e += channels) {
-        expected += images[i / channels][e];
+        expected += static_cast<double>(stack.images[i / channels][e]);
       }
       EXPECT_NEAR(sums[i], expected, 1e-12);
     }

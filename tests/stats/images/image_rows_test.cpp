@@ -41,11 +41,11 @@ class Window {
           std::span<const float>(copy).subspan(stack_.there.first, stack_.there.size()));
     }
   }
-  const ImageStack<float>& stack() const { return stack_; }
+  const ImageStack& stack() const { return stack_; }
 
  private:
   std::vector<std::vector<float>> copies_;
-  ImageStack<float> stack_;
+  ImageStack stack_;
 };
 
 /// Calls take(pair, rows) for rows after rows, with as many ahead of them.
@@ -82,7 +82,7 @@ void expect_same(const ImageFamily& rows, const ImageFamily& whole) {
 }
 
 TEST_F(ImageRows, MakeTheFamilyOfTheWhole) {
-  using Pyramid = RowPyramid<float>;
+  using Pyramid = RowPyramid;
   std::vector<double> z(extent.elements());
   std::vector<double> z_of_whole(extent.elements());
   Pyramid pyramid(pair_of(a_.view(), b_.view()), {.z = z, .for_each = tests::last_first});
@@ -97,7 +97,7 @@ TEST_F(ImageRows, MakeTheFamilyOfTheWhole) {
 }
 
 TEST_F(ImageRows, HaveTheDistanceOfTheWhole) {
-  RowDistance<float> distance;
+  RowDistance distance;
   for_each_window(a_, b_, 0, [&](const auto& pair, RowRange rows) {
     distance.take(pair, rows, tests::last_first);
   });

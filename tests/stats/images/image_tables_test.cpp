@@ -12,14 +12,14 @@ namespace {
 constexpr ImageExtent extent{13, 9, 2};
 
 // images(k, replicates) of make_images.py, plus a shift.
-StackOf<double> images_of(int k, int replicates, double shift = 0) {
-  StackOf<double> stack{extent, {}};
+OwnedStack images_of(int k, int replicates, double shift = 0) {
+  OwnedStack stack{extent, {}};
   for (int r = 0; r < replicates; ++r) {
-    std::vector<double>& image = stack.images.emplace_back();
+    std::vector<float>& image = stack.images.emplace_back();
     for (int e = 0; e < static_cast<int>(extent.elements()); ++e) {
       const double wave = std::sin(1 + 0.37 * e + 1.7 * r * r + 0.9 * k * e);
       const double tooth = 1 + (7 * r + 3 * e + k) % 5 / 4.0;
-      image.push_back(wave * tooth + 0.4 + 0.05 * k + 0.01 * (e % 11) + shift);
+      image.push_back(static_cast<float>(wave * tooth + 0.4 + 0.05 * k + 0.01 * (e % 11) + shift));
     }
   }
   return stack;

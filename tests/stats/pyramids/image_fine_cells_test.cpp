@@ -24,8 +24,8 @@ struct Cell {
 };
 
 // Mean and squared error of one cell's weighted sum over one half of a stack.
-Moments cell_moments(const ImageStack<float>& stack, std::size_t half,
-                     const std::vector<double>& weight, const Cell& cell) {
+Moments cell_moments(const ImageStack& stack, std::size_t half, const std::vector<double>& weight,
+                     const Cell& cell) {
   const Rectangle& window = cell.group.windows[cell.index];
   Moments moments;
   for (std::size_t r = half; r < stack.images.size(); r += halves) {
@@ -43,8 +43,7 @@ Moments cell_moments(const ImageStack<float>& stack, std::size_t half,
 }
 
 // What a cell's own sums and elements say, by loops over its rectangle.
-CellNoise noise_of(const ImagePair<float>& pair, const std::array<Half, halves>& half,
-                   const Cell& cell) {
+CellNoise noise_of(const ImagePair& pair, const std::array<Half, halves>& half, const Cell& cell) {
   CellNoise noise;
   double reciprocal_degrees = 0;
   for (std::size_t h = 0; h < halves; ++h) {
@@ -73,7 +72,7 @@ CellNoise noise_of(const ImagePair<float>& pair, const std::array<Half, halves>&
 }
 
 // The group's cell that is farthest from zero by its own noise.
-Candidate farthest(const ImagePair<float>& pair, const std::array<Half, halves>& half,
+Candidate farthest(const ImagePair& pair, const std::array<Half, halves>& half,
                    const WindowGroup& group) {
   Candidate best;
   for (std::size_t i = 0; i < group.windows.size(); ++i) {
@@ -94,15 +93,15 @@ void expect_cells_of(const ImageExtent& extent, std::uint32_t test_case) {
   const auto draw = [&](std::size_t) { return 3 + random.normal(); };
   const OwnedStack first = draw_stack(extent, 17, draw);
   const OwnedStack second = draw_stack(extent, 16, draw);
-  const ImageStack<float> a = first.view();
-  const ImageStack<float> b = second.view();
-  const ImagePair<float> pair{a, &b, nullptr};
+  const ImageStack a = first.view();
+  const ImageStack b = second.view();
+  const ImagePair pair{a, &b, nullptr};
   const RowRange rows{0, extent.height};
   const std::array<Half, halves> half = halves_of(pair, rows);
   const Groups groups = window_groups(extent);
   std::vector<double> z(extent.elements());
   FineFindings found = empty_findings(pair, z);
-  offer_fine_cells<float>({pair, half, groups}, rows, found);
+  offer_fine_cells({pair, half, groups}, rows, found);
   add_up_alternating(found.coarse);
   EXPECT_EQ(found.counts.tested, extent.elements());
   std::vector<double> windows(groups.size());
