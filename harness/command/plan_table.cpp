@@ -184,7 +184,7 @@ Row row_of(const TestWork& work, const Pilots& pilots, const UnitCosts& costs) {
   }
   row.not_ok = not_ok(test, expected);
   if (!plan.caution.empty()) row.notes.push_back(plan.caution);
-  if (!plan.invalid.empty()) row.notes.push_back("invalid: " + plan.invalid);
+  if (!plan.invalid.empty()) row.notes.push_back("invalid: " + plan.invalid.text);
   if (const std::string trouble = trouble_of(work, costs); !trouble.empty()) {
     row.notes.push_back("error: " + trouble);
   }

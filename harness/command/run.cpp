@@ -78,7 +78,7 @@ class Listener {
  private:
   void tell(const SuiteRun& run, reports::Test test, const TestEntry& entry) {
     if (first_.empty()) first_ = test.id;
-    test.replay = replay_line(entry, run, planned_.suites, options_);
+    add_replay(entry, run, planned_.suites, options_, test);
     if (broken_) broken_(head_of(run), test);
   }
 

@@ -104,7 +104,7 @@ std::string sizes_text(const TestOutcome& outcome, double factor) {
   return fmt::format("{}", fmt::join(texts, " and "));
 }
 
-std::string what_would_help(const TestOutcome& outcome) {
+Reason what_would_help(const TestOutcome& outcome) {
   bool says_it_all = true;
   bool heavy = false;
   double factor = 1;
@@ -115,7 +115,7 @@ std::string what_would_help(const TestOutcome& outcome) {
     heavy = heavy || row.heavy_tail;
     factor = std::max(factor, wanted(gate));
   }
-  if (says_it_all) return "";
+  if (says_it_all) return {};
   // A sample that one observation makes up tells no more.
   constexpr double most = 100;
   factor = std::min(factor, most);
@@ -131,8 +131,9 @@ std::string what_would_help(const TestOutcome& outcome) {
   const std::string more =
       factor > 1 && std::isfinite(factor) ? "about " + sizes_text(outcome, factor) : "more";
   if (rows) {
-    return fmt::format(": give {} rows, or rows that each average several{}", more,
-                       or_if_normal(outcome));
+    const std::string words = fmt::format("give {} rows, or rows that each average several{}", more,
+                                          or_if_normal(outcome));
+    return {": " + words, reports::Advice{.words = words}};
   }
   return fmt::format(
       "; {} `secondaries` would do. Without a declared range no test decides on fewer than {} "

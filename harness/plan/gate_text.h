@@ -21,7 +21,7 @@ std::string sizes_text(const TestOutcome& outcome, double factor);
 
 /// Advice that would turn red gates green: more rows, or more primaries and secondaries. For heavy
 /// tails it is a claim that needs no moments, or tails that end. Empty if the gates say it
-/// themselves.
-std::string what_would_help(const TestOutcome& outcome);
+/// themselves. It continues a sentence.
+Reason what_would_help(const TestOutcome& outcome);
 
 }  // namespace assay::harness

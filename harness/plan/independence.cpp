@@ -79,29 +79,34 @@ std::string enough_of_a_chain(const Question& question, double time) {
                      fewest_batches * std::max(apart, fewest_batches));
 }
 
+/// What is wrong with rows, and words that mend it.
+Reason wrong(const std::string& what, const std::string& mend) {
+  return {what + "; " + mend, reports::Advice{.words = mend}};
+}
+
 /// `at_a_lag`: values some steps apart show the dependence, not neighbours.
-std::string dependent(const Question& question, const Rows& rows, bool at_a_lag) {
+Reason dependent(const Question& question, const Rows& rows, bool at_a_lag) {
   const double time = std::max(1.0, stats::autocorrelation_time(rows.values));
   const stats::LaggedCorrelation worst = stats::worst_of(stats::lagged_correlations(rows.values));
   if (at_a_lag && worst.correlation > 0 && static_cast<double>(worst.lag) > time) {
-    return fmt::format(
-        "the {} are not independent: those {} apart have a rank correlation of {:.2g}, as where so "
-        "many chains take turns; give one row a chain",
-        rows.label, worst.lag, worst.correlation);
+    return wrong(fmt::format("the {} are not independent: those {} apart have a rank correlation "
+                             "of {:.2g}, as where so many chains take turns",
+                             rows.label, worst.lag, worst.correlation),
+                 "give one row a chain");
   }
   if (!(time > 1)) {
     const stats::LaggedCorrelation any =
         stats::worst_of(stats::lagged_correlations(rows.values, 1));
-    return fmt::format(
-        "the {} are not independent: those {} apart have a rank correlation of {:.2g}; give the "
-        "mean of rows that were drawn together as one row",
-        rows.label, any.lag, any.correlation);
+    return wrong(fmt::format("the {} are not independent: those {} apart have a rank correlation "
+                             "of {:.2g}",
+                             rows.label, any.lag, any.correlation),
+                 "give the mean of rows that were drawn together as one row");
   }
   const double worth = static_cast<double>(rows.values.size()) / time;
-  return fmt::format(
-      "the {} are not independent: {} of them are worth about {:.0f} independent ones; give one "
-      "row a chain, or {}",
-      rows.label, rows.values.size(), worth, enough_of_a_chain(question, time));
+  return wrong(fmt::format("the {} are not independent: {} of them are worth about {:.0f} "
+                           "independent ones",
+                           rows.label, rows.values.size(), worth),
+               "give one row a chain, or " + enough_of_a_chain(question, time));
 }
 
 /// A red gate on something that chance does not make.
@@ -114,18 +119,20 @@ std::string from_to(std::size_t first, std::size_t length) {
   return fmt::format("{} to {}", first + 1, first + length);
 }
 
-std::string repeated(const Rows& rows, const stats::RepeatedRun& again) {
-  return fmt::format(
-      "of the {} those from {} are those from {} again, bit for bit: they are no observations of "
-      "their own; give each run of the program that writes them a seed of its own",
-      rows.label, from_to(again.second, again.length), from_to(again.first, again.length));
+Reason repeated(const Rows& rows, const stats::RepeatedRun& again) {
+  return wrong(fmt::format("of the {} those from {} are those from {} again, bit for bit: they are "
+                           "no observations of their own",
+                           rows.label, from_to(again.second, again.length),
+                           from_to(again.first, again.length)),
+               "give each run of the program that writes them a seed of its own");
 }
 
-std::string recurring(const Rows& rows, const stats::RecurringValues& alike) {
-  return fmt::format(
-      "of the {} {} values occur exactly {} times each, bit for bit, where independent ones would "
-      "show {} such at most: they are no observations of their own; keep each row once",
-      rows.label, alike.values, alike.times, alike.limit);
+Reason recurring(const Rows& rows, const stats::RecurringValues& alike) {
+  return wrong(fmt::format("of the {} {} values occur exactly {} times each, bit for bit, where "
+                           "independent ones would show {} such at most: they are no observations "
+                           "of their own",
+                           rows.label, alike.values, alike.times, alike.limit),
+               "keep each row once");
 }
 
 /// Two samples that are held against each other.
@@ -172,8 +179,8 @@ void refuse_shared_rows(const Question& question, const Rows& one, const Rows& t
 }
 
 /// Why rows are too few to show their independence; "" if they are enough.
-std::string too_few_to_tell(TestOutcome& test, const Pilots& pilots, std::uint64_t count) {
-  std::string reason;
+Reason too_few_to_tell(TestOutcome& test, const Pilots& pilots, std::uint64_t count) {
+  Reason reason;
   for (const Subject& side : test.question.subjects) {
     const Pilot* pilot = pilot_of(side, pilots);
     if (!is_recorded(side) || side.setup->image() || pilot == nullptr) continue;
@@ -192,10 +199,11 @@ std::string too_few_to_tell(TestOutcome& test, const Pilots& pilots, std::uint64
             ? ""
             : fmt::format("; if they are independent, add {}",
                           written_key(*test.question.test, "test", test.plan.method.name));
-    reason = fmt::format(
-        "`{}` has {} row{}, and it takes {} to see that they do not depend on each other: give "
-        "more{}",
-        side.estimator->name, rows, rows == 1 ? "" : "s", fewest_in_order_to_tell, forced);
+    reason = {fmt::format("`{}` has {} row{}, and it takes {} to see that they do not depend on "
+                          "each other: give more{}",
+                          side.estimator->name, rows, rows == 1 ? "" : "s", fewest_in_order_to_tell,
+                          forced),
+              reports::Advice{.words = fmt::format("give {} rows", fewest_in_order_to_tell)}};
   }
   return reason;
 }
@@ -245,8 +253,8 @@ void judge_independence(TestOutcome& test, const Pilots& pilots, std::uint64_t c
   const Question& question = test.question;
   Plan& plan = test.plan;
   const bool forced = question.test->method.has_value();
-  std::string reason = too_few_to_tell(test, pilots, count);
-  if (forced || !plan.invalid.empty()) reason.clear();
+  Reason reason = too_few_to_tell(test, pilots, count);
+  if (forced || !plan.invalid.empty()) reason = {};
   const std::vector<Rows> all = rows_of(question, pilots, count);
   const bool batches =
       question.is().batches_serve && (!forced || plan.method.is.of_batches) &&
@@ -285,7 +293,7 @@ void judge_independence(TestOutcome& test, const Pilots& pilots, std::uint64_t c
     plan.method = find_method(question, "batch-means");
     // Batches answer what spoke against single rows; it still speaks against a drawn side.
     if (std::ranges::all_of(question.subjects, is_recorded)) {
-      plan.invalid.clear();
+      plan.invalid = {};
     }
   } else if (question.is().batches_serve && !plan.method.is.exact) {
     allow_for_dependence(all, plan);

@@ -26,6 +26,17 @@ struct PlannedImage {
   double squared_norm = 0;  ///< Squared norm of the mean.
 };
 
+/// Why a verdict is what it is, and what a reader can do about it.
+struct Reason {
+  std::string text = {};
+  std::optional<reports::Advice> advice = {};
+
+  Reason() = default;
+  Reason(std::string words, std::optional<reports::Advice> next = {})  // NOLINT: words are one
+      : text(std::move(words)), advice(std::move(next)) {}
+  bool empty() const { return text.empty(); }
+};
+
 /// The design of a test, frozen before its own data are drawn.
 struct Plan {
   Method method;
@@ -39,8 +50,8 @@ struct Plan {
   std::string caution = "";  ///< Possible slip of the user, shown unless the claim is refuted.
   /// True if red gates on the test's own data void a look. A forced method only shows them.
   bool gates_invalidate = true;
-  std::string invalid = "";  ///< Reason why no method is valid, or "".
-  std::string error = "";    ///< Reason why nothing can be planned, or "".
+  Reason invalid = {};     ///< Why no method is valid, or empty.
+  std::string error = "";  ///< Reason why nothing can be planned, or "".
   /// Reason why the pilot makes an error of a test with sound numbers, or "".
   std::string pilot_error = "";
   /// Set for pictures that were examined while they were read.
@@ -87,6 +98,7 @@ struct TestOutcome {
   std::optional<double> power = {};           ///< Power at `detect`, with the observed spread.
   reports::Verdict verdict = reports::Verdict::skipped;
   std::string message = "";
+  std::optional<reports::Advice> advice = {};  ///< Of the message.
 
   /// Size of this look: the most that any subject takes.
   std::uint64_t secondaries() const { return plan.looks.sizes[look]; }

@@ -177,7 +177,7 @@ void freeze(TestOutcome& test, const Pilots& pilots) {
   if (!test.plan.method.is.cells_of_pilots) return;
   std::vector<stats::PlanePoint> points = pilot_points(test, pilots);
   if (points.empty()) {
-    test.plan.invalid = "the pilots gave no point to choose cells by";
+    test.plan.invalid = Reason("the pilots gave no point to choose cells by");
     return;
   }
   const bool plane = test.question.subjects[0].channels.size() > 1;

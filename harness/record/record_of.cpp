@@ -315,6 +315,7 @@ reports::Test record_of_test(const TestWork& work, const std::string& file, bool
   test.planned_looks = outcome.plan.looks.sizes;
   test.looks = looks_of(outcome, regions);
   test.message = outcome.message;
+  test.advice = outcome.advice;
   return test;
 }
 
@@ -334,13 +335,15 @@ void note_retries(reports::Record& record) {
                              count == 1 ? "was" : "were", names);
 }
 
-std::string replay_line(const TestEntry& entry, const SuiteRun& run, const SuiteRuns& runs,
-                        const RunOptions& options) {
+void add_replay(const TestEntry& entry, const SuiteRun& run, const SuiteRuns& runs,
+                const RunOptions& options, reports::Test& test) {
   for (const Source& source : sources_of(entry.claim)) {
     for (const EstimatorEntry& estimator : run.suite.estimators) {
       if (estimator.name != source.estimator) continue;
-      if (const std::string from = passing_rows(run.suite, estimator); !from.empty())
-        return fmt::format("# {} cannot be read again: write it to a file", from);
+      const std::string from = passing_rows(run.suite, estimator);
+      if (from.empty()) continue;
+      test.no_replay = from + " cannot be read again: write it to a file";
+      return;
     }
   }
   const std::string command = "assay run";
@@ -352,9 +355,10 @@ std::string replay_line(const TestEntry& entry, const SuiteRun& run, const Suite
     }
     line.insert(command.size(), option_words("", files));
   }
-  if (line.empty()) return "";
+  if (line.empty()) return;
   line += option_words("--seed", {fmt::format("{}", run.seed)});
-  return run.suite.file.empty() ? line : line + option_words("--filter", {entry.id});
+  if (!run.suite.file.empty()) line += option_words("--filter", {entry.id});
+  test.replay = std::move(line);
 }
 
 reports::Test record_of_untested(const Untested& untested, const SuiteRun& run) {
@@ -395,7 +399,7 @@ reports::Record record_of(const SuiteRuns& runs, const RunOptions& options) {
                     record_of_test(work, run->suite.file, run->adjusted));
     }
     for (auto& [entry, test] : tests) {
-      test.replay = replay_line(*entry, *run, runs, options);
+      add_replay(*entry, *run, runs, options, test);
       suite.tests.push_back(std::move(test));
     }
     suite.statements = statements_of(run->suite, suite.tests);

@@ -27,9 +27,10 @@ reports::Test record_of_test(const TestWork& work, const std::string& file, bool
 
 using SuiteRuns = std::vector<std::unique_ptr<SuiteRun>>;
 
-/// The command that repeats a test: that of its suite alone if it can be. "" if the run has none.
-std::string replay_line(const TestEntry& entry, const SuiteRun& run, const SuiteRuns& runs,
-                        const RunOptions& options);
+/// Adds the command that repeats a test, or why there is none. It is that of its suite alone if it
+/// can be. Some runs have no command.
+void add_replay(const TestEntry& entry, const SuiteRun& run, const SuiteRuns& runs,
+                const RunOptions& options, reports::Test& test);
 
 reports::Test record_of_untested(const Untested& untested, const SuiteRun& run);
 

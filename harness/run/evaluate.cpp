@@ -98,9 +98,10 @@ void note_sizes(TestOutcome& outcome, const DrawnTest& test) {
   }
 }
 
-void settle(TestOutcome& outcome, Verdict verdict, std::string message) {
+void settle(TestOutcome& outcome, Verdict verdict, Reason reason) {
   outcome.verdict = verdict;
-  outcome.message = std::move(message);
+  outcome.message = std::move(reason.text);
+  outcome.advice = std::move(reason.advice);
 }
 
 /// Settles a test whose verdict needs no look at the data.
@@ -223,11 +224,13 @@ void conclude(TestOutcome& outcome, const std::vector<ConstantVerdict>& constant
     return;
   }
   if (!red.empty()) {
+    Reason reason = what_would_help(outcome);
+    reason.text = red + reason.text;
     settle(outcome, need_more(outcome.gates) ? Verdict::inconclusive : Verdict::invalid,
-           red + what_would_help(outcome));
+           std::move(reason));
     return;
   }
-  settle(outcome, verdict_of_channels(outcome), "");
+  settle(outcome, verdict_of_channels(outcome), {});
   if (passes_without_fit(outcome)) settle(outcome, Verdict::invalid, red_gates(outcome.gates));
   for (const ConstantVerdict& constant : constants) {
     const bool says_all = outcome.channels.empty() && outcome.message.empty();
@@ -281,7 +284,7 @@ void judge(TestOutcome& outcome, const DrawnTest& test) {
     outcome.channels.clear();
     remember(outcome, false);
     settle(outcome, Verdict::invalid,
-           outcome.plan.invalid.empty() ? in_words(error) : outcome.plan.invalid);
+           outcome.plan.invalid.empty() ? Reason(in_words(error)) : outcome.plan.invalid);
   }
 }
 
@@ -327,7 +330,9 @@ void take_sound_look(TestWork& work, const DrawnTest& test, bool may_go_on) {
   if (!work.verdict_only) {
     note_sizes(outcome, test);
     if (outcome.message.empty()) {
-      outcome.message = narrate(outcome) + outcome.question.theta->where_it_differs(test);
+      Reason reason = narrate(outcome);
+      outcome.message = reason.text + outcome.question.theta->where_it_differs(test);
+      outcome.advice = std::move(reason.advice);
       if (outcome.verdict == Verdict::fail) {
         outcome.message += outcome.question.theta->hint(outcome.question);
       }

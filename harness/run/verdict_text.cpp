@@ -222,16 +222,16 @@ std::string times_as_many(const TestOutcome& outcome, double factor) {
   return fmt::format("{} ({} primaries)", text, reports::human(factor * primaries, 2));
 }
 
-/// "; write `secondaries: 12000`"
-std::string line_to_write(const TestOutcome& outcome, double factor) {
-  const TestEntry& test = *outcome.question.test;
-  const bool budget = test.budget && test.budget->primaries;
+/// The setting for so many times the observations.
+reports::Advice setting(const TestOutcome& outcome, double factor) {
+  const auto& budget = outcome.question.test->budget;
+  const bool in_primaries = budget && budget->primaries;
   const std::uint64_t secondaries = outcome.secondaries();
   const auto now =
-      static_cast<double>(budget ? primaries_of_look(outcome, secondaries) : secondaries);
+      static_cast<double>(in_primaries ? primaries_of_look(outcome, secondaries) : secondaries);
   const double step = std::pow(10, std::max(0.0, std::floor(std::log10(factor * now)) - 1));
-  const std::string number = fmt::format("{:.0f}", std::ceil(factor * now / step) * step);
-  return "; write " + written_key(test, budget ? "budget" : "secondaries", number);
+  return {.key = in_primaries ? "budget" : "secondaries",
+          .value = fmt::format("{:.0f}", std::ceil(factor * now / step) * step)};
 }
 
 /// Half the interval in standard errors if each end errs with `tail`. With few observations t is
@@ -243,15 +243,21 @@ double interval_errors(const ChannelOutcome& channel, double tail) {
                                    : stats::normal_quantile(beyond);
 }
 
+/// Advice in words, which the message has too.
+Reason in_words(const std::string& before, const std::string& words, const char* after = "") {
+  return {before + words + after, reports::Advice{.words = words}};
+}
+
 /// n grows with the square of the factor by which the interval must shrink.
-std::string what_would_decide(const TestOutcome& outcome, const ChannelOutcome& channel) {
+Reason what_would_decide(const TestOutcome& outcome, const ChannelOutcome& channel) {
   if (channel.image) {
     if (channel.image->wanted == 0) {
-      return "the estimate lies where the claim must not pass, yet not clearly so; give twice as "
-             "many pictures";
+      return in_words("the estimate lies where the claim must not pass, yet not clearly so; ",
+                      "give twice as many pictures");
     }
-    return fmt::format("give about {} pictures a side, which decide if the estimate stands",
-                       reports::human(channel.image->wanted, 2));
+    return in_words(
+        "", fmt::format("give about {} pictures a side", reports::human(channel.image->wanted, 2)),
+        ", which decide if the estimate stands");
   }
   const double beta = last_levels(outcome).beta;
   const stats::Interval interval = channel.evidence.interval(1 - 2 * beta);
@@ -262,7 +268,7 @@ std::string what_would_decide(const TestOutcome& outcome, const ChannelOutcome& 
            range_advice(outcome.question);
   }
   if (!(half > 0) || !std::isfinite(half) || !(room.size > 0)) {
-    return "the estimate lies where the claim must not pass, yet not clearly so";
+    return Reason("the estimate lies where the claim must not pass, yet not clearly so");
   }
   // The samples' standard errors must shrink to the room that the reference's leaves.
   const double fixed = reference_error(outcome, channel);
@@ -270,43 +276,49 @@ std::string what_would_decide(const TestOutcome& outcome, const ChannelOutcome& 
   const double sampled = error * error - fixed * fixed;
   const double wanted = std::pow(room.size / room.standard_errors, 2) - fixed * fixed;
   if (!(wanted > 0)) {
-    return "no number of observations would decide: the reference's own error forbids it";
+    return Reason("no number of observations would decide: the reference's own error forbids it");
   }
   const double factor = std::max(1.1, std::max(0.0, sampled) / wanted);
   if (has_rows(outcome.question))
-    return fmt::format("give about {} rows in all", sizes_text(outcome, factor));
-  return fmt::format("about {} would decide{}{}", times_as_many(outcome, factor),
-                     channel.regions.proof() ? " if the estimate stands" : "",
-                     line_to_write(outcome, factor));
+    return in_words("", fmt::format("give about {} rows in all", sizes_text(outcome, factor)));
+  const reports::Advice next = setting(outcome, factor);
+  return {fmt::format("about {} would decide{}; write {}", times_as_many(outcome, factor),
+                      channel.regions.proof() ? " if the estimate stands" : "",
+                      written_key(*outcome.question.test, next.key, next.value)),
+          next};
 }
 
-std::string undecided(const TestOutcome& outcome, const ChannelOutcome& channel) {
-  return fmt::format("{}{}: neither shown nor refuted; {}", finding(channel),
-                     in_channel(outcome, channel), what_would_decide(outcome, channel));
+Reason undecided(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  Reason reason = what_would_decide(outcome, channel);
+  reason.text = fmt::format("{}{}: neither shown nor refuted; {}", finding(channel),
+                            in_channel(outcome, channel), reason.text);
+  return reason;
 }
 
-std::string told(const TestOutcome& outcome) {
+Reason told(const TestOutcome& outcome) {
   const ChannelOutcome& worst = outcome.channels.front();
   const ChannelOutcome& least = least_excluded(outcome);
-  const std::string& doubt = outcome.plan.caution;
-  const std::string caution = doubt.empty() ? "" : "; " + doubt;
   switch (outcome.verdict) {
     case Verdict::fail:
       return failed(outcome, worst);
     case Verdict::inconclusive:
-      return undecided(outcome, least) + caution;
+      return undecided(outcome, least);
     case Verdict::pass:
-      return (least.regions.proof() ? passed_proof(outcome, least) : passed_alarm(outcome, least)) +
-             caution;
+      return least.regions.proof() ? passed_proof(outcome, least) : passed_alarm(outcome, least);
     default:
-      return "";
+      return {};
   }
 }
 
 }  // namespace
 
-std::string narrate(const TestOutcome& outcome) {
-  return outcome.channels.empty() ? "" : reports::plain_spaces(told(outcome));
+Reason narrate(const TestOutcome& outcome) {
+  if (outcome.channels.empty()) return {};
+  Reason reason = told(outcome);
+  const std::string& doubt = outcome.plan.caution;
+  if (outcome.verdict != Verdict::fail && !doubt.empty()) reason.text += "; " + doubt;
+  reason.text = reports::plain_spaces(reason.text);
+  return reason;
 }
 
 }  // namespace assay::harness

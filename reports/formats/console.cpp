@@ -107,7 +107,8 @@ class Screen {
                                  : std::max(1, block_lines - used - static_cast<int>(next.size()));
     };
     // The words end with what a user is asked for; it is a step of its own.
-    const bool asked = !all.empty() && all[0].paste != test.replay;
+    const bool asked =
+        !all.empty() && all[0].paste != test.replay && all[0].words != test.no_replay;
     if (room() < static_cast<int>(text.size()) && test.verdict != Verdict::fail && !asked)
       next = step_lines(explanation(test));
     indented(text, room());
@@ -213,10 +214,11 @@ class Screen {
     indented(wrapped(text, options_.width - block_indent), most);
   }
 
-  /// A step to paste. It is never cut, but for a test's id: a part of it selects the test too.
+  /// A step is never cut, but for a test's id to paste: a part of it selects the test too.
   std::vector<std::string> step_lines(const Step& step) const {
     const std::string label = step.label + ": ";
     const int room = options_.width - block_indent - columns(label);
+    if (step.paste.empty()) return beside(spaces(block_indent) + label, wrapped(step.words, room));
     std::string text = plain(step.paste);
     for (const auto& [lead, end] : {std::pair(" --filter '", "*'"), std::pair(" explain '", "'")}) {
       const std::size_t at = text.rfind(lead);

@@ -71,8 +71,10 @@ std::string explain(const Suite& suite, const Test& test, int width) {
   out += "\nWhat to do next\n";
   for (const Step& step : next) {
     out += "  " + step.label + ":\n";
-    for (const std::string& part : wrap_command(one_line(step.paste), width - 4))
-      out += "    " + part + "\n";
+    const std::vector<std::string> lines = step.paste.empty()
+                                               ? wrap(one_line(step.words), width - 4)
+                                               : wrap_command(one_line(step.paste), width - 4);
+    for (const std::string& part : lines) out += "    " + part + "\n";
   }
   return out;
 }

@@ -131,7 +131,9 @@ bool is_derived(std::string_view key) {
 template <class T>
 bool is_new(std::string_view key) {
   if constexpr (std::same_as<T, Look> || std::same_as<T, ImageFinding>) return key == "effect";
-  if constexpr (std::same_as<T, Test>) return key == "paired";
+  if constexpr (std::same_as<T, Test>) {
+    return key == "paired" || key == "advice" || key == "no_replay";
+  }
   if constexpr (std::same_as<T, LedgerNight>) return key == "mean";
   return false;
 }

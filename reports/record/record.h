@@ -155,7 +155,7 @@ struct Ledger {
   ASSAY_FIELDS(Ledger, file, budget, series)
 };
 
-inline constexpr int schema_version = 4;
+inline constexpr int schema_version = 5;
 
 /// The verdict of a test. `skipped` was not run (another shard's).
 enum class Verdict { pass, fail, inconclusive, invalid, error, skipped };
@@ -303,6 +303,13 @@ struct Look {
   ASSAY_FIELDS(Look, secondaries, alpha, beta, log10_p, p_pass, log10_p_pass, effect)
 };
 
+/// What a reader of a test can do next: a setting to write, or else words.
+struct Advice {
+  std::string words;       ///< "give about 44000 rows in all"
+  std::string key, value;  ///< "secondaries", "12000"
+  ASSAY_FIELDS(Advice, words, key, value)
+};
+
 struct Test {
   std::string name;
   std::string id;  ///< suite file's stem, slash, name
@@ -332,11 +339,13 @@ struct Test {
   std::optional<Image> image;
   std::vector<Map> maps;  ///< of an image
   std::string message;    ///< what a reader needs to know: what was excluded, or what would decide
-  std::string replay;     ///< command that repeats the numbers, or "# why not"
+  std::optional<Advice> advice;
+  std::string replay;     ///< command that repeats the numbers
+  std::string no_replay;  ///< why there is none
   ASSAY_FIELDS(Test, name, id, claim, file, line, tags, over, reference, cost, paired, verdict,
                expected, ok, method, forced, null_hypothesis, tail, alpha, beta, detect, allow,
                detectable, power, planned_looks, looks, gates, samples, channels, image, maps,
-               message, replay)
+               message, advice, replay, no_replay)
 };
 
 /// One channel of an estimator for the suite's picture.

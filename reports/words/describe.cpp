@@ -374,6 +374,7 @@ std::vector<Fact> facts(const Test& test) {
   add("observations", observations_fact(test));
   add("cost", cost_text(total_cost(test)));
   add("where", place(test));
+  add("replay", test.no_replay);
   return result;
 }
 

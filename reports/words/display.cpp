@@ -148,14 +148,6 @@ std::string in_many(double rate, const char* noun) {
   return fmt::format("{:.0f} {}{} in {}", some, noun, some == 1 ? "" : "s", in_commas(runs));
 }
 
-/// The text of a message from its last `lead` to `end`; "" if it has none.
-std::string asked_for(const std::string& message, std::string_view lead, char end) {
-  const std::size_t at = message.rfind(lead);
-  if (at == std::string::npos) return "";
-  const std::size_t begin = at + lead.size();
-  return message.substr(begin, message.find(end, begin) - begin);
-}
-
 /// The command with this option instead of its own of the same name.
 std::string with_option(std::string command, const std::string& option) {
   const std::string name = " " + option.substr(0, option.find(' ') + 1);
@@ -386,30 +378,35 @@ std::string trouble(const Test& test) {
 
 std::vector<Step> steps(const Test& test) {
   std::vector<Step> all;
-  const std::string text = asked_for(test.message, "write `", '`');
-  if (text.starts_with("--")) {
-    all.push_back({"to decide", with_option(test.replay, text)});
-  } else if (!text.empty()) {
-    all.push_back({"write into the test", text});
-  } else {
-    for (const std::string lead : {"; give ", ": give about "}) {
-      const std::string data = asked_for(test.message, lead, ';');
-      if (!data.empty()) all.push_back({"to decide", lead.substr(2) + data});
-    }
-  }
+  const auto add = [&](const char* label, std::string paste) {
+    all.push_back({.label = label, .paste = std::move(paste)});
+  };
+  const auto set = [&](const std::string& key, const std::string& value) {
+    // A claim of the command line has no file.
+    if (test.file.empty())
+      add("to decide", with_option(test.replay, "--" + key + " " + value));
+    else
+      add("write into the test", key + ": " + value);
+  };
+  if (const auto& advice = test.advice; advice && advice->key.empty())
+    all.push_back({.label = "to decide", .words = advice->words});
+  else if (advice)
+    set(advice->key, advice->value);
   const Effect effect = deciding_channel(test).effect;
   if (is_missed(test) && test.detect && effect.relative)
-    all.push_back({"write into the test", fmt::format("detect: {:.2g}%", 50 * *test.detect)});
+    set("detect", fmt::format("{:.2g}%", 50 * *test.detect));
+  if (!test.no_replay.empty()) all.push_back({.label = "again", .words = test.no_replay});
   if (test.replay.empty()) return all;
-  all.push_back({test.verdict == Verdict::skipped ? "then" : "again", test.replay});
+  add(test.verdict == Verdict::skipped ? "then" : "again", test.replay);
   if (test.image && test.verdict == Verdict::fail)
-    all.push_back({"see it", test.replay + " --report html=difference.html"});
+    add("see it", test.replay + " --report html=difference.html");
   return all;
 }
 
 Step explanation(const Test& test) {
-  return {"more",
-          fmt::format("assay explain '{}'", boost::replace_all_copy(test.id, "'", "'\\''"))};
+  return {
+      .label = "more",
+      .paste = fmt::format("assay explain '{}'", boost::replace_all_copy(test.id, "'", "'\\''"))};
 }
 
 }  // namespace assay::reports

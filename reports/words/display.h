@@ -43,14 +43,14 @@ Standing standing(const Test&);
 /// How many claims stand how, as a sentence for a title.
 std::string tally_sentence(std::map<Standing, int> count);
 
-/// Something to do, and a line to paste for it.
+/// Something to do, in words or as a line to paste.
 struct Step {
-  std::string label;  ///< "again", "add to the test"
+  std::string label;  ///< "again", "write into the test"
+  std::string words;
   std::string paste;
-  ASSAY_FIELDS(Step, label, paste)
+  ASSAY_FIELDS(Step, label, words, paste)
 };
-/// The most useful first. A message that ends in "write `TEXT`" gives the text to paste. Empty if
-/// the words of trouble() are all there is to say.
+/// The most useful first. Empty if the words of trouble() are all there is to say.
 std::vector<Step> steps(const Test&);
 
 /// The meaning of a verdict: "Nothing speaks against the claim."; empty where a bug was missed.

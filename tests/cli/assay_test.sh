@@ -225,7 +225,7 @@ test_numbers_come_through_pipes() {
     cat data.txt | "$assay" check 'mean(mine) == 0' --estimator "mine=recorded,file=$file" \
       --report json=run.json >out 2>err || code=$?
     [ "$code" -eq 0 ] || fail "numbers from $file: $code"
-    contains out 'again: # standard input cannot be read again: write it to a file'
+    contains out 'again: standard input cannot be read again: write it to a file'
     expect 2 replay run.json 'check/mean(mine) == 0'
     contains err 'came from standard input and cannot be read'
   done

@@ -21,16 +21,17 @@ TEST(Explain, AFindingOfLawsIsASentence) {
 TEST(Explain, AnUndecidedTestHasTheLineToAdd) {
   const Suite suite = example_record().suites[0];
   reports::Test test = undecided();
-  test.message = "about 1100 secondaries would decide; write `secondaries: 1100`";
+  test.message = "about 1100 secondaries would decide; write `secondaries: 17`";
+  test.advice = {.key = "secondaries", .value = "1100"};
   const std::string text = explain(suite, test, 1000);
   EXPECT_THAT(text, HasSubstr("The observations do not suffice to say whether the claim holds."));
   EXPECT_THAT(text, HasSubstr("What to do next\n  write into the test:\n    secondaries: 1100\n"));
-  test.message = "about 1100 secondaries would decide; write `--secondaries 1100`";
+  test.file.clear();  // of the command line
   test.replay = "assay check 'mean(a) == 1' --secondaries 50 --seed 1";
   EXPECT_THAT(explain(suite, test, 1000),
               HasSubstr("  to decide:\n"
                         "    assay check 'mean(a) == 1' --secondaries 1100 --seed 1\n"));
-  test.message = "neither shown nor refuted; give about 1100 rows in all; the margin is small";
+  test.advice = {.words = "give about 1100 rows in all"};
   EXPECT_THAT(explain(suite, test, 1000),
               HasSubstr("  to decide:\n    give about 1100 rows in all\n"));
 }
@@ -41,7 +42,7 @@ RC_GTEST_PROP(Explain, FitsItsWidth, ()) {
   for (Suite& suite : record.suites) {
     for (reports::Test& test : suite.tests) {
       test.replay.clear();
-      test.message.clear();
+      test.advice.reset();
       const std::string text = explain(suite, test, 60);
       RC_ASSERT(clean(text) == text);
       for (const std::string& line : lines(text)) RC_ASSERT(columns(line) <= 60);

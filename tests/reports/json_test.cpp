@@ -151,8 +151,7 @@ TEST(ReadJson, ReadsTheFirstVersion) {
   for (Json& suite : tree["suites"]) {
     suite.erase("display");
     for (Json& test : suite["tests"]) {
-      test.erase("display");
-      test.erase("paired");
+      for (const char* key : {"display", "paired", "advice", "no_replay"}) test.erase(key);
       for (Json& look : test["looks"]) look.erase("effect");
       if (!test["image"].is_object()) continue;
       test["image"]["winner"].erase("effect");
@@ -168,6 +167,8 @@ TEST(ReadJson, ReadsTheFirstVersion) {
   for (Suite& suite : record.suites) {
     for (reports::Test& test : suite.tests) {
       test.paired = false;
+      test.advice.reset();
+      test.no_replay.clear();
       for (Look& look : test.looks) look.effect.reset();
       if (!test.image) continue;
       test.image->winner.effect.reset();

@@ -165,7 +165,7 @@ const views = {
     assert.equal(await rows(page), 2);
     await page.locator(".suite li .row", { hasText: "variance(heavy)" }).click();
     const detail = await plain(page.locator(".detail"));
-    for (const part of [/Nothing was decided/, /Reason\s+the fourth moment/, /tail index 0.41, limit 0.25/, /assay replay run.json/])
+    for (const part of [/Nothing was decided/, /Reason\s+the fourth moment/, /tail index 0.41, limit 0.25/, /claim a quantile/, /assay replay run.json/])
       assert.match(detail, part);
     await closed(page);
   },

@@ -36,10 +36,23 @@ export function Copy({ command, label = "" }: { command: string; label?: string 
   );
 }
 
-/// What to do about a claim: a line to paste each.
+/// What to do about a claim: words or a line to paste each.
 export function Steps({ test }: { test: Test }) {
   const steps = test.display.steps.filter(({ label }) => label !== "see it"); // this page shows it
-  return <>{steps.map(({ label, paste }) => <Copy key={paste} label={label} command={paste} />)}</>;
+  return (
+    <>
+      {steps.map(({ label, words, paste }) =>
+        paste ? (
+          <Copy key={paste} label={label} command={paste} />
+        ) : (
+          <div key={words} class="command">
+            <span class="quiet">{label}</span>
+            <span>{words}</span>
+          </div>
+        ),
+      )}
+    </>
+  );
 }
 
 /// Why a claim has no verdict: what that means, the reason, and what the checks measured.

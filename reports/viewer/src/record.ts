@@ -91,7 +91,7 @@ export interface Test {
     margin: string;
     chance: string;
     place: string;
-    steps: { label: string; paste: string }[];
+    steps: { label: string; words: string; paste: string }[];
     facts: { label: string; text: string }[];
   };
 }

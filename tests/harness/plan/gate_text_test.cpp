@@ -15,7 +15,7 @@ std::string help_for(const reports::Gate& gate, const std::string& where = "") {
   TestOutcome outcome{.question = asked->questions[0]};
   outcome.plan.looks = one_look(1000, outcome.place.share);
   outcome.gates = {gate_of(gate, where)};
-  return what_would_help(outcome);
+  return what_would_help(outcome).text;
 }
 
 reports::Gate red(const std::string& name, double value = 4, double limit = 2) {

@@ -30,7 +30,7 @@ TEST(Plan, IsAsTheTableSays) {
     std::getline(words, claim);
     const Prepared planned = plan_text("  - " + claim + "\n");
     const Plan& plan = planned.plans[0];
-    EXPECT_EQ(plan.invalid, "") << claim;
+    EXPECT_EQ(plan.invalid.text, "") << claim;
     EXPECT_TRUE(method == "-" || plan.method.name == method) << claim << ": " << plan.method.name;
     EXPECT_TRUE(is_in(plan.most_secondaries(), most)) << claim << ": " << plan.most_secondaries();
     EXPECT_TRUE(is_in(plan.looks.sizes.front(), first)) << claim << ": " << plan.looks.sizes[0];
