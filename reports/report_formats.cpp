@@ -9,18 +9,15 @@ const std::vector<ReportFormat>& report_formats() {
   static const std::vector<ReportFormat> table{
       {"console", "log", "a summary for a terminal",
        [](const Record& record, const ConsoleOptions& options) { return console(record, options); },
-       [](const Calibration& calibration) { return console(calibration); }},
+       console},
       {"json", "json", "the whole record, for `assay report`, `replay`, `merge` and other programs",
-       [](const Record& record, const ConsoleOptions&) { return json(record); },
-       [](const Calibration& calibration) { return json(calibration); }},
+       [](const Record& record, const ConsoleOptions&) { return json(record); }, json},
       {"junit", "xml", "for continuous integration",
        [](const Record& record, const ConsoleOptions&) { return junit(record); }},
       {"markdown", "md", "a summary for a page of a repository",
-       [](const Record& record, const ConsoleOptions&) { return markdown(record); },
-       [](const Calibration& calibration) { return markdown(calibration); }},
+       [](const Record& record, const ConsoleOptions&) { return markdown(record); }, markdown},
       {"html", "html", "one page with all numbers and pictures",
-       [](const Record& record, const ConsoleOptions&) { return html(record); },
-       [](const Calibration& calibration) { return html(calibration); }},
+       [](const Record& record, const ConsoleOptions&) { return html(record); }, html},
       {"metrics", "txt", "OpenMetrics, for dashboards",
        [](const Record& record, const ConsoleOptions&) { return metrics(record); }}};
   return table;

@@ -2,7 +2,6 @@
 
 // The reports that a record can be shown as, and their table.
 
-#include <array>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -47,11 +46,6 @@ std::string json(const Record&);
 
 /// The same without white space, for programs alone.
 std::string compact_json(const Record&);
-
-/// The keys of a test that repeat its worst channel's, for readers that want one number a test.
-inline constexpr std::array<std::string_view, 9> keys_of_worst_channel = {
-    "statistic", "distribution",     "p_value",      "log10_p", "p_adjusted",
-    "p_pass",    "log10_p_adjusted", "log10_p_pass", "effect"};
 
 /// A saved run that cannot be read. what() is "FILE: sentence".
 class ReadError : public std::runtime_error {

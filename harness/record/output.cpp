@@ -16,6 +16,7 @@
 #include "harness/sampling/pool.h"
 #include "harness/suite/suite.h"
 #include "reports/report_formats.h"
+#include "reports/words/display.h"
 
 namespace assay::harness {
 namespace {
@@ -142,13 +143,16 @@ void RunReports::write_and_annotate(reports::Record& record) const {
 }
 
 int exit_code(const reports::Record& record, InconclusivePolicy policy) {
-  const reports::Tally tally = reports::tally(record);
-  const int undecided = policy == InconclusivePolicy::report ? tally.inconclusive : 0;
-  const int failed = tally.failed + (policy == InconclusivePolicy::fail ? tally.inconclusive : 0);
-  if (tally.passed + tally.failed + tally.inconclusive + tally.skipped == 0) return 4;
+  using reports::Standing;
+  reports::Standings count = reports::standings(record);
+  const int undecided = count[Standing::undecided];
+  const int failed = count[Standing::broken] + count[Standing::no_verdict];
+  const int passed = count[Standing::holds] + count[Standing::caught];
+  if (failed + undecided + passed + count[Standing::not_run] == 0) return 4;
   if (failed > 0 || reports::alarms(record.ledger) > 0) return 1;
-  if (undecided > 0) return 3;
-  if (tally.passed + tally.inconclusive == 0) return 77;
+  if (undecided > 0 && policy == InconclusivePolicy::fail) return 1;
+  if (undecided > 0 && policy == InconclusivePolicy::report) return 3;
+  if (passed + undecided == 0) return 77;
   return 0;
 }
 

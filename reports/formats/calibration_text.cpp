@@ -31,41 +31,20 @@ std::vector<ClaimLine> lines_of(const CalibrationCell& cell) {
   return lines;
 }
 
-struct Column {
-  const char* heading;
-  int width;
-  std::string (*text)(const ClaimLine&);
-};
-
-// Mark and law take 21 columns.
-const std::vector<Column>& table_columns() {
-  static const std::vector<Column> all{
-      {"claim", 6, [](const ClaimLine& l) { return std::string(l.claim); }},
-      {"pass", 7, [](const ClaimLine& l) { return rate_text(l.rates->pass); }},
-      {"fail", 8, [](const ClaimLine& l) { return rate_text(l.rates->fail); }},
-      {"open", 7, [](const ClaimLine& l) { return rate_text(l.rates->inconclusive); }},
-      {"invalid", 8, [](const ClaimLine& l) { return rate_text(l.rates->invalid); }},
-      {"errs", 8,
-       [](const ClaimLine& l) {
-         return l.mistaken == nullptr ? "" : fmt::format("{:.2g}", l.mistaken->low);
-       }},
-      {"red", 6,
-       [](const ClaimLine& l) {
-         return l.rates->red.count == 0 ? "" : fmt::format("{:.2g}", l.rates->red.value());
-       }},
-      {"n", 8,
-       [](const ClaimLine& l) {
-         return count_text(static_cast<std::uint64_t>(l.rates->observations + 0.5));
-       }},
-      {"by", 21,
-       [](const ClaimLine& l) { return l.rates->by.empty() ? "" : l.rates->by.front().method; }},
-  };
-  return all;
+/// A line of the table. Mark and law take 21 columns before it.
+template <class... Cells>
+std::string row(const Cells&... cells) {
+  return fmt::format(" {:>5} {:>6} {:>7} {:>6} {:>7} {:>7} {:>5} {:>7} {:>20}\n", cells...);
 }
 
-/// At least one space before the text.
-std::string padded(const std::string& text, int width) {
-  return fmt::format(" {:>{}}", text, width - 1);
+std::string row_of(const ClaimLine& line) {
+  const VerdictRates& rates = *line.rates;
+  return row(line.claim, rate_text(rates.pass), rate_text(rates.fail),
+             rate_text(rates.inconclusive), rate_text(rates.invalid),
+             line.mistaken == nullptr ? "" : fmt::format("{:.2g}", line.mistaken->low),
+             rates.red.count == 0 ? "" : fmt::format("{:.2g}", rates.red.value()),
+             count_text(static_cast<std::uint64_t>(rates.observations + 0.5)),
+             rates.by.empty() ? "" : rates.by.front().method);
 }
 
 const char* mark_of(const Calibration& calibration, const CalibrationCell& cell) {
@@ -78,16 +57,9 @@ std::string console_rows(const Calibration& calibration, const CalibrationCell& 
   for (const ClaimLine& line : lines_of(cell)) {
     out += out.empty() ? mark_of(calibration, cell) + pad_right(shorten(cell.law, 18), 18)
                        : std::string(21, ' ');
-    for (const Column& column : table_columns()) out += padded(column.text(line), column.width);
-    out += "\n";
+    out += row_of(line);
   }
   return out;
-}
-
-std::string heading_row() {
-  std::string line(21, ' ');
-  for (const Column& column : table_columns()) line += padded(column.heading, column.width);
-  return line + "\n";
 }
 
 constexpr const char* legend =
@@ -133,7 +105,8 @@ std::string console(const Calibration& calibration) {
       group.clear();
       out += fmt::format("{}alpha {:g}: {} runs a cell, seeds from {}\n", out.empty() ? "" : "\n",
                          alpha, calibration.runs, calibration.seed);
-      out += heading_row();
+      out += std::string(21, ' ') +
+             row("claim", "pass", "fail", "open", "invalid", "errs", "red", "n", "by");
     }
     if (cell.method + cell.question != group) {
       group = cell.method + cell.question;

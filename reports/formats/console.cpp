@@ -119,8 +119,8 @@ class Screen {
   void end(const Record& record) {
     slowest(record);
     blank();
-    if (in_full()) paragraph("Verdicts: " + verdict_counts(record) + ".");
-    const Outcome how = alarms(record.ledger) > 0 ? Outcome::failed : worst(tally(record));
+    if (in_full()) paragraph("Claims: " + counts_text(standings(record)) + ".");
+    const Outcome how = alarms(record.ledger) > 0 ? Outcome::failed : worst(standings(record));
     std::string text = mark(how) + " " + run_sentence(record);
     if (record.seconds > 0) text += " in " + time(record.seconds);
     text += ".";
@@ -184,12 +184,7 @@ class Screen {
       line(part);
   }
 
-  /// Seconds as a reader of a summary wants them: "0.4 s", "25 s".
-  static std::string time(double seconds) {
-    constexpr double few = 10, minute = 60;
-    if (seconds < few) return fmt::format("{:.1f} s", seconds);
-    return seconds < minute ? fmt::format("{:.0f} s", seconds) : plain(duration(seconds));
-  }
+  static std::string time(double seconds) { return plain(duration(seconds)); }
 
   /// The name of a block, with its place beside it or below. Returns the number of lines.
   int head(const std::string& name, const std::string& where, Outcome how) {
@@ -231,11 +226,10 @@ class Screen {
     return beside(spaces(block_indent) + label, wrap_command(text, room));
   }
 
-  static Outcome worst(const Tally& counts) {
-    return counts.failed > 0         ? Outcome::failed
-           : counts.inconclusive > 0 ? Outcome::inconclusive
-           : counts.passed > 0       ? Outcome::passed
-                                     : Outcome::skipped;
+  static Outcome worst(const Standings& counts) {
+    constexpr Outcome outcomes[] = {Outcome::failed, Outcome::failed, Outcome::inconclusive,
+                                    Outcome::passed, Outcome::passed, Outcome::skipped};
+    return counts.empty() ? Outcome::skipped : outcomes[static_cast<int>(counts.begin()->first)];
   }
 
   /// A line a suite; beside it the CPU time of its draws, if there is room.
@@ -248,18 +242,18 @@ class Screen {
     int name = 0, text = 0, cost = 0;
     for (const Suite& suite : record.suites) {
       name = std::max(name, columns(plain(suite.name)));
-      text = std::max(text, columns(counts_text(suite)));
+      text = std::max(text, columns(counts_text(standings(suite))));
       cost = std::max(cost, columns(spent(suite)));
     }
     if (name + gap + text + cost > options_.width) cost = 0;
     name = std::min(name, std::max(least_name, options_.width - gap - text));
     for (const Suite& suite : record.suites) {
       if (suite.tests.empty()) continue;
-      const Outcome how = worst(tally(suite));
+      const Outcome how = worst(standings(suite));
       const bool marked = how == Outcome::failed || how == Outcome::inconclusive;
       const std::string left =
           fmt::format("{}  {} {}", pad_right(shorten(plain(suite.name), name), name),
-                      marked ? mark(how) : " ", counts_text(suite));
+                      marked ? mark(how) : " ", counts_text(standings(suite)));
       const std::string right = cost > 0 ? spent(suite) : std::string();
       line(pad_right(left, name + gap + text + cost - columns(right)) + right,
            marked ? colour_of(how) : "");

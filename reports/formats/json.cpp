@@ -58,10 +58,8 @@ void derive(const T& value, Json& object) {
   if constexpr (std::same_as<T, Suite>) object["answers"] = tree(answers(value));
   if constexpr (std::same_as<T, Test>) {
     Json worst = tree(worst_channel(value));
-    for (const std::string_view name : keys_of_worst_channel) {
-      const std::string key(name);
-      object[key] = std::move(worst[key]);
-    }
+    for (const char* key : {"name", "reference", "laws"}) worst.erase(key);
+    object.update(worst);
   }
   if constexpr (requires { display(value); }) object["display"] = tree(display(value));
 }
@@ -80,16 +78,14 @@ Json tree(const T& value) {
   }
 }
 
-bool flat(const Json& node) {
-  return std::ranges::none_of(node, [](const Json& child) { return child.is_structured(); });
-}
-
 constexpr std::size_t longest_line = 240;
 
 // A histogram is one line, and so is a small object: an effect, a cost, a point.
 bool one_line_node(const Json& node) {
   if (!node.is_structured() || node.empty()) return true;
-  return flat(node) && (node.is_array() || node.dump().size() <= longest_line);
+  const bool flat =
+      std::ranges::none_of(node, [](const Json& child) { return child.is_structured(); });
+  return flat && (node.is_array() || node.dump().size() <= longest_line);
 }
 
 void print(const Json& node, const std::string& indent, std::string& out) {
@@ -118,13 +114,12 @@ std::string printed(const Json& root) {
 /// True for a key that follows from others: it is written for readers, never read.
 template <class T>
 bool is_derived(std::string_view key) {
-  if constexpr (std::same_as<T, Test>) {
-    if (std::ranges::find(keys_of_worst_channel, key) != keys_of_worst_channel.end()) return true;
-  }
-  if constexpr (std::same_as<T, Suite>) {
-    if (key == "answers") return true;
-  }
-  return key == "display" && requires(const T& value) { display(value); };
+  static const Json derived = [] {
+    Json object = Json::object();
+    derive(T{}, object);
+    return object;
+  }();
+  return derived.contains(key);
 }
 
 /// True for a key that records of earlier versions need not have.
@@ -214,19 +209,14 @@ class Reader {
     if (!node.is_null()) read(node, value.emplace());
   }
 
-  double number_of(const Json& node, const char* wanted) const {
+  void read(const Json& node, double& value) {
     using Limits = std::numeric_limits<double>;
     for (const double special : {Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity()}) {
-      if (node == round_trip(special)) return special;
+      value = special;
+      if (node == round_trip(special)) return;
     }
-    require(node.is_number(), wanted, node);
-    return node.get<double>();
-  }
-
-  void read(const Json& node, double& value) { value = number_of(node, "a number"); }
-
-  void read(const Json& node, Number& value) {
-    value = node.is_null() ? Number() : number_of(node, "a number or null");
+    require(node.is_number(), "a number", node);
+    value = node.get<double>();
   }
 
   void read(const Json& node, std::string& value) {

@@ -100,8 +100,8 @@ std::string title(const Record& record) {
   out += cell(fmt::format("{} {} {}, seed {}, {}", record.tool.name, record.tool.version,
                           record.tool.commit, record.seed, record.started)) +
          "\n\n";
-  if (const std::string verdicts = verdict_counts(record); !verdicts.empty())
-    out += cell(verdicts + ". " + error_rates(record)) + "\n\n";
+  if (const std::string counts = counts_text(standings(record)); !counts.empty())
+    out += cell(counts + ". " + error_rates(record)) + "\n\n";
   if (!record.note.empty()) out += cell(record.note, paragraph_limit) + "\n\n";
   return out;
 }

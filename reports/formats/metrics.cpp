@@ -68,18 +68,17 @@ std::string of_tests(const Record& record) {
   Family lower("assay_effect_lower", "Lower end of the effect's interval.");
   Family upper("assay_effect_upper", "Upper end of the effect's interval.");
   Family detectable("assay_detectable", "The least effect that would have been found.");
-  for (const Suite& suite : record.suites) {
-    for (const Test& test : suite.tests) {
-      if (test.verdict == Verdict::skipped) continue;
-      ok.add({{"test", test.id}, {"verdict", to_string(test.verdict)}}, test.ok ? 1 : 0);
-      detectable.add({{"test", test.id}}, test.detectable);
-      for (const Channel& channel : test.channels) {
-        const Labels labels{
-            {"test", test.id}, {"channel", channel.name}, {"quantity", channel.effect.quantity}};
-        effect.add(labels, channel.effect.estimate);
-        lower.add(labels, channel.effect.low);
-        upper.add(labels, channel.effect.high);
-      }
+  for (const Test* each : tests_of(record)) {
+    const Test& test = *each;
+    if (test.verdict == Verdict::skipped) continue;
+    ok.add({{"test", test.id}, {"verdict", to_string(test.verdict)}}, test.ok ? 1 : 0);
+    detectable.add({{"test", test.id}}, test.detectable);
+    for (const Channel& channel : test.channels) {
+      const Labels labels{
+          {"test", test.id}, {"channel", channel.name}, {"quantity", channel.effect.quantity}};
+      effect.add(labels, channel.effect.estimate);
+      lower.add(labels, channel.effect.low);
+      upper.add(labels, channel.effect.high);
     }
   }
   return ok.text() + effect.text() + lower.text() + upper.text() + detectable.text();

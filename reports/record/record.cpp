@@ -53,18 +53,6 @@ std::vector<const Test*> tests_of(const Record& record) {
   return tests;
 }
 
-Tally tally(const Suite& suite) {
-  Tally result;
-  for (const Test& test : suite.tests) result.add(outcome(test));
-  return result;
-}
-
-Tally tally(const Record& record) {
-  Tally result;
-  for (const Test* test : tests_of(record)) result.add(outcome(*test));
-  return result;
-}
-
 int alarms(const Ledger& ledger) {
   return static_cast<int>(std::ranges::count(ledger.series, true, &LedgerSeries::alarm));
 }

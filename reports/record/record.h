@@ -529,21 +529,6 @@ Outcome outcome(const Test&);
 /// The tests of all suites.
 std::vector<const Test*> tests_of(const Record&);
 
-/// Tests by outcome: what the last line of the console and the exit code are made of.
-struct Tally {
-  int passed = 0;
-  int failed = 0;
-  int inconclusive = 0;  ///< counted as skipped in the last line
-  int skipped = 0;
-
-  void add(Outcome outcome) {
-    int* const counts[] = {&passed, &failed, &inconclusive, &skipped};
-    ++*counts[static_cast<int>(outcome)];
-  }
-};
-Tally tally(const Suite&);
-Tally tally(const Record&);
-
 /// The cost of a test. The same draws count once, though each of their channels has a sample.
 Cost total_cost(const Test&);
 

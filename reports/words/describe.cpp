@@ -182,13 +182,6 @@ std::string gates_fact(const Test& test) {
   return named > most ? text + fmt::format("; {} more", named - most) : text;
 }
 
-std::string expectation_fact(const Test& test) {
-  if (test.verdict == test.expected || test.verdict == Verdict::skipped) return {};
-  if (test.expected == Verdict::pass) return {};
-  return fmt::format("{}, but the verdict is {}", to_string(test.expected),
-                     to_string(test.verdict));
-}
-
 std::string observations_fact(const Test& test) {
   constexpr std::size_t most = 12;
   std::vector<std::string> parts;
@@ -354,7 +347,9 @@ std::vector<Fact> facts(const Test& test) {
     if (!sentence.empty()) result.push_back({label, std::move(sentence)});
   };
   const Channel channel = deciding_channel(test);
-  add("expected", expectation_fact(test));
+  if (test.expected != Verdict::pass && test.verdict != test.expected &&
+      test.verdict != Verdict::skipped)
+    add("verdict", verdict_text(test));
   add("message", test.message);
   add("claim", test.claim);
   // The null hypothesis of a proof's p(claim) is the claim; what must be rejected is its contrary.

@@ -8,7 +8,6 @@
 #include <limits>
 #include <map>
 #include <set>
-#include <tuple>
 
 #include "reports/words/describe.h"
 #include "reports/words/kill_matrix.h"
@@ -22,12 +21,6 @@ namespace {
 std::string of_claims(int some, int total, const char* of = "of") {
   return fmt::format("{} {} {}", some, of,
                      counted(static_cast<std::uint64_t>(total), "claim", "claims"));
-}
-
-/// The rank of a test in lists that begin with what needs a look: not ok, undecided, not run, ok.
-int urgency(const Test& test) {
-  constexpr int ranks[] = {3, 0, 1, 2};  // in the order of outcomes
-  return ranks[static_cast<int>(outcome(test))];
 }
 
 /// A planted bug that passed.
@@ -52,8 +45,8 @@ std::string found(const Test& test, const Effect& effect) {
       !std::isfinite(theta))
     return is(fmt::format("{} is {}", effect_name(effect), text));
   if (theta == 0) return is(fmt::format("{} equals {}", left, right));
-  if (constexpr std::string_view times = "×"; text.starts_with(times))
-    return is(fmt::format("{} is {} times {}", left, text.substr(times.size()), right));
+  if (is_factor(effect))
+    return is(fmt::format("{} is {} times {}", left, factor_text(theta), right));
   return is(fmt::format("{} is {} {} {}", left, size_text(theta, effect),
                         theta > 0 ? "above" : "below", right));
 }
@@ -157,14 +150,13 @@ std::string with_option(std::string command, const std::string& option) {
   return command.replace(at + 1, end - at - 1, option);
 }
 
-std::vector<Suspect> suspects(const Suite& suite, Standing how) {
+void add_suspects(const Suite& suite, Standing how, std::vector<Suspect>& all) {
   std::map<std::string, int> claims;
   std::vector<const Test*> broken;
   for (const Test& test : suite.tests) {
     for (const std::string& name : estimators_of(test)) ++claims[name];
     if (standing(test) == how) broken.push_back(&test);
   }
-  std::vector<Suspect> all;
   while (!broken.empty()) {
     std::map<std::string, int> count;
     for (const Test* test : broken) {
@@ -191,12 +183,11 @@ std::vector<Suspect> suspects(const Suite& suite, Standing how) {
     }
     all.push_back(std::move(suspect));
   }
-  return all;
 }
 
 }  // namespace
 
-std::string tally_sentence(std::map<Standing, int> count) {
+std::string tally_sentence(Standings count) {
   int total = 0;
   for (const auto& [standing, some] : count) total += some;
   const int broken = count[Standing::broken], none = count[Standing::no_verdict];
@@ -216,21 +207,10 @@ std::string tally_sentence(std::map<Standing, int> count) {
 }
 
 std::string run_sentence(const Record& record) {
-  std::map<Standing, int> count;
-  for (const Test* test : tests_of(record)) ++count[standing(*test)];
-  const std::string alarm = alarm_count(record.ledger);
-  return tally_sentence(std::move(count)) + (alarm.empty() ? "" : "; " + alarm);
-}
-
-std::string verdict_counts(const Record& record) {
-  // By urgency, the plain pass before what was expected to fail, then by their words.
-  std::map<std::tuple<int, bool, std::string>, int> counts;
-  for (const Test* test : tests_of(record))
-    ++counts[{urgency(*test), test->verdict != Verdict::pass, verdict_text(*test)}];
-  std::vector<std::string> parts;
-  for (const auto& [key, count] : counts)
-    parts.push_back(fmt::format("{}\u00A0{}", count, std::get<2>(key)));
-  return fmt::format("{}", fmt::join(parts, "; "));
+  const auto alarm_count = static_cast<std::uint64_t>(alarms(record.ledger));
+  const std::string nights =
+      alarm_count > 0 ? "; " + counted(alarm_count, "ledger alarm", "ledger alarms") : "";
+  return tally_sentence(standings(record)) + nights;
 }
 
 std::string false_alarms(double alpha) {
@@ -255,12 +235,12 @@ std::string error_rates(const Record& record) {
                      false_alarms(record), in_many(beta, "claim"));
 }
 
-std::string counts_text(const Suite& suite) {
-  std::map<Standing, std::uint64_t> count;
-  for (const Test& test : suite.tests) ++count[standing(test)];
-  const std::uint64_t held = count[Standing::holds], caught = count[Standing::caught];
-  const bool well = held + caught == suite.tests.size();
-  const std::pair<std::uint64_t, const char*> all[] = {
+std::string counts_text(Standings count) {
+  int total = 0;
+  for (const auto& [standing, some] : count) total += some;
+  const int held = count[Standing::holds], caught = count[Standing::caught];
+  const bool well = held + caught == total;
+  const std::pair<int, const char*> all[] = {
       {well ? held : 0, held == 1 ? "holds" : "hold"},
       {well ? caught : 0, caught == 1 ? "planted bug caught" : "planted bugs caught"},
       {count[Standing::broken], "broken"},
@@ -289,6 +269,18 @@ Standing standing(const Test& test) {
   return how == Outcome::inconclusive ? Standing::undecided : Standing::not_run;
 }
 
+Standings standings(const Suite& suite) {
+  Standings count;
+  for (const Test& test : suite.tests) ++count[standing(test)];
+  return count;
+}
+
+Standings standings(const Record& record) {
+  Standings count;
+  for (const Test* test : tests_of(record)) ++count[standing(*test)];
+  return count;
+}
+
 std::string meaning(const Test& test) {
   if (is_missed(test)) return "";
   if (standing(test) == Standing::caught) return "This is as the suite expects.";
@@ -305,8 +297,7 @@ std::string meaning(const Test& test) {
 
 TestDisplay display(const Test& test) {
   const Effect effect = deciding_channel(test).effect;
-  Effect shown = effect_in_sentence(test);
-  if (!shown.estimate && is_evidence(test)) shown = effect;
+  const Effect shown = effect_in_sentence(test);
   TestDisplay words{.standing = to_string(standing(test)),
                     .verdict = verdict_text(test),
                     .meaning = meaning(test),
@@ -324,7 +315,7 @@ TestDisplay display(const Test& test) {
 }
 
 SuiteDisplay display(const Suite& suite) {
-  SuiteDisplay words{.counts = counts_text(suite), .levels = levels_text(suite)};
+  SuiteDisplay words{.counts = counts_text(standings(suite)), .levels = levels_text(suite)};
   if (KillMatrix matrix = kill_matrix(suite); is_worth_showing(matrix))
     words.kills = std::move(matrix);
   for (const Statement& statement : suite.statements) {
@@ -337,15 +328,13 @@ SuiteDisplay display(const Suite& suite) {
 
 std::vector<Suspect> suspects(const Suite& suite) {
   std::vector<Suspect> all;
-  for (const Standing how : {Standing::broken, Standing::no_verdict}) {
-    for (Suspect& suspect : suspects(suite, how)) all.push_back(std::move(suspect));
-  }
+  for (const Standing how : {Standing::broken, Standing::no_verdict}) add_suspects(suite, how, all);
   return all;
 }
 
 RecordDisplay display(const Record& record) {
   RecordDisplay words{.verdict = run_sentence(record),
-                      .counts = verdict_counts(record),
+                      .counts = counts_text(standings(record)),
                       .rates = error_rates(record),
                       .seed = fmt::format("{}", record.seed)};
   for (const Suite& suite : record.suites) {

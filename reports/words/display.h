@@ -14,13 +14,6 @@
 
 namespace assay::reports {
 
-/// The same of a run, with the alarms of its ledger: "5 of 126 claims broken; 1 ledger alarm".
-std::string run_sentence(const Record&);
-
-/// How many tests had which verdict, the urgent ones first: "1 pass, but fail expected; 57 pass; 20
-/// fail (as expected)".
-std::string verdict_counts(const Record&);
-
 /// "False alarms: at most 4 runs in 100." of a total alpha; empty if that is 0.
 std::string false_alarms(double alpha);
 
@@ -40,8 +33,19 @@ const char* to_string(Standing);
 /// A planted bug is caught where the test is ok and its expected verdict is not pass.
 Standing standing(const Test&);
 
-/// How many claims stand how, as a sentence for a title.
-std::string tally_sentence(std::map<Standing, int> count);
+/// How many claims stand how. Those that most need a look come first.
+using Standings = std::map<Standing, int>;
+Standings standings(const Suite&);
+Standings standings(const Record&);
+
+/// The same as a sentence for a title.
+std::string tally_sentence(Standings);
+
+/// The same of a run, with the alarms of its ledger: "5 of 126 claims broken; 1 ledger alarm".
+std::string run_sentence(const Record&);
+
+/// "72 hold, 2 planted bugs caught"; where not all is well "1 broken, 2 undecided, 14 ok".
+std::string counts_text(Standings);
 
 /// Something to do, in words or as a line to paste.
 struct Step {
@@ -55,9 +59,6 @@ std::vector<Step> steps(const Test&);
 
 /// The meaning of a verdict: "Nothing speaks against the claim."; empty where a bug was missed.
 std::string meaning(const Test&);
-
-/// "72 hold, 2 planted bugs caught"; where not all is well "1 broken, 2 undecided, 14 ok".
-std::string counts_text(const Suite&);
 
 struct TestDisplay {
   std::string standing;

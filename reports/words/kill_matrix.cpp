@@ -90,8 +90,7 @@ std::string margin(const Test& test) {
   const Number least = found_from(test);
   if (!least || !std::isfinite(*least)) return {};
   const Effect& effect = worst_channel(test).effect;
-  return is_ratio(effect) ? "×" + human(std::exp(std::min(*least, 700.0)), 3)
-                          : magnitude(*least, effect.relative);
+  return is_ratio(effect) ? "×" + factor_text(*least) : magnitude(*least, effect.relative);
 }
 
 KillCell cell_of(const Tested& one) {
@@ -114,29 +113,22 @@ KillCell cell_of(const Tested& one) {
 /// The best results on a mutant by method.
 using Best = std::map<std::string, Tested>;
 
-std::string totals_of(const Suite& suite, const std::vector<std::string>& methods,
-                      const std::map<std::size_t, Best>& mutants) {
-  std::set<std::string> plugins, killed;
-  for (const auto& [mutant, best] : mutants) {
-    const std::string& plugin = suite.estimators[mutant].plugin;
-    plugins.insert(plugin);
-    for (const auto& [method, one] : best) {
-      if (one.kills()) killed.insert(plugin);
-    }
-  }
+/// The mutants that were tested, and those that some method killed, plugins counted once.
+struct Plugins {
+  std::set<std::string> tested, killed;
+};
+
+std::string totals_of(const KillMatrix& matrix, const Plugins& plugins) {
   std::vector<std::string> rows;
-  for (const std::string& method : methods) {
-    int tested = 0, kills = 0;
-    for (const auto& [mutant, best] : mutants) {
-      const auto one = best.find(method);
-      if (one == best.end()) continue;
-      ++tested;
-      kills += one->second.kills();
-    }
-    rows.push_back(fmt::format(" {} {} of {}", method, kills, tested));
+  for (std::size_t m = 0; m < matrix.methods.size(); ++m) {
+    const auto tested = [m](const KillRow& row) { return row.cells[m].has_value(); };
+    const auto killed = [m](const KillRow& row) { return row.cells[m] && row.cells[m]->killed; };
+    rows.push_back(fmt::format(" {} {} of {}", matrix.methods[m],
+                               std::ranges::count_if(matrix.rows, killed),
+                               std::ranges::count_if(matrix.rows, tested)));
   }
-  return fmt::format("{} of {} mutants are killed. Rows that each method kills:{}.", killed.size(),
-                     plugins.size(), boost::join(rows, ","));
+  return fmt::format("{} of {} mutants are killed. Rows that each method kills:{}.",
+                     plugins.killed.size(), plugins.tested.size(), boost::join(rows, ","));
 }
 
 }  // namespace
@@ -158,15 +150,19 @@ KillMatrix kill_matrix(const Suite& suite) {
   std::ranges::stable_sort(matrix.methods, {}, [](const std::string& method) {
     return std::ranges::find(textbook, method) - textbook.begin();
   });
+  Plugins plugins;
   for (const auto& [mutant, best] : mutants) {
-    KillRow row{suite.estimators[mutant].name, suite.estimators[mutant].defect, {}};
+    const EstimatorSummary& estimator = suite.estimators[mutant];
+    KillRow row{estimator.name, estimator.defect, {}};
+    plugins.tested.insert(estimator.plugin);
     for (const std::string& method : matrix.methods) {
       const auto one = best.find(method);
       row.cells.push_back(one == best.end() ? std::optional<KillCell>() : cell_of(one->second));
+      if (one != best.end() && one->second.kills()) plugins.killed.insert(estimator.plugin);
     }
     matrix.rows.push_back(std::move(row));
   }
-  matrix.totals = totals_of(suite, matrix.methods, mutants);
+  matrix.totals = totals_of(matrix, plugins);
   return matrix;
 }
 

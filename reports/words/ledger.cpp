@@ -39,12 +39,6 @@ double distance(const LedgerSeries& series) {
 
 }  // namespace
 
-std::string alarm_count(const Ledger& ledger) {
-  const int count = alarms(ledger);
-  return count == 0 ? ""
-                    : counted(static_cast<std::uint64_t>(count), "ledger alarm", "ledger alarms");
-}
-
 std::string ledger_title(const Ledger& ledger) {
   return fmt::format("Ledger {}, budget {} a suite: {} in {}", ledger.file, human(ledger.budget),
                      counted(static_cast<std::uint64_t>(alarms(ledger)), "alarm", "alarms"),

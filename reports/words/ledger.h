@@ -9,9 +9,6 @@
 
 namespace assay::reports {
 
-/// "2 ledger alarms"; empty where there is none.
-std::string alarm_count(const Ledger&);
-
 /// "Ledger nightly.ledger, budget 0.003 a suite: 2 alarms in 57 series".
 std::string ledger_title(const Ledger&);
 

@@ -20,21 +20,6 @@ std::string non_finite(double value) {
   return value > 0 ? "Infinity" : "-Infinity";
 }
 
-// Factors near one are read as per cent; all numbers of one effect take the same form.
-bool near_one(const Effect& effect) {
-  const auto near = [](const Number& theta) {
-    return !is_finite(theta) || std::abs(*theta) <= std::numbers::ln2;
-  };
-  return near(effect.estimate) && near(effect.low) && near(effect.high);
-}
-
-std::string factor(double log_ratio) {
-  // Three digits of a double; beyond its range the power of ten is written from the logarithm.
-  constexpr double largest = 700;
-  return std::abs(log_ratio) < largest ? human(std::exp(log_ratio), 3)
-                                       : scientific(log_ratio / std::numbers::ln10);
-}
-
 /// The ends of the interval that exist, in the text for both, the lower one or the upper one.
 std::string ends_text(const Effect& effect, const char* both, const char* from, const char* to) {
   const auto end = [&](const Number& value) { return theta_text(*value, effect); };
@@ -55,16 +40,15 @@ std::string round_trip(double value) {
   return {buffer.data(), end};
 }
 
-std::string human(double value, int digits) {
-  if (!std::isfinite(value)) return non_finite(value);
-  if (value == 0) return "0";
-  std::string text = fmt::format("{:.{}g}", value, digits);
+std::string human(Number value, int digits) {
+  if (!value) return no_number;
+  if (!std::isfinite(*value)) return non_finite(*value);
+  if (*value == 0) return "0";
+  std::string text = fmt::format("{:.{}g}", *value, digits);
   // 1000 in two digits is not 1e+03.
-  if (text.find("e+0") == std::string::npos || std::abs(value) >= 1e6) return text;
+  if (text.find("e+0") == std::string::npos || std::abs(*value) >= 1e6) return text;
   return fmt::format("{:.0f}", std::strtod(text.c_str(), nullptr));
 }
-
-std::string human(Number value, int digits) { return value ? human(*value, digits) : no_number; }
 
 std::string percent(double fraction) {
   if (!std::isfinite(fraction)) return non_finite(fraction);
@@ -125,11 +109,8 @@ std::string count_text(std::uint64_t count) {
     scaled /= 1000;
     ++prefix;
   }
-  return fmt::format("{:.{}f}{}{}", scaled,
-                     scaled < 9.995   ? 2
-                     : scaled < 99.95 ? 1
-                                      : 0,
-                     no_break_space, prefixes[prefix]);
+  const int decimals = scaled < 9.995 ? 2 : scaled < 99.95 ? 1 : 0;
+  return fmt::format("{:.{}f}{}{}", scaled, decimals, no_break_space, prefixes[prefix]);
 }
 
 std::string counted(std::uint64_t count, const char* singular, const char* plural) {
@@ -159,6 +140,21 @@ bool is_ratio(const Effect& effect) {
   return effect.quantity.starts_with("ln ") || effect.quantity.starts_with("ln(");
 }
 
+bool is_factor(const Effect& effect) {
+  // Factors near one are read as per cent; all numbers of one effect take the same form.
+  const auto far = [](const Number& theta) {
+    return is_finite(theta) && std::abs(*theta) > std::numbers::ln2;
+  };
+  return is_ratio(effect) && (far(effect.estimate) || far(effect.low) || far(effect.high));
+}
+
+std::string factor_text(double theta) {
+  // Three digits of a double; beyond its range the power of ten is written from the logarithm.
+  constexpr double largest = 700;
+  return std::abs(theta) < largest ? human(std::exp(theta), 3)
+                                   : scientific(theta / std::numbers::ln10);
+}
+
 std::string effect_name(const Effect& effect) {
   if (!is_ratio(effect)) return effect.quantity;
   std::string name = effect.quantity.substr(3);
@@ -168,7 +164,7 @@ std::string effect_name(const Effect& effect) {
 
 std::string theta_text(double theta, const Effect& effect) {
   if (!is_ratio(effect) || !std::isfinite(theta)) return with_sign(theta, effect.relative);
-  return near_one(effect) ? with_sign(std::expm1(theta), true) : "×" + factor(theta);
+  return is_factor(effect) ? "×" + factor_text(theta) : with_sign(std::expm1(theta), true);
 }
 
 std::string interval_text(const Effect& effect) {
@@ -203,9 +199,9 @@ std::string margin_text(double margin, const Effect& effect) {
 std::string size_text(double theta, const Effect& effect) {
   if (!is_ratio(effect) || !std::isfinite(theta))
     return magnitude(std::abs(theta), effect.relative);
-  if (near_one(effect) && std::abs(theta) <= std::numbers::ln2)
+  if (!is_factor(effect) && std::abs(theta) <= std::numbers::ln2)
     return percent(std::abs(std::expm1(theta)));
-  return "a factor of " + factor(std::abs(theta));
+  return "a factor of " + factor_text(std::abs(theta));
 }
 
 }  // namespace assay::reports

@@ -20,7 +20,6 @@ std::string round_trip(double value);
 
 /// Rounded to `digits` significant digits (default 4), without trailing zeros: 0.4811, 12350,
 /// 1.235e+07, 3.2e-05.
-std::string human(double value, int digits = 4);
 std::string human(Number value, int digits = 4);
 
 /// A fraction as per cent with three significant digits: 0.00312 gives "0.312 %".
@@ -57,6 +56,12 @@ std::string duration(double seconds);
 
 /// True where theta is the natural logarithm of a ratio ("ln(ratio of variances)").
 bool is_ratio(const Effect&);
+
+/// True where it is shown as a factor.
+bool is_factor(const Effect&);
+
+/// exp(theta), also far beyond a double's range: "0.0717".
+std::string factor_text(double theta);
 
 /// The name of the effect without the logarithm: "ratio of variances".
 std::string effect_name(const Effect&);

@@ -11,23 +11,21 @@
 namespace assay::reports {
 namespace {
 
-std::optional<std::size_t> place_of(const Suite& suite, const std::string& name) {
-  for (std::size_t t = 0; t < suite.tests.size(); ++t) {
-    if (suite.tests[t].name == name) return t;
-  }
-  return std::nullopt;
+/// The test of this name; null if it is not in the record.
+const Test* test_of(const Suite& suite, const std::string& name) {
+  const auto found = std::ranges::find(suite.tests, name, &Test::name);
+  return found == suite.tests.end() ? nullptr : &*found;
 }
 
 /// A test's effect on the answer. A test that decided nothing is silent, whatever was expected. So
 /// is a test that is not ok although its verdict is the expected one.
 enum class Voice { contradicts, silent, speaks };
 
-Voice voice_of(const Suite& suite, const std::optional<std::size_t>& place) {
-  if (!place) return Voice::silent;
-  const Test& test = suite.tests[*place];
-  if (test.verdict != Verdict::pass && test.verdict != Verdict::fail) return Voice::silent;
-  if (test.verdict != test.expected) return Voice::contradicts;
-  return test.ok ? Voice::speaks : Voice::silent;
+Voice voice_of(const Test* test) {
+  if (test == nullptr) return Voice::silent;
+  if (test->verdict != Verdict::pass && test->verdict != Verdict::fail) return Voice::silent;
+  if (test->verdict != test->expected) return Voice::contradicts;
+  return test->ok ? Voice::speaks : Voice::silent;
 }
 
 constexpr std::size_t findings_shown = 2;
@@ -43,6 +41,14 @@ std::string evidence_of(const Test& test) {
   return allowed == 0 ? text : text + ", " + margin_text(allowed, effect) + " allowed";
 }
 
+std::string finding(const Test* test) {
+  if (test == nullptr) return "not run";
+  const std::string evidence = evidence_of(*test);
+  if (test->ok && !evidence.empty()) return evidence;
+  const std::string verdict = mark(outcome(*test)) + " " + verdict_text(*test);
+  return evidence.empty() ? verdict : verdict + "; " + evidence;
+}
+
 }  // namespace
 
 const char* to_string(Answer answer) {
@@ -54,7 +60,7 @@ Answer answer(const Suite& suite, const Statement& statement) {
   bool silent = statement.holds.empty() && statement.fails.empty();
   for (const std::vector<std::string>* names : {&statement.holds, &statement.fails}) {
     for (const std::string& name : *names) {
-      const Voice voice = voice_of(suite, place_of(suite, name));
+      const Voice voice = voice_of(test_of(suite, name));
       if (voice == Voice::contradicts) return Answer::contradicted;
       silent = silent || voice == Voice::silent;
     }
@@ -68,13 +74,6 @@ std::vector<std::string> answers(const Suite& suite) {
   std::vector<std::string> all;
   for (const Statement& statement : suite.statements)
     all.emplace_back(to_string(answer(suite, statement)));
-  return all;
-}
-
-std::vector<Witness> witnesses(const Suite& suite, const std::vector<std::string>& names) {
-  std::vector<Witness> all;
-  for (const std::string& name : names) all.push_back({name, place_of(suite, name)});
-  std::ranges::stable_sort(all, {}, [&](const Witness& w) { return voice_of(suite, w.test); });
   return all;
 }
 
@@ -107,19 +106,12 @@ std::string statement_totals(const Record& record) {
                      fmt::join(parts, ", "));
 }
 
-std::string finding(const Suite& suite, const Witness& witness) {
-  if (!witness.test) return "not run";
-  const Test& test = suite.tests[*witness.test];
-  const std::string evidence = evidence_of(test);
-  if (test.ok && !evidence.empty()) return evidence;
-  const std::string verdict = mark(outcome(test)) + " " + verdict_text(test);
-  return evidence.empty() ? verdict : verdict + "; " + evidence;
-}
-
 std::string findings(const Suite& suite, const std::vector<std::string>& names) {
+  std::vector<std::pair<const Test*, std::string>> all;
+  for (const std::string& name : names) all.emplace_back(test_of(suite, name), name);
+  std::ranges::stable_sort(all, {}, [](const auto& each) { return voice_of(each.first); });
   std::vector<std::string> parts;
-  for (const Witness& witness : witnesses(suite, names))
-    parts.push_back(fmt::format("{}: {}", witness.name, finding(suite, witness)));
+  for (const auto& [test, name] : all) parts.push_back(fmt::format("{}: {}", name, finding(test)));
   if (parts.size() > findings_shown) {
     parts[findings_shown] = fmt::format("and {} more", parts.size() - findings_shown);
     parts.resize(findings_shown + 1);

@@ -4,7 +4,6 @@
 // verdicts alone.
 
 #include <cstddef>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,16 +27,6 @@ Answer answer(const Suite&, const Statement&);
 /// One a statement, by their words.
 std::vector<std::string> answers(const Suite&);
 
-/// A test that a statement names: its place in the suite, if it was run.
-struct Witness {
-  std::string name;
-  std::optional<std::size_t> test;
-};
-
-/// The tests of one of the statement's lists. Those that are not as expected come first, then the
-/// undecided ones, then the rest in the order of the list.
-std::vector<Witness> witnesses(const Suite&, const std::vector<std::string>& names);
-
 /// How many statements a record has.
 std::size_t statement_count(const Record&);
 
@@ -50,11 +39,10 @@ std::string whole_answer(const Suite&, const Statement&);
 /// "31 statements: 14 yes, 12 only if, 5 no."
 std::string statement_totals(const Record&);
 
-/// The finding of a test: "ratio of variances ×0.0717 [×0.07, ×0.0734] (99 % interval)". Without an
-/// effect it is the p-value, without that the verdict; "not run" if the test is not in the record.
-std::string finding(const Suite&, const Witness&);
-
-/// The findings of one of a statement's lists in one line, the rest of more than two counted.
+/// The findings of one of a statement's lists in one line: "ratio of variances ×0.0717 [×0.07,
+/// ×0.0734] (99 % interval)". Without an effect it is the p-value, without that the verdict; "not
+/// run" if the test is not in the record. Tests that are not as expected come first, then the
+/// undecided ones, then the rest in the order of the list. The rest of more than two are counted.
 std::string findings(const Suite&, const std::vector<std::string>& names);
 
 }  // namespace assay::reports

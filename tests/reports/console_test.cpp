@@ -114,12 +114,12 @@ TEST(Console, NeverCutsTheNumberThatAUserIsAskedFor) {
 }
 
 TEST(Console, TheRowOfAFailedImageIsTheFindingAtItsPlace) {
-  Record record = first_suite();
-  record.suites[0].tests = {failing(), failing()};
-  ImageFinding& winner = record.suites[0].tests[0].image->winner;
-  winner.place = "x 1, y 2";
-  winner.effect = mean_effect(0.0162, 0.002);
+  Record record = record_of({failing(), failing()});
+  std::vector<reports::Test>& tests = record.suites[0].tests;
+  tests[0].image->winner = {.place = "x 1, y 2", .effect = mean_effect(0.0162, 0.002)};
+  tests[1].image->winner = {.statistic = "alternating", .place = "the whole image"};
   EXPECT_THAT(console(record, {.detail = 1}), HasSubstr("+1.62 % ("));
+  EXPECT_EQ(display(tests[1]).effect + display(tests[1]).interval, "") << "signs have no effect";
 }
 
 TEST(Console, NoTwoLinesInARowAreEmpty) {

@@ -1,5 +1,6 @@
 #include "harness/command/run.h"
 #include "harness/record/output.h"
+#include "reports/words/display.h"
 #include "tests/harness/prelude.h"
 
 namespace assay::harness {
@@ -40,7 +41,7 @@ TEST_F(BrokenClaims, AreToldWithTheirCommandWhenTheyAreDecided) {
   const std::string again = "assay run " + place.file("suite.yaml") + " --seed 1 --filter ";
   EXPECT_THAT(all.broken, ElementsAre("hasty: wrong: " + again + "suite/wrong",
                                       "hasty: bug missed: " + again + "'suite/bug missed'"));
-  EXPECT_EQ(reports::tally(all.record).failed, 2);
+  EXPECT_EQ(reports::standings(all.record)[reports::Standing::broken], 2);
 }
 
 TEST_F(BrokenClaims, EndARunEarlyIfAsked) {
@@ -81,7 +82,7 @@ TEST_F(BrokenClaims, EndARunBeforeItDrawsIfAnEstimatorCannotBePrepared) {
   text.insert(text.find("tests:"), "  gone: {plugin: process, command: [sh, -c, exit 3]}\n");
   const Heard all = heard(place, text, {.fail_fast = true});
   EXPECT_EQ(all.broken.size(), 1U);
-  EXPECT_EQ(reports::tally(all.record).skipped, 5);
+  EXPECT_EQ(reports::standings(all.record)[reports::Standing::not_run], 5);
   EXPECT_TRUE(all.record.suites[0].estimators.empty());
 }
 
