@@ -86,15 +86,8 @@ bool better(const Tested& one, const Tested& other) {
   return found_from(*one.test).value_or(none) < found_from(*other.test).value_or(none);
 }
 
-std::string margin(const Test& test) {
-  const Number least = found_from(test);
-  if (!least || !std::isfinite(*least)) return {};
-  const Effect& effect = worst_channel(test).effect;
-  return is_ratio(effect) ? "×" + factor_text(*least) : magnitude(*least, effect.relative);
-}
-
 KillCell cell_of(const Tested& one) {
-  const std::string samples = counted(one.samples, "sample", "samples"), least = margin(*one.test);
+  const std::string samples = counted(one.samples, "sample", "samples");
   const auto cell = [&](const std::string& text, const std::string& sentence) {
     return KillCell{one.test->id, text, sentence, one.kills()};
   };
@@ -104,7 +97,8 @@ KillCell cell_of(const Tested& one) {
   if (verdict != Verdict::pass)
     return cell(verdict == Verdict::invalid ? "invalid" : "undecided",
                 fmt::format("{} after {}", to_string(verdict), samples));
-  if (least.empty()) return cell("survives", "survives " + samples);
+  if (!is_finite(found_from(*one.test))) return cell("survives", "survives " + samples);
+  const std::string least = margin_text(*found_from(*one.test), worst_channel(*one.test).effect);
   return cell(
       "< " + least,
       fmt::format("survives {}: an effect of {} or more would have been found", samples, least));

@@ -135,7 +135,7 @@ TEST(KillMatrix, ALogarithmOfARatioIsShownAsTheRatio) {
   suite.tests = {
       test_of({"variance(one) <= 1", "chi-square", Verdict::pass, 100, 0.0953101798}, {"one"})};
   suite.tests[0].channels[0].effect.quantity = "ln(variance over the reference)";
-  EXPECT_EQ(only_cell(suite).text, "< ×1.1");
+  EXPECT_EQ(only_cell(suite).text, "< 10\u00A0%");
 }
 
 TEST(KillMatrix, TotalsCountPluginsOnceAndRowsByMethod) {
