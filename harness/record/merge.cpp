@@ -50,8 +50,7 @@ reports::ShardTest test_of(const TestOutcome& outcome, const SuiteRun& run) {
           .inside = outcome.place.inside,
           .weight = member.weight,
           .untested = member.untested,
-          .log_p = member.log_p,
-          .compared = compared_by(outcome.question)};
+          .log_p = member.log_p};
 }
 
 using reports::Verdict;
@@ -189,19 +188,12 @@ reports::Suite merge_suite(const std::vector<ShardFile>& shards, std::size_t ind
                         missing_shards(shards).empty();
   if (complete) adjust_p_values(parts);
   whole = whole && complete;
-  std::vector<Pictured> pictures;
-  for (const auto& [place, view] : views_of(shards, index)) {
-    suite.estimators.push_back(*view.row);
-    pictures.push_back({view.row->name, view.row->variance_of == "primary", *view.picture});
-  }
-  std::vector<std::vector<std::string>> compared;
+  for (const auto& [place, view] : views_of(shards, index)) suite.estimators.push_back(*view.row);
   for (Part& part : parts) {
-    compared.push_back(part.family.compared);
     // The file was beside the shard's record; a report that writes maps names it again.
     for (reports::Map& map : part.test.maps) map.file.clear();
     suite.tests.push_back(std::move(part.test));
   }
-  suite.comparisons = comparisons(pictures, compared, suite.alpha);
   suite.statements = statements_of(shards, index);
   return suite;
 }
@@ -310,7 +302,7 @@ void add_shard(const SuiteRuns& runs, const RunOptions& options, reports::Record
   for (const auto& run : runs) {
     reports::ShardSuite suite{.digest = digest_of(*run), .tests = run->suite.tests.size()};
     for (const Picture& picture : run->pictures) {
-      suite.pictures.push_back(pictured(picture, *run).shown);
+      suite.pictures.push_back(shard_picture(picture, *run));
     }
     for (const TestWork& work : run->tests) suite.results.push_back(test_of(work.outcome, *run));
     for (const Untested& each : run->untested) {

@@ -186,7 +186,8 @@ class Reader {
       }
     });
     for (const auto& item : node.items()) {
-      if (!known.contains(item.key()) && !is_derived<T>(item.key()))
+      // An older record may have keys that are gone.
+      if (!is_old_ && !known.contains(item.key()) && !is_derived<T>(item.key()))
         fail(fmt::format("the key \"{}\" is unknown", item.key()));
     }
   }

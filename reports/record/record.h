@@ -378,19 +378,6 @@ struct EstimatorSummary {
                primaries, secondaries, confidence, variance_of, channels, cost)
 };
 
-/// A pair of estimators of a suite at its alpha: descriptive, not part of the family.
-struct Comparison {
-  std::string first, second, channel;
-  Number mean_p;                          ///< Welch, two-sided
-  Number variance_p;                      ///< of squared deviations, two-sided
-  Number log10_mean_p, log10_variance_p;  ///< of the same, which may underflow
-  bool means_differ = false;              ///< after Holm over the pairs of the suite
-  bool variances_differ = false;
-  Number variance_ratio;  ///< first over second, one primary of each
-  ASSAY_FIELDS(Comparison, first, second, channel, mean_p, variance_p, log10_mean_p,
-               log10_variance_p, means_differ, variances_differ, variance_ratio)
-};
-
 /// A sentence from elsewhere, and the names of the tests that answer it. The answer is not part of
 /// the record; it follows from the verdicts (words/statements.h).
 struct Statement {
@@ -422,52 +409,28 @@ struct Suite {
   bool timed = false;  ///< a budget in seconds ended sampling: another run may end elsewhere
   std::vector<Retry> retries;
   std::vector<EstimatorSummary> estimators;
-  std::vector<Comparison> comparisons;
   std::vector<Test> tests;
   std::vector<Statement> statements;
-  ASSAY_FIELDS(Suite, name, file, about, seed, alpha, beta, timed, retries, estimators, comparisons,
-               tests, statements)
+  ASSAY_FIELDS(Suite, name, file, about, seed, alpha, beta, timed, retries, estimators, tests,
+               statements)
 };
 
-/// One-pass moments of the finite values of a channel. m2, m3 and m4 are sums of powers of
-/// deviations from the mean; `rest` is the rounding error of the mean.
-struct Moments {
-  std::uint64_t count = 0;
-  double mean = 0, m2 = 0, m3 = 0, m4 = 0;
-  double min = 0, max = 0;
-  std::uint64_t nonzero = 0;
-  double rest = 0;
-  ASSAY_FIELDS(Moments, count, mean, m2, m3, m4, min, max, nonzero, rest)
-};
-
-struct ShardChannel {
-  std::string name;
-  Number reference;  ///< analytic mean
-  Moments moments;
-  ASSAY_FIELDS(ShardChannel, name, reference, moments)
-};
-
-/// The moments behind an estimator of a shard's suite, at the same place in `Suite::estimators`.
+/// How much of an estimator a shard draws, at the same place in `Suite::estimators`.
 struct ShardPicture {
   std::uint64_t position = 0;     ///< Place in the suite's file.
   bool by_tests = false;          ///< False: drawn for the report's picture alone.
   std::uint64_t secondaries = 0;  ///< The number asked for.
-  bool drawn = false;             ///< False: the estimator threw.
-  double averaged = 1;            ///< Primaries that an observation averages.
-  bool image = false;
-  std::vector<ShardChannel> channels;  ///< none of an image
-  ASSAY_FIELDS(ShardPicture, position, by_tests, secondaries, drawn, averaged, image, channels)
+  ASSAY_FIELDS(ShardPicture, position, by_tests, secondaries)
 };
 
 /// A test's part in Holm's method over the whole suite, at the same place in `Suite::tests`.
 struct ShardTest {
-  std::uint64_t position = 0;         ///< Place in the suite's file.
-  bool inside = false;                ///< In the family; mutants and expected failures are not.
-  double weight = 0;                  ///< One channel's; the family's weights sum to 1.
-  std::uint64_t untested = 0;         ///< Channels without a p-value.
-  std::vector<double> log_p;          ///< Natural logarithms, one a channel of the test.
-  std::vector<std::string> compared;  ///< The estimators of a claim about two.
-  ASSAY_FIELDS(ShardTest, position, inside, weight, untested, log_p, compared)
+  std::uint64_t position = 0;  ///< Place in the suite's file.
+  bool inside = false;         ///< In the family; mutants and expected failures are not.
+  double weight = 0;           ///< One channel's; the family's weights sum to 1.
+  std::uint64_t untested = 0;  ///< Channels without a p-value.
+  std::vector<double> log_p;   ///< Natural logarithms, one a channel of the test.
+  ASSAY_FIELDS(ShardTest, position, inside, weight, untested, log_p)
 };
 
 /// A selected test of another shard.

@@ -315,7 +315,7 @@ bool is_evidence(const Test& test) {
 
 std::string key_number(const Test& test) {
   if (!is_evidence(test)) return {};
-  const std::string text = named_effect_text(deciding_channel(test).effect);
+  const std::string text = named_effect_text(effect_in_sentence(test));
   return text.empty() ? headline_p(test).text() : text;
 }
 

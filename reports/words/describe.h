@@ -66,7 +66,7 @@ std::string verdict_text(const Test&);
 /// True unless an assumption of the test's numbers is violated.
 bool is_evidence(const Test&);
 
-/// The first number to look for in a test: the worst channel's effect with its named interval.
+/// The first number to look for in a test: the effect in its sentence, with the named interval.
 /// Without an effect it is the p-value that the verdict rests on. Empty if nothing was tested.
 std::string key_number(const Test&);
 

@@ -37,24 +37,6 @@ TEST(MoreClaims, AVarianceOfTwoValuesIsComparedWhateverItsRounding) {
   }
 }
 
-// One value averages what it is made of, the other is an observation as a whole.
-TEST(MoreClaims, AVarianceOfAPrimaryIsNotComparedToThatOfASecondary) {
-  const reports::Suite suite =
-      run_text(
-          "suite: kinds\nestimators:\n"
-          "  normal: {plugin: analytic/normal}\n"
-          "  other: {plugin: analytic/normal}\n"
-          "  ratio: {plugin: analytic/ratio, primaries: 64}\n"
-          "tests: [{claim: mean(normal) <= mean(ratio)}, {claim: mean(normal) == mean(other)}]\n")
-          .suites[0];
-  ASSERT_GE(suite.comparisons.size(), 2u);
-  for (const reports::Comparison& pair : suite.comparisons) {
-    EXPECT_TRUE(pair.mean_p) << pair.first << " " << pair.second;
-    EXPECT_EQ(pair.variance_p.has_value(), pair.second == "other") << pair.second;
-    EXPECT_EQ(pair.variance_ratio.has_value(), pair.second == "other") << pair.second;
-  }
-}
-
 // Their kurtosis is 1 whatever the law: what would have been found is not known, and not asked for.
 TEST(MoreClaims, OfAVarianceFromTwoObservationsSayNothingOfPower) {
   for (const char* claim :

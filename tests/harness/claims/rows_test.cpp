@@ -107,16 +107,13 @@ TEST(DependentRows, OfTwoChainsAreComparedByTheirBatches) {
   EXPECT_LE(failed, most);
 }
 
-// 8000 rows are worth 420: of the interval and of the pair's p-value as of the verdict.
+// 8000 rows are worth 420: of the interval as of the verdict.
 TEST(DependentRows, AreShownAsUncertainAsTheyAre) {
   const reports::Suite suite = compared(Workplace(), chain(0.9, 8000, 31), chain(0.9, 8000, 32),
                                         "  - {claim: mean(a) == mean(b)}\n");
   const reports::Estimate& mean = suite.estimators[0].channels[0].mean;
   // 2.58 standard errors of .049 to either side.
   EXPECT_NEAR(*mean.high - *mean.low, 0.25, 0.07);
-  const double p = *suite.tests[0].channels[0].p_value;
-  EXPECT_NEAR(std::log(*suite.comparisons[0].mean_p), std::log(p), 1 + 0.5 * std::abs(std::log(p)));
-  EXPECT_FALSE(suite.comparisons[0].variances_differ);
 }
 
 // Neighbours that depend on each other are one chain, however far off another lag looks.
