@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "estimators/ready_made.h"
+#include "harness/question/question_sources.h"
 #include "stats/basics/moments.h"
 #include "stats/means/constant_sample.h"
 #include "stats/tails/tails.h"
@@ -53,18 +54,16 @@ stats::ImageStack replaced(const stats::ImageStack& stack,
   return out;
 }
 
-/// Half a unit in the last place of a float.
-constexpr double half_unit = std::numeric_limits<float>::epsilon() / 2;
-
 /// Declarations of every element; pictures of files share one.
 class DeclaredElements {
  public:
   explicit DeclaredElements(const Subject& subject) {
     if (recorded::unknown_channels(*subject.setup)) return;
     const std::vector<Channel> all = subject.setup->channels();
+    const double precision = relative_rounding(*subject.setup);
     each_.reserve(subject.channels.size());
     for (const std::size_t channel : subject.channels.all()) {
-      each_.push_back({all[channel].low, all[channel].high, all[channel].rounding, half_unit});
+      each_.push_back({all[channel].low, all[channel].high, all[channel].rounding, precision});
     }
   }
   const Declared& operator[](std::size_t element) const {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "estimators/ready_made.h"
@@ -291,15 +292,21 @@ void require_absolute(const Margin& margin, const char* reason) {
          reason);
 }
 
+double relative_rounding(const Setup& setup) {
+  return setup.image() ? std::numeric_limits<float>::epsilon() / 2 : 0;
+}
+
 std::string outside_of_range(const Subject& subject, const Summary& drawn) {
   // A mutant has its original's declaration.
   const bool mutant = !subject.estimator->entry->information.original.empty();
   if (mutant || drawn.elements || subject.setup->observations()) return "";
   const std::vector<Channel> channels = subject.setup->channels();
   const auto finite = [](double end) { return std::isfinite(end) ? std::abs(end) : 0; };
+  const double of_sums = 1e-9;
+  const double rounding = of_sums + relative_rounding(*subject.setup);
   for (const std::size_t i : subject.channels.all()) {
     const Channel& channel = channels[i];
-    const double slack = 1e-9 * (finite(channel.low) + finite(channel.high));
+    const double slack = rounding * (finite(channel.low) + finite(channel.high));
     const stats::Moments& seen = drawn.channels[i].moments;
     if (seen.count == 0) continue;
     const bool above = seen.maximum > channel.high + slack;
@@ -325,7 +332,8 @@ double rounding_of(const Question& question, std::size_t subject, std::size_t ch
   const Subject& side = question.subjects[subject];
   // Pictures declare nothing. Their millions of channel names are not made for one of them.
   if (recorded::unknown_channels(*side.setup)) return 0;
-  return side.setup->channels()[side.channels[channel]].rounding;
+  const Channel declared = side.setup->channels()[side.channels[channel]];
+  return declared.rounding + relative_rounding(*side.setup) * std::abs(declared.mean.value_or(0));
 }
 
 std::optional<double> no_point_of(const Subject& side) {

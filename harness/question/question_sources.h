@@ -7,6 +7,7 @@
 
 #include "harness/question/question.h"
 #include "harness/sampling/summary.h"
+#include "stats/means/student_t.h"
 
 namespace assay::harness {
 
@@ -62,8 +63,11 @@ void require_drawn(const Question& question);
 /// InputError for a margin in per cent.
 void require_absolute(const Margin& margin, const char* reason);
 
-/// Names a value outside the range that its channel declares (`low`, `high`), beyond a sum's
-/// rounding; "" if there is none. The range decides on methods, above all `betting`. Mutants (which
+/// The largest relative error of a number that is drawn: an image's are in single precision.
+double relative_rounding(const Setup& setup);
+
+/// Names a value outside the range that its channel declares (`low`, `high`), beyond rounding; ""
+/// if there is none. The range decides on methods, above all `betting`. Mutants (which
 /// have their original's declaration), images and ready-made data are not checked.
 std::string outside_of_range(const Subject& subject, const Summary& drawn);
 
@@ -71,7 +75,7 @@ std::string outside_of_range(const Subject& subject, const Summary& drawn);
 stats::Range range_of(const Question& question, std::size_t subject, std::size_t channel,
                       const stats::Moments& moments);
 
-/// The rounding that a channel declares of its values.
+/// The rounding that a channel declares of its values, and that of their mean in single precision.
 double rounding_of(const Question& question, std::size_t subject, std::size_t channel);
 
 /// The value of a subject's first channel that stands for "no point"; only samplers have one.

@@ -2,6 +2,7 @@
 
 #include "harness/image/image_constants.h"
 
+#include "harness/question/question_sources.h"
 #include "tests/harness/questions.h"
 #include "tests/prelude.h"
 #include "tests/stats/calibration.h"
@@ -152,6 +153,31 @@ TEST_F(ImageConstants, APixelThatOneOfTwoImagesNeverLitIsHeldAgainstItsRange) {
   ASSERT_EQ(part.unseen().size(), 1u);
   EXPECT_EQ(part.unseen()[0].sign, -1);
   EXPECT_NEAR(part.unseen()[0].log_p, 16 * std::log1p(-0.0052 / 7.98), 1e-3);
+}
+
+class Tenth final : public Setup {
+ public:
+  std::vector<Channel> channels() const override {
+    return {{.name = "x0y0", .mean = 0.1, .low = 0, .high = 0.1}};
+  }
+  std::unique_ptr<Estimator> make() const override { return nullptr; }
+  std::optional<ImageShape> image() const override { return ImageShape{.width = 1, .height = 1}; }
+};
+
+// The float next to 0.1 is 1.5e-9 above it.
+TEST(ImageRounding, IsNeitherBeyondARangeNorADifferenceFromTheMean) {
+  const Entry entry{};
+  const PreparedEstimator estimator{.entry = &entry, .setup = std::make_shared<Tenth>()};
+  Question question;
+  question.subjects.push_back(
+      {.estimator = &estimator, .setup = estimator.setup, .channels = {0, 1, 1}});
+  Summary drawn(1);
+  drawn.channels[0].moments.add(double{0.1F});
+  EXPECT_EQ(outside_of_range(question.subjects[0], drawn), "");
+  EXPECT_LE(double{0.1F} - 0.1, rounding_of(question, 0, 0));
+  EXPECT_LT(rounding_of(question, 0, 0), 1e-8);
+  drawn.channels[0].moments.add(0.1 + 1e-7);
+  EXPECT_NE(outside_of_range(question.subjects[0], drawn), "");
 }
 
 // 147 of 432 pixels see one surface that is alike everywhere. Their values differ from the closed
