@@ -205,7 +205,7 @@ tests:
     result = run(pytester, "-rs")
     result.assert_outcomes(failed=3, skipped=1)
     result.stdout.fnmatch_lines(["inconclusive: *", "*neither shown nor refuted*", "error: *exit status 3*",
-                                 "pass: *", "*invalid, but the verdict is pass",
+                                 "pass: *", "*pass, but invalid expected",
                                  "SKIPPED *needs the program `no-such-program`*"])
 
 
