@@ -184,7 +184,12 @@ class Screen {
       line(part);
   }
 
-  static std::string time(double seconds) { return plain(duration(seconds)); }
+  /// Seconds as a reader of a summary wants them: "0.4 s", "25 s".
+  static std::string time(double seconds) {
+    constexpr double few = 10, minute = 60;
+    if (seconds < few) return fmt::format("{:.1f} s", seconds);
+    return seconds < minute ? fmt::format("{:.0f} s", seconds) : plain(duration(seconds));
+  }
 
   /// The name of a block, with its place beside it or below. Returns the number of lines.
   int head(const std::string& name, const std::string& where, Outcome how) {
