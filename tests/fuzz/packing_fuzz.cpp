@@ -10,13 +10,20 @@ using namespace assay;
 using namespace assay::harness;
 using assay::fuzz::require;
 
-/// Nothing is drawn of it.
+/// Nothing is drawn of it. The first two may be an image.
 class ThreeSums final : public Setup {
  public:
+  explicit ThreeSums(bool image) : image_(image) {}
   std::vector<Channel> channels() const override {
     return {{.name = "one"}, {.name = "two"}, {.name = "three"}};
   }
   std::unique_ptr<Estimator> make() const override { return nullptr; }
+  std::optional<ImageShape> image() const override {
+    return image_ ? std::optional(ImageShape{.width = 2, .height = 1}) : std::nullopt;
+  }
+
+ private:
+  bool image_;
 };
 
 // Large enough to matter; small enough not to test the memory alone.
@@ -27,13 +34,14 @@ bool is_modest(const Recipe& recipe) {
   return true;
 }
 
-void block(std::string_view bytes, const Recipe& recipe) {
-  Pool pool = pool_of(recipe, std::make_shared<ThreeSums>());
+void block(std::string_view bytes, const Recipe& recipe, bool image) try {
+  Pool pool = pool_of(recipe, std::make_shared<ThreeSums>(image));
   const std::string packed = packed_block(unpacked_block(bytes, pool, 0));
   const Pool::Block again = unpacked_block(packed, pool, 0);
   require(packed_block(again) == packed);
   pool.fold(unpacked_block(packed, pool, 0));
   require(pool.drawn() == again.whole.count);
+} catch (const Unpackable&) {
 }
 
 }  // namespace
@@ -51,7 +59,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     std::string_view rest;
     unpack(recipe, rest);
     unpack.end();
-    if (is_modest(recipe)) block(rest, recipe);
+    if (!is_modest(recipe)) return 0;
+    for (const bool image : {false, true}) block(rest, recipe, image);
   } catch (const Unpackable&) {
   }
   return 0;
