@@ -75,8 +75,14 @@ ReportRequest read_report(const std::string& text, const std::string& option) {
            option, text, meant_report(text));
   }
   const std::string kind = text.substr(0, equals);
-  choice(Value::scalar(kind), "the kind of " + option,
-         names_of(reports::report_formats(), &reports::ReportFormat::kind));
+  const auto kinds = names_of(reports::report_formats(), &reports::ReportFormat::kind);
+  choice(Value::scalar(kind), "the kind of " + option, kinds);
+  for (const std::string& other : kinds) {
+    const std::size_t comma = text.find("," + other + "=");
+    if (comma == std::string::npos) continue;
+    refuse({}, "a blank stands between two reports: write `{} {} {}`", option,
+           text.substr(0, comma), text.substr(comma + 1));
+  }
   return {kind, text.substr(equals + 1)};
 }
 

@@ -81,6 +81,8 @@ test_mistakes_on_the_command_line_say_what_to_write() {
   answers 2 '--coarsen needs a value: `--coarsen F`' run s.yaml --coarsen
   answers 2 'it is `html`; write `--report html=run.html`' run s.yaml --report html
   answers 2 'it is `out/a.xml`; write `--report junit=out/a.xml`' run s.yaml --report out/a.xml
+  answers 2 'a blank stands between two reports: write `--report html=a.html json=a.json`' \
+    run s.yaml --report html=a.html,json=a.json
   answers 2 'the kind of --report cannot be `pdf`; there is: console, json' \
     run s.yaml --report json=a pdf=b
   answers 2 'no/where/a.html: its folder does not exist; make it by `mkdir -p no/where`' \
