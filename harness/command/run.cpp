@@ -152,9 +152,10 @@ reports::Record run_in_arena(const std::vector<Suite>& suites, const RunOptions&
 
 reports::Record run(const std::vector<Suite>& suites, const RunOptions& options, Progress& progress,
                     const Broken& broken, std::string* ledger_fault) {
-  return with_threads(options.threads, [&] {
-    return run_in_arena(suites, options, progress, broken, ledger_fault);
-  });
+  reports::Record record;
+  with_threads(options.threads,
+               [&] { record = run_in_arena(suites, options, progress, broken, ledger_fault); });
+  return record;
 }
 
 }  // namespace assay::harness

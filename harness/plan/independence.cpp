@@ -13,6 +13,7 @@
 #include "harness/theta/constant.h"
 #include "harness/theta/gate.h"
 #include "harness/theta/methods.h"
+#include "harness/theta/theta.h"
 #include "stats/gates/copies.h"
 #include "stats/gates/dependence.h"
 #include "stats/gates/independence_gates.h"

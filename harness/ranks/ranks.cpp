@@ -1,7 +1,6 @@
 #include "harness/ranks/ranks.h"
 
 #include <fmt/format.h>
-#include <oneapi/tbb/parallel_for.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -163,7 +162,7 @@ class Ranks::Window {
     if (some.empty()) some = overdue();
     for (const std::uint64_t number : some) give_to(0, number);
     const Clock::time_point start = Clock::now();
-    tbb::parallel_for(std::size_t{0}, some.size(), [&](std::size_t i) {
+    on_all_threads(some.size(), [&](std::size_t i) {
       Slot& slot = slots_[some[i] - front_];
       slot.drawn = std::make_unique<Pool::Block>(workers_.draw(slot.task));
     });
@@ -571,7 +570,7 @@ class Servant {
     }
     std::vector<std::string> blocks(orders.size());
     with_threads(prepared_.threads, [&] {
-      tbb::parallel_for(std::size_t{0}, orders.size(), [&](std::size_t i) {
+      on_all_threads(orders.size(), [&](std::size_t i) {
         blocks[i] = packed_block(round_->workers.draw(orders[i]));
       });
     });

@@ -13,6 +13,7 @@
 #include <new>
 #include <stdexcept>
 
+#include "estimators/core/thread_seconds.h"
 #include "estimators/ready_made.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/parallel.h"

@@ -1,5 +1,6 @@
 #include "harness/sampling/executor.h"
 
+#include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/parallel_pipeline.h>
 
 #include <algorithm>
@@ -119,8 +120,16 @@ void Round::fold(const Task& task, Pool::Block&& block) {
   for (const auto& act : after_fold_) act();
 }
 
+struct Workers::Estimators {
+  tbb::enumerable_thread_specific<std::vector<std::unique_ptr<Estimator>>> of_threads;
+};
+
+Workers::Workers(const SomePools& pools)
+    : pools_(pools), estimators_(std::make_unique<Estimators>()) {}
+Workers::~Workers() = default;
+
 Pool::Block Workers::draw(const Task& task) {
-  auto& mine = estimators_.local();
+  auto& mine = estimators_->of_threads.local();
   return pools_[task.pool]->draw(
       [&]() -> Estimator& {
         mine.resize(pools_.size());

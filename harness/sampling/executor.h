@@ -3,8 +3,6 @@
 // Executors draw the blocks of pools. Blocks are handed out in one order and folded in it. So the
 // contents of pools do not depend on who drew them, nor on how many did.
 
-#include <oneapi/tbb/enumerable_thread_specific.h>
-
 #include <atomic>
 #include <functional>
 #include <memory>
@@ -64,12 +62,15 @@ class Round {
 /// Draws blocks on threads, each of which has its own estimators, made at their first use.
 class Workers {
  public:
-  explicit Workers(const SomePools& pools) : pools_(pools) {}
+  explicit Workers(const SomePools& pools);
+  ~Workers();
   Pool::Block draw(const Task& task);
 
  private:
+  struct Estimators;
+
   const SomePools& pools_;
-  tbb::enumerable_thread_specific<std::vector<std::unique_ptr<Estimator>>> estimators_;
+  std::unique_ptr<Estimators> estimators_;
 };
 
 /// Set-ups by names that are the same in every process of a run.

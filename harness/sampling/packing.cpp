@@ -1,8 +1,5 @@
 #include "harness/sampling/packing.h"
 
-#include <oneapi/tbb/blocked_range.h>
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "estimators/core/flush_denormals.h"
+#include "estimators/core/thread_seconds.h"
 #include "estimators/core/value.h"
 #include "estimators/ready_made.h"
 #include "harness/base/parallel.h"

@@ -1,8 +1,6 @@
 #include "harness/sampling/summary.h"
 
 #include <fmt/format.h>
-#include <oneapi/tbb/blocked_range.h>
-#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <stdexcept>
@@ -143,10 +141,11 @@ std::vector<ChannelSummary> sums_of_images(Images images) {
   const std::size_t elements = images.front().size();
   const stats::ImageStack stack{{.width = elements, .height = 1}, {images.begin(), images.end()}};
   std::vector<ChannelSummary> sums(elements);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, elements, channels_at_a_time),
-                    [&](const tbb::blocked_range<std::size_t>& some) {
-                      take(stack, some.begin(), std::span(sums).subspan(some.begin(), some.size()));
-                    });
+  on_all_threads((elements + channels_at_a_time - 1) / channels_at_a_time, [&](std::size_t i) {
+    const std::size_t first = i * channels_at_a_time;
+    const std::size_t size = std::min(channels_at_a_time, elements - first);
+    take(stack, first, std::span(sums).subspan(first, size));
+  });
   return sums;
 }
 

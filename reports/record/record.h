@@ -9,7 +9,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <tuple>
 #include <vector>
 
 namespace assay::reports {
@@ -20,8 +19,8 @@ namespace assay::reports {
 #define ASSAY_FIELDS(Struct, ...)                               \
   bool operator==(const Struct&) const = default;               \
   static constexpr std::string_view field_names = #__VA_ARGS__; \
-  auto fields() { return std::tie(__VA_ARGS__); }               \
-  auto fields() const { return std::tie(__VA_ARGS__); }
+  void with_fields(auto&& take) { take(__VA_ARGS__); }          \
+  void with_fields(auto&& take) const { take(__VA_ARGS__); }
 
 template <class T>
 concept has_fields = requires {
@@ -37,7 +36,7 @@ void for_each_field(T& value, Visit visit) {
     rest.remove_prefix(std::min(rest.size(), key.size() + std::string_view(", ").size()));
     return key;
   };
-  std::apply([&](auto&... member) { (visit(next_key(), member), ...); }, value.fields());
+  value.with_fields([&](auto&... member) { (visit(next_key(), member), ...); });
 }
 
 /// A number of the record that may not exist: JSON null.
