@@ -294,9 +294,6 @@ Total expected_total(const PlannedRun& planned, const UnitCosts& costs) {
         of_pool = std::max(of_pool, work.outcome.question.subjects[i].secondaries(expected));
       }
     }
-    for (const Picture& picture : run->pictures) {
-      most[picture.pool.get()] = std::max(most[picture.pool.get()], picture.pool->requested());
-    }
   }
   Total total;
   for (const auto& [pool, secondaries] : most) {
@@ -320,8 +317,8 @@ void write_totals(Page& page, const PlannedRun& planned, const UnitCosts& costs)
   page.paragraph(fmt::format("{} test{}, each by itself to its last look: {}.", tests,
                              tests == 1 ? "" : "s", total_text(separate)));
   page.paragraph(fmt::format(
-      "Tests of one estimator share observations, and every estimator is drawn for its picture: at "
-      "most {} in all. Most tests end at an earlier look: about {} if every claim holds exactly "
+      "Tests of one estimator share observations: at most {} in all. Most tests end at an earlier "
+      "look: about {} if every claim holds exactly "
       "(tests whose mean is not known counted in full).",
       total_text(total_of(planned, costs)), total_text(expected_total(planned, costs))));
   page.paragraph(

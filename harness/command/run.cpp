@@ -96,10 +96,6 @@ void leave_out(SuiteRun& run, const std::string& why) {
   }
   std::ranges::sort(run.untested, {}, &Untested::test);
   std::erase_if(run.tests, [](const TestWork& work) { return !work.outcome.decided; });
-  std::erase_if(run.pictures, [&](const Picture& each) {
-    const std::uint64_t shown = shown_by(each, run);
-    return shown == 0 || each.pool->drawn() < shown;
-  });
 }
 
 reports::Record run_in_arena(const std::vector<Suite>& suites, const RunOptions& options,

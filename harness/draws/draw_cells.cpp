@@ -127,6 +127,14 @@ std::vector<double> borders(stats::Span span, std::span<const double> shares, au
   return all;
 }
 
+/// "theta 0.1 to 0.2", with enough digits to tell the ends apart.
+std::string range_text(const std::string& name, stats::Span span) {
+  const double largest = std::max(std::abs(span.low), std::abs(span.high));
+  // 17 digits tell any two doubles apart.
+  const int digits = std::clamp(2 + static_cast<int>(std::log10(largest / span.width())), 3, 17);
+  return fmt::format("{} {:.{}g} to {:.{}g}", name, span.low, digits, span.high, digits);
+}
+
 }  // namespace
 
 DomainChart chart_by(Domain domain, std::size_t marginal) {
@@ -205,13 +213,6 @@ stats::PlaneGrid shifted_grid(const Sampler& sampler, StreamKey key) {
   });
 }
 
-std::string range_text(const std::string& name, stats::Span span) {
-  const double largest = std::max(std::abs(span.low), std::abs(span.high));
-  // 17 digits tell any two doubles apart.
-  const int digits = std::clamp(2 + static_cast<int>(std::log10(largest / span.width())), 3, 17);
-  return fmt::format("{} {:.{}g} to {:.{}g}", name, span.low, digits, span.high, digits);
-}
-
 DrawCells::DrawCells(const Sampler& sampler)
     : DrawCells(sampler, std::vector(static_cast<std::size_t>(sampler.lobes()),
                                      stats::whole_cells(measure_grid(sampler)))) {}
@@ -255,14 +256,6 @@ std::size_t DrawCells::grid_cell(std::size_t cell) const {
 stats::PlaneCell DrawCells::sides(std::size_t cell) const {
   const auto [lobe, number] = found(cell);
   return of_lobes_[lobe].cells[number];
-}
-
-std::vector<std::size_t> DrawCells::at(double x, double y) const {
-  std::vector<std::size_t> cells;
-  for (std::size_t lobe = 0; lobe < of_lobes_.size(); ++lobe) {
-    cells.push_back(begin_[lobe] + of_lobes_[lobe].index(x, y));
-  }
-  return cells;
 }
 
 std::string DrawCells::describe(std::size_t cell) const {

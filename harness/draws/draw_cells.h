@@ -99,8 +99,6 @@ class DrawCells {
   std::size_t grid_cell(std::size_t cell) const;
   /// The cell's bounds in cell_coordinates().
   stats::PlaneCell sides(std::size_t cell) const;
-  /// The cell of each lobe at this place. Throws std::domain_error outside the grid.
-  std::vector<std::size_t> at(double x, double y) const;
 
  private:
   struct Found {
@@ -118,9 +116,6 @@ class DrawCells {
 
 /// The marginals of a sampler's domain; for an interval with its bounds.
 std::vector<Marginal> marginals_of(const Sampler& sampler);
-
-/// "theta 0.1 to 0.2", with enough digits to tell the ends apart.
-std::string range_text(const std::string& name, stats::Span span);
 
 /// The coordinates of cells. They are the marginals, except that a triangle's second is v / (1 -
 /// u).

@@ -550,10 +550,18 @@ class DensityTheta final : public LawTheta {
  public:
   DensityTheta() : LawTheta({.of_single_values = true, .of_a_law = true}) {}
 
-  /// One draw where the density is 0 refutes the claim, whatever its margins.
+  /// No sampler can follow a density whose integral exceeds 1. One draw where the density is 0
+  /// refutes the claim, whatever its margins.
   std::optional<ConstantVerdict> settled(const Seen& seen, const Regions&) const override {
-    if (!of_whole_draws(seen.question)) return std::nullopt;
     const DensityCells& density = density_of(seen.question);
+    if (density.mass.total - 1 > density.tolerance()) {
+      return ConstantVerdict{
+          reports::Verdict::fail,
+          fmt::format("the declared density integrates to {:.6g} over its domain (quadrature error "
+                      "{:.1g}): more than 1, so no sampler can follow it",
+                      density.mass.total, density.tolerance())};
+    }
+    if (!of_whole_draws(seen.question)) return std::nullopt;
     const auto counts = density.impossible(seen.data[0].cells);
     const std::uint64_t all = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
     if (all == 0) return std::nullopt;
@@ -570,18 +578,6 @@ class DensityTheta final : public LawTheta {
   }
 
   void require_density(const Question& question) const override { density_of(question); }
-
-  /// No sampler can follow a density whose integral exceeds 1.
-  std::optional<ConstantVerdict> settled_beforehand(const Question& question) const override {
-    const DensityCells& density = density_of(question);
-    const double total = density.mass.total;
-    if (total - 1 <= density.tolerance()) return std::nullopt;
-    return ConstantVerdict{
-        reports::Verdict::fail,
-        fmt::format("the declared density integrates to {:.6g} over its domain (quadrature error "
-                    "{:.1g}): more than 1, so no sampler can follow it",
-                    total, density.tolerance())};
-  }
 };
 
 /// Values against a law's distribution function, or of two subjects.

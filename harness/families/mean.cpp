@@ -972,22 +972,12 @@ std::string channel_suffix(const Question& question, std::size_t channel) {
 }
 
 Question MeanTheta::bind(const TestEntry& test, const Estimators& estimators) const {
-  const Claim& claim = test.claim;
-  Question question{
-      .test = &test, .theta = this, .subjects = {estimates(claim.left.source, estimators)}};
-  const ScaledQuantity* const other = other_side(claim);
-  if (other == nullptr) {
-    question.references = references_of(claim, question.subjects[0], analytic_mean);
-    return question;
-  }
-  question.factor = other->factor;
-  Subject second = estimates(other->quantity.source, estimators);
-  if (recorded::is_reference(*second.setup)) {
-    question.references = recorded_means(question, second);
+  Question question = Theta::bind(test, estimators);
+  if (question.of_two() && recorded::is_reference(*question.subjects[1].setup)) {
+    question.references = recorded_means(question, question.subjects[1]);
+    question.subjects.pop_back();
     question.factor = 1;
-    return question;
   }
-  question.subjects.push_back(std::move(second));
   return question;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "harness/families/families.h"
+#include "harness/question/question_sources.h"
 
 namespace assay::harness {
 
@@ -14,7 +15,8 @@ const std::vector<QuantityRow>& quantities() {
        .summary = "The expected value of an observation, or of every pixel of an image.",
        .theta = &theta_of_means(),
        .slope = &theta_of_slopes(),
-       .may_be_analytic = true,
+       .analytic = analytic_mean,
+       .takes_standard_error = true,
        .relative_effect = true,
        .told_by_moments = true},
       {.word = "bias",
@@ -22,6 +24,7 @@ const std::vector<QuantityRow>& quantities() {
        .summary = "The mean less the truth, which the plugin or `reference` says.",
        .theta = &theta_of_biases(),
        .slope = &theta_of_slopes(),
+       .takes_standard_error = true,
        .relative_effect = true,
        .relative_to_0 = true,
        .told_by_moments = true,
@@ -33,7 +36,7 @@ const std::vector<QuantityRow>& quantities() {
        .slope = &theta_of_variance_slopes(),
        .never_negative = true,
        .tested_as_a_ratio = true,
-       .may_be_analytic = true,
+       .analytic = analytic_variance,
        .told_by_moments = true},
       {.word = "total_variance",
        .example = "total_variance(a) < total_variance(b)",

@@ -477,24 +477,6 @@ class VarianceTheta : public LogTheta {
               {.of_normal_values = true, .over_looks = stats::LookLaw::independent_increments}},
              influence_row(any_question, Keeps::powers)}) {}
 
-  Question bind(const TestEntry& test, const Estimators& estimators) const override {
-    const Claim& claim = test.claim;
-    Question question{
-        .test = &test, .theta = this, .subjects = {estimates(claim.left.source, estimators)}};
-    if (const ScaledQuantity* const other = other_side(claim)) {
-      question.factor = other->factor;
-      question.subjects.push_back(estimates(other->quantity.source, estimators));
-      return question;
-    }
-    const auto* const number = std::get_if<Constant>(&claim.right);
-    if (number != nullptr && number->standard_error > 0) {
-      refuse(claim.left.where,
-             "a variance is tested against an exact number: `+-` has no method here");
-    }
-    question.references = references_of(claim, question.subjects[0], analytic_variance);
-    return question;
-  }
-
   std::uint64_t choose(TestOutcome& test, const Pilots& pilots, std::uint64_t most) const override {
     const Question& question = test.question;
     const auto channels = known_channels(test, pilots);

@@ -25,12 +25,7 @@ Question Theta::bind(const TestEntry& test, const Estimators& estimators) const 
     question.factor = other->factor;
     question.subjects.push_back(estimates(other->quantity.source, estimators));
   } else {
-    const Constant number = std::get<Constant>(claim.right);
-    if (number.standard_error > 0) {
-      refuse(claim.left.where, "`{}` is tested against an exact number: `+-` has no method here",
-             claim.left.row->word);
-    }
-    question.references.assign(question.channel_count(), number);
+    question.references = references_of(claim, question.subjects[0]);
   }
   return question;
 }

@@ -451,9 +451,9 @@ void check_side(const Claim& claim, const Constant& side) {
   if (left.row->of_a_law) {
     refuse(left.where, "a distribution is compared with `density`, a law or another distribution");
   }
-  if (left.row->of_a_sampler && side.standard_error > 0) {
+  if (side.standard_error > 0 && (left.slope || !left.row->takes_standard_error)) {
     refuse(left.where, "`{}` is held against an exact number: `+-` has no method here",
-           left.row->word);
+           left.slope ? "slope" : left.row->word);
   }
   if (left.row->never_negative && !left.slope && side.value < 0) {
     refuse(left.where, "`{}` is never negative, but it is compared with {}", left.row->word,
@@ -470,7 +470,7 @@ void check_side(const Claim& claim, const Constant& side) {
 
 void check_side(const Claim& claim, const Analytic&) {
   const Quantity& left = claim.left;
-  if (left.slope || !left.row->may_be_analytic) {
+  if (left.slope || left.row->analytic == nullptr) {
     refuse(left.where, "`analytic` is a mean or a variance; there is none of `{}`{}",
            left.slope ? "slope" : left.row->word.c_str(),
            left.row->relative_to_0 && !left.slope ? "; claim `bias(…) == 0`" : "");

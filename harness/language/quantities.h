@@ -8,9 +8,15 @@
 #include <string_view>
 #include <vector>
 
+namespace assay {
+struct Channel;
+}
+
 namespace assay::harness {
 
+struct Constant;
 struct PreparedEstimator;
+struct Source;
 class Theta;
 
 using Estimators = std::map<std::string, PreparedEstimator>;
@@ -28,8 +34,10 @@ struct QuantityRow {
   bool never_negative = false;
   bool tested_as_a_ratio = false;  ///< The claimed number is above 0 and exact.
   bool over_all_channels = false;
-  bool may_be_analytic = false;  ///< A plugin may know it.
-  bool relative_effect = false;  ///< A margin in per cent is one of the value, not of a ratio.
+  /// What a channel's plugin knows of it, or InputError; null if no plugin knows any.
+  Constant (*analytic)(const Channel&, const Source&) = nullptr;
+  bool takes_standard_error = false;  ///< The claimed number may have one, by `+-`.
+  bool relative_effect = false;       ///< A margin in per cent is one of the value, not of a ratio.
   bool relative_to_0 = false;    ///< The truth, not the claimed number, is what per cent are of.
   bool told_by_moments = false;  ///< A recorded run of it has moments that other claims can use.
   bool takes_reference = false;  ///< The test may have `reference`.

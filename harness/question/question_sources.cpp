@@ -187,13 +187,13 @@ Constant analytic_variance(const Channel& channel, const Source& source) {
          source.estimator, channel.name);
 }
 
-std::vector<Constant> references_of(const Claim& claim, const Subject& subject,
-                                    Constant (*analytic)(const Channel&, const Source&)) {
+std::vector<Constant> references_of(const Claim& claim, const Subject& subject) {
   std::vector<Constant> numbers;
   const std::vector<Channel> channels = subject.setup->channels();
   for (const std::size_t i : subject.channels.all()) {
     const auto* const number = std::get_if<Constant>(&claim.right);
-    numbers.push_back(number != nullptr ? *number : analytic(channels[i], claim.left.source));
+    numbers.push_back(number != nullptr ? *number
+                                        : claim.left.row->analytic(channels[i], claim.left.source));
   }
   return numbers;
 }

@@ -30,8 +30,7 @@ Constant analytic_mean(const Channel& channel, const Source& source);
 Constant analytic_variance(const Channel& channel, const Source& source);
 
 /// The right side for each channel: the claim's number, or what the plugin knows.
-std::vector<Constant> references_of(const Claim& claim, const Subject& subject,
-                                    Constant (*analytic)(const Channel&, const Source&));
+std::vector<Constant> references_of(const Claim& claim, const Subject& subject);
 
 /// "32 x 32 irradiance".
 std::string image_name(const ImageShape& shape);

@@ -288,7 +288,6 @@ struct Cells {
   std::vector<double> observed = {}, expected = {};
   std::vector<double> z = {};
   std::string of_z = "";  ///< a remark on z
-  std::optional<CloseUp> close = {};
 };
 
 /// (observed - expected) in standard deviations; the count's variance is `variance` * expected.
@@ -315,12 +314,10 @@ bool are_divided(const DensityCells& density, const stats::PlaneGrid& grid) {
   return density.cells.in_domain() > grid.size();
 }
 
-// The fewest expected draws for a residual. It shows places before they suffice for a test.
-constexpr double least_shown = 5;
-
-/// The residual of each cell in the domain that expects enough draws.
+/// The residual of each cell in the domain that is tested alone.
 std::vector<std::optional<double>> residuals_of(const DensityCells& density,
-                                                const ChannelData& data, double least) {
+                                                const ChannelData& data) {
+  const double least = stats::FitOptions{}.minimum_expected;
   const auto total = static_cast<double>(data.moments.count);
   const std::vector<std::uint64_t> counts = density.in_cells(data.cells);
   std::vector<std::optional<double>> residuals;
@@ -344,9 +341,7 @@ Cells of_density(const SamplerSetup& draws, const ChannelData& data) {
               .height = grid.rows(),
               .observed = std::vector<double>(grid.size()),
               .expected = std::vector<double>(grid.size())};
-  // Residuals of cells that are tested alone.
-  const std::vector<std::optional<double>> tested =
-      residuals_of(density, data, stats::FitOptions{}.minimum_expected);
+  const std::vector<std::optional<double>> tested = residuals_of(density, data);
   std::vector<std::optional<double>> farthest(grid.size());
   const std::vector<std::uint64_t> counts = density.in_cells(data.cells);
   for (std::size_t i = 0; i < density.cells.in_domain(); ++i) {
@@ -362,7 +357,6 @@ Cells of_density(const SamplerSetup& draws, const ChannelData& data) {
   }
   if (are_divided(density, grid)) {
     cells.of_z = "; of the parts of a cell the one that is farthest off";
-    cells.close = close_up(density, draws.sampler(), residuals_of(density, data, least_shown));
   }
   return cells;
 }
@@ -475,7 +469,6 @@ void add_cells(const DrawnTest& drawn, reports::Test& test) {
   add("cells_observed", cells.axes, cells.width, cells.observed);
   add("cells_expected", cells.axes, cells.width, cells.expected);
   add("cells_z", cells.axes + cells.of_z, cells.width, cells.z);
-  if (cells.close) add("cells_z_close", cells.close->axes, cells.close->side, cells.close->z);
 }
 
 std::vector<reports::EmpiricalLaw> empirical_laws(const DrawnTest& test, std::size_t channel) {

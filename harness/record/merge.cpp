@@ -131,30 +131,21 @@ void adjust_p_values(std::vector<Part>& parts) {
   }
 }
 
-struct View {
-  const reports::EstimatorSummary* row;
-  const reports::ShardPicture* picture;
-
-  /// A run shows the test that drew most of the estimator. It shows a draw for the picture alone
-  /// only if no test draws it.
-  bool shows_less_than(const View& other) const {
-    return std::pair(picture->by_tests, picture->secondaries) <
-           std::pair(other.picture->by_tests, other.picture->secondaries);
-  }
-};
-
-/// The view of each estimator that one run would have, by its place in the suite.
-std::map<std::uint64_t, View> views_of(const std::vector<ShardFile>& shards, std::size_t suite) {
-  std::map<std::uint64_t, View> best;
+/// Of each estimator the row of the shard that drew most.
+std::vector<reports::EstimatorSummary> estimators_of(const std::vector<ShardFile>& shards,
+                                                     std::size_t suite) {
+  std::vector<reports::EstimatorSummary> most = shards.front().record.suites[suite].estimators;
   for (const ShardFile& shard : shards) {
-    const std::vector<reports::EstimatorSummary>& rows = shard.record.suites[suite].estimators;
-    for (std::size_t i = 0; i < rows.size(); ++i) {
-      const View view{&rows[i], &shard.record.shard->suites[suite].pictures[i]};
-      const auto [at, is_new] = best.try_emplace(view.picture->position, view);
-      if (!is_new && at->second.shows_less_than(view)) at->second = view;
+    for (const reports::EstimatorSummary& row : shard.record.suites[suite].estimators) {
+      const auto same = std::ranges::find(most, row.name, &reports::EstimatorSummary::name);
+      if (same == most.end()) {
+        most.push_back(row);
+      } else if (same->secondaries < row.secondaries) {
+        *same = row;
+      }
     }
   }
-  return best;
+  return most;
 }
 
 /// The statements of all shards, each once, in the suite's order. A shard lacks those without one
@@ -174,7 +165,7 @@ std::vector<reports::Statement> statements_of(const std::vector<ShardFile>& shar
 
 reports::Suite merge_suite(const std::vector<ShardFile>& shards, std::size_t index, bool& whole) {
   reports::Suite suite = shards.front().record.suites[index];
-  suite.estimators.clear();
+  suite.estimators = estimators_of(shards, index);
   suite.tests.clear();
   suite.retries.clear();
   for (const ShardFile& shard : shards) {
@@ -188,7 +179,6 @@ reports::Suite merge_suite(const std::vector<ShardFile>& shards, std::size_t ind
                         missing_shards(shards).empty();
   if (complete) adjust_p_values(parts);
   whole = whole && complete;
-  for (const auto& [place, view] : views_of(shards, index)) suite.estimators.push_back(*view.row);
   for (Part& part : parts) {
     // The file was beside the shard's record; a report that writes maps names it again.
     for (reports::Map& map : part.test.maps) map.file.clear();
@@ -213,8 +203,7 @@ void check_whole(const ShardFile& shard) {
       record.shard->index >= 1 && record.shard->index <= record.shard->count &&
       std::ranges::equal(record.shard->suites, record.suites,
                          [&](const reports::ShardSuite& part, const reports::Suite& suite) {
-                           return part.pictures.size() == suite.estimators.size() &&
-                                  std::ranges::equal(part.results, suite.tests, fits);
+                           return std::ranges::equal(part.results, suite.tests, fits);
                          });
   if (!sound) {
     refuse({.file = shard.file},
@@ -301,9 +290,6 @@ void add_shard(const SuiteRuns& runs, const RunOptions& options, reports::Record
       .index = index, .count = count, .options = options.command + options_text(options.selection)};
   for (const auto& run : runs) {
     reports::ShardSuite suite{.digest = digest_of(*run), .tests = run->suite.tests.size()};
-    for (const Picture& picture : run->pictures) {
-      suite.pictures.push_back(shard_picture(picture, *run));
-    }
     for (const TestWork& work : run->tests) suite.results.push_back(test_of(work.outcome, *run));
     for (const Untested& each : run->untested) {
       suite.results.push_back({.position = position_of(*each.test, run->suite)});

@@ -29,8 +29,25 @@ const char* bias_name(std::optional<BiasClass> bias) {
   return bias ? names[static_cast<int>(*bias)] : "unknown";
 }
 
-double per_primary(const Picture& picture) {
-  return picture.estimator->nature().averages ? static_cast<double>(picture.pool->primaries()) : 1;
+/// What a test drew of an estimator itself.
+struct Draw {
+  std::shared_ptr<Pool> pool;
+  std::uint64_t secondaries = 0;
+};
+
+/// The draw of the test that drew most; nullopt if none did.
+std::optional<Draw> most_drawn(const PreparedEstimator& estimator, const SuiteRun& run) {
+  std::optional<Draw> most;
+  for (const TestWork& work : run.tests) {
+    for (std::size_t i = 0; i < work.pools.size(); ++i) {
+      const Subject& side = work.outcome.question.subjects[i];
+      const bool its = side.estimator == &estimator && side.purpose.empty() &&
+                       work.pools[i]->setup() == estimator.setup;
+      const std::uint64_t secondaries = work.outcome.secondaries(i);
+      if (its && (!most || most->secondaries < secondaries)) most = {work.pools[i], secondaries};
+    }
+  }
+  return most;
 }
 
 Estimate mean_of(const stats::Moments& moments, double confidence) {
@@ -65,64 +82,63 @@ stats::Moments of_fewer(stats::Moments x, double factor) {
 }
 
 /// The first `count` rows of one channel; empty if they are not kept.
-std::span<const double> rows_of(const Picture& picture, const SuiteRun& run, std::size_t channel,
-                                std::uint64_t count) {
-  const Pilot* const pilot = run.pilots.find(picture.estimator->name);
-  if (!picture.pool->setup()->observations() || pilot == nullptr ||
-      channel >= pilot->values.size() || count > pilot->values[channel].size()) {
+std::span<const double> rows_of(const PreparedEstimator& estimator, const SuiteRun& run,
+                                std::size_t channel, std::uint64_t count) {
+  const Pilot* const pilot = run.pilots.find(estimator.name);
+  if (!estimator.setup->observations() || pilot == nullptr || channel >= pilot->values.size() ||
+      count > pilot->values[channel].size()) {
     return {};
   }
   return std::span(pilot->values[channel]).first(count);
 }
 
 /// Moments, which for dependent rows count only as many as independent ones would be worth.
-stats::Moments moments_of(const Picture& picture, const SuiteRun& run, const Drawn& drawn,
-                          std::size_t channel) {
+stats::Moments moments_of(const PreparedEstimator& estimator, const SuiteRun& run,
+                          const Drawn& drawn, std::size_t channel) {
   const stats::Moments& moments = drawn.summary().channels[channel].moments;
-  const std::span<const double> rows = rows_of(picture, run, channel, drawn.summary().count);
+  const std::span<const double> rows = rows_of(estimator, run, channel, drawn.summary().count);
   const bool all = moments.count == rows.size();  // the others are not finite
   if (!has_spread(moments) || !all || rows.size() < fewest_in_order) return moments;
   const double factor = stats::allowance_for_dependence(rows);
   return factor > 1 ? of_fewer(moments, factor) : moments;
 }
 
-reports::EstimatorSummary summarise(const Picture& picture, const SuiteRun& run) {
-  const std::uint64_t count = shown_by(picture, run);
+reports::EstimatorSummary summarise(const PreparedEstimator& estimator, const SuiteRun& run) {
   const double confidence = 1 - run.suite.alpha;
-  const Information& information = picture.estimator->entry->information;
-  const Nature nature = picture.estimator->nature();
+  const Information& information = estimator.entry->information;
+  const Nature nature = estimator.nature();
   reports::EstimatorSummary row{
-      .name = picture.estimator->name,
+      .name = estimator.name,
       .plugin = information.name,
-      .parameters = picture.estimator->parameters,
+      .parameters = estimator.parameters,
       // Nothing is known of rows made elsewhere.
-      .bias = picture.estimator->setup->observations() ? "unknown" : bias_name(nature.bias),
+      .bias = estimator.setup->observations() ? "unknown" : bias_name(nature.bias),
       .original = information.original,
       .defect = information.defect,
-      .stream = stream_text(picture.pool->key()),
-      .primaries = picture.pool->primaries(),
-      .secondaries = count,
       .confidence = confidence,
       .variance_of = nature.averages ? "primary" : "secondary"};
-  const Sample sample = picture.pool->sample(count);
+  const std::optional<Draw> draw = most_drawn(estimator, run);
+  if (!draw) return row;
+  row.primaries = draw->pool->primaries();
+  row.secondaries = draw->secondaries;
+  const Sample sample = draw->pool->sample(draw->secondaries);
   const Drawn* const drawn = sample.drawn();
   if (drawn == nullptr) return row;
   const Summary& summary = drawn->summary();
   row.cost = cost_of(summary);
-  if (picture.pool->setup()->image()) {
+  const double averaged = nature.averages ? static_cast<double>(row.primaries) : 1;
+  if (estimator.setup->image()) {
     row.channels.push_back(
-        image_channel(*picture.pool->setup(), summary,
-                      {.averaged = per_primary(picture), .confidence = confidence}));
+        image_channel(*estimator.setup, summary, {.averaged = averaged, .confidence = confidence}));
     return row;
   }
-  const std::vector<Channel> channels = picture.pool->setup()->channels();
+  const std::vector<Channel> channels = estimator.setup->channels();
   for (std::size_t i = 0; i < channels.size(); ++i) {
     if (channels[i].diagnostic) continue;
-    const stats::Moments moments = moments_of(picture, run, *drawn, i);
-    reports::EstimatorChannel channel{
-        .name = channels[i].name,
-        .mean = mean_of(moments, confidence),
-        .variance = variance_of(moments, per_primary(picture), confidence)};
+    const stats::Moments moments = moments_of(estimator, run, *drawn, i);
+    reports::EstimatorChannel channel{.name = channels[i].name,
+                                      .mean = mean_of(moments, confidence),
+                                      .variance = variance_of(moments, averaged, confidence)};
     if (channels[i].mean) channel.reference = *channels[i].mean;
     if (channels[i].variance) channel.reference_variance = *channels[i].variance;
     row.channels.push_back(channel);
@@ -140,16 +156,8 @@ reports::Cost cost_of(const Summary& summary) {
           .seconds = summary.seconds};
 }
 
-void add_pictures(const SuiteRun& run, reports::Suite& suite) {
-  for (const Picture& picture : run.pictures) suite.estimators.push_back(summarise(picture, run));
-}
-
-reports::ShardPicture shard_picture(const Picture& picture, const SuiteRun& run) {
-  const std::string& name = picture.estimator->name;
-  const auto entry = std::ranges::find(run.suite.estimators, name, &EstimatorEntry::name);
-  return {.position = static_cast<std::uint64_t>(entry - run.suite.estimators.begin()),
-          .by_tests = !picture.own,
-          .secondaries = shown_by(picture, run)};
+void add_estimators(const SuiteRun& run, reports::Suite& suite) {
+  for (const PreparedEstimator* each : run.used) suite.estimators.push_back(summarise(*each, run));
 }
 
 }  // namespace assay::harness

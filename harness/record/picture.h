@@ -7,12 +7,10 @@
 
 namespace assay::harness {
 
-/// Adds the suite's estimators: mean and variance with intervals. Dependent rows count as fewer
-/// (stats::allowance_for_dependence). Descriptive: outside the family.
-void add_pictures(const SuiteRun& run, reports::Suite& suite);
-
-/// How much of an estimator a shard draws, by which merging chooses whose it shows.
-reports::ShardPicture shard_picture(const Picture& picture, const SuiteRun& run);
+/// Adds the estimators of the selected tests: mean and variance with intervals, of the test that
+/// drew most. Dependent rows count as fewer (stats::allowance_for_dependence). Descriptive: outside
+/// the family.
+void add_estimators(const SuiteRun& run, reports::Suite& suite);
 
 reports::Cost cost_of(const Summary& summary);
 

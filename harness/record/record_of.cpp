@@ -412,7 +412,7 @@ reports::Record record_of(const SuiteRuns& runs, const RunOptions& options) {
       }
     }
     whole = whole && run->adjusted;
-    add_pictures(*run, suite);
+    add_estimators(*run, suite);
     record.suites.push_back(std::move(suite));
   }
   if (!whole) record.note = partial_note;

@@ -104,16 +104,6 @@ void settle(TestOutcome& outcome, Verdict verdict, Reason reason) {
   outcome.advice = std::move(reason.advice);
 }
 
-/// Settles a test whose verdict needs no look at the data.
-bool is_settled_beforehand(TestOutcome& outcome) try {
-  const auto settled = outcome.question.theta->settled_beforehand(outcome.question);
-  if (settled) settle(outcome, settled->verdict, settled->message);
-  return settled.has_value();
-} catch (const std::domain_error& error) {
-  settle(outcome, Verdict::invalid, in_words(error));
-  return true;
-}
-
 ChannelOutcome channel_outcome(const DrawnTest& test, const Seen& seen) {
   const Theta& theta = *seen.question.theta;
   const Regions& regions = test.outcome.plan.regions[seen.channel];
@@ -316,7 +306,6 @@ bool is_put_off(const TestOutcome& outcome) {
 
 void take_sound_look(TestWork& work, const DrawnTest& test, bool may_go_on) {
   TestOutcome& outcome = work.outcome;
-  if (is_settled_beforehand(outcome)) return;
   judge_drawn_order(outcome, test);
   judge(outcome, test);
   const bool last =

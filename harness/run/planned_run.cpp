@@ -17,10 +17,6 @@
 namespace assay::harness {
 namespace {
 
-// The suite picture's secondaries of an estimator that no selected mean or variance claim draws.
-constexpr std::uint64_t picture_secondaries = 1000;
-constexpr std::uint64_t picture_primaries = 64;
-
 /// Splits the suite's primaries over all its tests by weight, selected or not: what a test may draw
 /// is a function of the suite alone. Claims in seconds are timed on whole replicates.
 void share_budget(Suite& suite) {
@@ -61,35 +57,21 @@ bool is_about(const Question& question, const std::string& estimator) {
                      [&](const Subject& s) { return s.estimator->listed == estimator; });
 }
 
-/// True if estimators without a test are drawn for the suite's picture. Only the first shard draws
-/// them.
-bool draws_idle(const SuiteRun& run, const RunOptions& options) {
-  if (options.shard && options.shard->first != 1) return false;
-  return std::ranges::all_of(
-      run.questions, [&](const Question& each) { return selects(options.selection, *each.test); });
-}
-
 using Estimators = std::vector<const PreparedEstimator*>;
 
-Estimators used_by(const SuiteRun& run, const std::vector<bool>& chosen,
-                   const RunOptions& options) {
+/// Estimators of the chosen tests, in the suite's order. A reference has nothing to draw.
+Estimators used_by(const SuiteRun& run, const std::vector<bool>& chosen) {
   Estimators used;
-  const bool with_idle = draws_idle(run, options);
   for (const EstimatorEntry& entry : run.suite.estimators) {
     const auto prepared = run.estimators.find(entry.name);
-    if (prepared == run.estimators.end()) continue;
-    const PreparedEstimator& estimator = prepared->second;
-    if (recorded::is_reference(*estimator.setup)) continue;  // nothing to draw
-    bool idle = true;
+    if (prepared == run.estimators.end() || recorded::is_reference(*prepared->second.setup)) {
+      continue;
+    }
     bool wanted = false;
     for (std::size_t i = 0; i < run.questions.size(); ++i) {
-      if (!is_about(run.questions[i], entry.name)) continue;
-      idle = false;
-      wanted = wanted || chosen[i];
+      wanted = wanted || (chosen[i] && is_about(run.questions[i], entry.name));
     }
-    // A renderer that starts for each observation is too slow to draw for a picture alone.
-    const bool dear = recorded::keeps_files(*estimator.setup);
-    if (wanted || (idle && with_idle && !dear)) used.push_back(&estimator);
+    if (wanted) used.push_back(&prepared->second);
   }
   return used;
 }
@@ -115,7 +97,7 @@ PilotRun pilot_run(const SuiteRun& run, const std::vector<bool>& chosen,
 /// The pilots of a suite's estimators: first of pictures that are read row by row, then the others.
 Pilots piloted(const SuiteRun& run, const std::vector<bool>& chosen, const RunOptions& options,
                Progress& progress) {
-  Estimators used = used_by(run, chosen, options);
+  Estimators used = run.used;
   Pilots pilots;
   for (const Question* const question : streamed(run.questions, chosen)) {
     StreamedPictures taken = stream_pictures(*question, progress);
@@ -134,41 +116,6 @@ Pilots piloted(const SuiteRun& run, const std::vector<bool>& chosen, const RunOp
   return pilots;
 }
 
-/// The first of the streams that the suite's tests, selected or not, draw of an estimator.
-std::uint32_t first_copy(const SuiteRun& run, const PreparedEstimator& estimator) {
-  std::optional<std::uint32_t> first;
-  for (const Question& question : run.questions) {
-    for (const Subject& subject : question.subjects) {
-      if (subject.estimator != &estimator || !subject.purpose.empty()) continue;
-      first = std::min(first.value_or(subject.copy), subject.copy);
-    }
-  }
-  return first.value_or(0);
-}
-
-void plan_picture(SuiteRun& run, const Estimators& used, const Primaries& primaries, Pools& pools) {
-  for (const PreparedEstimator* estimator : used) {
-    const auto found = primaries.find(estimator->name);
-    const std::uint64_t automatic = !estimator->nature().averages ? 1
-                                    : found != primaries.end()    ? found->second
-                                                                  : picture_primaries;
-    const auto pool =
-        pools.find_or_make({.estimator = estimator,
-                            .setup = estimator->setup,
-                            .copy = first_copy(run, *estimator),
-                            .channels = {}},
-                           estimator->primaries.value_or(automatic), run.seed, run.pilots);
-    Picture picture{estimator, pool};
-    if (shown_by(picture, run) == 0) {
-      const bool image = estimator->setup->image().has_value();
-      picture.own = estimator->setup->observations().value_or(image ? stats::least_replicates
-                                                                    : picture_secondaries);
-      pool->request(*picture.own);
-    }
-    run.pictures.push_back(picture);
-  }
-}
-
 std::vector<bool> chosen_of(const SuiteRun& run, const RunOptions& options) {
   std::vector<bool> chosen;
   for (const Question& each : run.questions) {
@@ -177,14 +124,14 @@ std::vector<bool> chosen_of(const SuiteRun& run, const RunOptions& options) {
   return chosen;
 }
 
-/// Draws the pilots of the selected tests and plans them. Returns the primaries of estimators that
-/// choose them.
-Primaries plan_tests(SuiteRun& run, const RunOptions& options, Progress& progress) {
+/// Draws the pilots of the selected tests and plans them.
+void plan_tests(SuiteRun& run, const RunOptions& options, Progress& progress) {
   std::erase_if(run.untested,
                 [&](const Untested& each) { return !selects(options.selection, *each.test); });
   const std::vector<Question>& questions = run.questions;
   const std::vector<bool> chosen = chosen_of(run, options);
-  if (std::ranges::count(chosen, true) == 0) return {};
+  if (std::ranges::count(chosen, true) == 0) return;
+  run.used = used_by(run, chosen);
   const std::vector<FamilyPlace> place = places(run.suite, questions);
   run.pilots = piloted(run, chosen, options, progress);
   stop_if_interrupted();
@@ -194,21 +141,13 @@ Primaries plan_tests(SuiteRun& run, const RunOptions& options, Progress& progres
     run.tests.push_back({.suite_budget = run.suite.budget ? &*run.suite.budget : nullptr,
                          .outcome = plan_test(questions[i], place[i], run.pilots, primaries)});
   }
-  return primaries;
 }
 
-/// Plans what is drawn for the tests and the suite's picture.
-void plan_pools(SuiteRun& run, const Primaries& primaries, const RunOptions& options,
-                Pools& pools) {
-  if (run.tests.empty() && run.pilots.empty()) return;
-  std::set<const TestEntry*> own;
+/// Plans what is drawn for the tests.
+void plan_pools(SuiteRun& run, Pools& pools) {
   for (TestWork& work : run.tests) {
     work.pools = pools.for_question(work.outcome.question, work.outcome.plan, run.seed, run.pilots);
-    own.insert(work.outcome.question.test);
   }
-  std::vector<bool> chosen;
-  for (const Question& each : run.questions) chosen.push_back(own.contains(each.test));
-  plan_picture(run, used_by(run, chosen, options), primaries, pools);
 }
 
 /// Why the suite's tests cannot run on this machine; "" if they can.
@@ -297,7 +236,7 @@ void add_missing(const Pool& pool, std::uint64_t count, Missing& missing) {
 
 Missing missing_in_pilots(const SuiteRun& run, const RunOptions& options) {
   const std::vector<bool> chosen = chosen_of(run, options);
-  const Estimators used = with_sweeps(used_by(run, chosen, options), run, chosen);
+  const Estimators used = with_sweeps(used_by(run, chosen), run, chosen);
   Missing missing;
   for (const auto& [name, pool] : pilot_pools(used, pilot_run(run, chosen, options))) {
     add_missing(*pool, pool->requested(), missing);
@@ -307,20 +246,6 @@ Missing missing_in_pilots(const SuiteRun& run, const RunOptions& options) {
 
 }  // namespace
 
-std::uint64_t shown_by(const Picture& picture, const SuiteRun& run) {
-  if (picture.own) return *picture.own;
-  std::uint64_t most = 0;
-  for (const TestWork& work : run.tests) {
-    const std::vector<Subject>& subjects = work.outcome.question.subjects;
-    for (std::size_t i = 0; i < work.pools.size(); ++i) {
-      const bool its =
-          work.pools[i] == picture.pool && subjects[i].estimator->name == picture.estimator->name;
-      if (its) most = std::max(most, work.outcome.secondaries(i));
-    }
-  }
-  return most;
-}
-
 std::vector<foreign::MissingFile> missing_files(const std::vector<Suite>& suites,
                                                 const RunOptions& options, Progress& progress) {
   Missing all;
@@ -329,7 +254,8 @@ std::vector<foreign::MissingFile> missing_files(const std::vector<Suite>& suites
     Missing missing = missing_in_pilots(*run, options);
     if (missing.empty()) {
       Pools pools;
-      plan_pools(*run, plan_tests(*run, options, progress), options, pools);
+      plan_tests(*run, options, progress);
+      plan_pools(*run, pools);
       for (const auto& pool : pools.all()) {
         add_missing(*pool, std::max(pool->most_marked(), pool->requested()), missing);
       }
@@ -367,12 +293,9 @@ PlannedRun plan_run(const std::vector<Suite>& suites, const RunOptions& options,
                     Progress& progress) {
   PlannedRun planned = prepare_run(suites, options);
   executor_of(options)->introduce(setups_of(planned));
-  std::vector<Primaries> primaries;
-  for (auto& run : planned.suites) primaries.push_back(plan_tests(*run, options, progress));
+  for (auto& run : planned.suites) plan_tests(*run, options, progress);
   if (options.shard) keep_shard(planned.suites, *options.shard);
-  for (std::size_t i = 0; i < planned.suites.size(); ++i) {
-    plan_pools(*planned.suites[i], primaries[i], options, planned.pools);
-  }
+  for (auto& run : planned.suites) plan_pools(*run, planned.pools);
   return planned;
 }
 

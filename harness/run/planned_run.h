@@ -18,13 +18,6 @@
 
 namespace assay::harness {
 
-struct Picture {
-  const PreparedEstimator* estimator;
-  std::shared_ptr<Pool> pool;
-  /// Observations drawn for the picture alone; nullopt: it shows those of the suite's tests.
-  std::optional<std::uint64_t> own = {};
-};
-
 /// A test without a question. It is skipped if a program that its suite needs is missing, and an
 /// error if a source cannot be prepared.
 struct Untested {
@@ -45,17 +38,13 @@ struct SuiteRun {
   std::uint64_t seed = 1;
   std::map<std::string, PreparedEstimator> estimators;
   std::vector<Question> questions = {};  ///< Questions of its tests, without untested ones.
-  Pilots pilots = {};                    ///< Pilots of the selected tests' estimators.
-  std::vector<TestWork> tests = {};      ///< The selected tests, in a shard its own.
-  std::vector<Untested> untested = {};   ///< Those of them without a question.
+  std::vector<const PreparedEstimator*> used = {};  ///< Of the selected tests, in the file's order.
+  Pilots pilots = {};                               ///< Pilots of the selected tests' estimators.
+  std::vector<TestWork> tests = {};                 ///< The selected tests, in a shard its own.
+  std::vector<Untested> untested = {};              ///< Those of them without a question.
   std::vector<Elsewhere> elsewhere = {};
-  std::vector<Picture> pictures = {};
   bool adjusted = false;  ///< True if the whole family ran, so that its p-values are adjusted.
 };
-
-/// The number of observations that a picture shows: those of the test that drew most. It depends on
-/// the suite's tests alone.
-std::uint64_t shown_by(const Picture& picture, const SuiteRun& run);
 
 /// Leaves the planned tests of shard I of N, counted from 1; `elsewhere` names the others. Every
 /// shard draws the pilots of all selected tests and deals the tests in the same way, from the
@@ -70,7 +59,7 @@ void keep_shard(const std::vector<std::unique_ptr<SuiteRun>>& runs,
 
 struct PlannedRun {
   std::vector<std::unique_ptr<SuiteRun>> suites;
-  Pools pools;  ///< For the selected tests and the suites' pictures; nothing is drawn.
+  Pools pools;  ///< For the selected tests; nothing is drawn.
 };
 
 /// Set-ups of all estimators and of all sides of claims.

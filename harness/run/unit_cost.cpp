@@ -63,7 +63,6 @@ UnitCosts measure_costs(const PlannedRun& planned, const std::shared_ptr<Executo
         add(*work.pools[i], *side.estimator, side.purpose);
       }
     }
-    for (const Picture& picture : run->pictures) add(*picture.pool, *picture.estimator, "");
   }
   draw_all(pools, {.executor = executor, .phase = "costs"}, progress);
   stop_if_interrupted();

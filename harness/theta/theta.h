@@ -153,11 +153,7 @@ class Theta {
 
   // ---- The test's own data
 
-  /// The verdict that needs no look at the data.
-  virtual std::optional<ConstantVerdict> settled_beforehand(const Question&) const {
-    return std::nullopt;
-  }
-  /// The verdict on a channel without spread.
+  /// The verdict that needs no test: on a channel without spread, or by what no law allows.
   virtual std::optional<ConstantVerdict> settled(const Seen&, const Regions&) const {
     return std::nullopt;
   }

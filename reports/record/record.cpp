@@ -7,11 +7,10 @@
 namespace assay::reports {
 namespace {
 
-/// Draws that samples and estimators' rows share are counted once, as far as the longest reaches.
+/// Draws that samples share are counted once, as far as the longest reaches.
 class Draws {
  public:
-  template <class Source>
-  void add(const Source& source) {
+  void add(const Sample& source) {
     Longest& longest =
         longest_[{source.plugin, source.parameters, source.stream, source.primaries}];
     if (source.secondaries >= longest.secondaries) longest = {source.secondaries, source.cost};
@@ -65,7 +64,6 @@ Cost total_cost(const Test& test) {
 
 Cost total_cost(const Suite& suite) {
   Draws draws;
-  for (const EstimatorSummary& estimator : suite.estimators) draws.add(estimator);
   for (const Test& test : suite.tests) {
     for (const Sample& sample : test.samples) draws.add(sample);
   }

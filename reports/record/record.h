@@ -97,8 +97,7 @@ struct Texels {
 /// One number an element: column x, row y and component c are at (y * width + x) * components + c.
 /// A map of a sampler's domain has a number a cell: `cells_observed`, `cells_expected`, `cells_z`.
 /// One sample has z = (observed - expected) / sqrt(expected). Two samples are expected to follow
-/// both together. `cells_z_close` enlarges the heaviest cells; it is 0 where fewer than 5 draws are
-/// expected.
+/// both together.
 struct Map {
   std::string name;    ///< `z`, `p_adjusted`, `mean`, `variance`, `reference`, `other_mean`, …
   std::string source;  ///< The estimator of a mean or variance.
@@ -347,7 +346,7 @@ struct Test {
                message, advice, replay, no_replay)
 };
 
-/// One channel of an estimator for the suite's picture.
+/// One channel of an estimator.
 struct EstimatorChannel {
   std::string name;
   Estimate mean;
@@ -357,7 +356,7 @@ struct EstimatorChannel {
   ASSAY_FIELDS(EstimatorChannel, name, mean, variance, reference, reference_variance)
 };
 
-/// An estimator of a suite with everything drawn from it.
+/// An estimator of a suite as the test saw it that drew most of it; nothing if none drew it.
 struct EstimatorSummary {
   std::string name;
   std::string plugin;
@@ -365,7 +364,6 @@ struct EstimatorSummary {
   std::string bias;      ///< bias class
   std::string original;  ///< of a mutant
   std::string defect;    ///< of a mutant
-  std::string stream;    ///< as in Sample
   std::uint64_t primaries = 0;
   std::uint64_t secondaries = 0;
   double confidence = 0;  ///< of the intervals in channels
@@ -373,8 +371,8 @@ struct EstimatorSummary {
       variance_of;  ///< what `variance` in channels is of: "primary", "secondary", or not said
   std::vector<EstimatorChannel> channels;
   Cost cost;
-  ASSAY_FIELDS(EstimatorSummary, name, plugin, parameters, bias, original, defect, stream,
-               primaries, secondaries, confidence, variance_of, channels, cost)
+  ASSAY_FIELDS(EstimatorSummary, name, plugin, parameters, bias, original, defect, primaries,
+               secondaries, confidence, variance_of, channels, cost)
 };
 
 /// A sentence from elsewhere, and the names of the tests that answer it. The answer is not part of
@@ -414,15 +412,7 @@ struct Suite {
                statements)
 };
 
-/// How much of an estimator a shard draws, at the same place in `Suite::estimators`.
-struct ShardPicture {
-  std::uint64_t position = 0;     ///< Place in the suite's file.
-  bool by_tests = false;          ///< False: drawn for the report's picture alone.
-  std::uint64_t secondaries = 0;  ///< The number asked for.
-  ASSAY_FIELDS(ShardPicture, position, by_tests, secondaries)
-};
-
-/// A test's part in Holm's method over the whole suite, at the same place in `Suite::tests`.
+/// What Holm's method over the whole suite needs of the test at the same place in `Suite::tests`.
 struct ShardTest {
   std::uint64_t position = 0;  ///< Place in the suite's file.
   bool inside = false;         ///< In the family; mutants and expected failures are not.
@@ -446,10 +436,9 @@ struct ShardElsewhere {
 struct ShardSuite {
   std::string digest;       ///< of the suite's file and the data files it names
   std::uint64_t tests = 0;  ///< in the suite's file
-  std::vector<ShardPicture> pictures;
   std::vector<ShardTest> results;
   std::vector<ShardElsewhere> elsewhere;
-  ASSAY_FIELDS(ShardSuite, digest, tests, pictures, results, elsewhere)
+  ASSAY_FIELDS(ShardSuite, digest, tests, results, elsewhere)
 };
 
 /// A run that is one part of several, with all that joining the parts takes.

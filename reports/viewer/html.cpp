@@ -123,8 +123,7 @@ std::string title_of(const Map& map) {
       {"reference", "reference"},
       {"cells_observed", "Draws in each cell"},
       {"cells_expected", "Draws expected"},
-      {"cells_z", "Drawn - expected, in standard deviations"},
-      {"cells_z_close", "Where most is drawn, cell by cell, in standard deviations"}};
+      {"cells_z", "Drawn - expected, in standard deviations"}};
   const auto title = titles.find(map.name);
   return title == titles.end() ? "" : title->second;
 }

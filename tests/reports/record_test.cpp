@@ -55,12 +55,6 @@ TEST(Cost, OfASuiteCountsSharedDrawsAsFarAsTheLongestReaches) {
   suite.tests.resize(2);
   suite.tests[0].samples = {drawn("1", 4, 100), drawn("2", 4, 50)};
   suite.tests[1].samples = {drawn("1", 4, 300), drawn("1", 8, 10)};
-  suite.estimators.resize(1);
-  suite.estimators[0].plugin = "path/plain";
-  suite.estimators[0].stream = "1";
-  suite.estimators[0].primaries = 4;
-  suite.estimators[0].secondaries = 200;
-  suite.estimators[0].cost.samples = 800;
   EXPECT_EQ(total_cost(suite).samples, 4u * 300 + 4u * 50 + 8u * 10);
 }
 

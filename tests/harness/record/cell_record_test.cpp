@@ -105,23 +105,10 @@ TEST(CellRecord, NamesTheShareThatATrianglesCellsAreOf) {
             "u 0 to 1 from top to bottom, v / (1 - u) 0 to 1 from left to right");
 }
 
-/// The angles at which the picture of a narrow lobe begins and ends.
-struct Window {
-  double theta[2];
-  double phi[2];
-};
-Window window_of(const reports::Map& map) {
-  Window w;
-  EXPECT_EQ(std::sscanf(map.source.c_str(), "theta %lf to %lf from top to bottom, phi %lf to %lf",
-                        &w.theta[0], &w.theta[1], &w.phi[0], &w.phi[1]),
-            4);
-  return w;
-}
-
 // The lobe is halved within few cells of the picture, whose sums show nothing of a wrong azimuth.
 TEST(CellRecord, ShowsThePartOfAHalvedCellThatIsFarthestOff) {
   const reports::Test test = tested("distribution(narrow.direction) == density");
-  ASSERT_EQ(test.maps.size(), 4u) << test.message;
+  ASSERT_EQ(test.maps.size(), 3u) << test.message;
   EXPECT_THAT(test.maps[2].source, testing::HasSubstr("farthest off"));
   double of_sums = 0;
   double shown = 0;
@@ -134,60 +121,11 @@ TEST(CellRecord, ShowsThePartOfAHalvedCellThatIsFarthestOff) {
   }
   EXPECT_LT(of_sums, 5);
   EXPECT_GT(shown, of_sums + 3);
-  // The cells of a narrow lobe are shown as large as they are.
-  const reports::Map& grid = test.maps[2];
-  const reports::Map& close = test.maps[3];
-  EXPECT_EQ(close.name, "cells_z_close");
-  EXPECT_EQ(close.width, 64u);
-  EXPECT_EQ(close.height, 64u);
-  const auto [theta, phi] = window_of(close);
-  // The mirrored direction of theta .8 and phi .5, and three roughnesses of .03 to either side.
-  EXPECT_LT(theta[0], .8);
-  EXPECT_GT(theta[1], .8);
-  EXPECT_LT(phi[0], .5 + std::numbers::pi);
-  EXPECT_GT(phi[1], .5 + std::numbers::pi);
-  EXPECT_LT(theta[1] - theta[0], .3);
-  EXPECT_LT(phi[1] - phi[0], .3);
-  // The grid shows the same cells' farthest. Many cells are seen; a wrong azimuth gives some too
-  // many draws and others too few.
-  const auto far = [](const reports::Map& map) {
-    return std::ranges::max(map.texels.values, {}, [](float z) { return std::abs(z); });
-  };
-  EXPECT_EQ(far(close), far(grid));
-  const std::set<float> seen(close.texels.values.begin(), close.texels.values.end());
-  EXPECT_GT(seen.size(), 20u);
-  EXPECT_LT(*seen.begin(), -5);
-  EXPECT_GT(*seen.rbegin(), 5);
 }
 
 // Both samples together give each cell its part, so the expected counts of the first sum to its
 // count. Under the null hypothesis the differences have unit variance. The mean square over 256
 // cells is 1 within five of its standard deviations, sqrt(2 / 256).
-TEST(CellRecord, ShowsALobeAcrossTheStartOfTheAzimuthInOnePiece) {
-  const auto close = [](const std::string& azimuth, const char* draws) {
-    return run_test(
-        "suite: s\nestimators:\n  narrow: {plugin: brdf/ward, alpha_x: 0.03, alpha_y: "
-        "0.06, phi_i: " +
-        azimuth + "}\ntests:\n  - {claim: distribution(narrow.direction) == density, " +
-        "secondaries: " + draws + "}\n");
-  };
-  const reports::Test across = close("3.141592653589793", "20000");
-  ASSERT_EQ(across.maps.size(), 4u);
-  const auto [theta, phi] = window_of(across.maps[3]);
-  EXPECT_LT(phi[0], 2 * std::numbers::pi);
-  EXPECT_GT(phi[1], 2 * std::numbers::pi);
-  EXPECT_LT(phi[1] - phi[0], 1);
-  // A sound sampler has standard normal values here, in some dozens of cells.
-  const auto& z = across.maps[3].texels.values;
-  EXPECT_LT(*std::ranges::max_element(z), 5);
-  EXPECT_GT(*std::ranges::min_element(z), -5);
-  // The usual 1000 draws show most of it; 100 show nothing.
-  const reports::Test few = close("0.5", "1000");
-  ASSERT_EQ(few.maps.size(), 4u);
-  EXPECT_LT(std::ranges::count(few.maps[3].texels.values, 0.f), 64 * 64 / 2);
-  EXPECT_EQ(close("0.5", "100").maps.size(), 3u);
-}
-
 TEST(CellRecord, OfTwoSamplesTheFirstIsHeldAgainstBothTogether) {
   const reports::Test test = tested(
       "distribution(ward.direction) == distribution(ward.direction), test: "

@@ -214,7 +214,6 @@ TEST_F(Refusing, AnEditedRecordIsRefused) {
            [](reports::Record& r) { r.shard->suites[0].results.pop_back(); },
            [](reports::Record& r) { r.shard->suites[0].results[0].log_p.clear(); },
            [](reports::Record& r) { r.shard->suites[0].results[0].weight = 0; },
-           [](reports::Record& r) { r.shard->suites[0].pictures.clear(); },
            [](reports::Record& r) { r.shard->index = 3; },
            [](reports::Record& r) { r.shard->suites[0].results[0].weight = 5; }}) {
     std::vector<ShardFile> shards = shards_;
