@@ -104,7 +104,7 @@ class BranchingTarget final : public Target {
   Form form_;
 };
 
-/// Light transport to a row of receivers inside a sphere, by Embree's rays. Pixel p is the wall
+/// Light transport to a row of receivers inside a sphere, by rays. Pixel p is the wall
 /// between two heights of the unit sphere, one of `width` bands of equal area. Its element is the
 /// mean radiance that leaves the band, Le + a (mean Le) / (1 - mean a) averaged over its area. A
 /// path is that of paths/plain. It starts at a uniform point of the wall (two coordinates). At each

@@ -2,6 +2,7 @@
 
 // The worlds that paths run in, and rough estimates of the radiance that arrives there.
 
+#include <cmath>
 #include <vector>
 
 #include "estimators/cost.h"
@@ -45,7 +46,17 @@ inline render::Vector3 uniform_on_sphere(Stream& random) {
   return render::direction_at(z, random.uniform());
 }
 
-/// By Embree's rays: diffuse directions have the density cos / pi, whatever they hit.
+/// The unit vector where a ray from inside the unit sphere, or from its surface, leaves it: |o + t
+/// d|^2 = 1, d of unit length. From the surface the other root is 0, and saying so is exact.
+inline render::Vector3 exit_of_sphere(const render::Vector3& origin,
+                                      const render::Vector3& direction, bool from_surface) {
+  const double b = dot(origin, direction);
+  const double t = from_surface ? -2 * b : -b + std::sqrt(b * b + 1 - squared_length(origin));
+  // Normalised, so that rounding does not add up along a path.
+  return normalised(origin + t * direction);
+}
+
+/// By rays: diffuse directions have the density cos / pi, whatever they hit.
 class SphereWorld {
  public:
   SphereWorld(const SphereScene& scene, const Camera& camera)
@@ -56,7 +67,7 @@ class SphereWorld {
   Vertex camera(Cost& cost) const {
     ++cost.camera_rays;
     const Camera& camera = zones_.camera();
-    return zones_.vertex(scene_.exit(camera.position, camera.direction, false));
+    return zones_.vertex(exit_of_sphere(camera.position, camera.direction, false));
   }
   /// `Random` gives uniform numbers: a stream, or the coordinates of a Markov chain.
   template <class Random>
@@ -66,7 +77,7 @@ class SphereWorld {
     const double v = random.uniform();
     const render::Vector3 direction =
         render::Frame::about(from.normal).to_world(render::cosine_hemisphere(u, v));
-    return zones_.vertex(scene_.exit(from.position, direction, true));
+    return zones_.vertex(exit_of_sphere(from.position, direction, true));
   }
   /// Zones have no mirrors.
   Vertex mirrored(const Vertex&, Cost&) const { return {}; }
@@ -78,20 +89,19 @@ class SphereWorld {
   }
 
  private:
-  /// Traces one shadow ray to a point uniform on the sphere. The product of the cosines of two
+  /// Counts one shadow ray to a point uniform on the sphere, which is convex: nothing is between.
+  /// The product of the cosines of two
   /// points over their squared distance is 1/4. With the area 4 pi and albedo / pi this leaves
   /// albedo x emission.
   Spectrum sampled_light(const Vertex& v, Stream& random, Cost& cost) const {
     const Vertex light = zones_.vertex(uniform_on_sphere(random));
     if (light.surface->emission == Spectrum{}) return {};
     ++cost.shadow_rays;
-    if (scene_.occluded(v.position, light.position)) return {};
     return v.surface->diffuse * light.surface->emission;
   }
 
   Zones zones_;
   Spectrum mean_emission_;
-  render::SphereScene scene_;
 };
 
 /// Without rays: the next vertex is a uniform point, as the hit of a cosine-distributed ray is.

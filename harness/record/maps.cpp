@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <limits>
 #include <map>
-#include <mutex>
 #include <optional>
 
 #include "estimators/map_file.h"
@@ -21,8 +20,7 @@
 #include "harness/question/question_sources.h"
 #include "harness/run/image_judge.h"
 #include "stats/cells/chi_square_fit.h"
-#include "stats/laws/simultaneous_error.h"
-#include "stats/means/binomial.h"
+#include "stats/tails/kolmogorov.h"
 #include "stats/tails/tails.h"
 
 namespace assay::harness {
@@ -408,18 +406,7 @@ Cells cells_of(const DrawnTest& test) {
 
 constexpr std::size_t curve_parts = 64;
 
-/// Cached: it takes tenths of a second, and tests of one suite ask for the same values.
-double pointwise_error(std::uint64_t n, double confidence) {
-  static std::mutex once;
-  static std::map<std::pair<std::uint64_t, double>, double> known;
-  constexpr std::uint64_t limit_from = 1001;  // the value is constant from there on
-                                              // (simultaneous_error.h)
-  const std::scoped_lock lock(once);
-  const auto [place, added] = known.try_emplace({std::min(n, limit_from), confidence});
-  if (added) place->second = stats::simultaneous_error(n, curve_parts, confidence);
-  return place->second;
-}
-
+/// The band is Kolmogorov's: it leaves the law where its test refutes it.
 reports::EmpiricalLaw empirical_law(const Points& points, double confidence,
                                     const std::optional<DeclaredLaw>& law) {
   reports::EmpiricalLaw drawn{.confidence = confidence};
@@ -427,7 +414,7 @@ reports::EmpiricalLaw empirical_law(const Points& points, double confidence,
   const std::uint64_t n = sorted.size();
   // An error below a double's resolution of 1 has no band.
   if (n < 2 || !(confidence < 1)) return drawn;
-  const double gamma = pointwise_error(n, confidence);
+  const double half_width = stats::kolmogorov_upper_quantile(std::log1p(-confidence), n);
   std::uint64_t before = 0;
   for (std::size_t i = 1; i < curve_parts; ++i) {
     const std::uint64_t rank = i * n / curve_parts;
@@ -436,11 +423,11 @@ reports::EmpiricalLaw empirical_law(const Points& points, double confidence,
     // The end of a group of equal values.
     const auto end = std::ranges::upper_bound(sorted, value);
     before = static_cast<std::uint64_t>(end - sorted.begin());
-    const stats::Interval band = stats::clopper_pearson({before, n}, 1 - gamma);
+    const double observed = static_cast<double>(before) / static_cast<double>(n);
     drawn.points.push_back({.value = value,
-                            .observed = static_cast<double>(before) / static_cast<double>(n),
-                            .low = band.low,
-                            .high = band.high});
+                            .observed = observed,
+                            .low = std::max(0.0, observed - half_width),
+                            .high = std::min(1.0, observed + half_width)});
     if (law) drawn.points.back().law = law->law.cdf(value);
   }
   return drawn;

@@ -13,7 +13,6 @@
 #include "stats/images/image_moments.h"
 #include "stats/laws/kolmogorov_smirnov.h"
 #include "stats/laws/quantile_test.h"
-#include "stats/laws/simultaneous_error.h"
 #include "stats/means/binomial.h"
 #include "stats/means/constant_sample.h"
 #include "stats/means/power_exact.h"
@@ -145,9 +144,6 @@ TEST(Refusals, OfLaws) {
   REFUSED(ks_distance(good, Probabilities{Values{.5}}));
   REFUSED(ks_distance(good, Probabilities{Values{.5, 1.5}}));
   REFUSED(ks_margin(distance, 1));
-  REFUSED(simultaneous_error(0, 10, .9));
-  REFUSED(simultaneous_error(10, 1, .9));
-  REFUSED(simultaneous_error(10, 10, 1));
   REFUSED(quantile_test({0, 0, 0}, .5));
   REFUSED(quantile_test({5, 4, 9}, .5));
   REFUSED(quantile_test({5, 10, 9}, .5));

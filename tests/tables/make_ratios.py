@@ -206,56 +206,6 @@ def ledger_p_rows():
         yield [count, total, np.log(sum(parts)) + log(top)]
 
 
-def leaving(start, steps, low, high):
-    """Probability that a chain with transition matrices `steps` leaves [low, high]."""
-    p = np.array(start, dtype=float)
-    for step, a, b in zip(steps, low, high):
-        p = p @ step
-        keep = (np.arange(len(p)) >= a) & (np.arange(len(p)) <= b)
-        p = np.where(keep, p, 0)
-    return 1 - p.sum()
-
-
-def band_chain(n, points):
-    z = np.arange(1, points) / points
-    before = np.concatenate([[0], z[:-1]])
-    x = np.arange(n + 1)
-    steps = [stats.binom.pmf(x[None, :] - x[:, None], (n - x)[:, None], (b - a) / (1 - a))
-             for a, b in zip(before, z)]
-    return [stats.binom(n, v) for v in z], steps, n
-
-
-def band_limits(laws, gamma, largest):
-    x = np.arange(largest + 1)
-    low, high = [], []
-    for law in laws:
-        inside = x[(law.cdf(x) > gamma / 2) & (law.sf(x - 1) > gamma / 2)]
-        low.append(inside[0])
-        high.append(inside[-1])
-    return low, high
-
-
-def band_rows():
-    """Transition matrices and every step of gamma."""
-    for case, arguments in enumerate(((20, 10), (100, 100))):
-        laws, steps, largest = band_chain(*arguments)
-        start = [1.0] + [0.0] * largest
-        x = np.arange(largest + 1)
-        tails = np.concatenate([np.minimum(law.cdf(x), law.sf(x - 1)) for law in laws])
-        # The band loses a count when gamma / 2 reaches its tail: the steps of the coverage.
-        gammas = np.unique(2 * tails[(tails < 0.04) & (tails > 1e-6)])
-        low, high = 0, len(gammas) - 1
-        lost = lambda g: leaving(start, steps, *band_limits(laws, g, largest))
-        for confidence in (0.95, 0.99):
-            low, high = 0, len(gammas) - 1
-            while high - low > 1:
-                middle = (low + high) // 2
-                inside = gammas[middle] * (1 + 1e-9)
-                low, high = (middle, high) if lost(inside) <= 1 - confidence else (low, middle)
-            # Every gamma below the next step has the same band.
-            yield [case, confidence, gammas[low], gammas[high], 1 - lost(gammas[low] * (1 + 1e-9))]
-
-
 if __name__ == "__main__":
     names = ("variance", "variances", "efficiency", "biased", "efficiencies", "costs")
     write("influence", "k,n,ln_variance,ln_product,ln_biased,"
@@ -264,4 +214,3 @@ if __name__ == "__main__":
     write("quantile", "k,n,m,q,lower,upper,low,high,compare_lower,compare_upper", quantile_rows())
     write("ledger", "k,nights,u,log_e,night,change,share_2", ledger_rows())
     write("ledger_p", "nights,minus_log_p,log_e", ledger_p_rows())
-    write("band", "case,confidence,step,next_step,coverage", band_rows())

@@ -118,8 +118,7 @@ TEST(MeshWorld, MirrorsKeepTheAngle) {
   EXPECT_NEAR(length(cross(next.arriving, v.normal)), length(cross(v.arriving, v.normal)), 1e-15);
 }
 
-TEST(SphereScene, HitsAreOnTheSphereToDoublePrecisionAlongTheRay) {
-  const render::SphereScene sphere;
+TEST(SphereWorld, HitsAreOnTheSphereToDoublePrecisionAlongTheRay) {
   Stream random({1}, 0);
   Vector3 from = {0.3, -0.2, 0.5};
   bool on_surface = false;
@@ -129,22 +128,12 @@ TEST(SphereScene, HitsAreOnTheSphereToDoublePrecisionAlongTheRay) {
     const double v = random.uniform();
     const Vector3 direction =
         render::Frame::about(inward).to_world(render::cosine_hemisphere(u, v));
-    const Vector3 to = sphere.exit(from, direction, on_surface);
+    const Vector3 to = exit_of_sphere(from, direction, on_surface);
     ASSERT_NEAR(length(to), 1, 4e-16);
     ASSERT_LT(length(cross(to - from, direction)), 1e-15);
     ASSERT_GE(dot(to - from, direction), 0);
     from = to;
     on_surface = true;
-  }
-}
-
-TEST(SphereScene, NothingStandsBetweenTwoOfItsPoints) {
-  const render::SphereScene sphere;
-  Stream random({1}, 0);
-  for (int i = 0; i < 10'000; ++i) {
-    const Vector3 a = uniform_on_sphere(random);
-    const Vector3 b = uniform_on_sphere(random);
-    ASSERT_FALSE(sphere.occluded(a, b));
   }
 }
 

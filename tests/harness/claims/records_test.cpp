@@ -167,6 +167,8 @@ TEST(EmpiricalLaws, AreInTheRecordOfEveryTestOfValues) {
     EXPECT_GE(point.high, *point.law);
     EXPECT_NEAR(*point.law, std::erfc((2 - point.value) / std::sqrt(2)) / 2, 1e-12);
   }
+  // There scipy.stats.kstwo.sf(…, 500) is 1e-4.
+  EXPECT_NEAR(law.points[31].high - law.points[31].observed, 0.0990963115043131, 1e-12);
   const reports::Test two = tested(
       "{claim: distribution(ward.direction.theta) == distribution(redrawn.direction.theta), "
       "secondaries: 500}");

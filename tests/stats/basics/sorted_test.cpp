@@ -11,7 +11,7 @@ void expect_sorted(const std::vector<double>& values) {
   EXPECT_EQ(sorted(values), expected) << values.size();
 }
 
-// On both sides of the size from which digits are sorted by.
+// On both sides of a size from which digits are sorted by.
 TEST(Sorted, AreTheValuesInTheirOrder) {
   Philox random(990);
   for (const std::size_t size : {0u, 1u, 2u, 511u, 512u, 513u, 5000u}) {
