@@ -548,8 +548,9 @@ namespace {
 /// The shortest decimal whose hundredth, correctly rounded, is `value`.
 std::string percent_text(double value) {
   for (int digits = 1; digits <= 17; ++digits) {
-    const std::string text = fmt::format("{:.{}g}", 100 * value, digits);
-    if (parse_margin(text + "%", {}, "").value == value) return fmt::format("{}", std::stod(text));
+    const std::string text =
+        fmt::format("{}", std::stod(fmt::format("{:.{}g}", 100 * value, digits)));
+    if (parse_margin(text + "%", {}, "").value == value) return text;
   }
   // 100 * value would be rounded: move the point in the text instead.
   const std::string text = fmt::format("{:.16e}", value);
