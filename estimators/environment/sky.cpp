@@ -69,7 +69,7 @@ std::shared_ptr<const Setup> rgb_setup(std::vector<Channel> channels, const Prim
 /// map, normal, position, occluders.
 std::vector<ParameterInformation> parameters() {
   return sky::with_receiver(text_parameter(
-      "map", "the sky: an OpenEXR picture, latitude-longitude, +z the first row's pole"));
+      "map", "the sky: a picture, latitude-longitude, +z the first row's pole"));
 }
 
 render::EnvironmentMap read_map(Parameters& parameters) {

@@ -2,11 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
+#include <sstream>
 #include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "estimators/picture_file.h"
+#include "render/picture_kinds.h"
 #include "render/quadrature.h"
 
 namespace assay::render {
@@ -166,6 +171,40 @@ CosineMoments cosine_moments(const Patch& patch, const Vector3& normal) {
   if (height <= radius) return crossed(patch, normal);
   const Pair exact = whole_patch(patch, normal);
   return {.first = exact[0], .second = exact[1]};
+}
+
+EnvironmentMap read_environment(const std::string& file) {
+  const std::unique_ptr<const PictureFile> picture = open_picture(file);
+  const auto has = [&](const char* name) {
+    return std::ranges::count(picture->channels(), name, &FileChannel::name) > 0;
+  };
+  std::vector<std::string> names{"Y"};
+  if (has("R") && has("G") && has("B")) names = {"R", "G", "B"};
+  if (names.size() == 1 && !has("Y")) {
+    std::string found;
+    for (const FileChannel& each : picture->channels()) {
+      found += (found.empty() ? "" : ", ") + each.name;
+    }
+    refuse_picture(file, "the picture needs the channels R, G and B, or Y; it has " + found);
+  }
+  const PictureWindow window = picture->window(names);
+  if (window != picture->canvas()) {
+    refuse_picture(file, "the picture is cropped: its data window must be its display window");
+  }
+  std::vector<float> read(window.width * window.height * names.size());
+  picture->read(names, read);
+  std::vector<Rgb> texels(window.width * window.height);
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      texels[i][c] = read[i * names.size() + std::min(c, names.size() - 1)];
+      if (std::isfinite(texels[i][c]) && texels[i][c] >= 0) continue;
+      std::ostringstream why;
+      why << "the texel in row " << i / window.width << ", column " << i % window.width << " is "
+          << texels[i][c] << "; radiance must be finite and not negative";
+      refuse_picture(file, why.str());
+    }
+  }
+  return {{window.width, window.height}, std::move(texels)};
 }
 
 }  // namespace assay::render

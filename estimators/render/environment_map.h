@@ -54,10 +54,9 @@ class EnvironmentMap {
   std::vector<Rgb> texels_;
 };
 
-/// Reads an OpenEXR picture with the channels R, G and B, or Y for grey, of any pixel type.
-/// InputError at `file`, without a line, if it is missing, no EXR file, truncated or without these
-/// channels. The same if it is sub-sampled, cropped (data window not the display window) or of more
-/// than 2^27 texels. The same for a texel that is negative or not finite.
+/// Reads a picture with the channels R, G and B, or Y for grey (open_picture). InputError at
+/// `file`, without a line, if it is cropped (data window not the display window), or has not these
+/// channels or a texel that is negative or not finite.
 EnvironmentMap read_environment(const std::string& file);
 
 /// Integrals of max(0, n . w)^k over a patch, k = 1 and 2.

@@ -16,11 +16,6 @@ constexpr std::size_t most_pixels = std::size_t{1} << 27;
 /// Refuses a picture without pixels or with more than `most_pixels`.
 void require_size(const std::string& file, std::size_t width, std::size_t height);
 
-/// InputError at the file if OpenEXR's core finds a fault in the headers. The core holds every
-/// attribute against the file's size. Call it before a class of the library opens the file: such a
-/// class allocates the size that an attribute states before it reads it.
-void require_sound_headers(const std::string& file);
-
 /// sRGB's curve, from code to linear light, both in [0, 1] (IEC 61966-2-1).
 double from_srgb(double code);
 

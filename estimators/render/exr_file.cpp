@@ -99,6 +99,23 @@ auto in_our_words(const std::string& file, const Work& work) {
   }
 }
 
+/// InputError at the file if OpenEXR's core finds a fault in the headers. The core holds every
+/// attribute against the file's size. The library's classes would allocate the size that an
+/// attribute states before they read it.
+void require_sound_headers(const std::string& file) {
+  std::string trouble;
+  exr_context_initializer_t settings = EXR_DEFAULT_CONTEXT_INITIALIZER;
+  settings.user_data = &trouble;
+  settings.error_handler_fn = keep_message;
+  exr_context_t context = nullptr;
+  const exr_result_t result = exr_start_read(&context, file.c_str(), &settings);
+  if (result == EXR_ERR_SUCCESS) exr_finish(&context);
+  if (trouble.empty() && result == EXR_ERR_SUCCESS) return;
+  if (trouble.empty()) trouble = exr_get_default_error_message(result);
+  throw InputError({.file = file},
+                   "it cannot be read as OpenEXR, damaged or cut short: " + trouble);
+}
+
 class ExrFile final : public PictureFile {
  public:
   explicit ExrFile(const std::string& file) : PictureFile(file) {
@@ -180,20 +197,6 @@ void ExrFile::read_rows(std::span<const std::string> names, std::span<float> tex
 }
 
 }  // namespace
-
-void require_sound_headers(const std::string& file) {
-  std::string trouble;
-  exr_context_initializer_t settings = EXR_DEFAULT_CONTEXT_INITIALIZER;
-  settings.user_data = &trouble;
-  settings.error_handler_fn = keep_message;
-  exr_context_t context = nullptr;
-  const exr_result_t result = exr_start_read(&context, file.c_str(), &settings);
-  if (result == EXR_ERR_SUCCESS) exr_finish(&context);
-  if (trouble.empty() && result == EXR_ERR_SUCCESS) return;
-  if (trouble.empty()) trouble = exr_get_default_error_message(result);
-  throw InputError({.file = file},
-                   "it cannot be read as OpenEXR, damaged or cut short: " + trouble);
-}
 
 std::unique_ptr<const PictureFile> open_exr(const std::string& file) {
   return std::make_unique<ExrFile>(file);
