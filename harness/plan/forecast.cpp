@@ -164,32 +164,6 @@ std::optional<PlannedChannel> expected_channel(const TestOutcome& test, std::siz
   return question.theta->observed({question, channel, *data}, regions);
 }
 
-/// The least margin that a claim of that size proves with probability 1 - beta if theta is 0, by
-/// bisection to a thousandth. Returns nullopt if no formula tells, or none is.
-std::optional<double> margin_shown(const Sized& sized) {
-  constexpr double farthest = 0x1p100;
-  PlannedChannel channel = sized.channel;
-  const auto shows = [&](double margin) {
-    channel.regions.detect = margin;
-    const auto power = sized.test.question.theta->power({sized.test, sized.size, channel}, 0);
-    return power.value_or(0) >= 1 - sized.size.share.beta;
-  };
-  double above = *channel.regions.detect;
-  if (!(above > 0)) return std::nullopt;
-  constexpr double factor = 2;
-  while (above > 1 / farthest && shows(above / factor)) above /= factor;
-  while (!shows(above)) {
-    if (above > farthest) return std::nullopt;
-    above *= factor;
-  }
-  double below = above / factor;
-  while (above > below * 1.001) {
-    const double middle = std::sqrt(below * above);
-    (shows(middle) ? above : below) = middle;
-  }
-  return above;
-}
-
 std::optional<double> detectable_of(const TestOutcome& test, const Pilots& pilots) {
   const TestSize size{.share = test.share_at(test.plan.looks.count() - 1),
                       .secondaries = test.plan.most_secondaries()};
@@ -197,8 +171,7 @@ std::optional<double> detectable_of(const TestOutcome& test, const Pilots& pilot
   for (std::size_t channel = 0; channel < test.question.channel_count(); ++channel) {
     const auto planned = expected_channel(test, channel, pilots, size.secondaries);
     if (!planned) return std::nullopt;
-    const Sized sized{test, size, *planned};
-    const auto found = planned->regions.within() ? margin_shown(sized) : detectable_effect(sized);
+    const auto found = detectable_effect({test, size, *planned});
     if (found) largest = std::max(*found, largest.value_or(0));
   }
   return largest;

@@ -97,7 +97,6 @@ stats::ErrorRates Sized::rates() const { return planned_rates(size.share, channe
 stats::SampleSizes Sized::sizes() const { return sizes_of(test.question, size.secondaries); }
 
 std::optional<double> detectable_effect(const Sized& sized) {
-  if (sized.channel.regions.within()) return std::nullopt;  // it finds nothing
   const std::optional<double> found = sized.test.question.theta->detectable(sized);
   return found && std::isfinite(*found) ? found : std::nullopt;
 }

@@ -83,8 +83,8 @@ std::optional<std::uint64_t> most_over_channels(const Question& question,
 std::optional<std::uint64_t> most_of_channels(const Question& question,
                                               const SizeOfChannel& of_channel);
 
-/// The least theta that a test of that size finds with probability 1 - beta. Nullopt if no formula
-/// tells, and `within`.
+/// The least theta that a test of that size finds with probability 1 - beta. For `within` it is the
+/// least margin that the test proves if theta is 0. Returns nullopt if no formula tells.
 std::optional<double> detectable_effect(const Sized& sized);
 
 }  // namespace assay::harness

@@ -89,9 +89,9 @@ void note_sizes(TestOutcome& outcome, const DrawnTest& test) {
       }
     }
     const Sized sized{outcome, full_size(outcome), observed};
-    channel.detectable = detectable_effect(sized);
-    channel.finds_nothing = !channel.detectable && theta.finds_nothing(sized);
     const bool equivalence = channel.regions.within();
+    if (!equivalence) channel.detectable = detectable_effect(sized);
+    channel.finds_nothing = !channel.detectable && theta.finds_nothing(sized);
     if (!equivalence && !channel.regions.detect) continue;
     const auto power = theta.power(sized, equivalence ? 0 : *channel.regions.detect);
     if (power) outcome.power = std::min(*power, outcome.power.value_or(1));

@@ -143,7 +143,8 @@ class Theta {
   virtual PlannedChannel observed(const Seen&, const Regions& regions) const {
     return {.regions = regions};
   }
-  /// The least theta that a test of that size finds with probability 1 - beta.
+  /// The least theta that a test of that size finds with probability 1 - beta. For `within` it is
+  /// the least margin that the test proves if theta is 0.
   virtual std::optional<double> detectable(const Sized&) const { return std::nullopt; }
   /// True if no theta in the declared range is found with probability 1 - beta.
   virtual bool finds_nothing(const Sized&) const { return false; }
