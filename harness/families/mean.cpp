@@ -416,18 +416,6 @@ std::optional<std::uint64_t> for_means(const Question& question, const stats::Er
   return stats::student_t_sample_size(mean_plan(rates, channel), detect);
 }
 
-/// Both one-sided tests at beta must reject when theta = 0, each missing with beta / 2.
-std::uint64_t for_equivalence(const ErrorShare& share, const PlannedChannel& channel) {
-  const double deviation = std::hypot(channel.standard_deviation, channel.other_deviation);
-  const double z = stats::normal_quantile({stats::Tail::upper, std::log(share.beta)}) +
-                   stats::normal_quantile({stats::Tail::upper, std::log(share.beta / 2)});
-  const double wanted = *channel.regions.detect * channel.unit / z;  // standard error of the mean
-  const double left = wanted * wanted - channel.reference_error * channel.reference_error;
-  if (!(left > 0)) return impossible_secondaries;
-  const double count = std::ceil(deviation * deviation / left) + 2;
-  return whole_secondaries(count);
-}
-
 // ---- Exact methods
 
 // Barnard's maximum over the nuisance probability costs at most this (stats/means/binomial.h).
@@ -888,8 +876,6 @@ class MeanTheta : public Theta {
     if (test.plan.method.is.plans) {
       count = (regions.within() ? exact_equivalence_secondaries : exact_secondaries)(test, *channel,
                                                                                      rates);
-    } else if (regions.within()) {
-      count = for_equivalence(share, *channel);
     } else {
       count = for_means(test.question, rates, *channel);
     }
