@@ -766,13 +766,14 @@ class MeanTheta : public Theta {
     const stats::ErrorRates rates = sized.rates();
     const stats::SampleSizes sizes = sized.sizes();
     const PlannedChannel& channel = sized.channel;
-    if (channel.regions.within()) return equivalence_power(sizes, sized.size.share, channel);
-    if (both_spread(sized.test.question, channel)) {
-      return stats::welch_power(means_plan(rates, channel, sizes.y / sizes.x), sizes.x,
-                                effect * channel.unit);
-    }
-    return stats::student_t_power(mean_plan(rates, channel), size_of_the_spread(sizes, channel),
-                                  effect * channel.unit);
+    const bool within = channel.regions.within();
+    const double theta = (within ? *channel.regions.detect : effect) * channel.unit;
+    const double one_margin =
+        both_spread(sized.test.question, channel)
+            ? stats::welch_power(means_plan(rates, channel, sizes.y / sizes.x), sizes.x, theta)
+            : stats::student_t_power(mean_plan(rates, channel), size_of_the_spread(sizes, channel),
+                                     theta);
+    return within ? std::max(0.0, 2 * one_margin - 1) : one_margin;
   }
 
   std::optional<ConstantVerdict> settled(const Seen& seen, const Regions& regions) const override {
@@ -881,22 +882,6 @@ class MeanTheta : public Theta {
     }
     const std::uint64_t most = channel->unseen ? most_for_the_unseen : impossible_secondaries;
     return std::min(count.value_or(impossible_secondaries), most);
-  }
-
-  /// The probability of showing `within` where theta is 0.
-  static double equivalence_power(const stats::SampleSizes& sizes, const ErrorShare& share,
-                                  const PlannedChannel& channel) {
-    // Two samples count as one of the smaller size with as uncertain a mean. The reference's error
-    // does not shrink with n: as a deviation of the observations it grows.
-    const double n = std::min(sizes.x, sizes.y);
-    const double spread = std::hypot(channel.standard_deviation * std::sqrt(n / sizes.x),
-                                     channel.other_deviation * std::sqrt(n / sizes.y),
-                                     channel.reference_error * std::sqrt(n));
-    return stats::equivalence_power({.standard_deviation = spread,
-                                     .margin = *channel.regions.detect * channel.unit,
-                                     .alpha = share.beta,
-                                     .beta = share.beta},
-                                    n, 0);
   }
 
   /// The least effect on one side; nullopt if the range ends before.

@@ -1,11 +1,8 @@
 #include <algorithm>
-#include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <cmath>
-#include <numbers>
 
 #include "stats/planning/planning.h"
 #include "stats/planning/power.h"
-#include "stats/tails/special.h"
 
 namespace assay::stats {
 namespace {
@@ -195,39 +192,6 @@ std::optional<std::uint64_t> welch_sample_size(const TwoMeansPlan& plan, double 
   };
   const double minimum = std::max(2.0, std::ceil(2 / plan.allocation));
   return planning::smallest_sample(enough, guess, minimum);
-}
-
-// With nu s^2 ~ chi-square(nu) and se = sigma / sqrt(n) the power is
-//   int_0^{s_max} [Phi((margin - effect) / se - t s) - Phi(-(margin + effect) / se + t s)] f(s) ds.
-// Beyond s_max = margin / (t se) the acceptance region of the mean is empty. The difference of two
-// noncentral t tails goes negative instead.
-double equivalence_power(const EquivalencePlan& plan, double n, double effect) {
-  planning::check_rates("equivalence_power", {plan.alpha, plan.beta, false});
-  check::positive({"equivalence_power", "standard_deviation"}, plan.standard_deviation);
-  check::positive({"equivalence_power", "margin"}, plan.margin);
-  check::finite({"equivalence_power", "effect"}, effect);
-  check_size("equivalence_power", n);
-  const double degrees = n - 1;
-  const double half = degrees / 2;
-  const double se = plan.standard_deviation / std::sqrt(n);
-  const double t = student_t_quantile({Tail::upper, std::log(plan.alpha)}, degrees);
-  const auto integrand = [&](double s) {
-    if (s <= 0) return 0.0;
-    const double density = 2 * std::exp(special::log_gamma_prefix(half, half * s * s)) / s;
-    const double high = (plan.margin - effect) / se - t * s;
-    const double low = -(plan.margin + effect) / se + t * s;
-    return density *
-           (std::erfc(low / std::numbers::sqrt2) - std::erfc(high / std::numbers::sqrt2)) / 2;
-  };
-  const double log_outside = std::log(1e-18);
-  const double first =
-      std::sqrt(chi_square_quantile({Tail::lower, log_outside}, degrees) / degrees);
-  const double most = std::sqrt(chi_square_quantile({Tail::upper, log_outside}, degrees) / degrees);
-  const double last = std::min(plan.margin / (t * se), most);
-  if (!(last > first)) return 0;
-  return std::clamp(boost::math::quadrature::gauss_kronrod<double, 31>::integrate(integrand, first,
-                                                                                  last, 12, 1e-12),
-                    0.0, 1.0);
 }
 
 }  // namespace assay::stats

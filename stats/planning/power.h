@@ -53,18 +53,6 @@ double welch_power(const TwoMeansPlan& plan, double n_x, double effect);
 double welch_detectable(const TwoMeansPlan& plan, double n_x);
 std::optional<std::uint64_t> welch_sample_size(const TwoMeansPlan& plan, double detect);
 
-// ---- Two one-sided tests of a mean.
-// The power is P(pass) when theta = effect, exact (Owen 1965; Phillips 1990). It integrates the
-// normal probability of the acceptance region over the chi law of s. The margin is symmetric about
-// 0.
-struct EquivalencePlan {
-  double standard_deviation = 1;
-  double margin = 0;
-  double alpha = 0.01;  // Level of each one-sided test.
-  double beta = 0.01;
-};
-double equivalence_power(const EquivalencePlan& plan, double n, double effect);
-
 // How many observations each of two samples has.
 struct SampleSizes {
   double x = 2;
