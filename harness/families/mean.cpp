@@ -28,7 +28,6 @@
 #include "stats/means/student_t.h"
 #include "stats/means/uncertain_reference.h"
 #include "stats/planning/power.h"
-#include "stats/tails/tails.h"
 
 namespace assay::harness {
 namespace {
@@ -381,41 +380,6 @@ std::shared_ptr<const stats::ValueCells> planned_law(const PlannedChannel& plann
   return law;
 }
 
-/// True if both samples of a comparison spread; else it is planned as one mean against a number.
-bool both_spread(const Question& question, const PlannedChannel& channel) {
-  return question.of_two() && channel.standard_deviation > 0 && channel.other_deviation > 0;
-}
-
-/// Size of the sample that has a spread; of the first if both have.
-double size_of_the_spread(const stats::SampleSizes& sizes, const PlannedChannel& channel) {
-  return channel.standard_deviation > 0 ? sizes.x : sizes.y;
-}
-
-stats::MeanPlan mean_plan(const stats::ErrorRates& rates, const PlannedChannel& channel) {
-  return {.standard_deviation = std::hypot(channel.standard_deviation, channel.other_deviation),
-          .allow = channel.regions.allow * channel.unit,
-          .reference_standard_error = channel.reference_error,
-          .rates = rates};
-}
-
-stats::TwoMeansPlan means_plan(const stats::ErrorRates& rates, const PlannedChannel& channel,
-                               double allocation = 1) {
-  return {.standard_deviation_x = channel.standard_deviation,
-          .standard_deviation_y = channel.other_deviation,
-          .allocation = allocation,
-          .allow = channel.regions.allow * channel.unit,
-          .rates = rates};
-}
-
-std::optional<std::uint64_t> for_means(const Question& question, const stats::ErrorRates& rates,
-                                       const PlannedChannel& channel) {
-  const double detect = *channel.regions.detect * channel.unit;
-  if (both_spread(question, channel)) {
-    return stats::welch_sample_size(means_plan(rates, channel), detect);
-  }
-  return stats::student_t_sample_size(mean_plan(rates, channel), detect);
-}
-
 // ---- Exact methods
 
 // Barnard's maximum over the nuisance probability costs at most this (stats/means/binomial.h).
@@ -464,9 +428,8 @@ std::optional<std::uint64_t> exact_secondaries(const TestOutcome& test,
   const stats::ExactPlanning& plans = *test.plan.method.is.plans;
   const double detect = channel.regions.detect.value_or(0) * channel.unit;
   if (test.question.of_two()) {
-    const auto welch = stats::welch_sample_size(means_plan(rates, channel), detect);
-    if (!welch) return std::nullopt;
-    return static_cast<std::uint64_t>(std::ceil(two_sample_cost * static_cast<double>(*welch)));
+    const std::uint64_t welch = secondaries_by_t(test.plan.method, rates, channel);
+    return whole_secondaries(two_sample_cost * static_cast<double>(welch));
   }
   std::uint64_t most = 0;
   for (const int side : sides_of(channel.regions)) {
@@ -743,16 +706,7 @@ class MeanTheta : public Theta {
   }
 
   std::optional<double> detectable(const Sized& sized) const override {
-    if (sized.test.plan.method.is.exact) return exact_detectable(sized);
-    const stats::ErrorRates rates = sized.rates();
-    const stats::SampleSizes sizes = sized.sizes();
-    const PlannedChannel& channel = sized.channel;
-    const double found =
-        both_spread(sized.test.question, channel)
-            ? stats::welch_detectable(means_plan(rates, channel, sizes.y / sizes.x), sizes.x)
-            : stats::student_t_detectable(mean_plan(rates, channel),
-                                          size_of_the_spread(sizes, channel));
-    return found / channel.unit;
+    return sized.test.plan.method.is.exact ? exact_detectable(sized) : Theta::detectable(sized);
   }
 
   bool finds_nothing(const Sized& sized) const override {
@@ -762,18 +716,8 @@ class MeanTheta : public Theta {
   }
 
   std::optional<double> power(const Sized& sized, double effect) const override {
-    if (sized.test.plan.method.is.exact) return exact_power(sized, effect);
-    const stats::ErrorRates rates = sized.rates();
-    const stats::SampleSizes sizes = sized.sizes();
-    const PlannedChannel& channel = sized.channel;
-    const bool within = channel.regions.within();
-    const double theta = (within ? *channel.regions.detect : effect) * channel.unit;
-    const double one_margin =
-        both_spread(sized.test.question, channel)
-            ? stats::welch_power(means_plan(rates, channel, sizes.y / sizes.x), sizes.x, theta)
-            : stats::student_t_power(mean_plan(rates, channel), size_of_the_spread(sizes, channel),
-                                     theta);
-    return within ? std::max(0.0, 2 * one_margin - 1) : one_margin;
+    return sized.test.plan.method.is.exact ? exact_power(sized, effect)
+                                           : Theta::power(sized, effect);
   }
 
   std::optional<ConstantVerdict> settled(const Seen& seen, const Regions& regions) const override {
@@ -873,13 +817,9 @@ class MeanTheta : public Theta {
     const std::optional<PlannedChannel> channel = from_pilots(test, index, pilots);
     if (!channel || !regions.detect) return std::nullopt;
     const stats::ErrorRates rates = planned_rates(share, regions);
-    std::optional<std::uint64_t> count;
-    if (test.plan.method.is.plans) {
-      count = (regions.within() ? exact_equivalence_secondaries : exact_secondaries)(test, *channel,
-                                                                                     rates);
-    } else {
-      count = for_means(test.question, rates, *channel);
-    }
+    if (!test.plan.method.is.plans) return secondaries_by_t(test.plan.method, rates, *channel);
+    const auto count = (regions.within() ? exact_equivalence_secondaries : exact_secondaries)(
+        test, *channel, rates);
     const std::uint64_t most = channel->unseen ? most_for_the_unseen : impossible_secondaries;
     return std::min(count.value_or(impossible_secondaries), most);
   }

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numbers>
 #include <span>
 #include <stdexcept>
 #include <utility>
@@ -27,7 +26,6 @@
 #include "stats/means/skewness_corrected_t.h"
 #include "stats/means/student_t.h"
 #include "stats/means/uncertain_reference.h"
-#include "stats/planning/power.h"
 #include "stats/variances/influence.h"
 #include "stats/variances/normal_variances.h"
 
@@ -116,37 +114,6 @@ TestResult over_truths(const LogRatio& ratio, TestResult as_known, double theta)
 
 // ---- Plans
 
-bool varies(const PlannedChannel& channel) {
-  return channel.standard_deviation > 0 || channel.other_deviation > 0;
-}
-
-/// Chi-square and F take flatter data for normal ones and find as little as in those.
-double deviation_for(const Method& method, double deviation) {
-  return method.is.of_normal_values && deviation > 0 ? std::max(std::numbers::sqrt2, deviation)
-                                                     : deviation;
-}
-
-/// One mean as uncertain as theta, of as many observations as the smaller side.
-struct PlannedMean {
-  stats::MeanPlan plan;
-  double count;
-};
-
-PlannedMean mean_plan(const Method& method, const stats::ErrorRates& rates,
-                      const PlannedChannel& channel, const stats::SampleSizes& sizes) {
-  const double n = std::min(sizes.x, sizes.y);
-  const double x = deviation_for(method, channel.standard_deviation) * std::sqrt(n / sizes.x);
-  const double y = deviation_for(method, channel.other_deviation) * std::sqrt(n / sizes.y);
-  return {.plan = {.standard_deviation = std::hypot(x, y),
-                   .allow = channel.regions.allow,
-                   .rates = rates},
-          .count = n};
-}
-
-PlannedMean mean_plan(const Sized& sized) {
-  return mean_plan(sized.test.plan.method, sized.rates(), sized.channel, sized.sizes());
-}
-
 /// The variance of one observation's influence values of a variance, over its square. It is 2 for a
 /// normal law. A mean's excess kurtosis falls like 1 / its size.
 double averaged_spread(double of_one, double averaged) { return 2 + (of_one - 2) / averaged; }
@@ -192,10 +159,7 @@ class LogTheta : public Theta {
       const Regions& regions = test.plan.regions[i];
       const auto channel = from_pilots(test, i, regions, pilots);
       if (!channel || !regions.detect) return std::nullopt;
-      const stats::ErrorRates rates = planned_rates(share, regions);
-      const PlannedMean mean = mean_plan(test.plan.method, rates, *channel, {});
-      return stats::student_t_sample_size(mean.plan, *regions.detect)
-          .value_or(impossible_secondaries);
+      return secondaries_by_t(test.plan.method, planned_rates(share, regions), *channel);
     });
   }
 
@@ -214,21 +178,6 @@ class LogTheta : public Theta {
       deviation = std::sqrt(spread(seen, i).value_or(0) + spread_of_truth(seen, i));
     }
     return observed;
-  }
-
-  std::optional<double> detectable(const Sized& sized) const override {
-    if (!varies(sized.channel)) return std::nullopt;
-    const PlannedMean mean = mean_plan(sized);
-    return stats::student_t_detectable(mean.plan, mean.count);
-  }
-
-  std::optional<double> power(const Sized& sized, double effect) const override {
-    const Regions& regions = sized.channel.regions;
-    if (!varies(sized.channel)) return std::nullopt;
-    const PlannedMean mean = mean_plan(sized);
-    const double one_margin =
-        stats::student_t_power(mean.plan, mean.count, regions.within() ? *regions.detect : effect);
-    return regions.within() ? std::max(0.0, 2 * one_margin - 1) : one_margin;
   }
 
   std::string lack_of_numbers(const TestOutcome& test, const Seen& seen) const override {
@@ -338,7 +287,7 @@ class LogTheta : public Theta {
       if (!spread) return std::nullopt;
       (i == 0 ? planned.standard_deviation : planned.other_deviation) = std::sqrt(*spread);
     }
-    if (!varies(planned)) return std::nullopt;
+    if (!planned.varies()) return std::nullopt;
     return planned;
   }
 };

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "harness/plan/sizes.h"
 #include "harness/question/question_sources.h"
 #include "harness/run/evaluate.h"
@@ -78,6 +80,20 @@ std::string Theta::why_impossible(const Question& question) const {
              ? "no number of observations would decide this claim: the reference's own standard "
                "error is too large for the margin; give a larger margin or a better reference"
              : "this claim would take more observations than can be counted; give a larger margin";
+}
+
+std::optional<double> Theta::detectable(const Sized& sized) const {
+  if (!sized.channel.varies()) return std::nullopt;
+  return stats::student_t_detectable(mean_plan(sized), sized.sizes().x) / sized.channel.unit;
+}
+
+std::optional<double> Theta::power(const Sized& sized, double effect) const {
+  const PlannedChannel& channel = sized.channel;
+  if (!channel.varies()) return std::nullopt;
+  const bool within = channel.regions.within();
+  const double theta = (within ? *channel.regions.detect : effect) * channel.unit;
+  const double one_margin = stats::student_t_power(mean_plan(sized), sized.sizes().x, theta);
+  return within ? std::max(0.0, 2 * one_margin - 1) : one_margin;
 }
 
 std::string Theta::lack_of_numbers(const TestOutcome&, const Seen& seen) const {

@@ -2,12 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "estimators/ready_made.h"
 #include "harness/theta/decision.h"
 #include "stats/tails/tails.h"
 
 namespace assay::harness {
+namespace {
+
+/// Chi-square and F take flatter data for normal ones and find as little as in those.
+double deviation_for(const Method& method, double deviation) {
+  return method.is.of_normal_values && deviation > 0 ? std::max(std::numbers::sqrt2, deviation)
+                                                     : deviation;
+}
+
+}  // namespace
 
 bool has_planned_size(const Question& question) {
   return question.test->detect || question.test->claim.relation == Relation::within;
@@ -36,6 +46,28 @@ stats::ErrorRates planned_rates(const ErrorShare& share, const Regions& regions)
   }
   if (regions.proof()) return {.alpha = share.beta, .beta = share.beta, .two_sided = false};
   return {.alpha = share.alpha, .beta = share.beta, .two_sided = regions.two_sided()};
+}
+
+stats::MeanPlan mean_plan(const Method& method, const stats::ErrorRates& rates,
+                          const PlannedChannel& channel) {
+  return {.standard_deviation = deviation_for(method, channel.standard_deviation),
+          .other_standard_deviation = deviation_for(method, channel.other_deviation),
+          .allow = channel.regions.allow * channel.unit,
+          .reference_standard_error = channel.reference_error,
+          .rates = rates};
+}
+
+stats::MeanPlan mean_plan(const Sized& sized) {
+  stats::MeanPlan plan = mean_plan(sized.test.plan.method, sized.rates(), sized.channel);
+  plan.allocation = sized.sizes().y / sized.sizes().x;
+  return plan;
+}
+
+std::uint64_t secondaries_by_t(const Method& method, const stats::ErrorRates& rates,
+                               const PlannedChannel& channel) {
+  const double detect = *channel.regions.detect * channel.unit;
+  return stats::student_t_sample_size(mean_plan(method, rates, channel), detect)
+      .value_or(impossible_secondaries);
 }
 
 std::uint64_t fewest_secondaries(const Question& question, std::uint64_t look) {

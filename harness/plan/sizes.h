@@ -54,6 +54,16 @@ double kurtosis_limit(double critical);
 /// region at beta. For `within` both sides are rejected, and each misses with beta / 2.
 stats::ErrorRates planned_rates(const ErrorShare& share, const Regions& regions);
 
+/// The t test of a channel's mean, or of its two means, for subjects of equal sizes. Theta is taken
+/// for such a mean where it is the logarithm of a ratio.
+stats::MeanPlan mean_plan(const Method& method, const stats::ErrorRates& rates,
+                          const PlannedChannel& channel);
+/// The same for the subjects' own sizes.
+stats::MeanPlan mean_plan(const Sized& sized);
+/// Secondaries with which it finds the channel's `detect`.
+std::uint64_t secondaries_by_t(const Method& method, const stats::ErrorRates& rates,
+                               const PlannedChannel& channel);
+
 /// Secondaries of the subject with fewest in a look of this size.
 std::uint64_t fewest_secondaries(const Question& question, std::uint64_t look);
 

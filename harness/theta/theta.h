@@ -39,6 +39,8 @@ struct PlannedChannel {
   stats::Range range = {};  ///< Declared range of one mean's values.
   double null_value = 0;    ///< The value of one mean where theta is 0.
   std::shared_ptr<const stats::ValueCells> law = {};  ///< Values of a secondary, for bets.
+
+  bool varies() const { return standard_deviation > 0 || other_deviation > 0; }
 };
 
 /// A look's levels, and its secondaries of each subject, or all that it has.
@@ -144,13 +146,15 @@ class Theta {
     return {.regions = regions};
   }
   /// The least theta that a test of that size finds with probability 1 - beta. For `within` it is
-  /// the least margin that the test proves if theta is 0.
-  virtual std::optional<double> detectable(const Sized&) const { return std::nullopt; }
+  /// the least margin that the test proves if theta is 0. By default that of the t test of a
+  /// channel that varies (plan/sizes.h).
+  virtual std::optional<double> detectable(const Sized&) const;
   /// True if no theta in the declared range is found with probability 1 - beta.
   virtual bool finds_nothing(const Sized&) const { return false; }
   /// Probability of failing the claim if theta is `effect`. For `<` and `>` it is that of passing
-  /// with this advantage, for `within` that of passing at theta = 0.
-  virtual std::optional<double> power(const Sized&, double) const { return std::nullopt; }
+  /// with this advantage, for `within` that of passing at theta = 0. By default it is that of
+  /// the same t test, and for `within` the bound 2 P(one margin is excluded) - 1.
+  virtual std::optional<double> power(const Sized&, double effect) const;
 
   // ---- The test's own data
 

@@ -78,47 +78,30 @@ class Power {
 };
 
 Studentised scale_of(const MeanPlan& plan, double n) {
+  const double other_n = n * plan.allocation;
   const double own = plan.standard_deviation * plan.standard_deviation / n;
-  const double total = own + plan.reference_standard_error * plan.reference_standard_error;
-  return {std::sqrt(total), (n - 1) * (total / own) * (total / own)};
-}
-
-Studentised scale_of(const TwoMeansPlan& plan, double n_x) {
-  const double n_y = n_x * plan.allocation;
-  const double vx = plan.standard_deviation_x * plan.standard_deviation_x / n_x;
-  const double vy = plan.standard_deviation_y * plan.standard_deviation_y / n_y;
-  const double total = vx + vy;
-  return {std::sqrt(total), total * total / (vx * vx / (n_x - 1) + vy * vy / (n_y - 1))};
+  const double other = plan.other_standard_deviation * plan.other_standard_deviation / other_n;
+  const double total = own + other + plan.reference_standard_error * plan.reference_standard_error;
+  const double part = own / total;
+  const double other_part = other / total;
+  return {std::sqrt(total),
+          (n - 1) / (part * part + other_part * other_part * (n - 1) / (other_n - 1))};
 }
 
 void check_plan(const char* function, const MeanPlan& plan) {
   planning::check_rates(function, plan.rates);
-  check::positive({function, "standard_deviation"}, plan.standard_deviation);
+  check::non_negative({function, "other_standard_deviation"}, plan.other_standard_deviation);
+  if (plan.other_standard_deviation == 0) {
+    check::positive({function, "standard_deviation"}, plan.standard_deviation);
+  }
+  check::non_negative({function, "standard_deviation"}, plan.standard_deviation);
+  check::positive({function, "allocation"}, plan.allocation);
   check::non_negative({function, "allow"}, plan.allow);
   check::non_negative({function, "reference_standard_error"}, plan.reference_standard_error);
 }
 
-void check_plan(const char* function, const TwoMeansPlan& plan) {
-  planning::check_rates(function, plan.rates);
-  check::positive({function, "standard_deviation_x"}, plan.standard_deviation_x);
-  check::positive({function, "standard_deviation_y"}, plan.standard_deviation_y);
-  check::positive({function, "allocation"}, plan.allocation);
-  check::non_negative({function, "allow"}, plan.allow);
-}
-
 void check_size(const char* function, double n) {
   if (!(n > 1) || !std::isfinite(n)) check::fail({function, "n"}, n, "above 1 and finite");
-}
-
-template <class Plan>
-double detectable(const char* function, const Plan& plan, double n) {
-  check_plan(function, plan);
-  check_size(function, n);
-  const Studentised scale = scale_of(plan, n);
-  const Power power(scale, plan.rates);
-  const auto enough = [&](double effect) { return power.suffices_at({plan.allow, effect}); };
-  return planning::smallest_effect(enough, plan.allow, scale.standard_error,
-                                   power.about(plan.allow));
 }
 
 double z_sum(const ErrorRates& rates) {
@@ -143,13 +126,19 @@ double normal_sample_size(double standard_deviation, EffectPlan effect, ErrorRat
 
 double student_t_power(const MeanPlan& plan, double n, double effect) {
   check_plan("student_t_power", plan);
-  check_size("student_t_power", n);
+  check_size("student_t_power", std::min(n, n * plan.allocation));
   check::finite({"student_t_power", "effect"}, effect);
   return Power(scale_of(plan, n), plan.rates).at({plan.allow, effect});
 }
 
 double student_t_detectable(const MeanPlan& plan, double n) {
-  return detectable("student_t_detectable", plan, n);
+  check_plan("student_t_detectable", plan);
+  check_size("student_t_detectable", std::min(n, n * plan.allocation));
+  const Studentised scale = scale_of(plan, n);
+  const Power power(scale, plan.rates);
+  const auto enough = [&](double effect) { return power.suffices_at({plan.allow, effect}); };
+  return planning::smallest_effect(enough, plan.allow, scale.standard_error,
+                                   power.about(plan.allow));
 }
 
 std::optional<std::uint64_t> student_t_sample_size(const MeanPlan& plan, double detect) {
@@ -158,40 +147,18 @@ std::optional<std::uint64_t> student_t_sample_size(const MeanPlan& plan, double 
   // With ever more samples only the reference's own error is left.
   const double gap = detect - plan.allow;
   const double attainable = gap / z_sum(plan.rates);
-  const double own =
+  const double left =
       attainable * attainable - plan.reference_standard_error * plan.reference_standard_error;
-  if (own <= 0) return std::nullopt;
-  const double guess = plan.standard_deviation * plan.standard_deviation / own;
-  if (guess > planning::most_samples) return std::nullopt;
-  const auto enough = [&](double n) {
-    return Power(scale_of(plan, n), plan.rates).suffices_at({plan.allow, detect});
-  };
-  return planning::smallest_sample(enough, guess + beyond_normal(plan.rates), 2);
-}
-
-double welch_power(const TwoMeansPlan& plan, double n_x, double effect) {
-  check_plan("welch_power", plan);
-  check_size("welch_power", std::min(n_x, n_x * plan.allocation));
-  check::finite({"welch_power", "effect"}, effect);
-  return Power(scale_of(plan, n_x), plan.rates).at({plan.allow, effect});
-}
-
-double welch_detectable(const TwoMeansPlan& plan, double n_x) {
-  return detectable("welch_detectable", plan, n_x);
-}
-
-std::optional<std::uint64_t> welch_sample_size(const TwoMeansPlan& plan, double detect) {
-  check_plan("welch_sample_size", plan);
-  planning::check_effect("welch_sample_size", plan.allow, detect);
-  const double sd =
-      std::hypot(plan.standard_deviation_x, plan.standard_deviation_y / std::sqrt(plan.allocation));
-  const double guess = normal_sample_size(sd, {plan.allow, detect}, plan.rates);
+  if (left <= 0) return std::nullopt;
+  const double spread = std::hypot(plan.standard_deviation,
+                                   plan.other_standard_deviation / std::sqrt(plan.allocation));
+  const double guess = spread * spread / left;
   if (guess > planning::most_samples) return std::nullopt;
   const auto enough = [&](double n) {
     return Power(scale_of(plan, n), plan.rates).suffices_at({plan.allow, detect});
   };
   const double minimum = std::max(2.0, std::ceil(2 / plan.allocation));
-  return planning::smallest_sample(enough, guess, minimum);
+  return planning::smallest_sample(enough, guess + beyond_normal(plan.rates), minimum);
 }
 
 }  // namespace assay::stats

@@ -27,12 +27,15 @@ struct EffectPlan {
 // observation. z_alpha is at alpha / 2 when two-sided. Every near-normal method plans by it.
 double normal_sample_size(double standard_deviation, EffectPlan effect, ErrorRates rates);
 
-// ---- Mean against a reference: Student's t
-// Null hypothesis: |theta| <= allow (two-sided) or theta <= allow. Noncentral t, exact for normal
-// data. With a reference_standard_error the degrees of freedom are Welch-Satterthwaite's at the
-// planned variance.
+// ---- A mean against a reference, or two means: Student's t and Welch's
+// Null hypothesis: |theta| <= allow (two-sided) or theta <= allow. Noncentral t, exact for one
+// sample of normal data. A second sample has n * allocation observations. With v the planned
+// variances of the means and of the reference, the degrees of freedom are Welch-Satterthwaite's:
+//   (sum v)^2 / (v_x^2 / (n_x - 1) + v_y^2 / (n_y - 1)).
 struct MeanPlan {
   double standard_deviation = 1;
+  double other_standard_deviation = 0;  // The second sample's, times the contrast's scale.
+  double allocation = 1;
   double allow = 0;
   double reference_standard_error = 0;
   ErrorRates rates;
@@ -40,18 +43,6 @@ struct MeanPlan {
 double student_t_power(const MeanPlan& plan, double n, double effect);
 double student_t_detectable(const MeanPlan& plan, double n);
 std::optional<std::uint64_t> student_t_sample_size(const MeanPlan& plan, double detect);
-
-// ---- Two means: Welch's t, n_y = n_x * allocation
-struct TwoMeansPlan {
-  double standard_deviation_x = 1;
-  double standard_deviation_y = 1;  // Times the contrast's scale.
-  double allocation = 1;
-  double allow = 0;
-  ErrorRates rates;
-};
-double welch_power(const TwoMeansPlan& plan, double n_x, double effect);
-double welch_detectable(const TwoMeansPlan& plan, double n_x);
-std::optional<std::uint64_t> welch_sample_size(const TwoMeansPlan& plan, double detect);
 
 // How many observations each of two samples has.
 struct SampleSizes {

@@ -53,15 +53,14 @@ TEST(PowerSimulation, AReferenceErrorCostsPowerAsPredicted) {
 }
 
 TEST(PowerSimulation, WelchWithUnequalVariances) {
-  const TwoMeansPlan plan{
-      .standard_deviation_x = 1, .standard_deviation_y = 2, .allocation = 2, .rates = usual_rates};
-  const auto n = welch_sample_size(plan, 1).value();
+  const MeanPlan plan{.other_standard_deviation = 2, .allocation = 2, .rates = usual_rates};
+  const auto n = student_t_sample_size(plan, 1).value();
   const double rate = rate_of(204, 10000, [&](Philox& random) {
     const Moments x = draw_moments(n, [&] { return 1 + random.normal(); });
     const Moments y = draw_moments(2 * n, [&] { return 2 * random.normal(); });
     return log_p_two_sided(welch_t(x, y, {}));
   });
-  EXPECT_NEAR(rate, welch_power(plan, static_cast<double>(n), 1), bound(10000));
+  EXPECT_NEAR(rate, student_t_power(plan, static_cast<double>(n), 1), bound(10000));
 }
 
 TEST(PowerSimulation, KolmogorovSmirnovReachesItsBound) {

@@ -12,7 +12,10 @@ TEST(Power, AgreesWithR) {
     const std::string method = row.text("method");
     double power = -1;
     if (method == "student_t") power = student_t_power({.rates = rates}, row["n"], row["effect"]);
-    if (method == "welch") power = welch_power({.rates = rates}, row["n"], row["effect"]);
+    if (method == "welch") {
+      power =
+          student_t_power({.other_standard_deviation = 1, .rates = rates}, row["n"], row["effect"]);
+    }
     if (method == "chi_square_fit") {
       power = chi_square_fit_power({.degrees_of_freedom = row["m"], .rates = rates}, row["n"],
                                    row["effect"]);
@@ -29,7 +32,9 @@ TEST(Power, GoldenValuesToThePrintedDigits) {
   // Fractional sample sizes of power.t.test(delta = .1, sig.level = 1e-4, power = .99, strict =
   // TRUE).
   EXPECT_NEAR(student_t_power({.rates = strict}, 3872.60279626629, .1), .99, 1e-9);
-  EXPECT_NEAR(welch_power({.rates = strict}, 7733.85246178509, .1), .99, 1e-9);
+  EXPECT_NEAR(
+      student_t_power({.other_standard_deviation = 1, .rates = strict}, 7733.85246178509, .1), .99,
+      1e-9);
   // Two one-sided tests at .05. At most one misses here.
   EXPECT_NEAR(2 * student_t_power({.rates = {.05, .05, false}}, 50, .5) - 1, .934413, 5e-7);
   EXPECT_NEAR(student_t_detectable({.rates = strict}, 10000), .0622, 5e-5);
@@ -42,10 +47,10 @@ TEST(Power, SampleSizesAreTheSmallestThatReachTheirPower) {
   EXPECT_GE(student_t_power(mean, n, .5), .95);
   EXPECT_LT(student_t_power(mean, n - 1, .5), .95);
   EXPECT_NEAR(n, normal_sample_size(2, {.1, .5}, rates), 6);
-  const TwoMeansPlan two{.standard_deviation_x = 1, .standard_deviation_y = 3, .rates = rates};
-  const auto n2 = static_cast<double>(welch_sample_size(two, .7).value());
-  EXPECT_GE(welch_power(two, n2, .7), .95);
-  EXPECT_LT(welch_power(two, n2 - 1, .7), .95);
+  const MeanPlan two{.other_standard_deviation = 3, .rates = rates};
+  const auto n2 = static_cast<double>(student_t_sample_size(two, .7).value());
+  EXPECT_GE(student_t_power(two, n2, .7), .95);
+  EXPECT_LT(student_t_power(two, n2 - 1, .7), .95);
   const FitPlan fit{.degrees_of_freedom = 63, .allow = .02, .rates = rates};
   const auto n4 = static_cast<double>(chi_square_fit_sample_size(fit, .1).value());
   EXPECT_GE(chi_square_fit_power(fit, n4, .1), .95);
@@ -75,6 +80,12 @@ TEST(Power, DetectableEffectsReachTheirPower) {
   EXPECT_NEAR(ks_power_bound({.two_samples = true, .rates = rates}, 1000,
                              ks_detectable({.two_samples = true, .rates = rates}, 1000)),
               .9, 1e-9);
+}
+
+TEST(Power, OfTwoSamplesIsThatOfTheOneThatVaries) {
+  const MeanPlan second{.standard_deviation = 0, .other_standard_deviation = 2, .allocation = .5};
+  EXPECT_DOUBLE_EQ(student_t_power(second, 80, .5),
+                   student_t_power({.standard_deviation = 2}, 40, .5));
 }
 
 TEST(Power, OfUnequalSizesIsThatOfTheSamplesExchanged) {
