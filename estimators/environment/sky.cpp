@@ -68,8 +68,8 @@ std::shared_ptr<const Setup> rgb_setup(std::vector<Channel> channels, const Prim
 
 /// map, normal, position, occluders.
 std::vector<ParameterInformation> parameters() {
-  return sky::with_receiver(text_parameter(
-      "map", "the sky: a picture, latitude-longitude, +z the first row's pole"));
+  return sky::with_receiver(
+      text_parameter("map", "the sky: a picture, latitude-longitude, +z the first row's pole"));
 }
 
 render::EnvironmentMap read_map(Parameters& parameters) {
