@@ -46,8 +46,9 @@ inline render::Vector3 uniform_on_sphere(Stream& random) {
   return render::direction_at(z, random.uniform());
 }
 
-/// The unit vector where a ray from inside the unit sphere, or from its surface, leaves it: |o + t
-/// d|^2 = 1, d of unit length. From the surface the other root is 0, and saying so is exact.
+/// The unit vector where a ray from inside the unit sphere, or from its surface, leaves it. It
+/// solves |o + t d|^2 = 1 for d of unit length. From the surface the other root is 0, and saying so
+/// is exact.
 inline render::Vector3 exit_of_sphere(const render::Vector3& origin,
                                       const render::Vector3& direction, bool from_surface) {
   const double b = dot(origin, direction);

@@ -55,8 +55,8 @@ class EnvironmentMap {
 };
 
 /// Reads a picture with the channels R, G and B, or Y for grey (open_picture). InputError at
-/// `file`, without a line, if it is cropped (data window not the display window), or has not these
-/// channels or a texel that is negative or not finite.
+/// `file`, without a line, if it has not these channels or is cropped: its data window is not the
+/// display window. The same for a texel that is negative or not finite.
 EnvironmentMap read_environment(const std::string& file);
 
 /// Integrals of max(0, n . w)^k over a patch, k = 1 and 2.

@@ -34,7 +34,7 @@ struct QuantityRow {
   bool never_negative = false;
   bool tested_as_a_ratio = false;  ///< The claimed number is above 0 and exact.
   bool over_all_channels = false;
-  /// What a channel's plugin knows of it, or InputError; null if no plugin knows any.
+  /// Gives what a channel's plugin knows of it, or InputError; null if no plugin knows any.
   Constant (*analytic)(const Channel&, const Source&) = nullptr;
   bool takes_standard_error = false;  ///< The claimed number may have one, by `+-`.
   bool relative_effect = false;       ///< A margin in per cent is one of the value, not of a ratio.

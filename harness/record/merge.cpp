@@ -131,7 +131,7 @@ void adjust_p_values(std::vector<Part>& parts) {
   }
 }
 
-/// Of each estimator the row of the shard that drew most.
+/// Takes each estimator's row from the shard that drew most of it.
 std::vector<reports::EstimatorSummary> estimators_of(const std::vector<ShardFile>& shards,
                                                      std::size_t suite) {
   std::vector<reports::EstimatorSummary> most = shards.front().record.suites[suite].estimators;

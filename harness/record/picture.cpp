@@ -29,7 +29,7 @@ const char* bias_name(std::optional<BiasClass> bias) {
   return bias ? names[static_cast<int>(*bias)] : "unknown";
 }
 
-/// What a test drew of an estimator itself.
+/// The draws of an estimator itself for a test.
 struct Draw {
   std::shared_ptr<Pool> pool;
   std::uint64_t secondaries = 0;

@@ -412,7 +412,8 @@ struct Suite {
                statements)
 };
 
-/// What Holm's method over the whole suite needs of the test at the same place in `Suite::tests`.
+/// The part that Holm's method over the whole suite needs of the test at the same place in
+/// `Suite::tests`.
 struct ShardTest {
   std::uint64_t position = 0;  ///< Place in the suite's file.
   bool inside = false;         ///< In the family; mutants and expected failures are not.
