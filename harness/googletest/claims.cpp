@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "harness/base/refuse.h"
 #include "harness/command/option_values.h"
 #include "harness/pilot/pilot.h"
 #include "harness/plan/plan.h"
@@ -135,7 +136,7 @@ Asked asked(const std::vector<Part>& parts, const std::string& stream) {
       const bool is_new =
           result.estimators.emplace(source->name, prepared(*source, stream + "/" + source->name))
               .second;
-      if (!is_new) throw InputError({}, "two sources are named `" + source->name + "`");
+      if (!is_new) harness::refuse({}, "two sources are named `{}`", source->name);
     } else {
       const Margin& margin = std::get<Margin>(part);
       (margin.detects ? result.detect : result.allow) = margin.text;

@@ -10,6 +10,7 @@
 #include "estimators/core/value.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/parallel.h"
+#include "harness/base/refuse.h"
 #include "harness/draws/consistency_setup.h"
 #include "harness/sampling/packing.h"
 
@@ -314,7 +315,7 @@ void Ranks::greet(const Messages::Message& message, const std::set<std::string>&
   if (fault.empty() && prepared.size() != names.size()) {
     fault = "could not prepare all estimators that rank 0 has";
   }
-  if (!fault.empty()) throw InputError({}, name_of(message.from) + " " + fault);
+  if (!fault.empty()) refuse({}, "{} {}", name_of(message.from), fault);
 }
 
 void Ranks::introduce(const NamedSetups& setups) {
@@ -331,8 +332,7 @@ void Ranks::introduce(const NamedSetups& setups) {
       try {
         greet(*message, names);
       } catch (const Unpackable& refusal) {
-        throw InputError(
-            {}, fmt::format("{} sent no greeting: {}", name_of(message->from), refusal.what()));
+        refuse({}, "{} sent no greeting: {}", name_of(message->from), refusal.what());
       }
       --missing;
       continue;

@@ -8,6 +8,7 @@
 #include "estimators/core/program_path.h"
 #include "estimators/ready_made.h"
 #include "harness/base/interrupt.h"
+#include "harness/base/refuse.h"
 #include "harness/plan/plan.h"
 #include "harness/run/picture_stream.h"
 #include "harness/theta/ask.h"
@@ -44,10 +45,9 @@ void coarsen(Suite& suite, const RunOptions& options) {
     if (!test.detect) continue;
     test.detect->value *= options.coarsen;
     if (test.allow && test.detect->value <= test.allow->value) {
-      throw InputError(test.place_of("detect"),
-                       fmt::format("`--coarsen {:g}` brings `detect` down to `allow`; "
-                                   "`detect` must stay above it",
-                                   options.coarsen));
+      refuse(test.place_of("detect"),
+             "`--coarsen {:g}` brings `detect` down to `allow`; `detect` must stay above it",
+             options.coarsen);
     }
   }
 }

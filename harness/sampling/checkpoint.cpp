@@ -8,6 +8,7 @@
 
 #include "estimators/core/value.h"
 #include "harness/base/interrupt.h"
+#include "harness/base/refuse.h"
 #include "harness/base/terminal.h"
 #include "harness/base/whole_file.h"
 #include "harness/sampling/packing.h"
@@ -40,15 +41,12 @@ void Checkpoint::read() {
   try {
     unpack(text.view(), identity, entries);
   } catch (const Unpackable& refusal) {
-    throw InputError({.file = file_},
-                     fmt::format("is no checkpoint to go on from: {}; remove it", refusal.what()));
+    refuse({.file = file_}, "is no checkpoint to go on from: {}; remove it", refusal.what());
   }
   if (const auto other = difference(identity_, identity)) {
-    throw InputError(
-        {.file = file_},
-        fmt::format("is the checkpoint of another run: {} was {} and is {}; remove it, "
-                    "or name another file",
-                    other->name, other->theirs, other->ours));
+    refuse({.file = file_},
+           "is the checkpoint of another run: {} was {} and is {}; remove it, or name another file",
+           other->name, other->theirs, other->ours);
   }
   for (auto& [recipe, block] : entries) read_.emplace(std::move(recipe), std::move(block));
 }

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "estimators/catalogue.h"
+#include "harness/base/refuse.h"
 #include "harness/sampling/recorded_run.h"
 
 namespace assay::harness {
@@ -41,9 +42,8 @@ Value only(const Value& given, const std::vector<std::string>& names) {
 /// Sets the primaries to those of the recorded run.
 void use_recorded_run(const RecordedRun& run, PreparedEstimator& prepared) {
   if (prepared.primaries.value_or(run.primaries()) != run.primaries()) {
-    throw InputError(prepared.where, fmt::format("the moments of `{}` are of {} primaries each: "
-                                                 "leave `primaries` out",
-                                                 prepared.name, run.primaries()));
+    refuse(prepared.where, "the moments of `{}` are of {} primaries each: leave `primaries` out",
+           prepared.name, run.primaries());
   }
   prepared.primaries = run.primaries();
   prepared.entry = &run.entry();
@@ -75,9 +75,8 @@ PreparedEstimator prepare(const EstimatorEntry& entry, const std::string& folder
   if (const RecordedRun* run = as_recorded_run(*prepared.setup)) {
     use_recorded_run(*run, prepared);
   } else if (prepared.setup->observations() && entry.primaries.value_or(1) != 1) {
-    throw InputError(
-        entry.where,
-        fmt::format("`{}` has its observations ready made: leave `primaries` out", entry.plugin));
+    refuse(entry.where, "`{}` has its observations ready made: leave `primaries` out",
+           entry.plugin);
   }
   if (!plugin.information.original.empty()) {
     const Entry& original = find_plugin(plugin.information.original, entry.where);
