@@ -43,12 +43,19 @@ void refuse_extras(const CLI::App& sub) {
     const std::string help = fmt::format("see `assay {} --help`", sub.get_name());
     if (!extra.starts_with("-")) {
       std::string mend = help;
-      if (sub.get_name() == "images") {
-        const std::filesystem::path file = extra;
+      const std::filesystem::path file = extra;
+      if (sub.get_name() == "images" && !file.has_extension()) {
+        mend = "give the pictures by `--candidate 'NEW/*.exr' --reference 'OLD/*.exr'`";
+      } else if (sub.get_name() == "images") {
         mend = fmt::format("quote the pattern, as in '{}'",
                            (file.parent_path() / ("*" + file.extension().string())).string());
       }
-      if (sub.get_name() == "check")
+      const std::size_t equals = extra.find('=');
+      if (sub.get_name() == "check" && equals != 0 && equals < extra.find_first_of("(, ") &&
+          extra.compare(equals, 2, "==") != 0) {
+        mend = fmt::format("give each estimator an option of its own: `--estimator {}`",
+                           shell_quoted(extra));
+      } else if (sub.get_name() == "check")
         mend =
             "quote the claim and what has blanks: `assay check 'mean(a) == 3'`, `--estimator "
             "'a=process,command=[python3, a.py]'`";

@@ -366,15 +366,14 @@ class ImageTheta : public Theta {
   std::string where_it_differs(const DrawnTest& test) const override {
     return means_where_it_differs(test);
   }
-  std::string hint(const Question& question) const override {
+  std::string caveat(const Question& question) const override {
     const ScaledQuantity* const other = other_side(question.test->claim);
     if (question.of_two() || other == nullptr) return "";
     const bool exact = std::ranges::all_of(
         question.references, [](const Constant& each) { return each.standard_error == 0; });
     if (!exact) return "";
     return fmt::format(
-        "; `{}` is one picture, taken as exact: noise of its own would count as a "
-        "difference",
+        "`{}` is one picture, taken as exact: noise of its own would count as a difference",
         other->quantity.source.estimator);
   }
 };

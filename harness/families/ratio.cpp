@@ -399,7 +399,7 @@ std::string rows_beside_primaries(const Question& question) {
     const Subject& other = question.subjects[1 - i];
     if (!is_recorded(rows) || !other.averages) continue;
     return fmt::format(
-        "; a row of `{}` is held against a single primary of `{}`: rows that are means of n have a "
+        "a row of `{}` is held against a single primary of `{}`: rows that are means of n have a "
         "variance n times less, and the claim on them a factor n",
         rows.estimator->name, other.estimator->name);
   }
@@ -439,7 +439,7 @@ class VarianceTheta : public LogTheta {
     return secondaries_of_floor(test);
   }
 
-  std::string hint(const Question& question) const override {
+  std::string caveat(const Question& question) const override {
     return question.of_two() ? rows_beside_primaries(question) : "";
   }
 

@@ -132,7 +132,9 @@ class Lexer {
         Habit{"-", no_arithmetic},
         Habit{"+", no_arithmetic},
         Habit{"/", no_arithmetic},
-        Habit{".", "the name of a part must follow the `.` at once"},
+        Habit{".",
+              "the name of a part must follow the `.` at once; a file is read by an estimator of "
+              "the plugin `recorded`"},
     };
     for (const Habit& habit : habits) {
       if (rest().starts_with(habit.written)) refuse(place(), std::string(habit.advice));
@@ -396,7 +398,8 @@ class Parser {
   }
 
   static constexpr const char* expected_side =
-      "a number, `analytic`, a quantity as `mean(…)`, or a law as `uniform(0, 1)`";
+      "a number, `analytic`, a quantity as `mean(…)`, or a law as `uniform(0, 1)` (`assay list "
+      "laws`)";
 
   Lexer lexer_;
 };

@@ -322,8 +322,10 @@ void take_sound_look(TestWork& work, const DrawnTest& test, bool may_go_on) {
       Reason reason = narrate(outcome);
       outcome.message = reason.text + outcome.question.theta->where_it_differs(test);
       outcome.advice = std::move(reason.advice);
-      if (outcome.verdict == Verdict::fail) {
-        outcome.message += outcome.question.theta->hint(outcome.question);
+      const std::string caveat = outcome.question.theta->caveat(outcome.question);
+      if (outcome.verdict == Verdict::fail && !caveat.empty()) {
+        outcome.message += "; " + caveat;
+        outcome.advice = reports::Advice{.words = caveat};
       }
     }
   }

@@ -144,8 +144,9 @@ std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& chann
     return fmt::format("no evidence against the claim, which holds with {} to spare by {}",
                        reports::size_text(excluded, channel.effect), interval);
   }
-  return fmt::format("{}; {} or more is excluded by {}", evidence_against(outcome, channel),
-                     reports::size_text(excluded, channel.effect), interval);
+  return fmt::format("{}; {}{} or more is excluded by {}", evidence_against(outcome, channel),
+                     reports::size_text(excluded, channel.effect),
+                     channel.image ? " over the whole image" : "", interval);
 }
 
 std::string passed_proof(const TestOutcome& outcome, const ChannelOutcome& channel) {
@@ -225,6 +226,10 @@ std::string times_as_many(const TestOutcome& outcome, double factor) {
 /// The setting for so many times the observations.
 reports::Advice setting(const TestOutcome& outcome, double factor) {
   const auto& budget = outcome.question.test->budget;
+  if (budget && budget->seconds) {
+    return {.key = "budget",
+            .value = fmt::format("{}s", std::ceil(10 * factor * *budget->seconds) / 10)};
+  }
   const bool in_primaries = budget && budget->primaries;
   const std::uint64_t secondaries = outcome.secondaries();
   const auto now =

@@ -100,8 +100,18 @@ EstimatorEntry plugin_itself(const Source& source) {
 EstimatorEntry entry_for(const Source& source, const std::vector<EstimatorEntry>& given) {
   if (const auto* entry = entry_named(given, source.estimator)) return *entry;
   const std::string near = nearest(source.estimator, names_of(given, &EstimatorEntry::name));
-  if (near.empty()) return plugin_itself(source);
-  refuse(source.where, "no --estimator is named `{}`; did you mean `{}`?", source.estimator, near);
+  if (!near.empty()) {
+    refuse(source.where, "no --estimator is named `{}`; did you mean `{}`?", source.estimator,
+           near);
+  }
+  if (given.empty() || source.estimator.find('/') != std::string::npos)
+    return plugin_itself(source);
+  try {
+    return plugin_itself(source);
+  } catch (const InputError& error) {
+    refuse(error.where(), "{}; --estimator names {}", error.message(),
+           quoted(names_of(given, &EstimatorEntry::name)));
+  }
 }
 
 void refuse_unused(const std::vector<EstimatorEntry>& given,

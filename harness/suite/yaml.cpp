@@ -18,7 +18,8 @@ namespace {
 constexpr std::size_t deepest = 64;
 
 constexpr std::string_view no_aliases =
-    "anchors and aliases are not read; write the value out, or name a scene under `scenes:`";
+    "anchors and aliases are not read: put a text that begins with `*` or `&` in quotes, or name a "
+    "scene under `scenes:`";
 
 /// Replaces yaml-cpp's messages by what to do.
 std::string readable(const std::string& message) {

@@ -178,8 +178,8 @@ class Theta {
   virtual const char* detectable_text() const { return " or more"; }
   /// The place where the data of a failed claim differ.
   virtual std::string where_it_differs(const DrawnTest&) const { return ""; }
-  /// A reason for a fail that the subjects show.
-  virtual std::string hint(const Question&) const { return ""; }
+  /// A reason for a fail that the subjects show, in a clause.
+  virtual std::string caveat(const Question&) const { return ""; }
 };
 
 }  // namespace assay::harness

@@ -111,7 +111,8 @@ std::string sentence_of(const Test& test, const Effect& effect, const std::strin
   std::string text = differs ? found_in_image(*test.image) : std::string();
   if (text.empty() && effect.estimate) text = found(test, effect);
   if (text.empty()) return headline(test);
-  if (!margin.empty()) text += fmt::format("; you asked to catch {}", margin);
+  if (!margin.empty())
+    text += fmt::format("; {}{} must be caught", margin, test.image ? " over the whole image" : "");
   return text + "." + exclusion_of_claim(test, effect, margin);
 }
 
@@ -378,7 +379,8 @@ std::vector<Step> steps(const Test& test) {
       add("write into the test", key + ": " + value);
   };
   if (const auto& advice = test.advice; advice && advice->key.empty())
-    all.push_back({.label = "to decide", .words = advice->words});
+    all.push_back(
+        {.label = test.verdict == Verdict::fail ? "mind" : "to decide", .words = advice->words});
   else if (advice)
     set(advice->key, advice->value);
   const Effect effect = deciding_channel(test).effect;

@@ -19,11 +19,11 @@ std::string sentence(const std::string& claim, const Effect& effect) {
 
 TEST(Display, SaysOnWhichSideAnEstimateLiesAndWhatWasAskedFor) {
   EXPECT_EQ(sentence("mean(a) == analytic", mean_effect(0.0107, 0.0101)),
-            "mean(a) is 1.07\u00A0% above analytic (+0.06\u00A0% to +2.08\u00A0%); you asked to "
-            "catch 0.5\u00A0%.");
+            "mean(a) is 1.07\u00A0% above analytic (+0.06\u00A0% to +2.08\u00A0%); 0.5\u00A0% "
+            "must be caught.");
   EXPECT_EQ(
       sentence("mean(a) == mean(b)", mean_effect(-0.02, 0.01)),
-      "mean(a) is 2\u00A0% below mean(b) (-3\u00A0% to -1\u00A0%); you asked to catch 0.5\u00A0%.");
+      "mean(a) is 2\u00A0% below mean(b) (-3\u00A0% to -1\u00A0%); 0.5\u00A0% must be caught.");
 }
 
 TEST(Display, FactorsAndQuantitiesWithoutASideKeepTheirWords) {

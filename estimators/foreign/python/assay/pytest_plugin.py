@@ -179,7 +179,7 @@ class _Run:
         for file in (suite, suite.with_suffix(".sh")):
             file.unlink()
         # The place in a file that the user did not write says nothing, nor does its line.
-        said = re.sub(r"\Aassay: .*?:\d+:\d+:\s|\n.*\n *\^\s*\Z", "", listed.stderr, flags=re.DOTALL)
+        said = re.sub(r"(?s:\Aassay: .*?:\d+:\d+:\s)|\n.*\n *\^\s*\Z", "", listed.stderr)
         return f"{self._claims[id]}: {' '.join(said.split())}" if listed.returncode else ""
 
     def _test(self, ids: list[str], claims: int, suite: Path) -> None:
