@@ -34,11 +34,13 @@ function windowed(plane: Float32Array, size: Size, window: Size, give: (i: numbe
   }
   const sum = (x: number, y: number) => table[y * (width + 1) + x] ?? 0;
   for (let y = 0; y < height; ++y) {
-    const top = Math.max(0, y - (window.height >> 1));
-    const bottom = Math.min(height, top + window.height);
+    const above = y - (window.height >> 1);
+    const top = Math.max(0, above);
+    const bottom = Math.min(height, above + window.height);
     for (let x = 0; x < width; ++x) {
-      const left = Math.max(0, x - (window.width >> 1));
-      const right = Math.min(width, left + window.width);
+      const before = x - (window.width >> 1);
+      const left = Math.max(0, before);
+      const right = Math.min(width, before + window.width);
       const total = sum(right, bottom) - sum(left, bottom) - sum(right, top) + sum(left, top);
       give(y * width + x, total, (right - left) * (bottom - top));
     }
