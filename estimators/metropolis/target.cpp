@@ -104,12 +104,12 @@ class BranchingTarget final : public Target {
   Form form_;
 };
 
-/// Light transport to a row of receivers inside a sphere, by rays. Pixel p is the wall
-/// between two heights of the unit sphere, one of `width` bands of equal area. Its element is the
-/// mean radiance that leaves the band, Le + a (mean Le) / (1 - mean a) averaged over its area. A
-/// path is that of paths/plain. It starts at a uniform point of the wall (two coordinates). At each
-/// vertex it goes on with probability `survival` (one coordinate) in a cosine-distributed direction
-/// (two). It brings what is emitted where it arrives.
+/// Light transport to a row of receivers inside a sphere, by rays. Pixel p is the wall between two
+/// heights of the unit sphere, one of `width` bands of equal area. Its element is the mean radiance
+/// that leaves the band, Le + a (mean Le) / (1 - mean a) averaged over its area. A path is that of
+/// paths/plain. It starts at a uniform point of the wall (two coordinates). At each vertex it goes
+/// on with probability `survival` (one coordinate) in a cosine-distributed direction (two). It
+/// brings what is emitted where it arrives.
 class SphereTarget final : public Target {
  public:
   struct Form {

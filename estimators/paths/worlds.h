@@ -91,9 +91,8 @@ class SphereWorld {
 
  private:
   /// Counts one shadow ray to a point uniform on the sphere, which is convex: nothing is between.
-  /// The product of the cosines of two
-  /// points over their squared distance is 1/4. With the area 4 pi and albedo / pi this leaves
-  /// albedo x emission.
+  /// The product of the cosines of two points over their squared distance is 1/4. With the area
+  /// 4 pi and albedo / pi this leaves albedo x emission.
   Spectrum sampled_light(const Vertex& v, Stream& random, Cost& cost) const {
     const Vertex light = zones_.vertex(uniform_on_sphere(random));
     if (light.surface->emission == Spectrum{}) return {};

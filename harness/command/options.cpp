@@ -38,32 +38,37 @@ std::string key_of_a_suite(const CLI::App& sub, const std::string& option) {
   return "";
 }
 
+/// What to write in place of an argument too many.
+std::string mend_of_extra(const std::string& command, const std::string& extra) {
+  if (command == "images") {
+    const std::filesystem::path file = extra;
+    if (!file.has_extension()) {
+      return "give the pictures by `--candidate 'NEW/*.exr' --reference 'OLD/*.exr'`";
+    }
+    return fmt::format("quote the pattern, as in '{}'",
+                       (file.parent_path() / ("*" + file.extension().string())).string());
+  }
+  if (command != "check") return fmt::format("see `assay {} --help`", command);
+  const std::size_t equals = extra.find('=');
+  const bool names_a_plugin =
+      equals != 0 && equals < extra.find_first_of("(, ") && extra.compare(equals, 2, "==") != 0;
+  if (names_a_plugin) {
+    return fmt::format("give each estimator an option of its own: `--estimator {}`",
+                       shell_quoted(extra));
+  }
+  return "quote the claim and what has blanks: `assay check 'mean(a) == 3'`, `--estimator "
+         "'a=process,command=[python3, a.py]'`";
+}
+
 void refuse_extras(const CLI::App& sub) {
   for (const std::string& extra : sub.remaining()) {
-    const std::string help = fmt::format("see `assay {} --help`", sub.get_name());
     if (!extra.starts_with("-")) {
-      std::string mend = help;
-      const std::filesystem::path file = extra;
-      if (sub.get_name() == "images" && !file.has_extension()) {
-        mend = "give the pictures by `--candidate 'NEW/*.exr' --reference 'OLD/*.exr'`";
-      } else if (sub.get_name() == "images") {
-        mend = fmt::format("quote the pattern, as in '{}'",
-                           (file.parent_path() / ("*" + file.extension().string())).string());
-      }
-      const std::size_t equals = extra.find('=');
-      if (sub.get_name() == "check" && equals != 0 && equals < extra.find_first_of("(, ") &&
-          extra.compare(equals, 2, "==") != 0) {
-        mend = fmt::format("give each estimator an option of its own: `--estimator {}`",
-                           shell_quoted(extra));
-      } else if (sub.get_name() == "check")
-        mend =
-            "quote the claim and what has blanks: `assay check 'mean(a) == 3'`, `--estimator "
-            "'a=process,command=[python3, a.py]'`";
-      refuse({}, "`{}` is one argument too many; {}", extra, mend);
+      refuse({}, "`{}` is one argument too many; {}", extra, mend_of_extra(sub.get_name(), extra));
     }
     const std::string name = extra.substr(0, extra.find('='));
     const std::string near = nearest(name, option_names(sub));
-    std::string mend = near.empty() ? help : fmt::format("did you mean `{}`?", near);
+    std::string mend = near.empty() ? fmt::format("see `assay {} --help`", sub.get_name())
+                                    : fmt::format("did you mean `{}`?", near);
     if (const std::string key = key_of_a_suite(sub, name); !key.empty()) {
       mend = fmt::format("write it into the suite, as the key `{}`", key);
     }

@@ -318,8 +318,8 @@ void write_totals(Page& page, const PlannedRun& planned, const UnitCosts& costs)
                              tests == 1 ? "" : "s", total_text(separate)));
   page.paragraph(fmt::format(
       "Tests of one estimator share observations: at most {} in all. Most tests end at an earlier "
-      "look: about {} if every claim holds exactly "
-      "(tests whose mean is not known counted in full).",
+      "look: about {} if every claim holds exactly (tests whose mean is not known counted in "
+      "full).",
       total_text(total_of(planned, costs)), total_text(expected_total(planned, costs))));
   page.paragraph(
       "primaries: of one secondary estimate. last: secondaries of each source at the last look, of "

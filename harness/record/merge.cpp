@@ -15,7 +15,6 @@
 #include "harness/base/numbers.h"
 #include "harness/base/record_file.h"
 #include "harness/base/text_hash.h"
-#include "harness/record/picture.h"
 #include "harness/run/holm.h"
 
 namespace assay::harness {

@@ -304,6 +304,13 @@ bool is_put_off(const TestOutcome& outcome) {
          need_more(outcome.gates) && !red_gates(outcome.gates).empty();
 }
 
+void add_caveat(TestOutcome& outcome) {
+  const std::string caveat = outcome.question.theta->caveat(outcome.question);
+  if (caveat.empty()) return;
+  outcome.message += "; " + caveat;
+  outcome.advice = reports::Advice{.words = caveat};
+}
+
 void take_sound_look(TestWork& work, const DrawnTest& test, bool may_go_on) {
   TestOutcome& outcome = work.outcome;
   judge_drawn_order(outcome, test);
@@ -322,11 +329,7 @@ void take_sound_look(TestWork& work, const DrawnTest& test, bool may_go_on) {
       Reason reason = narrate(outcome);
       outcome.message = reason.text + outcome.question.theta->where_it_differs(test);
       outcome.advice = std::move(reason.advice);
-      const std::string caveat = outcome.question.theta->caveat(outcome.question);
-      if (outcome.verdict == Verdict::fail && !caveat.empty()) {
-        outcome.message += "; " + caveat;
-        outcome.advice = reports::Advice{.words = caveat};
-      }
+      if (outcome.verdict == Verdict::fail) add_caveat(outcome);
     }
   }
   require_activation(outcome, test);

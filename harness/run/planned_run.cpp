@@ -13,7 +13,6 @@
 #include "harness/run/picture_stream.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/methods.h"
-#include "stats/images/image.h"
 
 namespace assay::harness {
 namespace {

@@ -63,6 +63,10 @@ test_undecided_is_3_or_as_asked() {
   contains out '? 1 of 2 claims undecided, none broken in'
   expect 1 run open.yaml --inconclusive fail
   expect 0 run open.yaml --inconclusive pass
+  # More of a budget in seconds decides, not a size that sets the budget aside.
+  expect 3 check 'mean(luminaire/area) == analytic' --detect 1e-4 --budget 0.3s
+  contains out "to decide: assay check 'mean(luminaire/area) == analytic' --detect 1e-4"
+  [ -z "$(grep -e '--secondaries' out)" ] || fail 'the advice sets the budget aside'
 }
 
 test_filter_that_matches_nothing_is_4() {

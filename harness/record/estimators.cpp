@@ -1,4 +1,4 @@
-#include "harness/record/picture.h"
+#include "harness/record/estimators.h"
 
 #include <algorithm>
 #include <cmath>
