@@ -22,45 +22,6 @@ namespace {
 // ---- Evidence
 
 using stats::Interval;
-using stats::TestResult;
-
-constexpr double log_of_impossible = std::numeric_limits<double>::lowest();
-
-/// theta = q + offset; the offset has an error.
-struct Shifted {
-  stats::Successes seen;
-  double offset = 0;
-  double error = 0;
-};
-
-/// log_p_upper of "q is at most `most`"; no probability is below 0.
-double log_p_at_most(const stats::Successes& seen, double most) {
-  return most < 0 ? log_of_impossible : stats::binomial(seen, std::min(most, 1.0)).log_p_upper;
-}
-
-double log_p_at_least(const stats::Successes& seen, double least) {
-  return least > 1 ? log_of_impossible : stats::binomial(seen, std::max(least, 0.0)).log_p_lower;
-}
-
-Evidence from_probability(const Shifted& known) {
-  const auto at = [known](double theta) {
-    const double q = theta - known.offset;
-    return TestResult{.statistic = static_cast<double>(known.seen.successes),
-                      .distribution = {.family = "binomial",
-                                       .parameters = {static_cast<double>(known.seen.trials),
-                                                      std::clamp(q, 0.0, 1.0)}},
-                      .log_p_lower = log_p_at_least(known.seen, q - known.error),
-                      .log_p_upper = log_p_at_most(known.seen, q + known.error)};
-  };
-  const auto interval = [known](double confidence) -> Interval {
-    const Interval q = stats::clopper_pearson(known.seen, confidence);
-    return {q.low + known.offset - known.error, q.high + known.offset + known.error, confidence};
-  };
-  const double share =
-      static_cast<double>(known.seen.successes) / static_cast<double>(known.seen.trials);
-  return {.estimate = share + known.offset, .at = at, .interval = interval};
-}
-
 std::uint64_t sum(std::span<const std::uint64_t> counts) {
   return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
 }
@@ -74,9 +35,8 @@ Evidence integral(const Method&, const Seen& seen) {
   const std::span<const std::uint64_t> counts = seen.data[0].cells;
   const DensityCells& cells = density_of(seen.question);
   Evidence evidence =
-      from_probability({.seen = {.successes = cells.in_cells(counts).back(), .trials = sum(counts)},
-                        .offset = cells.mass.total - seen.reference().value,
-                        .error = cells.tolerance()});
+      from_probability({.successes = cells.in_cells(counts).back(), .trials = sum(counts)},
+                       cells.mass.total - seen.reference().value, cells.tolerance());
   evidence.quantity = fmt::format(
       "integral of the density ({:.10g}, quadrature error {:.1g}) and the mass without a point, "
       "less {:g},",
@@ -92,8 +52,7 @@ Evidence inconsistency(const Method&, const Seen& seen) {
   const std::uint64_t draws_made = sum(counts);
   const std::uint64_t inconsistent = draws_made - counts[0];
   const double claimed = seen.reference().value;
-  Evidence evidence = from_probability(
-      {.seen = {.successes = inconsistent, .trials = draws_made}, .offset = -claimed});
+  Evidence evidence = from_probability({.successes = inconsistent, .trials = draws_made}, -claimed);
   evidence.quantity = "probability of an inconsistent draw";
   if (claimed != 0) evidence.quantity += fmt::format(", less {:g},", claimed);
   if (inconsistent > 0) {

@@ -87,64 +87,26 @@ Evidence from_distance(std::span<const double> x, std::span<const double> y) {
   return evidence;
 }
 
-double clamp_unit(double p) { return std::clamp(p, 0.0, 1.0); }
-
-/// theta = |P(no point) - declared|; exact binomial at both ends of the declared error.
-Evidence from_proportion(stats::Successes missing, const DeclaredLaw& declared) {
-  const double low = declared.missing - declared.missing_error;
-  const double high = declared.missing + declared.missing_error;
-  const auto at = [=](double theta) {
-    // "at most theta": the mass lies within [low - theta, high + theta].
-    const TestResult above = stats::binomial(missing, clamp_unit(high + theta));
-    const TestResult below = stats::binomial(missing, clamp_unit(low - theta));
-    TestResult result = above;
-    result.log_p_upper =
-        std::min(0.0, std::numbers::ln2 + std::min(above.log_p_upper, below.log_p_lower));
-    // "at least theta": it lies beyond one of the nearer ends, if probabilities reach there.
-    const double upper_end = low + theta;
-    const double lower_end = high - theta;
-    const double not_above =
-        upper_end > 1 ? -HUGE_VAL : stats::binomial(missing, clamp_unit(upper_end)).log_p_lower;
-    const double not_below =
-        lower_end < 0 ? -HUGE_VAL : stats::binomial(missing, clamp_unit(lower_end)).log_p_upper;
-    result.log_p_lower = std::max({not_above, not_below, std::numeric_limits<double>::lowest()});
-    return result;
-  };
-  const auto interval = [=](double confidence) -> Interval {
-    const Interval p = stats::clopper_pearson(missing, confidence);
-    return {std::max({0.0, p.low - high, low - p.high}), std::max(p.high - low, high - p.low),
-            confidence};
-  };
-  const double share = static_cast<double>(missing.successes) / static_cast<double>(missing.trials);
-  return {.estimate = std::abs(share - declared.missing), .at = at, .interval = interval};
-}
-
 stats::TwoValued no_point_or_point(const Points& points) {
   return {.range = {0, 1}, .high = {.successes = points.missing(), .trials = points.draws}};
 }
 
-/// theta = |difference of the probabilities of no point|.
-Evidence from_proportions(const Points& x, const Points& y) {
+/// theta is the difference of the probabilities of no point.
+Evidence from_probabilities(const Points& x, const Points& y) {
   const stats::TwoValued one = no_point_or_point(x);
   const stats::TwoValued other = no_point_or_point(y);
-  const auto at = [=](double theta) {
-    const TestResult above = stats::two_valued_contrast(one, other, {.scale = 1, .offset = theta});
-    const TestResult below = stats::two_valued_contrast(one, other, {.scale = 1, .offset = -theta});
-    TestResult result = above;
-    result.log_p_upper =
-        std::min(0.0, std::numbers::ln2 + std::min(above.log_p_upper, below.log_p_lower));
-    result.log_p_lower = std::max(above.log_p_lower, below.log_p_upper);
-    return result;
-  };
-  const auto interval = [=](double confidence) -> Interval {
-    const Interval d = stats::two_valued_difference_interval(one, other, confidence);
-    return {std::max({0.0, d.low, -d.high}), std::max(std::abs(d.low), std::abs(d.high)),
-            confidence};
-  };
   const auto share = [](const Points& p) {
     return static_cast<double>(p.missing()) / static_cast<double>(p.draws);
   };
-  return {.estimate = std::abs(share(x) - share(y)), .at = at, .interval = interval};
+  return {.estimate = share(x) - share(y),
+          .at =
+              [=](double theta) {
+                return stats::two_valued_contrast(one, other, {.scale = 1, .offset = theta});
+              },
+          .interval =
+              [=](double confidence) {
+                return stats::two_valued_difference_interval(one, other, confidence);
+              }};
 }
 
 // Bound on the rounding of ln p.
@@ -296,7 +258,8 @@ Evidence points_against_law(const Points& points, const DeclaredLaw& declared) {
       stats::ks_distance(points.sorted, stats::Probabilities{values}), declared.error);
   if (declared.missing == 0 && points.missing() == 0) return rest;
   const stats::Successes missing{.successes = points.missing(), .trials = points.draws};
-  return larger_of(rest, {from_proportion(missing, declared), masses_without_a_point});
+  const Evidence excess = from_probability(missing, -declared.missing, declared.missing_error);
+  return larger_of(rest, {absolute(excess), masses_without_a_point});
 }
 
 Evidence points_against_points(const Points& x, const Points& y) {
@@ -304,7 +267,7 @@ Evidence points_against_points(const Points& x, const Points& y) {
   require_points(y);
   const Evidence rest = from_distance(x.sorted, y.sorted);
   if (!x.of_a_sampler && !y.of_a_sampler) return rest;
-  return larger_of(rest, {from_proportions(x, y), masses_without_a_point});
+  return larger_of(rest, {absolute(from_probabilities(x, y)), masses_without_a_point});
 }
 
 std::vector<std::uint64_t> counts_in(const stats::SampledCells& cells, const Seen& seen,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace assay::harness {
 namespace {
@@ -30,7 +31,54 @@ double end_of(const std::function<bool(double)>& kept, const Whereabouts& around
   return inside;
 }
 
+constexpr double log_of_impossible = std::numeric_limits<double>::lowest();
+
+/// log_p_upper of "q is at most `most`"; no probability is below 0.
+double log_p_at_most(const stats::Successes& seen, double most) {
+  return most < 0 ? log_of_impossible : stats::binomial(seen, std::min(most, 1.0)).log_p_upper;
+}
+
+double log_p_at_least(const stats::Successes& seen, double least) {
+  return least > 1 ? log_of_impossible : stats::binomial(seen, std::max(least, 0.0)).log_p_lower;
+}
+
 }  // namespace
+
+Evidence from_probability(const stats::Successes& seen, double offset, double error) {
+  const auto successes = static_cast<double>(seen.successes);
+  const auto trials = static_cast<double>(seen.trials);
+  const auto at = [=](double theta) {
+    const double q = theta - offset;
+    return stats::TestResult{
+        .statistic = successes,
+        .distribution = {.family = "binomial", .parameters = {trials, std::clamp(q, 0.0, 1.0)}},
+        .log_p_lower = log_p_at_least(seen, q - error),
+        .log_p_upper = log_p_at_most(seen, q + error)};
+  };
+  const auto interval = [=](double confidence) -> stats::Interval {
+    const stats::Interval q = stats::clopper_pearson(seen, confidence);
+    return {q.low + offset - error, q.high + offset + error, confidence};
+  };
+  return {.estimate = successes / trials + offset, .at = at, .interval = interval};
+}
+
+Evidence absolute(const Evidence& of_theta) {
+  const auto at = [at = of_theta.at](double theta) {
+    const stats::TestResult above = at(theta);
+    const stats::TestResult below = at(-theta);
+    stats::TestResult result = above;
+    result.log_p_upper =
+        std::min(0.0, std::numbers::ln2 + std::min(above.log_p_upper, below.log_p_lower));
+    result.log_p_lower = std::max(above.log_p_lower, below.log_p_upper);
+    return result;
+  };
+  const auto interval = [interval = of_theta.interval](double confidence) -> stats::Interval {
+    const stats::Interval of = interval(confidence);
+    return {std::max({0.0, of.low, -of.high}), std::max(std::abs(of.low), std::abs(of.high)),
+            confidence};
+  };
+  return {.estimate = std::abs(of_theta.estimate), .at = at, .interval = interval};
+}
 
 stats::Interval interval_by_inversion(const std::function<stats::TestResult(double)>& at,
                                       const Whereabouts& around, double confidence) {

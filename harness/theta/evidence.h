@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "stats/means/binomial.h"
 #include "stats/tails/test_result.h"
 
 namespace assay::harness {
@@ -27,6 +28,14 @@ struct Evidence {
   bool distance = false;  ///< Theta cannot be negative: `==` has one direction.
   bool exact = false;     ///< The estimate has no error, as with costs that never vary.
 };
+
+/// Evidence about theta = q + offset, where q is the probability of a success. The offset may be
+/// off by `error`. Exact binomial tests at both ends of the error, and Clopper and Pearson's
+/// interval.
+Evidence from_probability(const stats::Successes& seen, double offset, double error = 0);
+
+/// Evidence about |theta|, a distance.
+Evidence absolute(const Evidence& of_theta);
 
 /// A part that is the same for every value.
 inline std::function<std::string(double)> always(std::string part) {
