@@ -243,10 +243,17 @@ TableRow row_of(const reports::ReportFormat& format) {
           fmt::format("  Write it by `--report {}=FILE.{}`.\n", format.kind, format.ending)};
 }
 
+/// Equal rows stand once, and those of one name together.
 template <class Rows>
 Table table_of(const char* plural, const char* singular, const Rows& rows) {
   Table table{plural, singular, {}};
-  for (const auto& row : rows) table.rows.push_back(row_of(row));
+  for (const auto& each : rows) {
+    TableRow row = row_of(each);
+    if (std::ranges::count(table.rows, row) > 0) continue;
+    const auto last = std::find_if(table.rows.rbegin(), table.rows.rend(),
+                                   [&](const TableRow& other) { return other.name == row.name; });
+    table.rows.insert(last == table.rows.rend() ? table.rows.end() : last.base(), std::move(row));
+  }
   return table;
 }
 

@@ -21,6 +21,8 @@ struct TableRow {
   std::string name;
   std::string summary;
   std::string page;  ///< what else there is to say, lines of at most 80 columns
+
+  bool operator==(const TableRow&) const = default;
 };
 
 struct Table {
