@@ -208,31 +208,32 @@ Examples:
   CheckArguments& given = command.arguments;
   options.add({.name = "CLAIM", .needed = "a claim"}, given.claim, read_claim,
               "the claim, in quotes");
-  options.add({"--detect", "X"}, given.detect,
-              "the effect that must not pass, as 0.5% or 0.002; default none: 1000 observations; "
-              "of laws 0.05");
-  options.add({"--allow", "X"}, given.allow,
-              "the effect that may be there, as 0.5% or 0.002; default 0");
-  options.add(
-      {"--test", "METHOD", Replay::middle, "", method_names()}, given.method,
+  options.add_key(
+      {"--detect", "X"}, given.keys,
+      "the effect that must not pass, as 0.5% or 0.002; default none: 1000 observations; "
+      "of laws 0.05");
+  options.add_key({"--allow", "X"}, given.keys,
+                  "the effect that may be there, as 0.5% or 0.002; default 0");
+  options.add_key(
+      {"--test", "METHOD", Replay::middle, "", method_names()}, given.keys,
       "force a method, one of " + listed(method_names()) + "; default chosen from the pilot");
-  options.add(
-      {"--over", "SWEEP"}, given.over,
+  options.add_key(
+      {"--over", "SWEEP"}, given.keys,
       "of a slope: a parameter and its values, as '{primaries: [8, 16, 32]}'; default none");
-  options.add({"--reference", "R"}, given.reference,
-              "of a bias or an efficiency: the truth, as 6.36, '6.36 +- 0.01' or an estimator; "
-              "default what the plugin knows");
-  options.add({"--cost", "KIND"}, given.cost, "rays, samples or seconds; default rays");
+  options.add_key({"--reference", "R"}, given.keys,
+                  "of a bias or an efficiency: the truth, as 6.36, '6.36 +- 0.01' or an estimator; "
+                  "default what the plugin knows");
+  options.add_key({"--cost", "KIND"}, given.keys, "rays, samples or seconds; default rays");
   options.choice("--paired", given.paired, true,
                  "of the means of two images: both draw the same random numbers, and their "
                  "differences are tested; default their own");
-  options.add({"--budget", "B"}, given.budget,
-              "the most it may cost, as 1e7 primaries or 30s of CPU time; default none");
+  options.add_key({"--budget", "B"}, given.keys,
+                  "the most it may cost, as 1e7 primaries or 30s of CPU time; default none");
   add_estimators(options, given.estimators);
   options.add({"--primaries", "N"}, given.primaries, at_least(1),
               "primary estimates of an observation; default chosen from the pilot");
-  options.add({"--secondaries", "M"}, given.secondaries, at_least(2),
-              "number of observations, 2 or more; default what --detect needs");
+  options.add_key({"--secondaries", "M"}, given.keys,
+                  "number of observations, 2 or more; default what --detect needs");
   add_running(options, command,
               {.seed = "seed of all streams, or a fresh one; default 1",
                .alpha = "probability that a claim that holds fails, in [1e-9, 0.5]; default 0.01"});
@@ -290,11 +291,11 @@ Examples:
   options.choice(
       "--law", given.question, ImageQuestion::law,
       "do pictures have one law, as of one renderer with other seeds? exact for any noise");
-  options.add(
-      {"--detect", "X"}, given.detect,
+  options.add_key(
+      {"--detect", "X"}, given.keys,
       "the difference over the whole picture that must not pass, as 0.5% or 0.002; default none");
-  options.add({"--allow", "X"}, given.allow,
-              "the difference that may be there, as 0.5% or 0.002; default 0");
+  options.add_key({"--allow", "X"}, given.keys,
+                  "the difference that may be there, as 0.5% or 0.002; default 0");
   options.add(
       {"--within", "X"}, given.within,
       "prove that the pictures differ by less, as 1% or 0.002; default test that they are equal");

@@ -9,8 +9,8 @@
 #include "harness/calibration/calibrate.h"
 #include "harness/command/commands.h"
 #include "harness/command/init.h"
+#include "harness/command/replay.h"
 #include "harness/record/merge.h"
-#include "harness/record/replay.h"
 #include "harness/suite/suite.h"
 
 namespace assay::harness {

@@ -13,12 +13,11 @@
 #include "harness/base/text_hash.h"
 #include "harness/command/describe.h"
 #include "harness/command/plan_table.h"
+#include "harness/command/replay.h"
 #include "harness/command/run.h"
 #include "harness/ranks/ranks.h"
 #include "harness/record/output.h"
 #include "harness/record/record_of.h"
-#include "harness/record/replay.h"
-#include "harness/run/unit_cost.h"
 #include "harness/sampling/checkpoint.h"
 #include "harness/suite/suite.h"
 #include "reports/report_formats.h"
@@ -85,9 +84,8 @@ int plan_suites(const std::vector<Suite>& suites, const RunOptions& options, boo
   if (selects_nothing(suites, options.selection)) return nothing_ran;
   const std::unique_ptr<Progress> progress = make_progress(quiet);
   const PlannedRun planned = plan_run(suites, options, *progress);
-  const UnitCosts costs = measure_costs(planned, executor_of(options), *progress);
-  fmt::print("{}", plan_text(planned, costs));
-  return plan_exit_code(planned, costs);
+  fmt::print("{}", plan_text(planned));
+  return plan_exit_code(planned);
 }
 
 int list_renders(const std::vector<Suite>& suites, const RunOptions& options, bool quiet) {

@@ -59,6 +59,11 @@ class Options {
     const auto as_typed = [](const std::string& text, const std::string&) { return text; };
     add(name, target, as_typed, about);
   }
+  /// An option whose text goes to `keys`, under its name.
+  void add_key(const OptionName& name, TestKeys& keys, const std::string& about) {
+    add_row(name, about, false,
+            [&keys, key = name.name.substr(2)](const std::string& text) { keys[key] = text; });
+  }
   void flag(const std::string& name, const std::string& about, bool& target);
   /// A flag that chooses one answer to a question of the tests; another answer's flag refuses it.
   template <class Target>

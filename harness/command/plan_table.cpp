@@ -36,32 +36,31 @@ std::string count_of(double count) {
       reports::count_text(static_cast<std::uint64_t>(std::llround(count))));
 }
 
-/// The cost of a test's last look, or of a pool.
+/// The cost of a test's last look, or of several streams.
 struct Total {
   double primaries = 0;
   double rays = 0;
   double seconds = 0;
   bool known = true;  ///< rays and seconds are complete
 
-  void add(const Pool& pool, double secondaries, const UnitCosts& costs) {
-    primaries += secondaries *
-                 static_cast<double>(primaries_of_observation(*pool.setup(), pool.primaries()));
-    const auto found = costs.find(&pool);
-    if (found != costs.end() && std::holds_alternative<UnitCost>(found->second)) {
-      const UnitCost& cost = std::get<UnitCost>(found->second);
-      rays += secondaries * cost.rays;
-      seconds += secondaries * cost.seconds;
-    } else if (!pool.setup()->observations()) {
+  void add(const Subject& side, std::uint64_t primaries_each, std::uint64_t secondaries,
+           const Pilots& pilots) {
+    const auto count = static_cast<double>(secondaries);
+    primaries += count * static_cast<double>(primaries_of_observation(*side.setup, primaries_each));
+    if (const auto cost = observation_cost(side, primaries_each, pilots)) {
+      rays += count * cost->rays;
+      seconds += count * cost->seconds;
+    } else if (!side.setup->observations()) {
       known = false;
     }
   }
 };
 
-void add_last_look(const TestWork& work, const UnitCosts& costs, Total& total) {
-  const std::uint64_t last = work.outcome.plan.most_secondaries();
-  for (std::size_t i = 0; i < work.pools.size(); ++i) {
-    const std::uint64_t secondaries = work.outcome.question.subjects[i].secondaries(last);
-    total.add(*work.pools[i], static_cast<double>(secondaries), costs);
+void add_last_look(const TestOutcome& test, const Pilots& pilots, Total& total) {
+  const std::uint64_t last = test.plan.most_secondaries();
+  for (std::size_t i = 0; i < test.question.subjects.size(); ++i) {
+    const Subject& side = test.question.subjects[i];
+    total.add(side, test.plan.primaries[i], side.secondaries(last), pilots);
   }
 }
 
@@ -144,26 +143,15 @@ double not_ok(const TestOutcome& test, const Forecast& foreseen) {
   return static_cast<double>(test.question.channel_count()) * (test.place.share.alpha + beta);
 }
 
-/// Why the test will be an error: it has no plan, or an estimator stopped while its cost was
-/// measured; "" if unknown.
-std::string trouble_of(const TestWork& work, const UnitCosts& costs) {
-  const TestOutcome& test = work.outcome;
-  if (!test.plan.error.empty()) return test.plan.error;
-  if (!test.plan.pilot_error.empty()) return test.plan.pilot_error;
-  for (std::size_t i = 0; i < work.pools.size(); ++i) {
-    const auto found = costs.find(work.pools[i].get());
-    if (found == costs.end() || !std::holds_alternative<Fault>(found->second)) continue;
-    return sentence_of(std::get<Fault>(found->second), test.question.subjects[i].estimator->name,
-                       " when its cost was measured");
-  }
-  return "";
+/// Why the test will be an error; "" if that is not known.
+std::string trouble_of(const TestOutcome& test) {
+  return test.plan.error.empty() ? test.plan.pilot_error : test.plan.error;
 }
 
-Row row_of(const TestWork& work, const Pilots& pilots, const UnitCosts& costs) {
-  const TestOutcome& test = work.outcome;
+Row row_of(const TestOutcome& test, const Pilots& pilots) {
   const Plan& plan = test.plan;
   Total total;
-  add_last_look(work, costs, total);
+  add_last_look(test, pilots, total);
   const Forecast expected = forecast(test, pilots);
   Row row{.name = test.question.test->name, .notes = gate_notes(plan.gates)};
   row.cells = {plan.method.name,
@@ -185,7 +173,7 @@ Row row_of(const TestWork& work, const Pilots& pilots, const UnitCosts& costs) {
   row.not_ok = not_ok(test, expected);
   if (!plan.caution.empty()) row.notes.push_back(plan.caution);
   if (!plan.invalid.empty()) row.notes.push_back("invalid: " + plan.invalid.text);
-  if (const std::string trouble = trouble_of(work, costs); !trouble.empty()) {
+  if (const std::string trouble = trouble_of(test); !trouble.empty()) {
     row.notes.push_back("error: " + trouble);
   }
   return row;
@@ -237,7 +225,7 @@ bool is_skipped(const SuiteRun& run) {
   return !run.untested.empty() && run.untested.front().verdict == reports::Verdict::skipped;
 }
 
-void write(Page& page, const SuiteRun& run, const UnitCosts& costs) {
+void write(Page& page, const SuiteRun& run) {
   const Suite& suite = run.suite;
   page.paragraph(suite.name + (suite.file.empty() ? "" : " (" + suite.file + ")"));
   page.paragraph(fmt::format("alpha {}, beta {}, seed {}", suite.alpha, suite.beta, run.seed));
@@ -256,7 +244,7 @@ void write(Page& page, const SuiteRun& run, const UnitCosts& costs) {
     return;
   }
   std::vector<Row> rows;
-  for (const TestWork& work : run.tests) rows.push_back(row_of(work, run.pilots, costs));
+  for (const TestWork& work : run.tests) rows.push_back(row_of(work.outcome, run.pilots));
   const auto widths = widths_of(rows);
   page.line(line_of(headings, widths));
   for (const Row& row : rows) {
@@ -274,30 +262,28 @@ void write(Page& page, const SuiteRun& run, const UnitCosts& costs) {
   page.blank();
 }
 
-/// The most that can be drawn: each pool to its largest last look.
-Total total_of(const PlannedRun& planned, const UnitCosts& costs) {
-  Total total;
-  for (const auto& pool : planned.pools.all()) {
-    total.add(*pool, static_cast<double>(pool->most_marked()), costs);
-  }
-  return total;
-}
-
-/// Expected cost if theta = 0 in every claim: each pool to the largest of its tests' means.
-Total expected_total(const PlannedRun& planned, const UnitCosts& costs) {
-  std::map<const Pool*, std::uint64_t> most;
+/// What all tests draw, each stream to the largest of its tests' sizes.
+template <class SizeOf>
+Total total_of(const PlannedRun& planned, const SizeOf& size_of) {
+  std::map<const Pool*, Total> streams;
   for (const auto& run : planned.suites) {
     for (const TestWork& work : run->tests) {
-      const std::uint64_t expected = expected_secondaries(work.outcome, run->pilots);
+      const TestOutcome& test = work.outcome;
       for (std::size_t i = 0; i < work.pools.size(); ++i) {
-        std::uint64_t& of_pool = most[work.pools[i].get()];
-        of_pool = std::max(of_pool, work.outcome.question.subjects[i].secondaries(expected));
+        const Subject& side = test.question.subjects[i];
+        Total whole;
+        whole.add(side, test.plan.primaries[i], side.secondaries(size_of(test, run->pilots)),
+                  run->pilots);
+        Total& most = streams[work.pools[i].get()];
+        if (whole.primaries > most.primaries) most = whole;
       }
     }
   }
   Total total;
-  for (const auto& [pool, secondaries] : most) {
-    total.add(*pool, static_cast<double>(secondaries), costs);
+  for (const auto& [pool, each] : streams) {
+    total.primaries += each.primaries;
+    total.rays += each.rays;
+    total.seconds += each.seconds;
   }
   return total;
 }
@@ -307,24 +293,29 @@ std::string total_text(const Total& total) {
                      count_of(total.rays), reports::plain_spaces(reports::duration(total.seconds)));
 }
 
-void write_totals(Page& page, const PlannedRun& planned, const UnitCosts& costs) {
+void write_totals(Page& page, const PlannedRun& planned) {
   std::size_t tests = 0;
   Total separate;
   for (const auto& run : planned.suites) {
     tests += run->tests.size();
-    for (const TestWork& work : run->tests) add_last_look(work, costs, separate);
+    for (const TestWork& work : run->tests) add_last_look(work.outcome, run->pilots, separate);
   }
   page.paragraph(fmt::format("{} test{}, each by itself to its last look: {}.", tests,
                              tests == 1 ? "" : "s", total_text(separate)));
+  const auto most = [](const TestOutcome& test, const Pilots& /*pilots*/) {
+    return test.plan.most_secondaries();
+  };
   page.paragraph(fmt::format(
       "Tests of one estimator share observations: at most {} in all. Most tests end at an earlier "
       "look: about {} if every claim holds exactly (tests whose mean is not known counted in "
       "full).",
-      total_text(total_of(planned, costs)), total_text(expected_total(planned, costs))));
+      total_text(total_of(planned, most)), total_text(total_of(planned, expected_secondaries))));
   page.paragraph(
       "primaries: of one secondary estimate. last: secondaries of each source at the last look, of "
       "a file all its rows where these are fewer. in all, rays, CPU time: primaries of all sources "
-      "up to the last look, of images those of every pixel and component, and what they cost. "
+      "up to the last look, of images those of every pixel and component, and what they cost by "
+      "the "
+      "pilot. "
       "effect: what the last look finds (or shows, of within and of < and >) with probability 1 - "
       "beta. holds, is off: probabilities if the claim holds exactly, or is off by the effect, and "
       "the mean part of the last look that is drawn; by the normal law and the pilot's spread, "
@@ -333,14 +324,14 @@ void write_totals(Page& page, const PlannedRun& planned, const UnitCosts& costs)
 
 }  // namespace
 
-std::string plan_text(const PlannedRun& planned, const UnitCosts& costs) {
+std::string plan_text(const PlannedRun& planned) {
   Page page;
-  for (const auto& run : planned.suites) write(page, *run, costs);
-  write_totals(page, planned, costs);
+  for (const auto& run : planned.suites) write(page, *run);
+  write_totals(page, planned);
   return page.take();
 }
 
-int plan_exit_code(const PlannedRun& planned, const UnitCosts& costs) {
+int plan_exit_code(const PlannedRun& planned) {
   bool any = false;
   bool bad = false;
   bool skipped = false;
@@ -355,7 +346,7 @@ int plan_exit_code(const PlannedRun& planned, const UnitCosts& costs) {
       const TestOutcome& test = work.outcome;
       any = true;
       const Expectation expect = test.question.test->expect;
-      bad = bad || (!trouble_of(work, costs).empty() && expect != Expectation::error) ||
+      bad = bad || (!trouble_of(test).empty() && expect != Expectation::error) ||
             (!test.plan.invalid.empty() && expect != Expectation::invalid);
     }
   }

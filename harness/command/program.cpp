@@ -19,8 +19,8 @@
 #include "harness/command/cli.h"
 #include "harness/command/commands.h"
 #include "harness/command/environment.h"
+#include "harness/command/replay.h"
 #include "harness/ranks/ranks.h"
-#include "harness/record/replay.h"
 #include "harness/run/planned_run.h"
 #include "harness/suite/suite.h"
 #include "reports/words/text.h"
@@ -102,36 +102,15 @@ std::vector<Suite> load(const std::vector<std::string>& files,
   return suites;
 }
 
-/// A command that ranks can share runs these.
-struct Loaded {
-  std::vector<Suite> suites;
-  RunOptions options;
-};
-
-Loaded loaded(const RunCommand& command) {
+Loaded run_of(const RunCommand& command) {
   Loaded all{load(command.suites, command.assignments), command.options};
   all.options.assigns = !command.assignments.empty();
   take_shard_from(system_environment, all.options);
   return all;
 }
 
-Loaded loaded(const CheckCommand& command) {
+Loaded run_of(const CheckCommand& command) {
   return {{suite_of_claim(command.arguments)}, command.options};
-}
-
-int act(const RunCommand& command) {
-  const auto [suites, options] = loaded(command);
-  return run_suites(suites, options, command.output);
-}
-
-int act(const PlanCommand& command) {
-  const auto act = command.list_renders ? list_renders : plan_suites;
-  return act(load(command.suites, command.assignments), command.options, command.output.quiet);
-}
-
-int act(const CheckCommand& command) {
-  const auto [suites, options] = loaded(command);
-  return run_suites(suites, options, command.output);
 }
 
 /// Keeps freed memory in the process. Pictures allocate and free tens of megabytes, and new pages
@@ -141,9 +120,20 @@ void keep_freed_memory() {
   mallopt(M_TRIM_THRESHOLD, -1);
 }
 
-int act(const ImagesCommand& command) {
+Loaded run_of(const ImagesCommand& command) {
   keep_freed_memory();
-  return run_suites({suite_of_images(command.arguments)}, command.options, command.output);
+  return {{suite_of_images(command.arguments)}, command.options};
+}
+
+template <class Sampling>
+int act(const Sampling& command) {
+  const auto [suites, options] = run_of(command);
+  return run_suites(suites, options, command.output);
+}
+
+int act(const PlanCommand& command) {
+  const auto act = command.list_renders ? list_renders : plan_suites;
+  return act(load(command.suites, command.assignments), command.options, command.output.quiet);
 }
 
 int act(const ListCommand& command) {
@@ -196,6 +186,13 @@ int guarded(const std::vector<std::string>& arguments, Command& command, Message
 
 }  // namespace
 
+Loaded loaded(const Command& command) {
+  if (const auto* run = std::get_if<RunCommand>(&command)) return run_of(*run);
+  if (const auto* check = std::get_if<CheckCommand>(&command)) return run_of(*check);
+  if (const auto* images = std::get_if<ImagesCommand>(&command)) return run_of(*images);
+  refuse({}, "this command runs no test");
+}
+
 int program(const std::vector<std::string>& arguments, Messages* ranks) {
   // The program starts itself with this word, to keep a library's crash out of the run.
   if (!arguments.empty() && arguments.front() == library_host_word) {
@@ -224,9 +221,7 @@ int program(const std::vector<std::string>& arguments, Messages* ranks) {
 int program_of_rank(const std::vector<std::string>& arguments, Messages& ranks) {
   begin_process();
   serve(ranks, [&](std::optional<std::uint64_t> seed) {
-    const Command command = parse_command_line(arguments);
-    const auto* const check = std::get_if<CheckCommand>(&command);
-    Loaded all = check != nullptr ? loaded(*check) : loaded(std::get<RunCommand>(command));
+    Loaded all = loaded(parse_command_line(arguments));
     all.options.seed = seed;
     const auto run = std::make_shared<const PlannedRun>(prepare_run(all.suites, all.options));
     return PreparedRank{identity_of(all.suites, all.options), setups_of(*run),

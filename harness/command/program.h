@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "estimators/core/value.h"
+#include "harness/command/cli.h"
 
 namespace assay::harness {
 
@@ -15,7 +15,15 @@ std::string failure_text(const InputError& error, const std::string& claim);
 /// pasted.
 std::string in_lines(const std::string& sentence);
 
-class Messages;
+/// A run that a command asks for.
+struct Loaded {
+  std::vector<Suite> suites;
+  RunOptions options;
+};
+
+/// Reads the suites of `run`, `check` or `images`. InputError for any mistake in them, and for
+/// other commands.
+Loaded loaded(const Command& command);
 
 /// The whole program, or rank 0 of several: parses, acts, and turns every exception into one clear
 /// message on standard error. Returns the exit code (2 for mistakes and trouble, 130 when

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "estimators/estimator.h"
 #include "harness/base/refuse.h"
 #include "harness/command/option_values.h"
 #include "harness/pilot/pilot.h"
@@ -62,60 +63,21 @@ std::uint64_t seed_of(const ClaimBudget& budget) {
   return given == nullptr || *given == '\0' ? budget.seed : harness::read_seed(given, "ASSAY_SEED");
 }
 
-class Callable final : public Estimator {
- public:
-  explicit Callable(const Source& source) : source_(source) {}
-
-  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
-                 Cost& cost) override {
-    cost.samples += primaries;
-    source_.draw(random, out);
-    if (!source_.averages || primaries == 1) return;
-    double sum = out[0];
-    for (std::uint64_t i = 1; i < primaries; ++i) {
-      source_.draw(random, out);
-      sum += out[0];
-    }
-    out[0] = sum / static_cast<double>(primaries);
-  }
-
- private:
-  const Source& source_;
-};
-
-class CallableSetup final : public Setup {
- public:
-  explicit CallableSetup(Source source) : source_(std::move(source)) {
-    entry_.information = {.name = "googletest",
+Entry entry_of(bool averages) {
+  return {.information = {.name = "googletest",
                           .summary = "a callable",
                           .description = "A callable of a test.",
-                          .averages = source_.averages};
-  }
-
-  std::vector<Channel> channels() const override {
-    if (source_.channels == 1) return {{.name = "value"}};
-    std::vector<Channel> channels;
-    for (std::size_t i = 1; i <= source_.channels; ++i) {
-      channels.push_back({.name = "value" + std::to_string(i)});
-    }
-    return channels;
-  }
-  std::unique_ptr<Estimator> make() const override { return std::make_unique<Callable>(source_); }
-
-  const Entry& entry() const { return entry_; }
-
- private:
-  Source source_;
-  Entry entry_;
-};
+                          .averages = averages}};
+}
 
 /// `stream` separates its random numbers from those of the binary's other sources.
 harness::PreparedEstimator prepared(const Source& source, const std::string& stream) {
-  const auto setup = std::make_shared<const CallableSetup>(source);
+  static const Entry averaging = entry_of(true);
+  static const Entry whole = entry_of(false);
   return {.name = source.name,
           .listed = source.name,
-          .entry = &setup->entry(),
-          .setup = setup,
+          .entry = source.averages ? &averaging : &whole,
+          .setup = source.setup,
           .key_plugin = "googletest",
           .key_parameters = stream,
           .primaries = source.averages ? std::optional<std::uint64_t>() : 1,
@@ -125,8 +87,7 @@ harness::PreparedEstimator prepared(const Source& source, const std::string& str
 /// One claim with its sources and margins.
 struct Asked {
   std::map<std::string, harness::PreparedEstimator> estimators = {};
-  std::optional<std::string> detect = {};
-  std::optional<std::string> allow = {};
+  harness::TestKeys keys = {};
 };
 
 Asked asked(const std::vector<Part>& parts, const std::string& stream) {
@@ -139,7 +100,7 @@ Asked asked(const std::vector<Part>& parts, const std::string& stream) {
       if (!is_new) harness::refuse({}, "two sources are named `{}`", source->name);
     } else {
       const Margin& margin = std::get<Margin>(part);
-      (margin.detects ? result.detect : result.allow) = margin.text;
+      result.keys[margin.detects ? "detect" : "allow"] = margin.text;
     }
   }
   return result;
@@ -152,8 +113,7 @@ reports::Test tested(const std::string& claim, const Asked& asked, const ClaimBu
               .stem = "googletest",
               .alpha = budget.alpha / static_cast<double>(budget.claims),
               .beta = budget.beta};
-  suite.tests = {
-      harness::test_of_claim({.claim = claim, .detect = asked.detect, .allow = asked.allow})};
+  suite.tests = {harness::test_of("check", claim, asked.keys)};
   const harness::Question question =
       harness::ask_as_written(suite.tests[0], asked.estimators, seed);
   const harness::Pilots pilots = harness::pilots_of({question}, seed, harness::threads());
@@ -211,15 +171,21 @@ testing::AssertionResult judged(const std::string& claim, const std::vector<Part
 }  // namespace
 
 Source primary(const std::string& name, std::function<double(Stream&)> estimate) {
-  return {.name = name,
-          .draw = [estimate = std::move(estimate)](
-                      Stream& random, std::span<double> out) { out[0] = estimate(random); },
-          .averages = true};
+  return {name, averaging({.name = "value"}, std::move(estimate)), true};
 }
 
 Source secondary(const std::string& name, std::size_t channels,
                  std::function<void(Stream&, std::span<double>)> estimate) {
-  return {.name = name, .draw = std::move(estimate), .channels = channels};
+  SetupParts parts{
+      .make = estimating([estimate = std::move(estimate)](Stream& random, std::uint64_t primaries,
+                                                          std::span<double> out, Cost& cost) {
+        estimate(random, out);
+        cost.samples += primaries;
+      })};
+  for (std::size_t i = 1; i <= channels; ++i) {
+    parts.channels.push_back({.name = channels == 1 ? "value" : "value" + std::to_string(i)});
+  }
+  return {name, setup_of(std::move(parts)), false};
 }
 
 Margin detect(const std::string& text) { return {true, text}; }

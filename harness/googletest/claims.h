@@ -16,6 +16,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <variant>
@@ -23,23 +24,26 @@
 
 #include "estimators/stream.h"
 
+namespace assay {
+class Setup;
+}
+
 namespace assay::googletest {
 
 /// A source under its name in the claim. Several threads call the callable at a time; it must be a
 /// function of its stream alone.
 struct Source {
   std::string name;
-  /// Writes one observation, a number for each channel.
-  std::function<void(Stream&, std::span<double>)> draw;
-  std::size_t channels = 1;  ///< named value, or value1, value2, …
-  bool averages = false;     ///< True if an observation may be the mean of several draws.
+  std::shared_ptr<const Setup> setup;
+  bool averages;  ///< True if an observation may be the mean of several draws.
 };
 
 /// A source of primaries: each call draws one. Observations are means of as many as the pilot asks
 /// for.
 Source primary(const std::string& name, std::function<double(Stream&)> estimate);
 
-/// A source of secondaries: each call draws one, with this number of channels.
+/// A source of secondaries: each call draws one, with this number of channels. They are named
+/// value, or value1, value2, …
 Source secondary(const std::string& name, std::size_t channels,
                  std::function<void(Stream&, std::span<double>)> estimate);
 

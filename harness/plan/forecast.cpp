@@ -187,6 +187,19 @@ Forecast forecast(const TestOutcome& test, const Pilots& pilots) {
   return found;
 }
 
+std::optional<PilotedCost> observation_cost(const Subject& subject, std::uint64_t primaries,
+                                            const Pilots& pilots) {
+  const Pilot* pilot = averaged_pilot_of(subject, pilots);
+  if (pilot == nullptr) pilot = pilot_of(subject, pilots);
+  if (pilot == nullptr || pilot->sums == nullptr || pilot->sums->count == 0) return {};
+  const Summary& sums = *pilot->sums;
+  const double part =
+      static_cast<double>(primaries) / static_cast<double>(sums.count * pilot->primaries);
+  return PilotedCost{.rays = part * static_cast<double>(sums.cost.rays()),
+                     .samples = part * static_cast<double>(sums.cost.samples),
+                     .seconds = part * sums.seconds};
+}
+
 std::uint64_t expected_secondaries(const TestOutcome& test, const Pilots& pilots) {
   Forecast found;
   foresee(test, pilots, found);

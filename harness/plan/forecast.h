@@ -31,6 +31,17 @@ struct Forecast {
 /// Several channels are counted as if never two of them failed together.
 Forecast forecast(const TestOutcome& test, const Pilots& pilots);
 
+/// What an observation costs.
+struct PilotedCost {
+  double rays = 0;
+  double samples = 0;
+  double seconds = 0;  ///< of CPU time
+};
+
+/// By the subject's pilot, of which averages are nearer to an observation. nullopt without a pilot.
+std::optional<PilotedCost> observation_cost(const Subject& subject, std::uint64_t primaries,
+                                            const Pilots& pilots);
+
 /// Expected secondaries of a test whose claim holds; the last look's if that is not known.
 std::uint64_t expected_secondaries(const TestOutcome& test, const Pilots& pilots);
 

@@ -324,17 +324,6 @@ std::string passing_rows(const Suite& suite, const EstimatorEntry& entry) {
   return name == "-" || name == "/dev/stdin" ? "standard input" : "`" + name + "`";
 }
 
-void require_lasting_rows(const Suite& suite, const std::string& record) {
-  for (const EstimatorEntry& entry : suite.estimators) {
-    const std::string source = passing_rows(suite, entry);
-    if (source.empty()) continue;
-    refuse({.file = record},
-           "the data of `{}` came from {} and cannot be read\n  again; write them to a file and "
-           "test that: its record can be replayed",
-           entry.name, source);
-  }
-}
-
 bool shows_order(const Subject& subject) {
   return !is_recorded(subject) && !subject.setup->image();
 }

@@ -46,10 +46,6 @@ stats::Moments as_tested(const Plan& plan, std::size_t subject, std::size_t chan
 /// pipe or device in backquotes; else empty.
 std::string passing_rows(const Suite& suite, const EstimatorEntry& entry);
 
-/// Throws InputError at the record if rows of the suite came from standard input, a pipe or a
-/// device: they cannot be replayed.
-void require_lasting_rows(const Suite& suite, const std::string& record);
-
 // The order of drawn observations shows whether they are independent.
 
 /// True if a subject's observations are drawn one by one, and not as pictures. judge_independence

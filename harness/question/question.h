@@ -23,9 +23,8 @@ struct Subject {
   std::shared_ptr<const Setup> setup;
   std::string purpose = "";  ///< Separates a sampler's streams from its estimator's.
   std::uint32_t copy = 0;
-  std::optional<StreamKey> stream = {};  ///< Given by a record, of a replay.
-  ChannelList channels;                  ///< The channels that the claim is about.
-  bool averages = true;                  ///< True if the variance falls like 1 / primaries.
+  ChannelList channels;  ///< The channels that the claim is about.
+  bool averages = true;  ///< True if the variance falls like 1 / primaries.
   std::optional<ImageShape> image = {};
   /// Owns `estimator` if it is a point of a sweep.
   std::shared_ptr<const PreparedEstimator> own = nullptr;

@@ -203,7 +203,6 @@ std::string image_name(const ImageShape& shape) {
 }
 
 StreamKey stream_of(const Subject& subject, std::uint64_t seed) {
-  if (subject.stream) return *subject.stream;
   return subject.setup->data_stream().value_or(
       key_of(*subject.estimator, seed, subject.copy, subject.purpose));
 }

@@ -73,7 +73,7 @@ std::vector<ChannelPlan> estimator_plan(const Pool& pool, const PreparedEstimato
     }
     return plan;
   }
-  const Pilot* const pilot = pilots.find(estimator.name);  // a replay has none
+  const Pilot* const pilot = pilots.find(estimator.name);  // null if it is read row by row
   const double averaged = estimator.nature().averages ? static_cast<double>(pool.primaries()) : 1;
   for (std::size_t i = 0; i < channels.size(); ++i) {
     if (pilot == nullptr || pilot->moments(i).count < 2) {

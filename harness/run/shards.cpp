@@ -16,13 +16,9 @@ constexpr double slack = 1.1;
 using Prefixes = std::map<PoolIdentity, double>;
 
 /// Rays and samples of an observation.
-double observation_cost(const Subject& subject, std::uint64_t primaries, const Pilots& pilots) {
-  const Pilot* const pilot = pilot_of(subject, pilots);
-  const auto wanted = static_cast<double>(primaries);
-  if (pilot == nullptr || pilot->sums == nullptr || pilot->sums->count == 0) return wanted;
-  const auto counted = static_cast<double>(pilot->sums->cost.rays() + pilot->sums->cost.samples);
-  const auto drawn = static_cast<double>(pilot->sums->count * pilot->primaries);
-  return std::max(1.0, counted / drawn * wanted);
+double price_of(const Subject& subject, std::uint64_t primaries, const Pilots& pilots) {
+  const auto cost = observation_cost(subject, primaries, pilots);
+  return cost ? std::max(1.0, cost->rays + cost->samples) : static_cast<double>(primaries);
 }
 
 Prefixes prefixes_of(const TestOutcome& test, const SuiteRun& run) {
@@ -33,7 +29,7 @@ Prefixes prefixes_of(const TestOutcome& test, const SuiteRun& run) {
     const Subject& side = test.question.subjects[i];
     double& prefix = cost[pool_identity(side, test.plan.primaries[i], run.seed)];
     prefix = std::max(prefix, static_cast<double>(side.secondaries(expected)) *
-                                  observation_cost(side, test.plan.primaries[i], run.pilots));
+                                  price_of(side, test.plan.primaries[i], run.pilots));
   }
   return cost;
 }

@@ -112,15 +112,6 @@ void share_random_numbers(const Suite& suite, std::map<std::string, PreparedEsti
   }
 }
 
-std::map<std::string, PreparedEstimator> prepare_all(const Suite& suite) {
-  std::map<std::string, PreparedEstimator> prepared;
-  for (const EstimatorEntry& entry : suite.estimators) {
-    prepared.emplace(entry.name, prepare(entry, suite.folder));
-  }
-  share_random_numbers(suite, prepared);
-  return prepared;
-}
-
 StreamKey key_of(const PreparedEstimator& estimator, std::uint64_t seed, std::uint32_t copy,
                  const std::string& purpose) {
   const std::string plugin =

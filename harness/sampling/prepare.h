@@ -33,8 +33,6 @@ struct PreparedEstimator {
 /// InputError with plugin, parameter and place for anything that a plugin refuses.
 PreparedEstimator prepare(const EstimatorEntry& entry, const std::string& folder);
 
-std::map<std::string, PreparedEstimator> prepare_all(const Suite& suite);
-
 /// Sides of `paired` claims draw the random numbers of the first of those that they are paired
 /// with, directly or through others.
 void share_random_numbers(const Suite& suite, std::map<std::string, PreparedEstimator>& prepared);

@@ -109,26 +109,22 @@ struct Suite {
 /// … Named scenes replace their names. Parameters of plugins are checked when they are prepared.
 Suite load_suite(const std::string& file);
 
+/// The keys of a test as text, each from the option of its name.
+using TestKeys = std::map<std::string, std::string>;
+
 /// The suite of a single claim from the command line. An estimator is "NAME=PLUGIN[,key=value]…"
 /// with YAML flow values; a plugin that the claim names needs none.
 struct CheckArguments {
   std::string claim;
   std::vector<std::string> estimators = {};
-  std::optional<std::string> detect = {};
-  std::optional<std::string> allow = {};
-  std::optional<std::string> method = {};
   std::optional<std::uint64_t> primaries = {};
-  std::optional<std::uint64_t> secondaries = {};
-  std::optional<std::string> over = {};       ///< YAML flow, as in a suite
-  std::optional<std::string> reference = {};  ///< an estimator or a number
-  std::optional<std::string> cost = {};
-  std::optional<std::string> budget = {};
   bool paired = false;
+  TestKeys keys = {};  ///< The others.
 };
 Suite suite_of_claim(const CheckArguments&);
 
-/// Its only test, without looking up its estimators.
-TestEntry test_of_claim(const CheckArguments&);
+/// A test of `check` or `images`, without looking up its estimators.
+TestEntry test_of(const std::string& command, const std::string& claim, const TestKeys& keys);
 
 /// `--set estimator.key=value`: replaces or adds a parameter in every suite that has the estimator.
 /// InputError if none has.
@@ -190,9 +186,8 @@ struct ImagesArguments {
   bool ignores_nonfinite = false;           ///< Leaves out pixels that are not finite somewhere.
   std::optional<std::string> mask = {};     ///< A picture; where it is 0 pixels are left out.
   std::optional<std::string> samples = {};  ///< For a reference that carries its variance.
-  std::optional<std::string> detect = {};
-  std::optional<std::string> allow = {};
   std::optional<std::string> within = {};
+  TestKeys keys = {};  ///< Of every layer's test.
 };
 
 /// The suite of the claim `mean(candidate) == mean(reference)`, or `within` a margin of it. Several

@@ -124,27 +124,6 @@ void refuse_unused(const std::vector<EstimatorEntry>& given,
   }
 }
 
-/// The options of a test, as its keys in a suite.
-Value keys_of(const CheckArguments& arguments) {
-  std::vector<Value::Member> keys;
-  const auto add = [&](const char* key, const std::optional<std::string>& text) {
-    if (!text) return;
-    const Location where{fmt::format("--{} {}", key, *text), 0, 0};
-    keys.emplace_back(key, Value::scalar(*text, where));
-  };
-  add("detect", arguments.detect);
-  add("allow", arguments.allow);
-  add("test", arguments.method);
-  if (arguments.secondaries) add("secondaries", std::to_string(*arguments.secondaries));
-  add("over", arguments.over);
-  if (arguments.over) keys.back().second = read_flow(*arguments.over, keys.back().second.where());
-  add("reference", arguments.reference);
-  add("cost", arguments.cost);
-  add("budget", arguments.budget);
-  if (arguments.paired) add("paired", "true");
-  return Value::map(std::move(keys));
-}
-
 }  // namespace
 
 void set_parameter(std::vector<Suite>& suites, const std::string& assignment) {
@@ -202,17 +181,24 @@ std::vector<EstimatorEntry> estimators_of(const std::vector<Source>& sources,
   return used;
 }
 
-TestEntry test_of_claim(const CheckArguments& arguments) {
+TestEntry test_of(const std::string& command, const std::string& claim, const TestKeys& keys) {
   const Location where{"claim", 1, 1};
-  TestEntry test{.claim = parse_claim(arguments.claim, where), .where = where};
+  TestEntry test{.claim = parse_claim(claim, where), .where = where};
   test.name = test.claim.text;
-  test.id = "check/" + test.name;
-  read_test_keys({}, keys_of(arguments), test);
+  test.id = command + "/" + test.name;
+  std::vector<Value::Member> given;
+  for (const auto& [key, text] : keys) {
+    const Location place{fmt::format("--{} {}", key, text), 0, 0};
+    given.emplace_back(key, key == "over" ? read_flow(text, place) : Value::scalar(text, place));
+  }
+  read_test_keys({}, Value::map(std::move(given)), test);
   return test;
 }
 
 Suite suite_of_claim(const CheckArguments& arguments) {
-  TestEntry test = test_of_claim(arguments);
+  TestKeys keys = arguments.keys;
+  if (arguments.paired) keys["paired"] = "true";
+  TestEntry test = test_of("check", arguments.claim, keys);
   Suite suite{.name = "check", .stem = "check", .folder = "."};
   std::vector<Source> sources = sources_of(test.claim);
   if (test.reference) sources.push_back(*test.reference);

@@ -233,10 +233,8 @@ std::string claim_of(const ImagesArguments& arguments, const std::string& suffix
   }
   if (!arguments.within) return fmt::format("mean(candidate{0}) == mean(reference{0})", suffix);
   within(arguments);
-  for (const auto& [text, option] :
-       {std::pair(&arguments.detect, "--detect"), std::pair(&arguments.allow, "--allow")}) {
-    if (!*text) continue;
-    refuse(place(option, **text),
+  for (const auto& [key, text] : arguments.keys) {
+    refuse(place("--" + key, text),
            "is of a claim that the pictures are equal; --within says itself what must not pass");
   }
   return fmt::format("mean(candidate{1}) within {0} of mean(reference{1})", *arguments.within,
@@ -244,20 +242,10 @@ std::string claim_of(const ImagesArguments& arguments, const std::string& suffix
 }
 
 TestEntry test_of(const ImagesArguments& arguments, const std::string& suffix) {
-  const Location where{"claim", 1, 1};
-  TestEntry test{.claim = parse_claim(claim_of(arguments, suffix), where), .where = where};
+  TestKeys keys = arguments.keys;
+  if (arguments.question == ImageQuestion::paired) keys["paired"] = "true";
+  TestEntry test = harness::test_of("images", claim_of(arguments, suffix), keys);
   if (arguments.within) test.claim.margin = within(arguments);
-  test.name = test.claim.text;
-  test.id = "images/" + test.name;
-  std::vector<Value::Member> keys;
-  for (const auto& [key, text] :
-       {std::pair("detect", &arguments.detect), std::pair("allow", &arguments.allow)}) {
-    if (*text) keys.push_back(member(key, **text, place(std::string("--") + key, **text)));
-  }
-  if (arguments.question == ImageQuestion::paired) {
-    keys.push_back(member("paired", "true", place("--paired", "true")));
-  }
-  read_test_keys({}, Value::map(std::move(keys)), test);
   return test;
 }
 

@@ -72,7 +72,7 @@ WAITING = {"hang", "stop", "orphan", "deaf"}  # may take a time-out each
 ANSWERS = {"nan", "inf", "beyond"}    # are observations, that no hello has
 
 PHASES = ["hello", "restart", "pilot", "first", "later", "last",
-          "plan hello", "plan pilot", "plan cost",
+          "plan hello", "plan pilot",
           "replay hello", "replay first", "replay last", "replay one"]
 SAMPLER_PHASES = ["density", "evaluate", "first", "last", "plan density", "replay first"]
 
@@ -200,8 +200,8 @@ def exists(cell):
     if way == "error" and moment == "restart":
         return False
     if kind.is_renderer:
-        if moment in ("restart", "cost", "later"):
-            return False  # its pictures are its programs; what they cost the pilot tells; one look
+        if moment in ("restart", "later"):
+            return False  # its pictures are its programs; one look
         if cell.kind == "row":  # a program a picture: hundreds of them a cell
             return cell.command == "run" and way in ("exit3", "hang", "nan", "long", "nofile")
         if cell.command == "replay" and moment == "hello" and way != "exit3":
@@ -211,8 +211,6 @@ def exists(cell):
         return True
     if cell.command == "replay" and moment in ("hello", "last"):
         return way in ("exit3", "hang", "kill", "nan", "error") and exists(Cell(cell.kind, way, moment))
-    if moment == "cost" and way in ANSWERS:
-        return False  # whatever they are, they cost the same
     if way in ("stop", "orphan", "flood", "chatter"):
         return cell.phase in ("hello", "first", "last")
     return True

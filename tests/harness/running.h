@@ -1,6 +1,7 @@
 #pragma once
 
 #include "harness/command/run.h"
+#include "harness/sampling/prepare.h"
 #include "reports/report_formats.h"
 #include "tests/prelude.h"
 #include "tests/reports/without_times.h"
@@ -22,6 +23,18 @@ inline reports::Record run_files(const std::vector<std::string>& files,
   for (const std::string& file : files) suites.push_back(load_suite(file));
   Silence silence;
   return run(suites, options, silence);
+}
+
+/// Of a run whose tests can be replayed.
+inline const RunOptions repeatable{.command = "assay run"};
+
+inline std::map<std::string, PreparedEstimator> prepare_all(const Suite& suite) {
+  std::map<std::string, PreparedEstimator> prepared;
+  for (const EstimatorEntry& entry : suite.estimators) {
+    prepared.emplace(entry.name, prepare(entry, suite.folder));
+  }
+  share_random_numbers(suite, prepared);
+  return prepared;
 }
 
 /// tests/suites/good.yaml with more tests.

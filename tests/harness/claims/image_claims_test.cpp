@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "harness/command/commands.h"
+#include "harness/command/replay.h"
 #include "harness/record/maps.h"
-#include "harness/record/replay.h"
 #include "reports/report_formats.h"
 #include "tests/estimators/exr.h"
 #include "tests/harness/prelude.h"

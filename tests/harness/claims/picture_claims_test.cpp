@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "harness/command/commands.h"
-#include "harness/record/replay.h"
+#include "harness/command/replay.h"
 #include "reports/report_formats.h"
 #include "tests/harness/pictures.h"
 #include "tests/harness/prelude.h"
@@ -129,13 +129,12 @@ TEST_F(PictureClaims, NumbersDoNotDependOnTheOtherClaims) {
   }
 }
 
-// A replay has no pilot that read all of them.
 TEST_F(PictureClaims, AreReplayedToTheBit) {
   write(place, "a");
   write(place, "b");
   std::string text = suite_text(stack_b, three_claims);
   text.insert(text.find("mean(b)\n") + 7, "\n    secondaries: 20");
-  const reports::Record record = run_files({place.write("s.yaml", text)});
+  const reports::Record record = run_files({place.write("s.yaml", text)}, repeatable);
   const std::string file = place.write("run.json", reports::json(record));
   for (const reports::Test& test : record.suites[0].tests) {
     const Said said = said_by([&] { return replay({.record = file, .test = test.id}); });

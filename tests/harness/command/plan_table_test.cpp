@@ -29,13 +29,6 @@ PlannedRun planned_of(const std::vector<Suite>& suites, const RunOptions& option
   return plan_run(suites, options, silence);
 }
 
-UnitCosts costs_of(const PlannedRun& planned) {
-  Silence silence;
-  return measure_costs(planned, threads(1), silence);
-}
-
-std::string text_of(const PlannedRun& planned) { return plan_text(planned, costs_of(planned)); }
-
 class PlanTable : public Placed {
  protected:
   std::vector<Suite> suites_of(const std::string& text = planned_suite) const {
@@ -77,23 +70,21 @@ TEST_F(PlanTable, PlansWhatARunThenDoes) {
 TEST_F(PlanTable, DrawsNoObservationOfATest) {
   const std::vector<Suite> suites = suites_of();
   const PlannedRun planned = planned_of(suites);
-  const UnitCosts costs = costs_of(planned);
-  EXPECT_FALSE(plan_text(planned, costs).empty());
-  for (const auto& pool : planned.pools.all()) {
-    EXPECT_EQ(pool->drawn(), 0U);
-    EXPECT_TRUE(costs.contains(pool.get()));
-  }
+  EXPECT_FALSE(plan_text(planned).empty());
+  for (const auto& pool : planned.pools.all()) EXPECT_EQ(pool->drawn(), 0U);
 }
 
 // Counted rays do not depend on the machine: one shadow ray a primary.
-TEST_F(PlanTable, MeasuresRaysAndSecondsAtThePlannedPrimaries) {
-  const std::vector<Suite> suites = suites_of();
-  const PlannedRun planned = planned_of(suites);
-  const Pool& area = *planned.suites[0]->tests[0].pools[0];
-  const UnitCost cost = std::get<UnitCost>(costs_of(planned).at(&area));
-  EXPECT_EQ(cost.rays, static_cast<double>(area.primaries()));
-  EXPECT_EQ(cost.samples, static_cast<double>(area.primaries()));
-  EXPECT_GT(cost.seconds, 0);
+TEST_F(PlanTable, CountsRaysAndSecondsAtThePlannedPrimaries) {
+  const PlannedRun planned = planned_of(suites_of());
+  const TestOutcome& area = planned.suites[0]->tests[0].outcome;
+  const std::uint64_t primaries = area.plan.primaries[0];
+  ASSERT_GT(primaries, 1U);
+  const auto cost =
+      observation_cost(area.question.subjects[0], primaries, planned.suites[0]->pilots);
+  EXPECT_DOUBLE_EQ(cost.value().rays, static_cast<double>(primaries));
+  EXPECT_DOUBLE_EQ(cost->samples, static_cast<double>(primaries));
+  EXPECT_GT(cost->seconds, 0);
 }
 
 // A plan foretells the effect that a fixed number of observations finds, and the run finds it in
@@ -144,30 +135,17 @@ TEST_F(PlanTable, OfAMarginForetellsTheOneThatABudgetShows) {
 // Three observations in [0, 4] find no difference that the range allows: `detect` is no answer to
 // what the last look finds.
 TEST_F(PlanTable, ShowsNoEffectThatTheBudgetDoesNotFind) {
-  const std::string text = text_of(
+  const std::string text = plan_text(
       planned("  - {claim: mean(darts) == analytic, test: betting, detect: 1%, budget: 3}\n"));
   const std::size_t row = text.find("betting");
   ASSERT_NE(row, std::string::npos) << text;
   EXPECT_THAT(text.substr(row, text.find('\n', row) - row), testing::Not(HasSubstr("%"))) << text;
 }
 
-// One may take minutes: no more are drawn.
-TEST_F(PlanTable, OfWhatDoesNotAverageKnowsTheCostFromThePilot) {
-  const std::string text =
-      "suite: ratio\nestimators:\n  ratio: {plugin: analytic/ratio, primaries: 8}\n"
-      "tests:\n  - {claim: mean(ratio) == analytic, secondaries: 2000}\n";
-  const PlannedRun planned = planned_of(suites_of(text));
-  const SuiteRun& run = *planned.suites[0];
-  ASSERT_FALSE(run.estimators.at("ratio").nature().averages);
-  const Summary& pilot = *run.pilots.at("ratio").sums;
-  const UnitCost cost = std::get<UnitCost>(costs_of(planned).at(run.tests[0].pools[0].get()));
-  EXPECT_EQ(cost.seconds, pilot.seconds / static_cast<double>(pilot.count));
-}
-
 TEST_F(PlanTable, ShowsEveryTestInEightyColumns) {
   const std::vector<Suite> suites = suites_of();
   const PlannedRun planned = planned_of(suites);
-  const std::string text = text_of(planned);
+  const std::string text = plan_text(planned);
   for (const TestEntry& test : suites[0].tests) EXPECT_THAT(text, HasSubstr("\n  " + test.name));
   for (const char* heading :
        {"method", "primaries", "looks", "CPU time", "effect", "holds: pass", "is off: pass"}) {
@@ -178,7 +156,7 @@ TEST_F(PlanTable, ShowsEveryTestInEightyColumns) {
   EXPECT_THAT(text, HasSubstr("share observations"));
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) EXPECT_LE(reports::columns(line), 80) << line;
-  EXPECT_EQ(plan_exit_code(planned, costs_of(planned)), 0);
+  EXPECT_EQ(plan_exit_code(planned), 0);
 }
 
 TEST_F(PlanTable, APlanWithoutAValidMethodIsNotOk) {
@@ -190,8 +168,8 @@ tests:
   - {claim: mean(rows) <= 1, detect: 50%}
 )");
   const PlannedRun planned = planned_of(suites);
-  EXPECT_EQ(plan_exit_code(planned, costs_of(planned)), 1);
-  EXPECT_THAT(text_of(planned), HasSubstr("invalid: "));
+  EXPECT_EQ(plan_exit_code(planned), 1);
+  EXPECT_THAT(plan_text(planned), HasSubstr("invalid: "));
 }
 
 // Data are normal, and theta is 0 or `detect`. A part drawn lies in (0, 1], so the mean of 40 seeds
@@ -246,16 +224,16 @@ TEST_F(Forecasts, OfProofsHoldsByTheAdvantageOrStandsAtTheBorder) {
 }
 
 TEST_F(PlanTable, BoundsTheProbabilityThatASuiteIsNotOk) {
-  EXPECT_THAT(text_of(planned("  - {name: a, claim: mean(normal) == 2, detect: 0.01}\n"
-                              "  - {name: b, claim: mean(normal) <= 2, detect: 0.01}\n")),
+  EXPECT_THAT(plan_text(planned("  - {name: a, claim: mean(normal) == 2, detect: 0.01}\n"
+                                "  - {name: b, claim: mean(normal) <= 2, detect: 0.01}\n")),
               HasSubstr("Not ok with probability about 0.9"));
 }
 
 TEST_F(PlanTable, SaysWhereTheDetectOfALawIsTheDefault) {
   const std::string law = "  - {claim: 'distribution(normal) == normal(2, 1)'}\n";
-  EXPECT_THAT(text_of(planned(law)),
+  EXPECT_THAT(plan_text(planned(law)),
               HasSubstr("      `detect` is 0.05, the default of claims about laws\n"));
-  EXPECT_THAT(text_of(planned(law, {.coarsen = 2})), HasSubstr("`detect` is 0.1, the default"));
+  EXPECT_THAT(plan_text(planned(law, {.coarsen = 2})), HasSubstr("`detect` is 0.1, the default"));
 }
 
 // Coarsened, a margin may be larger than its reference: nobody wrote it so.

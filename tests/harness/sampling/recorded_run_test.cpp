@@ -2,7 +2,7 @@
 
 #include "harness/base/whole_file.h"
 #include "harness/command/commands.h"
-#include "harness/record/replay.h"
+#include "harness/command/replay.h"
 #include "reports/report_formats.h"
 #include "tests/harness/prelude.h"
 
@@ -195,7 +195,8 @@ TEST_F(RecordedRunTest, OfAMutantKnowsThatItsStreamIsTheOriginals) {
 TEST_F(RecordedRunTest, CanBeReplayed) {
   const reports::Record run =
       run_files({suite(old("uniform") + "  new: {plugin: analytic/exponential_uniform}\n",
-                       "name: both, claim: mean(new) == mean(old)")});
+                       "name: both, claim: mean(new) == mean(old)")},
+                repeatable);
   const std::string file = place_.file("next.json");
   write_whole(file, reports::json(run));
   EXPECT_EQ(replay({.record = file, .test = "both"}), 0);

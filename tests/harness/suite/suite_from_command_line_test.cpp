@@ -52,12 +52,11 @@ TEST(SetParameter, KnowsTheScenesOfTheSuite) {
 }
 
 TEST(SuiteOfClaim, TakesPluginsByTheirName) {
-  const Suite suite = suite_of_claim({.claim = " mean(luminaire/area) == mean(luminaire/cosine)",
-                                      .detect = "0.5%",
-                                      .allow = "1e-5%",
-                                      .method = "welch",
-                                      .primaries = 16,
-                                      .secondaries = 500});
+  const Suite suite = suite_of_claim(
+      {.claim = " mean(luminaire/area) == mean(luminaire/cosine)",
+       .primaries = 16,
+       .keys = {
+           {"detect", "0.5%"}, {"allow", "1e-5%"}, {"test", "welch"}, {"secondaries", "500"}}});
   ASSERT_EQ(suite.estimators.size(), 2U);
   EXPECT_EQ(suite.estimators[0].plugin, "luminaire/area");
   EXPECT_EQ(suite.estimators[1].primaries, 16U);

@@ -50,7 +50,7 @@ TEST_F(SuiteImages, AMarginMakesAProof) {
   given.within = "50%";
   EXPECT_EQ(suite_of_images(given).tests[0].claim.text,
             "mean(candidate) within 50% of mean(reference)");
-  given.detect = "1%";
+  given.keys["detect"] = "1%";
   EXPECT_THAT(refused(given), HasSubstr("--within says itself"));
 }
 

@@ -1,0 +1,348 @@
+#include "harness/command/replay.h"
+
+#include <fmt/format.h>
+#include <wordexp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <vector>
+
+#include "harness/base/interrupt.h"
+#include "harness/base/record_file.h"
+#include "harness/base/terminal.h"
+#include "harness/command/cli.h"
+#include "harness/command/program.h"
+#include "harness/draws/sampler_setup.h"
+#include "harness/question/question_sources.h"
+#include "harness/record/record_of.h"
+#include "harness/run/looks.h"
+#include "harness/run/planned_run.h"
+
+namespace assay::harness {
+namespace {
+
+/// The nearest id to an unknown one; "" if none is near.
+std::string meant(const std::string& asked, const std::vector<Recorded>& all) {
+  std::vector<std::string> spellings;
+  for (const Recorded& each : all) {
+    spellings.push_back(each.test.id);
+    spellings.push_back(each.test.name);
+  }
+  const std::string near = nearest(asked, spellings);
+  for (const Recorded& each : all) {
+    const bool is_near = !near.empty() && (each.test.id == near || each.test.name == near);
+    if (is_near || (near.empty() && each.test.id.find(asked) != std::string::npos)) {
+      return each.test.id;
+    }
+  }
+  return "";
+}
+
+std::string some_ids(const std::vector<Recorded>& tests) {
+  constexpr std::size_t most = 5;
+  const auto id = [](const Recorded& each) { return each.test.id; };
+  return quoted(names_of(std::span(tests).first(std::min(most, tests.size())), id)) +
+         (tests.size() > most ? ", …" : "");
+}
+
+std::uint64_t most_recorded(const reports::Test& test) {
+  return std::ranges::max(test.samples, {}, &reports::Sample::secondaries).secondaries;
+}
+
+/// The record's sample of a subject's channel, or null.
+const reports::Sample* recorded_of(const reports::Test& test, const Question& question,
+                                   std::size_t subject, std::size_t channel) {
+  const Subject& side = question.subjects[subject];
+  const auto channels = side.channels.all();
+  if (std::ranges::find(channels, channel) == channels.end()) return nullptr;
+  // Samples of two subjects with one estimator are in the subjects' order.
+  auto earlier = std::ranges::count_if(
+      std::span(question.subjects).first(subject),
+      [&](const Subject& each) { return each.estimator->listed == side.estimator->listed; });
+  const std::string name = side.setup->channels()[channel].name;
+  for (const reports::Sample& sample : test.samples) {
+    const bool is_its = sample.estimator == side.estimator->listed &&
+                        (side.image.has_value() || sample.channel == name);
+    if (is_its && earlier-- == 0) return &sample;
+  }
+  return nullptr;
+}
+
+constexpr const char* gone = "the recorded command no longer has this test";
+
+/// The words of a command line, as a shell that starts no command would split it.
+std::vector<std::string> words_of_shell(const std::string& line) {
+  wordexp_t words{};
+  const bool split = wordexp(line.c_str(), &words, WRDE_NOCMD) == 0;
+  const std::vector<std::string> all(words.we_wordv, words.we_wordv + words.we_wordc);
+  wordfree(&words);
+  if (!split) refuse({}, "the recorded command cannot be read: {}", line);
+  return all;
+}
+
+/// The run that drew the test, by the command that its record keeps. No clock ends it.
+Loaded recorded_run(const Recorded& recorded, const ReplayArguments& arguments) {
+  const reports::Test& test = recorded.test;
+  if (test.replay.empty()) {
+    refuse({.file = arguments.record}, "test `{}` cannot be drawn again: {}", test.id,
+           test.no_replay.empty() ? "its record has no command" : test.no_replay);
+  }
+  namespace fs = std::filesystem;
+  std::vector<std::string> words = words_of_shell(test.replay);
+  words.erase(words.begin());
+  // The suite's path starts where the command ran, which is here or beside the record.
+  const std::string& file = recorded.suite.file;
+  const fs::path beside = fs::absolute(arguments.record).parent_path() / file;
+  if (!fs::exists(file) && fs::exists(beside)) {
+    std::ranges::replace(words, file, beside.string());
+  }
+  Loaded run = loaded(parse_command_line(words));
+  run.options.shard.reset();
+  for (Suite& suite : run.suites) {
+    if (suite.budget) suite.budget->seconds.reset();
+    for (TestEntry& each : suite.tests) {
+      if (each.budget) each.budget->seconds.reset();
+    }
+  }
+  return run;
+}
+
+bool is_of(const TestEntry* test, const Recorded& recorded) { return test->id == recorded.test.id; }
+
+/// Says whether the value is possible: it is in the recorded range, or some recorded values are not
+/// finite.
+bool print_against(const reports::Sample& sample, double value) {
+  if (!std::isfinite(value)) {
+    const bool same = sample.nonfinite > 0;
+    fmt::print("  {}\n",
+               same ? fmt::format("not finite, as {} of the {} recorded", sample.nonfinite,
+                                  sample.secondaries)
+                    : fmt::format("NOT as recorded: all {} were finite", sample.secondaries));
+    return same;
+  }
+  if (!sample.min || !sample.max) return true;
+  const bool same = *sample.min <= value && value <= *sample.max;
+  fmt::print("  {} [{}, {}], the range of the {} recorded\n",
+             same ? "lies in" : "NOT as recorded: lies outside", *sample.min, *sample.max,
+             sample.secondaries);
+  return same;
+}
+
+/// True if the record does not contradict the observation.
+bool print_observation(const Question& question, const Recorded& recorded, std::uint64_t index) {
+  const std::uint64_t drawn = most_recorded(recorded.test);
+  if (index >= drawn) {
+    refuse({}, "observation {} was not drawn: the test used 0 to {}", index, drawn - 1);
+  }
+  bool same = true;
+  for (std::size_t i = 0; i < question.subjects.size(); ++i) {
+    const Subject& side = question.subjects[i];
+    const reports::Sample* const first = recorded_of(recorded.test, question, i, side.channels[0]);
+    const Pool pool(side.setup, stream_of(side, recorded.suite.seed),
+                    first != nullptr ? first->primaries : side.estimator->primaries.value_or(1));
+    const bool taken = index < side.secondaries(drawn);
+    if (pool.is_ready_made() || !taken) {
+      fmt::print("{}  has {}\n", side.estimator->name,
+                 taken ? "the moments of a run, not its observations" : "no such observation");
+      same &= taken || first == nullptr || index >= first->secondaries;
+      continue;
+    }
+    std::vector<double> values;
+    try {
+      values = draw_observation(*side.setup, pool.key(), pool.primaries(), index);
+    } catch (...) {
+      const Fault fault{.observation = index, .words = words_of(std::current_exception())};
+      throw std::runtime_error(sentence_of(fault, side.estimator->name));
+    }
+    const std::vector<Channel> channels = side.setup->channels();
+    for (std::size_t c = 0; c < values.size(); ++c) {
+      if (channels[c].name == cell_channel && values[c] == no_cell) continue;
+      fmt::print("{}.{}  observation {}: {}\n", side.estimator->name, channels[c].name, index,
+                 values[c]);
+      const reports::Sample* sample = recorded_of(recorded.test, question, i, c);
+      if (sample == nullptr || index >= sample->secondaries) continue;
+      same &= print_against(*sample, values[c]);
+    }
+    if (const auto* draws = dynamic_cast<const SamplerSetup*>(side.setup.get())) {
+      fmt::print("  draw of `{}`: {}\n", draws->name(),
+                 draw_text(draws->sampler(), pool.key(), index));
+    }
+  }
+  return same;
+}
+
+/// Draws the observation alone, without a pilot.
+bool replay_observation(const Loaded& run, const Recorded& recorded, std::uint64_t index) {
+  const PlannedRun prepared = prepare_run(run.suites, run.options);
+  for (const auto& suite : prepared.suites) {
+    for (const Question& question : suite->questions) {
+      if (is_of(question.test, recorded)) return print_observation(question, recorded, index);
+    }
+    for (const Untested& each : suite->untested) {
+      if (is_of(each.test, recorded)) throw std::runtime_error(each.message);
+    }
+  }
+  throw std::runtime_error(gone);
+}
+
+std::string shown(const reports::Number& value) {
+  return value ? fmt::format("{}", *value) : "none";
+}
+
+bool same_line(const char* what, const reports::Number& now, const reports::Number& then,
+               const std::string& note = "") {
+  const bool same = now == then;
+  fmt::print("  {:<27} {}{}{}\n", what, shown(now), note,
+             same ? "" : fmt::format("   (recorded: {})", shown(then)));
+  return same;
+}
+
+bool same_size(const reports::Sample& now, const reports::Sample& then) {
+  const auto shown = [](const reports::Sample& sample) {
+    return fmt::format("{} secondaries of {} primaries", sample.secondaries, sample.primaries);
+  };
+  const bool same = shown(now) == shown(then);
+  fmt::print("{}.{}: {}{}\n", now.estimator, now.channel, shown(now),
+             same ? "" : fmt::format("   (recorded: {})", shown(then)));
+  return same;
+}
+
+/// Compares the observations that are not finite.
+bool same_nonfinite(const reports::Sample& now, const reports::Sample& then) {
+  const bool same = now.nonfinite == then.nonfinite;
+  if (same && now.nonfinite == 0) return true;
+  fmt::print("  {:<27} {}{}; mean and variance are of the others\n", "not finite", now.nonfinite,
+             same ? "" : fmt::format("   (recorded: {})", then.nonfinite));
+  return same;
+}
+
+/// The p-value beside its logarithm, if a double can hold it.
+std::string as_probability(const reports::Number& log10_p) {
+  if (!log10_p || *log10_p < -300) return "";
+  return fmt::format("   (p = {:.3g})", std::pow(10, *log10_p));
+}
+
+/// Prints the new numbers. True if they equal the recorded ones to the last bit, except those made
+/// of seconds.
+bool print_comparison(const reports::Test& now, const reports::Test& then, bool timed) {
+  bool same = true;
+  if (then.verdict == reports::Verdict::invalid || then.verdict == reports::Verdict::error) {
+    fmt::print("{}, so the numbers below decide nothing: {}\n", reports::to_string(then.verdict),
+               then.message);
+  }
+  for (std::size_t i = 0; i < now.samples.size() && i < then.samples.size(); ++i) {
+    same &= same_size(now.samples[i], then.samples[i]);
+    same &= same_nonfinite(now.samples[i], then.samples[i]);
+    // A cell's number has neither mean nor variance.
+    if (now.samples[i].channel == cell_channel) continue;
+    same &= same_line("mean", now.samples[i].mean, then.samples[i].mean);
+    same &=
+        same_line("variance of an observation", now.samples[i].variance, then.samples[i].variance);
+  }
+  for (std::size_t i = 0; i < now.channels.size() && i < then.channels.size(); ++i) {
+    fmt::print("test {} on {}\n", now.method, now.channels[i].name);
+    const bool statistic =
+        same_line("statistic", now.channels[i].statistic, then.channels[i].statistic);
+    const reports::Number& log10_p = now.channels[i].log10_p;
+    const bool p = same_line(then.looks.size() > 1 ? "log10 p over the looks" : "log10 p", log10_p,
+                             then.channels[i].log10_p, as_probability(log10_p));
+    same &= timed || (statistic && p);
+  }
+  same &= now.channels.size() == then.channels.size() && now.samples.size() == then.samples.size();
+  return same;
+}
+
+/// The recorded test in the run planned again. std::runtime_error if it has no work now.
+TestWork& work_of(const PlannedRun& planned, const Recorded& recorded) {
+  for (const auto& suite : planned.suites) {
+    for (TestWork& work : suite->tests) {
+      if (is_of(work.outcome.question.test, recorded)) return work;
+    }
+    for (const Untested& each : suite->untested) {
+      if (is_of(each.test, recorded)) throw std::runtime_error(each.message);
+    }
+  }
+  throw std::runtime_error(gone);
+}
+
+/// Prints new beside recorded numbers; true if they are equal. std::runtime_error if a source can
+/// no longer be drawn.
+bool replay_test(const Loaded& run, const Recorded& recorded) {
+  const std::unique_ptr<Progress> progress = make_progress(false);
+  const PlannedRun planned = plan_run(run.suites, run.options, *progress);
+  stop_if_interrupted();
+  TestWork& work = work_of(planned, recorded);
+  const reports::Test& then = recorded.test;
+  if (!then.looks.empty() && then.planned_looks == work.outcome.plan.looks.sizes) {
+    work.last_look = then.looks.size() - 1;
+  }
+  sample_in_looks({&work}, planned.pools.all(), {}, *progress);
+  stop_if_interrupted();
+  const reports::Test now = record_of_test(work, recorded.suite.file, false);
+  fmt::print("{}\n{}\n", then.id, then.claim);
+  if (now.verdict == reports::Verdict::error && then.verdict != now.verdict) {
+    throw std::runtime_error(now.message);
+  }
+  const bool timed = work.outcome.plan.method.keeps == Keeps::blocks;
+  const bool same = print_comparison(now, then, timed);
+  fmt::print("{}\n", !same   ? "NOT the numbers recorded: another version, machine or input file?"
+                     : timed ? "the same observations as recorded; seconds do not repeat, and what "
+                               "is made of them differs"
+                             : "the same numbers as recorded");
+  return same;
+}
+
+}  // namespace
+
+Recorded find_test(const reports::Record& record, const ReplayArguments& arguments, bool by_part) {
+  std::vector<Recorded> all;
+  std::vector<Recorded> named;
+  std::vector<Recorded> parts;
+  for (const reports::Suite& suite : record.suites) {
+    for (const reports::Test& test : suite.tests) {
+      all.push_back({suite, test});
+      if (test.id == arguments.test) return all.back();
+      if (test.name == arguments.test) named.push_back(all.back());
+      if (by_part && test.id.find(arguments.test) != std::string::npos) parts.push_back(all.back());
+    }
+  }
+  if (parts.size() > 1) {
+    refuse({}, "{} tests have `{}` in their id; give more of one: {}", parts.size(), arguments.test,
+           some_ids(parts));
+  }
+  if (parts.size() == 1) return parts.front();
+  if (named.size() == 1) return named.front();
+  const Location where{.file = arguments.record};
+  if (!named.empty()) {
+    refuse(where, "{} tests have the name `{}`; give the id of one: {}", named.size(),
+           arguments.test, some_ids(named));
+  }
+  const std::string near = meant(arguments.test, all);
+  refuse(where, "no test `{}` in this run; {}", arguments.test,
+         near.empty() ? "there is: " + some_ids(all) : "did you mean `" + near + "`?");
+}
+
+int replay(const ReplayArguments& arguments) {
+  const reports::Record record = read_record(arguments.record);
+  const Recorded recorded = find_test(record, arguments);
+  if (recorded.test.samples.empty()) {
+    refuse({.file = arguments.record}, "test `{}` recorded no samples: {}", recorded.test.id,
+           recorded.test.message);
+  }
+  try {
+    const Loaded run = recorded_run(recorded, arguments);
+    const bool same = arguments.observation
+                          ? replay_observation(run, recorded, *arguments.observation)
+                          : replay_test(run, recorded);
+    return same ? 0 : 1;
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::runtime_error& fault) {
+    stop_if_interrupted();
+    fmt::print("error: {}\n", fault.what());
+    return 1;
+  }
+}
+
+}  // namespace assay::harness
