@@ -407,23 +407,36 @@ Examples:
               "a plugin, a method, a quantity, a law or a report, as `assay list` prints them");
 }
 
+/// "[RUN.json] TEST [OBSERVATION]".
+void read_words(Texts words, ReplayArguments& given) {
+  if (words.size() > 2 || words.front().ends_with(".json")) {
+    given.record = words.front();
+    words.erase(words.begin());
+  }
+  if (words.empty()) refuse({}, "`assay replay` needs a test of `{}`", given.record);
+  if (words.size() > 2) refuse({}, "`{}` is one argument too many", words[2]);
+  given.test = words[0];
+  if (words.size() > 1) given.observation = at_least(0)(words[1], "the observation");
+}
+
 void define_replay(Options& options, ReplayArguments& given) {
-  options.about(R"(Draws the numbers of a recorded test again, or one observation of it alone.
+  options.about(
+      R"(Draws the numbers of a recorded test again, or one observation of it alone. Without a saved run it is
+that of the last run.
 
 Examples:
-  assay replay run.json 'luminaire/mean(triangle_area) == analytic'
+  assay replay 'luminaire/mean(triangle_area) == analytic'
   assay replay run.json 'luminaire/mean(triangle_area) == analytic' 17
 )");
-  options.add({.name = "RUN.json", .needed = "a saved run", .words = {"*.json"}}, given.record,
-              "a saved run");
-  options.add({.name = "TEST", .needed = "a test, as `assay list tests SUITE` prints them"},
-              given.test, "a test's id or name");
-  options.add(
-      {.name = "OBSERVATION"}, given.observation,
-      [](const std::string& text, const std::string& /*option*/) {
-        return at_least(0)(text, "the observation");
-      },
-      "one observation alone, from 0; default the whole test");
+  const auto words = std::make_shared<Texts>();
+  options.add({.name = "TEST",
+               .value = "[RUN.json] TEST [OBSERVATION]",
+               .needed = "a test, as `assay list tests SUITE` prints them",
+               .words = {"*.json"}},
+              *words,
+              "a saved run, if not the last one; a test's id or name; one observation, from 0, "
+              "default all");
+  options.afterwards([words, &given] { read_words(*words, given); });
 }
 
 void define_explain(Options& options, ExplainArguments& given) {

@@ -9,7 +9,6 @@
 #include "harness/calibration/calibrate.h"
 #include "harness/command/commands.h"
 #include "harness/command/init.h"
-#include "harness/command/replay.h"
 #include "harness/record/merge.h"
 #include "harness/suite/suite.h"
 

@@ -13,9 +13,9 @@
 #include "harness/base/text_hash.h"
 #include "harness/command/describe.h"
 #include "harness/command/plan_table.h"
-#include "harness/command/replay.h"
 #include "harness/command/run.h"
 #include "harness/ranks/ranks.h"
+#include "harness/record/find_test.h"
 #include "harness/record/output.h"
 #include "harness/record/record_of.h"
 #include "harness/sampling/checkpoint.h"
@@ -120,14 +120,9 @@ int list_tests(const std::vector<Suite>& suites, const Selection& selection) {
 int explain(const ExplainArguments& arguments) {
   const std::vector<std::string>& words = arguments.words;
   if (words.size() > 2) refuse({}, "`assay explain` takes a saved run and one test");
-  const std::string file = words.size() > 1 ? words.front() : last_run_file();
-  if (words.size() < 2 && !std::filesystem::exists(file)) {
-    refuse(
-        {},
-        "there is no last run; `assay run SUITE` makes one, or give a saved run before the test");
-  }
+  const std::string file = words.size() > 1 ? words.front() : last_run();
   const reports::Record record = read_record(file);
-  const Recorded found = find_test(record, {file, words.back()}, true);
+  const Recorded found = find_test(record, file, words.back(), true);
   if (words.size() < 2) fmt::print("The last run with tests began at {}.\n\n", record.started);
   fmt::print("{}",
              reports::explain(found.suite, found.test, std::min(terminal_width(stdout), 100)));

@@ -30,6 +30,16 @@ struct ExplainArguments {
 /// Explains a test of a saved run. InputError if no test, or more than one, has the part in its id.
 int explain(const ExplainArguments&);
 
+/// A recorded test to draw again.
+struct ReplayArguments {
+  std::string record = "";                        ///< RUN.json; "": the last run
+  std::string test;                               ///< id or name
+  std::optional<std::uint64_t> observation = {};  ///< none: the whole test
+};
+
+/// Prints what was drawn. Returns 1 if something could not be, or differs.
+int replay(ReplayArguments);
+
 struct SampleArguments {
   std::string source;  ///< as in a claim: estimator or plugin, with part
   std::vector<std::string> estimators = {};

@@ -1,7 +1,6 @@
 #include "harness/command/program.h"
 
 #include <fmt/format.h>
-#include <malloc.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -19,7 +18,7 @@
 #include "harness/command/cli.h"
 #include "harness/command/commands.h"
 #include "harness/command/environment.h"
-#include "harness/command/replay.h"
+#include "harness/command/loaded.h"
 #include "harness/ranks/ranks.h"
 #include "harness/run/planned_run.h"
 #include "harness/suite/suite.h"
@@ -86,58 +85,20 @@ namespace {
 constexpr int trouble = 2;
 constexpr int stopped = 130;
 
-std::vector<Suite> load(const std::vector<std::string>& files,
-                        const std::vector<std::string>& assignments = {}) {
-  std::vector<Suite> suites;
-  std::map<std::filesystem::path, std::string> seen;
-  for (const std::string& file : files) {
-    suites.push_back(load_suite(file));
-    const auto [first, is_new] = seen.emplace(std::filesystem::weakly_canonical(file), file);
-    if (is_new) continue;
-    refuse({}, file == first->second
-                   ? fmt::format("the suite `{}` is given twice", file)
-                   : fmt::format("`{}` and `{}` are one suite; give it once", first->second, file));
-  }
-  for (const std::string& assignment : assignments) set_parameter(suites, assignment);
-  return suites;
-}
-
-Loaded run_of(const RunCommand& command) {
-  Loaded all{load(command.suites, command.assignments), command.options};
-  all.options.assigns = !command.assignments.empty();
-  take_shard_from(system_environment, all.options);
-  return all;
-}
-
-Loaded run_of(const CheckCommand& command) {
-  return {{suite_of_claim(command.arguments)}, command.options};
-}
-
-/// Keeps freed memory in the process. Pictures allocate and free tens of megabytes, and new pages
-/// from the system would cost more than the work on them.
-void keep_freed_memory() {
-  mallopt(M_MMAP_MAX, 0);
-  mallopt(M_TRIM_THRESHOLD, -1);
-}
-
-Loaded run_of(const ImagesCommand& command) {
-  keep_freed_memory();
-  return {{suite_of_images(command.arguments)}, command.options};
-}
-
 template <class Sampling>
 int act(const Sampling& command) {
-  const auto [suites, options] = run_of(command);
+  const auto [suites, options] = loaded(command);
   return run_suites(suites, options, command.output);
 }
 
 int act(const PlanCommand& command) {
   const auto act = command.list_renders ? list_renders : plan_suites;
-  return act(load(command.suites, command.assignments), command.options, command.output.quiet);
+  return act(load_suites(command.suites, command.assignments), command.options,
+             command.output.quiet);
 }
 
 int act(const ListCommand& command) {
-  if (command.what == "tests") return list_tests(load(command.suites), command.selection);
+  if (command.what == "tests") return list_tests(load_suites(command.suites), command.selection);
   return command.what == "plugins" ? list_plugins() : list_table(command.what);
 }
 
@@ -185,13 +146,6 @@ int guarded(const std::vector<std::string>& arguments, Command& command, Message
 }
 
 }  // namespace
-
-Loaded loaded(const Command& command) {
-  if (const auto* run = std::get_if<RunCommand>(&command)) return run_of(*run);
-  if (const auto* check = std::get_if<CheckCommand>(&command)) return run_of(*check);
-  if (const auto* images = std::get_if<ImagesCommand>(&command)) return run_of(*images);
-  refuse({}, "this command runs no test");
-}
 
 int program(const std::vector<std::string>& arguments, Messages* ranks) {
   // The program starts itself with this word, to keep a library's crash out of the run.

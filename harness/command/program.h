@@ -15,15 +15,7 @@ std::string failure_text(const InputError& error, const std::string& claim);
 /// pasted.
 std::string in_lines(const std::string& sentence);
 
-/// A run that a command asks for.
-struct Loaded {
-  std::vector<Suite> suites;
-  RunOptions options;
-};
-
-/// Reads the suites of `run`, `check` or `images`. InputError for any mistake in them, and for
-/// other commands.
-Loaded loaded(const Command& command);
+class Messages;
 
 /// The whole program, or rank 0 of several: parses, acts, and turns every exception into one clear
 /// message on standard error. Returns the exit code (2 for mistakes and trouble, 130 when

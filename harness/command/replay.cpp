@@ -1,5 +1,3 @@
-#include "harness/command/replay.h"
-
 #include <fmt/format.h>
 #include <wordexp.h>
 
@@ -12,39 +10,17 @@
 #include "harness/base/record_file.h"
 #include "harness/base/terminal.h"
 #include "harness/command/cli.h"
-#include "harness/command/program.h"
+#include "harness/command/loaded.h"
 #include "harness/draws/sampler_setup.h"
 #include "harness/question/question_sources.h"
+#include "harness/record/find_test.h"
+#include "harness/record/output.h"
 #include "harness/record/record_of.h"
 #include "harness/run/looks.h"
 #include "harness/run/planned_run.h"
 
 namespace assay::harness {
 namespace {
-
-/// The nearest id to an unknown one; "" if none is near.
-std::string meant(const std::string& asked, const std::vector<Recorded>& all) {
-  std::vector<std::string> spellings;
-  for (const Recorded& each : all) {
-    spellings.push_back(each.test.id);
-    spellings.push_back(each.test.name);
-  }
-  const std::string near = nearest(asked, spellings);
-  for (const Recorded& each : all) {
-    const bool is_near = !near.empty() && (each.test.id == near || each.test.name == near);
-    if (is_near || (near.empty() && each.test.id.find(asked) != std::string::npos)) {
-      return each.test.id;
-    }
-  }
-  return "";
-}
-
-std::string some_ids(const std::vector<Recorded>& tests) {
-  constexpr std::size_t most = 5;
-  const auto id = [](const Recorded& each) { return each.test.id; };
-  return quoted(names_of(std::span(tests).first(std::min(most, tests.size())), id)) +
-         (tests.size() > most ? ", …" : "");
-}
 
 std::uint64_t most_recorded(const reports::Test& test) {
   return std::ranges::max(test.samples, {}, &reports::Sample::secondaries).secondaries;
@@ -295,37 +271,10 @@ bool replay_test(const Loaded& run, const Recorded& recorded) {
 
 }  // namespace
 
-Recorded find_test(const reports::Record& record, const ReplayArguments& arguments, bool by_part) {
-  std::vector<Recorded> all;
-  std::vector<Recorded> named;
-  std::vector<Recorded> parts;
-  for (const reports::Suite& suite : record.suites) {
-    for (const reports::Test& test : suite.tests) {
-      all.push_back({suite, test});
-      if (test.id == arguments.test) return all.back();
-      if (test.name == arguments.test) named.push_back(all.back());
-      if (by_part && test.id.find(arguments.test) != std::string::npos) parts.push_back(all.back());
-    }
-  }
-  if (parts.size() > 1) {
-    refuse({}, "{} tests have `{}` in their id; give more of one: {}", parts.size(), arguments.test,
-           some_ids(parts));
-  }
-  if (parts.size() == 1) return parts.front();
-  if (named.size() == 1) return named.front();
-  const Location where{.file = arguments.record};
-  if (!named.empty()) {
-    refuse(where, "{} tests have the name `{}`; give the id of one: {}", named.size(),
-           arguments.test, some_ids(named));
-  }
-  const std::string near = meant(arguments.test, all);
-  refuse(where, "no test `{}` in this run; {}", arguments.test,
-         near.empty() ? "there is: " + some_ids(all) : "did you mean `" + near + "`?");
-}
-
-int replay(const ReplayArguments& arguments) {
+int replay(ReplayArguments arguments) {
+  if (arguments.record.empty()) arguments.record = last_run();
   const reports::Record record = read_record(arguments.record);
-  const Recorded recorded = find_test(record, arguments);
+  const Recorded recorded = find_test(record, arguments.record, arguments.test);
   if (recorded.test.samples.empty()) {
     refuse({.file = arguments.record}, "test `{}` recorded no samples: {}", recorded.test.id,
            recorded.test.message);

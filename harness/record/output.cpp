@@ -173,6 +173,13 @@ std::string last_run_file() {
   return folder.empty() ? "" : folder + "/assay/last_run.json";
 }
 
+std::string last_run() {
+  const std::string file = last_run_file();
+  if (std::filesystem::exists(file)) return file;
+  refuse({},
+         "there is no last run; `assay run SUITE` makes one, or give a saved run before the test");
+}
+
 void keep_last_run(reports::Record record, bool says_failure) {
   const std::filesystem::path file = last_run_file();
   if (file.empty()) return;

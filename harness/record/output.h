@@ -32,7 +32,7 @@ struct Output {
   bool quiet = false;  ///< No progress.
   int detail = 0;      ///< Of the console: reports::ConsoleOptions.
   std::uint64_t slowest = 0;
-  bool kept = false;   ///< The run is kept for `assay explain` (keep_last_run).
+  bool kept = false;   ///< The run is kept for `assay explain` and `assay replay`.
   bool github = true;  ///< Tells GitHub Actions what is not ok (tell_github).
 };
 
@@ -79,6 +79,8 @@ std::string tell_github(const reports::Record& record, const Environment& enviro
 /// The last run of the user: a file in $XDG_CACHE_HOME/assay, else in ~/.cache/assay; "" if there
 /// is no such folder to be.
 std::string last_run_file();
+/// The same. InputError if there is no last run.
+std::string last_run();
 
 /// Writes the record without its maps, whole or not at all. Nobody needs it to go on: a failure is
 /// said only if asked.

@@ -288,6 +288,10 @@ test_replay_gives_the_same_numbers() {
   contains out 'the same numbers as recorded'
   expect 0 replay run.json wrong 3
   contains out 'observation 3: '
+  expect 0 replay good/wrong
+  contains out 'the same numbers as recorded'
+  expect 0 replay wrong 3
+  contains out 'observation 3: '
   expect 2 replay run.json good/wrnog
   contains err 'good/wrong'
 }

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "harness/command/commands.h"
-#include "harness/command/replay.h"
 #include "harness/record/maps.h"
 #include "reports/report_formats.h"
 #include "tests/estimators/exr.h"

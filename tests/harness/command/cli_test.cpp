@@ -149,6 +149,9 @@ TEST(CommandLine, SamplesListsDescribesReplaysAndReports) {
   EXPECT_EQ(replay.test, "s/t");
   EXPECT_EQ(replay.observation, 0U);
   EXPECT_EQ(parsed<ReplayArguments>({"replay", "run.json", "s/t"}).observation, std::nullopt);
+  const auto of_last = parsed<ReplayArguments>({"replay", "s/t", "3"});
+  EXPECT_EQ(of_last.record, "");
+  EXPECT_EQ(of_last.observation, 3U);
   EXPECT_EQ(parsed<ReportCommand>({"report", "run.json", "--report", "html=a"}).file, "run.json");
 }
 

@@ -2,7 +2,6 @@
 
 #include "harness/base/whole_file.h"
 #include "harness/command/commands.h"
-#include "harness/command/replay.h"
 #include "reports/report_formats.h"
 #include "tests/harness/prelude.h"
 

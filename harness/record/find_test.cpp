@@ -1,0 +1,69 @@
+#include "harness/record/find_test.h"
+
+#include <algorithm>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "estimators/core/quoting.h"
+#include "harness/base/refuse.h"
+
+namespace assay::harness {
+namespace {
+
+/// The nearest id to an unknown one; "" if none is near.
+std::string meant(const std::string& asked, const std::vector<Recorded>& all) {
+  std::vector<std::string> spellings;
+  for (const Recorded& each : all) {
+    spellings.push_back(each.test.id);
+    spellings.push_back(each.test.name);
+  }
+  const std::string near = nearest(asked, spellings);
+  for (const Recorded& each : all) {
+    const bool is_near = !near.empty() && (each.test.id == near || each.test.name == near);
+    if (is_near || (near.empty() && each.test.id.find(asked) != std::string::npos)) {
+      return each.test.id;
+    }
+  }
+  return "";
+}
+
+std::string some_ids(const std::vector<Recorded>& tests) {
+  constexpr std::size_t most = 5;
+  const auto id = [](const Recorded& each) { return each.test.id; };
+  return quoted(names_of(std::span(tests).first(std::min(most, tests.size())), id)) +
+         (tests.size() > most ? ", …" : "");
+}
+
+}  // namespace
+
+Recorded find_test(const reports::Record& record, const std::string& file, const std::string& name,
+                   bool by_part) {
+  std::vector<Recorded> all;
+  std::vector<Recorded> named;
+  std::vector<Recorded> parts;
+  for (const reports::Suite& suite : record.suites) {
+    for (const reports::Test& test : suite.tests) {
+      all.push_back({suite, test});
+      if (test.id == name) return all.back();
+      if (test.name == name) named.push_back(all.back());
+      if (by_part && test.id.find(name) != std::string::npos) parts.push_back(all.back());
+    }
+  }
+  if (parts.size() > 1) {
+    refuse({}, "{} tests have `{}` in their id; give more of one: {}", parts.size(), name,
+           some_ids(parts));
+  }
+  if (parts.size() == 1) return parts.front();
+  if (named.size() == 1) return named.front();
+  const Location where{.file = file};
+  if (!named.empty()) {
+    refuse(where, "{} tests have the name `{}`; give the id of one: {}", named.size(), name,
+           some_ids(named));
+  }
+  const std::string near = meant(name, all);
+  refuse(where, "no test `{}` in this run; {}", name,
+         near.empty() ? "there is: " + some_ids(all) : "did you mean `" + near + "`?");
+}
+
+}  // namespace assay::harness
