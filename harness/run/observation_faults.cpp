@@ -17,8 +17,8 @@ namespace {
 
 /// The command that repeats one observation.
 std::string replay_line(const TestOutcome& outcome, std::uint64_t observation) {
-  return fmt::format("`assay replay {} {}` draws it again",
-                     shell_quoted(outcome.question.test->id), observation);
+  return fmt::format("`assay replay {} {}` draws it again", shell_quoted(outcome.question.test->id),
+                     observation);
 }
 
 std::string not_finite(const TestOutcome& outcome, const Subject& side, const Drawn& drawn,

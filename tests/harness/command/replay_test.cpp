@@ -1,8 +1,7 @@
-#include "harness/command/commands.h"
-
 #include <fmt/format.h>
 
 #include "harness/base/record_file.h"
+#include "harness/command/commands.h"
 #include "harness/sampling/pool.h"
 #include "harness/sampling/prepare.h"
 #include "reports/report_formats.h"
