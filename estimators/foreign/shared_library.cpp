@@ -368,13 +368,10 @@ std::uint64_t PreparedLibrary::observe(AssayStream& random, std::uint64_t primar
 std::vector<double> PreparedLibrary::answer(const Question& question, std::uint64_t& at) const {
   const std::size_t width = hello_.width();
   std::vector<double> numbers(static_cast<std::size_t>(question.count) * width);
-  const StreamKey key{question.key};
-  StreamsAhead streams;
-  streams.announce({.key = key, .first = question.first, .last = question.first + question.count});
   for (std::uint64_t i = 0; i < question.count; ++i) {
     at = question.first + i;
     const std::span<double> row = std::span(numbers).subspan(i * width, width);
-    AssayStream random = streams.of(key, at);
+    AssayStream random = assay_stream(question.key, at);
     const std::uint64_t rays =
         observe(random, question.primaries, row.first(hello_.channels.size()));
     if (hello_.rays) row.back() = static_cast<double>(rays);
@@ -425,19 +422,6 @@ double LibrarySampler::evaluate(const Point& point) const {
 
 double LibrarySampler::rounding() const {
   return note_.rounding > 0 ? note_.rounding : Sampler::rounding();
-}
-
-AssayStream StreamsAhead::of(StreamKey key, std::uint64_t observation) {
-  AssayStream stream = assay_stream(key.bits, observation);
-  if (!ahead_.has(key, observation)) return stream;
-  ahead_.reach(observation);
-  // The state that assay_refill() leaves.
-  FirstWords words = ahead_.words()[ahead_.place(observation)];
-  stream.words[0] = words();
-  stream.words[1] = words();
-  stream.counter[0] = 1;
-  stream.next = 0;
-  return stream;
 }
 
 }  // namespace assay::foreign

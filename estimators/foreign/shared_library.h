@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "estimators/core/first_words.h"
 #include "estimators/foreign/protocol.h"
 #include "estimators/plugin_abi.h"
 #include "estimators/sampler.h"
@@ -107,19 +106,6 @@ class LibrarySampler : public Sampler {
   std::shared_ptr<const PreparedLibrary> library_;
   AssaySampler sampler_;
   SamplerNote note_;
-};
-
-/// Streams as a library has them; those of announced observations come with their first block of
-/// random words.
-class StreamsAhead {
- public:
-  void announce(const Announcement& next) { ahead_.announce(next); }
-
-  /// The same numbers as those of assay_stream(key, observation), announced or not.
-  AssayStream of(StreamKey key, std::uint64_t observation);
-
- private:
-  AnnouncedWords ahead_;
 };
 
 }  // namespace assay::foreign
