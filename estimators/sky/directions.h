@@ -3,7 +3,6 @@
 // Ways to draw a direction under a sky.
 
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -34,27 +33,19 @@ class Directions {
 
 using SharedDirections = std::shared_ptr<const Directions>;
 
-/// Density 1 / (2 pi).
-class UniformDirections final : public Directions {
+/// Directions of the receiver's hemisphere, of render/hemisphere.h.
+template <class Hemisphere>
+class HemisphereDirections final : public Directions {
  public:
-  double gain() const { return 2 * std::numbers::pi; }  ///< the most that cos+ / density is
   Direction draw(double u, double v) const override {
-    const Vector3 w = render::uniform_hemisphere(u, v);
+    const Vector3 w = Hemisphere{}(u, v);
     return {w, density(w)};
   }
-  double density(const Vector3&) const override { return 1 / (2 * std::numbers::pi); }
+  double density(const Vector3& w) const override { return Hemisphere{}.density(w); }
 };
 
-/// Density cos / pi.
-class CosineDirections final : public Directions {
- public:
-  double gain() const { return std::numbers::pi; }  ///< of cos+ / density
-  Direction draw(double u, double v) const override {
-    const Vector3 w = render::cosine_hemisphere(u, v);
-    return {w, density(w)};
-  }
-  double density(const Vector3& w) const override { return w.z / std::numbers::pi; }
-};
+using UniformDirections = HemisphereDirections<render::UniformHemisphere>;
+using CosineDirections = HemisphereDirections<render::CosineHemisphere>;
 
 /// Directions as a sampler; evaluate() is L cos+ V, grey.
 class DirectionSampler final : public Sampler {
