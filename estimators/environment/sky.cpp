@@ -14,9 +14,9 @@
 
 #include "estimators/estimator.h"
 #include "estimators/parameters.h"
-#include "render/alias_table.h"
 #include "render/environment_map.h"
 #include "render/hemisphere.h"
+#include "render/share_table.h"
 #include "sky/setting.h"
 
 namespace assay::plugins {
@@ -229,10 +229,9 @@ class EmittanceSampler final : public Sampler {
   }
 
   Choice choose(Stream& random) const {
-    const double u = random.uniform();
-    const std::size_t texel = texels_.pick(u, random.uniform());
-    const double v = random.uniform();
-    return {texel, direction_in(sky_->map().patch(texel), {v, random.uniform()})};
+    double u = random.uniform();
+    const std::size_t texel = texels_.pick(u);
+    return {texel, direction_in(sky_->map().patch(texel), {u, random.uniform()})};
   }
   /// X: radiance times cos+ V over the density.
   Rgb contribution(const Choice& choice, Cost& cost) const {
@@ -253,7 +252,7 @@ class EmittanceSampler final : public Sampler {
   }
 
   SharedSky sky_;
-  render::AliasTable texels_;
+  render::ShareTable texels_;
 };
 
 Primaries primaries(const SharedSky& sky, double total) {

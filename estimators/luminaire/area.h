@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "luminaire/family.h"
+#include "render/share_table.h"
 
 namespace assay::luminaire {
 
@@ -59,7 +60,7 @@ class AreaPrimary {
   }
 
   const Setting& setting() const { return *setting_; }
-  const ShareTable& shares() const { return shares_; }
+  const render::ShareTable& shares() const { return shares_; }
 
  private:
   static std::vector<double> areas(const Setting& setting) {
@@ -69,7 +70,7 @@ class AreaPrimary {
   }
 
   SharedSetting setting_;
-  ShareTable shares_;
+  render::ShareTable shares_;
   double factor_;
   Term term_;
 };

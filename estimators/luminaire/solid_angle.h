@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "luminaire/family.h"
+#include "render/share_table.h"
 #include "render/spherical_triangle.h"
 
 namespace assay::luminaire {
@@ -78,7 +79,7 @@ class SolidAnglePrimary {
   }
 
   const std::vector<LitTriangle>& triangles() const { return triangles_; }
-  const ShareTable& shares() const { return shares_; }
+  const render::ShareTable& shares() const { return shares_; }
   double solid_angle() const { return shares_.total(); }
 
  private:
@@ -90,7 +91,7 @@ class SolidAnglePrimary {
 
   SharedSetting setting_;
   std::vector<LitTriangle> triangles_;
-  ShareTable shares_;
+  render::ShareTable shares_;
   double factor_;
 };
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "estimators/mutant.h"
-#include "luminaire/setting.h"
+#include "render/share_table.h"
 #include "sky/directions.h"
 #include "steerable/directions.h"
 #include "steerable/triangle.h"
@@ -96,7 +96,7 @@ class ClampedDirections final : public Directions {
   std::shared_ptr<const SkyTree> tree_;
   render::Frame frame_;
   sky::Harmonics a_;
-  luminaire::ShareTable leaves_;
+  render::ShareTable leaves_;
 };
 
 /// Another's directions at densities of one's own.
