@@ -3,7 +3,6 @@
 // Ways to draw a direction under a sky.
 
 #include <memory>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -113,18 +112,17 @@ struct StratifiedPrimary {
   }
 };
 
-/// The mean of primaries, with the sampler `direction`. `diagnostic` adds the channels `below` and
-/// `nodes`, shares of an Outcome; `gain` is that of irradiance_channels().
+/// The mean of primaries, with the sampler `direction`. `channels` are one a colour; `diagnostic`
+/// adds `below` and `nodes`, shares of an Outcome.
 template <class Primary>
-std::shared_ptr<const Setup> sky_setup(const SharedSetting& setting, SharedDirections directions,
-                                       Primary primary, bool diagnostic,
-                                       std::optional<double> gain = {}) {
-  std::vector<Channel> channels = irradiance_channels(*setting, gain);
+std::shared_ptr<const Setup> sky_setup(std::vector<Channel> channels, Primary primary,
+                                       std::shared_ptr<const Sampler> sampler, bool diagnostic) {
+  const std::size_t colours = channels.size();
   if (diagnostic) {
     channels.push_back({.name = "below", .low = 0, .high = 1, .diagnostic = true});
     channels.push_back({.name = "nodes", .low = 0, .diagnostic = true});
   }
-  const auto estimate = [primary = std::move(primary), colours = setting->colours(), diagnostic](
+  const auto estimate = [primary = std::move(primary), colours, diagnostic](
                             Stream& random, std::uint64_t primaries, std::span<double> out,
                             Cost& cost) {
     Outcome sum;
@@ -142,8 +140,7 @@ std::shared_ptr<const Setup> sky_setup(const SharedSetting& setting, SharedDirec
   };
   return setup_of({.channels = std::move(channels),
                    .make = estimating(estimate),
-                   .samplers = {{"direction", std::make_shared<DirectionSampler>(
-                                                  setting, std::move(directions))}}});
+                   .samplers = {{"direction", std::move(sampler)}}});
 }
 
 /// `strata`, of all estimators of the family.
