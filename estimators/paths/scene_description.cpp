@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "estimators/core/flow.h"
+#include "estimators/core/value_checks.h"
 #include "luminaire/scene_description.h"
 
 namespace assay::paths {
@@ -18,14 +19,6 @@ namespace {
 using luminaire::alternatives;
 using luminaire::require_keys;
 using luminaire::required_key;
-
-double at_least_zero(const Value& value, const std::string& what) {
-  const double number = value.number(what);
-  if (!std::isfinite(number) || number < 0) {
-    throw InputError(value.where(), what + " must be finite and not negative");
-  }
-  return number;
-}
 
 class Reader {
  public:
