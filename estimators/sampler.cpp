@@ -47,10 +47,15 @@ class SamplerOfParts final : public Sampler {
   SamplerDraw sample(Stream& random) const override {
     const std::optional<Point> point = parts_.point(random);
     if (!point) return {.valid = false};
-    return {.point = *point, .density = density(*point), .weight = 1};
+    const double declared = density(*point);
+    if (!parts_.evaluate) return {.point = *point, .density = declared, .weight = 1};
+    const double value = parts_.evaluate(*point);
+    return {.point = *point, .density = declared, .weight = value == 0 ? 0 : value / declared};
   }
   double density(const Point& point) const override { return parts_.density(point); }
-  double evaluate(const Point& point) const override { return density(point); }
+  double evaluate(const Point& point) const override {
+    return parts_.evaluate ? parts_.evaluate(point) : density(point);
+  }
   Panels panels() const override { return parts_.panels; }
 
  private:

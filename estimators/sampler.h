@@ -102,12 +102,13 @@ class Sampler {
   virtual double seconds_elsewhere() const { return 0; }
 };
 
-/// The parts of a sampler of points that only their own density is asked of: evaluate() is the
-/// density, and every weight is 1.
+/// The parts of a sampler whose draws are of one lobe. A draw's density is density() at its point,
+/// its weight evaluate() over that.
 struct SamplerParts {
   Domain domain = Domain::interval;
   std::function<std::optional<Point>(Stream&)> point;  ///< nullopt where none comes out
   std::function<double(const Point&)> density;
+  std::function<double(const Point&)> evaluate = {};  ///< if empty, the density: every weight is 1
   std::array<double, 2> bounds = {0, 1};
   Panels panels = {};
 };

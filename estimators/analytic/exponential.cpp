@@ -82,18 +82,17 @@ std::shared_ptr<const Setup> control_variate(Parameters& parameters) {
 // X = e^(3x) / q(x) at x = (1 + 31 u)^(1/5) - 1. E[X] = (e^3 - 1) / 3. By parts, from t = 1 to 2,
 //   E[X^2] = (31 / 5) e^-6 [-e^(6t) (1 / 3t^3 + 1 / t^2 + 6 / t) + 36 Ei(6t)].
 
-class NearDensitySampler final : public Sampler {
- public:
-  Domain domain() const override { return Domain::interval; }
-  SamplerDraw sample(Stream& random) const override {
-    // The fifth root may round to 2 and beyond.
-    const double x = std::min(std::pow(1 + 31 * random.uniform(), 0.2) - 1, 1.0);
-    const double density = near_density(x);
-    return {.point = {x}, .density = density, .weight = integrand(x) / density};
-  }
-  double density(const Point& p) const override { return near_density(p[0]); }
-  double evaluate(const Point& p) const override { return integrand(p[0]); }
-};
+double near_point(Stream& random) {
+  // The fifth root may round to 2 and beyond.
+  return std::min(std::pow(1 + 31 * random.uniform(), 0.2) - 1, 1.0);
+}
+
+std::shared_ptr<const Sampler> near_density_sampler() {
+  return sampler_of({.domain = Domain::interval,
+                     .point = [](Stream& random) { return Point{near_point(random)}; },
+                     .density = [](const Point& p) { return near_density(p[0]); },
+                     .evaluate = [](const Point& p) { return integrand(p[0]); }});
+}
 
 double antiderivative(double t) {
   return -std::exp(6 * t) * (1 / (3 * t * t * t) + 1 / (t * t) + 6 / t) + 36 * std::expint(6 * t);
@@ -102,14 +101,16 @@ double antiderivative(double t) {
 std::shared_ptr<const Setup> importance(Parameters&) {
   const double mean = integral();
   const double square = 31 * std::exp(-6) / 5 * (antiderivative(2) - antiderivative(1));
-  const auto sampler = std::make_shared<NearDensitySampler>();
   // X is smallest at x = 1/3, where (ln f)' = (ln q)' = 3, and largest at x = 1.
   return averaging(Channel{.mean = mean,
                            .variance = square - mean * mean,
                            .low = integrand(1.0 / 3) / near_density(1.0 / 3),
                            .high = integrand(1) / near_density(1)},
-                   [](Stream& random) { return NearDensitySampler().sample(random).weight; },
-                   {{"x", sampler}});
+                   [](Stream& random) {
+                     const double x = near_point(random);
+                     return integrand(x) / near_density(x);
+                   },
+                   {{"x", near_density_sampler()}});
 }
 
 // The integral of f(x) = e^(3x) over [0, 1] with k strata, one point in each:

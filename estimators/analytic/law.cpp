@@ -105,41 +105,27 @@ Law Law::parse(std::string_view text) {
   refuse("no law is named " + quoted(name));
 }
 
-auto Law::with_family(const auto& use) const {
+double Law::draw(Stream& random) const {
   switch (family_) {
     case Family::bernoulli:
-      return use([p = a_](auto& random) { return random.uniform() < p ? 1.0 : 0.0; });
+      return random.uniform() < a_ ? 1 : 0;
     case Family::exponential:
-      return use([rate = a_](auto& random) { return -std::log(random.uniform_open()) / rate; });
+      return -std::log(random.uniform_open()) / a_;
     case Family::lognormal:
-      return use([normal = NormalLaw{a_, b_}](auto& random) { return std::exp(normal(random)); });
+      return std::exp(NormalLaw{a_, b_}(random));
     case Family::normal:
-      return use(NormalLaw{a_, b_});
-    case Family::student_t:
+      return NormalLaw{a_, b_}(random);
+    case Family::student_t: {
       // Bailey (1994): sqrt(nu (u^(-2 / nu) - 1)) cos(2 pi v) has the law, for every nu.
-      return use([nu = a_](auto& random) {
-        const double radius = std::sqrt(nu * std::expm1(-2 / nu * std::log(random.uniform_open())));
-        return radius * std::cos(2 * std::numbers::pi * random.uniform());
-      });
+      const double radius = std::sqrt(a_ * std::expm1(-2 / a_ * std::log(random.uniform_open())));
+      return radius * std::cos(2 * std::numbers::pi * random.uniform());
+    }
     case Family::uniform:
-      return use(
-          [low = a_, width = b_ - a_](auto& random) { return low + width * random.uniform(); });
+      return a_ + (b_ - a_) * random.uniform();
     case Family::zero_inflated:
-      return use([p = a_](auto& random) {
-        return random.uniform() < p ? -std::log(random.uniform_open()) : 0.0;
-      });
+      return random.uniform() < a_ ? -std::log(random.uniform_open()) : 0;
   }
   throw std::logic_error("a law of no family");
-}
-
-double Law::draw(Stream& random) const {
-  return with_family([&](const auto& draw) { return draw(random); });
-}
-
-void Law::draw(std::span<FirstWords> streams, std::span<double> values) const {
-  with_family([&](const auto& draw) {
-    for (std::size_t i = 0; i < streams.size(); ++i) values[i] = draw(streams[i]);
-  });
 }
 
 double Law::density(double x) const {
@@ -282,9 +268,7 @@ std::shared_ptr<const Setup> law(Parameters& parameters) {
   const Variable variable{law, parameters.number("shift"), parameters.number("scale")};
   std::vector<NamedSampler> samplers;
   if (law.has_density() && law.variance()) samplers.push_back({"x", sampler(variable)});
-  return setup_of({.channels = {channel_of(variable)},
-                   .make = [variable] { return std::make_unique<VariableEstimator>(variable); },
-                   .samplers = std::move(samplers)});
+  return averaging(channel_of(variable), variable, std::move(samplers));
 }
 
 // X of a named law costs 1 + floor(r |X|) shadow rays: large values are dear, as long paths are.

@@ -1,7 +1,9 @@
 #include "brdf/albedo.h"
 
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -18,64 +20,36 @@ using render::Vector3;
 Vector3 vector(const Point& p) { return {p[0], p[1], p[2]}; }
 Point point(const Vector3& v) { return {v.x, v.y, v.z}; }
 
-class BrdfSampler : public Sampler {
- public:
-  explicit BrdfSampler(SharedBrdf brdf) : brdf_(std::move(brdf)) {}
-
-  Domain domain() const override { return Domain::hemisphere; }
-  double evaluate(const Point& p) const override {
-    return p[2] > 0 ? brdf_->target(Target::brdf_cosine, vector(p)) : 0;
-  }
+/// Directions of `point` with `density`; evaluate() is f cos.
+std::shared_ptr<const Sampler> brdf_sampler(const SharedBrdf& brdf,
+                                            std::function<std::optional<Point>(Stream&)> point,
+                                            std::function<double(const Point&)> density) {
   // Four standard deviations of the lobe of w_o, twice as wide as that of h, to a part.
-  Panels panels() const override {
-    const double part = 8 * brdf_->width();
-    const auto parts = [&](double range) {
-      return static_cast<std::size_t>(std::ceil(range / part));
-    };
-    return {.first = parts(std::numbers::pi / 2), .second = parts(2 * std::numbers::pi)};
-  }
+  const auto parts = [width = brdf->width()](double range) {
+    return static_cast<std::size_t>(std::ceil(range / (8 * width)));
+  };
+  const auto evaluate = [brdf](const Point& p) {
+    return p[2] > 0 ? brdf->target(Target::brdf_cosine, vector(p)) : 0;
+  };
+  return sampler_of(
+      {.domain = Domain::hemisphere,
+       .point = std::move(point),
+       .density = std::move(density),
+       .evaluate = evaluate,
+       .panels = {.first = parts(std::numbers::pi / 2), .second = parts(2 * std::numbers::pi)}});
+}
 
- protected:
-  const render::HalfVectorBrdf& brdf() const { return *brdf_; }
-  SamplerDraw draw(const Vector3& out) const {
-    const Point p = point(out);
-    const double p_out = density(p);
-    return {.point = p, .density = p_out, .weight = evaluate(p) / p_out};
-  }
-
- private:
-  SharedBrdf brdf_;
-};
-
-class PublishedSampler final : public BrdfSampler {
- public:
-  using BrdfSampler::BrdfSampler;
-
-  SamplerDraw sample(Stream& random) const override {
-    const double u = random.uniform();
-    const Vector3 out = brdf().reflected(brdf().half_vector(u, random.uniform_open()));
-    return out.z > 0 ? draw(out) : SamplerDraw{.valid = false};
-  }
-  double density(const Point& p) const override { return brdf().density(vector(p)); }
-};
-
-class RejectionSampler final : public BrdfSampler {
- public:
-  /// `integral` of the target over the upper hemisphere.
-  RejectionSampler(SharedBrdf brdf, Target target, double integral)
-      : BrdfSampler(std::move(brdf)), target_(target), integral_(integral) {}
-
-  SamplerDraw sample(Stream& random) const override {
-    return draw(render::sample_by_rejection(brdf(), target_, random));
-  }
-  double density(const Point& p) const override {
-    return p[2] > 0 ? brdf().target(target_, vector(p)) / integral_ : 0;
-  }
-
- private:
-  Target target_;
-  double integral_;
-};
+/// `integral` of the target over the upper hemisphere.
+std::shared_ptr<const Sampler> rejection_sampler(const SharedBrdf& brdf, Target target,
+                                                 double integral) {
+  const auto point_above = [brdf, target](Stream& random) {
+    return point(render::sample_by_rejection(*brdf, target, random));
+  };
+  const auto density = [brdf, target, integral](const Point& p) {
+    return p[2] > 0 ? brdf->target(target, vector(p)) / integral : 0;
+  };
+  return brdf_sampler(brdf, point_above, density);
+}
 
 struct Prepared {
   Channel channel;
@@ -95,13 +69,13 @@ Channel channel(const render::BrdfIntegrals& integrals, double second_moment, do
 // f cos_o / (p / mass) <= mass times the bound of f cos_o / p.
 Prepared by_density(SharedBrdf brdf, const render::BrdfIntegrals& i) {
   return {channel(i, i.mass * i.second_moment, i.mass * brdf->weight_bound()),
-          std::make_shared<RejectionSampler>(brdf, Target::density, i.mass)};
+          rejection_sampler(brdf, Target::density, i.mass)};
 }
 
 // f cos_o / (f / B) = B cos_o <= B, of second moment B^2 E[cos_o^2] = B times that of f.
 Prepared by_brdf(SharedBrdf brdf, const render::BrdfIntegrals& i) {
   return {channel(i, i.brdf * i.cosine_moment, i.brdf),
-          std::make_shared<RejectionSampler>(brdf, Target::brdf, i.brdf)};
+          rejection_sampler(brdf, Target::brdf, i.brdf)};
 }
 
 // f cos_o / (f cos_o / albedo): the albedo whatever is drawn, to rounding.
@@ -111,7 +85,7 @@ Prepared by_brdf_cosine(SharedBrdf brdf, const render::BrdfIntegrals& i) {
   Channel constant = channel(i, i.albedo * i.albedo, i.albedo + rounding);
   constant.low = i.albedo - rounding;
   constant.rounding = 2 * rounding;
-  return {constant, std::make_shared<RejectionSampler>(brdf, Target::brdf_cosine, i.albedo)};
+  return {constant, rejection_sampler(brdf, Target::brdf_cosine, i.albedo)};
 }
 
 /// Reads `sampler` and prepares that one. Mean and variance come from quadrature.
@@ -135,7 +109,12 @@ std::vector<ParameterInformation> incident_parameters() {
 }  // namespace
 
 std::shared_ptr<const Sampler> published_sampler(SharedBrdf brdf) {
-  return std::make_shared<PublishedSampler>(std::move(brdf));
+  const auto point_of = [brdf](Stream& random) {
+    const double u = random.uniform();
+    const Vector3 out = brdf->reflected(brdf->half_vector(u, random.uniform_open()));
+    return out.z > 0 ? std::optional(point(out)) : std::nullopt;
+  };
+  return brdf_sampler(brdf, point_of, [brdf](const Point& p) { return brdf->density(vector(p)); });
 }
 
 Channel published_channel(const render::HalfVectorBrdf& brdf) {

@@ -1,4 +1,4 @@
-#include "correlated/area.h"
+#include "luminaire/area.h"
 
 #include <stdexcept>
 
@@ -31,34 +31,50 @@ Colour colour_of(const Setting& setting, const Setting& open) {
   return colour;
 }
 
-}  // namespace
+class AreaPairs final : public PairSource {
+ public:
+  AreaPairs(const SceneDescription& description, const Location& where)
+      : setting_(std::make_shared<const Setting>(description, where)),
+        primary_(setting_),
+        colours_{colour_of(*setting_, Setting(without_occluders(description), where))} {}
 
-AreaPairs::AreaPairs(const SceneDescription& description, const Location& where)
-    : setting_(std::make_shared<const Setting>(description, where)),
-      primary_(setting_),
-      colours_{colour_of(*setting_, Setting(without_occluders(description), where))} {}
-
-void AreaPairs::draw(Stream& random, std::span<Pair> out, Cost& cost) const {
-  // Points first, rays after: see AveragingEstimator.
-  std::array<luminaire::LightSample, 32> points;
-  for (std::size_t done = 0; done < out.size(); done += points.size()) {
-    const std::size_t size = std::min(points.size(), out.size() - done);
-    for (std::size_t i = 0; i < size; ++i) points[i] = primary_.draw(random);
-    for (std::size_t i = 0; i < size; ++i) {
-      out[done + i].control[0] = points[i].value;
-      out[done + i].full[0] = primary_.value(points[i], cost);
+  const std::vector<Colour>& colours() const override { return colours_; }
+  void draw(Stream& random, std::span<Pair> out, Cost& cost) const override {
+    // Points first, rays after: see AveragingEstimator.
+    std::array<luminaire::LightSample, 32> points;
+    for (std::size_t done = 0; done < out.size(); done += points.size()) {
+      const std::size_t size = std::min(points.size(), out.size() - done);
+      for (std::size_t i = 0; i < size; ++i) points[i] = primary_.draw(random);
+      for (std::size_t i = 0; i < size; ++i) {
+        out[done + i].control[0] = points[i].value;
+        out[done + i].full[0] = primary_.value(points[i], cost);
+      }
     }
   }
+  std::vector<NamedSampler> samplers() const override {
+    return luminaire::point_samplers<>(setting_);
+  }
+
+ private:
+  luminaire::SharedSetting setting_;
+  luminaire::AreaPrimary<> primary_;
+  std::vector<Colour> colours_;
+};
+
+}  // namespace
+
+SharedPairs area_pairs(const SceneDescription& description, const Location& where) {
+  return std::make_shared<const AreaPairs>(description, where);
 }
 
-std::shared_ptr<const AreaPairs> read_area_pairs(Parameters& given) {
+SharedPairs read_area_pairs(Parameters& given) {
   const SceneDescription scene = luminaire::read_scene(given.structure("scene"), given.folder());
   if (!std::holds_alternative<render::Polygon>(scene.light.shape)) {
     given.refuse("scene",
                  "the luminaire must be one polygon: of a mesh, which may shade itself, the "
                  "integral of the control is not known in closed form");
   }
-  return std::make_shared<const AreaPairs>(scene, given.where("scene"));
+  return area_pairs(scene, given.where("scene"));
 }
 
 }  // namespace assay::correlated
@@ -75,9 +91,7 @@ std::vector<Entry> correlated_area() {
            "on its area A, f = g [visible]; J is Lambert's formula for the polygon clipped at the "
            "receiver's horizon. One shadow ray a primary, none where a cosine is zero.",
        .parameters = luminaire::information("", "", "").parameters,
-       .read = [](Parameters& given) -> correlated::SharedPairs {
-         return correlated::read_area_pairs(given);
-       }});
+       .read = correlated::read_area_pairs});
 }
 
 }  // namespace assay::plugins

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "estimators/estimator.h"
+#include "luminaire/scene_description.h"
 #include "render/environment_map.h"
 
 namespace assay::correlated {
@@ -55,6 +56,29 @@ class PairSource {
 };
 
 using SharedPairs = std::shared_ptr<const PairSource>;
+
+/// Points uniform on a planar luminaire: f is the irradiance that arrives, g what would arrive if
+/// nothing stood in the way. g/p = A L cos+ light_cosine+ / r^2, f = g where nothing hides the
+/// point, else 0. J is Lambert's formula for the polygon clipped at the horizon. With polygonal
+/// occluders I and the second moments E[f^2] = E[f g] and E[g^2] are exact as well.
+///
+/// std::invalid_argument for a luminaire that is not one planar polygon: it may shade itself, and
+/// then J has no closed form.
+SharedPairs area_pairs(const luminaire::SceneDescription& description, const Location& where);
+/// Reads the parameter `scene`; InputError there when the luminaire is a mesh.
+SharedPairs read_area_pairs(Parameters&);
+
+/// Directions of a sky: f is the irradiance that arrives, g that of an open uniform sky of the same
+/// mean M. f/p = L cos+ V / p, g/p = M cos+ / p and J = pi M. Directions have a density that is
+/// positive wherever cos+ is.
+///
+/// The parameters are those of a sky and `sampling`. It is uniform, cosine, emittance (in
+/// proportion to the sky, interpolated on 2048 triangles) or steered (the sky times the lobe of
+/// nine harmonics).
+std::vector<ParameterInformation> sky_pair_parameters();
+/// Reads them. InputError at `sky` where emittance or steered sampling would never draw some
+/// directions: the sky is black at a vertex.
+SharedPairs read_sky_pairs(Parameters&);
 
 /// Draws `count` pairs in batches and gives each to `use`.
 template <class Use>

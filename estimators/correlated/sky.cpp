@@ -1,11 +1,10 @@
-#include "correlated/sky.h"
-
 #include <numbers>
 #include <string>
 #include <utility>
 
 #include "correlated/estimators.h"
 #include "estimators/parameters.h"
+#include "sky/directions.h"
 #include "steerable/directions.h"
 
 namespace assay::correlated {
@@ -29,33 +28,46 @@ sky::SharedDirections directions_of(Parameters& given, const sky::Setting& setti
   return std::make_shared<const steerable::SteeredDirections<>>(tree, lobe, setting.frame());
 }
 
-}  // namespace
-
-SkyPairs::SkyPairs(sky::SharedSetting setting, sky::SharedDirections directions)
-    : setting_(std::move(setting)),
-      directions_(std::move(directions)),
-      mean_(setting_->radiance().mean()) {
-  for (const Channel& channel : sky::irradiance_channels(*setting_)) {
-    colours_.push_back({.name = channel.name,
-                        .control_integral = std::numbers::pi * mean_[colours_.size()],
-                        .integral = channel.mean,
-                        .integral_error = channel.mean_error});
-  }
-}
-
-void SkyPairs::draw(Stream& random, std::span<Pair> out, Cost& cost) const {
-  for (Pair& pair : out) {
-    const double u = random.uniform();
-    const sky::Direction direction = directions_->draw(u, random.uniform());
-    pair = {};
-    if (direction.w.z <= 0) continue;
-    const Rgb received = setting_->received(direction.w, cost);
-    for (std::size_t c = 0; c < colours_.size(); ++c) {
-      pair.full[c] = received[c] / direction.density;
-      pair.control[c] = mean_[c] * direction.w.z / direction.density;
+class SkyPairs final : public PairSource {
+ public:
+  SkyPairs(sky::SharedSetting setting, sky::SharedDirections directions)
+      : setting_(std::move(setting)),
+        directions_(std::move(directions)),
+        mean_(setting_->radiance().mean()) {
+    for (const Channel& channel : sky::irradiance_channels(*setting_)) {
+      colours_.push_back({.name = channel.name,
+                          .control_integral = std::numbers::pi * mean_[colours_.size()],
+                          .integral = channel.mean,
+                          .integral_error = channel.mean_error});
     }
   }
-}
+
+  const std::vector<Colour>& colours() const override { return colours_; }
+  void draw(Stream& random, std::span<Pair> out, Cost& cost) const override {
+    for (Pair& pair : out) {
+      const double u = random.uniform();
+      const sky::Direction direction = directions_->draw(u, random.uniform());
+      pair = {};
+      if (direction.w.z <= 0) continue;
+      const Rgb received = setting_->received(direction.w, cost);
+      for (std::size_t c = 0; c < colours_.size(); ++c) {
+        pair.full[c] = received[c] / direction.density;
+        pair.control[c] = mean_[c] * direction.w.z / direction.density;
+      }
+    }
+  }
+  std::vector<NamedSampler> samplers() const override {
+    return {{"direction", std::make_shared<sky::DirectionSampler>(setting_, directions_)}};
+  }
+
+ private:
+  sky::SharedSetting setting_;
+  sky::SharedDirections directions_;
+  Rgb mean_;
+  std::vector<Colour> colours_;
+};
+
+}  // namespace
 
 std::vector<ParameterInformation> sky_pair_parameters() {
   return joined(sky::parameters(),
@@ -63,7 +75,7 @@ std::vector<ParameterInformation> sky_pair_parameters() {
                                 {"uniform", "cosine", "emittance", "steered"})});
 }
 
-std::shared_ptr<const SkyPairs> read_sky_pairs(Parameters& given) {
+SharedPairs read_sky_pairs(Parameters& given) {
   const sky::SharedSetting setting = sky::read_setting(given);
   return std::make_shared<const SkyPairs>(setting, directions_of(given, *setting));
 }
@@ -82,9 +94,7 @@ std::vector<Entry> correlated_sky() {
            "cos+; J = pi M. Directions are drawn as `sampling` says; by the cosine g/p = J is "
            "constant and corrects nothing. One shadow ray a primary, none below the horizon.",
        .parameters = correlated::sky_pair_parameters(),
-       .read = [](Parameters& given) -> correlated::SharedPairs {
-         return correlated::read_sky_pairs(given);
-       }});
+       .read = correlated::read_sky_pairs});
 }
 
 }  // namespace assay::plugins

@@ -7,17 +7,15 @@
 #include <functional>
 #include <memory>
 #include <numbers>
-#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "estimators/estimator.h"
 #include "estimators/parameters.h"
-#include "render/alias_table.h"
 #include "render/environment_map.h"
-#include "render/hemisphere.h"
-#include "sky/setting.h"
+#include "render/share_table.h"
+#include "sky/directions.h"
 
 namespace assay::plugins {
 
@@ -27,44 +25,10 @@ using render::Rgb;
 using render::Vector3;
 using std::numbers::pi;
 
-class Sky : public sky::Receiver {
- public:
-  Sky(render::EnvironmentMap map, sky::Receiver receiver)
-      : sky::Receiver(std::move(receiver)), map_(std::move(map)) {}
-
-  const render::EnvironmentMap& map() const { return map_; }
-
- private:
-  render::EnvironmentMap map_;
+struct Sky {
+  std::shared_ptr<const sky::Picture> picture;
+  sky::SharedSetting setting;
 };
-
-using SharedSky = std::shared_ptr<const Sky>;
-
-struct Primaries {
-  /// E[X^2] of a channel is the sum of L^2 times this over texels of radiance L.
-  std::function<double(std::size_t texel, const render::CosineMoments&)> second_moment;
-  Rgb largest;  ///< no X is above, channel by channel
-};
-
-/// Mean of the three channels: what samplers of directions evaluate.
-inline double grey(const Rgb& rgb) { return (rgb[0] + rgb[1] + rgb[2]) / 3; }
-
-/// The set-up of a primary, Rgb(Stream&, Cost&), of three channels.
-template <class Primary>
-std::shared_ptr<const Setup> rgb_setup(std::vector<Channel> channels, const Primary& primary,
-                                       NamedSampler sampler) {
-  const auto estimate = [primary](Stream& random, std::uint64_t primaries, std::span<double> out,
-                                  Cost& cost) {
-    Rgb sum{};
-    for (std::uint64_t i = 0; i < primaries; ++i) {
-      const Rgb value = primary(random, cost);
-      for (std::size_t c = 0; c < 3; ++c) sum[c] += value[c];
-    }
-    for (std::size_t c = 0; c < 3; ++c) out[c] = sum[c] / static_cast<double>(primaries);
-    cost.samples += primaries;
-  };
-  return setup_of({std::move(channels), estimating(estimate), {std::move(sampler)}});
-}
 
 /// map, normal, position, occluders.
 std::vector<ParameterInformation> parameters() {
@@ -72,48 +36,45 @@ std::vector<ParameterInformation> parameters() {
       text_parameter("map", "the sky: a picture, latitude-longitude, +z the first row's pole"));
 }
 
-render::EnvironmentMap read_map(Parameters& parameters) {
-  const std::string file = parameters.file("map");
+/// Reads them. InputError at the parameter for a picture that cannot be used.
+Sky read_sky(Parameters& given) {
+  sky::Receiver receiver = sky::read_receiver(given);
+  const std::string file = given.file("map");
   try {
-    return render::read_environment(file);
+    auto picture = std::make_shared<const sky::Picture>(render::read_environment(file));
+    auto setting = std::make_shared<const sky::Setting>(picture, std::move(receiver));
+    return {std::move(picture), std::move(setting)};
   } catch (const InputError& error) {
-    parameters.refuse("map", "`" + file + "`: " + error.message());
+    given.refuse("map", "`" + file + "`: " + error.message());
   }
 }
 
-/// Reads them. InputError at the parameter for a picture that cannot be used.
-SharedSky read_sky(Parameters& parameters) {
-  sky::Receiver receiver = sky::read_receiver(parameters);
-  return std::make_shared<const Sky>(read_map(parameters), std::move(receiver));
-}
+struct Primaries {
+  /// E[X^2] of a channel is the sum of L^2 times this over texels of radiance L.
+  std::function<double(std::size_t texel, const render::CosineMoments&)> second_moment;
+  Rgb largest;  ///< no X is above, channel by channel
+};
 
-/// The channels r, g, b. Under the open sky with mean (exact to `mean_error`) and variance.
+/// The channels r, g, b. Under the open sky with mean and variance.
 std::vector<Channel> irradiance_channels(const Sky& sky, const Primaries& primaries) {
-  const render::EnvironmentMap& map = sky.map();
-  Rgb mean{}, error{}, square{};
-  for (std::size_t texel = 0; sky.open() && texel < map.size(); ++texel) {
-    const auto moments = cosine_moments(map.patch(texel), sky.frame().normal);
+  const render::EnvironmentMap& map = sky.picture->map();
+  Rgb square{};
+  for (std::size_t texel = 0; sky.setting->open() && texel < map.size(); ++texel) {
+    const auto moments = cosine_moments(map.patch(texel), sky.setting->frame().normal);
     const double second = primaries.second_moment(texel, moments);
     for (std::size_t c = 0; c < 3; ++c) {
-      const double radiance = map.radiance(texel)[c];
-      mean[c] += radiance * moments.first;
-      error[c] += radiance * moments.error;
-      square[c] += radiance * radiance * second;
+      square[c] += map.radiance(texel)[c] * map.radiance(texel)[c] * second;
     }
   }
-  std::vector<Channel> channels{{.name = "r"}, {.name = "g"}, {.name = "b"}};
-  // The rounding of a sum of n terms that are not negative is at most n 2^-53 of it.
-  const double rounding = static_cast<double>(map.size()) * 0x1p-53;
+  std::vector<Channel> channels = sky::irradiance_channels(*sky.setting);
   for (std::size_t c = 0; c < 3; ++c) {
     // A uniform sky gives equal numbers to the cosine sampler, but for the rounding of their sums.
     channels[c].rounding = primaries.largest[c] * 0x1p-40;
     channels[c].low = 0;
     channels[c].high = primaries.largest[c] + channels[c].rounding;
-    if (!sky.open()) continue;
-    channels[c].mean = mean[c];
-    channels[c].mean_error = error[c] + rounding * mean[c];
+    if (!channels[c].mean) continue;
     // A variance with fewer than some eight digits left by the difference counts as unknown.
-    const double variance = square[c] - mean[c] * mean[c];
+    const double variance = square[c] - *channels[c].mean * *channels[c].mean;
     if (variance > 1e-6 * square[c] || square[c] == 0) channels[c].variance = variance;
   }
   return channels;
@@ -122,59 +83,15 @@ std::vector<Channel> irradiance_channels(const Sky& sky, const Primaries& primar
 // Irradiance from a sky by directions with density cos / pi about the receiver's normal:
 // X = pi L(w) V(w). E[X] = E, E[X^2] = pi times the integral of L^2 cos+ under the open sky.
 
-Vector3 draw(Stream& random) {
-  const double u = random.uniform();
-  return render::cosine_hemisphere(u, random.uniform());
-}
-
-Rgb radiance(const Sky& sky, const Vector3& local, Cost& cost) {
-  return sky.visible(local, cost) ? sky.map().radiance(sky.frame().to_world(local)) : Rgb{};
-}
-
-/// Directions of the receiver's frame.
-class CosineSampler final : public Sampler {
- public:
-  explicit CosineSampler(SharedSky sky) : sky_(std::move(sky)) {}
-
-  Domain domain() const override { return Domain::hemisphere; }
-  SamplerDraw sample(Stream& random) const override {
-    const Vector3 w = draw(random);
-    Cost uncounted;
-    return {.point = {w.x, w.y, w.z},
-            .density = w.z / pi,
-            .weight = pi * grey(radiance(*sky_, w, uncounted))};
-  }
-  double density(const Point& p) const override { return p[2] / pi; }
-  double evaluate(const Point& p) const override {
-    Cost uncounted;
-    return p[2] * grey(radiance(*sky_, {p[0], p[1], p[2]}, uncounted));
-  }
-
- private:
-  SharedSky sky_;
-};
-
-Rgb largest(const render::EnvironmentMap& map) {
-  Rgb most{};
-  for (std::size_t texel = 0; texel < map.size(); ++texel) {
-    for (std::size_t c = 0; c < 3; ++c) most[c] = std::max(most[c], pi * map.radiance(texel)[c]);
-  }
-  return most;
-}
-
 std::shared_ptr<const Setup> prepare_cosine(Parameters& given) {
-  const SharedSky sky = read_sky(given);
-  auto channels = irradiance_channels(
-      *sky,
-      {.second_moment = [](std::size_t, const render::CosineMoments& m) { return pi * m.first; },
-       .largest = largest(sky->map())});
-  const auto primary = [sky](Stream& random, Cost& cost) {
-    Rgb value = radiance(*sky, draw(random), cost);
-    for (double& x : value) x *= pi;
-    return value;
-  };
-  return rgb_setup(std::move(channels), primary,
-                   NamedSampler{"direction", std::make_shared<CosineSampler>(sky)});
+  const Sky sky = read_sky(given);
+  Primaries primaries{
+      .second_moment = [](std::size_t, const render::CosineMoments& m) { return pi * m.first; }};
+  for (std::size_t c = 0; c < 3; ++c) primaries.largest[c] = pi * sky.picture->most(c);
+  const auto directions = std::make_shared<const sky::CosineDirections>();
+  return sky::sky_setup(irradiance_channels(sky, primaries),
+                        sky::StratifiedPrimary<>{sky.setting, directions, 1},
+                        std::make_shared<sky::DirectionSampler>(sky.setting, directions), false);
 }
 
 // Irradiance from a sky by directions drawn where it is bright.
@@ -204,7 +121,7 @@ struct Choice {
 /// Directions of the world's frame, drawn by brightness.
 class EmittanceSampler final : public Sampler {
  public:
-  explicit EmittanceSampler(SharedSky sky) : sky_(std::move(sky)), texels_(powers(sky_->map())) {}
+  explicit EmittanceSampler(Sky sky) : sky_(std::move(sky)), texels_(powers(map())) {}
 
   Domain domain() const override { return Domain::sphere; }
   SamplerDraw sample(Stream& random) const override {
@@ -213,78 +130,75 @@ class EmittanceSampler final : public Sampler {
     Cost uncounted;
     return {.point = {w.x, w.y, w.z},
             .density = density(choice.texel),
-            .weight = grey(contribution(choice, uncounted))};
+            .weight = sky_.setting->grey(contribution(choice, uncounted))};
   }
-  double density(const Point& p) const override {
-    return density(sky_->map().texel({p[0], p[1], p[2]}));
-  }
+  double density(const Point& p) const override { return density(map().texel({p[0], p[1], p[2]})); }
   double evaluate(const Point& p) const override {
     const Vector3 w{p[0], p[1], p[2]};
     Cost uncounted;
-    return grey(sky_->map().radiance(w)) * received(w, uncounted);
+    return sky_.setting->grey(map().radiance(w)) * received(w, uncounted);
   }
   // The density jumps between texels: rows in theta, columns in phi.
   Panels panels() const override {
-    return {.first = sky_->map().resolution().height, .second = sky_->map().resolution().width};
+    return {.first = map().resolution().height, .second = map().resolution().width};
   }
 
   Choice choose(Stream& random) const {
-    const double u = random.uniform();
-    const std::size_t texel = texels_.pick(u, random.uniform());
-    const double v = random.uniform();
-    return {texel, direction_in(sky_->map().patch(texel), {v, random.uniform()})};
+    double u = random.uniform();
+    const std::size_t texel = texels_.pick(u);
+    return {texel, direction_in(map().patch(texel), {u, random.uniform()})};
   }
   /// X: radiance times cos+ V over the density.
   Rgb contribution(const Choice& choice, Cost& cost) const {
     const double factor = received(choice.direction, cost) / density(choice.texel);
-    Rgb value = sky_->map().radiance(choice.texel);
+    Rgb value = map().radiance(choice.texel);
     for (double& x : value) x *= factor;
     return value;
   }
   double total() const { return texels_.total(); }
 
  private:
-  double density(std::size_t texel) const {
-    return sum(sky_->map().radiance(texel)) / texels_.total();
-  }
+  const render::EnvironmentMap& map() const { return sky_.picture->map(); }
+  double density(std::size_t texel) const { return sum(map().radiance(texel)) / texels_.total(); }
   double received(const Vector3& w, Cost& cost) const {
-    const Vector3 local = sky_->frame().to_local(w);
-    return local.z > 0 && sky_->visible(local, cost) ? local.z : 0;
+    const Vector3 local = sky_.setting->frame().to_local(w);
+    return local.z > 0 && sky_.setting->visible(local, cost) ? local.z : 0;
   }
 
-  SharedSky sky_;
-  render::AliasTable texels_;
+  Sky sky_;
+  render::ShareTable texels_;
 };
 
-Primaries primaries(const SharedSky& sky, double total) {
+Primaries primaries(const Sky& sky, double total) {
   Primaries result;
-  const render::EnvironmentMap& map = sky->map();
+  const render::EnvironmentMap& map = sky.picture->map();
   for (std::size_t texel = 0; texel < map.size(); ++texel) {
     const Rgb& radiance = map.radiance(texel);
     for (std::size_t c = 0; c < 3 && sum(radiance) > 0; ++c) {
       result.largest[c] = std::max(result.largest[c], total * radiance[c] / sum(radiance));
     }
   }
-  result.second_moment = [sky, total](std::size_t texel, const render::CosineMoments& moments) {
-    const double brightness = sum(sky->map().radiance(texel));
+  result.second_moment = [&map, total](std::size_t texel, const render::CosineMoments& moments) {
+    const double brightness = sum(map.radiance(texel));
     return brightness > 0 ? total * moments.second / brightness : 0;
   };
   return result;
 }
 
 std::shared_ptr<const Setup> prepare_emittance(Parameters& given) {
-  const SharedSky sky = read_sky(given);
-  const render::EnvironmentMap& map = sky->map();
+  const Sky sky = read_sky(given);
+  const render::EnvironmentMap& map = sky.picture->map();
   bool black = true;
   for (std::size_t texel = 0; texel < map.size(); ++texel) black &= sum(map.radiance(texel)) == 0;
   if (black) given.refuse("map", "is black all over: there is nothing to draw directions from");
 
   const auto sampler = std::make_shared<const EmittanceSampler>(sky);
   const auto primary = [sampler](Stream& random, Cost& cost) {
-    return sampler->contribution(sampler->choose(random), cost);
+    ++cost.samples;
+    return sky::Outcome{.value = sampler->contribution(sampler->choose(random), cost)};
   };
-  return rgb_setup(irradiance_channels(*sky, primaries(sky, sampler->total())), primary,
-                   NamedSampler{"direction", sampler});
+  return sky::sky_setup(irradiance_channels(sky, primaries(sky, sampler->total())), primary,
+                        sampler, false);
 }
 
 }  // namespace

@@ -6,8 +6,6 @@
 #include <map>
 #include <string_view>
 
-#include "estimators/foreign/shared_library.h"
-
 namespace assay::foreign {
 
 namespace {
@@ -205,14 +203,6 @@ std::string other_numbers(const std::string& name, const Question& question) {
 
 std::string other_numbers_alone(const std::string& name, const Question& question) {
   return gave_other_numbers(name, "one of " + to_text(question) + " alone: " + rule_of_samplers);
-}
-
-void FirstLook::look(const std::function<std::string()>& why_not) {
-  const std::scoped_lock lock(mutex_);
-  if (passed_) return;
-  if (why_not_.empty()) why_not_ = why_not();
-  if (!why_not_.empty()) throw LibraryError(why_not_);
-  passed_.store(true, std::memory_order_release);
 }
 
 }  // namespace assay::foreign

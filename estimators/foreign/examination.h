@@ -19,10 +19,8 @@
 // observations are all this value, and n means of twice as many primaries all another, with
 // probability (p (1 - p^2))^n at most. That is 3e-7 for 16.
 
-#include <atomic>
 #include <cstddef>
 #include <functional>
-#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -70,23 +68,5 @@ std::string other_numbers(const std::string& name, const Question& question);
 
 /// That one item of a question to a sampler had other numbers when it was asked for alone.
 std::string other_numbers_alone(const std::string& name, const Question& question);
-
-/// A look at the first of many questions, whichever thread asks it.
-class FirstLook {
- public:
-  /// Calls `why_not` at the first call of all, and throws LibraryError with what it returns, unless
-  /// that is empty, then and at every later call.
-  template <class WhyNot>
-  void at(const WhyNot& why_not) {
-    if (!passed_.load(std::memory_order_acquire)) look(why_not);
-  }
-
- private:
-  void look(const std::function<std::string()>& why_not);
-
-  std::mutex mutex_;
-  std::atomic<bool> passed_ = false;
-  std::string why_not_;
-};
 
 }  // namespace assay::foreign

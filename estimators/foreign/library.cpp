@@ -1,11 +1,9 @@
 // Observations of an estimator in a shared library (plugin_abi.h): in a process of its own unless
 // asked otherwise.
 
-#include <array>
 #include <filesystem>
 #include <memory>
 
-#include "estimators/foreign/examination.h"
 #include "estimators/foreign/setup.h"
 #include "estimators/foreign/shared_library.h"
 #include "estimators/library_host.h"
@@ -13,61 +11,6 @@
 namespace assay::foreign {
 
 namespace {
-
-std::vector<double> numbers_of(const SamplerDraw& draw) {
-  const auto& [x, y, z] = draw.point;
-  return {x, y, z, draw.density, draw.weight, draw.valid ? 1.0 : 0.0};
-}
-
-/// A sampler that nobody else asks twice. It asks again for the first draw, density and evaluation.
-/// Other bits are a LibraryError, then and at every later call.
-class InProcessSampler final : public LibrarySampler {
- public:
-  InProcessSampler(std::shared_ptr<const PreparedLibrary> library, const AssaySampler& sampler);
-
-  SamplerDraw sample(Stream& random) const override;
-  double density(const Point& point) const override;
-  double evaluate(const Point& point) const override;
-
- private:
-  template <class Ask>
-  void look_at_first(Asked what, const Ask& ask) const;
-
-  std::string name_;
-  std::string file_;
-  mutable std::array<FirstLook, 3> first_looks_;
-};
-
-InProcessSampler::InProcessSampler(std::shared_ptr<const PreparedLibrary> library,
-                                   const AssaySampler& sampler)
-    : LibrarySampler(library, sampler), name_(sampler.name), file_(library->file()) {}
-
-template <class Ask>
-void InProcessSampler::look_at_first(Asked what, const Ask& ask) const {
-  first_looks_[static_cast<std::size_t>(what)].at([&] {
-    const std::vector<double> numbers = ask();
-    const Question question{.first = static_cast<std::uint64_t>(what), .primaries = 0};
-    return same_bits(ask(), numbers) ? ""
-                                     : "sampler `" + name_ + "`: " + other_numbers(file_, question);
-  });
-}
-
-SamplerDraw InProcessSampler::sample(Stream& random) const {
-  const std::uint64_t key = random();
-  const std::uint64_t observation = random();
-  look_at_first(Asked::draws, [&] { return numbers_of(draw(key, observation)); });
-  return draw(key, observation);
-}
-
-double InProcessSampler::density(const Point& point) const {
-  look_at_first(Asked::densities, [&] { return std::vector{LibrarySampler::density(point)}; });
-  return LibrarySampler::density(point);
-}
-
-double InProcessSampler::evaluate(const Point& point) const {
-  look_at_first(Asked::evaluations, [&] { return std::vector{LibrarySampler::evaluate(point)}; });
-  return LibrarySampler::evaluate(point);
-}
 
 /// A library in this process.
 class LibraryRespondent final : public Respondent {
@@ -78,10 +21,9 @@ class LibraryRespondent final : public Respondent {
   const Hello& hello() const override { return library_->hello(); }
 
  private:
-  std::vector<double> hear(const Question& question, std::string_view /*items*/) override {
+  std::vector<double> hear(const Question& question, std::string_view items) override {
     try {
-      std::uint64_t at = 0;
-      return library_->answer(question, at);
+      return library_->answer(question, items);
     } catch (const LibraryError& error) {
       throw NoAnswer(error.what());
     }
@@ -92,12 +34,8 @@ class LibraryRespondent final : public Respondent {
 
 std::shared_ptr<const Setup> in_this_process(const LibraryChoice& choice) {
   const auto library = std::make_shared<const PreparedLibrary>(choice);
-  std::vector<NamedSampler> samplers;
-  for (const AssaySampler& sampler : library->samplers()) {
-    samplers.push_back({sampler.name, std::make_shared<InProcessSampler>(library, sampler)});
-  }
   const auto start = [library] { return std::make_unique<LibraryRespondent>(library); };
-  return setup_of(std::make_shared<Children>(library->file(), start), std::move(samplers));
+  return setup_of(std::make_shared<Children>(library->file(), start));
 }
 
 }  // namespace

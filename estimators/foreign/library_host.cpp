@@ -10,7 +10,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <optional>
+#include <memory>
 #include <span>
 #include <stdexcept>
 #include <system_error>
@@ -24,8 +24,6 @@ namespace assay {
 
 namespace {
 
-using foreign::Asked;
-using foreign::LibrarySampler;
 using foreign::PreparedLibrary;
 using foreign::Question;
 
@@ -60,12 +58,10 @@ class Channels {
   }
 
   /// The items that follow a question to a sampler.
-  template <class Item>
-  std::vector<Item> read_items(const Question& question) const {
-    std::vector<Item> items(question.count);
-    if (!fill({reinterpret_cast<char*>(items.data()), sizeof(Item) * items.size()})) {
-      throw std::runtime_error("the question ended early");
-    }
+  std::string read_items(const Question& question) const {
+    if (!question.is_to_sampler()) return "";
+    std::string items(8 * foreign::item_words(question.asked()) * question.count, '\0');
+    if (!fill(items)) throw std::runtime_error("the question ended early");
     return items;
   }
 
@@ -121,69 +117,18 @@ void watch(int questions) {
   }).detach();
 }
 
-void reply(const Channels& channels, const Question& question, std::span<const double> numbers) {
-  refuse_printing(channels);
-  channels.write({reinterpret_cast<const char*>(numbers.data()), numbers.size_bytes()});
-  channels.write(to_bytes(question, foreign::Numbers::binary));
-}
-
-void answer(const PreparedLibrary& library, const Channels& channels, const Question& question) {
-  const FlushDenormals flush;
-  std::uint64_t at = question.first;
-  std::vector<double> numbers;
-  try {
-    numbers = library.answer(question, at);
-  } catch (const foreign::LibraryError& error) {
-    throw foreign::LibraryError("observation " + std::to_string(at) + ": " + error.what());
-  }
-  reply(channels, question, numbers);
-}
-
-std::vector<double> draws_of(const LibrarySampler& sampler, const Channels& channels,
-                             const Question& question) {
-  std::vector<double> numbers;
-  for (const auto& [key, observation] :
-       channels.read_items<std::array<std::uint64_t, 2>>(question)) {
-    const SamplerDraw draw = sampler.draw(key, observation);
-    numbers.insert(numbers.end(), draw.point.begin(), draw.point.end());
-    numbers.insert(numbers.end(), {draw.density, draw.weight, draw.valid ? 1.0 : 0.0});
-  }
-  return numbers;
-}
-
-std::vector<double> at_points(const LibrarySampler& sampler, const Channels& channels,
-                              const Question& question) {
-  std::vector<double> numbers;
-  const bool densities = question.asked() == Asked::densities;
-  for (const Point& point : channels.read_items<Point>(question)) {
-    numbers.push_back(densities ? sampler.density(point) : sampler.evaluate(point));
-  }
-  return numbers;
-}
-
-void answer(const LibrarySampler& sampler, const Channels& channels, const Question& question) {
-  // Tables of densities are made without.
-  std::optional<FlushDenormals> flush;
-  if (question.first >= foreign::denormals_flushed) flush.emplace();
-  reply(channels, question,
-        question.asked() == Asked::draws ? draws_of(sampler, channels, question)
-                                         : at_points(sampler, channels, question));
-}
-
-void serve(const std::shared_ptr<const PreparedLibrary>& library, const Channels& channels) {
-  std::vector<LibrarySampler> samplers;
-  for (const AssaySampler& sampler : library->samplers()) samplers.emplace_back(library, sampler);
-  channels.write(to_text(library->hello()));
+void serve(const PreparedLibrary& library, const Channels& channels) {
+  channels.write(to_text(library.hello()));
   for (Question question; channels.read_question(question);) {
-    if (question.is_to_sampler()) {
-      answer(samplers.at(question.key), channels, question);
-    } else {
-      answer(*library, channels, question);
-    }
+    const std::vector<double> numbers = library.answer(question, channels.read_items(question));
+    refuse_printing(channels);
+    channels.write(
+        {reinterpret_cast<const char*>(numbers.data()), sizeof(double) * numbers.size()});
+    channels.write(to_bytes(question, foreign::Numbers::binary));
   }
 }
 
-std::shared_ptr<const PreparedLibrary> prepared(const std::vector<std::string>& arguments) {
+std::unique_ptr<const PreparedLibrary> prepared(const std::vector<std::string>& arguments) {
   if (arguments.size() < 3 || arguments.size() % 2 == 0) {
     throw std::runtime_error("a host is given file, estimator, folder, then names and values");
   }
@@ -193,7 +138,7 @@ std::shared_ptr<const PreparedLibrary> prepared(const std::vector<std::string>& 
     choice.parameters.emplace_back(arguments[i], arguments[i + 1]);
   }
   const FlushDenormals flush;
-  return std::make_shared<const PreparedLibrary>(choice);
+  return std::make_unique<const PreparedLibrary>(choice);
 }
 
 std::string one_line(std::string text) {
@@ -217,7 +162,7 @@ std::string library_host() {
 int host_library(const std::vector<std::string>& arguments) {
   const Channels channels;
   watch(channels.questions());
-  std::shared_ptr<const PreparedLibrary> library;
+  std::unique_ptr<const PreparedLibrary> library;
   try {
     library = prepared(arguments);
     refuse_printing(channels);
@@ -226,7 +171,7 @@ int host_library(const std::vector<std::string>& arguments) {
     return failed;
   }
   try {
-    serve(library, channels);
+    serve(*library, channels);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return failed;

@@ -18,6 +18,23 @@ namespace assay::foreign {
 
 namespace {
 
+/// Asks for one after the other, up to the one that cannot be had. Throws where that is the first,
+/// and the failure of all where each can be had.
+template <class AskOne>
+std::vector<double> one_by_one(std::uint64_t count, const NoAnswer& failure, const AskOne& ask) {
+  std::vector<double> numbers;
+  for (std::uint64_t i = 0; i < count && count > 1; ++i) {
+    try {
+      const std::vector<double> more = ask(i);
+      numbers.insert(numbers.end(), more.begin(), more.end());
+    } catch (const NoAnswer&) {
+      if (i == 0) throw;
+      return numbers;
+    }
+  }
+  throw failure;
+}
+
 /// A worker's: one running program, and the observations that it has fetched ahead.
 class ForeignEstimator final : public Estimator {
  public:
@@ -96,8 +113,17 @@ class ForeignEstimator final : public Estimator {
   }
 
   void fetch(const Question& wanted) {
-    children_->refuse_after_failure(wanted);
     numbers_.clear();
+    try {
+      children_->refuse_after_failure(wanted);
+      fetch_from(wanted);
+    } catch (const NoAnswer& failure) {
+      children_->note_failure(wanted, failure.what());
+      throw;
+    }
+  }
+
+  void fetch_from(const Question& wanted) {
     Question question = wanted;
     try {
       take(wanted);
@@ -108,8 +134,9 @@ class ForeignEstimator final : public Estimator {
       }
     } catch (const NoAnswer& failure) {
       drop();
-      if (question.count == 1) give_up(wanted, failure);
-      question.count = narrowed(question, failure);
+      const auto ask_one = [&](std::uint64_t i) { return ask_alone(question, i); };
+      numbers_ = one_by_one(question.count, failure, ask_one);
+      question.count = numbers_.size() / width_;
     }
     held_ = question;
   }
@@ -131,30 +158,18 @@ class ForeignEstimator final : public Estimator {
     return numbers;
   }
 
-  /// Asks a new program for the observations one by one, up to the one that cannot be had: those
-  /// before it are. Throws where it is the first; with the failure of all where each can be had.
-  std::uint64_t narrowed(const Question& all, const NoAnswer& failure) {
-    Question one = all;
+  /// Asks a new program for one observation of the question.
+  std::vector<double> ask_alone(Question one, std::uint64_t index) {
+    one.first += index;
     one.count = 1;
-    for (std::uint64_t i = 0; i < all.count; ++i, ++one.first) {
-      try {
-        take(one);
-        const std::vector<double> row = ask(one);
-        numbers_.insert(numbers_.end(), row.begin(), row.end());
-      } catch (const NoAnswer& alone) {
-        drop();
-        children_->note_failure(one, alone.what());
-        if (i == 0) throw;
-        return i;
-      }
+    try {
+      take(one);
+      return ask(one);
+    } catch (const NoAnswer& alone) {
+      drop();
+      children_->note_failure(one, alone.what());
+      throw;
     }
-    give_up(all, failure);
-  }
-
-  [[noreturn]] void give_up(const Question& at, const NoAnswer& failure) {
-    numbers_.clear();
-    children_->note_failure(at, failure.what());
-    throw failure;
   }
 
   std::shared_ptr<Children> children_;
@@ -207,13 +222,13 @@ bool is_whole(std::span<const double> item) {
   return std::ranges::none_of(item, [](double number) { return std::isnan(number); });
 }
 
-/// Asks whichever program is idle. Its draws are of streams whose key and observation are the next
+/// Asks whoever is idle. Its draws are of streams whose key and observation are the next
 /// two words of Assay's. NoAnswer, with the point in question, if the program ends, takes too long
 /// or says something else. NoAnswer, too, if it answers differently when it is asked again.
-class IsolatedSampler final : public Sampler {
+class ForeignSampler final : public Sampler {
  public:
   /// The sampler that stands at this place in the hello.
-  IsolatedSampler(std::shared_ptr<Children> children, std::size_t index);
+  ForeignSampler(std::shared_ptr<Children> children, std::size_t index);
 
   Domain domain() const override { return note_.domain; }
   std::array<double, 2> bounds() const override { return note_.bounds; }
@@ -256,7 +271,7 @@ class IsolatedSampler final : public Sampler {
 };
 
 /// The items of a question, as they are sent.
-struct IsolatedSampler::Items {
+struct ForeignSampler::Items {
   Asked what;
   std::string_view bytes;
 
@@ -276,36 +291,36 @@ struct IsolatedSampler::Items {
   std::size_t bytes_of_one() const { return 8 * item_words(what); }
 };
 
-IsolatedSampler::IsolatedSampler(std::shared_ptr<Children> children, std::size_t index)
+ForeignSampler::ForeignSampler(std::shared_ptr<Children> children, std::size_t index)
     : children_(std::move(children)), index_(index), note_(children_->hello().samplers.at(index)) {}
 
-double IsolatedSampler::seconds_elsewhere() const { return seconds_of_programs; }
+double ForeignSampler::seconds_elsewhere() const { return seconds_of_programs; }
 
-double IsolatedSampler::rounding() const {
+double ForeignSampler::rounding() const {
   return note_.rounding > 0 ? note_.rounding : Sampler::rounding();
 }
 
-SamplerDraw IsolatedSampler::sample(Stream& random) const {
+SamplerDraw ForeignSampler::sample(Stream& random) const {
   SamplerDraw draw;
   samples({&random, 1}, {&draw, 1});
   for (std::size_t i = 0; i < item_words(Asked::draws); ++i) random();
   return draw;
 }
 
-double IsolatedSampler::density(const Point& point) const {
+double ForeignSampler::density(const Point& point) const {
   double density = 0;
   densities({&point, 1}, {&density, 1});
   return density;
 }
 
-double IsolatedSampler::evaluate(const Point& point) const {
+double ForeignSampler::evaluate(const Point& point) const {
   double value = 0;
   evaluations({&point, 1}, {&value, 1});
   return value;
 }
 
-std::size_t IsolatedSampler::samples(std::span<const Stream> random,
-                                     std::span<SamplerDraw> draws) const {
+std::size_t ForeignSampler::samples(std::span<const Stream> random,
+                                    std::span<SamplerDraw> draws) const {
   const Question first = draw_of(random.front());
   children_->refuse_after_failure(first);
   std::vector<std::uint64_t> words;
@@ -327,22 +342,22 @@ std::size_t IsolatedSampler::samples(std::span<const Stream> random,
   }
 }
 
-std::size_t IsolatedSampler::densities(std::span<const Point> points, std::span<double> out) const {
+std::size_t ForeignSampler::densities(std::span<const Point> points, std::span<double> out) const {
   return at_points(Asked::densities, points, out);
 }
 
-std::size_t IsolatedSampler::lobe_densities(int /*lobe*/, std::span<const Point> points,
-                                            std::span<double> out) const {
+std::size_t ForeignSampler::lobe_densities(int /*lobe*/, std::span<const Point> points,
+                                           std::span<double> out) const {
   return densities(points, out);
 }
 
-std::size_t IsolatedSampler::evaluations(std::span<const Point> points,
-                                         std::span<double> out) const {
+std::size_t ForeignSampler::evaluations(std::span<const Point> points,
+                                        std::span<double> out) const {
   return at_points(Asked::evaluations, points, out);
 }
 
-std::size_t IsolatedSampler::at_points(Asked what, std::span<const Point> points,
-                                       std::span<double> out) const {
+std::size_t ForeignSampler::at_points(Asked what, std::span<const Point> points,
+                                      std::span<double> out) const {
   const std::vector<double> numbers =
       ask({what, {reinterpret_cast<const char*>(points.data()), points.size_bytes()}});
   std::ranges::copy(numbers, out.begin());
@@ -350,7 +365,7 @@ std::size_t IsolatedSampler::at_points(Asked what, std::span<const Point> points
 }
 
 /// About the first few; `items` becomes those.
-std::vector<double> IsolatedSampler::ask_once(Items& items) const {
+std::vector<double> ForeignSampler::ask_once(Items& items) const {
   const std::uint64_t denormals = FlushDenormals::is_on() ? denormals_flushed : 0;
   Question question{.key = index_,
                     .first = static_cast<std::uint64_t>(items.what) + denormals,
@@ -373,8 +388,8 @@ std::vector<double> IsolatedSampler::ask_once(Items& items) const {
 
 /// Asks for the last of the first many of each kind alone. A program that draws on from the state
 /// of its random numbers gives others.
-void IsolatedSampler::require_alone(Respondent& dialogue, const Question& question,
-                                    const Items& items, std::span<const double> numbers) const {
+void ForeignSampler::require_alone(Respondent& dialogue, const Question& question,
+                                   const Items& items, std::span<const double> numbers) const {
   {
     const std::scoped_lock lock(mutex_);
     if (asked_alone_.contains(items.what)) return;
@@ -392,7 +407,7 @@ void IsolatedSampler::require_alone(Respondent& dialogue, const Question& questi
   throw NoAnswer(other_numbers_alone(children_->name(), question));
 }
 
-void IsolatedSampler::require_whole(const Items& items, std::span<const double> numbers) const {
+void ForeignSampler::require_whole(const Items& items, std::span<const double> numbers) const {
   const std::size_t size = numbers_of(items.what);
   for (std::size_t i = 0; i * size < numbers.size(); ++i) {
     const std::span<const double> item = numbers.subspan(i * size, size);
@@ -406,8 +421,8 @@ void IsolatedSampler::require_whole(const Items& items, std::span<const double> 
 }
 
 /// Each program is asked for the very same as the first one, and that one twice.
-void IsolatedSampler::witness(Respondent& dialogue, const Question& question,
-                              const Items& items) const {
+void ForeignSampler::witness(Respondent& dialogue, const Question& question,
+                             const Items& items) const {
   Question one = question;
   one.count = 1;
   Witness first{one, std::string(items.range(0, 1).bytes), {}};
@@ -420,7 +435,7 @@ void IsolatedSampler::witness(Respondent& dialogue, const Question& question,
   throw NoAnswer(other_numbers(children_->name(), one));
 }
 
-std::vector<double> IsolatedSampler::ask(const Items& items) const {
+std::vector<double> ForeignSampler::ask(const Items& items) const {
   Items asked = items;
   try {
     return ask_once(asked);
@@ -429,22 +444,19 @@ std::vector<double> IsolatedSampler::ask(const Items& items) const {
   }
 }
 
-/// Asks a new program about the items one by one, up to the one that cannot be had. Throws where it
-/// is the first; with the failure of all where each can be had.
-std::vector<double> IsolatedSampler::narrowed(const Items& items, const NoAnswer& failure) const {
-  const std::string name = "sampler `" + note_.name + "`";
-  std::vector<double> numbers;
-  for (std::size_t i = 0; i < items.size() && items.size() > 1; ++i) {
+/// Asks a new program about the items one by one.
+std::vector<double> ForeignSampler::narrowed(const Items& items, const NoAnswer& failure) const {
+  const auto at = [&](const Items& part, const NoAnswer& why) {
+    return NoAnswer("sampler `" + note_.name + "`" + part.place(note_.domain) + ": " + why.what());
+  };
+  return one_by_one(items.size(), at(items, failure), [&](std::uint64_t i) {
     Items one = items.range(i, 1);
     try {
-      const std::vector<double> more = ask_once(one);
-      numbers.insert(numbers.end(), more.begin(), more.end());
+      return ask_once(one);
     } catch (const NoAnswer& alone) {
-      if (i > 0) return numbers;
-      throw NoAnswer(name + one.place(note_.domain) + ": " + alone.what());
+      throw at(one, alone);
     }
-  }
-  throw NoAnswer(name + items.place(note_.domain) + ": " + failure.what());
+  });
 }
 
 class ForeignSetup final : public Setup {
@@ -467,8 +479,11 @@ class ForeignSetup final : public Setup {
 
 }  // namespace
 
-std::shared_ptr<const Setup> setup_of(std::shared_ptr<Children> children,
-                                      std::vector<NamedSampler> samplers) {
+std::shared_ptr<const Setup> setup_of(std::shared_ptr<Children> children) {
+  std::vector<NamedSampler> samplers;
+  for (const SamplerNote& note : children->hello().samplers) {
+    samplers.push_back({note.name, std::make_shared<ForeignSampler>(children, samplers.size())});
+  }
   return std::make_shared<ForeignSetup>(std::move(children), std::move(samplers));
 }
 
@@ -478,13 +493,8 @@ std::shared_ptr<const Setup> start(Terms terms, const Parameters& parameters,
   if (terms.name.empty()) terms.name = joined(terms.launch.command);
   try {
     const auto shared = std::make_shared<const Terms>(std::move(terms));
-    const auto children = std::make_shared<Children>(
-        shared->name, [shared] { return std::make_unique<Dialogue>(*shared); });
-    std::vector<NamedSampler> samplers;
-    for (const SamplerNote& note : children->hello().samplers) {
-      samplers.push_back({note.name, std::make_shared<IsolatedSampler>(children, samplers.size())});
-    }
-    return setup_of(children, std::move(samplers));
+    return setup_of(std::make_shared<Children>(
+        shared->name, [shared] { return std::make_unique<Dialogue>(*shared); }));
   } catch (const Refused& refusal) {
     parameters.refuse(name, std::string("starts no estimator: ") + refusal.what());
   } catch (const std::system_error& failure) {

@@ -12,8 +12,7 @@ namespace assay::foreign {
 
 /// The set-up of what a hello says, whoever answers. An observation is a function of the stream's
 /// key and its index: what is answered for them. Nothing is drawn from the stream itself.
-std::shared_ptr<const Setup> setup_of(std::shared_ptr<Children> children,
-                                      std::vector<NamedSampler> samplers);
+std::shared_ptr<const Setup> setup_of(std::shared_ptr<Children> children);
 
 /// Starts the program. InputError at the parameter `name`, whose value says which program it is,
 /// where it cannot be started or refuses; NoAnswer where it ends, or says what is no hello.

@@ -4,11 +4,14 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 
+#include "estimators/core/flush_denormals.h"
 #include "estimators/foreign/words.h"
 #include "estimators/parameters.h"
 
@@ -245,9 +248,12 @@ std::string hello_text(const AssayEstimator& estimator, const AssayPreparation& 
   return text + bias_line(bias_of(estimator.bias)) + "ready\n";
 }
 
-bool is_whole(const SamplerDraw& draw) {
-  return !std::isnan(draw.density) && !std::isnan(draw.weight) &&
-         std::ranges::none_of(draw.point, [](double x) { return std::isnan(x); });
+/// The items of a question to a sampler.
+template <class Item>
+std::vector<Item> items_of(std::string_view bytes) {
+  std::vector<Item> items(bytes.size() / sizeof(Item));
+  std::memcpy(items.data(), bytes.data(), bytes.size());
+  return items;
 }
 
 }  // namespace
@@ -365,16 +371,23 @@ std::uint64_t PreparedLibrary::observe(AssayStream& random, std::uint64_t primar
                      text_of(message) + " (status " + std::to_string(status) + " of secondary())");
 }
 
-std::vector<double> PreparedLibrary::answer(const Question& question, std::uint64_t& at) const {
+std::vector<double> PreparedLibrary::answer(const Question& question,
+                                            std::string_view items) const {
+  // Tables of densities are made without.
+  std::optional<FlushDenormals> flush;
+  if (!question.is_to_sampler() || question.first >= denormals_flushed) flush.emplace();
+  if (!question.is_to_sampler()) return observations(question);
+  const AssaySampler& sampler = samplers_.at(question.key);
+  const Asked what = question.asked();
+  return what == Asked::draws ? draws(sampler, items) : at_points(sampler, what, items);
+}
+
+std::vector<double> PreparedLibrary::observations(const Question& question) const {
   const std::size_t width = hello_.width();
   std::vector<double> numbers(static_cast<std::size_t>(question.count) * width);
-  const StreamKey key{question.key};
-  StreamsAhead streams;
-  streams.announce({.key = key, .first = question.first, .last = question.first + question.count});
   for (std::uint64_t i = 0; i < question.count; ++i) {
-    at = question.first + i;
     const std::span<double> row = std::span(numbers).subspan(i * width, width);
-    AssayStream random = streams.of(key, at);
+    AssayStream random = assay_stream(question.key, question.first + i);
     const std::uint64_t rays =
         observe(random, question.primaries, row.first(hello_.channels.size()));
     if (hello_.rays) row.back() = static_cast<double>(rays);
@@ -382,62 +395,41 @@ std::vector<double> PreparedLibrary::answer(const Question& question, std::uint6
   return numbers;
 }
 
-LibrarySampler::LibrarySampler(std::shared_ptr<const PreparedLibrary> library,
-                               const AssaySampler& sampler)
-    : library_(std::move(library)), sampler_(sampler), note_(note_of(sampler)) {}
-
-SamplerDraw LibrarySampler::sample(Stream& random) const {
-  const std::uint64_t key = random();
-  return draw(key, random());
-}
-
-SamplerDraw LibrarySampler::draw(std::uint64_t key, std::uint64_t observation) const {
-  AssayStream theirs = assay_stream(key, observation);
-  AssayDraw drawn{.size = sizeof drawn};
-  const int status = sampler_.sample(library_->state(), &theirs, &drawn);
-  if (status != 0) {
-    throw LibraryError("sampler `" + note_.name + "`: status " + std::to_string(status) +
-                       " of sample()");
+/// Draws from streams whose keys and observations are the items.
+std::vector<double> PreparedLibrary::draws(const AssaySampler& sampler,
+                                           std::string_view items) const {
+  std::vector<double> numbers;
+  for (const auto& [key, observation] : items_of<std::array<std::uint64_t, 2>>(items)) {
+    AssayStream random = assay_stream(key, observation);
+    AssayDraw drawn{.size = sizeof drawn};
+    const int status = sampler.sample(state_, &random, &drawn);
+    if (status != 0) throw LibraryError("status " + std::to_string(status) + " of sample()");
+    const Point point{drawn.point[0], drawn.point[1], drawn.point[2]};
+    const std::array draw{point[0],      point[1],     point[2],
+                          drawn.density, drawn.weight, drawn.no_point == 0 ? 1.0 : 0.0};
+    if (drawn.no_point == 0 && std::ranges::any_of(draw, [](double x) { return std::isnan(x); })) {
+      throw LibraryError("sample() gave the point " + text_of(point, note_of(sampler).domain) +
+                         ", density " + shortest_text(drawn.density) + " and weight " +
+                         shortest_text(drawn.weight));
+    }
+    numbers.insert(numbers.end(), draw.begin(), draw.end());
   }
-  const SamplerDraw draw{.point = {drawn.point[0], drawn.point[1], drawn.point[2]},
-                         .density = drawn.density,
-                         .weight = drawn.weight,
-                         .valid = drawn.no_point == 0};
-  if (!draw.valid || is_whole(draw)) return draw;
-  throw LibraryError("sampler `" + note_.name + "`: sample() gave the point " +
-                     text_of(draw.point, note_.domain) + ", density " +
-                     shortest_text(draw.density) + " and weight " + shortest_text(draw.weight));
+  return numbers;
 }
 
-double LibrarySampler::number(double value, const char* function, const Point& point) const {
-  if (!std::isnan(value)) return value;
-  throw LibraryError("sampler `" + note_.name + "`: " + function + " is " + shortest_text(value) +
-                     " at " + text_of(point, note_.domain));
-}
-
-double LibrarySampler::density(const Point& point) const {
-  return number(sampler_.density(library_->state(), point.data()), "density()", point);
-}
-
-double LibrarySampler::evaluate(const Point& point) const {
-  return number(sampler_.evaluate(library_->state(), point.data()), "evaluate()", point);
-}
-
-double LibrarySampler::rounding() const {
-  return note_.rounding > 0 ? note_.rounding : Sampler::rounding();
-}
-
-AssayStream StreamsAhead::of(StreamKey key, std::uint64_t observation) {
-  AssayStream stream = assay_stream(key.bits, observation);
-  if (!ahead_.has(key, observation)) return stream;
-  ahead_.reach(observation);
-  // The state that assay_refill() leaves.
-  FirstWords words = ahead_.words()[ahead_.place(observation)];
-  stream.words[0] = words();
-  stream.words[1] = words();
-  stream.counter[0] = 1;
-  stream.next = 0;
-  return stream;
+std::vector<double> PreparedLibrary::at_points(const AssaySampler& sampler, Asked what,
+                                               std::string_view items) const {
+  const bool densities = what == Asked::densities;
+  std::vector<double> numbers;
+  for (const Point& point : items_of<Point>(items)) {
+    const auto ask = densities ? sampler.density : sampler.evaluate;
+    numbers.push_back(ask(state_, point.data()));
+    if (std::isnan(numbers.back())) {
+      throw LibraryError(std::string(densities ? "density()" : "evaluate()") + " is " +
+                         shortest_text(numbers.back()));
+    }
+  }
+  return numbers;
 }
 
 }  // namespace assay::foreign

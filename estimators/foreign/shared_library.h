@@ -3,19 +3,17 @@
 // A shared library that keeps the interface of estimators/plugin_abi.h: opened, read with regard to
 // the sizes of its structs, and called in this process.
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "estimators/core/first_words.h"
 #include "estimators/foreign/protocol.h"
 #include "estimators/plugin_abi.h"
-#include "estimators/sampler.h"
 
 namespace assay::foreign {
 
@@ -65,61 +63,25 @@ class PreparedLibrary {
 
   /// The library's hello, as if it were a program.
   const Hello& hello() const { return hello_; }
-  const std::vector<AssaySampler>& samplers() const { return samplers_; }
-  const void* state() const { return state_; }
   const std::string& file() const { return object_.file(); }
-  /// Writes an observation; returns its rays. Throws LibraryError where the library reports an
-  /// error.
-  std::uint64_t observe(AssayStream& random, std::uint64_t primaries, std::span<double> out) const;
-  /// The reply to a question for observations. Where that throws LibraryError, `at` is the one that
-  /// has the error. Rays stand behind an observation's numbers, as doubles.
-  std::vector<double> answer(const Question& question, std::uint64_t& at) const;
+  /// The reply to a question, as a program gives it. Rays stand behind an observation's numbers, as
+  /// doubles. Throws LibraryError where the library reports an error, or a sampler gives a number
+  /// that is none.
+  std::vector<double> answer(const Question& question, std::string_view items) const;
 
  private:
   void prepare(const LibraryChoice& choice, AssayPreparation& preparation);
+  std::vector<double> observations(const Question& question) const;
+  std::uint64_t observe(AssayStream& random, std::uint64_t primaries, std::span<double> out) const;
+  std::vector<double> draws(const AssaySampler& sampler, std::string_view items) const;
+  std::vector<double> at_points(const AssaySampler& sampler, Asked what,
+                                std::string_view items) const;
 
   SharedObject object_;
   AssayEstimator estimator_;
   void* state_ = nullptr;
   Hello hello_;
   std::vector<AssaySampler> samplers_;
-};
-
-/// A sampler as Assay's. It throws LibraryError where the library reports an error or gives a
-/// number that is none. Its draws are of streams whose key and observation are the next two words
-/// of Assay's.
-class LibrarySampler : public Sampler {
- public:
-  LibrarySampler(std::shared_ptr<const PreparedLibrary> library, const AssaySampler& sampler);
-
-  Domain domain() const override { return note_.domain; }
-  std::array<double, 2> bounds() const override { return note_.bounds; }
-  SamplerDraw sample(Stream& random) const override;
-  /// The draw of that stream of the library's.
-  SamplerDraw draw(std::uint64_t key, std::uint64_t observation) const;
-  double density(const Point& point) const override;
-  double evaluate(const Point& point) const override;
-  double rounding() const override;
-
- private:
-  double number(double value, const char* function, const Point& point) const;
-
-  std::shared_ptr<const PreparedLibrary> library_;
-  AssaySampler sampler_;
-  SamplerNote note_;
-};
-
-/// Streams as a library has them; those of announced observations come with their first block of
-/// random words.
-class StreamsAhead {
- public:
-  void announce(const Announcement& next) { ahead_.announce(next); }
-
-  /// The same numbers as those of assay_stream(key, observation), announced or not.
-  AssayStream of(StreamKey key, std::uint64_t observation);
-
- private:
-  AnnouncedWords ahead_;
 };
 
 }  // namespace assay::foreign

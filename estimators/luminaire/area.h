@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "luminaire/family.h"
+#include "render/share_table.h"
 
 namespace assay::luminaire {
 
@@ -59,7 +60,7 @@ class AreaPrimary {
   }
 
   const Setting& setting() const { return *setting_; }
-  const ShareTable& shares() const { return shares_; }
+  const render::ShareTable& shares() const { return shares_; }
 
  private:
   static std::vector<double> areas(const Setting& setting) {
@@ -69,49 +70,29 @@ class AreaPrimary {
   }
 
   SharedSetting setting_;
-  ShareTable shares_;
+  render::ShareTable shares_;
   double factor_;
   Term term_;
 };
 
-/// The points of a luminaire that is one triangle: density 2 on the triangle of (u, v).
-template <class Warp = UniformTriangle>
-class PointSampler final : public Sampler {
- public:
-  explicit PointSampler(SharedSetting setting) : primary_(std::move(setting)) {}
-
-  Domain domain() const override { return Domain::triangle; }
-
-  SamplerDraw sample(Stream& random) const override {
-    const double x = random.uniform();
-    const double y = random.uniform();
-    const auto [u, v] = Warp{}(x, y);
-    const Point point = {u, v, 0};
-    return {.point = point,
-            .density = density(point),
-            .weight = evaluate(point) / 2,
-            .valid = u + v <= 1};
-  }
-
-  double density(const Point& p) const override {
-    return p[0] >= 0 && p[1] >= 0 && p[0] + p[1] <= 1 ? 2 : 0;
-  }
-
-  double evaluate(const Point& p) const override {
-    Cost uncounted;
-    const LightTriangle& triangle = primary_.setting().triangles()[0];
-    return 2 * primary_.value(primary_.at(triangle, {p[0], p[1]}), uncounted);
-  }
-
- private:
-  AreaPrimary<> primary_;
-};
-
-/// `point`, where the luminaire is one triangle.
+/// `point`, where the luminaire is one triangle: density 2 on the triangle of (u, v).
 template <class Warp = UniformTriangle>
 std::vector<NamedSampler> point_samplers(const SharedSetting& setting) {
   if (setting->triangles().size() != 1) return {};
-  return {{"point", std::make_shared<PointSampler<Warp>>(setting)}};
+  const auto point = [](Stream& random) {
+    const double x = random.uniform();
+    const auto [u, v] = Warp{}(x, random.uniform());
+    return u + v <= 1 ? std::optional(Point{u, v}) : std::nullopt;
+  };
+  const auto density = [](const Point& p) -> double {
+    return p[0] >= 0 && p[1] >= 0 && p[0] + p[1] <= 1 ? 2 : 0;
+  };
+  const auto evaluate = [primary = AreaPrimary<>(setting)](const Point& p) {
+    Cost uncounted;
+    const LightTriangle& triangle = primary.setting().triangles()[0];
+    return 2 * primary.value(primary.at(triangle, {p[0], p[1]}), uncounted);
+  };
+  return {{"point", sampler_of({Domain::triangle, point, density, evaluate})}};
 }
 
 /// The channel of the sound estimator.

@@ -16,54 +16,34 @@ constexpr double two_pi = 2 * pi;
 
 /// Uniform in the projected hemisphere: the cosines cancel. X is pi L times a Bernoulli variable of
 /// mean E / (pi L), so its variance is E (pi L - E).
-struct CosineDirections {
+struct CosineDirections : render::CosineHemisphere {
   static constexpr double most = pi;
-  render::Vector3 operator()(double u, double v) const { return render::cosine_hemisphere(u, v); }
-  double density(const render::Vector3& w) const { return std::max(0.0, w.z) / pi; }
   static double value(double radiance, const render::Vector3&) { return pi * radiance; }
   static double second_moment(const ExactIntegrals& exact) { return pi * exact.irradiance; }
 };
 
 /// Uniform in the hemisphere: E[X] is the integral of L cos+ over it, E[X^2] = 2 pi L^2 times the
 /// integral of cos+^2 over what is seen.
-struct UniformDirections {
+struct UniformDirections : render::UniformHemisphere {
   static constexpr double most = two_pi;
-  render::Vector3 operator()(double u, double v) const { return render::uniform_hemisphere(u, v); }
-  double density(const render::Vector3&) const { return 1 / two_pi; }
   static double value(double radiance, const render::Vector3& w) { return two_pi * radiance * w.z; }
   static double second_moment(const ExactIntegrals& exact) { return two_pi * exact.squared_cosine; }
 };
 
 template <class Directions>
-class DirectionSampler final : public Sampler {
- public:
-  explicit DirectionSampler(SharedSetting setting) : setting_(std::move(setting)) {}
-
-  Domain domain() const override { return Domain::hemisphere; }
-
-  SamplerDraw sample(Stream& random) const override {
+std::shared_ptr<const Sampler> direction_sampler(const SharedSetting& setting) {
+  const auto point = [](Stream& random) -> std::optional<Point> {
     const double u = random.uniform();
-    const double v = random.uniform();
-    const Point point = point_of(directions_(u, v));
-    const double declared = density(point);
-    const double value = evaluate(point);
-    return {point, declared, value == 0 ? 0 : value / declared};
-  }
-
-  double density(const Point& point) const override {
-    return directions_.density(direction_of(point));
-  }
-
-  double evaluate(const Point& point) const override {
+    return point_of(Directions{}(u, random.uniform()));
+  };
+  const auto density = [](const Point& p) { return Directions{}.density(direction_of(p)); };
+  const auto evaluate = [setting](const Point& p) {
     Cost uncounted;
-    const bool lit = setting_->sees_light(setting_->ray(direction_of(point)), uncounted);
-    return lit ? setting_->radiance() * point[2] : 0;
-  }
-
- private:
-  SharedSetting setting_;
-  Directions directions_;
-};
+    const bool lit = setting->sees_light(setting->ray(direction_of(p)), uncounted);
+    return lit ? setting->radiance() * p[2] : 0;
+  };
+  return sampler_of({Domain::hemisphere, point, density, evaluate});
+}
 
 template <class Directions>
 struct Primary {
@@ -86,7 +66,7 @@ std::shared_ptr<const Setup> prepare(Parameters& parameters) {
   return averaging(irradiance_channel(*setting, Directions::second_moment,
                                       Directions::most * setting->radiance()),
                    Primary<Directions>{setting},
-                   {{"direction", std::make_shared<DirectionSampler<Directions>>(setting)}});
+                   {{"direction", direction_sampler<Directions>(setting)}});
 }
 
 }  // namespace

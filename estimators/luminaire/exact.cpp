@@ -1,6 +1,5 @@
 #include "luminaire/exact.h"
 
-#include <algorithm>
 #include <array>
 #include <functional>
 #include <span>
@@ -82,56 +81,28 @@ std::optional<std::vector<Cone>> shadows(const Setting& setting) {
   return cones;
 }
 
-// The integral of (z h / r^4)^2 over triangles at distance h from the origin, subdivided until
-// refinement no longer matters.
-class SquaredGeometry {
- public:
-  explicit SquaredGeometry(double plane_distance) : h_(plane_distance) {}
-
-  double of(const Polygon& polygon) {
-    double sum = 0;
+// The integral of (z h / r^4)^2 over a sum of convex polygons at distance h from the origin;
+// nullopt if refinement does not end.
+std::optional<double> squared_geometry(std::span<const SignedPolygon> parts, double h) {
+  const auto squared_term = [h](const Vector3& p) -> std::array<double, 1> {
+    const double r2 = squared_length(p);
+    const double term = p.z * h / (r2 * r2);
+    return {term * term};
+  };
+  constexpr double tolerance = 1e-12;
+  double total = 0;
+  for (const auto& [polygon, sign] : parts) {
+    render::TriangleQuadrature<1, decltype(squared_term)> quadrature(squared_term,
+                                                                     {.tolerance = tolerance});
     for (std::size_t i = 1; i + 1 < polygon.size(); ++i) {
-      const Corners corners = {polygon[0], polygon[i], polygon[i + 1]};
-      sum += refined(corners, quadrature(corners), 0);
+      quadrature.add({polygon[0], polygon[i], polygon[i + 1]});
     }
-    return sum;
+    const render::Integrals<1> found = quadrature.refined();
+    if (found.error[0] > tolerance * found.value[0]) return {};
+    total += sign * found.value[0];
   }
-  bool converged() const { return converged_; }
-
- private:
-  using Corners = render::Corners;
-
-  double refined(const Corners& t, double coarse, int depth) {
-    const std::array<Corners, 4> parts = render::quartered(t);
-    std::array<double, 4> values{};
-    std::ranges::transform(parts, values.begin(), [&](const Corners& p) { return quadrature(p); });
-    const double fine = values[0] + values[1] + values[2] + values[3];
-    if (std::abs(fine - coarse) <= 1e-12 * fine) return fine;
-    if (depth == 8) converged_ = false;
-    if (!converged_) return fine;
-    double sum = 0;
-    for (std::size_t i = 0; i < 4; ++i) sum += refined(parts[i], values[i], depth + 1);
-    return sum;
-  }
-
-  // Duffy's map of the square to the triangle, whose area element is u.
-  double quadrature(const Corners& t) const {
-    static const auto nodes = render::gauss_legendre<16>();
-    double sum = 0;
-    for (const render::Node& u : nodes) {
-      for (const render::Node& v : nodes) {
-        const Vector3 p = t[0] + u.place * ((t[1] - t[0]) + v.place * (t[2] - t[1]));
-        const double r2 = squared_length(p);
-        const double term = p.z * h_ / (r2 * r2);
-        sum += u.weight * v.weight * u.place * term * term;
-      }
-    }
-    return sum * length(cross(t[1] - t[0], t[2] - t[0]));
-  }
-
-  double h_;
-  bool converged_ = true;
-};
+  return total;
+}
 
 double whole_solid_angle(const Setting& setting) {
   double sum = 0;
@@ -158,15 +129,13 @@ std::optional<ExactIntegrals> exact_integrals(const Setting& setting) {
   if (!parts) return {};
   const LightTriangle& light = setting.triangles()[0];
   if (!light.emits) return ExactIntegrals{.area = setting.area(), .squared_geometry = 0};
-  SquaredGeometry geometry(light.plane_distance);
   ExactIntegrals exact;
   exact.irradiance = sum(*parts, [](const Polygon& p) { return render::lambert(p, up); });
   exact.squared_cosine =
       sum(*parts, [](const Polygon& p) { return render::squared_cosine(p, up); });
   exact.solid_angle = whole_solid_angle(setting);
   exact.area = setting.area();
-  const double squared = sum(*parts, [&](const Polygon& p) { return geometry.of(p); });
-  if (geometry.converged()) exact.squared_geometry = squared;
+  exact.squared_geometry = squared_geometry(*parts, light.plane_distance);
   return exact;
 }
 

@@ -129,19 +129,4 @@ std::vector<Shape> occluder_shapes(const std::vector<Occluder>& occluders,
   return list;
 }
 
-ShareTable::ShareTable(const std::vector<double>& shares) {
-  for (const double share : shares) total_ += share;
-  double sum = 0;
-  for (const double share : shares) {
-    const double begin = sum / total_;
-    const double end = (sum += share) / total_;
-    shares_.push_back({begin, end, 1 / (end - begin)});
-  }
-}
-
-std::uint32_t ShareTable::find_of_many(double x) const {
-  const auto share = std::ranges::upper_bound(shares_, x, {}, &Share::end);
-  return static_cast<std::uint32_t>(share - shares_.begin());
-}
-
 }  // namespace assay::luminaire

@@ -6,7 +6,6 @@
 // All of it is in the receiver's frame. The receiver is the origin and its normal is +z. So the
 // receiver's cosine of a unit vector w is w.z, and every ray starts at the exact zero vector.
 
-#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -127,40 +126,5 @@ class Setting {
 /// Occluders in the receiver's frame, as shapes of a scene.
 std::vector<render::Shape> occluder_shapes(const std::vector<Occluder>& occluders,
                                            const Receiver& receiver);
-
-/// Picks an index with probability proportional to its share.
-class ShareTable {
- public:
-  explicit ShareTable(const std::vector<double>& shares);
-
-  double total() const { return total_; }
-  /// Maps x uniform in [0, 1) to an index and to x uniform again: its place within the share. With
-  /// one index x stays what it is.
-  std::uint32_t pick(double& x) const {
-    if (shares_.size() == 1) return 0;
-    const std::uint32_t index = find(x);
-    x = std::min((x - shares_[index].begin) * shares_[index].scale, 1.0);
-    return index;
-  }
-
- private:
-  struct Share {
-    double begin;  // as a fraction of the total
-    double end;
-    double scale;  // 1 / (end - begin)
-  };
-
-  std::uint32_t find(double x) const {
-    if (shares_.size() > 8) return find_of_many(x);
-    // Counted rather than searched: the processor cannot foresee where a search ends.
-    std::uint32_t index = 0;
-    for (std::size_t i = 0; i + 1 < shares_.size(); ++i) index += x >= shares_[i].end;
-    return index;
-  }
-  std::uint32_t find_of_many(double x) const;
-
-  std::vector<Share> shares_;
-  double total_ = 0;
-};
 
 }  // namespace assay::luminaire

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "luminaire/family.h"
+#include "render/share_table.h"
 #include "render/spherical_triangle.h"
 
 namespace assay::luminaire {
@@ -78,7 +79,7 @@ class SolidAnglePrimary {
   }
 
   const std::vector<LitTriangle>& triangles() const { return triangles_; }
-  const ShareTable& shares() const { return shares_; }
+  const render::ShareTable& shares() const { return shares_; }
   double solid_angle() const { return shares_.total(); }
 
  private:
@@ -90,7 +91,7 @@ class SolidAnglePrimary {
 
   SharedSetting setting_;
   std::vector<LitTriangle> triangles_;
-  ShareTable shares_;
+  render::ShareTable shares_;
   double factor_;
 };
 
@@ -148,31 +149,20 @@ class SolidAngleSampler final : public Sampler {
 /// The same of a single triangle, in coordinates that turn the spherical triangle into the unit
 /// square at constant density 1. A histogram then tests to the outline's very edge.
 template <class Map = ArvoMap>
-class SquareSampler final : public Sampler {
- public:
-  explicit SquareSampler(SharedSetting setting) : primary_(std::move(setting)) {}
-
-  Domain domain() const override { return Domain::square; }
-
-  SamplerDraw sample(Stream& random) const override {
+std::shared_ptr<const Sampler> square_sampler(const SharedSetting& setting) {
+  const auto primary = std::make_shared<const SolidAnglePrimary<Map>>(setting);
+  const auto point = [primary](Stream& random) -> std::optional<Point> {
+    const render::SphericalTriangle& seen = primary->triangles().front().seen;
     const double u = random.uniform();
-    const double v = random.uniform();
-    const auto [s, t] = triangle().seen.coordinates(Map{}(triangle().seen, u, v));
-    const Point point = {s, t, 0};
-    return {.point = point, .density = 1, .weight = evaluate(point)};
-  }
-
-  double density(const Point&) const override { return 1; }
-
-  double evaluate(const Point& point) const override {
-    return primary_.weight(triangle().seen.sample(point[0], point[1]), triangle());
-  }
-
- private:
-  const LitTriangle& triangle() const { return primary_.triangles().front(); }
-
-  SolidAnglePrimary<Map> primary_;
-};
+    const auto [s, t] = seen.coordinates(Map{}(seen, u, random.uniform()));
+    return Point{s, t};
+  };
+  const auto evaluate = [primary](const Point& p) {
+    const LitTriangle& triangle = primary->triangles().front();
+    return primary->weight(triangle.seen.sample(p[0], p[1]), triangle);
+  };
+  return sampler_of({Domain::square, point, uniform_density(1), evaluate});
+}
 
 /// `direction` of a planar luminaire, `square` of a single triangle.
 template <class Map = ArvoMap>
@@ -181,7 +171,7 @@ std::vector<NamedSampler> solid_angle_samplers(const SharedSetting& setting) {
   if (!setting->planar() || !setting->triangles()[0].emits) return samplers;
   samplers.push_back({"direction", std::make_shared<SolidAngleSampler<Map>>(setting)});
   if (setting->triangles().size() == 1) {
-    samplers.push_back({"square", std::make_shared<SquareSampler<Map>>(setting)});
+    samplers.push_back({"square", square_sampler<Map>(setting)});
   }
   return samplers;
 }

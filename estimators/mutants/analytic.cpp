@@ -61,23 +61,18 @@ Entry ratio_mutant(const Mutant& its, const auto& draw, const auto& combine) {
 }  // namespace
 
 std::vector<Entry> mutants_analytic() {
-  return {{{.name = "mutants/scaled",
-            .summary = "analytic/exponential_uniform times a factor.",
-            .description = "Estimates (e^3 - 1) / 3 = 6.361846 by c e^(3u): biased by c - 1.",
-            .parameters = {number_parameter("factor", "c, what every primary is multiplied by",
-                                            "1.01", {0, 1000})},
-            .original = "analytic/exponential_uniform",
-            .defect = "every primary is multiplied by a factor."},
-           scaled},
-          {{.name = "mutants/rare_nan",
-            .summary = "analytic/normal with an observation that is not a number, now and then.",
-            .description =
-                "A normal variable; with a given probability an observation is not a number.",
-            .parameters = {number_parameter("probability", "of an observation that is not a number",
-                                            "1e-3", {0, 1})},
-            .original = "analytic/normal",
-            .defect = "an observation is not a number now and then."},
-           rare_nan},
+  return {mutant({"scaled",
+                  "analytic/exponential_uniform",
+                  "multiplies every primary by a factor c: biased by c - 1.",
+                  {number_parameter("factor", "c, what every primary is multiplied by", "1.01",
+                                    {0, 1000})}},
+                 scaled),
+          mutant({"rare_nan",
+                  "analytic/normal",
+                  "gives an observation that is not a number now and then.",
+                  {number_parameter("probability", "of an observation that is not a number", "1e-3",
+                                    {0, 1})}},
+                 rare_nan),
           ratio_mutant(
               {"ratio_of_other_points", "analytic/ratio",
                "evaluates the target at other points than the integrand: consistent, but of 50 "

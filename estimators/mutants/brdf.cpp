@@ -3,9 +3,9 @@
 // would have claimed.
 
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <numbers>
-#include <string>
 #include <utility>
 
 #include "brdf/albedo.h"
@@ -130,14 +130,6 @@ struct MirroredWeight final : Misreported {
   }
 };
 
-// The defects are in the published sampler, the only choice.
-ParameterInformation sampler() {
-  ParameterInformation its = brdf::sampler_parameter();
-  its.summary = "the one that has the defect";
-  its.choices = {"published"};
-  return its;
-}
-
 std::shared_ptr<const Setup> mutated(Parameters& given, const render::HalfVectorBrdf& original,
                                      std::shared_ptr<const Sampler> broken) {
   given.string("sampler");
@@ -145,20 +137,17 @@ std::shared_ptr<const Setup> mutated(Parameters& given, const render::HalfVector
 }
 
 struct Defect {
-  std::string name;
-  std::string what;
+  const char* name;
+  const char* what;
 };
 
-Information information(const std::string& original, const Defect& defect) {
-  return {.name = "mutants/" + defect.name,
-          .summary = original + " with a defect: " + defect.what,
-          .description = "The albedo as " + original +
-                         " estimates it with sampler: published, "
-                         "but: " +
-                         defect.what,
-          .parameters = {sampler()},
-          .original = original,
-          .defect = defect.what};
+// The defects are in the published sampler, the only choice.
+Entry entry(const char* original, const Defect& defect,
+            std::function<std::shared_ptr<const Setup>(Parameters&)> prepare) {
+  ParameterInformation sampler = brdf::sampler_parameter();
+  sampler.summary = "the one that has the defect";
+  sampler.choices = {"published"};
+  return mutant({defect.name, original, defect.what, {sampler}}, std::move(prepare));
 }
 
 // The reflectances, and how each is read.
@@ -182,62 +171,61 @@ struct OfAshikhminShirley {
 
 template <class Of, class Mutant>
 Entry exchanged(const Defect& defect) {
-  return {information(Of::name, defect), [](Parameters& given) {
-            const auto mutant = Of::template read<Mutant>(given);
-            return mutated(given, *Of::template read<typename Of::Sound>(given),
-                           brdf::published_sampler(mutant));
-          }};
+  return entry(Of::name, defect, [](Parameters& given) {
+    const auto mutant = Of::template read<Mutant>(given);
+    return mutated(given, *Of::template read<typename Of::Sound>(given),
+                   brdf::published_sampler(mutant));
+  });
 }
 
 template <class Of, class Wrapper>
 Entry wrapped(const Defect& defect) {
-  return {information(Of::name, defect), [](Parameters& given) {
-            const auto original = Of::template read<typename Of::Sound>(given);
-            return mutated(given, *original,
-                           std::make_shared<Wrapper>(brdf::published_sampler(original)));
-          }};
+  return entry(Of::name, defect, [](Parameters& given) {
+    const auto original = Of::template read<typename Of::Sound>(given);
+    return mutated(given, *original, std::make_shared<Wrapper>(brdf::published_sampler(original)));
+  });
 }
 
 }  // namespace
 
 std::vector<Entry> mutants_brdf() {
-  const std::string quadrant = "half vectors are drawn in the first quadrant only.";
-  const std::string uniform = "the azimuth is 2 pi u although the lobe is anisotropic.";
-  const std::string jacobian = "the density lacks the factor 1 / (4 h . w_i).";
-  const std::string redrawn_what =
-      "directions below the horizon are drawn again, and the density is not renormalised.";
+  const auto* const quadrant = "draws half vectors in the first quadrant only.";
+  const auto* const uniform = "takes the azimuth 2 pi u although the lobe is anisotropic.";
+  const auto* const jacobian = "leaves the factor 1 / (4 h . w_i) out of the density.";
+  const auto* const redrawn =
+      "draws directions below the horizon again and does not renormalise the density.";
   return {
       exchanged<OfWard, SingleQuadrant<Ward>>({"ward_single_quadrant", quadrant}),
       exchanged<OfWard, UniformAzimuth<Ward>>({"ward_uniform_azimuth", uniform}),
       exchanged<OfWard, NoJacobian<Ward>>({"ward_no_jacobian", jacobian}),
       exchanged<OfWard, NoArctangent>(
           {"ward_no_arctangent",
-           "the azimuth is (ay / ax) tan 2 pi u without the arctangent, as printed "
-           "in the paper of 1992."}),
+           "takes the azimuth (ay / ax) tan 2 pi u without the arctangent, as printed in the paper "
+           "of 1992."}),
       exchanged<OfWard, NoSineOfAzimuth>(
-          {"ward_no_sine", "the y component of h lacks the factor sin phi."}),
-      wrapped<OfWard, Redrawn>({"ward_redrawn", redrawn_what}),
+          {"ward_no_sine", "leaves the factor sin phi out of the y component of h."}),
+      wrapped<OfWard, Redrawn>({"ward_redrawn", redrawn}),
       wrapped<OfWard, WeightWithoutCosine>(
-          {"ward_weight_without_cosine", "the weight is f / p, without the cosine."}),
-      wrapped<OfWard, DensityOffInASector>(
-          {"ward_density_sector",
-           "the density at a point is declared .1 % too large in a hundredth of the azimuth, that "
-           "from pi + 0.05 on."}),
+          {"ward_weight_without_cosine", "weights by f / p, without the cosine."}),
+      wrapped<OfWard, DensityOffInASector>({"ward_density_sector",
+                                            "declares the density at a point .1 % too large in a "
+                                            "hundredth of the azimuth, that from "
+                                            "pi + 0.05 on."}),
       wrapped<OfWard, MirroredWeight>(
           {"ward_weight_mirrored",
-           "the weight takes the BRDF of the direction with its x and y exchanged."}),
+           "takes the BRDF in the weight of the direction with its x and y exchanged."}),
       exchanged<OfAshikhminShirley, SingleQuadrant<AshikhminShirley>>(
           {"ashikhmin_shirley_single_quadrant", quadrant}),
       exchanged<OfAshikhminShirley, UniformAzimuth<AshikhminShirley>>(
           {"ashikhmin_shirley_uniform_azimuth", uniform}),
       exchanged<OfAshikhminShirley, UnmirroredQuadrants>(
           {"ashikhmin_shirley_unmirrored",
-           "the second and fourth quadrant turn the first instead of mirroring it."}),
+           "turns the first quadrant into the second and fourth instead of mirroring it."}),
       exchanged<OfAshikhminShirley, ExponentWithoutOne>(
-          {"ashikhmin_shirley_exponent", "cos d = v^(1/e) instead of v^(1/(e+1))."}),
+          {"ashikhmin_shirley_exponent", "takes cos d = v^(1/e) instead of v^(1/(e+1))."}),
       exchanged<OfAshikhminShirley, NoJacobian<AshikhminShirley>>(
           {"ashikhmin_shirley_no_jacobian", jacobian}),
-      wrapped<OfAshikhminShirley, Redrawn>({"ashikhmin_shirley_redrawn", redrawn_what}),
+      wrapped<OfAshikhminShirley, Redrawn>({"ashikhmin_shirley_redrawn", redrawn}),
   };
 }
 

@@ -5,10 +5,9 @@
 #include <numbers>
 #include <utility>
 
-#include "correlated/area.h"
 #include "correlated/estimators.h"
-#include "correlated/sky.h"
 #include "estimators/mutant.h"
+#include "luminaire/area.h"
 
 namespace assay::plugins {
 
@@ -151,7 +150,7 @@ std::shared_ptr<const Setup> pooled_lambda(Parameters& given) {
   std::vector<SharedPairs> pixels{own};
   for (int k = 1; k < 3; ++k) {
     scene.receiver.position += step * along;
-    pixels.push_back(std::make_shared<const AreaPairs>(scene, given.where("scene")));
+    pixels.push_back(area_pairs(scene, given.where("scene")));
   }
   only_published_rule(given);
   const auto estimate = [pixels](Stream& random, std::uint64_t primaries, std::span<double> out,

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "estimators/mutant.h"
-#include "luminaire/setting.h"
+#include "render/share_table.h"
 #include "sky/directions.h"
 #include "steerable/directions.h"
 #include "steerable/triangle.h"
@@ -96,7 +96,7 @@ class ClampedDirections final : public Directions {
   std::shared_ptr<const SkyTree> tree_;
   render::Frame frame_;
   sky::Harmonics a_;
-  luminaire::ShareTable leaves_;
+  render::ShareTable leaves_;
 };
 
 /// Another's directions at densities of one's own.
@@ -146,8 +146,9 @@ template <class Follow = decltype(&sky::outcome)>
 std::shared_ptr<const Setup> with(const Parts& parts, SharedDirections directions,
                                   Follow follow = &sky::outcome) {
   return sky::sky_setup(
-      parts.setting, directions,
-      sky::StratifiedPrimary<Follow>{parts.setting, directions, parts.strata, follow}, true);
+      sky::irradiance_channels(*parts.setting),
+      sky::StratifiedPrimary<Follow>{parts.setting, directions, parts.strata, follow},
+      std::make_shared<sky::DirectionSampler>(parts.setting, directions), true);
 }
 
 template <class Warp, class Measure>
@@ -210,7 +211,8 @@ std::shared_ptr<const Setup> redrawn(const Parts& parts) {
     }
     return sum;
   };
-  return sky::sky_setup(parts.setting, sound, primary, true);
+  return sky::sky_setup(sky::irradiance_channels(*parts.setting), primary,
+                        std::make_shared<sky::DirectionSampler>(parts.setting, sound), true);
 }
 
 Entry entry(const char* name, const char* defect,

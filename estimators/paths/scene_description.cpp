@@ -6,7 +6,9 @@
 #include <utility>
 
 #include "estimators/core/flow.h"
+#include "estimators/core/value_checks.h"
 #include "luminaire/scene_description.h"
+#include "render/polygon.h"
 
 namespace assay::paths {
 
@@ -18,14 +20,6 @@ namespace {
 using luminaire::alternatives;
 using luminaire::require_keys;
 using luminaire::required_key;
-
-double at_least_zero(const Value& value, const std::string& what) {
-  const double number = value.number(what);
-  if (!std::isfinite(number) || number < 0) {
-    throw InputError(value.where(), what + " must be finite and not negative");
-  }
-  return number;
-}
 
 class Reader {
  public:
@@ -268,11 +262,7 @@ int winding_number(const TriangleMesh& mesh, const Vector3& point) {
     const Vector3 a = p - point;
     const Vector3 b = q - point;
     const Vector3 c = r - point;
-    const double la = length(a);
-    const double lb = length(b);
-    const double lc = length(c);
-    angle += 2 * std::atan2(dot(a, cross(b, c)),
-                            la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+    angle += std::copysign(render::solid_angle(a, b, c), dot(a, cross(b, c)));
   }
   return static_cast<int>(std::lround(angle / (4 * std::numbers::pi)));
 }

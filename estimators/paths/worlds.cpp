@@ -89,13 +89,13 @@ MeshWorld::Triangle MeshWorld::triangle(const std::array<Vector3, 3>& corners) {
   return {a, b - a, c - a, normalised(across), shift, shift * centre, shift / 4 * radius, area};
 }
 
-luminaire::ShareTable MeshWorld::light_shares(const std::vector<Triangle>& triangles,
-                                              const MeshScene& scene) {
+render::ShareTable MeshWorld::light_shares(const std::vector<Triangle>& triangles,
+                                           const MeshScene& scene) {
   std::vector<double> shares;
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     shares.push_back(triangles[i].area * mean(scene.surfaces[scene.surface_of[i]].emission));
   }
-  return luminaire::ShareTable(shares);
+  return render::ShareTable(shares);
 }
 
 MeshWorld::MeshWorld(const MeshScene& scene, const Camera& camera)

@@ -7,11 +7,11 @@
 
 #include "estimators/cost.h"
 #include "estimators/stream.h"
-#include "luminaire/setting.h"
 #include "paths/scene_description.h"
 #include "paths/zone_law.h"
 #include "render/hemisphere.h"
 #include "render/scene.h"
+#include "render/share_table.h"
 #include "render/vector.h"
 
 namespace assay::paths {
@@ -200,8 +200,8 @@ class MeshWorld {
   Spectrum sampled_light(const Vertex& v, Stream& random, Cost& cost) const;
 
   static Triangle triangle(const std::array<render::Vector3, 3>& corners);
-  static luminaire::ShareTable light_shares(const std::vector<Triangle>& triangles,
-                                            const MeshScene& scene);
+  static render::ShareTable light_shares(const std::vector<Triangle>& triangles,
+                                         const MeshScene& scene);
 
   // The point of a triangle that a path goes on from, on the side that `arriving` comes from.
   Vertex vertex(std::uint32_t triangle, const render::Vector3& point,
@@ -224,7 +224,7 @@ class MeshWorld {
   std::vector<std::uint32_t> surface_of_;
   render::TriangleMesh mesh_;
   std::vector<Triangle> triangles_;
-  luminaire::ShareTable light_;
+  render::ShareTable light_;
   Camera camera_;
   ZonedScene furnace_;
   render::Scene scene_;

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 
 #include "render/vector.h"
 
@@ -54,13 +55,21 @@ inline Vector3 direction_at(double z, double v) {
 }
 
 /// Density 1 / (2 pi) per solid angle: by Archimedes the height is uniform.
-inline Vector3 uniform_hemisphere(double u, double v) { return direction_at(u, v); }
+struct UniformHemisphere {
+  Vector3 operator()(double u, double v) const { return direction_at(u, v); }
+  double density(const Vector3&) const { return 1 / (2 * std::numbers::pi); }
+};
+inline constexpr UniformHemisphere uniform_hemisphere;
 
 /// Density z / pi per solid angle: the projection on the plane z = 0 is uniform in the unit disc.
-inline Vector3 cosine_hemisphere(double u, double v) {
-  const double radius = std::sqrt(u);
-  const auto [x, y] = on_unit_circle(v);
-  return {radius * x, radius * y, std::sqrt(1 - u)};
-}
+struct CosineHemisphere {
+  Vector3 operator()(double u, double v) const {
+    const double radius = std::sqrt(u);
+    const auto [x, y] = on_unit_circle(v);
+    return {radius * x, radius * y, std::sqrt(1 - u)};
+  }
+  double density(const Vector3& w) const { return w.z / std::numbers::pi; }
+};
+inline constexpr CosineHemisphere cosine_hemisphere;
 
 }  // namespace assay::render

@@ -3,8 +3,6 @@
 // Ways to draw a direction under a sky.
 
 #include <memory>
-#include <numbers>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -34,27 +32,19 @@ class Directions {
 
 using SharedDirections = std::shared_ptr<const Directions>;
 
-/// Density 1 / (2 pi).
-class UniformDirections final : public Directions {
+/// Directions of the receiver's hemisphere, of render/hemisphere.h.
+template <class Hemisphere>
+class HemisphereDirections final : public Directions {
  public:
-  double gain() const { return 2 * std::numbers::pi; }  ///< the most that cos+ / density is
   Direction draw(double u, double v) const override {
-    const Vector3 w = render::uniform_hemisphere(u, v);
+    const Vector3 w = Hemisphere{}(u, v);
     return {w, density(w)};
   }
-  double density(const Vector3&) const override { return 1 / (2 * std::numbers::pi); }
+  double density(const Vector3& w) const override { return Hemisphere{}.density(w); }
 };
 
-/// Density cos / pi.
-class CosineDirections final : public Directions {
- public:
-  double gain() const { return std::numbers::pi; }  ///< of cos+ / density
-  Direction draw(double u, double v) const override {
-    const Vector3 w = render::cosine_hemisphere(u, v);
-    return {w, density(w)};
-  }
-  double density(const Vector3& w) const override { return w.z / std::numbers::pi; }
-};
+using UniformDirections = HemisphereDirections<render::UniformHemisphere>;
+using CosineDirections = HemisphereDirections<render::CosineHemisphere>;
 
 /// Directions as a sampler; evaluate() is L cos+ V, grey.
 class DirectionSampler final : public Sampler {
@@ -122,18 +112,17 @@ struct StratifiedPrimary {
   }
 };
 
-/// The mean of primaries, with the sampler `direction`. `diagnostic` adds the channels `below` and
-/// `nodes`, shares of an Outcome; `gain` is that of irradiance_channels().
+/// The mean of primaries, with the sampler `direction`. `channels` are one a colour; `diagnostic`
+/// adds `below` and `nodes`, shares of an Outcome.
 template <class Primary>
-std::shared_ptr<const Setup> sky_setup(const SharedSetting& setting, SharedDirections directions,
-                                       Primary primary, bool diagnostic,
-                                       std::optional<double> gain = {}) {
-  std::vector<Channel> channels = irradiance_channels(*setting, gain);
+std::shared_ptr<const Setup> sky_setup(std::vector<Channel> channels, Primary primary,
+                                       std::shared_ptr<const Sampler> sampler, bool diagnostic) {
+  const std::size_t colours = channels.size();
   if (diagnostic) {
     channels.push_back({.name = "below", .low = 0, .high = 1, .diagnostic = true});
     channels.push_back({.name = "nodes", .low = 0, .diagnostic = true});
   }
-  const auto estimate = [primary = std::move(primary), colours = setting->colours(), diagnostic](
+  const auto estimate = [primary = std::move(primary), colours, diagnostic](
                             Stream& random, std::uint64_t primaries, std::span<double> out,
                             Cost& cost) {
     Outcome sum;
@@ -151,8 +140,7 @@ std::shared_ptr<const Setup> sky_setup(const SharedSetting& setting, SharedDirec
   };
   return setup_of({.channels = std::move(channels),
                    .make = estimating(estimate),
-                   .samplers = {{"direction", std::make_shared<DirectionSampler>(
-                                                  setting, std::move(directions))}}});
+                   .samplers = {{"direction", std::move(sampler)}}});
 }
 
 /// `strata`, of all estimators of the family.

@@ -126,43 +126,6 @@ class Peak final : public Radiance {
   Lobe lobe_;
 };
 
-class Picture final : public Radiance {
- public:
-  explicit Picture(render::EnvironmentMap map) : map_(std::move(map)) {
-    double area = 0;
-    for (std::size_t t = 0; t < map_.size(); ++t) {
-      const double part = solid_angle(map_.patch(t));
-      area += part;
-      for (std::size_t c = 0; c < 3; ++c) mean_[c] += part * map_.radiance(t)[c];
-    }
-    for (double& x : mean_) x /= area;
-  }
-
-  std::size_t colours() const override { return 3; }
-  Rgb operator()(const Vector3& w) const override { return map_.radiance(w); }
-  Rgb mean() const override { return mean_; }
-  double most(std::size_t colour) const override {
-    double most = 0;
-    for (std::size_t t = 0; t < map_.size(); ++t) most = std::max(most, map_.radiance(t)[colour]);
-    return most;
-  }
-  Known irradiance(const Vector3& normal, std::size_t colour) const override {
-    Known sum;
-    for (std::size_t t = 0; t < map_.size(); ++t) {
-      const render::CosineMoments moments = cosine_moments(map_.patch(t), normal);
-      sum.value += map_.radiance(t)[colour] * moments.first;
-      sum.error += map_.radiance(t)[colour] * moments.error;
-    }
-    // The rounding of a sum of n terms that are not negative is at most n 2^-53 of it.
-    sum.error += static_cast<double>(map_.size()) * 0x1p-53 * sum.value;
-    return sum;
-  }
-
- private:
-  render::EnvironmentMap map_;
-  Rgb mean_{};
-};
-
 // The members of a map, all of `keys` and nothing else.
 [[noreturn]] void refuse_negative(const Value& at, double least) {
   throw InputError(at.where(), "parameter `sky`: the radiance falls to " + std::to_string(least) +
@@ -232,6 +195,34 @@ SharedRadiance read_picture(const Value& value, const Parameters& given) {
 }
 
 }  // namespace
+
+Picture::Picture(render::EnvironmentMap map) : map_(std::move(map)) {
+  double area = 0;
+  for (std::size_t t = 0; t < map_.size(); ++t) {
+    const double part = solid_angle(map_.patch(t));
+    area += part;
+    for (std::size_t c = 0; c < 3; ++c) mean_[c] += part * map_.radiance(t)[c];
+  }
+  for (double& x : mean_) x /= area;
+}
+
+double Picture::most(std::size_t colour) const {
+  double most = 0;
+  for (std::size_t t = 0; t < map_.size(); ++t) most = std::max(most, map_.radiance(t)[colour]);
+  return most;
+}
+
+Known Picture::irradiance(const Vector3& normal, std::size_t colour) const {
+  Known sum;
+  for (std::size_t t = 0; t < map_.size(); ++t) {
+    const render::CosineMoments moments = cosine_moments(map_.patch(t), normal);
+    sum.value += map_.radiance(t)[colour] * moments.first;
+    sum.error += map_.radiance(t)[colour] * moments.error;
+  }
+  // The rounding of a sum of n terms that are not negative is at most n 2^-53 of it.
+  sum.error += static_cast<double>(map_.size()) * 0x1p-53 * sum.value;
+  return sum;
+}
 
 ParameterInformation sky_parameter() {
   return structure_parameter("sky", "the sky: one of uniform, gradient, harmonics, peak, map",

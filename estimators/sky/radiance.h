@@ -41,6 +41,23 @@ class Radiance {
 
 using SharedRadiance = std::shared_ptr<const Radiance>;
 
+/// A picture's, constant over each texel.
+class Picture final : public Radiance {
+ public:
+  explicit Picture(render::EnvironmentMap map);
+
+  const render::EnvironmentMap& map() const { return map_; }
+  std::size_t colours() const override { return 3; }
+  Rgb operator()(const Vector3& w) const override { return map_.radiance(w); }
+  Rgb mean() const override { return mean_; }
+  double most(std::size_t colour) const override;
+  Known irradiance(const Vector3& normal, std::size_t colour) const override;
+
+ private:
+  render::EnvironmentMap map_;
+  Rgb mean_{};
+};
+
 /// The parameter `sky`: a map with one of the keys
 ///   uniform: L
 ///   gradient: {base: 1, slope: [x, y, z]}       L = base + slope . w

@@ -12,9 +12,9 @@ template <class Kind>
 std::shared_ptr<const Setup> prepare(Parameters& given) {
   const sky::SharedSetting setting = sky::read_setting(given);
   const auto directions = std::make_shared<const Kind>();
-  return sky::sky_setup(setting, directions,
+  return sky::sky_setup(sky::irradiance_channels(*setting),
                         sky::StratifiedPrimary<>{setting, directions, given.count("strata")},
-                        false);
+                        std::make_shared<sky::DirectionSampler>(setting, directions), false);
 }
 
 std::vector<ParameterInformation> parameters() {

@@ -133,9 +133,9 @@ std::shared_ptr<const Setup> prepare(Parameters& given) {
   const steerable::Lobe lobe = steerable::read_lobe(given);
   const auto directions = std::make_shared<const steerable::SteeredDirections<>>(
       steerable::read_tree(given, *setting), lobe, setting->frame());
-  return sky::sky_setup(setting, directions,
-                        sky::StratifiedPrimary<>{setting, directions, given.count("strata")}, true,
-                        directions->gain());
+  return sky::sky_setup(sky::irradiance_channels(*setting, directions->gain()),
+                        sky::StratifiedPrimary<>{setting, directions, given.count("strata")},
+                        std::make_shared<sky::DirectionSampler>(setting, directions), true);
 }
 
 std::vector<ParameterInformation> parameters() {

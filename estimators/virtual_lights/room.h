@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "luminaire/setting.h"
 #include "paths/family.h"
+#include "render/share_table.h"
 #include "render/triangle_mesh.h"
 
 namespace assay::virtual_lights {
@@ -104,7 +104,7 @@ class Room {
   Enclosure enclosure_;
   std::vector<std::uint32_t> sides_;  // that emit: patches of the world
   std::vector<std::uint32_t> lamps_;  // triangles that emit
-  luminaire::ShareTable shares_;
+  render::ShareTable shares_;
   std::optional<Spectrum> even_emission_;
   std::string why_no_marginal_;
 };

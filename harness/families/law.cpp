@@ -237,11 +237,10 @@ DeclaredLaw declared_law(const Question& question, std::size_t channel) {
   const auto* draws = dynamic_cast<const SamplerSetup*>(question.subjects[0].setup.get());
   DeclaredLaw declared;
   if (!question.law.name.empty()) {
-    declared.law = {.cdf = law_cdf(question.law)};
+    declared.law = law_cdf(question.law);
   } else {
     const stats::TabulatedLaw& table = draws->marginal_law(question.channel_name(channel));
-    declared.law = {.cdf = std::cref(table),
-                    .of_sorted = [&table](auto values) { return table.of_sorted(values); }};
+    declared.law = std::cref(table);
     declared.error = table.error;
   }
   if (draws != nullptr) {

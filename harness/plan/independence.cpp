@@ -128,14 +128,6 @@ Reason repeated(const Rows& rows, const stats::RepeatedRun& again) {
                "give each run of the program that writes them a seed of its own");
 }
 
-Reason recurring(const Rows& rows, const stats::RecurringValues& alike) {
-  return wrong(fmt::format("of the {} {} values occur exactly {} times each, bit for bit, where "
-                           "independent ones would show {} such at most: they are no observations "
-                           "of their own",
-                           rows.label, alike.values, alike.times, alike.limit),
-               "keep each row once");
-}
-
 /// Two samples that are held against each other.
 struct Pair {
   const Subject& first;
@@ -171,11 +163,6 @@ void refuse_shared_rows(const Question& question, const Rows& one, const Rows& t
                 fmt::format("rows {} of `{}` are rows {} of `{}`", from_to(run->first, run->length),
                             first.setup->data_file(), from_to(run->second, run->length),
                             second.setup->data_file()));
-  }
-  if (const auto shared = stats::shared_values(one.values, two.values)) {
-    refuse_pair(question, {first, second},
-                fmt::format("{} rows of `{}` are rows of `{}`, in another order", shared->values,
-                            first.setup->data_file(), second.setup->data_file()));
   }
 }
 
@@ -266,10 +253,6 @@ void judge_independence(TestOutcome& test, const Pilots& pilots, std::uint64_t c
     if (const auto again = stats::repeated_run(rows.values)) {
       plan.gates.push_back(red_gate("longest repetition", again->length, 0, rows));
       if (reason.empty()) reason = repeated(rows, *again);
-    } else if (const auto alike = stats::recurring_values(rows.values)) {
-      plan.gates.push_back(
-          red_gate("values that occur equally often", alike->values, alike->limit, rows));
-      if (reason.empty()) reason = recurring(rows, *alike);
     }
     std::vector<stats::Gate> gates{stats::lag_one_gate(rows.values),
                                    stats::lagged_gate(rows.values), stats::batch_gate(rows.values)};

@@ -24,17 +24,15 @@ bool is_recorded(const Subject& subject);
 bool has_rows(const Question& question);
 
 /// Throws InputError at the claim if the first `count` data of two sides coincide beyond chance.
-/// They may share a picture (recorded::shared_picture), a run of rows (stats/gates/copies.h),
-/// or rows in another order (stats/gates/copies.h). Two sources of one file are another
-/// mistake.
+/// They may share a picture (recorded::shared_picture) or a run of rows (stats/gates/copies.h).
+/// Two sources of one file are another mistake.
 void require_independent_sides(const Question& question, const Pilots& pilots, std::uint64_t count);
 
 /// Notes what the first `count` rows of every recorded subject say of independence
 /// (stats/gates/independence_gates.h). Dependent rows make a test of means one of batch means, if
-/// they are enough, and other tests invalid. A run of rows that recurs (stats/gates/copies.h)
-/// or values that occur equally often (stats/gates/copies.h) make any test invalid, a
-/// forced method as well. For dependence too weak for a gate, a test of means allows
-/// (stats::allowance_for_dependence).
+/// they are enough, and other tests invalid. A run of rows that recurs (stats/gates/copies.h) makes
+/// any test invalid, a forced method as well. For dependence too weak for a gate, a test of means
+/// allows (stats::allowance_for_dependence).
 void judge_independence(TestOutcome& test, const Pilots& pilots, std::uint64_t count);
 
 /// The moments that a test of means takes, of batch means if that is its method. Rows with an

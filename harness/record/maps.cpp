@@ -427,7 +427,7 @@ reports::EmpiricalLaw empirical_law(const Points& points, double confidence,
                             .observed = observed,
                             .low = std::max(0.0, observed - half_width),
                             .high = std::min(1.0, observed + half_width)});
-    if (law) drawn.points.back().law = law->law.cdf(value);
+    if (law) drawn.points.back().law = law->law(value);
   }
   return drawn;
 }

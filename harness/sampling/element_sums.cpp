@@ -56,7 +56,7 @@ void ElementSums::take(const stats::ImageStack& stack, stats::RowRange rows) {
   on_all_threads((range.size() + elements_at_a_time - 1) / elements_at_a_time, [&](std::size_t i) {
     const std::size_t begin = range.first + i * elements_at_a_time;
     const std::size_t size = std::min(elements_at_a_time, range.last - begin);
-    stats::element_variances(
+    stats::moments_of_range(
         stack, begin, {std::span(mean).subspan(begin, size), std::span(m2).subspan(begin, size)});
   });
   if (range.first == 0) stats::element_moments(stack, 0, std::span(&first, 1));

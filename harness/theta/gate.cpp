@@ -47,8 +47,6 @@ const std::vector<GateKind>& gate_kinds() {
        .sentence =
            "means of neighbours vary {0} times as much as those of independent ones, limit {1}"},
       {.name = "longest repetition", .sentence = "a run of {0} values occurs twice"},
-      {.name = "values that occur equally often",
-       .sentence = "{0} values occur equally often, limit {1}: they are no independent draws"},
   };
   return table;
 }

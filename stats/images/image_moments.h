@@ -36,9 +36,6 @@ void moments_of_range(const ImageStack& stack, std::size_t first, MomentArrays o
 // element's m2 non-finite.
 void element_moments(const ImageStack& stack, std::size_t first, std::span<Moments> out);
 
-// The mean and m2 of element_moments alone, with the same bits.
-void element_variances(const ImageStack& stack, std::size_t first, MomentArrays out);
-
 // ---- Sums of images over their elements
 
 // Sums of the channels of numbers that follow on each other. Each channel's go in turn to 32 sums,

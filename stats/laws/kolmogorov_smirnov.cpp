@@ -150,13 +150,8 @@ double log_p_of_counts(const Parts& x, const Parts& y) {
 }  // namespace
 
 std::vector<double> probabilities(std::span<const double> sorted, const ContinuousLaw& law) {
-  std::vector<double> at;
-  if (law.of_sorted) {
-    at = law.of_sorted(sorted);
-  } else {
-    at.resize(sorted.size());
-    std::ranges::transform(sorted, at.begin(), law.cdf);
-  }
+  std::vector<double> at(sorted.size());
+  std::ranges::transform(sorted, at.begin(), law);
   for (const double value : at) check::unit({"ks_distance", "cdf"}, value);
   return at;
 }

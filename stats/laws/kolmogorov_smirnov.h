@@ -11,12 +11,8 @@
 
 namespace assay::stats {
 
-// The law that a sample is held against. `cdf(x)` is P(X <= x). Values outside [0, 1] throw.
-// `of_sorted`, if given, computes the cdf at many ascending values at once.
-struct ContinuousLaw {
-  std::function<double(double)> cdf;
-  std::function<std::vector<double>(std::span<const double>)> of_sorted = {};
-};
+// The law that a sample is held against: P(X <= x) at x. Values outside [0, 1] throw.
+using ContinuousLaw = std::function<double(double)>;
 
 // F(x_i) of a continuous law at the values of a sorted sample, in its order, if already known.
 struct Probabilities {

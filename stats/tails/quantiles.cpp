@@ -1,11 +1,9 @@
-#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <numbers>
-#include <numeric>
 
 #include "stats/basics/check.h"
+#include "stats/basics/search.h"
 #include "stats/tails/special.h"
 #include "stats/tails/tails.h"
 
@@ -19,24 +17,6 @@ LogTail smaller(LogTail tail) {
   return {other, log_complement(tail.log_probability)};
 }
 
-struct Bracket {
-  double low;
-  double high;
-};
-
-template <class Function>
-double root(const Function& f, Bracket bracket) {
-  const double at_low = f(bracket.low);
-  const double at_high = f(bracket.high);
-  if (at_low == 0) return bracket.low;
-  if (at_high == 0) return bracket.high;
-  std::uintmax_t iterations = 200;
-  const auto ends =
-      boost::math::tools::toms748_solve(f, bracket.low, bracket.high, at_low, at_high,
-                                        boost::math::tools::eps_tolerance<double>(52), iterations);
-  return std::midpoint(ends.first, ends.second);
-}
-
 // The x > 0 at which `distance` is zero. It increases in x. The bracket grows from the guess by
 // factors that square. Infinite or zero when the root is not representable.
 template <class Function>
@@ -48,7 +28,7 @@ double positive_root(const Function& distance, double guess) {
     if (next > 1e300) return std::numeric_limits<double>::infinity();
     if (next < 1e-300) return 0;
     if ((distance(next) < 0) != below) {
-      return below ? root(distance, {inside, next}) : root(distance, {next, inside});
+      return root(distance, {inside, next}, 52);
     }
     inside = next;
   }

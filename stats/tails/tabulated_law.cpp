@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "stats/basics/check.h"
-#include "stats/basics/vector_copies.h"
 
 namespace assay::stats {
 namespace {
@@ -179,40 +178,6 @@ class Table {
   std::vector<Part> parts_;  // A heap, the worst first.
 };
 
-constexpr std::size_t lanes = 16;
-using Lanes = std::array<double, lanes>;
-
-// Values, each with the part that it lies in.
-struct SideBySide {
-  Lanes t{};
-  Lanes mass{};
-  Lanes before{};
-  std::array<Lanes, nodes - 1> slopes{};
-};
-
-// mass_below for each, and the rest of operator().
-ASSAY_VECTOR_COPIES Lanes probabilities_of(const SideBySide& at, double total) {
-  std::array<Lanes, nodes + 1> p;
-  Lanes sum;
-  for (std::size_t i = 0; i < lanes; ++i) {
-    p[0][i] = 1;
-    p[1][i] = at.t[i];
-    sum[i] = at.mass[i] / 2 * (at.t[i] + 1);
-  }
-  for (std::size_t k = 1; k < nodes; ++k) {
-    const double degree = static_cast<double>(k);
-    for (std::size_t i = 0; i < lanes; ++i) {
-      p[k + 1][i] = ((2 * degree + 1) * at.t[i] * p[k][i] - degree * p[k - 1][i]) / (degree + 1);
-      sum[i] += at.slopes[k - 1][i] * (p[k + 1][i] - p[k - 1][i]);
-    }
-  }
-  for (std::size_t i = 0; i < lanes; ++i) {
-    const double within = std::clamp(sum[i], 0.0, at.mass[i]);
-    sum[i] = std::min(1.0, (at.before[i] + within) / total);
-  }
-  return sum;
-}
-
 }  // namespace
 
 double TabulatedLaw::operator()(double x) const {
@@ -226,30 +191,6 @@ double TabulatedLaw::operator()(double x) const {
   // The polynomial may leave its part's range next to a jump.
   const double within = std::clamp(mass_below(2 * share - 1, mass, slopes[part]), 0.0, mass);
   return std::min(1.0, (cumulated[part] + within) / total());
-}
-
-std::vector<double> TabulatedLaw::of_sorted(std::span<const double> values) const {
-  std::vector<double> all(values.size());
-  std::size_t part = 0;
-  for (std::size_t first = 0; first < values.size(); first += lanes) {
-    const std::size_t count = std::min(lanes, values.size() - first);
-    SideBySide block;
-    for (std::size_t i = 0; i < count; ++i) {
-      const double x = values[first + i];
-      while (part + 1 < slopes.size() && place[part + 1] <= x) ++part;
-      const double share = (x - place[part]) / (place[part + 1] - place[part]);
-      block.t[i] = 2 * share - 1;
-      block.mass[i] = cumulated[part + 1] - cumulated[part];
-      block.before[i] = cumulated[part];
-      for (std::size_t k = 0; k < slopes[part].size(); ++k) block.slopes[k][i] = slopes[part][k];
-    }
-    const Lanes below = probabilities_of(block, total());
-    for (std::size_t i = 0; i < count; ++i) {
-      const double x = values[first + i];
-      all[first + i] = x <= place.front() ? 0 : x >= place.back() ? 1 : below[i];
-    }
-  }
-  return all;
 }
 
 TabulatedLaw tabulate(const AdaptiveQuadrature::Function& density, const std::vector<Span>& parts,

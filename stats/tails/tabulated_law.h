@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <span>
 #include <vector>
 
 #include "stats/basics/adaptive_quadrature.h"
@@ -29,9 +28,6 @@ struct TabulatedLaw {
   double total() const { return cumulated.back(); }
   // P(X <= x | a point): 0 below the first place, 1 above the last.
   double operator()(double x) const;
-  // The same bits at each of these ascending values, in a quarter of the time. Places are walked
-  // along with them, and sixteen polynomials are evaluated side by side.
-  std::vector<double> of_sorted(std::span<const double> values) const;
 };
 
 // Halves parts where the mass is and where the density is no polynomial, the worst first, until the

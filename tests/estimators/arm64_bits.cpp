@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <vector>
 
-#include "estimators/core/first_words.h"
 #include "estimators/core/flush_denormals.h"
 #include "estimators/stream.h"
 #include "stats/basics/moments.h"
@@ -41,10 +40,6 @@ class Hash {
 void print_streams() {
   Hash one;
   Hash ahead;
-  Hash first;
-  std::vector<FirstWords> words(1001);
-  first_words(key, 0xfffffff0, words);
-  for (FirstWords& each : words) first.add(each());
   for (std::uint64_t observation = 0; observation < 100; ++observation) {
     Stream stream(key, observation);
     for (int i = 0; i < 100; ++i) one.add(stream.uniform());
@@ -53,7 +48,6 @@ void print_streams() {
   }
   one.print("stream one by one");
   ahead.print("stream ahead");
-  first.print("stream first words");
 }
 
 /// A hash of a function at 10^5 places of an interval.

@@ -10,7 +10,7 @@ Entry entry(std::string name) {
           [](Parameters&) { return std::shared_ptr<const Setup>(); }};
 }
 
-std::string refusal(std::vector<Entry> entries) {
+std::string refusal_of(std::vector<Entry> entries) {
   return thrown<std::logic_error>([&] { checked(std::move(entries)); });
 }
 
@@ -37,25 +37,26 @@ TEST(Catalogue, AnUnknownPluginIsRefusedWithTheNearestName) {
 
 TEST(Catalogue, RefusesNamesThatAreMalformedOrUsedTwice) {
   for (const char* name : {"", "a/", "/a", "a//b", "A/b", "a/b c", "a/1b", "a/_b", "a/b-c"}) {
-    EXPECT_THAT(refusal({entry(name)}), HasSubstr("family/name")) << name;
+    EXPECT_THAT(refusal_of({entry(name)}), HasSubstr("family/name")) << name;
   }
-  EXPECT_THAT(refusal({entry("a/b"), entry("a/c"), entry("a/b")}), HasSubstr("registered twice"));
-  EXPECT_EQ(refusal({entry("a"), entry("a/b_2/c")}), nothing);
+  EXPECT_THAT(refusal_of({entry("a/b"), entry("a/c"), entry("a/b")}),
+              HasSubstr("registered twice"));
+  EXPECT_EQ(refusal_of({entry("a"), entry("a/b_2/c")}), nothing);
 }
 
 TEST(Catalogue, RefusesIncompleteEntries) {
   Entry mutant = entry("mutants/b");
-  EXPECT_NE(refusal({mutant}), nothing) << "a mutant without its original";
+  EXPECT_NE(refusal_of({mutant}), nothing) << "a mutant without its original";
   mutant.information.original = "a/b";
   mutant.information.defect = "none";
-  EXPECT_THAT(refusal({mutant}), HasSubstr("which is not there"));
-  EXPECT_EQ(refusal({mutant, entry("a/b")}), nothing);
+  EXPECT_THAT(refusal_of({mutant}), HasSubstr("which is not there"));
+  EXPECT_EQ(refusal_of({mutant, entry("a/b")}), nothing);
   Entry twice = entry("a/b");
   twice.information.parameters = {{.name = "x", .summary = ""}, {.name = "x", .summary = ""}};
-  EXPECT_THAT(refusal({twice}), HasSubstr("twice"));
+  EXPECT_THAT(refusal_of({twice}), HasSubstr("twice"));
   Entry empty = entry("a/b");
   empty.prepare = nullptr;
-  EXPECT_THAT(refusal({empty}), HasSubstr("prepare"));
+  EXPECT_THAT(refusal_of({empty}), HasSubstr("prepare"));
 }
 
 }  // namespace

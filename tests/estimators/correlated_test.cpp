@@ -1,4 +1,3 @@
-#include "correlated/area.h"
 #include "correlated/estimators.h"
 #include "tests/estimators/prelude.h"
 #include "tests/estimators/scenes.h"

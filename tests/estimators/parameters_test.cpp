@@ -5,7 +5,7 @@
 namespace assay {
 namespace {
 
-const std::vector<ParameterInformation> declared = {
+const std::vector<ParameterInformation> known_parameters = {
     {.name = "radius", .summary = "of the disc", .low = 0, .high = 10, .low_excluded = true},
     {.name = "steps",
      .type = ParameterType::count,
@@ -26,7 +26,8 @@ Value scalar(const char* text, int line = 1) {
 }
 
 Parameters parameters(std::vector<Value::Member> given) {
-  return {"family/plugin", declared, Value::map(std::move(given), {"suite.yaml", 1, 1}), "/suites"};
+  return {"family/plugin", known_parameters, Value::map(std::move(given), {"suite.yaml", 1, 1}),
+          "/suites"};
 }
 
 std::string refusal(std::vector<Value::Member> given) {
@@ -79,7 +80,7 @@ TEST(Parameters, ValuesOutOfRangeAreRefused) {
 }
 
 TEST(Parameters, SomethingElseThanAMapIsRefused) {
-  EXPECT_THROW(Parameters("a/b", declared, Value::list({}), ""), InputError);
+  EXPECT_THROW(Parameters("a/b", known_parameters, Value::list({}), ""), InputError);
 }
 
 TEST(Parameters, AnUnreadParameterIsTheAuthorsMistake) {

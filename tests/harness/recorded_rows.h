@@ -63,7 +63,7 @@ inline std::vector<double> chain(double phi, std::size_t count, std::uint32_t st
 }
 
 /// Numbers by a description: a list, or `KIND(PARAMETER, COUNT, STREAM)` and then, in any number,
-/// `* X`, `+ X`, `N times`, `shuffled`, `in N turns`, and `& DESCRIPTION`, which appends.
+/// `* X`, `+ X`, `N times`, `in N turns`, and `& DESCRIPTION`, which appends.
 inline std::vector<double> values_of(const std::string& description) {
   static const std::map<std::string, std::function<double(double, Philox&)>> kinds{
       {"normal", [](double deviation, Philox& r) { return deviation * r.normal(); }},
@@ -90,9 +90,6 @@ inline std::vector<double> values_of(const std::string& description) {
     if (word == "&") {
       std::getline(words, next);
       for (const double value : values_of(next)) values.push_back(value);
-    } else if (word == "shuffled") {
-      Philox random(9);
-      std::shuffle(values.begin(), values.end(), random);
     } else if (word == "+" || word == "*") {
       const bool adds = word == "+";
       words >> word;

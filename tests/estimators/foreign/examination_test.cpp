@@ -105,11 +105,11 @@ TEST_F(Examination, WhoseSamplersDriftIsRefused) {
   };
   const auto expect_refusal = [&](const std::string& what, auto ask) {
     for (int again = 0; again < 2; ++again) {
-      EXPECT_THAT(thrown<std::runtime_error>(ask),
-                  Says("sampler `ramp`: `",
-                       what + ".so` gave other numbers when it was asked for 1 " + what +
-                           " again: a draw must be a function of its stream alone, a "
-                           "density and an evaluation of their point"));
+      EXPECT_THAT(
+          thrown<std::runtime_error>(ask),
+          Says("sampler `ramp`", what + ".so` gave other numbers when it was asked for 1 " + what +
+                                     " again: a draw must be a function of its stream alone, a "
+                                     "density and an evaluation of their point"));
     }
   };
   const Point point{.25, 0, 0};

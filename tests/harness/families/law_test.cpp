@@ -15,7 +15,7 @@ Points uniform_points(std::uint64_t draws, std::uint64_t missing, tests::Philox&
 }
 
 DeclaredLaw uniform_law(double missing, double error = 0) {
-  return {.law = {.cdf = [](double x) { return x; }}, .error = error, .missing = missing};
+  return {.law = [](double x) { return x; }, .error = error, .missing = missing};
 }
 
 double p_of(const Evidence& evidence) { return std::exp(evidence.at(0).log_p_upper); }
@@ -86,7 +86,7 @@ TEST(LawEvidence, AnIntervalReachesAsFarAsThatOfEitherPart) {
 TEST(LawEvidence, TheTablesErrorCountsAgainstEveryConclusion) {
   tests::Philox random(1);
   const Points points = uniform_points(10000, 0, random);
-  const DeclaredLaw off{.law = {.cdf = [](double x) { return std::clamp(x + 0.03, 0.0, 1.0); }},
+  const DeclaredLaw off{.law = [](double x) { return std::clamp(x + 0.03, 0.0, 1.0); },
                         .error = 0.03};
   const Evidence evidence = points_against_law(points, off);
   EXPECT_GT(p_of(evidence), 1e-4);

@@ -93,18 +93,5 @@ TEST(TabulatedLaw, IsZeroBelowAndOneAbove) {
   EXPECT_NEAR(table(2.25), .25, 1e-12);
 }
 
-// At places of the table, between them, beyond its ends, and where it jumps.
-TEST(TabulatedLaw, OfSortedValuesIsThatOfEachAloneBitByBit) {
-  const auto table = table_of([](double x) { return x < .3 ? 0.0 : 2 + std::sin(9 * x); }, {0, 1});
-  std::vector<double> values(table.place.begin(), table.place.end());
-  for (int k = -20; k < 2020; ++k) values.push_back(k / 2000.0);
-  std::sort(values.begin(), values.end());
-  const std::vector<double> together = table.of_sorted(values);
-  ASSERT_EQ(together.size(), values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) EXPECT_EQ(together[i], table(values[i]));
-  EXPECT_EQ(table.of_sorted(std::vector{.9}), std::vector{table(.9)});
-  EXPECT_TRUE(table.of_sorted({}).empty());
-}
-
 }  // namespace
 }  // namespace assay::stats
