@@ -167,21 +167,28 @@ std::string means_where_it_differs(const DrawnTest& test) {
   if (test.outcome.verdict != reports::Verdict::fail) return "";
   const std::vector<ChannelOutcome>& channels = test.outcome.channels;
   if (channels.empty() || !channels[0].image) return "";
+  std::string constants;
+  if (const std::size_t count = channels[0].image->unseen.size(); count > 0) {
+    constants = fmt::format(
+        "; {} other values never vary and differ from the reference, of which no test can tell",
+        count);
+  }
   if (const std::string& seen = channels[0].image->seen; !seen.empty()) return "; there " + seen;
   const std::optional<PlaceEffect> effect = effect_at_place(test);
-  if (!effect) return "";
+  if (!effect) return constants;
   const bool relative = effect->other != 0;
   const double unit = relative ? std::abs(effect->other) / 100 : 1;
   const char* const per_cent = relative ? " %" : "";
-  return fmt::format("; there it is {:.3g}{} too {} ({:.3g} to {:.3g}{}): {:.5g} against {:.5g}{}",
-                     std::abs(effect->estimate) / unit, per_cent,
-                     effect->estimate < 0 ? "dark" : "bright",
-                     (effect->estimate < 0 ? -effect->interval.high : effect->interval.low) / unit,
-                     (effect->estimate < 0 ? -effect->interval.low : effect->interval.high) / unit,
-                     per_cent, effect->other + effect->estimate, effect->other,
-                     effect->interval.low < effect->interval.high
-                         ? ""
-                         : ", without noise; if it should vary, give each image a seed of its own");
+  return fmt::format(
+             "; there it is {:.3g}{} too {} ({:.3g} to {:.3g}{}): {:.5g} against {:.5g}{}",
+             std::abs(effect->estimate) / unit, per_cent, effect->estimate < 0 ? "dark" : "bright",
+             (effect->estimate < 0 ? -effect->interval.high : effect->interval.low) / unit,
+             (effect->estimate < 0 ? -effect->interval.low : effect->interval.high) / unit,
+             per_cent, effect->other + effect->estimate, effect->other,
+             effect->interval.low < effect->interval.high
+                 ? ""
+                 : ", without noise; if it should vary, give each image a seed of its own") +
+         constants;
 }
 
 std::optional<double> detectable_uniformly(const TestOutcome& outcome, const TestSize& size,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "stats/tails/tails.h"
@@ -10,8 +11,19 @@ namespace assay::stats {
 namespace {
 
 constexpr double alternating_share = 0.025;
-// A cell is as clear as one that holds it from this part of its z on.
+// A cell is as clear as one that holds it from this part of its standard errors on.
 constexpr double as_clear = 0.99;
+// A cell may tell the place of a finding if its p-value is the root of the finding's, or smaller.
+constexpr double as_unlikely = 0.5;
+
+// The effect in standard errors.
+double errors_of(const ImageFinding& finding) {
+  return std::abs(finding.effect.estimate) / finding.effect.standard_error;
+}
+
+bool overlap(const Rectangle& a, const Rectangle& b) {
+  return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
+}
 
 bool is_inside(const Rectangle& inner, const Rectangle& outer) {
   return inner.x >= outer.x && inner.y >= outer.y &&
@@ -153,17 +165,26 @@ void decide(ImageFamily& family) {
   if (family.groups.empty()) return;
   family.winner = *std::ranges::min_element(family.groups, {}, &ImageFinding::adjusted_log_p);
   family.log_p = family.winner.adjusted_log_p;
-  const ImageFinding winner = family.winner;
-  const auto lies_in = [&](const ImageFinding& cell) {
-    return cell.statistic == winner.statistic && cell.channel == winner.channel &&
-           is_inside(cell.window, winner.window) &&
-           cell.z * winner.z >= as_clear * winner.z * winner.z;
+  const ImageFinding likeliest = family.winner;
+  if (likeliest.statistic != ImageStatistic::window) return;
+  std::vector<ImageFinding> there;
+  const auto add_those_there = [&](const std::vector<ImageFinding>& cells) {
+    std::ranges::copy_if(cells, std::back_inserter(there), [&](const ImageFinding& cell) {
+      return cell.statistic == likeliest.statistic && cell.effect.standard_error > 0 &&
+             overlap(cell.window, likeliest.window) && cell.z * likeliest.z > 0 &&
+             cell.adjusted_log_p <= as_unlikely * likeliest.adjusted_log_p;
+    });
   };
-  if (winner.statistic != ImageStatistic::window) return;
-  const auto finest = std::ranges::find_if(family.groups, lies_in);
-  if (finest == family.groups.end()) return;
-  family.winner = *finest;
-  family.winner.adjusted_log_p = winner.adjusted_log_p;
+  add_those_there(family.groups);
+  add_those_there(family.clearest);
+  if (there.empty()) return;
+  const ImageFinding clearest = *std::ranges::max_element(there, {}, errors_of);
+  std::ranges::stable_sort(there, {}, &ImageFinding::size);
+  family.winner = *std::ranges::find_if(there, [&](const ImageFinding& cell) {
+    return cell.channel == clearest.channel && is_inside(cell.window, clearest.window) &&
+           errors_of(cell) >= as_clear * errors_of(clearest);
+  });
+  family.winner.adjusted_log_p = family.log_p;
 }
 
 ImageFinding certain_finding(const ImageExtent& extent, std::size_t element, double sign) {

@@ -95,8 +95,11 @@ struct ImageFamily {
   double log_p = 0;
   ImageFinding winner;
   std::vector<ImageFinding> groups;  // The best of each group, fine to coarse, then the others.
-  std::size_t tested = 0;            // Elements that vary, all channels.
-  std::size_t equal_constants = 0;   // Also those that sums alone test.
+  // The cell of each group whose effect is the most standard errors. It tells the place: a p-value
+  // also counts the degrees of freedom, and of clear effects these more than where they are.
+  std::vector<ImageFinding> clearest = {};
+  std::size_t tested = 0;           // Elements that vary, all channels.
+  std::size_t equal_constants = 0;  // Also those that sums alone test.
   std::size_t different_constants = 0;
   std::vector<float> weights;  // The elements' in sums.
   // The squared norm of the bias that values can hide which their elements never showed
@@ -111,8 +114,9 @@ struct GroupSize {
 };
 double adjusted(double log_p, GroupSize group);
 
-// Sets the family's p-value, the smallest over the groups. The winner is the finest best cell that
-// lies in the cell of this p-value and is as far from zero: elements around it tell nothing.
+// Sets the family's p-value, the smallest over the groups. The winner is the clearest of the cells
+// that overlap the cell of this p-value and have its root or less. If a finer cell in it is as
+// clear, that one wins: elements around it tell nothing.
 void decide(ImageFamily& family);
 
 // A certain finding: different constants.

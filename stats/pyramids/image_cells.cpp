@@ -61,10 +61,16 @@ bool Candidates::wants(double t) {
   // Student's tails are heavier than the normal law's: |z| <= |t|, but for the rounding of z.
   constexpr double rounding = 1e-6;
   ++windows_;
-  return kept_.size() < most || std::abs(t) * (1 + rounding) >= std::abs(kept_.back().finding.z);
+  return kept_.size() < most || std::abs(t) > largest_t_ ||
+         std::abs(t) * (1 + rounding) >= std::abs(kept_.back().finding.z);
 }
 
 void Candidates::keep(const Candidate& candidate) {
+  const double t = std::abs(own_value(candidate.noise).t);
+  if (t > largest_t_) {
+    largest_t_ = t;
+    clearest_ = candidate;
+  }
   const auto place = std::ranges::find_if(
       kept_, [&](const Candidate& other) { return beats(candidate.finding, other.finding); });
   kept_.insert(place, candidate);
@@ -76,7 +82,9 @@ bool beats(const ImageFinding& finding, const BestCell& best) {
 }
 
 void offer(BestCell& best, const Candidate& candidate, const NoisePyramid& noise) {
-  if (!beats(candidate.finding, best)) return;
+  const bool may_win = beats(candidate.finding, best);
+  const auto is_clearer = [&](double t) { return std::abs(t) > std::abs(best.clearest_value.t); };
+  if (!may_win && !is_clearer(own_value(candidate.noise).t)) return;
   const NoisePyramid::Kept kept =
       noise.kept(candidate.noise, candidate.finding.window, candidate.finding.channel);
   const StudentValue value{kept.t, candidate.noise.degrees};
@@ -85,7 +93,11 @@ void offer(BestCell& best, const Candidate& candidate, const NoisePyramid& noise
   finding.effect = {.estimate = candidate.noise.effect,
                     .standard_error = kept.standard_error,
                     .degrees = candidate.noise.degrees};
-  if (best.value.degrees > 0 && !beats(finding, best.finding)) return;
+  if (is_clearer(value.t)) {
+    best.clearest = finding;
+    best.clearest_value = value;
+  }
+  if (!may_win || (best.value.degrees > 0 && !beats(finding, best.finding))) return;
   best.finding = finding;
   best.value = value;
 }

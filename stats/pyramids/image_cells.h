@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -49,8 +50,8 @@ struct Candidate {
   CellNoise noise;
 };
 
-// The cells of one group in a tile that are farthest from zero by their own noise. It counts the
-// cells that they were chosen from.
+// The cells of one group in a tile that are farthest from zero by their own noise, and the one of
+// the largest t. It counts the cells that they were chosen from.
 class Candidates {
  public:
   // Counts a cell with this t. True if it may be one of those that are kept.
@@ -58,19 +59,25 @@ class Candidates {
   // finding.z must be set.
   void keep(const Candidate& candidate);
   const std::vector<Candidate>& kept() const { return kept_; }
+  const std::optional<Candidate>& clearest() const { return clearest_; }
   double windows() const { return windows_; }
 
  private:
   static constexpr std::size_t most = 4;
   std::vector<Candidate> kept_;
+  std::optional<Candidate> clearest_;
+  double largest_t_ = 0;
   double windows_ = 0;
 };
 
 // The cell of a group that is farthest from zero once its neighbours are heard, so far. Among
-// equals the first by channel, row and column wins, in whichever order they come.
+// equals the first by channel, row and column wins, in whichever order they come. `clearest` is the
+// one of the largest t.
 struct BestCell {
   ImageFinding finding;
   StudentValue value{.t = 0, .degrees = 0};  // degrees 0: none yet.
+  ImageFinding clearest;
+  StudentValue clearest_value{.t = 0, .degrees = 0};
   double windows = 0;
 };
 // False if a cell cannot beat it by its own noise. Neighbours only take away.

@@ -69,6 +69,7 @@ void RowPyramid::offer_cells() {
     for (std::size_t g = 0; g < tile.size(); ++g) {
       best_[g].windows += tile[g].windows();
       for (const Candidate& candidate : tile[g].kept()) offer(best_[g], candidate, found_.noise);
+      if (tile[g].clearest()) offer(best_[g], *tile[g].clearest(), found_.noise);
     }
   }
   add_up_alternating(found_.coarse);
@@ -81,11 +82,15 @@ void RowPyramid::add_best(ImageFamily& family) const {
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     const BestCell& best = best_[g];
     if (best.windows == 0) continue;
-    ImageFinding finding = best.finding;
-    finding.log_p = log_p_two_sided(tails_of(best.value));
-    finding.adjusted_log_p = adjusted(finding.log_p, {best.windows, groups_[g].share});
-    divide_by_weights(finding, found_.weights, extent_);
-    family.groups.push_back(finding);
+    const auto add = [&](ImageFinding finding, StudentValue value,
+                         std::vector<ImageFinding>& findings) {
+      finding.log_p = log_p_two_sided(tails_of(value));
+      finding.adjusted_log_p = adjusted(finding.log_p, {best.windows, groups_[g].share});
+      divide_by_weights(finding, found_.weights, extent_);
+      findings.push_back(finding);
+    };
+    add(best.finding, best.value, family.groups);
+    if (best.clearest_value.t != 0) add(best.clearest, best.clearest_value, family.clearest);
   }
 }
 

@@ -365,6 +365,34 @@ TEST(ImagePyramid, OneDifferentConstantIsCertainAndPlaced) {
   EXPECT_LT(different.winner.z, 0);
 }
 
+// Half of it black, one side has fewer degrees of freedom there: a cell half beside the defect has
+// a smaller p-value, and not a larger effect.
+TEST(ImagePyramid, AClearDefectIsWhereItIs) {
+  const ImageExtent extent{64, 48, 1};
+  for (const std::uint32_t seed : {861U, 862U, 863U, 864U, 865U}) {
+    Philox random(seed);
+    const OwnedStack b = draw_stack(extent, 24, [&](std::size_t) { return 3 + random.normal(); });
+    OwnedStack a = draw_stack(extent, 24, [&](std::size_t) { return 3 + random.normal(); });
+    for (auto& image : a.images) {
+      for (std::size_t y = 8; y < 16; ++y) std::fill_n(&image[y * 64 + 40], 8, 0.0F);
+    }
+    const ImageFinding winner = image_pyramid(a.view(), b.view()).winner;
+    EXPECT_EQ(winner.window, (Rectangle{40, 8, 8, 8})) << seed;
+    EXPECT_NEAR(winner.effect.estimate, -3, 0.15);
+  }
+}
+
+// 2 % of the image's noise everywhere is no pixel's finding.
+TEST(ImagePyramid, AUniformDifferenceIsOfTheWholeImage) {
+  const ImageExtent extent{64, 48, 1};
+  for (const std::uint32_t seed : {871U, 872U, 873U, 874U, 875U}) {
+    Philox random(seed);
+    const OwnedStack b = draw_stack(extent, 24, [&](std::size_t) { return random.normal(); });
+    const OwnedStack a = draw_stack(extent, 24, [&](std::size_t) { return .04 + random.normal(); });
+    EXPECT_EQ(image_pyramid(a.view(), b.view()).winner.window, (Rectangle{0, 0, 64, 48})) << seed;
+  }
+}
+
 // Elements around it that never vary make coarser cells neither clearer nor less clear.
 TEST(ImagePyramid, AFindingIsTheFinestCellThatHoldsIt) {
   Philox random(855);
