@@ -57,20 +57,20 @@ class PairSource {
 
 using SharedPairs = std::shared_ptr<const PairSource>;
 
-/// Points uniform on a planar luminaire: f is the irradiance that arrives, g what would arrive if
-/// nothing stood in the way. g/p = A L cos+ light_cosine+ / r^2, f = g where nothing hides the
-/// point, else 0. J is Lambert's formula for the polygon clipped at the horizon. With polygonal
-/// occluders I and the second moments E[f^2] = E[f g] and E[g^2] are exact as well.
+/// f is the irradiance that arrives from points uniform on a planar luminaire. If nothing stood in
+/// the way, g would arrive: g/p = A L cos+ light_cosine+ / r^2. J is Lambert's formula for the
+/// polygon clipped at the horizon. With polygonal occluders I is exact. So are the second moments
+/// E[f^2] = E[f g] and E[g^2].
 ///
-/// std::invalid_argument for a luminaire that is not one planar polygon: it may shade itself, and
-/// then J has no closed form.
+/// A luminaire that is not one planar polygon throws std::invalid_argument. It may shade itself,
+/// and then J has no closed form.
 SharedPairs area_pairs(const luminaire::SceneDescription& description, const Location& where);
 /// Reads the parameter `scene`; InputError there when the luminaire is a mesh.
 SharedPairs read_area_pairs(Parameters&);
 
-/// Directions of a sky: f is the irradiance that arrives, g that of an open uniform sky of the same
-/// mean M. f/p = L cos+ V / p, g/p = M cos+ / p and J = pi M. Directions have a density that is
-/// positive wherever cos+ is.
+/// f is the irradiance that arrives from directions of a sky. g is that of an open uniform sky of
+/// the same mean M: f/p = L cos+ V / p, g/p = M cos+ / p and J = pi M. Directions have a density
+/// that is positive wherever cos+ is.
 ///
 /// The parameters are those of a sky and `sampling`. It is uniform, cosine, emittance (in
 /// proportion to the sky, interpolated on 2048 triangles) or steered (the sky times the lobe of

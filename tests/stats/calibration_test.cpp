@@ -137,9 +137,9 @@ TEST(Calibration, EquivalenceAtItsMarginIsAtMostUniform) {
 
 TEST(Calibration, TheSmallestHolmAdjustedValueOfAFamilyIsAtMostUniform) {
   expect_calibrated({32, 20000, Shape::at_most_uniform}, [](Philox& random) {
-    std::vector<double> log_p;
-    for (int i = 0; i < 20; ++i) log_p.push_back(std::log(random.uniform()));
-    const auto adjusted = holm(log_p);
+    std::vector<WeightedLogP> entries;
+    for (int i = 0; i < 20; ++i) entries.push_back({std::log(random.uniform()), 1.0 / 20});
+    const auto adjusted = weighted_holm(entries);
     return *std::min_element(adjusted.begin(), adjusted.end());
   });
   expect_calibrated({33, 20000, Shape::at_most_uniform}, [](Philox& random) {

@@ -230,7 +230,7 @@ TEST(Refusals, OfPlanning) {
   REFUSED(log_e_value(nights, {.reference_error = -1}));
   REFUSED(change_point(std::vector<NightEstimate>(), {}));
   REFUSED(first_alarm({}, 0));
-  REFUSED(holm(Values{nan}));
+  REFUSED(weighted_holm(std::vector<WeightedLogP>{{nan, 1}}));
   REFUSED(weighted_holm(std::vector<WeightedLogP>{{-1, 0}}));
   REFUSED(weighted_holm(std::vector<WeightedLogP>{{-1, .6}, {-1, .5}}));
   REFUSED(geometric_sizes({0, 4}, 2));
