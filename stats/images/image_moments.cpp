@@ -95,15 +95,6 @@ ASSAY_VECTOR_COPIES void add_powers(const float* values, Sums& sums, std::size_t
   }
 }
 
-ASSAY_VECTOR_COPIES void add_squares(const float* values, const double* mean, double* m2,
-                                     std::size_t size) {
-  double* const __restrict squares = m2;
-  for (std::size_t i = 0; i < size; ++i) {
-    const double deviation = static_cast<double>(values[i]) - mean[i];
-    squares[i] += deviation * deviation;
-  }
-}
-
 void means_of_block(const ImageStack& stack, std::size_t first, std::span<double> mean) {
   const float* const origin = stack.at(0, first);
   std::ranges::fill(mean, 0.0);
@@ -158,8 +149,7 @@ void moments_of_range(const ImageStack& stack, std::size_t first, MomentArrays o
                       EveryImage which) {
   for (std::size_t done = 0; done < out.mean.size(); done += elements_at_once) {
     const std::size_t size = std::min(elements_at_once, out.mean.size() - done);
-    two_moments_of_block(stack, first + done,
-                         {out.mean.subspan(done, size), out.m2.subspan(done, size)}, which);
+    two_moments_of_block(stack, first + done, out.part(done, size), which);
   }
 }
 
@@ -172,18 +162,6 @@ void element_moments(const ImageStack& stack, std::size_t first, std::span<Momen
   for (std::size_t done = 0; done < out.size(); done += block_size) {
     const std::size_t size = std::min(block_size, out.size() - done);
     moments_of_block(stack, first + done, out.subspan(done, size));
-  }
-}
-
-void element_variances(const ImageStack& stack, std::size_t first, MomentArrays out) {
-  std::ranges::fill(out.m2, 0.0);
-  for (std::size_t i = 0; i < out.mean.size(); i += block_size) {
-    const std::size_t size = std::min(block_size, out.mean.size() - i);
-    const std::span<double> mean = out.mean.subspan(i, size);
-    means_of_block(stack, first + i, mean);
-    for (std::size_t r = 0; r < stack.images.size(); ++r) {
-      add_squares(stack.at(r, first + i), mean.data(), out.m2.data() + i, size);
-    }
   }
 }
 

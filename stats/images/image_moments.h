@@ -14,8 +14,14 @@ namespace assay::stats {
 
 // Views of two arrays of one size that receive the moments of a range of elements.
 struct MomentArrays {
-  std::span<double> mean;
-  std::span<double> m2;
+  std::span<double> mean = {};
+  std::span<double> m2 = {};
+
+  // Of some elements; none if there is no room for any.
+  MomentArrays part(std::size_t first, std::size_t size) const {
+    if (mean.empty()) return {};
+    return {mean.subspan(first, size), m2.subspan(first, size)};
+  }
 };
 
 // Mean and sum of squared deviations of each of the elements [first, first + mean.size()) over the
@@ -35,9 +41,6 @@ void moments_of_range(const ImageStack& stack, std::size_t first, MomentArrays o
 // own values alone, so a caller may split the elements in any way. A non-finite value makes its
 // element's m2 non-finite.
 void element_moments(const ImageStack& stack, std::size_t first, std::span<Moments> out);
-
-// The mean and m2 of element_moments alone, with the same bits.
-void element_variances(const ImageStack& stack, std::size_t first, MomentArrays out);
 
 // ---- Sums of images over their elements
 
