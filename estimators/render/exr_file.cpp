@@ -8,6 +8,8 @@
 #include <openexr.h>
 
 #include <algorithm>
+#include <bit>
+#include <cstdint>
 #include <exception>
 #include <filesystem>
 #include <map>
@@ -116,6 +118,14 @@ void require_sound_headers(const std::string& file) {
                    "it cannot be read as OpenEXR, damaged or cut short: " + trouble);
 }
 
+/// The number of half precision. Exponents have 112 less; that of infinity and NaN lacks it twice.
+float to_float(std::uint16_t half) {
+  const std::uint32_t size = (half & 0x7fffU) << 13U;
+  const std::uint32_t again = size < 0x0f800000 ? 0 : 112U << 23U;
+  const std::uint32_t scaled = std::bit_cast<std::uint32_t>(std::bit_cast<float>(size) * 0x1p112F);
+  return std::bit_cast<float>((scaled + again) | (half & 0x8000U) << 16U);
+}
+
 class ExrFile final : public PictureFile {
  public:
   explicit ExrFile(const std::string& file) : PictureFile(file) {
@@ -178,14 +188,20 @@ void ExrFile::read_rows(std::span<const std::string> names, std::span<float> tex
   const Imath::Box2i& whole = input_->header(channel(names.front()).part).dataWindow();
   const Imath::Box2i box({whole.min.x, whole.min.y + static_cast<int>(first)},
                          {whole.max.x, whole.min.y + static_cast<int>(last) - 1});
-  const std::size_t texel = names.size() * sizeof(float);
+  const bool halves = std::ranges::all_of(
+      names, [&](const std::string& name) { return channel(name).rounding == Rounding::half; });
+  std::vector<std::uint16_t> of_file(halves ? texels.size() : 0);
+  const std::size_t size = halves ? sizeof(std::uint16_t) : sizeof(float);
+  char* const out =
+      halves ? reinterpret_cast<char*>(of_file.data()) : reinterpret_cast<char*>(texels.data());
+  const std::size_t texel = names.size() * size;
   const std::size_t row = window(names).width * texel;
   std::map<int, Imf::FrameBuffer> buffers;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const FileChannel& from = channel(names[i]);
     require_whole(from);
-    buffers[from.part].insert(from.in_part,
-                              Imf::Slice::Make(Imf::FLOAT, texels.data() + i, box, texel, row));
+    buffers[from.part].insert(from.in_part, Imf::Slice::Make(halves ? Imf::HALF : Imf::FLOAT,
+                                                             out + i * size, box, texel, row));
   }
   in_our_words(name_, [&] {
     for (const auto& [part, buffer] : buffers) {
@@ -194,6 +210,7 @@ void ExrFile::read_rows(std::span<const std::string> names, std::span<float> tex
       input.readPixels(box.min.y, box.max.y);
     }
   });
+  std::ranges::transform(of_file, texels.begin(), to_float);
 }
 
 }  // namespace

@@ -1,21 +1,19 @@
 #include "harness/run/picture_stream.h"
 
 #include <fmt/format.h>
-#include <sys/mman.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 #include <limits>
-#include <new>
 #include <stdexcept>
 
 #include "estimators/core/thread_seconds.h"
 #include "estimators/ready_made.h"
 #include "harness/base/interrupt.h"
+#include "harness/base/large_vector.h"
 #include "harness/base/parallel.h"
 #include "harness/image/image_pair.h"
 #include "harness/plan/sizes.h"
@@ -51,24 +49,6 @@ std::size_t rows_there(const stats::ImageExtent& extent, std::size_t pictures) {
 
 std::uint64_t pictures_of(const Subject& side) { return side.setup->observations().value_or(0); }
 
-struct Freed {
-  void operator()(float* texels) const { std::free(texels); }
-};
-using Texels = std::unique_ptr<float[], Freed>;
-
-/// Room for so many, in large pages if the system has them: parts of many pictures are read in
-/// turn.
-Texels room_for(std::size_t count) {
-  constexpr std::size_t page = std::size_t{1} << 21;
-  const std::size_t bytes = rounded_up(count * sizeof(float), page);
-  void* const room = std::aligned_alloc(page, bytes);
-  if (room == nullptr) throw std::bad_alloc();
-#ifdef MADV_HUGEPAGE
-  madvise(room, bytes, MADV_HUGEPAGE);
-#endif
-  return Texels(static_cast<float*>(room));
-}
-
 /// The channels' sums of pictures, those of a picture together.
 std::vector<double> sums_of(const std::vector<stats::ChannelSums>& pictures) {
   std::vector<double> all;
@@ -87,7 +67,7 @@ class Side {
         reader_(recorded::picture_rows(*side.setup)),
         pictures_(pictures_of(side)),
         size_(rows_there(extent_, 2 * pictures_) * extent_.row()),
-        texels_(room_for(pictures_ * size_)),
+        texels_(pictures_ * size_),
         of_channels_(pictures_, stats::ChannelSums(extent_.channels)),
         of_all_(pictures_, stats::ChannelSums(1)),
         extremes_(pictures_),
@@ -106,14 +86,14 @@ class Side {
   Stack stack() const {
     Stack stack{extent_, {}, there_.elements(extent_)};
     for (std::size_t i = 0; i < pictures_; ++i) {
-      stack.images.emplace_back(texels_.get() + i * size_, stack.there.size());
+      stack.images.emplace_back(texels_.data() + i * size_, stack.there.size());
     }
     return stack;
   }
 
   /// Frees the rows.
   void end() {
-    texels_.reset();
+    texels_ = {};
     there_ = {};
   }
 
@@ -154,7 +134,7 @@ class Side {
 
  private:
   void move_to(stats::RowRange rows, std::size_t picture) {
-    float* const begin = texels_.get() + picture * size_;
+    float* const begin = texels_.data() + picture * size_;
     const std::size_t kept = (there_.last - rows.first) * extent_.row();
     std::memmove(begin, begin + (rows.first - there_.first) * extent_.row(), kept * sizeof(float));
     const std::span<float> read(begin + kept, (rows.last - there_.last) * extent_.row());
@@ -170,7 +150,7 @@ class Side {
   std::unique_ptr<recorded::PictureRows> reader_;
   std::size_t pictures_;
   std::size_t size_;  // capacity in texels of a picture
-  Texels texels_;
+  LargeVector<float> texels_;
   std::vector<stats::ChannelSums> of_channels_;  // of each picture
   std::vector<stats::ChannelSums> of_all_;       // of each picture, of all its numbers
   std::vector<Extremes> extremes_;               // of each picture
@@ -269,9 +249,8 @@ class Looking {
 
   void take(stats::RowRange rows) {
     const Stack stacks[] = {sides_[0].stack(), sides_[1].stack()};
-    const stats::ImagePair both = stats::pair_of(stacks[0], stacks[1]);
-    for (std::size_t s = 0; s < sides_.size(); ++s) sums_[s].take(stacks[s], rows);
     if (question_.is().of_pairs) {
+      for (std::size_t s = 0; s < sides_.size(); ++s) sums_[s].take(stacks[s], rows);
       const Stack differences = difference(stacks[0], stacks[1], differences_);
       const stats::ImageReference zero{extent_, zeros_};
       const stats::ElementRange range = rows.elements(extent_);
@@ -281,16 +260,18 @@ class Looking {
       take(stats::pair_of(differences, zero), rows);
       norm_.take(stats::pair_of(stacks[1], zero), rows, on_all_threads);
     } else {
-      take(both, rows);
+      take(stats::pair_of(stacks[0], stacks[1]), rows,
+           {sums_[0].room_for(stacks[0], rows), sums_[1].room_for(stacks[1], rows)});
     }
   }
 
   /// Takes the pair that is tested.
-  void take(const stats::ImagePair& pair, stats::RowRange rows) {
+  void take(const stats::ImagePair& pair, stats::RowRange rows,
+            const stats::MomentsOfSides& moments = {}) {
     if (rows.first == 0) {
       pyramid_.emplace(pair, stats::PyramidOptions{.z = look_->z, .for_each = on_all_threads});
     }
-    distance_.take(pair, rows, on_all_threads);
+    distance_.take(pair, rows, on_all_threads, moments);
     dependence_.take(pair, rows, on_all_threads);
     pyramid_->take(pair, rows);
   }

@@ -8,11 +8,6 @@
 #include "stats/images/image_moments.h"
 
 namespace assay::harness {
-namespace {
-
-constexpr std::size_t elements_at_a_time = 4096;
-
-}  // namespace
 
 void Extremes::add(std::span<const float> values) {
   // So many numbers have extremes of their own, so that none waits for the last.
@@ -49,17 +44,20 @@ stats::Moments ElementSums::moments(std::size_t channel) const {
   return {.count = count, .mean = mean[channel], .m2 = m2[channel]};
 }
 
-void ElementSums::take(const stats::ImageStack& stack, stats::RowRange rows) {
+stats::MomentArrays ElementSums::room_for(const stats::ImageStack& stack, stats::RowRange rows) {
   mean.resize(stack.extent.elements());
   m2.resize(stack.extent.elements());
+  if (rows.first == 0) stats::element_moments(stack, 0, std::span(&first, 1));
   const stats::ElementRange range = rows.elements(stack.extent);
-  on_all_threads((range.size() + elements_at_a_time - 1) / elements_at_a_time, [&](std::size_t i) {
-    const std::size_t begin = range.first + i * elements_at_a_time;
-    const std::size_t size = std::min(elements_at_a_time, range.last - begin);
-    stats::moments_of_range(
-        stack, begin, {std::span(mean).subspan(begin, size), std::span(m2).subspan(begin, size)});
+  return stats::MomentArrays{mean, m2}.part(range.first, range.size());
+}
+
+void ElementSums::take(const stats::ImageStack& stack, stats::RowRange rows) {
+  const stats::MomentArrays moments = room_for(stack, rows);
+  const std::size_t row = stack.extent.row();
+  on_all_threads(rows.last - rows.first, [&](std::size_t y) {
+    stats::moments_of_range(stack, (rows.first + y) * row, moments.part(y * row, row));
   });
-  if (range.first == 0) stats::element_moments(stack, 0, std::span(&first, 1));
 }
 
 }  // namespace assay::harness

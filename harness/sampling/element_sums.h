@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "harness/base/large_vector.h"
 #include "harness/language/claim.h"
 #include "stats/basics/moments.h"
 #include "stats/images/image.h"
@@ -30,14 +31,16 @@ struct Extremes {
 /// The moments of every element that maps show. All values are finite.
 struct ElementSums {
   std::uint64_t count = 0;  ///< number of pictures
-  std::vector<double> mean = {};
-  std::vector<double> m2 = {};
+  LargeVector<double> mean = {};
+  LargeVector<double> m2 = {};
   stats::Moments first = {};    ///< all moments of the first element
   stats::Moments average = {};  ///< moments of the pictures' averages
   Extremes extremes = {};
 
   /// The moments of an element, or of the average, which follows the elements.
   stats::Moments moments(std::size_t channel) const;
+  /// Where the moments of the rows that follow go. Takes those of the first element.
+  stats::MomentArrays room_for(const stats::ImageStack& stack, stats::RowRange rows);
   /// Takes the rows that follow.
   void take(const stats::ImageStack& stack, stats::RowRange rows);
 };

@@ -31,16 +31,20 @@ struct Estimates {
   Block squared_error{};
 };
 
-// One side: a stack or a reference.
+// One side: a stack or a reference. A stack's moments go to `moments` too, if it has room.
 void load(const ImageStack* stack, const ImageReference* reference, ElementRange range,
-          Estimates& out) {
+          Estimates& out, MomentArrays moments) {
   out = {};
   if (stack != nullptr) {
-    moments_of_range(*stack, range.first,
-                     {std::span(out.mean).first(range.size()),
-                      std::span(out.squared_error).first(range.size())});
+    const std::span<double> mean = std::span(out.mean).first(range.size());
+    const std::span<double> m2 = std::span(out.squared_error).first(range.size());
+    moments_of_range(*stack, range.first, {mean, m2});
+    if (!moments.mean.empty()) {
+      std::ranges::copy(mean, moments.mean.begin());
+      std::ranges::copy(m2, moments.m2.begin());
+    }
     const double count = static_cast<double>(stack->images.size());
-    for (double& m2 : out.squared_error) m2 /= count * (count - 1);
+    for (double& squares : out.squared_error) squares /= count * (count - 1);
     return;
   }
   for (std::size_t i = 0; i < range.size(); ++i) {
@@ -105,15 +109,18 @@ void add_without(std::vector<Terms>& sums, const ImageStack& stack, ElementRange
 }
 
 // Adds up a row.
-void add_row(DistanceSums& sums, const ImagePair& pair, std::size_t row) {
-  const ElementRange range = RowRange{row, row + 1}.elements(pair.a.extent);
+void add_row(DistanceSums& sums, const ImagePair& pair, ElementRange range,
+             const MomentsOfSides& moments) {
   const auto [a, b, differences, back] =
       std::tuple(std::make_unique<Estimates>(), std::make_unique<Estimates>(),
                  std::make_unique<Block>(), std::make_unique<Block>());
   for (std::size_t first = range.first; first < range.last; first += block_size) {
     const ElementRange block{first, std::min(first + block_size, range.last)};
-    load(&pair.a, nullptr, block, *a);
-    load(pair.b, pair.reference, block, *b);
+    const auto of_block = [&](std::size_t side) {
+      return moments[side].part(first - range.first, block.size());
+    };
+    load(&pair.a, nullptr, block, *a, of_block(0));
+    load(pair.b, pair.reference, block, *b, of_block(1));
     for (std::size_t i = 0; i < block_size; ++i) {
       const double difference = a->mean[i] - b->mean[i];
       (*differences)[i] = difference;
@@ -203,11 +210,17 @@ Added added_by(const Element& x, ElementErrors errors) {
 }  // namespace
 
 // Sums over rows are added up in order.
-void RowDistance::take(const ImagePair& pair, RowRange rows, const ForEach& for_each) {
+void RowDistance::take(const ImagePair& pair, RowRange rows, const ForEach& for_each,
+                       const MomentsOfSides& moments) {
   check::image_pair(function_name, pair);
   std::vector<DistanceSums> each(rows.last - rows.first);
-  for_each(each.size(), [&](std::size_t i) { add_row(each[i], pair, rows.first + i); });
-  for (const DistanceSums& row : each) add(sums_, row);
+  const std::size_t row = pair.a.extent.row();
+  for_each(each.size(), [&](std::size_t i) {
+    const std::size_t first = (rows.first + i) * row;
+    add_row(each[i], pair, {first, first + row},
+            {moments[0].part(i * row, row), moments[1].part(i * row, row)});
+  });
+  for (const DistanceSums& of_row : each) add(sums_, of_row);
 }
 
 ImageDistance RowDistance::distance() const {

@@ -5,6 +5,7 @@
 
 #include "stats/basics/for_each.h"
 #include "stats/images/image.h"
+#include "stats/images/image_moments.h"
 #include "stats/tails/test_result.h"
 
 namespace assay::stats {
@@ -35,12 +36,17 @@ struct DistanceSums {
   std::vector<Terms> without_b = {};
 };
 
+// Room for the moments of elements of either side, or none.
+using MomentsOfSides = std::array<MomentArrays, 2>;
+
 // The distance of images that are read rows after rows.
 class RowDistance {
  public:
   // Takes rows that follow on those before. Throws std::domain_error for unequal extents and fewer
-  // than least_replicates images.
-  void take(const ImagePair& pair, RowRange rows, const ForEach& for_each = one_by_one);
+  // than least_replicates images. The moments of the rows' elements, by moments_of_range, go where
+  // there is room for them.
+  void take(const ImagePair& pair, RowRange rows, const ForEach& for_each = one_by_one,
+            const MomentsOfSides& moments = {});
   // To be called after the last rows. Throws std::domain_error if a sum is not finite.
   ImageDistance distance() const;
 

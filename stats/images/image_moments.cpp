@@ -149,8 +149,7 @@ void moments_of_range(const ImageStack& stack, std::size_t first, MomentArrays o
                       EveryImage which) {
   for (std::size_t done = 0; done < out.mean.size(); done += elements_at_once) {
     const std::size_t size = std::min(elements_at_once, out.mean.size() - done);
-    two_moments_of_block(stack, first + done,
-                         {out.mean.subspan(done, size), out.m2.subspan(done, size)}, which);
+    two_moments_of_block(stack, first + done, out.part(done, size), which);
   }
 }
 

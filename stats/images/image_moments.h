@@ -14,8 +14,14 @@ namespace assay::stats {
 
 // Views of two arrays of one size that receive the moments of a range of elements.
 struct MomentArrays {
-  std::span<double> mean;
-  std::span<double> m2;
+  std::span<double> mean = {};
+  std::span<double> m2 = {};
+
+  // Of some elements; none if there is no room for any.
+  MomentArrays part(std::size_t first, std::size_t size) const {
+    if (mean.empty()) return {};
+    return {mean.subspan(first, size), m2.subspan(first, size)};
+  }
 };
 
 // Mean and sum of squared deviations of each of the elements [first, first + mean.size()) over the

@@ -16,8 +16,8 @@ namespace {
 // A tile of an image. All channels stand side by side as in the image. Everything beyond the
 // image's edge is zero, so a cell cut off by the edge is a whole square here.
 struct Tile {
-  static constexpr std::size_t rows = 16;
-  static constexpr std::size_t columns = 128;
+  static constexpr std::size_t rows = 32;
+  static constexpr std::size_t columns = 64;
   static constexpr std::size_t halo = 8;  // Rows and columns beyond, into which its squares reach.
 
   ImageExtent extent;
