@@ -66,7 +66,9 @@ void add_output(Options& options, Output& output) {
       OneOf<Colour>{
           {{"auto", Colour::automatic}, {"always", Colour::always}, {"never", Colour::never}}},
       "auto, always or never; default auto: on a terminal, as NO_COLOR and FORCE_COLOR say");
-  options.count("-v", "a line a test on the console; -vv all numbers; default a line a suite",
+  options.count("-v",
+                "a line a test on the console; -vv all numbers of those that need a look; default "
+                "a line a suite",
                 output.detail);
   options.add({"--durations", "N", Replay::nowhere}, output.slowest, at_least(1),
               "name the N slowest tests at the end; default none");
@@ -211,7 +213,7 @@ Examples:
   options.add_key(
       {"--detect", "X"}, given.keys,
       "the effect that must not pass, as 0.5% or 0.002; default none: 1000 observations; "
-      "of laws 0.05");
+      "of drawn laws 0.05");
   options.add_key({"--allow", "X"}, given.keys,
                   "the effect that may be there, as 0.5% or 0.002; default 0");
   options.add_key(

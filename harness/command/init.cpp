@@ -62,8 +62,7 @@ void read_kind(InitArguments& arguments) {
     if (words.size() > count) arguments.folder = words[count];
     return;
   }
-  refuse({}, "there is no example `{}`{}; there is {}", kind, suggestion(kind, kinds),
-         listed(kinds));
+  refuse({}, "there is no example `{}`{}", kind, suggestion(kind, kinds));
 }
 
 int write_example(const InitArguments& arguments) {

@@ -99,8 +99,8 @@ Asked asked(const std::vector<Part>& parts, const std::string& stream) {
               .second;
       if (!is_new) harness::refuse({}, "two sources are named `{}`", source->name);
     } else {
-      const Margin& margin = std::get<Margin>(part);
-      result.keys[margin.detects ? "detect" : "allow"] = margin.text;
+      const Key& key = std::get<Key>(part);
+      result.keys[key.name] = key.text;
     }
   }
   return result;
@@ -114,6 +114,7 @@ reports::Test tested(const std::string& claim, const Asked& asked, const ClaimBu
               .alpha = budget.alpha / static_cast<double>(budget.claims),
               .beta = budget.beta};
   suite.tests = {harness::test_of("check", claim, asked.keys)};
+  suite.tests[0].where = {};
   const harness::Question question =
       harness::ask_as_written(suite.tests[0], asked.estimators, seed);
   const harness::Pilots pilots = harness::pilots_of({question}, seed, harness::threads());
@@ -188,8 +189,9 @@ Source secondary(const std::string& name, std::size_t channels,
   return {name, setup_of(std::move(parts)), false};
 }
 
-Margin detect(const std::string& text) { return {true, text}; }
-Margin allow(const std::string& text) { return {false, text}; }
+Key detect(const std::string& text) { return {"detect", text}; }
+Key allow(const std::string& text) { return {"allow", text}; }
+Key secondaries(std::uint64_t count) { return {"secondaries", std::to_string(count)}; }
 
 testing::AssertionResult claim_holds(const std::string& claim, const std::vector<Part>& parts) {
   try {

@@ -47,15 +47,17 @@ Source primary(const std::string& name, std::function<double(Stream&)> estimate)
 Source secondary(const std::string& name, std::size_t channels,
                  std::function<void(Stream&, std::span<double>)> estimate);
 
-/// `detect` and `allow` of the test, as in a suite: "0.5%" or "0.002".
-struct Margin {
-  bool detects;
+/// A key of the test, as in a suite: `detect` and `allow` are "0.5%" or "0.002". `secondaries` is
+/// the number of observations.
+struct Key {
+  std::string name;
   std::string text;
 };
-Margin detect(const std::string& text);
-Margin allow(const std::string& text);
+Key detect(const std::string& text);
+Key allow(const std::string& text);
+Key secondaries(std::uint64_t count);
 
-using Part = std::variant<Source, Margin>;
+using Part = std::variant<Source, Key>;
 
 /// True if the claim passes; else the message says what was found, as a report does. The k-th claim
 /// of a test writes the test properties `claim_k`, `verdict_k`, `method_k`, `estimate_k`, `low_k`,

@@ -15,10 +15,11 @@
 namespace assay::harness {
 namespace {
 
-/// The command that repeats one observation.
+/// The command that repeats one observation; "" of a claim in a test binary.
 std::string replay_line(const TestOutcome& outcome, std::uint64_t observation) {
-  return fmt::format("`assay replay {} {}` draws it again", shell_quoted(outcome.question.test->id),
-                     observation);
+  if (outcome.question.test->where.file.empty()) return "";
+  return fmt::format("; `assay replay {} {}` draws it again",
+                     shell_quoted(outcome.question.test->id), observation);
 }
 
 std::string not_finite(const TestOutcome& outcome, const Subject& side, const Drawn& drawn,
@@ -33,7 +34,7 @@ std::string not_finite(const TestOutcome& outcome, const Subject& side, const Dr
       *side.setup,
       {.index = summary.first_nonfinite, .key = pool.key(), .primaries = pool.primaries()});
   if (!place.empty()) return text + ", `" + place + "`; mend or delete it";
-  return text + "; " + replay_line(outcome, summary.first_nonfinite);
+  return text + replay_line(outcome, summary.first_nonfinite);
 }
 
 /// The sampler of that name, or the only one.
@@ -136,7 +137,7 @@ std::string first_contradiction(const DrawnTest& test) {
     // with it.
   }
   if (!first) return "";
-  return fmt::format("; the first is observation {}: {}", *first, replay_line(outcome, *first));
+  return fmt::format("; the first is observation {}{}", *first, replay_line(outcome, *first));
 }
 
 bool was_activated(const Subject& subject, const Pool& pool, std::uint64_t observations) {

@@ -28,7 +28,9 @@ void share_budget(Suite& suite) {
     const auto share = static_cast<std::uint64_t>(static_cast<double>(*suite.budget->primaries) *
                                                   test.weight / weights);
     if (!test.budget) test.budget.emplace();
-    test.budget->primaries = std::min(test.budget->primaries.value_or(share), share);
+    if (test.budget->primaries.value_or(share) < share) continue;
+    test.budget->primaries = share;
+    test.budget->of_suite = true;
   }
 }
 

@@ -286,6 +286,11 @@ Reason what_would_decide(const TestOutcome& outcome, const ChannelOutcome& chann
   const double factor = std::max(1.1, std::max(0.0, sampled) / wanted);
   if (has_rows(outcome.question))
     return in_words("", fmt::format("give about {} rows in all", sizes_text(outcome, factor)));
+  if (const auto& budget = outcome.question.test->budget; budget && budget->of_suite) {
+    return in_words(times_as_many(outcome, factor) + " would decide; ",
+                    fmt::format("give the suite {} times its `budget`",
+                                reports::human(std::ceil(10 * factor) / 10, 2)));
+  }
   const reports::Advice next = setting(outcome, factor);
   return {fmt::format("about {} would decide{}; write {}", times_as_many(outcome, factor),
                       channel.regions.proof() ? " if the estimate stands" : "",

@@ -32,6 +32,7 @@ struct EstimatorEntry {
 struct Budget {
   std::optional<std::uint64_t> primaries = {};
   std::optional<double> seconds = {};
+  bool of_suite = false;  ///< The primaries are a share of the suite's.
 };
 
 /// A parameter and the values it takes: `over: {primaries: [8, 16, 32]}`.

@@ -258,6 +258,7 @@ FirstPictures first_pictures(const ImagesArguments& arguments, const std::string
       refuse(place(option, pattern), "`" + file + "`: " + error.message());
     }
   };
+  if (arguments.mask) open("--mask", *arguments.mask, *arguments.mask);
   return {open("--candidate", arguments.candidate, candidate),
           open("--reference", arguments.reference, reference)};
 }

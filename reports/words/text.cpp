@@ -230,7 +230,15 @@ std::vector<std::string> wrap(std::string_view text, int width) {
 std::vector<std::string> wrap_command(std::string_view command, int width) {
   width = std::max(width, 4);
   std::vector<std::string> lines(1);
+  std::vector<std::string> pieces;  // an option with its value is one
   for (const std::string& word : words_outside_quotes(command)) {
+    const bool is_value = !pieces.empty() && pieces.back().starts_with("--") &&
+                          pieces.back().find(' ') == std::string::npos && !word.starts_with('-') &&
+                          columns(pieces.back() + " " + word) <= width - 2;
+    if (is_value) pieces.back() += " " + word;
+    if (!is_value) pieces.push_back(word);
+  }
+  for (const std::string& word : pieces) {
     const int used = columns(lines.back());
     if (used > 0 && used + 1 + columns(word) > width - 2) {
       lines.back() += " \\";

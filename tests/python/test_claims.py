@@ -90,6 +90,18 @@ def test_the_replay_line_finds_the_same(folder):
     assert " ".join(finding.split()[1:]) in " ".join(ended.stdout.split())
 
 
+def test_a_name_without_a_function_fails_alone(folder):
+    text = MODULE + """
+@assay.claim("mean(cubes) == 0.25")
+def more(rng):
+    return rng.random()
+"""
+    folder.makepyfile(test_cube=text)
+    result = run(folder, "-k", "more or plain")
+    result.assert_outcomes(passed=2, failed=1, deselected=19)
+    assert "has no function `cubes`" in " ".join(result.stdout.str().split())
+
+
 def test_k_selects_and_the_numbers_are_those_of_the_whole_run(folder):
     whole = [line for line in run(folder).outlines if "0.26 (" in line]
     result = run(folder, "-k", "cube and 0.26")

@@ -53,7 +53,7 @@ TEST(Console, AnIdThatIsTooLongForALineEndsInAStar) {
   test.replay = "assay run a.yaml --seed 1 --filter 'a/it'\\''s " + std::string(100, 'x') + "'";
   Console screen({.width = 60});
   const std::string text = screen.broken(record.suites[0], test);
-  EXPECT_THAT(text, HasSubstr("--filter \\\n           'a/it'\\''s xxx"));
+  EXPECT_THAT(text, HasSubstr("--seed 1 \\\n           --filter 'a/it'\\''s xxx"));
   EXPECT_THAT(text, HasSubstr("xxx*'\n"));
   for (const std::string& line : lines(text)) EXPECT_LE(columns(line), 60) << line;
 }
@@ -111,6 +111,15 @@ TEST(Console, NeverCutsTheNumberThatAUserIsAskedFor) {
     test.verdict = verdict;
     EXPECT_THAT(console(record), HasSubstr("\n    to decide: give about 44000 rows in all\n"));
   }
+}
+
+TEST(Console, AFailedClaimWithACaveatCanStillBeRepeated) {
+  Record record = record_of({failing()});
+  reports::Test& test = record.suites[0].tests[0];
+  test.advice = {.words = "the reference is taken as exact"};
+  test.replay = "assay run a.yaml";
+  EXPECT_THAT(console(record), HasSubstr("    mind: the reference is taken as exact\n"
+                                         "    again: assay run a.yaml\n"));
 }
 
 TEST(Console, TheRowOfAFailedImageIsTheFindingAtItsPlace) {

@@ -67,6 +67,15 @@ TEST(Claims, ThatCannotBeReadAreFailures) {
               HasSubstr("detect"));
 }
 
+TEST(Claims, SayTheKeyThatWouldDecide) {
+  const std::string few =
+      message("mean(mine) == 0.25", {primary("mine", cube), detect("0.1%"), secondaries(200)});
+  EXPECT_THAT(few, testing::ContainsRegex("write `secondaries: [0-9]+`"));
+  const auto nan = [](Stream&) { return std::nan(""); };
+  EXPECT_THAT(message("mean(mine) == 0.25", {primary("mine", nan)}),
+              testing::Not(HasSubstr("assay replay")));
+}
+
 TEST(Claims, OfACallableThatThrowsAreFailures) {
   const auto broken = [](Stream&) -> double { throw std::runtime_error("no light"); };
   EXPECT_THAT(message("mean(mine) == 0.25", {primary("mine", broken)}), HasSubstr("no light"));

@@ -158,6 +158,9 @@ TEST_F(Runs, SplitsTheSuitesBudgetByWeight) {
   const reports::Record alone = run_text(text, {.selection = {.filters = {"*/one"}}});
   EXPECT_EQ(raw(alone.suites[0].tests[0]), raw(both.suites[0].tests[0]));
   EXPECT_FALSE(both.suites[0].timed);
+  // A budget of the test's own would not help.
+  EXPECT_THAT(test_named(both, "one").advice.value().words,
+              testing::MatchesRegex("give the suite [0-9.]+ times its `budget`"));
 }
 
 TEST_F(Runs, StopsWhereTheSuitesSecondsAreSpent) {

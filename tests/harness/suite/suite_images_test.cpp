@@ -54,6 +54,19 @@ TEST_F(SuiteImages, AMarginMakesAProof) {
   EXPECT_THAT(refused(given), HasSubstr("--within says itself"));
 }
 
+TEST_F(SuiteImages, AMaskThatDoesNotOpenIsNamed) {
+  write_stack(place, "a", {}, noisy);
+  write_stack(place, "b", {}, noisy);
+  ImagesArguments given = arguments(place);
+  given.mask = "none.png";
+  try {
+    suite_of_images(given);
+    FAIL() << "nothing was refused";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("--mask none.png: `none.png`: it does not open"));
+  }
+}
+
 TEST_F(SuiteImages, WhatCannotBeTestedIsRefusedWithTheMend) {
   write_stack(place, "a", {.count = 15}, noisy);
   ImagesArguments given = arguments(place);

@@ -18,7 +18,11 @@ def _prepare() -> tuple[typing.Callable[..., typing.Any], Declaration, list[str]
     module = importlib.util.module_from_spec(specification)
     sys.modules[module_name] = module
     specification.loader.exec_module(module)
-    function = getattr(module, function_name)
+
+    def missing(rng: typing.Any) -> float:  # an error of its own claims, not of the module's
+        raise LookupError(f"{module_name} has no function `{function_name}`")
+
+    function = getattr(module, function_name, missing)
     return function, declaration_of(function), []
 
 

@@ -68,11 +68,12 @@ def write_suite(module: types.ModuleType, file: Path, names: typing.Container[st
             continue
         text = _SOURCE.sub(lambda found: found[1] + (function if found[2] == "it" else found[2]), each.text)
         tests.append({**each.keys, "name": name, "claim": text})
-        for source in [*(name for _, name in _SOURCE.findall(text)), str(each.keys.get("reference"))]:
+        named = [name for _, name in _SOURCE.findall(text)]
+        for source in [*named, str(each.keys.get("reference"))]:
             value = getattr(module, source, None)
-            if callable(value):
+            if callable(value) or source in named:  # a name without a function is an error of its claims alone
                 estimators[source] = {"plugin": "process", "command": ["sh", f"{file.stem}.sh", source],
-                                      **declaration_of(value).suite}
+                                      **(declaration_of(value).suite if callable(value) else {})}
     lines = [f"suite: {json.dumps(file.stem)}", "estimators:",
              *(f"  {source}: {json.dumps(entry)}" for source, entry in estimators.items()),
              "tests:", *(f"  - {json.dumps(test, ensure_ascii=False)}" for test in tests)]
