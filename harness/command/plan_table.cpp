@@ -262,7 +262,7 @@ void write(Page& page, const SuiteRun& run) {
   page.blank();
 }
 
-/// What all tests draw, each stream to the largest of its tests' sizes.
+/// The cost of all tests, each stream drawn to the largest of its tests' sizes.
 template <class SizeOf>
 Total total_of(const PlannedRun& planned, const SizeOf& size_of) {
   std::map<const Pool*, Total> streams;
@@ -303,7 +303,8 @@ void write_totals(Page& page, const PlannedRun& planned) {
   page.paragraph(fmt::format("{} test{}, each by itself to its last look: {}.", tests,
                              tests == 1 ? "" : "s", total_text(separate)));
   const auto most = [](const TestOutcome& test, const Pilots& /*pilots*/) {
-    return test.plan.most_secondaries();
+    const std::vector<std::uint64_t>& postponed = test.plan.postponed;
+    return postponed.empty() ? test.plan.most_secondaries() : postponed.back();
   };
   page.paragraph(fmt::format(
       "Tests of one estimator share observations: at most {} in all. Most tests end at an earlier "

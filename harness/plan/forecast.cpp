@@ -191,11 +191,13 @@ std::optional<PilotedCost> observation_cost(const Subject& subject, std::uint64_
                                             const Pilots& pilots) {
   const Pilot* pilot = averaged_pilot_of(subject, pilots);
   if (pilot == nullptr) pilot = pilot_of(subject, pilots);
+  const bool is_draw = pilot == nullptr;
+  if (is_draw) pilot = pilots.find(subject.estimator->name);
   if (pilot == nullptr || pilot->sums == nullptr || pilot->sums->count == 0) return {};
   const Summary& sums = *pilot->sums;
   const double part =
       static_cast<double>(primaries) / static_cast<double>(sums.count * pilot->primaries);
-  return PilotedCost{.rays = part * static_cast<double>(sums.cost.rays()),
+  return PilotedCost{.rays = is_draw ? 0 : part * static_cast<double>(sums.cost.rays()),
                      .samples = part * static_cast<double>(sums.cost.samples),
                      .seconds = part * sums.seconds};
 }

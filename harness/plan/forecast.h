@@ -31,14 +31,15 @@ struct Forecast {
 /// Several channels are counted as if never two of them failed together.
 Forecast forecast(const TestOutcome& test, const Pilots& pilots);
 
-/// What an observation costs.
+/// The cost of an observation.
 struct PilotedCost {
   double rays = 0;
   double samples = 0;
   double seconds = 0;  ///< of CPU time
 };
 
-/// By the subject's pilot, of which averages are nearer to an observation. nullopt without a pilot.
+/// By the subject's pilot, of which averages are nearer to an observation. A sampler's draw takes
+/// the time of a primary of its estimator, and no rays. nullopt without a pilot.
 std::optional<PilotedCost> observation_cost(const Subject& subject, std::uint64_t primaries,
                                             const Pilots& pilots);
 

@@ -39,7 +39,7 @@ struct ElementSums {
 
   /// The moments of an element, or of the average, which follows the elements.
   stats::Moments moments(std::size_t channel) const;
-  /// Where the moments of the rows that follow go. Takes those of the first element.
+  /// Room for the moments of the rows that follow. Takes those of the first element.
   stats::MomentArrays room_for(const stats::ImageStack& stack, stats::RowRange rows);
   /// Takes the rows that follow.
   void take(const stats::ImageStack& stack, stats::RowRange rows);

@@ -188,7 +188,7 @@ struct ImagesArguments {
   std::optional<std::string> mask = {};     ///< A picture; where it is 0 pixels are left out.
   std::optional<std::string> samples = {};  ///< For a reference that carries its variance.
   std::optional<std::string> within = {};
-  TestKeys keys = {};  ///< Of every layer's test.
+  TestKeys keys = {};  ///< Every layer's test has them.
 };
 
 /// The suite of the claim `mean(candidate) == mean(reference)`, or `within` a margin of it. Several

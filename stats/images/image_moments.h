@@ -17,7 +17,7 @@ struct MomentArrays {
   std::span<double> mean = {};
   std::span<double> m2 = {};
 
-  // Of some elements; none if there is no room for any.
+  // The part for these elements; none if there is no room for any.
   MomentArrays part(std::size_t first, std::size_t size) const {
     if (mean.empty()) return {};
     return {mean.subspan(first, size), m2.subspan(first, size)};

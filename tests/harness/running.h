@@ -25,7 +25,7 @@ inline reports::Record run_files(const std::vector<std::string>& files,
   return run(suites, options, silence);
 }
 
-/// Of a run whose tests can be replayed.
+/// Options of a run whose tests can be replayed.
 inline const RunOptions repeatable{.command = "assay run"};
 
 inline std::map<std::string, PreparedEstimator> prepare_all(const Suite& suite) {

@@ -3,6 +3,7 @@
 #include "harness/command/run.h"
 #include "harness/plan/forecast.h"
 #include "harness/run/looks.h"
+#include "reports/words/number.h"
 #include "reports/words/text.h"
 #include "tests/harness/prelude.h"
 
@@ -85,6 +86,25 @@ TEST_F(PlanTable, CountsRaysAndSecondsAtThePlannedPrimaries) {
   EXPECT_DOUBLE_EQ(cost.value().rays, static_cast<double>(primaries));
   EXPECT_DOUBLE_EQ(cost->samples, static_cast<double>(primaries));
   EXPECT_GT(cost->seconds, 0);
+  const Question& draws = planned.suites[0]->tests[6].outcome.question;
+  const auto of_draw = observation_cost(draws.subjects[0], 1, planned.suites[0]->pilots);
+  EXPECT_EQ(of_draw.value().rays, 0);
+  EXPECT_GT(of_draw->seconds, 0);
+}
+
+// Postponed looks too.
+TEST_F(PlanTable, SaysTheMostThatCanBeDrawn) {
+  const PlannedRun planned = planned_of(suites_of());
+  double most = 0;
+  for (const auto& pool : planned.pools.all()) {
+    most += static_cast<double>(pool->most_marked() *
+                                primaries_of_observation(*pool->setup(), pool->primaries()));
+  }
+  std::string text = plan_text(planned);
+  std::ranges::replace(text, '\n', ' ');
+  const auto count = static_cast<std::uint64_t>(std::llround(most));
+  EXPECT_THAT(text, HasSubstr("at most " + reports::plain_spaces(reports::count_text(count)) +
+                              " primaries"));
 }
 
 // A plan foretells the effect that a fixed number of observations finds, and the run finds it in
