@@ -102,6 +102,13 @@ def more(rng):
     assert "has no function `cubes`" in " ".join(result.stdout.str().split())
 
 
+def test_a_decorator_without_a_claim_is_refused(folder):
+    folder.makepyfile(test_bare="import assay\n@assay.claim\ndef area(rng):\n    return rng.random()\n")
+    result = run(folder, "test_bare.py")
+    result.assert_outcomes(errors=1)
+    result.stdout.fnmatch_lines(['*a claim is a text, as in @assay.claim("mean(it) == 0.25")'])
+
+
 def test_k_selects_and_the_numbers_are_those_of_the_whole_run(folder):
     whole = [line for line in run(folder).outlines if "0.26 (" in line]
     result = run(folder, "-k", "cube and 0.26")

@@ -34,6 +34,8 @@ def claim(text: str, **keys: typing.Any) -> typing.Callable[[Function], Function
     Other functions of the module have their own names: `@claim("variance(it) < variance(plain)")`.
     The keys are those of a test in a suite: detect="1%", allow, weight, expect, …
     """
+    if not isinstance(text, str):
+        raise TypeError('a claim is a text, as in @assay.claim("mean(it) == 0.25")')
 
     def add(function: Function) -> Function:
         # The decorator that stands first is applied last.
