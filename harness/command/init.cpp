@@ -62,7 +62,8 @@ void read_kind(InitArguments& arguments) {
     if (words.size() > count) arguments.folder = words[count];
     return;
   }
-  refuse({}, "there is no example `{}`{}", kind, suggestion(kind, kinds));
+  refuse({}, "there is no example `{}`; there is {}{}", kind, listed(kinds),
+         did_you_mean(kind, kinds));
 }
 
 int write_example(const InitArguments& arguments) {

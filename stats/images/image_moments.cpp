@@ -74,19 +74,11 @@ struct Sums {
   Block nonzero{};
 };
 
-ASSAY_VECTOR_COPIES void add_differences(const float* values, const float* origin, double* sum,
-                                         std::size_t size) {
-  for (std::size_t i = 0; i < size; ++i) {
-    sum[i] += static_cast<double>(values[i]) - static_cast<double>(origin[i]);
-  }
-}
-
 ASSAY_VECTOR_COPIES void add_powers(const float* values, Sums& sums, std::size_t size) {
   for (std::size_t i = 0; i < size; ++i) {
     const double value = static_cast<double>(values[i]);
     const double deviation = value - sums.mean[i];
     const double square = deviation * deviation;
-    sums.m2[i] += square;
     sums.m3[i] += square * deviation;
     sums.m4[i] += square * square;
     sums.minimum[i] = value < sums.minimum[i] ? value : sums.minimum[i];
@@ -95,21 +87,10 @@ ASSAY_VECTOR_COPIES void add_powers(const float* values, Sums& sums, std::size_t
   }
 }
 
-void means_of_block(const ImageStack& stack, std::size_t first, std::span<double> mean) {
-  const float* const origin = stack.at(0, first);
-  std::ranges::fill(mean, 0.0);
-  for (std::size_t r = 0; r < stack.images.size(); ++r) {
-    add_differences(stack.at(r, first), origin, mean.data(), mean.size());
-  }
-  const double count = static_cast<double>(stack.images.size());
-  for (std::size_t i = 0; i < mean.size(); ++i) {
-    mean[i] = static_cast<double>(origin[i]) + mean[i] / count;
-  }
-}
-
 void moments_of_block(const ImageStack& stack, std::size_t first, std::span<Moments> out) {
   Sums sums;
-  means_of_block(stack, first, std::span(sums.mean).first(out.size()));
+  moments_of_range(stack, first,
+                   {std::span(sums.mean).first(out.size()), std::span(sums.m2).first(out.size())});
   const float* const origin = stack.at(0, first);
   for (std::size_t i = 0; i < out.size(); ++i) {
     sums.minimum[i] = static_cast<double>(origin[i]);

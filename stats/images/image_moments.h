@@ -36,10 +36,10 @@ void moments_of_range(const ImageStack& stack, std::size_t first, MomentArrays o
                       EveryImage which = {});
 
 // Moments up to order four of the elements [first, first + out.size()) over the images of a stack.
-// Two passes over pieces that stay in the cache: first the mean, then sums of powers of deviations
-// from it. An element that never varied has m2 = 0 exactly. Each element's moments depend on its
-// own values alone, so a caller may split the elements in any way. A non-finite value makes its
-// element's m2 non-finite.
+// Two passes over pieces that stay in the cache: first moments_of_range, then higher powers of the
+// deviations from its means. An element that never varied has m2 = 0 exactly. Each element's
+// moments depend on its own values alone, so a caller may split the elements in any way. A
+// non-finite value makes its element's m2 non-finite.
 void element_moments(const ImageStack& stack, std::size_t first, std::span<Moments> out);
 
 // ---- Sums of images over their elements
