@@ -5,10 +5,10 @@
 #include <ImfIntAttribute.h>
 #include <ImfMultiPartInputFile.h>
 #include <ImfPartType.h>
+#include <half.h>
 #include <openexr.h>
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 #include <exception>
 #include <filesystem>
@@ -118,14 +118,6 @@ void require_sound_headers(const std::string& file) {
                    "it cannot be read as OpenEXR, damaged or cut short: " + trouble);
 }
 
-/// The number of half precision. Exponents have 112 less; that of infinity and NaN lacks it twice.
-float to_float(std::uint16_t half) {
-  const std::uint32_t size = (half & 0x7fffU) << 13U;
-  const std::uint32_t again = size < 0x0f800000 ? 0 : 112U << 23U;
-  const std::uint32_t scaled = std::bit_cast<std::uint32_t>(std::bit_cast<float>(size) * 0x1p112F);
-  return std::bit_cast<float>((scaled + again) | (half & 0x8000U) << 16U);
-}
-
 class ExrFile final : public PictureFile {
  public:
   explicit ExrFile(const std::string& file) : PictureFile(file) {
@@ -210,7 +202,7 @@ void ExrFile::read_rows(std::span<const std::string> names, std::span<float> tex
       input.readPixels(box.min.y, box.max.y);
     }
   });
-  std::ranges::transform(of_file, texels.begin(), to_float);
+  std::ranges::transform(of_file, texels.begin(), imath_half_to_float);
 }
 
 }  // namespace

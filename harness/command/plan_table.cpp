@@ -269,11 +269,11 @@ Total total_of(const PlannedRun& planned, const SizeOf& size_of) {
   for (const auto& run : planned.suites) {
     for (const TestWork& work : run->tests) {
       const TestOutcome& test = work.outcome;
+      const std::uint64_t size = size_of(test, run->pilots);
       for (std::size_t i = 0; i < work.pools.size(); ++i) {
         const Subject& side = test.question.subjects[i];
         Total whole;
-        whole.add(side, test.plan.primaries[i], side.secondaries(size_of(test, run->pilots)),
-                  run->pilots);
+        whole.add(side, test.plan.primaries[i], side.secondaries(size), run->pilots);
         Total& most = streams[work.pools[i].get()];
         if (whole.primaries > most.primaries) most = whole;
       }

@@ -45,8 +45,6 @@ const reports::Sample* recorded_of(const reports::Test& test, const Question& qu
   return nullptr;
 }
 
-constexpr const char* gone = "the recorded command no longer has this test";
-
 /// The words of a command line, as a shell that starts no command would split it.
 std::vector<std::string> words_of_shell(const std::string& line) {
   wordexp_t words{};
@@ -148,6 +146,16 @@ bool print_observation(const Question& question, const Recorded& recorded, std::
   return same;
 }
 
+/// Says why the run has no such test now.
+[[noreturn]] void refuse_missing(const PlannedRun& run, const Recorded& recorded) {
+  for (const auto& suite : run.suites) {
+    for (const Untested& each : suite->untested) {
+      if (is_of(each.test, recorded)) throw std::runtime_error(each.message);
+    }
+  }
+  throw std::runtime_error("the recorded command no longer has this test");
+}
+
 /// Draws the observation alone, without a pilot.
 bool replay_observation(const Loaded& run, const Recorded& recorded, std::uint64_t index) {
   const PlannedRun prepared = prepare_run(run.suites, run.options);
@@ -155,11 +163,8 @@ bool replay_observation(const Loaded& run, const Recorded& recorded, std::uint64
     for (const Question& question : suite->questions) {
       if (is_of(question.test, recorded)) return print_observation(question, recorded, index);
     }
-    for (const Untested& each : suite->untested) {
-      if (is_of(each.test, recorded)) throw std::runtime_error(each.message);
-    }
   }
-  throw std::runtime_error(gone);
+  refuse_missing(prepared, recorded);
 }
 
 std::string shown(const reports::Number& value) {
@@ -235,11 +240,8 @@ TestWork& work_of(const PlannedRun& planned, const Recorded& recorded) {
     for (TestWork& work : suite->tests) {
       if (is_of(work.outcome.question.test, recorded)) return work;
     }
-    for (const Untested& each : suite->untested) {
-      if (is_of(each.test, recorded)) throw std::runtime_error(each.message);
-    }
   }
-  throw std::runtime_error(gone);
+  refuse_missing(planned, recorded);
 }
 
 /// Prints new beside recorded numbers; true if they are equal. std::runtime_error if a source can

@@ -111,9 +111,10 @@ class Screen {
         !all.empty() && all[0].paste != test.replay && all[0].words != test.no_replay;
     if (room() < static_cast<int>(text.size()) && test.verdict != Verdict::fail && !asked)
       next = step_lines(explanation(test));
-    const bool minds = !all.empty() && all[0].paste != test.replay && test.verdict == Verdict::fail;
-    if (minds && !test.replay.empty()) {
-      const std::vector<std::string> again = step_lines({.label = "again", .paste = test.replay});
+    const auto repeats = std::ranges::find(all, test.replay, &Step::paste);
+    const bool comes_later = repeats != all.begin() && repeats != all.end();
+    if (test.verdict == Verdict::fail && !test.replay.empty() && comes_later) {
+      const std::vector<std::string> again = step_lines(*repeats);
       if (room() >= static_cast<int>(text.size() + again.size()))
         next.insert(next.end(), again.begin(), again.end());
     }

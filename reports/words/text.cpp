@@ -235,8 +235,11 @@ std::vector<std::string> wrap_command(std::string_view command, int width) {
     const bool is_value = !pieces.empty() && pieces.back().starts_with("--") &&
                           pieces.back().find(' ') == std::string::npos && !word.starts_with('-') &&
                           columns(pieces.back() + " " + word) <= width - 2;
-    if (is_value) pieces.back() += " " + word;
-    if (!is_value) pieces.push_back(word);
+    if (is_value) {
+      pieces.back() += " " + word;
+    } else {
+      pieces.push_back(word);
+    }
   }
   for (const std::string& word : pieces) {
     const int used = columns(lines.back());

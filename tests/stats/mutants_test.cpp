@@ -5,7 +5,6 @@
 #include "stats/laws/kolmogorov_smirnov.h"
 #include "stats/means/binomial.h"
 #include "stats/means/student_t.h"
-#include "stats/planning/holm.h"
 #include "stats/tails/kolmogorov.h"
 #include "stats/tails/tails.h"
 #include "stats/tails/test_result.h"
