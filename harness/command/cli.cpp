@@ -154,13 +154,13 @@ void define_run(Options& options, RunCommand& command) {
 Examples:
   assay run suites/luminaire.yaml
   assay run suites/*.yaml --filter '*/variance*' --threads 4
-  assay run suites/*.yaml --tag bias --filter '-*slope*'      tests with a tag, but for some
+  assay run suites/*.yaml --tag bias --filter '-*slope*'    some of a tag
   assay run suites/luminaire.yaml --report json=run.json html=run.html
   assay run suites/luminaire.yaml --set triangle_area.scene=rectangle --seed 7
-  assay run suites/luminaire.yaml --coarsen 4      a quick look: four times coarser effects
-  assay run suites/luminaire.yaml --seed random --ledger nightly.ledger      every night
-  assay run suites/luminaire.yaml --checkpoint run.ckpt      goes on where it was killed
-  assay run suites/luminaire.yaml --shard 2/4 --report json=2.json      a part, for `assay merge`
+  assay run suites/luminaire.yaml --coarsen 4    a quick look
+  assay run suites/luminaire.yaml --seed random --ledger nightly.ledger
+  assay run suites/luminaire.yaml --checkpoint run.ckpt    goes on after a kill
+  assay run suites/luminaire.yaml --shard 2/4 --report json=2.json
 )");
   add_suites(options, command);
   options.add({"--shard", "I/N", Replay::nowhere}, command.options.shard, read_shard,
@@ -182,13 +182,13 @@ Examples:
 
 void define_plan(Options& options, PlanCommand& command) {
   options.about(
-      R"(Prints what a run of suites would do: of each test its method, sample sizes, expected cost and the
-effect it finds. Runs the pilots only.
+      R"(Prints what a run of suites would do: of each test its method, sample sizes,
+expected cost and the effect it finds. Runs the pilots only.
 
 Examples:
   assay plan suites/luminaire.yaml
   assay plan suites/*.yaml --filter '*/variance*' --coarsen 4
-  assay plan suites/cycles.yaml --list-renders      what another machine may render
+  assay plan suites/cycles.yaml --list-renders    for other machines
 )");
   add_suites(options, command);
   options.flag("--list-renders",
@@ -243,19 +243,24 @@ Examples:
 
 void define_images(Options& options, ImagesCommand& command) {
   options.about(
-      R"(Holds pictures of one scene against each other, pixel by pixel and on every larger scale: are their
-means equal, and if not, where? Every file is one observation and needs a seed of its own.
+      R"(Holds pictures of one scene against each other, pixel by pixel and on every
+larger scale: are their means equal, and if not, where? Every file is one
+observation and needs a seed of its own.
 
-Files are OpenEXR, PFM or PNG. PNG is taken from sRGB to linear light, clipped to [0, 1] as it is. Both
-sides are rounded as the coarser is, half or PNG. Crops are compared where both sides have pixels. A
-depth Z may be infinite. With --channels, each layer has a claim of its own.
+Files are OpenEXR, PFM or PNG. PNG is taken from sRGB to linear light, clipped
+to [0, 1] as it is. Both sides are rounded as the coarser is, half or PNG. Crops
+are compared where both sides have pixels. A depth Z may be infinite. With
+--channels, each layer has a claim of its own.
 
 Examples:
-  assay images --candidate 'new/*.exr' --reference 'old/*.exr' --report html=difference.html
+  assay images --candidate 'new/*.exr' --reference 'old/*.exr' \
+      --report html=difference.html
   assay images --candidate 'new/*.exr' --reference converged.exr --detect 1%
-  assay images --candidate 'new/*.exr' --reference 'old/*.exr' --channels '*'      every layer
-  assay images --candidate 'new/*.exr' --reference 'old/*.exr' --ignore nonfinite --mask mask.png
-  assay images --candidate 'half/*.exr' --reference 'float/*.exr' --within 0.5% --report json=run.json
+  assay images --candidate 'new/*.exr' --reference 'old/*.exr' --channels '*'
+  assay images --candidate 'new/*.exr' --reference 'old/*.exr' \
+      --ignore nonfinite --mask mask.png
+  assay images --candidate 'half/*.exr' --reference 'float/*.exr' \
+      --within 0.5% --report json=run.json
 )");
   ImagesArguments& given = command.arguments;
   options.add({.name = "--candidate",
@@ -327,13 +332,15 @@ Examples:
 
 void define_calibrate(Options& options, CalibrateCommand& command) {
   options.about(
-      R"(Counts the verdicts pass, fail, inconclusive and invalid on laws whose truth is known: of claims that
-hold exactly and of claims that are off by `detect`. The whole procedure judges them, with its pilot,
-gates and looks, and beside it the method alone. Exit code 1 where a cell errs too often.
+      R"(Counts the verdicts pass, fail, inconclusive and invalid on laws whose truth is
+known: of claims that hold exactly and of claims that are off by `detect`. The
+whole procedure judges them, with its pilot, gates and looks, and beside it the
+method alone. Exit code 1 where a cell errs too often.
 
 Examples:
   assay calibrate
-  assay calibrate F chi-square --law exponential --alpha 0.01 --runs 20000 --report html=F.html
+  assay calibrate F chi-square --law exponential --alpha 0.01 --runs 20000 \
+      --report html=F.html
   assay calibrate t --law 'lognormal(0, 2)' --samples 200
 )");
   CalibrateArguments& given = command.arguments;
@@ -362,7 +369,8 @@ Examples:
 
 void define_list(Options& options, ListCommand& command) {
   options.about(
-      R"(Prints what there is: plugins and tests one id a line, the tables with a word on each row.
+      R"(Prints what there is: plugins and tests one id a line, the tables with a word on
+each row.
 
 Examples:
   assay list plugins
@@ -394,8 +402,9 @@ Examples:
 
 void define_describe(Options& options, DescribeCommand& command) {
   options.about(
-      R"(Prints the manual of a plugin: parameters, channels, references, samplers, mutants. Of a method, a
-quantity, a law or a report it prints what the tables say.
+      R"(Prints the manual of a plugin: parameters, channels, references, samplers,
+mutants. Of a method, a quantity, a law or a report it prints what the tables
+say.
 
 Examples:
   assay describe luminaire/area
@@ -423,8 +432,8 @@ void read_words(Texts words, ReplayArguments& given) {
 
 void define_replay(Options& options, ReplayArguments& given) {
   options.about(
-      R"(Draws the numbers of a recorded test again, or one observation of it alone. Without a saved run it is
-that of the last run.
+      R"(Draws the numbers of a recorded test again, or one observation of it alone.
+Without a saved run it is that of the last run.
 
 Examples:
   assay replay 'luminaire/mean(triangle_area) == analytic'
@@ -443,8 +452,8 @@ Examples:
 
 void define_explain(Options& options, ExplainArguments& given) {
   options.about(
-      R"(Explains a test in a few sentences, and says what to do next. Without a saved run it is that of the
-last run.
+      R"(Explains a test in a few sentences, and says what to do next. Without a saved
+run it is that of the last run.
 
 Examples:
   assay explain 'luminaire/mean(triangle_area) == analytic'
@@ -456,9 +465,9 @@ Examples:
 
 void define_merge(Options& options, MergeCommand& command) {
   options.about(
-      R"(Joins the records of all shards of a run, in any order, to the record of the whole, with Holm's
-adjusted p-values, and reports it. Nothing is sampled. The tests of a missing shard are skipped, and
-the exit code is 1.
+      R"(Joins the records of all shards of a run, in any order, to the record of the
+whole, with Holm's adjusted p-values, and reports it. Nothing is sampled. The
+tests of a missing shard are skipped, and the exit code is 1.
 
 Examples:
   assay run suites/luminaire.yaml --shard 1/2 --report json=1.json
@@ -485,7 +494,8 @@ Examples:
 
 void define_init(Options& options, InitArguments& given) {
   options.about(
-      R"(Writes a small example that runs at once, and says what to edit and how to run it.
+      R"(Writes a small example that runs at once, and says what to edit and how to run
+it.
 
 Examples:
   assay init suite
@@ -504,7 +514,8 @@ Examples:
 
 void define_completion(Options& options, TextCommand& command) {
   options.about(
-      R"(Prints a script that completes commands, options, their values, suites and names in a shell.
+      R"(Prints a script that completes commands, options, their values, suites and names
+in a shell.
 
 Examples:
   assay completion fish > ~/.config/fish/completions/assay.fish

@@ -18,8 +18,6 @@
 namespace assay::harness {
 namespace {
 
-constexpr std::size_t page_width = 100;
-
 /// The first line begins at `indent`, the others at `hanging`.
 std::string hanging(const std::string& text, std::size_t indent, std::size_t hanging) {
   return std::string(indent, ' ') + wrapped(text, page_width, hanging).substr(hanging);
@@ -180,8 +178,6 @@ std::string manual(const Entry& plugin, const std::vector<Entry>& entries) {
 
 namespace {
 
-constexpr std::size_t table_columns = 80;
-
 const char* kept_text(Keeps keeps) {
   constexpr const char* texts[] = {"four moments of a channel",
                                    "the values of a channel",
@@ -199,7 +195,7 @@ const char* kept_text(Keeps keeps) {
 std::string page_of(const MethodRow& row) {
   std::string page;
   const auto say = [&](bool holds, const std::string& sentence) {
-    if (holds) page += wrapped(sentence, table_columns, 2);
+    if (holds) page += wrapped(sentence, page_width, 2);
   };
   say(true, fmt::format("Force it by `test: {0}` in a suite, or by `--test {0}`.", row.name));
   say(true, fmt::format("It keeps {}.", kept_text(row.keeps)));
@@ -218,7 +214,7 @@ std::string page_of(const MethodRow& row) {
 TableRow row_of(const MethodRow& method) { return {method.name, method.summary, page_of(method)}; }
 
 TableRow row_of(const QuantityRow& quantity) {
-  std::string page = wrapped(fmt::format("Claim: {}", quantity.example), table_columns, 2);
+  std::string page = wrapped(fmt::format("Claim: {}", quantity.example), page_width, 2);
   if (quantity.of_a_sampler) page += "  It is about a sampler of an estimator.\n";
   if (quantity.over_all_channels) page += "  It is over all channels of an estimator.\n";
   return {quantity.word, quantity.summary, page};
@@ -273,7 +269,7 @@ std::string text_of(const Table& table) {
   for (const TableRow& row : table.rows) longest = std::max(longest, row.name.size());
   std::string text;
   for (const TableRow& row : table.rows) {
-    const std::string lines = wrapped(row.summary, table_columns, longest + 2);
+    const std::string lines = wrapped(row.summary, page_width, longest + 2);
     text += fmt::format("{:<{}}  {}", row.name, longest, lines.substr(longest + 2));
   }
   return text;
@@ -285,7 +281,7 @@ int describe(const std::string& name) {
     for (const TableRow& row : table.rows) {
       if (row.name != name) continue;
       pages += fmt::format("{}{}, {}\n{}{}", pages.empty() ? "" : "\n", row.name, table.singular,
-                           wrapped(row.summary, table_columns, 2), row.page);
+                           wrapped(row.summary, page_width, 2), row.page);
     }
   }
   fmt::print("{}", pages.empty() ? manual(find_plugin(name, {}), catalogue()) : pages);

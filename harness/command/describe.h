@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -7,9 +8,12 @@
 
 namespace assay::harness {
 
+/// Columns of help, manuals and tables, as terminals have.
+inline constexpr std::size_t page_width = 80;
+
 /// The manual of a plugin: what it estimates, its parameters, samplers, and mutants among
-/// `entries`. Known values of its channels are those for default parameters. Lines have at most 100
-/// columns, unless a word is longer.
+/// `entries`. Known values of its channels are those for default parameters. A line has at most
+/// `page_width` columns, unless a word is longer.
 std::string manual(const Entry& plugin, const std::vector<Entry>& entries);
 
 /// The text in lines of at most `width` columns, each after `indent` blanks. Its line ends stay.
@@ -20,7 +24,7 @@ std::string wrapped(const std::string& text, std::size_t width, std::size_t inde
 struct TableRow {
   std::string name;
   std::string summary;
-  std::string page;  ///< what else there is to say, lines of at most 80 columns
+  std::string page;  ///< what else there is to say, as wide as a page
 
   bool operator==(const TableRow&) const = default;
 };
@@ -33,7 +37,7 @@ struct Table {
 
 const std::vector<Table>& tables();
 
-/// Names and summaries in two columns, 80 columns wide.
+/// Names and summaries in two columns.
 std::string text_of(const Table& table);
 
 }  // namespace assay::harness

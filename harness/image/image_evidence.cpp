@@ -91,13 +91,28 @@ stats::ImageDistance distance_of(const ImagePair& pair, bool relative,
   return in_units_of_margin(distance, pair.first.extent, relative);
 }
 
-double uniform_error(const ImagePair& pair, bool relative) {
-  ChannelMeans other = pair.second ? channel_means(*pair.second) : channel_means(pair.reference());
-  if (pair.subtracted) {
-    other = channel_means(*pair.subtracted);
-    drop_errors(other);
+/// Standard errors of what this look finds.
+void note_errors(const ChannelMeans& first, const ChannelMeans& other, bool relative,
+                 const ErrorShare& share, ImageOutcome& outcome) {
+  const stats::TypicalCell& typical = outcome.family.typical;
+  const double part = typical.group.share / typical.group.count;
+  const double errors =
+      stats::normal_quantile({stats::Tail::upper, std::log(share.alpha * part / 2)}) +
+      stats::normal_quantile({stats::Tail::upper, std::log(share.beta)});
+  std::vector<double> of_cells;
+  for (const auto& noise : typical.noise) {
+    of_cells.push_back(stats::standard_error_at(noise, errors));
   }
-  return uniform_error(channel_means(pair.first), other, relative);
+  outcome.uniform_error = least_error(uniform_errors(first, other), other, relative);
+  outcome.cell_error = least_error(of_cells, other, relative);
+}
+
+ChannelMeans means_held_against(const ImagePair& pair) {
+  if (!pair.subtracted)
+    return pair.second ? channel_means(*pair.second) : channel_means(pair.reference());
+  ChannelMeans means = channel_means(*pair.subtracted);
+  drop_errors(means);
+  return means;
 }
 
 /// Replicates at which theta would be excluded from `margin` on. The squared bias's standard error
@@ -203,7 +218,7 @@ stats::ImageDistance look_at(const Question& question, const ImageTest& test, co
   look_at_family(varying, extent, pair.second || question.is().of_pairs, outcome);
   for (const UnseenElement& unseen : outcome.unseen) outcome.z[unseen.element] = z_of(unseen);
   add_unseen(extent, outcome);
-  outcome.uniform_error = uniform_error(pair, relative);
+  note_errors(channel_means(pair.first), means_held_against(pair), relative, test.share, outcome);
   return distance;
 }
 
@@ -219,7 +234,7 @@ stats::ImageDistance look_at(const Question& question, const ImageTest& test,
   outcome.family = look.family;
   outcome.z = look.z;
   add_unseen(extent, outcome);
-  outcome.uniform_error = uniform_error(look.means[0], look.means[1], relative);
+  note_errors(look.means[0], look.means[1], relative, test.share, outcome);
   return distance;
 }
 

@@ -37,6 +37,8 @@ struct ImageOutcome {
   std::string seen = {};       ///< What differs at the place and on which side, of laws.
   double wanted = 0;           ///< Replicates that would decide, roughly; 0: none.
   double uniform_error = 0;    ///< Standard error of a theta that is the same everywhere.
+  double cell_error = 0;       ///< The same in a typical cell; a part of the whole image's mean.
+  std::optional<double> detectable_in_cell = {};  ///< As ChannelOutcome::detectable.
 };
 
 /// One channel's evidence; of images also their findings.

@@ -102,11 +102,19 @@ ChannelMeans channel_means(const stats::ImageReference& reference) {
   return means;
 }
 
-double uniform_error(const ChannelMeans& first, const ChannelMeans& second, bool relative) {
-  double least = std::numeric_limits<double>::infinity();
+std::vector<double> uniform_errors(const ChannelMeans& first, const ChannelMeans& second) {
+  std::vector<double> errors;
   for (std::size_t c = 0; c < first.size(); ++c) {
-    const double error = std::hypot(first[c].standard_error, second[c].standard_error);
-    least = std::min(least, relative ? error / std::abs(second[c].value) : error);
+    errors.push_back(std::hypot(first[c].standard_error, second[c].standard_error));
+  }
+  return errors;
+}
+
+double least_error(std::span<const double> errors, const ChannelMeans& means, bool relative) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t c = 0; c < errors.size(); ++c) {
+    if (!(errors[c] > 0)) continue;
+    least = std::min(least, relative ? errors[c] / std::abs(means[c].value) : errors[c]);
   }
   return least;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "harness/question/question.h"
@@ -70,8 +71,10 @@ inline void drop_errors(ChannelMeans& means) {
   for (Constant& mean : means) mean.standard_error = 0;
 }
 
-/// Standard error of a theta that is the same everywhere, in the best channel: absolute, or a part
-/// of the second's mean.
-double uniform_error(const ChannelMeans& first, const ChannelMeans& second, bool relative);
+/// By channel, standard errors of a difference that is the same everywhere.
+std::vector<double> uniform_errors(const ChannelMeans& first, const ChannelMeans& second);
+
+/// The least of the errors of channels that vary: absolute, or as a part of the channel's mean.
+double least_error(std::span<const double> errors, const ChannelMeans& means, bool relative);
 
 }  // namespace assay::harness

@@ -70,7 +70,7 @@ void note_sizes(TestOutcome& outcome, const DrawnTest& test) {
   for (ChannelOutcome& channel : outcome.channels) {
     channel.effect = effect_of(outcome, channel);
     if (channel.image) {
-      channel.detectable = detectable_uniformly(outcome, full_size(outcome), channel);
+      note_detectable(outcome, full_size(outcome), channel);
       continue;
     }
     const std::vector<ChannelData> data = data_of(test, channel.index);

@@ -191,18 +191,22 @@ std::string means_where_it_differs(const DrawnTest& test) {
          constants;
 }
 
-std::optional<double> detectable_uniformly(const TestOutcome& outcome, const TestSize& size,
-                                           const ChannelOutcome& channel) {
-  if (channel.regions.relation == Relation::within || channel.regions.allow > 0) return {};
-  const double part = stats::whole_image_share /
-                      static_cast<double>(outcome.question.subjects[0].image->components.size());
-  const double z =
-      critical_value(size.share.alpha * part, true) + critical_value(size.share.beta, false);
+void note_detectable(const TestOutcome& outcome, const TestSize& size, ChannelOutcome& channel) {
+  if (channel.regions.relation == Relation::within || channel.regions.allow > 0) return;
   const double shrunk =
       std::sqrt(static_cast<double>(outcome.secondaries()) / static_cast<double>(size.secondaries));
-  const double found = z * channel.image->uniform_error * shrunk;
-  if (!std::isfinite(found) || !(found > 0)) return {};
-  return found;
+  const auto found = [&](double part, double error) -> std::optional<double> {
+    const double z =
+        critical_value(size.share.alpha * part, true) + critical_value(size.share.beta, false);
+    const double least = z * error * shrunk;
+    if (!std::isfinite(least) || !(least > 0)) return {};
+    return least;
+  };
+  ImageOutcome& image = *channel.image;
+  const auto channels = static_cast<double>(outcome.question.subjects[0].image->components.size());
+  const stats::GroupSize& cells = image.family.typical.group;
+  channel.detectable = found(stats::whole_image_share / channels, image.uniform_error);
+  image.detectable_in_cell = found(cells.share / cells.count, image.cell_error);
 }
 
 }  // namespace assay::harness

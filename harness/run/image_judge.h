@@ -28,9 +28,8 @@ std::optional<PlaceEffect> effect_at_place(const DrawnTest& test);
 /// images. Else "".
 std::string means_where_it_differs(const DrawnTest& test);
 
-/// The least detectable difference that is the same everywhere, by the sum over the whole image.
-/// nullopt if the claim allows a difference.
-std::optional<double> detectable_uniformly(const TestOutcome& outcome, const TestSize& size,
-                                           const ChannelOutcome& channel);
+/// Sets the least detectable difference: one that is the same everywhere, by the sum over the whole
+/// image, and one in a typical cell. Not if the claim allows a difference.
+void note_detectable(const TestOutcome& outcome, const TestSize& size, ChannelOutcome& channel);
 
 }  // namespace assay::harness

@@ -14,6 +14,7 @@
 #include "harness/theta/theta.h"
 #include "reports/words/number.h"
 #include "reports/words/text.h"
+#include "stats/images/image_family.h"
 #include "stats/tails/tails.h"
 
 namespace assay::harness {
@@ -108,6 +109,14 @@ std::string passed_by_empty_interval(const ChannelOutcome& channel) {
       reports::confidence_text(channel.effect.confidence));
 }
 
+std::string found_in_cell(const ChannelOutcome& channel) {
+  if (!channel.image || !channel.image->detectable_in_cell) return "";
+  return fmt::format(
+      "; in a typical square of {0} x {0} pixels, a difference of {1}{2} would have been found",
+      stats::typical_side, reports::margin_text(*channel.image->detectable_in_cell, channel.effect),
+      channel.effect.relative ? " of the image's mean" : "");
+}
+
 std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& channel) {
   if (channel.evidence.exact) return "as claimed: what never varies is compared exactly";
   if (!channel.regions.has_forbidden()) {
@@ -126,9 +135,9 @@ std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& chann
     }
     if (channel.detectable) {
       const char* how = outcome.question.theta->detectable_text();
-      return fmt::format("{}; {}{} would have been found with probability {:g}", text,
+      return fmt::format("{}; {}{} would have been found with probability {:g}{}", text,
                          reports::margin_text(*channel.detectable, channel.effect), how,
-                         1 - outcome.place.share.beta);
+                         1 - outcome.place.share.beta, found_in_cell(channel));
     }
     if (reports::interval_text(channel.effect).empty()) return text;
     return fmt::format("{}, nor is it shown: {}; say with `detect` how far off it must not be",
@@ -144,9 +153,10 @@ std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& chann
     return fmt::format("no evidence against the claim, which holds with {} to spare by {}",
                        reports::size_text(excluded, channel.effect), interval);
   }
-  return fmt::format("{}; {}{} or more is excluded by {}", evidence_against(outcome, channel),
+  return fmt::format("{}; {}{} or more is excluded by {}{}", evidence_against(outcome, channel),
                      reports::size_text(excluded, channel.effect),
-                     channel.image ? " over the whole image" : "", interval);
+                     channel.image ? " over the whole image" : "", interval,
+                     found_in_cell(channel));
 }
 
 std::string passed_proof(const TestOutcome& outcome, const ChannelOutcome& channel) {

@@ -111,7 +111,9 @@ std::string sentence_of(const Test& test, const Effect& effect, const std::strin
   std::string text = differs ? found_in_image(*test.image) : std::string();
   if (text.empty() && effect.estimate) text = found(test, effect);
   if (text.empty()) return headline(test);
-  if (!margin.empty())
+  if (test.channels.size() > 1) text += " in channel " + deciding_channel(test).name;
+  // What a fail shows was noticed, whatever its size.
+  if (!margin.empty() && test.verdict != Verdict::fail)
     text += fmt::format("; {}{} must be caught", margin, test.image ? " over the whole image" : "");
   return text + "." + exclusion_of_claim(test, effect, margin);
 }

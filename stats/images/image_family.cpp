@@ -161,6 +161,11 @@ double adjusted(double log_p, GroupSize group) {
   return std::min(0.0, one_of_all - std::log(group.share));
 }
 
+double standard_error_at(const CellNoiseOfMean& noise, double errors) {
+  const double half = errors * noise.growth / 2;
+  return half + std::sqrt(half * half + noise.variance);
+}
+
 void decide(ImageFamily& family) {
   if (family.groups.empty()) return;
   family.winner = *std::ranges::min_element(family.groups, {}, &ImageFinding::adjusted_log_p);

@@ -88,6 +88,28 @@ struct ImageFinding {
   ImageEffect effect = {};
 };
 
+// Adjusts one p-value for its group: ln(1 - (1 - p)^count) - ln share, at most 0.
+struct GroupSize {
+  double count = 1;
+  double share = 1;
+};
+double adjusted(double log_p, GroupSize group);
+
+// The noise of the mean difference in a typical aligned cell of this side: medians over cells.
+// Smaller images have none.
+inline constexpr std::uint32_t typical_side = 16;
+struct CellNoiseOfMean {
+  double variance = 0;
+  double growth = 0;  // What a difference of 1 adds to the variance (image_noise.h).
+};
+// The standard error x of a difference of so many of them: x^2 = variance + errors x growth.
+double standard_error_at(const CellNoiseOfMean& noise, double errors);
+
+struct TypicalCell {
+  GroupSize group = {};
+  std::vector<CellNoiseOfMean> noise = {};  // By channel.
+};
+
 // All looks at a pair of images as one family. Sidak within a group of cells (1967; for two-sided
 // tests of normal sums it holds under any correlation). Bonferroni across groups.
 // P(log_p <= ln a) <= a.
@@ -105,14 +127,8 @@ struct ImageFamily {
   // The squared norm of the bias that values can hide which their elements never showed
   // (image_noise.h), in units of the images.
   double hidden_squares = 0;
+  TypicalCell typical = {};
 };
-
-// Adjusts one p-value for its group: ln(1 - (1 - p)^count) - ln share, at most 0.
-struct GroupSize {
-  double count = 1;
-  double share = 1;
-};
-double adjusted(double log_p, GroupSize group);
 
 // Sets the family's p-value, the smallest over the groups. The winner is the clearest of the cells
 // that overlap the cell of this p-value and have its root or less. If a finer cell in it is as

@@ -170,9 +170,9 @@ void add_up_alternating(CoarseImages& coarse);
 // ---- Coarse cells
 
 // Offers one channel's coarse cells and alternating sums to the best of
-// their groups, from the sums over blocks.
-void offer_coarse_cells(const CoarseImages& coarse, const std::vector<WindowGroup>& groups,
-                        std::size_t channel, const NoisePyramid& noise,
-                        std::vector<BestCell>& best);
+// their groups, from the sums over blocks. Answers the noise of its typical cell.
+CellNoiseOfMean offer_coarse_cells(const CoarseImages& coarse,
+                                   const std::vector<WindowGroup>& groups, std::size_t channel,
+                                   const NoisePyramid& noise, std::vector<BestCell>& best);
 
 }  // namespace assay::stats

@@ -120,10 +120,36 @@ WindowSums channel_sums(const ImageExtent& blocks, const std::vector<double>& nu
   return sums;
 }
 
+double median_of(std::vector<double>& values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+class TypicalNoise {
+ public:
+  // A cell with the sum of its weights.
+  void add(const Candidate& cell, const NoisePyramid& noise, double weights) {
+    static_assert(typical_side >= coarse_size);
+    const auto growth = [&](double sign) {
+      return noise.growth(cell.noise, sign, cell.finding.window, cell.finding.channel);
+    };
+    variances_.push_back((cell.noise.variance[0] + cell.noise.variance[1]) / (weights * weights));
+    growths_.push_back(std::max(growth(1), growth(-1)) / weights);
+  }
+  CellNoiseOfMean median() { return {median_of(variances_), median_of(growths_)}; }
+
+ private:
+  std::vector<double> variances_;
+  std::vector<double> growths_;
+};
+
 }  // namespace
 
-void offer_coarse_cells(const CoarseImages& coarse, const Groups& groups, std::size_t channel,
-                        const NoisePyramid& noise, std::vector<BestCell>& best) {
+CellNoiseOfMean offer_coarse_cells(const CoarseImages& coarse, const Groups& groups,
+                                   std::size_t channel, const NoisePyramid& noise,
+                                   std::vector<BestCell>& best) {
   const Groups in_blocks = coarse_groups(groups);
   const WelchCells moments = window_moments(coarse, in_blocks, channel);
   const WindowSums third = channel_sums(coarse.extent, coarse.third, channel);
@@ -131,6 +157,7 @@ void offer_coarse_cells(const CoarseImages& coarse, const Groups& groups, std::s
   CoarseSums squares(coarse.extent, channel);
   weights.load(coarse.weights);
   squares.load(coarse.squared_weights);
+  TypicalNoise typical;
   for_each_window(in_blocks, [&](const WindowGroup& group, std::size_t i, std::size_t window) {
     // Different constants of two images were found before.
     if (!moments.varied(window)) return;
@@ -150,7 +177,11 @@ void offer_coarse_cells(const CoarseImages& coarse, const Groups& groups, std::s
     candidate.finding.z = t_to_z(value);
     ++best[g].windows;
     offer(best[g], candidate, noise);
+    if (group.size == typical_side && group.grid == Grid::aligned) {
+      typical.add(candidate, noise, weights.of(group, i));
+    }
   });
+  return typical.median();
 }
 
 }  // namespace assay::stats

@@ -195,9 +195,9 @@ double NoisePyramid::growth(const Sides& here, int octave, double toward) const 
   return toward * (a.third * square(inverse(0)) - b.third * square(inverse(1))) / second;
 }
 
-NoisePyramid::Kept NoisePyramid::kept(const CellNoise& cell, const Rectangle& window,
-                                      std::size_t channel) const {
-  const double direction = cell.effect < 0 ? 1 : -1;
+double NoisePyramid::growth(const CellNoise& cell, double sign, const Rectangle& window,
+                            std::size_t channel) const {
+  const double direction = sign < 0 ? 1 : -1;
   const double toward = cell.weight < 0 ? -direction : direction;
   const Around near = around(window, channel);
   double largest = 0;
@@ -206,10 +206,15 @@ NoisePyramid::Kept NoisePyramid::kept(const CellNoise& cell, const Rectangle& wi
   for (int octave = near.first; octave <= last; ++octave) {
     for (const Sides& here : near.blocks) largest = std::max(largest, growth(here, octave, toward));
   }
-  const double variance = cell.variance[0] + cell.variance[1];
-  const double own = direction * cell.third / variance;
-  const double growing = std::max(std::abs(cell.weight) * largest, own);
-  const double standard_error = std::sqrt(variance + std::abs(cell.effect) * growing);
+  const double own = direction * cell.third / (cell.variance[0] + cell.variance[1]);
+  return std::max(std::abs(cell.weight) * largest, own);
+}
+
+NoisePyramid::Kept NoisePyramid::kept(const CellNoise& cell, const Rectangle& window,
+                                      std::size_t channel) const {
+  const double growing = growth(cell, cell.effect, window, channel);
+  const double standard_error =
+      std::sqrt(cell.variance[0] + cell.variance[1] + std::abs(cell.effect) * growing);
   return {.t = cell.effect / standard_error, .standard_error = standard_error};
 }
 

@@ -109,6 +109,9 @@ class NoisePyramid {
     double standard_error = 0;
   };
   Kept kept(const CellNoise& cell, const Rectangle& window, std::size_t channel) const;
+  // The k3 / k2 of an effect of this sign.
+  double growth(const CellNoise& cell, double sign, const Rectangle& window,
+                std::size_t channel) const;
 
   // The squared bias, summed over the elements, that values can hide which they never showed. In
   // each block the larger side's counts.

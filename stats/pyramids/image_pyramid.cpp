@@ -63,7 +63,7 @@ void RowPyramid::take(const ImagePair& pair, RowRange rows) {
   offer_fine_cells({pair, half_, groups_, constants_decide_}, rows, found_, for_each_);
 }
 
-void RowPyramid::offer_cells() {
+std::vector<CellNoiseOfMean> RowPyramid::offer_cells() {
   found_.noise.build();
   for (const std::vector<Candidates>& tile : found_.tiles) {
     for (std::size_t g = 0; g < tile.size(); ++g) {
@@ -73,19 +73,23 @@ void RowPyramid::offer_cells() {
     }
   }
   add_up_alternating(found_.coarse);
+  std::vector<CellNoiseOfMean> typical;
   for (std::size_t c = 0; c < extent_.channels; ++c) {
-    offer_coarse_cells(found_.coarse, groups_, c, found_.noise, best_);
+    typical.push_back(offer_coarse_cells(found_.coarse, groups_, c, found_.noise, best_));
   }
+  return typical;
 }
 
 void RowPyramid::add_best(ImageFamily& family) const {
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     const BestCell& best = best_[g];
     if (best.windows == 0) continue;
+    const GroupSize size{best.windows, groups_[g].share};
+    if (groups_[g].size == typical_side && groups_[g].grid == Grid::aligned) family.typical.group = size;
     const auto add = [&](ImageFinding finding, StudentValue value,
                          std::vector<ImageFinding>& findings) {
       finding.log_p = log_p_two_sided(tails_of(value));
-      finding.adjusted_log_p = adjusted(finding.log_p, {best.windows, groups_[g].share});
+      finding.adjusted_log_p = adjusted(finding.log_p, size);
       divide_by_weights(finding, found_.weights, extent_);
       findings.push_back(finding);
     };
@@ -107,7 +111,7 @@ ImageFamily RowPyramid::family() {
   if (counts.different_constants > 0) {
     family.groups.push_back(certain_finding(extent_, counts.first_different, counts.difference));
   } else {
-    offer_cells();
+    family.typical.noise = offer_cells();
     add_best(family);
   }
   family.weights = std::move(found_.weights);

@@ -63,7 +63,7 @@ class RowPyramid {
   ImageFamily family();
 
  private:
-  void offer_cells();
+  std::vector<CellNoiseOfMean> offer_cells();  // Answers those of TypicalCell.
   void add_best(ImageFamily& family) const;
 
   ImageExtent extent_;

@@ -542,6 +542,11 @@ test_check_points_at_the_option_that_is_wrong() {
 test_help_is_a_command() {
   expect 0 help all
   contains out 'Exit codes:'
+  local command
+  for command in $(sed -n 's/^  \([a-z][a-z]*\)  .*/\1/p' out); do
+    [ "$command" = help ] || expect 0 help "$command"
+    ! grep -qE '^.{81,}$' out || fail "a line of \`help $command\` is wider than 80 columns"
+  done
   expect 0 help run
   contains out 'assay run ['
   expect 2 help rnu

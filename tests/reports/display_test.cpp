@@ -17,13 +17,20 @@ std::string sentence(const std::string& claim, const Effect& effect) {
   return display(claim_of(claim, Verdict::fail, effect)).sentence;
 }
 
-TEST(Display, SaysOnWhichSideAnEstimateLiesAndWhatWasAskedFor) {
+TEST(Display, SaysOnWhichSideAnEstimateLies) {
   EXPECT_EQ(sentence("mean(a) == analytic", mean_effect(0.0107, 0.0101)),
-            "mean(a) is 1.07\u00A0% above analytic (+0.06\u00A0% to +2.08\u00A0%); 0.5\u00A0% "
-            "must be caught.");
-  EXPECT_EQ(
-      sentence("mean(a) == mean(b)", mean_effect(-0.02, 0.01)),
-      "mean(a) is 2\u00A0% below mean(b) (-3\u00A0% to -1\u00A0%); 0.5\u00A0% must be caught.");
+            "mean(a) is 1.07\u00A0% above analytic (+0.06\u00A0% to +2.08\u00A0%).");
+  EXPECT_EQ(sentence("mean(a) == mean(b)", mean_effect(-0.02, 0.01)),
+            "mean(a) is 2\u00A0% below mean(b) (-3\u00A0% to -1\u00A0%).");
+}
+
+TEST(Display, WhatDoesNotFailSaysWhatWasAskedForAndSeveralChannelsWhich) {
+  reports::Test test =
+      claim_of("mean(a) == analytic", Verdict::inconclusive, mean_effect(0.0107, 0.0201));
+  EXPECT_THAT(display(test).sentence, EndsWith("); 0.5\u00A0% must be caught."));
+  test.channels.push_back(test.channels[0]);
+  test.channels[0].name = "r";
+  EXPECT_THAT(display(test).sentence, EndsWith(") in channel r; 0.5\u00A0% must be caught."));
 }
 
 TEST(Display, FactorsAndQuantitiesWithoutASideKeepTheirWords) {

@@ -22,7 +22,8 @@ std::string printed(const std::function<int()>& command) {
 TEST(Describe, TellsWhatIsKnownExactly) {
   const std::string text = manual_of("analytic/dart_throwing");
   EXPECT_THAT(text, testing::StartsWith("analytic/dart_throwing\n"));
-  EXPECT_THAT(text, HasSubstr("area: mean 3.14159265359, variance of a primary 2.69676621"));
+  EXPECT_THAT(text, HasSubstr("area: mean 3.14159265359, "));
+  EXPECT_THAT(text, HasSubstr(" 2.69676621"));
   EXPECT_THAT(text, HasSubstr("values in [0, 4]"));
   EXPECT_THAT(text, HasSubstr("bias        unbiased"));
 }
@@ -102,13 +103,13 @@ TEST(Describe, SaysWhyChannelsAreNotKnownYet) {
   EXPECT_THAT(text, HasSubstr("channels: known once its parameters are given"));
 }
 
-TEST(Describe, KeepsEveryManualWithinAHundredColumns) {
+TEST(Describe, KeepsEveryManualWithinThePage) {
   for (const Entry& entry : catalogue()) {
     std::istringstream lines(manual(entry, catalogue()));
     for (std::string line; std::getline(lines, line);) {
       const auto columns = std::ranges::count_if(
           line, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80; });
-      EXPECT_LE(columns, 100) << line;
+      EXPECT_LE(columns, page_width) << line;
     }
   }
 }

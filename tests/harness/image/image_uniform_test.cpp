@@ -30,13 +30,13 @@ TEST(ImageUniform, OfAReferenceErrorsAreIndependentBetweenPixels) {
   EXPECT_EQ(channel_means({.extent = extent, .value = dark})[0].standard_error, 0);
 }
 
-TEST(ImageUniform, TheBestChannelTells) {
-  const ChannelMeans first{{1, 0.3}, {10, 0.4}};
-  const ChannelMeans second{{1, 0.4}, {10, 0.3}};
-  EXPECT_DOUBLE_EQ(uniform_error(first, second, false), 0.5);
-  EXPECT_DOUBLE_EQ(uniform_error(first, second, true), 0.05);
-  const ChannelMeans black{{0, 0}, {10, 0.3}};
-  EXPECT_DOUBLE_EQ(uniform_error(first, black, true), 0.05);
+TEST(ImageUniform, TheBestChannelThatVariesTells) {
+  const std::vector<double> errors =
+      uniform_errors({{1, 0.3}, {10, 0.4}, {1, 0}}, {{1, 0.4}, {10, 0.3}, {1, 0}});
+  EXPECT_THAT(errors, testing::ElementsAre(0.5, 0.5, 0));
+  EXPECT_DOUBLE_EQ(least_error(errors, {{1, 0}, {10, 0}, {1, 0}}, false), 0.5);
+  EXPECT_DOUBLE_EQ(least_error(errors, {{1, 0}, {10, 0}, {1, 0}}, true), 0.05);
+  EXPECT_DOUBLE_EQ(least_error(errors, {{0, 0}, {10, 0}, {1, 0}}, true), 0.05);
 }
 
 }  // namespace

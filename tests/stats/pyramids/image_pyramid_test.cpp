@@ -442,6 +442,46 @@ TEST(ImagePyramid, EveryElementIsInOneAlignedWindowOfEveryLevel) {
   }
 }
 
+// With 64 images a side the mean difference of 256 values errs by sqrt(2 / 64 / 256). What is to be
+// found with probability .99 is missed more than 3 times in 40 with probability 7e-4. A third of it
+// is 2.3 errors, which the cell itself finds with probability .01. Of the few cells that overlap it
+// some are as clear.
+TEST(ImagePyramid, ATypicalCellTellsWhatIsFound) {
+  Philox random(878);
+  const ImageExtent extent{64, 48, 1};
+  constexpr double error = 0.011049;
+  std::array<int, 2> found = {};
+  for (int run = 0; run < 40; ++run) {
+    const auto draw = [&](std::size_t) { return random.normal(); };
+    OwnedStack a = draw_stack(extent, 64, draw);
+    const OwnedStack b = draw_stack(extent, 64, draw);
+    const TypicalCell typical = image_pyramid(a.view(), b.view()).typical;
+    EXPECT_EQ(typical.group.count, 12);
+    EXPECT_NEAR(std::sqrt(typical.noise.at(0).variance) / error, 1, 0.15);
+    const double errors =
+        normal_quantile({Tail::upper, std::log(0.005 * typical.group.share / 12)}) +
+        normal_quantile({Tail::upper, std::log(0.01)});
+    const double effect = errors * standard_error_at(typical.noise[0], errors);
+    for (std::size_t part = 0; part < 2; ++part) {
+      for (std::vector<float>& image : a.images) {
+        for (std::size_t y = 16; y < 32; ++y) {
+          for (std::size_t x = 32; x < 48; ++x) {
+            image[y * 64 + x] += static_cast<float>(part == 0 ? effect : -2 * effect / 3);
+          }
+        }
+      }
+      found[part] += image_pyramid(a.view(), b.view()).log_p <= std::log(0.01) ? 1 : 0;
+    }
+  }
+  EXPECT_GE(found[0], 37);
+  EXPECT_LE(found[1], 20);
+}
+
+TEST(ImagePyramid, ASkewedNoiseGrowsWithWhatItHides) {
+  // x^2 = 1 + 3 * 0.5 * x
+  EXPECT_DOUBLE_EQ(standard_error_at({.variance = 1, .growth = 0.5}, 3), 2);
+}
+
 // Several bands of rows, and more elements than are taken at a time.
 TEST(ImagePyramid, IsTheSameInAnyOrder) {
   Philox random(877);
