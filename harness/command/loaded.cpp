@@ -14,14 +14,19 @@ namespace assay::harness {
 std::vector<Suite> load_suites(const std::vector<std::string>& files,
                                const std::vector<std::string>& assignments) {
   std::vector<Suite> suites;
-  std::map<std::filesystem::path, std::string> seen;
+  std::map<std::string, std::string> files_of;  // by stem
   for (const std::string& file : files) {
     suites.push_back(load_suite(file));
-    const auto [first, is_new] = seen.emplace(std::filesystem::weakly_canonical(file), file);
+    const auto [first, is_new] = files_of.emplace(suites.back().stem, file);
     if (is_new) continue;
-    refuse({}, file == first->second
-                   ? fmt::format("the suite `{}` is given twice", file)
-                   : fmt::format("`{}` and `{}` are one suite; give it once", first->second, file));
+    const std::string both = fmt::format("`{}` and `{}`", first->second, file);
+    if (std::filesystem::equivalent(first->second, file)) {
+      refuse({}, both + " are one suite; give it once");
+    }
+    refuse({},
+           "{} are two suites whose tests have the ids `{}/…`; rename one of the files, or run "
+           "each by itself",
+           both, first->first);
   }
   for (const std::string& assignment : assignments) set_parameter(suites, assignment);
   return suites;

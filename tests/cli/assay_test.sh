@@ -127,9 +127,13 @@ test_suite_given_twice_is_2() {
   write_suite good.yaml "$good"
   expect 2 run good.yaml good.yaml
   empty out
-  contains err 'the suite `good.yaml` is given twice'
+  contains err '`good.yaml` and `good.yaml` are one suite; give it once'
   expect 2 run good.yaml ./good.yaml
   contains err '`good.yaml` and `./good.yaml` are one suite; give it once'
+  mkdir other
+  cp good.yaml other
+  expect 2 run good.yaml other/good.yaml
+  contains err 'are two suites whose tests have the ids `good/…`'
 }
 
 test_wrong_value_of_any_option_is_2() {
