@@ -21,9 +21,6 @@ constexpr double pleasant_seconds = 0.02;
 constexpr int silent_seconds = 3;
 constexpr std::size_t longest_hello = std::size_t{1} << 20;
 
-constexpr const char* how_to_end =
-    "a Python program ends with `assay.serve(FUNCTION)`, which prints it";
-
 std::string seconds_text(double seconds) {
   std::array<char, 32> buffer{};
   std::snprintf(buffer.data(), buffer.size(), "%g", seconds);
@@ -37,7 +34,7 @@ Dialogue::Dialogue(const Terms& terms) : terms_(terms), child_(terms.launch) {
     hear_hello();
   } catch (const TimeOut&) {
     give_up("did not print the line `ready` within " + seconds_text(terms_.timeout) + "; " +
-            how_to_end + ", and buffers must be flushed");
+            terms_.who_is_ready);
   } catch (const Refusal& refusal) {
     throw Refused(refusal.what());
   } catch (const ProtocolError& error) {
@@ -75,7 +72,7 @@ void Dialogue::hear_hello() {
     const std::size_t count = listen(buffer, end);
     if (count == 0) {
       const std::string said = text.empty() ? "" : "; it said `" + shown(text) + "`";
-      give_up(child_.ending() + " before it printed the line `ready`" + said + "; " + how_to_end);
+      give_up(child_.ending() + " before it printed the line `ready`" + said + "; " + terms_.who_is_ready);
     }
     text.append(buffer.data(), count);
     if (text.size() > longest_hello) throw ProtocolError("its hello has no end");

@@ -26,6 +26,10 @@ struct Terms {
   /// Set once a program of the set-up that said nothing for 3 s was asked if it flushes its output.
   /// Null if output cannot wait in a buffer.
   std::shared_ptr<std::atomic_flag> asked_whether_it_flushes = {};
+  /// Who prints the line `ready`, and when.
+  std::string who_is_ready =
+      "a Python program ends with `assay.serve(FUNCTION)`, which prints it, and buffers must be "
+      "flushed";
 };
 
 /// Why a program did not answer: a sentence with the program's name, how it ended and the end of

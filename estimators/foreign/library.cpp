@@ -76,6 +76,7 @@ std::shared_ptr<const Setup> isolated(foreign::Terms terms, const foreign::Libra
     terms.launch.command.push_back(text);
   }
   terms.name = choice.file;
+  terms.who_is_ready = "its host prints it once the library is loaded and has taken its parameters";
   return foreign::start(std::move(terms), parameters, "file");
 }
 

@@ -45,13 +45,13 @@ bool rests_on_contrary(const Test& test) {
   return is_proof(test) && test.verdict != Verdict::fail && least_excluded(test) != nullptr;
 }
 
-// " over 3 looks (0.79 at the last)".
+// " over 3 of 8 looks (0.79 at the last alone)".
 std::string over_looks(const Test& test, Number Look::*log10_p) {
   if (test.planned_looks.size() < 2 || test.looks.empty() || test.channels.size() > 1) return {};
   const Number at_last = test.looks.back().*log10_p;
   if (!at_last) return {};
-  return fmt::format(" over {} look{} ({} at the last)", test.looks.size(),
-                     test.looks.size() == 1 ? "" : "s", p_text({}, at_last));
+  return fmt::format(" over {} of {} looks ({} at the last alone)", test.looks.size(),
+                     test.planned_looks.size(), p_text({}, at_last));
 }
 
 // "welch", "forced F".
