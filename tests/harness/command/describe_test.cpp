@@ -24,7 +24,7 @@ TEST(Describe, TellsWhatIsKnownExactly) {
   EXPECT_THAT(text, testing::StartsWith("analytic/dart_throwing\n"));
   EXPECT_THAT(text, HasSubstr("area: mean 3.14159265359, "));
   EXPECT_THAT(text, HasSubstr(" 2.69676621"));
-  EXPECT_THAT(text, HasSubstr("values in [0, 4]"));
+  EXPECT_THAT(text, HasSubstr("[0, 4]"));
   EXPECT_THAT(text, HasSubstr("bias        unbiased"));
 }
 
