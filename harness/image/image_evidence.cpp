@@ -27,15 +27,6 @@ constexpr double unseen_share = 0.02;
 
 // ---- theta = 0
 
-void look_at_family(const VaryingPart& varying, const stats::ImageExtent& extent,
-                    bool constants_decide, ImageOutcome& outcome) {
-  outcome.z.resize(extent.elements());
-  const stats::PyramidOptions options{
-      .z = outcome.z, .for_each = on_all_threads, .constants_decide = constants_decide};
-  outcome.family = varying.with(
-      [&](const auto& a, const auto& b) { return stats::image_pyramid(a, b, options); });
-}
-
 stats::ImageFinding finding_of(const UnseenElement& unseen, const stats::ImageExtent& extent) {
   stats::ImageFinding finding = stats::certain_finding(extent, unseen.element, unseen.sign);
   finding.log_p = unseen.log_p;
@@ -78,22 +69,18 @@ stats::ImageDistance relative_to(const stats::ImageDistance& distance,
       stats::image_distance(other, stats::ImageReference{other.extent, zeros}, on_all_threads));
 }
 
-stats::ImageDistance distance_of(const ImagePair& pair, bool relative,
-                                 stats::ElementErrors errors) {
-  stats::ImageDistance distance = pair.with([](const auto& first, const auto& second) {
+stats::ImageDistance distance_of(const ImagePair& pair, stats::ElementErrors errors) {
+  const stats::ImageDistance distance = pair.with([](const auto& first, const auto& second) {
     return stats::image_distance(first, second, on_all_threads);
   });
-  if (pair.subtracted) {
-    distance = relative_to(distance, *pair.subtracted);
-  } else if (!pair.second) {
-    distance = stats::with_reference_error(distance, pair.first, pair.reference(), errors);
-  }
-  return in_units_of_margin(distance, pair.first.extent, relative);
+  if (pair.subtracted) return relative_to(distance, *pair.subtracted);
+  if (pair.second) return distance;
+  return stats::with_reference_error(distance, pair.first, pair.reference(), errors);
 }
 
 /// Standard errors of what this look finds.
-void note_errors(const ChannelMeans& first, const ChannelMeans& other, bool relative,
-                 const ErrorShare& share, ImageOutcome& outcome) {
+void note_errors(const std::vector<ChannelMeans>& means, bool relative, const ErrorShare& share,
+                 ImageOutcome& outcome) {
   const stats::TypicalCell& typical = outcome.family.typical;
   const double part = typical.group.share / typical.group.count;
   const double errors =
@@ -103,8 +90,8 @@ void note_errors(const ChannelMeans& first, const ChannelMeans& other, bool rela
   for (const auto& noise : typical.noise) {
     of_cells.push_back(stats::standard_error_at(noise, errors));
   }
-  outcome.uniform_error = least_error(uniform_errors(first, other), other, relative);
-  outcome.cell_error = least_error(of_cells, other, relative);
+  outcome.uniform_error = least_error(uniform_errors(means[0], means[1]), means[1], relative);
+  outcome.cell_error = least_error(of_cells, means[1], relative);
 }
 
 ChannelMeans means_held_against(const ImagePair& pair) {
@@ -200,42 +187,35 @@ void require_independent(const ImageTest& test, const ImagePair& pair) {
   }));
 }
 
-/// Tests the pair and measures its distance.
-stats::ImageDistance look_at(const Question& question, const ImageTest& test, const ImagePair& pair,
-                             ImageOutcome& outcome) {
+/// What kept pictures show.
+PictureLook look_at(const Question& question, const ImageTest& test, const ImagePair& pair,
+                    std::vector<UnseenElement>& unseen) {
   const auto [fewest, most] = pair.replicates();
-  const stats::ImageExtent& extent = pair.first.extent;
   stats::check::replicates("image", fewest);
   require_independent(test, pair);
-  const bool relative = question.theta->is_relative(question, 0);
-  const auto errors =
-      test.independent ? stats::ElementErrors::independent : stats::ElementErrors::unknown;
-  const stats::ImageDistance distance = distance_of(pair, relative, errors);
+  PictureLook look{.pictures = most};
+  look.distance = distance_of(
+      pair, test.independent ? stats::ElementErrors::independent : stats::ElementErrors::unknown);
   const VaryingPart varying(question, pair);
   require_spread(question, varying.any() || (pair.subtracted && varies(*pair.subtracted)));
-  outcome.unseen = varying.unseen();
-  outcome.replicates = most;
-  look_at_family(varying, extent, pair.second || question.is().of_pairs, outcome);
-  for (const UnseenElement& unseen : outcome.unseen) outcome.z[unseen.element] = z_of(unseen);
-  add_unseen(extent, outcome);
-  note_errors(channel_means(pair.first), means_held_against(pair), relative, test.share, outcome);
-  return distance;
+  look.z.resize(pair.first.extent.elements());
+  const stats::PyramidOptions options{.z = look.z,
+                                      .for_each = on_all_threads,
+                                      .constants_decide = pair.second || question.is().of_pairs};
+  look.family = varying.with(
+      [&](const auto& a, const auto& b) { return stats::image_pyramid(a, b, options); });
+  unseen = varying.unseen();
+  for (const UnseenElement& element : unseen) look.z[element.element] = z_of(element);
+  look.means = {channel_means(pair.first), means_held_against(pair)};
+  return look;
 }
 
-/// The same for pictures that were looked at while reading. They declare neither rounding nor
-/// range, so an element that never varied stays as it is.
-stats::ImageDistance look_at(const Question& question, const ImageTest& test,
-                             const PictureLook& look, ImageOutcome& outcome) {
-  if (test.require_independent) test.require_independent(look.dependence);
-  const stats::ImageExtent extent = extent_of(*question.subjects[0].image);
-  const bool relative = question.theta->is_relative(question, 0);
-  const stats::ImageDistance distance = in_units_of_margin(look.distance, extent, relative);
-  outcome.replicates = look.pictures;
-  outcome.family = look.family;
-  outcome.z = look.z;
-  add_unseen(extent, outcome);
-  note_errors(look.means[0], look.means[1], relative, test.share, outcome);
-  return distance;
+/// Pictures that were looked at while reading declare neither rounding nor range. So an element of
+/// them that never varied stays as it is.
+PictureLook look_of(const Seen& seen, const ImageTest& test, std::vector<UnseenElement>& unseen) {
+  if (test.look == nullptr) return look_at(seen.question, test, ImagePair(seen), unseen);
+  if (test.require_independent) test.require_independent(test.look->dependence);
+  return *test.look;
 }
 
 std::string range_text(std::int64_t first, std::uint32_t count, const char* name) {
@@ -371,10 +351,15 @@ std::string place_text(const stats::ImageFinding& finding, const ImageShape& sha
 ChannelEvidence evidence_of_images(const Seen& seen, const ImageTest& test) {
   const Question& question = seen.question;
   const bool relative = question.theta->is_relative(question, 0);
+  const stats::ImageExtent extent = extent_of(*question.subjects[0].image);
   ImageOutcome outcome;
-  const stats::ImageDistance distance = test.look != nullptr
-                                            ? look_at(question, test, *test.look, outcome)
-                                            : look_at(question, test, ImagePair(seen), outcome);
+  PictureLook look = look_of(seen, test, outcome.unseen);
+  const stats::ImageDistance distance = in_units_of_margin(look.distance, extent, relative);
+  outcome.replicates = look.pictures;
+  outcome.family = std::move(look.family);
+  outcome.z = std::move(look.z);
+  add_unseen(extent, outcome);
+  note_errors(look.means, relative, test.share, outcome);
   const TestEntry& entry = *question.test;
   const bool within = entry.claim.relation == Relation::within;
   if (within || entry.detect) {
