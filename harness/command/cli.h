@@ -41,7 +41,7 @@ struct CalibrateCommand {
 };
 
 struct ListCommand {
-  std::string what;  ///< "plugins", "tests" or a table of tables.h
+  std::string what;  ///< "plugins", "tests" or a table of describe.h
   std::vector<std::string> suites;
   Selection selection;
 };

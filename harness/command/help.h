@@ -29,7 +29,7 @@ struct CommandText {
 std::string overview(const std::vector<CommandText>& commands);
 /// `assay help all`.
 std::string help_of_all(const std::vector<CommandText>& commands);
-/// `assay COMMAND --help`, in lines of 100 columns.
+/// `assay COMMAND --help`, in lines of `page_width`.
 std::string help_of(const CommandText& command);
 /// assay.1, in the language of man pages.
 std::string man_page(const std::vector<CommandText>& commands);

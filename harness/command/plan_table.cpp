@@ -136,7 +136,7 @@ std::string outlook_text(const char* when, const Outlook& outlook) {
 /// Probability that the test ends otherwise than the suite expects: the claim holds, or is off by
 /// its effect where it is expected to fail. Without an outlook it errs as often as planned.
 double not_ok(const TestOutcome& test, const Forecast& foreseen) {
-  const bool fails = test.question.test->expect == Expectation::fail;
+  const bool fails = test.question.test->expect == reports::Verdict::fail;
   const std::optional<Outlook>& outlook = fails ? foreseen.if_off : foreseen.if_true;
   if (outlook) return 1 - (fails ? outlook->fail : outlook->pass);
   const double beta = test.plan.regions[0].has_forbidden() ? test.place.share.beta : 0;
@@ -341,14 +341,14 @@ int plan_exit_code(const PlannedRun& planned) {
     for (const Untested& each : run->untested) {
       if (each.verdict != reports::Verdict::error) continue;
       any = true;
-      bad = bad || each.test->expect != Expectation::error;
+      bad = bad || each.test->expect != reports::Verdict::error;
     }
     for (const TestWork& work : run->tests) {
       const TestOutcome& test = work.outcome;
       any = true;
-      const Expectation expect = test.question.test->expect;
-      bad = bad || (!trouble_of(test).empty() && expect != Expectation::error) ||
-            (!test.plan.invalid.empty() && expect != Expectation::invalid);
+      const reports::Verdict expect = test.question.test->expect;
+      bad = bad || (!trouble_of(test).empty() && expect != reports::Verdict::error) ||
+            (!test.plan.invalid.empty() && expect != reports::Verdict::invalid);
     }
   }
   if (!any) return skipped ? 77 : 4;

@@ -8,7 +8,7 @@
 
 namespace assay::harness {
 
-/// Tables of at most 100 columns without colours. A test's row has its method, primaries per
+/// Tables of at most 80 columns without colours. A test's row has its method, primaries per
 /// secondary, looks, secondaries of the first and last look, and the last look's cost. It then has
 /// the effect that this look finds, the expected share of it if theta = 0, and the pilot's gates.
 /// Totals follow.

@@ -122,14 +122,14 @@ bool print_observation(const Question& question, const Recorded& recorded, std::
       same &= taken || first == nullptr || index >= first->secondaries;
       continue;
     }
-    std::vector<double> values;
+    const std::vector<Channel> channels = side.setup->channels();
+    std::vector<double> values(channels.size());
     try {
-      values = draw_observation(*side.setup, pool.key(), pool.primaries(), index);
+      pool.draw_again(*side.setup->make(), index, values);
     } catch (...) {
       const Fault fault{.observation = index, .words = words_of(std::current_exception())};
       throw std::runtime_error(sentence_of(fault, side.estimator->name));
     }
-    const std::vector<Channel> channels = side.setup->channels();
     for (std::size_t c = 0; c < values.size(); ++c) {
       if (channels[c].name == cell_channel && values[c] == no_cell) continue;
       fmt::print("{}.{}  observation {}: {}\n", side.estimator->name, channels[c].name, index,

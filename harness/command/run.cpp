@@ -102,7 +102,7 @@ reports::Record run_in_arena(const std::vector<Suite>& suites, const RunOptions&
                              Progress& progress, const Broken& broken, std::string* ledger_fault) {
   const auto start = std::chrono::steady_clock::now();
   const std::string started = utc_now();
-  if (!options.ledger.empty()) require_ledger(options.ledger, suites);
+  if (!options.ledger.empty()) require_ledger(options.ledger);
   if (!options.ledger.empty() && options.shard) {
     refuse({}, "--ledger takes whole runs: leave --shard and the environment's shards out");
   }

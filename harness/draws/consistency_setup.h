@@ -9,10 +9,9 @@
 
 namespace assay::harness {
 
-/// A sampler's draws as observations of two channels. Channel `difference` is
-/// how far a draw is from what its sampler declares.
-/// Channel `inconsistent` is 0 if that is at most the sampler's rounding(), else 1 + the number of
-/// the draw's cell.
+/// A sampler's draws as observations of two channels. Channel `difference` is how far a draw is
+/// from what its sampler declares. Channel `inconsistent` is 0 if that is at most the sampler's
+/// rounding(), else 1 + the number of the draw's cell.
 class ConsistencySetup final : public SamplerSetup {
  public:
   explicit ConsistencySetup(NamedSampler named);

@@ -41,8 +41,8 @@ stats::PlaneDensity plane_density(const Sampler& sampler, std::size_t marginal,
 /// Cells of a sampler's domain with the probability that the declared density gives each. Cells of
 /// nearly equal measure, with borders from the suite's seed (shifted_grid), are halved until none
 /// has more than 1/40 (1/32 on an interval). The quadrature's evaluations limit this
-/// (stats/adaptive_cells.h). Each lobe has its own cells; a point mass is one cell. The last cell,
-/// draws without a point, has no probability here.
+/// (stats/cells/adaptive_cells.h). Each lobe has its own cells; a point mass is one cell. The last
+/// cell, draws without a point, has no probability here.
 ///
 /// A draw where the density is 0 has a number of its own: that of its cell, plus the number of
 /// cells.

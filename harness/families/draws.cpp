@@ -96,11 +96,8 @@ class DrawsTheta : public Theta {
     const double room = distance - 2 * known.error;
     if (!(room > 0)) return impossible_secondaries;
     const stats::ErrorRates rates = planned_rates(share, regions);
-    const auto quantile = [](double level) {
-      return stats::normal_quantile({stats::Tail::upper, std::log(level)});
-    };
     const double z =
-        quantile(rates.two_sided ? rates.alpha / 2 : rates.alpha) + quantile(rates.beta);
+        critical_value(rates.alpha, rates.two_sided) + stats::upper_normal_quantile(rates.beta);
     const double p = std::clamp(known.value, 0.0, 0.5) + distance + regions.allow;
     const double variance = std::min(0.25, p * std::max(0.0, 1 - p));
     const double count = z * z * (variance / (room * room) + 1 / room);

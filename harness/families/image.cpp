@@ -8,7 +8,6 @@
 #include "harness/base/parallel.h"
 #include "harness/families/families.h"
 #include "harness/image/image_pair.h"
-#include "harness/plan/independence.h"
 #include "harness/plan/sizes.h"
 #include "harness/question/question_sources.h"
 #include "harness/run/image_judge.h"
@@ -82,7 +81,7 @@ void require_something(const Question& question) {
 void require_equal_primaries(const Question& question) {
   std::vector<std::string> words;
   for (const Subject& side : question.subjects) {
-    if (side.setup->observations()) return;  // files do not tell
+    if (is_recorded(side)) return;  // files do not tell
     const auto& given = side.estimator->primaries;
     const bool one = question.is().of_single_values && !given;
     words.push_back(given || one ? fmt::format("{}", given.value_or(1)) : "auto");

@@ -14,7 +14,6 @@
 #include "harness/families/families.h"
 #include "harness/language/laws.h"
 #include "harness/language/quantities.h"
-#include "harness/plan/independence.h"
 #include "harness/plan/pilot_shape.h"
 #include "harness/plan/sizes.h"
 #include "harness/question/question_sources.h"
@@ -428,11 +427,8 @@ class LawTheta : public Theta {
                 [](const Question& q) { return q.of_two() && !q.is().joins_channels; },
                 Keeps::values, law_against_law},
                {"chi-square-two-sample",
-                "chi-square of two: one or two coordinates together, in cells",
-                of_two,
-                Keeps::points,
-                cells_against_cells,
-                {.joins_channels = true, .cells_of_pilots = true}},
+                "chi-square of two: one or two coordinates together, in cells", of_two,
+                Keeps::points, cells_against_cells},
                {"chi-square-fit", "chi-square: draws against their declared density, in cells",
                 [](const Question& q) { return !q.of_two() && !of_one_law(q); }, Keeps::cells,
                 cells_against_density}}) {}
@@ -545,9 +541,7 @@ class DensityTheta final : public LawTheta {
 /// Values against a law's distribution function, or of two subjects.
 const LawTheta values_theta({.of_single_values = true, .of_a_law = true});
 /// All channels together, in cells.
-const LawTheta planes_theta({.joins_channels = true,
-                             .of_single_values = true,
-                             .pilots_draws = true});
+const LawTheta planes_theta({.joins_channels = true, .of_single_values = true});
 
 // ---- Binding
 
@@ -594,7 +588,9 @@ Question LawTheta::bind(const TestEntry& test, const Estimators& estimators) con
   const Claim& claim = test.claim;
   const Source& source = claim.left.source;
   if (const auto* other = std::get_if<ScaledQuantity>(&claim.right)) {
-    const bool cells = test.method && joins_channels(*test.method);
+    const bool cells = std::ranges::any_of(methods, [&](const MethodRow& row) {
+      return test.method == row.name && row.keeps == Keeps::points;
+    });
     Question question{
         .test = &test,
         .theta = cells ? &planes_theta : &values_theta,

@@ -210,9 +210,7 @@ class QuantileTheta final : public Theta {
     const Question& question = test.question;
     if (!all_piloted(question, pilots)) return std::nullopt;
     return most_over_channels(question, [&](std::size_t channel) -> std::optional<std::uint64_t> {
-      const double unit = question.theta->is_relative(question, channel)
-                              ? std::abs(question.references[channel].value)
-                              : 1;
+      const double unit = unit_of_theta(question, channel, 0);
       const Regions& regions = test.plan.regions[channel];
       const double distance = distance_of(regions) * unit;
       if (!(distance > 0)) return std::nullopt;
@@ -234,8 +232,8 @@ class QuantileTheta final : public Theta {
   }
 
   std::string not_excluded(const ChannelOutcome& channel) const override {
-    const bool no_low = !channel.effect.low || !std::isfinite(*channel.effect.low);
-    const bool no_high = !channel.effect.high || !std::isfinite(*channel.effect.high);
+    const bool no_low = !channel.effect.low;
+    const bool no_high = !channel.effect.high;
     // A lower limit alone refutes a claim `<=`.
     const bool low_counts = channel.regions.relation != Relation::at_least;
     const bool high_counts = channel.regions.relation != Relation::at_most;

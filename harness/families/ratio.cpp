@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "harness/families/families.h"
-#include "harness/plan/independence.h"
 #include "harness/plan/outcome.h"
 #include "harness/plan/pilot_shape.h"
 #include "harness/plan/sizes.h"
@@ -166,7 +165,7 @@ class LogTheta : public Theta {
   std::optional<PlannedChannel> planned(const TestOutcome& test, const Regions& regions,
                                         const Pilots& pilots) const override {
     for (const Subject& side : test.question.subjects) {
-      if (side.setup->observations()) return std::nullopt;
+      if (is_recorded(side)) return std::nullopt;
     }
     return from_pilots(test, std::nullopt, regions, pilots);
   }

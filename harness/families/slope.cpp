@@ -347,9 +347,7 @@ class SlopeTheta : public Theta {
   }
 
   std::string not_excluded(const ChannelOutcome& channel) const override {
-    const bool no_low = !channel.effect.low || !std::isfinite(*channel.effect.low);
-    const bool no_high = !channel.effect.high || !std::isfinite(*channel.effect.high);
-    return no_low && no_high ? "exponent" : "";
+    return !channel.effect.low && !channel.effect.high ? "exponent" : "";
   }
 };
 

@@ -83,9 +83,8 @@ void note_errors(const std::vector<ChannelMeans>& means, bool relative, const Er
                  ImageOutcome& outcome) {
   const stats::TypicalCell& typical = outcome.family.typical;
   const double part = typical.group.share / typical.group.count;
-  const double errors =
-      stats::normal_quantile({stats::Tail::upper, std::log(share.alpha * part / 2)}) +
-      stats::normal_quantile({stats::Tail::upper, std::log(share.beta)});
+  const double errors = stats::upper_normal_quantile(share.alpha * part / 2) +
+                        stats::upper_normal_quantile(share.beta);
   std::vector<double> of_cells;
   for (const auto& noise : typical.noise) {
     of_cells.push_back(stats::standard_error_at(noise, errors));
@@ -165,10 +164,7 @@ std::string all_alike(const Question& question) {
 /// Pictures of files that are alike and were not refused have no noise, such as a layer of depth.
 /// What is drawn should vary.
 void require_spread(const Question& question, bool varies) {
-  const bool files = std::ranges::all_of(question.subjects, [](const Subject& side) {
-    return side.setup->observations().has_value();
-  });
-  if (varies || files) return;
+  if (varies || std::ranges::all_of(question.subjects, is_recorded)) return;
   throw stats::ZeroVariance(fmt::format(
       "{}: without spread nothing can be said of what was never seen; see that the seed changes "
       "the image, take fewer `primaries`, or more observations",

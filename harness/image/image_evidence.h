@@ -2,8 +2,8 @@
 
 // Evidence about images. theta is the size of their difference over all elements,
 //   theta = ||E a - E b|| / ||E b||, or its root mean square for absolute margins.
-// The family of cells of every size and alternating sums tests theta = 0 (stats/image_pyramid.h).
-// The unbiased squared bias tests other values (stats/image_equivalence.h).
+// The family of cells of every size and alternating sums tests theta = 0 (image_pyramid.h).
+// The unbiased squared bias tests other values (image_equivalence.h).
 
 #include <functional>
 #include <optional>

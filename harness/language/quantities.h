@@ -37,7 +37,6 @@ struct QuantityRow {
   /// Gives what a channel's plugin knows of it, or InputError; null if no plugin knows any.
   Constant (*analytic)(const Channel&, const Source&) = nullptr;
   bool takes_standard_error = false;  ///< The claimed number may have one, by `+-`.
-  bool relative_effect = false;       ///< A margin in per cent is one of the value, not of a ratio.
   bool relative_to_0 = false;    ///< The truth, not the claimed number, is what per cent are of.
   bool told_by_moments = false;  ///< A recorded run of it has moments that other claims can use.
   bool takes_reference = false;  ///< The test may have `reference`.
@@ -50,8 +49,5 @@ const QuantityRow* find_quantity(std::string_view word);
 
 /// The names of the method table (theta/methods.h), each once, in its order.
 const std::vector<std::string>& method_names();
-
-/// True if the method of this name compares all channels of two estimators together.
-bool joins_channels(const std::string& method);
 
 }  // namespace assay::harness

@@ -12,7 +12,6 @@
 #include "harness/base/text_file.h"
 #include "harness/base/text_hash.h"
 #include "harness/ledger/ledger_book.h"
-#include "harness/plan/independence.h"
 #include "harness/theta/theta.h"
 #include "stats/tails/tails.h"
 
@@ -53,9 +52,8 @@ stats::NightEstimate sized(const TestOutcome& test, const ThetaError& error) {
 /// The error that an interval shows; nullopt without two ends, or if it holds more than one run's.
 std::optional<ThetaError> error_of_interval(const Question& question, std::size_t channel,
                                             const Evidence& evidence) {
-  const bool shares =
-      std::ranges::any_of(question.subjects, is_recorded) ||
-      (!question.references.empty() && question.references[channel].standard_error > 0);
+  const bool shares = has_rows(question) || (!question.references.empty() &&
+                                             question.references[channel].standard_error > 0);
   if (shares) return std::nullopt;
   constexpr double one_standard_deviation = 0.6826894921370859;
   const stats::Interval interval = evidence.interval(one_standard_deviation);
@@ -324,15 +322,7 @@ reports::LedgerSeries keep(LedgerBook& book, const LedgerRun& ledger, const Entr
 
 }  // namespace
 
-void require_ledger(const std::string& file, const std::vector<Suite>& suites) {
-  std::set<std::string> stems;
-  for (const Suite& suite : suites) {
-    if (stems.insert(suite.stem).second) continue;
-    refuse({.file = suite.file},
-           "two suites are named `{}`: a ledger could not tell their tests apart; rename one, or "
-           "run them with ledgers of their own",
-           suite.stem);
-  }
+void require_ledger(const std::string& file) {
   const std::filesystem::path path(file);
   if (path.has_parent_path() && !std::filesystem::is_directory(path.parent_path())) {
     refuse({.file = file}, "its folder does not exist; make it first");

@@ -70,8 +70,8 @@ double generation_share(int generation);
 // nights together find a bias that each one misses.
 
 /// InputError, before anything is sampled, if a ledger could not be kept. Reasons are an unreadable
-/// file, a missing folder, and two suites that the ledger could not tell apart.
-void require_ledger(const std::string& file, const std::vector<Suite>& suites);
+/// file and a missing folder.
+void require_ledger(const std::string& file);
 
 struct LedgerRun {
   std::string file;

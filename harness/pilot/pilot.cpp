@@ -219,7 +219,7 @@ Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators, const
 
 std::vector<const Subject*> piloted_draws(const Question& question) {
   std::vector<const Subject*> draws;
-  if (!question.is().pilots_draws) return draws;
+  if (methods_for(question).front().keeps != Keeps::points) return draws;
   for (const Subject& side : question.subjects) {
     if (!side.purpose.empty()) draws.push_back(&side);
   }

@@ -39,7 +39,7 @@ std::optional<std::vector<ChannelData>> expected_data(const TestOutcome& test, s
   std::optional<std::size_t> known;
   for (std::size_t i = 0; i < data.size(); ++i) {
     const Subject& side = question.subjects[i];
-    if (side.setup->observations()) continue;
+    if (is_recorded(side)) continue;
     const Pilot* const known_pilot = pilot_of(side, pilots);
     if (known_pilot == nullptr) return std::nullopt;
     const stats::Moments pilot = known_pilot->moments(side.channels[channel]);
@@ -157,7 +157,7 @@ std::optional<PlannedChannel> expected_channel(const TestOutcome& test, std::siz
     return question.theta->planned(test, regions, pilots);
   }
   for (const Subject& side : question.subjects) {
-    if (side.setup->observations()) return std::nullopt;
+    if (is_recorded(side)) return std::nullopt;
   }
   const auto data = expected_data(test, channel, pilots, secondaries);
   if (!data) return std::nullopt;

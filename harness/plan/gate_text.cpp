@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/plan/independence.h"
 #include "harness/plan/sizes.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/methods.h"

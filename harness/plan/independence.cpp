@@ -217,12 +217,6 @@ void allow_for_dependence(const std::vector<Rows>& all, Plan& plan) {
 
 }  // namespace
 
-bool is_recorded(const Subject& subject) { return subject.setup->observations().has_value(); }
-
-bool has_rows(const Question& question) {
-  return std::ranges::any_of(question.subjects, is_recorded);
-}
-
 void require_independent_sides(const Question& question, const Pilots& pilots,
                                std::uint64_t count) {
   if (question.subjects.size() < 2 || question.is().of_pairs) return;

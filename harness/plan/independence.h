@@ -18,11 +18,6 @@ namespace assay::harness {
 /// In fewer rows batches of sqrt n are too few and too short.
 inline constexpr std::size_t fewest_in_order = 9;
 
-/// True if a subject's observations are ready-made.
-bool is_recorded(const Subject& subject);
-/// True if any subject's are.
-bool has_rows(const Question& question);
-
 /// Throws InputError at the claim if the first `count` data of two sides coincide beyond chance.
 /// They may share a picture (recorded::shared_picture) or a run of rows (stats/gates/copies.h).
 /// Two sources of one file are another mistake.

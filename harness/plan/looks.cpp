@@ -5,7 +5,6 @@
 #include <limits>
 #include <numbers>
 
-#include "harness/plan/independence.h"
 #include "harness/plan/sizes.h"
 #include "harness/sampling/pool.h"
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/plan/independence.h"
 #include "harness/question/question_sources.h"
 #include "harness/sampling/summary.h"
 #include "harness/theta/constant.h"
@@ -174,7 +173,7 @@ bool bets_on_range(const Question& question, const Pilots& pilots) {
 }
 
 void freeze(TestOutcome& test, const Pilots& pilots) {
-  if (!test.plan.method.is.cells_of_pilots) return;
+  if (test.plan.method.keeps != Keeps::points) return;
   std::vector<stats::PlanePoint> points = pilot_points(test, pilots);
   if (points.empty()) {
     test.plan.invalid = Reason("the pilots gave no point to choose cells by");

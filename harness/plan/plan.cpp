@@ -41,7 +41,7 @@ std::vector<Regions> regions_of(const Question& question) {
 std::string not_finite_in_pilot(const Question& question, const Pilots& pilots) {
   for (const Subject& subject : question.subjects) {
     const Pilot* const pilot = pilot_of(subject, pilots);
-    if (pilot == nullptr || pilot->sums->elements || subject.setup->observations()) continue;
+    if (pilot == nullptr || is_recorded(subject)) continue;
     for (const std::size_t channel : subject.channels.all()) {
       const ChannelSummary& seen = pilot->sums->channels[channel];
       if (seen.nonfinite == 0) continue;

@@ -24,7 +24,7 @@ bool has_planned_size(const Question& question) {
 }
 
 double critical_value(double alpha, bool two_sided) {
-  return stats::normal_quantile({stats::Tail::upper, std::log(two_sided ? alpha / 2 : alpha)});
+  return stats::upper_normal_quantile(two_sided ? alpha / 2 : alpha);
 }
 
 double smallest_level(const Question& question, const FamilyPlace& place) {

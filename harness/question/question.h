@@ -47,6 +47,11 @@ struct Subject {
   }
 };
 
+/// True if a subject's observations are ready-made.
+inline bool is_recorded(const Subject& subject) {
+  return subject.setup->observations().has_value();
+}
+
 /// Facts about a theta that others act on.
 struct ThetaTraits {
   bool joins_channels = false;    ///< All channels together make one number.
@@ -58,7 +63,6 @@ struct ThetaTraits {
   bool of_images = false;         ///< All elements of images are compared together.
   bool of_pairs = false;          ///< Observations share random numbers and are subtracted.
   bool batches_serve = false;     ///< Means of consecutive rows serve as well as the rows.
-  bool pilots_draws = false;      ///< A sampler's draws need a pilot.
   bool fit_decides = false;       ///< Without a fit, a rejected theta says nothing: no pass.
 };
 
@@ -90,5 +94,10 @@ struct Question {
   std::optional<std::uint64_t> most_rows() const;
   bool of_two() const { return sizes.empty() && compared() == 2; }
 };
+
+/// True if any subject's observations are ready-made.
+inline bool has_rows(const Question& question) {
+  return std::ranges::any_of(question.subjects, is_recorded);
+}
 
 }  // namespace assay::harness

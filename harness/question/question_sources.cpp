@@ -272,7 +272,7 @@ void add_reference(Question& question, const Estimators& estimators) {
 void require_drawn(const Question& question) {
   if (question.test->cost != CostKind::seconds) return;
   for (const Subject& subject : question.subjects) {
-    if (subject.setup->observations()) {
+    if (is_recorded(subject)) {
       refuse(question.test->place_of("cost"), "`{}` is not drawn but read: its seconds say nothing",
              subject.estimator->name);
     }
@@ -298,7 +298,7 @@ double relative_rounding(const Setup& setup) {
 std::string outside_of_range(const Subject& subject, const Summary& drawn) {
   // A mutant has its original's declaration.
   const bool mutant = !subject.estimator->entry->information.original.empty();
-  if (mutant || drawn.elements || subject.setup->observations()) return "";
+  if (mutant || is_recorded(subject)) return "";
   const std::vector<Channel> channels = subject.setup->channels();
   const auto finite = [](double end) { return std::isfinite(end) ? std::abs(end) : 0; };
   const double of_sums = 1e-9;
@@ -322,7 +322,7 @@ std::string outside_of_range(const Subject& subject, const Summary& drawn) {
 stats::Range range_of(const Question& question, std::size_t subject, std::size_t channel,
                       const stats::Moments& moments) {
   const Subject& side = question.subjects[subject];
-  if (side.setup->observations()) return {moments.minimum, moments.maximum};
+  if (is_recorded(side)) return {moments.minimum, moments.maximum};
   const Channel declared = side.setup->channels()[side.channels[channel]];
   return {declared.low, declared.high};
 }

@@ -87,7 +87,7 @@ reports::Map map_of(const char* name, const ImageShape& shape, const Value& valu
 /// computed.
 double surely_one(double tested) {
   const double tail = 20 / tested;  // two-sided
-  return tail < 0.25 ? stats::normal_quantile({stats::Tail::upper, std::log(tail)}) : 0;
+  return tail < 0.25 ? stats::upper_normal_quantile(tail) : 0;
 }
 
 /// Sidak's adjustment over the elements that vary.
@@ -267,8 +267,6 @@ void write_maps(reports::Record& record, const std::string& json_path) {
       const MapSize size{test.maps.front().width, test.maps.front().height};
       std::vector<MapLayer> layers;
       for (reports::Map& map : test.maps) {
-        // Close-ups of cells are kept in the record alone.
-        if (map.width != size.width || map.height != size.height) continue;
         map.file = (folder.filename() / name).string();
         layers.push_back({map.name, map.components, map.texels.values});
       }

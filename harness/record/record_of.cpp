@@ -39,12 +39,6 @@ std::string processor_name() {
 
 using reports::Number;
 
-reports::Verdict expected_verdict(Expectation expect) {
-  using enum reports::Verdict;
-  constexpr reports::Verdict verdicts[] = {pass, fail, invalid, error};
-  return verdicts[static_cast<int>(expect)];
-}
-
 /// At most 99 points of a normal quantile plot of the values, at the probabilities (i - 1/2) / k.
 std::vector<reports::QuantilePoint> quantile_points(std::span<const double> values) {
   std::vector<double> sorted;
@@ -258,7 +252,7 @@ reports::Test head_of(const TestEntry& entry, const std::string& file) {
           .reference = reference_text(entry),
           .cost = cost_text(entry),
           .paired = entry.paired,
-          .expected = expected_verdict(entry.expect)};
+          .expected = entry.expect};
 }
 
 }  // namespace
@@ -372,7 +366,7 @@ reports::Test record_of_untested(const Untested& untested, const SuiteRun& run) 
 bool is_broken(const TestWork& work) {
   const TestOutcome& outcome = work.outcome;
   return outcome.decided && outcome.verdict != reports::Verdict::inconclusive &&
-         outcome.verdict != expected_verdict(outcome.question.test->expect);
+         outcome.verdict != outcome.question.test->expect;
 }
 
 reports::Suite head_of(const SuiteRun& run) {

@@ -246,7 +246,8 @@ void judge_drawn_order(TestOutcome& outcome, const DrawnTest& test) {
 
 void require_activation(TestOutcome& outcome, const DrawnTest& test) {
   // A plan that is invalid draws little, and has its own reason.
-  if (outcome.question.test->expect != Expectation::fail || !outcome.plan.invalid.empty()) return;
+  if (outcome.question.test->expect != reports::Verdict::fail || !outcome.plan.invalid.empty())
+    return;
   for (std::size_t subject = 0; subject < test.samples.size(); ++subject) {
     if (was_activated(outcome.question.subjects[subject], test.samples[subject].pool(),
                       outcome.secondaries(subject))) {

@@ -14,9 +14,10 @@ ImageTest image_test(const DrawnTest& test);
 /// The observations of this look: the subject's elements of each.
 ImageViews images_of(const DrawnTest& test, std::size_t subject);
 
+inline constexpr double confidence_at_place = 0.99;
+
 /// The mean difference over the cell that speaks most against equality, in units of the images and
 /// weighted as the test weighs it. The interval is of this one cell.
-inline constexpr double confidence_at_place = 0.99;
 struct PlaceEffect {
   double estimate = 0;
   stats::Interval interval = {};

@@ -35,20 +35,6 @@ Range expected_range(const Channel& channel, const stats::Moments& pilot, double
           std::min({channel.high, pilot.maximum, pilot.mean + reach})};
 }
 
-/// Ranges of bounded data, which are read through once.
-std::vector<Range> data_ranges(const Setup& setup, std::uint64_t rows) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  std::vector<Range> ranges(setup.channels().size(), {infinity, -infinity});
-  for (std::uint64_t row = 0; row < rows; ++row) {
-    const std::vector<double> values = draw_observation(setup, {}, 1, row);
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      if (!std::isfinite(values[i])) continue;
-      ranges[i] = {std::min(ranges[i].low, values[i]), std::max(ranges[i].high, values[i])};
-    }
-  }
-  return ranges;
-}
-
 std::vector<ChannelPlan> sampler_plan(const SamplerSetup& setup) {
   if (const auto* consistency = dynamic_cast<const ConsistencySetup*>(&setup)) {
     return {{.cells = 1 + consistency->cells().size()}, {}};
@@ -67,20 +53,18 @@ std::vector<ChannelPlan> estimator_plan(const Pool& pool, const PreparedEstimato
   // Images are shown as maps, without a histogram of each pixel.
   if (pool.is_ready_made() || pool.setup()->image()) return {};
   const std::vector<Channel> channels = pool.setup()->channels();
-  if (const auto rows = pool.setup()->observations()) {
-    for (const Range& range : data_ranges(*pool.setup(), *rows)) {
-      plan.push_back(with_histogram(range));
-    }
-    return plan;
-  }
   const Pilot* const pilot = pilots.find(estimator.name);  // null if it is read row by row
   const double averaged = estimator.nature().averages ? static_cast<double>(pool.primaries()) : 1;
   for (std::size_t i = 0; i < channels.size(); ++i) {
     if (pilot == nullptr || pilot->moments(i).count < 2) {
       plan.push_back({.keep = plotted_values});
-    } else {
-      plan.push_back(with_histogram(expected_range(channels[i], pilot->moments(i), averaged)));
+      continue;
     }
+    const stats::Moments& moments = pilot->moments(i);
+    // The pilot of a file is all of it.
+    plan.push_back(with_histogram(pool.setup()->observations()
+                                      ? Range{moments.minimum, moments.maximum}
+                                      : expected_range(channels[i], moments, averaged)));
   }
   return plan;
 }

@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "harness/plan/gate_text.h"
-#include "harness/plan/independence.h"
 #include "harness/plan/looks.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/constant.h"
@@ -191,9 +190,7 @@ struct Room {
 };
 
 Room room_of(const TestOutcome& outcome, const ChannelOutcome& channel) {
-  const auto z = [](double level) {
-    return stats::normal_quantile({stats::Tail::upper, std::log(level)});
-  };
+  const auto z = stats::upper_normal_quantile;
   const Regions& regions = channel.regions;
   const ErrorShare share = last_levels(outcome);
   const double estimate = channel.evidence.estimate;
@@ -221,8 +218,7 @@ double reference_error(const TestOutcome& outcome, const ChannelOutcome& channel
   const Question& question = outcome.question;
   if (question.references.size() != question.channel_count()) return 0;
   const Constant& reference = question.references[channel.index];
-  const bool relative = question.theta->is_relative(question, channel.index);
-  return reference.standard_error / (relative ? std::abs(reference.value) : 1);
+  return reference.standard_error / unit_of_theta(question, channel.index, 0);
 }
 
 /// So many times the observations, and their primaries.

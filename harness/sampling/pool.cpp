@@ -448,18 +448,9 @@ void Pool::fold(Block&& block) {
 }
 
 void Pool::draw_again(Estimator& estimator, std::uint64_t index, std::span<double> out) const {
+  const FlushDenormals flush;
   Cost unused;
   draw_one(estimator, index, out, unused);
-}
-
-std::vector<double> draw_observation(const Setup& setup, StreamKey key, std::uint64_t primaries,
-                                     std::uint64_t index) {
-  const FlushDenormals flush;
-  std::vector<double> out(setup.channels().size());
-  Stream random(key, index);
-  Cost cost;
-  setup.make()->secondary(random, primaries, out, cost);
-  return out;
 }
 
 Images KeptObservations::range(std::uint64_t begin, std::uint64_t end) const {

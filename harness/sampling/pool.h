@@ -269,7 +269,4 @@ class Sample {
   std::variant<Drawn, Fault> either_;
 };
 
-std::vector<double> draw_observation(const Setup& setup, StreamKey key, std::uint64_t primaries,
-                                     std::uint64_t index);
-
 }  // namespace assay::harness

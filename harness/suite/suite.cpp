@@ -226,7 +226,7 @@ void require_tests(const std::vector<const TestEntry*>& found, const Value& name
 }
 
 void require_an_answer(const TestEntry& test, const Location& where) {
-  if (test.expect == Expectation::pass || test.expect == Expectation::fail) return;
+  if (test.expect == reports::Verdict::pass || test.expect == reports::Verdict::fail) return;
   refuse(where, "`{}` expects that it cannot be decided: it answers nothing", test.name);
 }
 
@@ -344,8 +344,9 @@ void read_test_keys(const Document& document, const Value& map, TestEntry& test)
   if (const Value* v = map.find("allow")) test.allow = read_margin(*v, "`allow`");
   if (const Value* v = map.find("weight")) test.weight = positive_number(*v, "`weight`");
   if (const Value* v = map.find("expect")) {
-    test.expect =
-        static_cast<Expectation>(choice(*v, "`expect`", {"pass", "fail", "invalid", "error"}));
+    using enum reports::Verdict;
+    constexpr reports::Verdict verdicts[] = {pass, fail, invalid, error};
+    test.expect = verdicts[choice(*v, "`expect`", {"pass", "fail", "invalid", "error"})];
   }
   if (const Value* v = map.find("tags")) test.tags = read_tags(*v);
   if (const Value* v = map.find("test")) {

@@ -14,10 +14,9 @@
 #include "estimators/estimator.h"
 #include "harness/language/claim.h"
 #include "harness/suite/yaml.h"
+#include "reports/record/record.h"
 
 namespace assay::harness {
-
-enum class Expectation { pass, fail, invalid, error };
 
 /// An entry of `estimators:`.
 struct EstimatorEntry {
@@ -60,7 +59,7 @@ struct TestEntry {
   std::optional<Constant> reference_number = {};  ///< `reference:`, a number
   CostKind cost = CostKind::rays;
   bool paired = false;  ///< Observations of equal index share their random numbers.
-  Expectation expect = Expectation::pass;
+  reports::Verdict expect = reports::Verdict::pass;
   std::vector<std::string> tags = {};
   Location where = {};
   std::map<std::string, Location, std::less<>> keys = {};  ///< the places of the keys that are

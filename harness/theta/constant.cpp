@@ -51,7 +51,7 @@ bool meets_claimed(const stats::Range& theta, const Regions& regions) {
 /// Hint at the commonest cause of constant observations.
 std::string seeds(const Question& question) {
   for (const Subject& subject : question.subjects) {
-    if (subject.setup->observations()) return "; if they should vary, has each a seed of its own?";
+    if (is_recorded(subject)) return "; if they should vary, has each a seed of its own?";
     if (subject.estimator->entry->information.says_nature) {
       return "; if they should vary, does the program use the index of the observation?";
     }
@@ -83,10 +83,8 @@ double unseen_shift(const Seen& seen, std::size_t subject, double level) {
 }
 
 std::string range_advice(const Question& question) {
-  const bool in_files = std::ranges::any_of(question.subjects, [](const Subject& each) {
-    return each.setup->observations().has_value();
-  });
-  return std::string(in_files ? "a file has no range: let a program draw the values and " : "") +
+  return std::string(has_rows(question) ? "a file has no range: let a program draw the values and "
+                                        : "") +
          "declare the range of its channel, `low` to `high`";
 }
 

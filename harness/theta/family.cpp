@@ -7,7 +7,7 @@ namespace assay::harness {
 namespace {
 
 bool inside_family(const Question& question) {
-  if (question.test->expect != Expectation::pass) return false;
+  if (question.test->expect != reports::Verdict::pass) return false;
   return std::ranges::none_of(question.subjects, [](const Subject& s) {
     return !s.estimator->entry->information.original.empty();
   });
@@ -33,7 +33,7 @@ std::vector<FamilyPlace> places(const Suite& suite, const std::vector<Question>&
     const auto asks = [&](const Question& question) { return question.test == &test; };
     if (std::ranges::any_of(questions, asks)) continue;
     all_weight += test.weight;
-    if (test.expect != Expectation::pass) {
+    if (test.expect != reports::Verdict::pass) {
       ++outside;
       continue;
     }

@@ -80,12 +80,6 @@ const std::vector<std::string>& method_names() {
   return names;
 }
 
-bool joins_channels(const std::string& method) {
-  return std::ranges::any_of(method_table(), [&](const MethodRow& row) {
-    return row.name == method && row.is.joins_channels;
-  });
-}
-
 std::vector<Method> methods_for(const Question& question) {
   std::vector<Method> methods;
   for (const MethodRow& row : question.theta->methods) {

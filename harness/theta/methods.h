@@ -85,9 +85,7 @@ struct MethodTraits {
   bool corrects_skewness = false;   ///< Corrects for the skewness of the mean.
   bool of_normal_values = false;    ///< Takes values for normal.
   bool of_distinct_values = false;  ///< Coarsely rounded values break its level.
-  bool joins_channels = false;      ///< compares all channels of two estimators together
   stats::LookLaw over_looks = stats::LookLaw::unknown;  ///< Of its p-values at several looks.
-  bool cells_of_pilots = false;                         ///< Counts in cells that the pilots choose.
   const stats::ExactPlanning* plans = nullptr;          ///< Planning of an exact method of a mean.
 };
 

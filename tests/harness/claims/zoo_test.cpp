@@ -27,7 +27,7 @@ std::set<std::string> plugins_of(const Claim& claim) {
 TEST(Zoo, KillsEveryMutantOfTheCatalogue) {
   std::set<std::string> killed;
   for (const TestEntry& test : zoo().tests) {
-    if (test.expect == Expectation::fail || test.expect == Expectation::error) {
+    if (test.expect == reports::Verdict::fail || test.expect == reports::Verdict::error) {
       killed.merge(plugins_of(test.claim));
     }
   }

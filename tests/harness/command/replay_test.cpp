@@ -139,10 +139,11 @@ TEST_F(Replays, PrintsTheValueThatWasDrawn) {
   const PreparedEstimator uniform =
       prepare({.name = "uniform", .plugin = "analytic/exponential_uniform"}, ".");
   const std::uint64_t primaries = test_named(read_record(file), "mean").samples[0].primaries;
-  const std::vector<double> value =
-      draw_observation(*uniform.setup, key_of(uniform, 1, 0, ""), primaries, 17);
+  double value = 0;
+  Pool(uniform.setup, key_of(uniform, 1, 0, ""), primaries)
+      .draw_again(*uniform.setup->make(), 17, {&value, 1});
   const Said now = said({.record = file, .test = "mean", .observation = 17});
-  EXPECT_THAT(now.text, HasSubstr(fmt::format("observation 17: {}\n", value[0])));
+  EXPECT_THAT(now.text, HasSubstr(fmt::format("observation 17: {}\n", value)));
 }
 
 TEST_F(Replays, OfADrawShowsItsPoint) {

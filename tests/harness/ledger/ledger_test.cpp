@@ -168,11 +168,6 @@ TEST_F(Ledger, AnAlarmStaysUntilTheTestIsBegunAnew) {
   EXPECT_EQ(night(claim("4"), 99).ledger.series[0].nights.size(), 1U);
 }
 
-TEST_F(Ledger, TwoSuitesOfOneNameCannotShareALedger) {
-  const std::string suite = place_.write("nights.yaml", std::string(estimators) + two_tests);
-  EXPECT_THROW(run_files({suite, suite}, {.ledger = file()}), InputError);
-}
-
 TEST_F(Ledger, ConcurrentRunsLoseNoLine) {
   const std::string suite = place_.write("nights.yaml", std::string(estimators) + two_tests);
   const auto nights_from = [&](std::uint64_t first) {

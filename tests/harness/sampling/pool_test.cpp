@@ -215,8 +215,8 @@ TEST(Pool, KeepsTheFirstValuesAsManyAsPlanned) {
   EXPECT_EQ(sample_of(*pool, 10).values(0).size(), 10);
   EXPECT_EQ(sample_of(*pool, 5000).values(1).size(), 20);
   for (const std::uint64_t index : {0U, 7U, 19U}) {
-    const std::vector<double> again =
-        draw_observation(SumsSetup(), pool->key(), pool->primaries(), index);
+    std::array<double, 2> again = {};
+    pool->draw_again(*SumsSetup().make(), index, again);
     EXPECT_EQ(sample_of(*pool, 700).values(0)[index], again[0]);
     EXPECT_EQ(sample_of(*pool, 20).values(1)[index], again[1]);
   }

@@ -44,7 +44,7 @@ TEST(Suite, ReadsEveryKeyItDocuments) {
   EXPECT_EQ(first.secondaries, 10000U);
   EXPECT_EQ(first.budget->primaries, 10000000U);
   EXPECT_EQ(first.budget->seconds, 2.5);
-  EXPECT_EQ(first.expect, Expectation::fail);
+  EXPECT_EQ(first.expect, reports::Verdict::fail);
   EXPECT_EQ(first.tags, (std::vector<std::string>{"slow", "lamp"}));
   EXPECT_EQ(first.where.line, 15);
   const TestEntry& second = suite.tests[1];
@@ -67,7 +67,7 @@ TEST(Suite, HasTheDocumentedDefaults) {
   EXPECT_EQ(test.name, "mean(darts) == analytic");
   EXPECT_EQ(test.id, "small/mean(darts) == analytic");
   EXPECT_EQ(test.weight, 1);
-  EXPECT_EQ(test.expect, Expectation::pass);
+  EXPECT_EQ(test.expect, reports::Verdict::pass);
   EXPECT_EQ(test.cost, CostKind::rays);
   EXPECT_FALSE(test.detect || test.allow || test.method || test.secondaries || test.budget ||
                test.over || test.reference);

@@ -92,7 +92,8 @@ TEST(Family, KeepsThePartOfATestThatCannotBeAsked) {
     std::vector<Question> questions;
     for (std::size_t i = 0; i < asked->questions.size(); ++i) {
       const TestEntry& test = *asked->questions[i].test;
-      const bool dies = dead == "analytic" ? test.expect == Expectation::pass : test.name == dead;
+      const bool dies =
+          dead == "analytic" ? test.expect == reports::Verdict::pass : test.name == dead;
       if (dies) continue;
       questions.push_back(asked->questions[i]);
       known.push_back(sound[i]);
