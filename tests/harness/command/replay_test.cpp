@@ -146,6 +146,19 @@ TEST_F(Replays, PrintsTheValueThatWasDrawn) {
   EXPECT_THAT(now.text, HasSubstr(fmt::format("observation 17: {}\n", value)));
 }
 
+// The test saw numbers in single precision.
+TEST_F(Replays, EveryObservationOfAnImageLiesInItsRecordedRange) {
+  const std::string file = recorded(place, R"(suite: image
+estimators:
+  image: {plugin: depth_of_field/image, width: 4, height: 3, primaries: 1}
+tests:
+  - {name: pixel, claim: mean(image.x1y1) == analytic, secondaries: 32}
+)");
+  for (std::uint64_t index = 0; index < 32; ++index) {
+    EXPECT_EQ(said({.record = file, .test = "pixel", .observation = index}).code, 0) << index;
+  }
+}
+
 TEST_F(Replays, OfADrawShowsItsPoint) {
   const Said now = said({.record = recorded(place), .test = "cells", .observation = 5});
   EXPECT_THAT(now.text, HasSubstr("\n  draw of `direction`: point ("));
