@@ -1,11 +1,10 @@
 #include "harness/command/option_values.h"
 
 #include <fmt/format.h>
-#include <sys/random.h>
 
 #include <algorithm>
 #include <limits>
-#include <system_error>
+#include <random>
 
 #include "reports/report_formats.h"
 
@@ -14,11 +13,8 @@ namespace assay::harness {
 namespace {
 
 std::uint64_t random_seed() {
-  std::uint64_t seed = 0;
-  if (getrandom(&seed, sizeof seed, 0) != static_cast<ssize_t>(sizeof seed)) {
-    throw std::system_error(errno, std::generic_category(), "no random seed from the system");
-  }
-  return seed;
+  std::random_device words;
+  return std::uint64_t{words()} << 32U | words();
 }
 
 /// A report's kind alone, or a path by its ending, completed.
