@@ -137,7 +137,7 @@ ParameterInformation sampler_parameter() {
 }
 
 // The directional albedo of the Ashikhmin-Shirley reflectance (specular part): E = the integral of
-// f cos_o over the hemisphere, by the half vector (render/brdf/brdf_ashikhmin_shirley.h). Like
+// f cos_o over the hemisphere, by the half vector (render/brdf.h). Like
 // Ward's, the published algorithm follows its own p(w_o); directions below the horizon count as
 // zero.
 
@@ -152,7 +152,7 @@ std::vector<ParameterInformation> ashikhmin_shirley_parameters() {
 
 // The directional albedo of Ward's reflectance: E = the integral of f cos_o over the hemisphere.
 //
-// Directions are drawn by the half vector (render/brdf/brdf_ward.h). The published algorithm
+// Directions are drawn by the half vector (render/brdf.h). The published algorithm
 // follows its own density p(w_o), so the weight f cos / p is not constant. Directions below the
 // horizon count as zero: so the mean of the weights is the albedo.
 

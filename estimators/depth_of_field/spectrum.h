@@ -78,8 +78,8 @@ bool passes(const CameraFrequency& wave, const Lens& lens);
 double image_bandwidth(std::span<const CameraFrequency> waves, const Lens& lens);
 
 // The transport of a light field with a Gaussian power spectrum, by its 2 x 2 covariance. It is
-// cheaper than a set of waves, and exact for Gaussians. Operators and signs are those of
-// spectrum.h. (After Belcour et al. 2013, "5D covariance tracing".)
+// cheaper than a set of waves, and exact for Gaussians. Operators and signs are those of Spectrum.
+// (After Belcour et al. 2013, "5D covariance tracing".)
 
 class Covariance {
  public:

@@ -30,7 +30,6 @@ class SharedObject {
   /// table that is no table.
   explicit SharedObject(const std::string& file);
 
-  const std::vector<AssayEstimator>& estimators() const { return estimators_; }
   /// The estimator of this name; the only one where the name is empty. Throws LibraryError.
   const AssayEstimator& find(const std::string& name) const;
   const std::string& file() const { return file_; }

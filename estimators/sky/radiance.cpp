@@ -126,7 +126,6 @@ class Peak final : public Radiance {
   Lobe lobe_;
 };
 
-// The members of a map, all of `keys` and nothing else.
 [[noreturn]] void refuse_negative(const Value& at, double least) {
   throw InputError(at.where(), "parameter `sky`: the radiance falls to " + std::to_string(least) +
                                    "; it must not be negative in any direction");
