@@ -154,7 +154,7 @@ void define_run(Options& options, RunCommand& command) {
 Examples:
   assay run suites/luminaire.yaml
   assay run suites/*.yaml --filter '*/variance*' --threads 4
-  assay run suites/*.yaml --tag bias --filter '-*slope*'    some of a tag
+  assay run suites/*.yaml --tag bias --filter '-*slope*'    without slopes
   assay run suites/luminaire.yaml --report json=run.json html=run.html
   assay run suites/luminaire.yaml --set triangle_area.scene=rectangle --seed 7
   assay run suites/luminaire.yaml --coarsen 4    a quick look

@@ -85,7 +85,8 @@ void RowPyramid::add_best(ImageFamily& family) const {
     const BestCell& best = best_[g];
     if (best.windows == 0) continue;
     const GroupSize size{best.windows, groups_[g].share};
-    if (groups_[g].size == typical_side && groups_[g].grid == Grid::aligned) family.typical.group = size;
+    if (groups_[g].size == typical_side && groups_[g].grid == Grid::aligned)
+      family.typical.group = size;
     const auto add = [&](ImageFinding finding, StudentValue value,
                          std::vector<ImageFinding>& findings) {
       finding.log_p = log_p_two_sided(tails_of(value));

@@ -36,7 +36,7 @@ import jsonschema
 
 # A test's observations are means of so many primaries, a pilot's of one: so phases are told apart.
 PRIMARIES = 16
-TIMEOUT = 1.5  # Seconds that a hanging source gets; a sound one starts in less, even on a busy machine.
+TIMEOUT = 1.5  # Seconds that a hanging source gets. A sound one starts in less.
 PICTURE_TIMEOUT = 0.05  # Seconds that a renderer of several gets for each picture.
 PATIENCE = 100  # Seconds that a run of Assay may take, whatever its sources do.
 

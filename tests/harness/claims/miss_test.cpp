@@ -57,7 +57,7 @@ void expect_misses(const std::vector<ClaimRow>& rows, double level) {
   expect_as_in_runs(text);
 }
 
-const std::uint64_t planned_runs = tests::is_long() ? 100 : 25;
+const std::uint64_t planned_runs = tests::is_long() ? 200 : 25;
 
 /// The share of passes over the seeds, of tests in looks.
 double passes(const std::function<std::string(std::uint64_t)>& claim) {
