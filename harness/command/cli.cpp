@@ -135,7 +135,7 @@ void add_suites(Options& options, SuitesCommand& command) {
       command.suites, read_suite, "suite files");
   add_selection(options, command.options.selection);
   options.add({"--coarsen", "F", Replay::last}, command.options.coarsen, read_positive,
-              "multiply every `detect` by F, above 0; default 1");
+              "multiply every `detect` by F, above 0, those of laws to .5 at most; default 1");
   options.add({"--set", "estimator.key=value", Replay::first}, command.assignments,
               "set a parameter; repeatable; default as in the suite");
 }
@@ -206,6 +206,7 @@ Examples:
   assay check 'mean(luminaire/area) == 0.481046907316 +- 1e-12'
   assay check 'variance(a) < variance(h)' --estimator a=luminaire/area \
       --estimator 'h=luminaire/hemisphere,scene=rectangle'
+  assay check 'mean(a) == 0.5' --estimator a=recorded,file=numbers.txt
 )");
   CheckArguments& given = command.arguments;
   options.add({.name = "CLAIM", .needed = "a claim"}, given.claim, read_claim,

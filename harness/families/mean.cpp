@@ -422,38 +422,26 @@ std::optional<std::uint64_t> exact_size(const stats::ExactPlanning& plans,
   return std::max(*rejects, plans.sample_size(forbidden, edge - effect).value_or(0));
 }
 
+/// A claim of `within` rejects each margin where theta is 0, with half of the misses.
 std::optional<std::uint64_t> exact_secondaries(const TestOutcome& test,
                                                const PlannedChannel& channel,
                                                const stats::ErrorRates& rates) {
   const stats::ExactPlanning& plans = *test.plan.method.is.plans;
-  const double detect = channel.regions.detect.value_or(0) * channel.unit;
   if (test.question.of_two()) {
     const std::uint64_t welch = secondaries_by_t(test.plan.method, rates, channel);
     return whole_secondaries(two_sample_cost * static_cast<double>(welch));
   }
+  const Regions& regions = channel.regions;
   std::uint64_t most = 0;
-  for (const int side : sides_of(channel.regions)) {
-    const stats::ExactMeanPlan claimed = plan_of(channel, rates);
-    const auto count = channel.regions.proof() ? plans.sample_size(claimed, side * detect)
-                                               : exact_size(plans, claimed, side * detect);
-    if (!count) return std::nullopt;
-    most = std::max(most, *count);
-  }
-  return most;
-}
-
-/// At each margin theta = 0 is the effect to be found, with half of the misses.
-std::optional<std::uint64_t> exact_equivalence_secondaries(const TestOutcome& test,
-                                                           const PlannedChannel& channel,
-                                                           const stats::ErrorRates& rates) {
-  if (test.question.of_two()) return exact_secondaries(test, channel, rates);
-  PlannedChannel at_margin = channel;
-  const double margin = *channel.regions.detect * channel.unit;
-  std::uint64_t most = 0;
-  for (const int side : {1, -1}) {
-    at_margin.null_value = channel.null_value + side * margin;
+  for (const int side : sides_of(regions)) {
+    double effect = side * *regions.detect * channel.unit;
+    stats::ExactMeanPlan rejected = plan_of(channel, rates);
+    if (regions.within()) {
+      rejected.null_mean += effect;
+      effect = -effect;
+    }
     const auto count =
-        test.plan.method.is.plans->sample_size(plan_of(at_margin, rates), -side * margin);
+        regions.proof() ? plans.sample_size(rejected, effect) : exact_size(plans, rejected, effect);
     if (!count) return std::nullopt;
     most = std::max(most, *count);
   }
@@ -818,8 +806,7 @@ class MeanTheta : public Theta {
     if (!channel || !regions.detect) return std::nullopt;
     const stats::ErrorRates rates = planned_rates(share, regions);
     if (!test.plan.method.is.plans) return secondaries_by_t(test.plan.method, rates, *channel);
-    const auto count = (regions.within() ? exact_equivalence_secondaries : exact_secondaries)(
-        test, *channel, rates);
+    const auto count = exact_secondaries(test, *channel, rates);
     const std::uint64_t most = channel->unseen ? most_for_the_unseen : impossible_secondaries;
     return std::min(count.value_or(impossible_secondaries), most);
   }

@@ -41,6 +41,9 @@ struct QuantityRow {
   bool told_by_moments = false;  ///< A recorded run of it has moments that other claims can use.
   bool takes_reference = false;  ///< The test may have `reference`.
   bool counts_cost = false;      ///< The test may have `cost`.
+
+  /// Its margins are differences of probabilities, so they lie below 1.
+  bool is_a_probability() const { return of_a_law || of_a_sampler; }
 };
 
 const std::vector<QuantityRow>& quantities();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <set>
 
 #include "estimators/core/program_path.h"
@@ -41,10 +42,17 @@ Suite adjusted(Suite suite, const RunOptions& options) {
   return suite;
 }
 
+// Half of the way to laws that share no value still makes a quick test.
+constexpr double coarsest_probability = 0.5;
+
 void coarsen(Suite& suite, const RunOptions& options) {
   for (TestEntry& test : suite.tests) {
     if (!test.detect) continue;
-    test.detect->value *= options.coarsen;
+    double& detect = test.detect->value;
+    const double most = test.claim.left.row->is_a_probability()
+                            ? std::max(detect, coarsest_probability)
+                            : std::numeric_limits<double>::infinity();
+    detect = std::min(detect * options.coarsen, most);
     if (test.allow && test.detect->value <= test.allow->value) {
       refuse(test.place_of("detect"),
              "`--coarsen {:g}` brings `detect` down to `allow`; `detect` must stay above it",

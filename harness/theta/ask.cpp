@@ -85,9 +85,9 @@ void refuse_missing_per_cent(const Question& question) {
   const QuantityRow& quantity = *question.test->claim.left.row;
   const double size = question.theta->known_size(question).value_or(0);
   for (const Margin& margin : margins_of(*question.test)) {
-    if ((quantity.of_a_law || quantity.of_a_sampler) && margin.value > 1) {
+    if (quantity.is_a_probability() && margin.value >= 1) {
       refuse(margin.where,
-             "the margin {:g} is more than any difference of probabilities; here {:g} per cent is "
+             "no difference of probabilities is {:g}, they lie below 1; here {:g} per cent is "
              "written `{:g}`",
              margin.value, margin.value, margin.value / 100);
     }

@@ -41,7 +41,7 @@ claim: mean(area) within 5 of analytic|30: the margin 5 is larger than the refer
 {claim: quantile(area, 0.5) == 0.4}|28: inside {…} a comma ends the value of `claim`; quote the claim: `claim: "quantile(area, 0.5) == 0.4"`
 {claim: mean(area) == analytic, detect: 5}|45: the margin 5 is larger than the reference, 0.481: for 5 per cent write `5%`; if so much is meant, `1040%`
 {claim: mean(area) == analytic, detect: 0}|37: `detect` must be above 0: it is the effect that must not pass, as `1%`
-{claim: distribution(area.point) == density, detect: 5}|58: the margin 5 is more than any difference of probabilities; here 5 per cent is written `0.05`
+{claim: distribution(area.point) == density, detect: 5}|58: no difference of probabilities is 5, they lie below 1; here 5 per cent is written `0.05`
 {claim: mean(area) == analytic, expect: failed}|45: `expect` cannot be `failed`; did you mean `fail`?
 {claim: mean(area) == analytic, tags: slow}|43: `tags` must be a list: `tags: [slow, images]`
 {claim: mean(area) == analytic, test: F}|37: `test: F` does not answer this claim; there is `t`

@@ -132,6 +132,19 @@ TEST_F(Runs, RefusesToCoarsenDetectBelowWhatIsAllowed) {
   EXPECT_EQ(refused(test, {.coarsen = 0.75}), "(nothing was refused)");
 }
 
+TEST_F(Runs, CoarsensDistancesOfLawsToAHalfAtMost) {
+  const std::string test = "  - {claim: 'distribution(normal) == normal(2, 1)', detect: @}\n";
+  const auto coarsened = [&](const std::string& detect) {
+    std::string text = suite_of(test);
+    text.replace(text.find('@'), 1, detect);
+    const reports::Record record = run_text(text, {.coarsen = 30});
+    return record.suites[0].tests[0].detect;
+  };
+  EXPECT_EQ(coarsened("0.01"), 0.3);
+  EXPECT_EQ(coarsened("0.2"), 0.5);
+  EXPECT_EQ(coarsened("0.7"), 0.7);
+}
+
 TEST_F(Runs, RefusesADetectThatWouldTakeDaysAndSaysHowMuch) {
   const std::string text = refused("  - {claim: mean(normal) == 2, detect: 1e-7}\n");
   const std::string words = "this claim would take about ";
