@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "stats/basics/check.h"
+#include "stats/basics/scores.h"
 #include "stats/tails/tails.h"
 
 namespace assay::stats {
@@ -219,15 +220,12 @@ void join_rounded(std::vector<double>& values, std::size_t each) {
 
 // Phi^-1 of the ranks, the mean rank for equal values.
 std::vector<double> normal_scores(std::span<const double> values) {
-  std::vector<double> sorted(values.begin(), values.end());
-  std::ranges::sort(sorted);
+  std::vector<Placed<double>> order;
   std::vector<double> scores;
-  for (const double value : values) {
-    const auto [first, last] = std::ranges::equal_range(sorted, value);
-    const auto below = static_cast<double>(first - sorted.begin());
-    const auto equal = static_cast<double>(last - first);
-    const double rank = (below + equal / 2) / static_cast<double>(values.size());
-    scores.push_back(normal_quantile({Tail::lower, std::log(rank)}));
+  midranks(values, order, scores);
+  for (double& score : scores) {
+    const double rank = (score + 0.5) / static_cast<double>(values.size());
+    score = normal_quantile({Tail::lower, std::log(rank)});
   }
   return scores;
 }

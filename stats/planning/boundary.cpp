@@ -6,6 +6,7 @@
 
 #include "stats/basics/check.h"
 #include "stats/planning/planning.h"
+#include "stats/tails/special.h"
 #include "stats/tails/tails.h"
 
 namespace assay::stats {
@@ -212,11 +213,9 @@ double WangTsiatis::log_crossing(double constant) const {
   constexpr double far = 16;
   if (times_.size() == 1) return normal_upper(constant);
   if (constant > far) {
-    double log_sum = normal_upper(constant * shape_.back());
-    for (std::size_t k = shape_.size() - 1; k-- > 0;) {
-      log_sum += std::log1p(std::exp(normal_upper(constant * shape_[k]) - log_sum));
-    }
-    return log_sum;
+    std::vector<double> logs;
+    for (const double shape : shape_) logs.push_back(normal_upper(constant * shape));
+    return special::log_sum_of(logs);
   }
   std::vector<StoppingLook> looks;
   for (std::size_t k = 0; k < times_.size(); ++k) {

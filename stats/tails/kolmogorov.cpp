@@ -46,10 +46,7 @@ double log_one_sided_sum(const OneSidedTerm& term, double last) {
   std::vector<double> logs;
   logs.reserve(static_cast<std::size_t>(last / stride) + 1);
   for (double j = 0; j <= last; j += stride) logs.push_back(term(j));
-  const double peak = *std::max_element(logs.begin(), logs.end());
-  double sum = 0;
-  for (const double value : logs) sum += std::exp(value - peak);
-  return peak + std::log(sum * stride);
+  return special::log_sum_of(logs) + std::log(stride);
 }
 
 // ---- Durbin
