@@ -123,6 +123,22 @@ double log_binomial(double k, double trials, double probability) {
          k * std::log(probability) + rest * std::log1p(-probability);
 }
 
+// ln of the sum of a law's probabilities of the counts up to n from x outwards, which fall from
+// there on. Given are ln P(X = x) and ratio(x) = P(X = x + 1) / P(X = x).
+template <class Ratio>
+double log_tail_of_counts(double log_probability, std::uint64_t x, std::uint64_t n, bool upwards,
+                          const Ratio& ratio) {
+  if (std::isinf(log_probability)) return log_probability;
+  double sum = 1;
+  double term = 1;
+  for (std::uint64_t y = x; (upwards ? y < n : y > 0) && term > 1e-17 * sum;) {
+    term = upwards ? term * ratio(y) : term / ratio(y - 1);
+    y = upwards ? y + 1 : y - 1;
+    sum += term;
+  }
+  return std::min(0.0, log_probability + std::log(sum));
+}
+
 // Two-sided: x has so many of the values that both have in common. The law is hypergeometric, as
 // the binomial counts of both samples are given their sum.
 double log_p_of_counts(const Parts& x, const Parts& y) {
@@ -142,7 +158,7 @@ double log_p_of_counts(const Parts& x, const Parts& y) {
   double tail = 0;
   for (const bool upwards : {false, true}) {
     if (upwards ? seen < median : seen > median) continue;
-    tail = std::min(tail, special::log_tail_of_counts(at, x.common, x.size(), upwards, ratio));
+    tail = std::min(tail, log_tail_of_counts(at, x.common, x.size(), upwards, ratio));
   }
   return std::min(0.0, std::numbers::ln2 + tail);
 }

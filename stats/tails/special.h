@@ -1,8 +1,5 @@
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <span>
 
 #include "stats/tails/tails.h"
@@ -23,21 +20,6 @@ LogTails from_upper(double log_upper);
 double stirling_error(double z);
 // ln sum exp of one or more finite logarithms.
 double log_sum_of(std::span<const double> logs);
-// ln of the sum of a law's probabilities of the counts up to n from x outwards, which fall from
-// there on. Given are ln P(X = x) and ratio(x) = P(X = x + 1) / P(X = x).
-template <class Ratio>
-double log_tail_of_counts(double log_probability, std::uint64_t x, std::uint64_t n, bool upwards,
-                          const Ratio& ratio) {
-  if (std::isinf(log_probability)) return log_probability;
-  double sum = 1;
-  double term = 1;
-  for (std::uint64_t y = x; (upwards ? y < n : y > 0) && term > 1e-17 * sum;) {
-    term = upwards ? term * ratio(y) : term / ratio(y - 1);
-    y = upwards ? y + 1 : y - 1;
-    sum += term;
-  }
-  return std::min(0.0, log_probability + std::log(sum));
-}
 
 // ln(1 + z) - z without cancellation.
 double log1p_minus(double z);
