@@ -98,7 +98,7 @@ class FitPower {
   // The effect with a power of nearly 1 - beta. The power's normal score is almost linear in it.
   // That is as if X2 were normal with mean nu + l and variance 2 nu + 4 l at noncentrality l.
   double about() const {
-    const double z = planning::z_upper(plan_.rates.beta);
+    const double z = upper_normal_quantile(plan_.rates.beta);
     const double nu = plan_.degrees_of_freedom;
     const double beyond = critical_ - nu;
     const double wanted = beyond + 2 * z * z + z * std::sqrt(2 * nu + 4 * beyond + 4 * z * z);
@@ -177,7 +177,7 @@ double chi_square_fit_detectable(const FitPlan& plan, double n) {
 std::optional<std::uint64_t> chi_square_fit_sample_size(const FitPlan& plan, double detect) {
   check_plan("chi_square_fit_sample_size", plan);
   planning::check_effect("chi_square_fit_sample_size", plan.allow, detect);
-  const double z = planning::z_upper(plan.rates.alpha) + planning::z_upper(plan.rates.beta);
+  const double z = upper_normal_quantile(plan.rates.alpha) + upper_normal_quantile(plan.rates.beta);
   const double gap = detect - plan.allow;
   const double guess = (z * z + z * std::sqrt(2 * plan.degrees_of_freedom)) / (gap * gap);
   if (guess > planning::most_samples) return std::nullopt;

@@ -121,7 +121,7 @@ double betting_power(const ExactMeanPlan& plan, std::uint64_t n, double effect) 
 std::optional<std::uint64_t> betting_size(const ExactMeanPlan& plan, double effect) {
   const Upward up = upward("betting_size", plan, effect);
   if (up.is_impossible() || up.null_mean == up.range.low) return 1;
-  const double z = normal_quantile({Tail::upper, std::log(plan.rates.beta)});
+  const double z = upper_normal_quantile(plan.rates.beta);
   double least = static_cast<double>(largest_size);
   for (const BetGrowth& growth : growths(plan, up)) {
     if (!(growth.mean > 0)) continue;

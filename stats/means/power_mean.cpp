@@ -8,7 +8,6 @@ namespace assay::stats {
 namespace {
 
 using planning::critical_tail;
-using planning::z_upper;
 
 struct Studentised {
   double standard_error;
@@ -39,7 +38,7 @@ class Power {
   // linear (Johnson & Welch 1940).
   //   Score: (d - t (1 - 1 / 4 nu)) / sqrt(1 + t^2 / 2 nu).
   double about(double allow) const {
-    const double z = z_upper(rates_.beta);
+    const double z = upper_normal_quantile(rates_.beta);
     const double spread = std::sqrt(1 + critical_ * critical_ / (2 * scale_.degrees));
     const double noncentrality = critical_ * (1 - 1 / (4 * scale_.degrees)) + z * spread;
     const auto score = [&](double effect) { return score_at({allow, effect}) - z; };
@@ -105,7 +104,7 @@ void check_size(const char* function, double n) {
 }
 
 double z_sum(const ErrorRates& rates) {
-  return normal_quantile(critical_tail(rates)) + z_upper(rates.beta);
+  return normal_quantile(critical_tail(rates)) + upper_normal_quantile(rates.beta);
 }
 
 // Observations that t needs beyond the normal formula: z_alpha^2 / 2 (Guenther 1981), nearly exact.

@@ -21,21 +21,14 @@ inline void check_rates(const char* function, const ErrorRates& rates) {
   check::inside_unit({function, "beta"}, rates.beta);
 }
 
-// ln of the level of one tail.
-inline double log_tail_level(const ErrorRates& rates) {
-  return std::log(rates.two_sided ? rates.alpha / 2 : rates.alpha);
-}
-
 inline LogTail critical_tail(const ErrorRates& rates) {
-  return {Tail::upper, log_tail_level(rates)};
-}
-
-inline double z_upper(double probability) {
-  return normal_quantile({Tail::upper, std::log(probability)});
+  return {Tail::upper, std::log(rates.two_sided ? rates.alpha / 2 : rates.alpha)};
 }
 
 // The normal score of a power 1 - miss. It is finite also where miss rounds to 0 or 1.
-inline double score_of_miss(double miss) { return z_upper(std::clamp(miss, 1e-300, 1 - 1e-15)); }
+inline double score_of_miss(double miss) {
+  return upper_normal_quantile(std::clamp(miss, 1e-300, 1 - 1e-15));
+}
 
 constexpr double most_samples = 0x1p53;
 
