@@ -67,7 +67,7 @@ class Listener {
     for (const auto& run : planned_.suites) {
       for (const Untested& each : run->untested) {
         const reports::Test test = record_of_untested(each, *run);
-        if (reports::outcome(test) == reports::Outcome::failed) tell(*run, test, *each.test);
+        if (reports::is_failed(reports::standing(test))) tell(*run, test, *each.test);
       }
     }
     return may_go_on();

@@ -47,15 +47,6 @@ std::string annotation(const char* kind, const Test& test) {
                      message(text.empty() ? headline(test) : text));
 }
 
-/// Adds the tests that came out so, the worst first.
-void add_tests(const Record& record, Outcome how, const char* kind,
-               std::vector<std::string>& lines) {
-  std::vector<const Test*> tests = tests_of(record);
-  std::erase_if(tests, [how](const Test* test) { return outcome(*test) != how; });
-  std::ranges::stable_sort(tests, {}, [](const Test* test) { return -badness(*test); });
-  for (const Test* test : tests) lines.push_back(annotation(kind, *test));
-}
-
 std::string all_of(const char* kind, const std::vector<std::string>& lines) {
   const bool all = lines.size() <= most_annotations;
   const std::size_t shown = all ? lines.size() : most_annotations - 1;
@@ -78,9 +69,14 @@ std::string annotations(const Record& record) {
                                  property("alarm of the ledger: " + series.test),
                                  message(alarm_sentence(series))));
   }
-  add_tests(record, Outcome::failed, "error", errors);
   std::vector<std::string> warnings;
-  add_tests(record, Outcome::inconclusive, "warning", warnings);
+  std::vector<const Test*> tests = tests_of(record);
+  std::ranges::stable_sort(tests, {}, [](const Test* test) { return -badness(*test); });
+  for (const Test* test : tests) {
+    const Standing how = standing(*test);
+    if (is_failed(how)) errors.push_back(annotation("error", *test));
+    if (how == Standing::undecided) warnings.push_back(annotation("warning", *test));
+  }
   return all_of("error", errors) + all_of("warning", warnings);
 }
 

@@ -30,10 +30,7 @@ bool is_single(const Record& record) {
   return record.suites.size() == 1 && record.suites[0].tests.size() == 1;
 }
 
-bool is_trouble(const Test& test) {
-  const Outcome how = outcome(test);
-  return how == Outcome::failed || how == Outcome::inconclusive;
-}
+bool is_trouble(Standing how) { return how <= Standing::undecided; }
 
 std::string spaces(int count) {
   return std::string(static_cast<std::size_t>(std::max(0, count)), ' ');
@@ -41,9 +38,10 @@ std::string spaces(int count) {
 
 std::string plain(const std::string& text) { return plain_spaces(one_line(text)); }
 
-const char* colour_of(Outcome outcome) {
-  constexpr const char* colours[] = {"\x1b[32m", "\x1b[1;31m", "\x1b[33m", "\x1b[2m"};
-  return colours[static_cast<int>(outcome)];
+const char* colour_of(Standing standing) {
+  constexpr const char* colours[] = {"\x1b[1;31m", "\x1b[1;31m", "\x1b[33m",
+                                     "\x1b[32m",   "\x1b[32m",   "\x1b[2m"};
+  return colours[static_cast<int>(standing)];
 }
 
 /// One test as text, clean and without line feeds; no-break spaces keep numbers whole.
@@ -79,7 +77,8 @@ class Screen {
     blank();
     for (const Suite& suite : record.suites) {
       for (const Test& test : suite.tests) {
-        if (is_trouble(test) && !told.contains(test.id) && !in_full()) block(suite.name, test);
+        if (is_trouble(standing(test)) && !told.contains(test.id) && !in_full())
+          block(suite.name, test);
       }
     }
     left_out(record);
@@ -96,7 +95,7 @@ class Screen {
   /// A claim that is not as it should be: where, what, and what to do. If that takes too many
   /// lines, the last one says where to read all of it. The claim of `check` has no place.
   void block(const std::string& suite, const Test& test) {
-    const Outcome how = outcome(test);
+    const Standing how = standing(test);
     const int used = head(fmt::format("{} {}: {}", mark(how), suite, test.name), place(test), how);
     const std::vector<std::string> text = wrapped(trouble(test), options_.width - block_indent);
     const std::vector<Step> all = steps(test);
@@ -127,7 +126,7 @@ class Screen {
     slowest(record);
     blank();
     if (in_full()) paragraph("Claims: " + counts_text(standings(record)) + ".");
-    const Outcome how = alarms(record.ledger) > 0 ? Outcome::failed : worst(standings(record));
+    const Standing how = alarms(record.ledger) > 0 ? Standing::broken : worst(standings(record));
     std::string text = mark(how) + " " + run_sentence(record);
     if (record.seconds > 0) text += " in " + time(record.seconds);
     text += ".";
@@ -199,7 +198,7 @@ class Screen {
   }
 
   /// The name of a block, with its place beside it or below. Returns the number of lines.
-  int head(const std::string& name, const std::string& where, Outcome how) {
+  int head(const std::string& name, const std::string& where, Standing how) {
     constexpr int least = 28;  // of a name that gives way to its place
     const int room = options_.width - columns(where) - 2;
     const bool beside = !where.empty() && room >= std::min(least, columns(plain(name)));
@@ -238,10 +237,8 @@ class Screen {
     return beside(spaces(block_indent) + label, wrap_command(text, room));
   }
 
-  static Outcome worst(const Standings& counts) {
-    constexpr Outcome outcomes[] = {Outcome::failed, Outcome::failed, Outcome::inconclusive,
-                                    Outcome::passed, Outcome::passed, Outcome::skipped};
-    return counts.empty() ? Outcome::skipped : outcomes[static_cast<int>(counts.begin()->first)];
+  static Standing worst(const Standings& counts) {
+    return counts.empty() ? Standing::not_run : counts.begin()->first;
   }
 
   /// A line a suite; beside it the CPU time of its draws, if there is room.
@@ -261,8 +258,8 @@ class Screen {
     name = std::min(name, std::max(least_name, options_.width - gap - text));
     for (const Suite& suite : record.suites) {
       if (suite.tests.empty()) continue;
-      const Outcome how = worst(standings(suite));
-      const bool marked = how == Outcome::failed || how == Outcome::inconclusive;
+      const Standing how = worst(standings(suite));
+      const bool marked = is_trouble(how);
       const std::string left =
           fmt::format("{}  {} {}", pad_right(shorten(plain(suite.name), name), name),
                       marked ? mark(how) : " ", counts_text(standings(suite)));
@@ -303,11 +300,11 @@ class Screen {
       const std::vector<std::string> left =
           in_full() ? wrap(all[i].name, room) : std::vector{shorten(all[i].name, room)};
       const std::string first = pad_right(left[0], room + gap) + right;
-      const char* const style = colour_of(outcome(test));
-      line(fmt::format("  {} {}", mark(outcome(test)), plain_spaces(first)), style);
+      const char* const style = colour_of(standing(test));
+      line(fmt::format("  {} {}", mark(standing(test)), plain_spaces(first)), style);
       for (std::size_t part = 1; part < left.size(); ++part)
         line(spaces(margin) + plain_spaces(left[part]), style);
-      if (in_full() && (is_trouble(test) || all.size() == 1)) explain(test);
+      if (in_full() && (is_trouble(standing(test)) || all.size() == 1)) explain(test);
     }
     blank();
   }
@@ -315,7 +312,7 @@ class Screen {
   /// One test alone: a pass says what it excludes, and how to repeat it.
   void alone(const Suite& suite) {
     const Test& test = suite.tests[0];
-    if (outcome(test) != Outcome::passed) return;
+    if (const Standing how = standing(test); is_trouble(how) || how == Standing::not_run) return;
     rows(suite);
     out_.erase(out_.size() - 1);  // no empty line between
     indented(test.message, block_lines);
@@ -329,8 +326,8 @@ class Screen {
       if (standing(*test) == Standing::not_run) ++why[trouble(*test)];
     }
     for (const auto& [reason, count] : why) {
-      head(fmt::format("{} {} not run", mark(Outcome::skipped), counted(count, "claim", "claims")),
-           "", Outcome::skipped);
+      head(fmt::format("{} {} not run", mark(Standing::not_run), counted(count, "claim", "claims")),
+           "", Standing::not_run);
       indented(reason, block_lines - 1);
       blank();
     }
@@ -339,8 +336,8 @@ class Screen {
   void write(const Ledger& ledger) {
     for (const LedgerSeries& series : ledger.series) {
       if (!series.alarm) continue;
-      head(fmt::format("{} ledger alarm: {}", mark(Outcome::failed), series_name(ledger, series)),
-           ledger.file, Outcome::failed);
+      head(fmt::format("{} ledger alarm: {}", mark(Standing::broken), series_name(ledger, series)),
+           ledger.file, Standing::broken);
       indented(alarm_sentence(series), in_full() ? unlimited : block_lines - 2);
       if (in_full()) indented(series_sentence(series));
       blank();

@@ -51,7 +51,7 @@ std::string explain(const Suite& suite, const Test& test, int width) {
       if (!part.empty()) out += part + "\n";
   };
   const std::string where = words.place.empty() ? "" : " (" + words.place + ")";
-  say(fmt::format("{} {}{}", mark(outcome(test)), one_line(test.id), where));
+  say(fmt::format("{} {}{}", mark(standing(test)), one_line(test.id), where));
   out += "\n";
   std::string text = fmt::format("The claim is `{}`. ", one_line(test.claim));
   const bool passed = test.verdict == Verdict::pass && test.expected == Verdict::pass;

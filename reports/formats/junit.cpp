@@ -93,9 +93,9 @@ std::string element(const char* name, const std::string& attributes, const std::
 std::string outcome_element(const Test& test) {
   const std::string message = attribute("message", headline(test));
   const std::string type = attribute("type", to_string(test.verdict));
-  const Outcome result = outcome(test);
-  if (result == Outcome::passed) return {};
-  if (result != Outcome::failed) return element("skipped", message, {});
+  const Standing how = standing(test);
+  if (how == Standing::holds || how == Standing::caught) return {};
+  if (!is_failed(how)) return element("skipped", message, {});
   return element(test.verdict == Verdict::error ? "error" : "failure", message + type,
                  plain_text(test));
 }
@@ -145,12 +145,12 @@ struct Counts {
   double seconds = 0;
 
   void add(const Test& test) {
-    const Outcome result = outcome(test);
-    const bool error = result == Outcome::failed && test.verdict == Verdict::error;
+    const Standing how = standing(test);
+    const bool error = is_failed(how) && test.verdict == Verdict::error;
     ++tests;
     errors += error;
-    failures += result == Outcome::failed && !error;
-    skipped += result == Outcome::inconclusive || result == Outcome::skipped;
+    failures += is_failed(how) && !error;
+    skipped += how == Standing::undecided || how == Standing::not_run;
     seconds += total_cost(test).seconds;
   }
   std::string attributes() const {

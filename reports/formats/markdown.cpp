@@ -34,7 +34,7 @@ std::string code_block(const std::string& text) {
 
 std::string problem(const Test& test) {
   std::string out =
-      fmt::format("### {} {}: {}\n\n", mark(outcome(test)), verdict_text(test), cell(test.name));
+      fmt::format("### {} {}: {}\n\n", mark(standing(test)), verdict_text(test), cell(test.name));
   for (const auto& [label, sentence] : facts(test))
     out += fmt::format("- {}: {}\n", label, cell(sentence, paragraph_limit));
   if (!test.replay.empty())
@@ -43,7 +43,7 @@ std::string problem(const Test& test) {
 }
 
 std::string row(const Test& test) {
-  return fmt::format("| {} {} | {} | {} | {} | {} |\n", mark(outcome(test)), verdict_text(test),
+  return fmt::format("| {} {} | {} | {} | {} | {} |\n", mark(standing(test)), verdict_text(test),
                      cell(test.name), cell(key_number(test)), cell(cost_text(total_cost(test))),
                      duration(total_cost(test).seconds));
 }
@@ -110,7 +110,7 @@ std::string ledger_section(const Ledger& ledger) {
   std::string out = fmt::format("## {}\n\n", cell(ledger_title(ledger)));
   for (const LedgerSeries& series : ledger.series) {
     if (!series.alarm) continue;
-    out += fmt::format("- {} **alarm** {}: {} {}.\n", mark(Outcome::failed),
+    out += fmt::format("- {} **alarm** {}: {} {}.\n", mark(Standing::broken),
                        cell(series_name(ledger, series)),
                        cell(alarm_sentence(series), paragraph_limit),
                        cell(series_sentence(series), paragraph_limit));
@@ -157,10 +157,12 @@ std::string markdown(const Record& record, std::size_t limit) {
   page.add(title(record), rows, 0);
   page.add(statements_section(record), rows, statement_count(record));
   if (!record.ledger.file.empty()) page.add(ledger_section(record.ledger), rows, 0);
-  for (const Outcome kind : {Outcome::failed, Outcome::inconclusive}) {
-    for (const Test* test : tests_of(record)) {
-      if (outcome(*test) == kind) page.add(problem(*test), problems);
-    }
+  const std::vector<const Test*> tests = tests_of(record);
+  for (const Test* test : tests) {
+    if (is_failed(standing(*test))) page.add(problem(*test), problems);
+  }
+  for (const Test* test : tests) {
+    if (standing(*test) == Standing::undecided) page.add(problem(*test), problems);
   }
   for (const Suite& suite : record.suites) add_table(suite, page, rows);
   std::string out = page.take();

@@ -38,10 +38,15 @@ class Draws {
 
 }  // namespace
 
-Outcome outcome(const Test& test) {
-  if (test.verdict == Verdict::skipped) return Outcome::skipped;
-  if (test.ok) return Outcome::passed;
-  return test.verdict == Verdict::inconclusive ? Outcome::inconclusive : Outcome::failed;
+bool is_evidence(const Test& test) {
+  return test.verdict != Verdict::invalid && test.verdict != Verdict::error;
+}
+
+Standing standing(const Test& test) {
+  if (test.verdict == Verdict::skipped) return Standing::not_run;
+  if (test.ok) return test.expected == Verdict::pass ? Standing::holds : Standing::caught;
+  if (test.verdict == Verdict::inconclusive) return Standing::undecided;
+  return is_evidence(test) ? Standing::broken : Standing::no_verdict;
 }
 
 std::vector<const Test*> tests_of(const Record& record) {

@@ -469,14 +469,15 @@ struct Record {
 /// Series with an alarm.
 int alarms(const Ledger&);
 
-/// The meaning of a test's verdict and expectation for the run.
-enum class Outcome {
-  passed,        ///< ok
-  failed,        ///< not ok: fail, invalid, error, or an expectation not met
-  inconclusive,  ///< undecided, whatever was expected
-  skipped        ///< not run
-};
-Outcome outcome(const Test&);
+/// True unless an assumption of the test's numbers is violated.
+bool is_evidence(const Test&);
+
+/// The groups that a reader sorts claims by; those that most need a look come first. A claim
+/// without a verdict was to have one, but its data break an assumption, or drawing them failed. A
+/// planted bug is caught where the test is ok and its expected verdict is not pass.
+enum class Standing { broken, no_verdict, undecided, holds, caught, not_run };
+Standing standing(const Test&);
+inline bool is_failed(Standing how) { return how <= Standing::no_verdict; }
 
 /// The tests of all suites.
 std::vector<const Test*> tests_of(const Record&);

@@ -292,9 +292,9 @@ std::vector<const Sample*> worst_samples(const Test& test) {
   return samples;
 }
 
-std::string mark(Outcome outcome) {
-  constexpr const char* marks[] = {"✓", "✗", "?", "–"};
-  return marks[static_cast<int>(outcome)];
+std::string mark(Standing standing) {
+  constexpr const char* marks[] = {"✗", "✗", "?", "✓", "✓", "–"};
+  return marks[static_cast<int>(standing)];
 }
 
 std::string verdict_text(const Test& test) {
@@ -307,10 +307,6 @@ std::string verdict_text(const Test& test) {
   // A verdict can be the expected one for the wrong reason; the message tells it.
   if (!test.ok) return verdict + ", yet not ok";
   return test.expected == Verdict::pass ? verdict : verdict + " (as expected)";
-}
-
-bool is_evidence(const Test& test) {
-  return test.verdict != Verdict::invalid && test.verdict != Verdict::error;
 }
 
 std::string key_number(const Test& test) {

@@ -57,14 +57,11 @@ std::string exclusion_text(const Test&);
 std::vector<const Sample*> worst_samples(const Test&);
 
 /// ✓ ✗ ? – for ok, not ok, undecided and not run, in one column.
-std::string mark(Outcome);
+std::string mark(Standing);
 
 /// The verdict with what was expected of it, where that is not pass: "fail (as expected)",
 /// "pass, but fail expected".
 std::string verdict_text(const Test&);
-
-/// True unless an assumption of the test's numbers is violated.
-bool is_evidence(const Test&);
 
 /// The first number to look for in a test: the effect in its sentence, with the named interval.
 /// Without an effect it is the p-value that the verdict rests on. Empty if nothing was tested.

@@ -264,14 +264,6 @@ const char* to_string(Standing standing) {
   return names[static_cast<int>(standing)];
 }
 
-Standing standing(const Test& test) {
-  const Outcome how = outcome(test);
-  if (how == Outcome::passed)
-    return test.expected == Verdict::pass ? Standing::holds : Standing::caught;
-  if (how == Outcome::failed) return is_evidence(test) ? Standing::broken : Standing::no_verdict;
-  return how == Outcome::inconclusive ? Standing::undecided : Standing::not_run;
-}
-
 Standings standings(const Suite& suite) {
   Standings count;
   for (const Test& test : suite.tests) ++count[standing(test)];

@@ -23,17 +23,10 @@ std::string false_alarms(const Record&);
 /// The same, and how often a claim passes that is off by what must be caught.
 std::string error_rates(const Record&);
 
-/// The groups that a reader sorts claims by. A claim without a verdict was to have one, but its
-/// data break an assumption, or drawing them failed.
-enum class Standing { broken, no_verdict, undecided, holds, caught, not_run };
-
 /// "broken", "no verdict", "undecided", "holds", "caught", "not run".
 const char* to_string(Standing);
 
-/// A planted bug is caught where the test is ok and its expected verdict is not pass.
-Standing standing(const Test&);
-
-/// How many claims stand how. Those that most need a look come first.
+/// How many claims stand how.
 using Standings = std::map<Standing, int>;
 Standings standings(const Suite&);
 Standings standings(const Record&);

@@ -45,7 +45,7 @@ std::string finding(const Test* test) {
   if (test == nullptr) return "not run";
   const std::string evidence = evidence_of(*test);
   if (test->ok && !evidence.empty()) return evidence;
-  const std::string verdict = mark(outcome(*test)) + " " + verdict_text(*test);
+  const std::string verdict = mark(standing(*test)) + " " + verdict_text(*test);
   return evidence.empty() ? verdict : verdict + "; " + evidence;
 }
 
@@ -84,8 +84,8 @@ std::size_t statement_count(const Record& record) {
 }
 
 std::string answer_text(Answer answer) {
-  if (answer == Answer::open) return mark(Outcome::inconclusive) + " open";
-  if (answer == Answer::contradicted) return mark(Outcome::failed) + " contradicted";
+  if (answer == Answer::open) return mark(Standing::undecided) + " open";
+  if (answer == Answer::contradicted) return mark(Standing::broken) + " contradicted";
   return to_string(answer);
 }
 

@@ -6,14 +6,14 @@
 namespace assay::reports {
 namespace {
 
-TEST(Outcome, FollowsVerdictAndExpectation) {
-  EXPECT_EQ(outcome(judged(Verdict::pass)), Outcome::passed);
-  EXPECT_EQ(outcome(judged(Verdict::fail, Verdict::fail)), Outcome::passed);
-  EXPECT_EQ(outcome(judged(Verdict::pass, Verdict::fail)), Outcome::failed);
-  EXPECT_EQ(outcome(judged(Verdict::invalid)), Outcome::failed);
-  EXPECT_EQ(outcome(judged(Verdict::error)), Outcome::failed);
-  EXPECT_EQ(outcome(judged(Verdict::inconclusive, Verdict::fail)), Outcome::inconclusive);
-  EXPECT_EQ(outcome(judged(Verdict::skipped)), Outcome::skipped);
+TEST(Standing, FollowsVerdictAndExpectation) {
+  EXPECT_EQ(standing(judged(Verdict::pass)), Standing::holds);
+  EXPECT_EQ(standing(judged(Verdict::fail, Verdict::fail)), Standing::caught);
+  EXPECT_EQ(standing(judged(Verdict::pass, Verdict::fail)), Standing::broken);
+  EXPECT_EQ(standing(judged(Verdict::invalid)), Standing::no_verdict);
+  EXPECT_EQ(standing(judged(Verdict::error)), Standing::no_verdict);
+  EXPECT_EQ(standing(judged(Verdict::inconclusive, Verdict::fail)), Standing::undecided);
+  EXPECT_EQ(standing(judged(Verdict::skipped)), Standing::not_run);
 }
 
 Sample drawn(const std::string& stream, std::uint64_t primaries, std::uint64_t secondaries) {
