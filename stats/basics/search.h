@@ -1,7 +1,10 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <functional>
+#include <numeric>
+#include <ranges>
 #include <utility>
 
 namespace assay::stats {
@@ -42,6 +45,27 @@ GoldenSection golden_section(const Function& f, double low, double high, double 
     largest = std::max({largest, at_left, at_right});
   }
   return {low, high, largest};
+}
+
+// The smallest whole number in [low, high) that is enough, or `high`. All above it must be enough.
+template <class Enough>
+std::uint64_t smallest_whole(std::uint64_t low, std::uint64_t high, const Enough& enough) {
+  return *std::ranges::lower_bound(std::views::iota(low, high), true, {}, enough);
+}
+
+// An interval from a point inside to one outside, halved until no double lies between its ends.
+struct Halved {
+  double inside = 0;
+  double outside = 0;
+};
+
+template <class IsOutside>
+Halved halved_between(double inside, double outside, const IsOutside& is_outside) {
+  while (true) {
+    const double middle = std::midpoint(inside, outside);
+    if (middle == inside || middle == outside) return {inside, outside};
+    (is_outside(middle) ? outside : inside) = middle;
+  }
 }
 
 using Curve = std::function<double(double)>;

@@ -30,13 +30,10 @@ TwoSizes sizes_of(const DistancePlan& plan, double n) {
 // Smallest lattice distance of two samples that the law rejects, a step beyond 1 if there is none.
 double two_sample_critical(double log_alpha, TwoSizes sizes) {
   const std::uint64_t steps = std::lcm(sizes.m, sizes.n);
-  std::uint64_t low = 0;
-  std::uint64_t high = steps + 1;
-  while (high - low > 1) {
-    const std::uint64_t middle = low + (high - low) / 2;
-    (smirnov_upper_tail({middle, sizes.m, sizes.n}).log_p <= log_alpha ? high : low) = middle;
-  }
-  return static_cast<double>(high) / static_cast<double>(steps);
+  const std::uint64_t critical = smallest_whole(1, steps + 1, [&](std::uint64_t step) {
+    return smirnov_upper_tail({step, sizes.m, sizes.n}).log_p <= log_alpha;
+  });
+  return static_cast<double>(critical) / static_cast<double>(steps);
 }
 
 double two_sample_margin_critical(double log_alpha, TwoSizes sizes) {

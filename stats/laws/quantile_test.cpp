@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "stats/basics/check.h"
+#include "stats/basics/search.h"
 #include "stats/tails/tails.h"
 
 namespace assay::stats {
@@ -23,19 +24,11 @@ void check_sorted(const char* function, std::span<const double> sorted) {
   }
 }
 
-// The smallest k with P(K <= k) > e^log_level, the lower critical count, by bisection.
+// The smallest k with P(K <= k) > e^log_level, the lower critical count.
 std::uint64_t smallest_kept(Trials trials, double log_level) {
-  std::uint64_t low = 0;
-  std::uint64_t high = trials.trials;
-  while (low < high) {
-    const std::uint64_t middle = std::midpoint(low, high);
-    if (binomial_lower(middle, trials) > log_level) {
-      high = middle;
-    } else {
-      low = middle + 1;
-    }
-  }
-  return low;
+  return smallest_whole(0, trials.trials, [&](std::uint64_t count) {
+    return binomial_lower(count, trials) > log_level;
+  });
 }
 
 std::uint64_t largest_kept(Trials trials, double log_level) {
@@ -197,12 +190,7 @@ Interval quantile_difference_interval(std::span<const double> sorted_x,
   const double reach = sorted_x.back() - sorted_x.front() + sorted_y.back() - sorted_y.front() + 1;
   const auto end = [&](const auto& rejected, double outside) {
     if (!rejected(outside)) return std::copysign(infinity, outside - middle);
-    double inside = middle;
-    while (true) {
-      const double between = std::midpoint(inside, outside);
-      if (between == inside || between == outside) return inside;
-      (rejected(between) ? outside : inside) = between;
-    }
+    return halved_between(middle, outside, rejected).inside;
   };
   return {end(rejected_below, middle - reach), end(rejected_above, middle + reach), confidence};
 }

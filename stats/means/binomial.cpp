@@ -93,16 +93,6 @@ double log_p_upper(const TwoValued& x, const TwoValued& y, Contrast null_value) 
   return log_p_lower(mirrored(x), mirrored(y), {null_value.scale, -null_value.offset});
 }
 
-// The farthest point that is not rejected, between one that is not and one that is.
-template <class Rejected>
-double last_kept(double kept, double out, const Rejected& rejected) {
-  while (true) {
-    const double middle = kept + (out - kept) / 2;
-    if (middle == kept || middle == out) return out;
-    (rejected(middle) ? out : kept) = middle;
-  }
-}
-
 }  // namespace
 
 TestResult binomial(Successes observed, double null_probability) {
@@ -188,8 +178,8 @@ Interval two_valued_difference_interval(const TwoValued& x, const TwoValued& y, 
   const double most = x.range.high - y.range.low;
   const auto too_low = [&](double d) { return log_p_upper(x, y, {1, d}) <= log_error; };
   const auto too_high = [&](double d) { return log_p_lower(x, y, {1, d}) <= log_error; };
-  return {too_low(least) ? last_kept(centre, least, too_low) : least,
-          too_high(most) ? last_kept(centre, most, too_high) : most, confidence};
+  return {too_low(least) ? halved_between(centre, least, too_low).outside : least,
+          too_high(most) ? halved_between(centre, most, too_high).outside : most, confidence};
 }
 
 }  // namespace assay::stats

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "stats/basics/check.h"
+#include "stats/basics/search.h"
 #include "stats/tails/tails.h"
 
 namespace assay::stats {
@@ -47,15 +48,10 @@ double probability(const Upward& plan, double mean) {
 
 // The least count whose upper tail under p is at most the level; n + 1 if there is none.
 std::uint64_t critical_count(std::uint64_t n, double p, double log_level) {
-  // Never rejected: its tail is the whole.
-  std::uint64_t kept = 0;
-  std::uint64_t rejected = n + 1;
-  while (rejected - kept > 1) {
-    const std::uint64_t middle = kept + (rejected - kept) / 2;
-    const bool rejects = binomial_upper(middle, {n, p}) <= log_level;
-    (rejects ? rejected : kept) = middle;
-  }
-  return rejected;
+  // A count of 0 is never rejected: its tail is the whole.
+  return smallest_whole(1, n + 1, [&](std::uint64_t count) {
+    return binomial_upper(count, {n, p}) <= log_level;
+  });
 }
 
 double binomial_power(const ExactMeanPlan& plan, std::uint64_t n, double effect) {
@@ -152,12 +148,7 @@ std::optional<double> exact_detectable(const ExactPlanning& method, const ExactM
     for (int i = 0; i < 60 && !finds(found); ++i) found *= 2;
   }
   if (!std::isfinite(found) || !finds(found)) return std::nullopt;
-  double missed = plan.allow;
-  for (int i = 0; i < 60; ++i) {
-    const double middle = missed + (found - missed) / 2;
-    (finds(middle) ? found : missed) = middle;
-  }
-  return found;
+  return halved_between(plan.allow, found, finds).outside;
 }
 
 }  // namespace assay::stats

@@ -9,6 +9,7 @@
 #include "stats/basics/check.h"
 #include "stats/basics/moments.h"
 #include "stats/basics/search.h"
+#include "stats/planning/planning.h"
 #include "stats/tails/tails.h"
 
 namespace assay::stats {
@@ -238,22 +239,15 @@ double slope_power(const SlopeData& expected, double null_slope, double alpha) {
 std::optional<double> slope_sample_factor(const SlopeData& expected, double null_slope,
                                           SlopeRates rates) {
   check::inside_unit({"slope_sample_factor", "beta"}, rates.beta);
+  constexpr double most = 0x1p60;
   const auto enough = [&](double factor) {
+    if (factor >= most) return true;
     SlopeData larger = expected;
     for (SlopePoint& point : larger.points) point.standard_error /= std::sqrt(factor);
     return slope_power(larger, null_slope, rates.alpha) >= 1 - rates.beta;
   };
-  double high = 0x1p-40;
-  while (!enough(high)) {
-    high *= 2;
-    if (high > 0x1p60) return std::nullopt;
-  }
-  double low = high / 2;
-  while (high - low > 1e-9 * high) {
-    const double middle = std::midpoint(low, high);
-    (enough(middle) ? high : low) = middle;
-  }
-  return high;
+  const double found = planning::smallest_effect(enough, 0, 0x1p-40);
+  return found < most ? std::optional(found) : std::nullopt;
 }
 
 }  // namespace assay::stats
