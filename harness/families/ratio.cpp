@@ -200,11 +200,9 @@ class LogTheta : public Theta {
       spread += influence->relative.m2;
     }
     if (spread == 0) return gates;
-    const bool two = sides.size() == 2;
-    gates.push_back(gate_of(two ? stats::effective_observations_gate(sides[0], sides[1])
-                                : stats::effective_observations_gate(sides[0]),
-                            name));
-    gates.push_back(gate_of(two ? stats::residual_skewness_gate(sides[0], sides[1], 1, critical)
+    gates.push_back(gate_of(stats::effective_observations_gate(sides), name));
+    gates.push_back(gate_of(sides.size() == 2
+                                ? stats::residual_skewness_gate(sides[0], sides[1], 1, critical)
                                 : stats::residual_skewness_gate(sides[0], {.value = 1}, critical),
                             name));
     return gates;

@@ -111,30 +111,6 @@ double checked_cube(double critical_value) {
   return critical_value * critical_value * critical_value;
 }
 
-// ---- Effective observations
-
-// Sums over a sample's weights w = (x - mean)^2 / n^2.
-struct Weights {
-  double sum = 0;
-  double sum_of_squares = 0;
-};
-
-Weights weights_of(const Moments& x) {
-  const double n = static_cast<double>(x.count);
-  const double largest = std::max(x.maximum - x.mean, x.mean - x.minimum);
-  const double fourth = x.m4 > 0 ? x.m4 : x.m2 * largest * largest;
-  return {x.m2 / n / n, fourth / n / n / n / n};
-}
-
-Gate effective_gate(const Weights& weights) {
-  if (weights.sum == 0) throw ZeroVariance("effective_observations_gate: zero variance");
-  const double value = weights.sum / weights.sum_of_squares * weights.sum;
-  const GateState state = value < fewest_effective       ? GateState::red
-                          : value < 2 * fewest_effective ? GateState::amber
-                                                         : GateState::green;
-  return {"effective observations", value, value, fewest_effective, state};
-}
-
 // Largest deviation over s that a sample of n shows at `probability`: n times the tail of one
 // residual.
 double grubbs(double n, double probability) {
@@ -299,17 +275,23 @@ Gate dominance_gate(const Moments& x) {
   return gate;
 }
 
-Gate effective_observations_gate(const Moments& x) {
-  check::at_least({"effective_observations_gate", "count"}, x.count, 2);
-  return effective_gate(weights_of(x));
-}
-
-Gate effective_observations_gate(const Moments& x, const Moments& y) {
-  check::at_least({"effective_observations_gate", "count of x"}, x.count, 2);
-  check::at_least({"effective_observations_gate", "count of y"}, y.count, 2);
-  const Weights first = weights_of(x);
-  const Weights second = weights_of(y);
-  return effective_gate({first.sum + second.sum, first.sum_of_squares + second.sum_of_squares});
+Gate effective_observations_gate(std::span<const Moments> samples) {
+  double sum = 0;
+  double sum_of_squares = 0;
+  for (const Moments& x : samples) {
+    check::at_least({"effective_observations_gate", "count"}, x.count, 2);
+    const double n = static_cast<double>(x.count);
+    const double largest = std::max(x.maximum - x.mean, x.mean - x.minimum);
+    const double fourth = x.m4 > 0 ? x.m4 : x.m2 * largest * largest;
+    sum += x.m2 / n / n;
+    sum_of_squares += fourth / n / n / n / n;
+  }
+  if (sum == 0) throw ZeroVariance("effective_observations_gate: zero variance");
+  const double value = sum / sum_of_squares * sum;
+  const GateState state = value < fewest_effective       ? GateState::red
+                          : value < 2 * fewest_effective ? GateState::amber
+                                                         : GateState::green;
+  return {"effective observations", value, value, fewest_effective, state};
 }
 
 Gate kurtosis_gate(const Moments& x) {

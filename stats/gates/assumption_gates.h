@@ -41,9 +41,8 @@ Gate dominance_gate(const Moments& x);
 // the variance of the mean: at 32 the standard error is known to 9 %. Below that the tail that was
 // not seen may move it further than its law allows (measurements.md). Red below 32, green from 64
 // on. Without fourth powers sum w / max w takes its place, which is less.
-Gate effective_observations_gate(const Moments& x);
-// The same for the contrast mean x - mean y. Samples of n have w = (x - mean)^2 / n^2.
-Gate effective_observations_gate(const Moments& x, const Moments& y);
+// For the contrast of the means of two samples, each of n has w = (x - mean)^2 / n^2.
+Gate effective_observations_gate(std::span<const Moments> samples);
 
 // For F and chi-square tests of variances. Value: excess kurtosis b2 - 3. Green up to .2, limit .2.
 // The confidence limit subtracts the 1e-4 quantile of b2. That quantile is Anscombe & Glynn's

@@ -107,8 +107,8 @@ TEST(Refusals, OfGates) {
   const Values same(20, 3.0);
   REFUSED(skewness_gate(constant, 3));
   REFUSED(dominance_gate(constant));
-  REFUSED(effective_observations_gate(constant));
-  REFUSED(effective_observations_gate(constant, constant));
+  REFUSED(effective_observations_gate({&constant, 1}));
+  REFUSED(effective_observations_gate(std::vector{constant, constant}));
   REFUSED(kurtosis_gate(constant));
   REFUSED(skewness_gate(x, -1));
   REFUSED(primaries_for_variance(nan));

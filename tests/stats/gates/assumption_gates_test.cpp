@@ -216,20 +216,21 @@ TEST(AssumptionGates, EffectiveObservationsWeighSquaresByTheirShare) {
   const std::vector<double> others = tests::table_sample(4, 90);
   Moments x = moments_of(tests::table_sample(3, 200));
   const double one = take(tests::table_sample(3, 200), x);
-  EXPECT_NEAR(effective_observations_gate(x).value, one, 1e-9 * one);
+  EXPECT_NEAR(effective_observations_gate({&x, 1}).value, one, 1e-9 * one);
   const double two = take(others, moments_of(others));
-  EXPECT_NEAR(effective_observations_gate(x, moments_of(others)).value, two, 1e-9 * two);
+  EXPECT_NEAR(effective_observations_gate(std::vector{x, moments_of(others)}).value, two,
+              1e-9 * two);
   x.m4 = 0;
-  EXPECT_LT(effective_observations_gate(x).value, one);
+  EXPECT_LT(effective_observations_gate({&x, 1}).value, one);
 }
 
 // The first k of n values are 1, the others 0. With p = k / n the number is
 // n p (1 - p) / (1 - 3 p (1 - p)). That is nearly k.
 TEST(AssumptionGates, RareValuesCountAsEffectiveObservations) {
   const auto state = [](int rare) {
-    return effective_observations_gate(
-               draw_moments(20000, [k = 0, rare]() mutable { return k++ < rare ? 1 : 0; }))
-        .state;
+    const Moments moments =
+        draw_moments(20000, [k = 0, rare]() mutable { return k++ < rare ? 1 : 0; });
+    return effective_observations_gate({&moments, 1}).state;
   };
   EXPECT_EQ(state(31), GateState::red);
   EXPECT_EQ(state(33), GateState::amber);

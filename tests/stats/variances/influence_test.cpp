@@ -185,7 +185,7 @@ TEST(Influence, OfAVarianceKeepsItsLevelInAHeavyTailWhereTheGateIsNotRed) {
     const Influence x = influence_of_variance(sums.moments());
     if (log_p_two_sided(influence_t(x, log_variance)) > std::log(.01)) continue;
     ++fails;
-    decided += effective_observations_gate(x.relative).state != GateState::red;
+    decided += effective_observations_gate({&x.relative, 1}).state != GateState::red;
   }
   const auto n = static_cast<double>(runs);
   EXPECT_TRUE(tests::too_many(fails / n, .01, n)) << fails;
