@@ -121,7 +121,7 @@ struct CoarseImages {
   BlockSums<double> squared_error;               // Of a reference, weighted; empty if it has none.
   BlockSums<double> weights;                     // The elements', averaged over the halves.
   BlockSums<double> squared_weights;
-  std::vector<double> third;  // Third cumulants of the effects of elements, by block.
+  BlockSums<double> third;  // Third cumulants of the effects; none with alternating signs.
 };
 
 struct ElementCounts {

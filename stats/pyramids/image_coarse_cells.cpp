@@ -31,12 +31,6 @@ void for_each_window(const Groups& groups, const Visit& visit) {
   }
 }
 
-std::size_t count_windows(const Groups& groups) {
-  std::size_t count = 0;
-  for (const WindowGroup& group : groups) count += group.windows.size();
-  return count;
-}
-
 class CoarseSums {
  public:
   CoarseSums(const ImageExtent& extent, std::size_t channel)
@@ -72,8 +66,10 @@ class CoarseSums {
 
 // Moments of one channel's windows, all groups in a row.
 WelchCells window_moments(const CoarseImages& coarse, const Groups& groups, std::size_t channel) {
+  std::size_t count = 0;
+  for_each_window(groups, [&](auto...) { ++count; });
   WelchCells moments;
-  moments.start(count_windows(groups));
+  moments.start(count);
   CoarseSums sums(coarse.extent, channel);
   for (std::size_t h = 0; h < halves; ++h) {
     sums.load(coarse.effect[h]);
@@ -108,18 +104,6 @@ WelchCells window_moments(const CoarseImages& coarse, const Groups& groups, std:
   return moments;
 }
 
-// One channel's numbers of blocks, as sums over windows.
-WindowSums channel_sums(const ImageExtent& blocks, const std::vector<double>& numbers,
-                        std::size_t channel) {
-  std::vector<double> values(blocks.width * blocks.height);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    values[i] = numbers[i * blocks.channels + channel];
-  }
-  WindowSums sums(blocks);
-  sums.load(values);
-  return sums;
-}
-
 double median_of(std::vector<double>& values) {
   if (values.empty()) return 0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -152,9 +136,10 @@ CellNoiseOfMean offer_coarse_cells(const CoarseImages& coarse, const Groups& gro
                                    std::vector<BestCell>& best) {
   const Groups in_blocks = coarse_groups(groups);
   const WelchCells moments = window_moments(coarse, in_blocks, channel);
-  const WindowSums third = channel_sums(coarse.extent, coarse.third, channel);
+  CoarseSums third(coarse.extent, channel);
   CoarseSums weights(coarse.extent, channel);
   CoarseSums squares(coarse.extent, channel);
+  third.load(coarse.third);
   weights.load(coarse.weights);
   squares.load(coarse.squared_weights);
   TypicalNoise typical;
@@ -172,7 +157,7 @@ CellNoiseOfMean offer_coarse_cells(const CoarseImages& coarse, const Groups& gro
     if (alternating) candidate.finding.alternation = static_cast<Alternation>(i);
     moments.put(window, candidate.noise);
     candidate.noise.weight = squares.of(group, i) / weights.total_of(group, i);
-    if (!alternating) candidate.noise.third = third.of(group, i);
+    candidate.noise.third = third.of(group, i);
     const StudentValue value = own_value(candidate.noise);
     candidate.finding.z = t_to_z(value);
     ++best[g].windows;

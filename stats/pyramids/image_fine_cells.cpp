@@ -377,7 +377,7 @@ class FineTiles {
         tile, [&](std::size_t i, std::size_t element, std::size_t x, std::size_t y, std::size_t c) {
           const std::size_t block =
               (y / block_side * coarse_.extent.width + x / block_side) * extent_.channels + c;
-          coarse_.third[block] += all.third[i];
+          coarse_.third.blocks[block] += all.third[i];
           const double weight = weight_of(element);
           found_.weights[element] = static_cast<float>(weight);
           if (halves_that_vary(element) < halves) {
@@ -492,17 +492,12 @@ class FineTiles {
   // An element that varied in one half alone is in sums only.
   void note_constant(std::size_t element) {
     const double difference = cells_.half[0].difference[element - cells_.half[0].first];
-    ElementCounts one;
     if (halves_that_vary(element) > 0 || difference == 0 || !cells_.constants_decide) {
-      one.equal_constants = 1;
+      ++counts_.equal_constants;
     } else {
-      one = {.tested = 0,
-             .equal_constants = 0,
-             .different_constants = 1,
-             .first_different = element,
-             .difference = difference};
+      counts_.merge(
+          {.different_constants = 1, .first_different = element, .difference = difference});
     }
-    counts_.merge(one);
   }
 
   void keep_blocks(const Tile& tile, std::size_t y, const double* sums, auto& blocks) const {
@@ -655,7 +650,7 @@ CoarseImages empty_blocks(const ImagePair& pair) {
       std::vector<double>(coarse.extent.elements()),
       std::vector<double>(tiles_across(extent) * extent.channels * alternations)};
   const BlockSums<float> no_image{std::vector<float>(none.blocks.size()), none.alternating};
-  coarse.third.resize(coarse.extent.elements());
+  coarse.third = none;
   coarse.weights = none;
   coarse.squared_weights = none;
   for (std::size_t h = 0; h < halves; ++h) {
