@@ -322,14 +322,10 @@ std::string place_text(const stats::ImageFinding& finding, const ImageShape& sha
       shape.components.size() > 1 ? " of " + shape.components[finding.channel] : "";
   const std::string z = fmt::format("z = {:+.3g}", finding.z);
   const stats::Rectangle& window = finding.window;
-  switch (finding.statistic) {
-    case stats::ImageStatistic::alternating: {
-      constexpr const char* patterns[] = {"columns in turn", "rows in turn", "a checkerboard"};
-      return fmt::format("the whole image{} with alternating signs ({}), {}", component,
-                         patterns[static_cast<int>(finding.alternation)], z);
-    }
-    case stats::ImageStatistic::window:
-      break;
+  if (finding.alternation) {
+    constexpr const char* patterns[] = {"columns in turn", "rows in turn", "a checkerboard"};
+    return fmt::format("the whole image{} with alternating signs ({}), {}", component,
+                       patterns[static_cast<int>(*finding.alternation)], z);
   }
   const std::int64_t x = shape.left + window.x;
   const std::int64_t y = shape.top + window.y;

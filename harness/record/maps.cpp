@@ -27,12 +27,8 @@ namespace {
 
 using reports::Number;
 
-const char* statistic_name(stats::ImageStatistic statistic) {
-  return statistic == stats::ImageStatistic::alternating ? "alternating" : "window";
-}
-
 reports::ImageFinding finding_of(const stats::ImageFinding& finding, const ImageShape& shape) {
-  return {.statistic = statistic_name(finding.statistic),
+  return {.statistic = finding.alternation ? "alternating" : "window",
           .place = place_text(finding, shape),
           .x = finding.window.x,
           .y = finding.window.y,

@@ -145,7 +145,7 @@ std::optional<PlaceEffect> effect_at_place(const DrawnTest& test) {
   if (!outcome.channels[0].image->seen.empty()) return {};
   const stats::ImageFamily& family = outcome.channels[0].image->family;
   const stats::ImageFinding& winner = family.winner;
-  if (winner.statistic != stats::ImageStatistic::window || winner.window.width == 0) return {};
+  if (winner.alternation || winner.window.width == 0) return {};
   const std::vector<std::size_t> elements = elements_of(winner, *question.subjects[0].image);
   const stats::ImageEffect& effect = winner.effect;
   if (!(effect.standard_error > 0)) {

@@ -171,11 +171,11 @@ void decide(ImageFamily& family) {
   family.winner = *std::ranges::min_element(family.groups, {}, &ImageFinding::adjusted_log_p);
   family.log_p = family.winner.adjusted_log_p;
   const ImageFinding likeliest = family.winner;
-  if (likeliest.statistic != ImageStatistic::window) return;
+  if (likeliest.alternation) return;
   std::vector<ImageFinding> there;
   const auto add_those_there = [&](const std::vector<ImageFinding>& cells) {
     std::ranges::copy_if(cells, std::back_inserter(there), [&](const ImageFinding& cell) {
-      return cell.statistic == likeliest.statistic && cell.effect.standard_error > 0 &&
+      return !cell.alternation && cell.effect.standard_error > 0 &&
              overlap(cell.window, likeliest.window) && cell.z * likeliest.z > 0 &&
              cell.adjusted_log_p <= as_unlikely * likeliest.adjusted_log_p;
     });
@@ -197,15 +197,11 @@ ImageFinding certain_finding(const ImageExtent& extent, std::size_t element, dou
   const Rectangle window{static_cast<std::uint32_t>(place % extent.width),
                          static_cast<std::uint32_t>(place / extent.width), 1, 1};
   constexpr double never = std::numeric_limits<double>::lowest();
-  return {ImageStatistic::window,
-          1,
-          window,
-          element % extent.channels,
-          std::copysign(std::numeric_limits<double>::infinity(), sign),
-          never,
-          never,
-          Alternation::columns,
-          {}};
+  return {.window = window,
+          .channel = element % extent.channels,
+          .z = std::copysign(std::numeric_limits<double>::infinity(), sign),
+          .log_p = never,
+          .adjusted_log_p = never};
 }
 
 }  // namespace assay::stats

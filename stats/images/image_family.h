@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -62,8 +63,6 @@ class WindowSums {
   double alternating_[3] = {};  // By column, by row, checkerboard.
 };
 
-enum class ImageStatistic { window, alternating };
-
 // Direction in which an alternating sum changes its sign.
 enum class Alternation { columns, rows, checkerboard };
 
@@ -76,7 +75,7 @@ struct ImageEffect {
 
 // The most extreme statistic of a group: which sum, where, and how far from zero.
 struct ImageFinding {
-  ImageStatistic statistic = ImageStatistic::window;
+  std::optional<Alternation> alternation = {};  // None of a plain sum over the window.
   // Level: side of the cells. For alternating sums it is that of the image.
   std::uint32_t size = 1;
   Rectangle window;
@@ -84,7 +83,6 @@ struct ImageFinding {
   double z = 0;               // Positive where the first image is brighter.
   double log_p = 0;           // Of this one sum, two-sided.
   double adjusted_log_p = 0;  // In the family of everything that was looked at; at most 0.
-  Alternation alternation = Alternation::columns;
   ImageEffect effect = {};
 };
 

@@ -149,8 +149,6 @@ CellNoiseOfMean offer_coarse_cells(const CoarseImages& coarse, const Groups& gro
     const bool alternating = group.grid == Grid::alternating;
     const auto g = static_cast<std::size_t>(&group - in_blocks.data());
     Candidate candidate;
-    candidate.finding.statistic =
-        alternating ? ImageStatistic::alternating : ImageStatistic::window;
     candidate.finding.size = group.size;
     candidate.finding.window = groups[g].windows[i];
     candidate.finding.channel = channel;
