@@ -20,9 +20,10 @@ double dot(const std::vector<float>& a, const std::vector<float>& b) {
 }
 
 // Differences of neighbours over the square root of 2: mean 0 and covariance C.
-std::vector<std::vector<float>> differences_of(const ImageStack& stack, std::size_t pairs) {
-  std::vector<std::vector<float>> differences(pairs);
-  for (std::size_t k = 0; k < pairs; ++k) {
+std::vector<std::vector<float>> differences_of(const ImageStack& stack) {
+  check::image_stack(function_name, stack);
+  std::vector<std::vector<float>> differences(std::min(stack.images.size() / 2, most_pairs));
+  for (std::size_t k = 0; k < differences.size(); ++k) {
     const std::span<const float> first = stack.images[2 * k];
     const std::span<const float> second = stack.images[2 * k + 1];
     differences[k].resize(first.size());
@@ -34,14 +35,9 @@ std::vector<std::vector<float>> differences_of(const ImageStack& stack, std::siz
   return differences;
 }
 
-std::vector<double> norms_of(const std::vector<std::vector<float>>& differences,
-                             const ForEach& for_each) {
+double trace_of(const std::vector<std::vector<float>>& differences, const ForEach& for_each) {
   std::vector<double> norms(differences.size());
   for_each(norms.size(), [&](std::size_t k) { norms[k] = dot(differences[k], differences[k]); });
-  return norms;
-}
-
-double mean_of(const std::vector<double>& norms) {
   double mean = 0;
   for (const double norm : norms) mean += norm / static_cast<double>(norms.size());
   return mean;
@@ -58,15 +54,10 @@ double squared_mean_of(const ImageStack& stack, double trace) {
   return sum - trace / count;
 }
 
-std::vector<std::vector<float>> checked_differences(const ImageStack& stack) {
-  check::image_stack(function_name, stack);
-  return differences_of(stack, std::min(stack.images.size() / 2, most_pairs));
-}
-
 }  // namespace
 
 ImageCovariance image_covariance(const ImageStack& stack, const ForEach& for_each) {
-  const std::vector<std::vector<float>> differences = checked_differences(stack);
+  const std::vector<std::vector<float>> differences = differences_of(stack);
   const std::size_t pairs = differences.size();
   std::vector<std::vector<double>> squares(pairs, std::vector<double>(pairs));
   for_each(pairs, [&](std::size_t k) {
@@ -84,7 +75,7 @@ ImageCovariance image_covariance(const ImageStack& stack, const ForEach& for_eac
     }
   }
   const auto count = static_cast<double>(pairs);
-  ImageCovariance covariance{.trace = mean_of(norms_of(differences, for_each)),
+  ImageCovariance covariance{.trace = trace_of(differences, for_each),
                              .squared_trace = 2 * all / (count * (count - 1))};
   double spread = 0;
   for (const double own : of_pair) {
@@ -97,7 +88,7 @@ ImageCovariance image_covariance(const ImageStack& stack, const ForEach& for_eac
 }
 
 double image_squared_mean(const ImageStack& stack) {
-  return squared_mean_of(stack, mean_of(norms_of(checked_differences(stack), one_by_one)));
+  return squared_mean_of(stack, trace_of(differences_of(stack), one_by_one));
 }
 
 }  // namespace assay::stats

@@ -159,20 +159,6 @@ double covariance(const std::vector<Terms>& values, std::size_t i, std::size_t j
   return products * (n - 1) / n;
 }
 
-ImageDistance distance_of(const DistanceSums& sums) {
-  // The norm is of b alone.
-  const double bias_variance = covariance(sums.without_a, 0, 0) + covariance(sums.without_b, 0, 0);
-  const std::size_t fewest = sums.without_b.empty()
-                                 ? sums.without_a.size()
-                                 : std::min(sums.without_a.size(), sums.without_b.size());
-  return {.squared_bias = sums.whole[0],
-          .squared_norm = sums.whole[1],
-          .bias_variance = bias_variance,
-          .norm_variance = covariance(sums.without_b, 1, 1),
-          .covariance = covariance(sums.without_b, 0, 1),
-          .degrees = static_cast<double>(fewest - 1)};
-}
-
 // ---- A reference's own error
 
 // In standard errors. One error common to all elements moves all differences alike, and with them
@@ -227,15 +213,21 @@ ImageDistance RowDistance::distance() const {
   for (const double sum : sums_.whole) {
     if (!std::isfinite(sum)) check::fail({function_name, "sum over the image"}, sum, "finite");
   }
-  return distance_of(sums_);
+  const auto& [whole, without_a, without_b] = sums_;
+  const std::size_t fewest =
+      without_b.empty() ? without_a.size() : std::min(without_a.size(), without_b.size());
+  // The norm is of b alone.
+  return {.squared_bias = whole[0],
+          .squared_norm = whole[1],
+          .bias_variance = covariance(without_a, 0, 0) + covariance(without_b, 0, 0),
+          .norm_variance = covariance(without_b, 1, 1),
+          .covariance = covariance(without_b, 0, 1),
+          .degrees = static_cast<double>(fewest - 1)};
 }
 
 ImageDistance with_norm(ImageDistance distance, double squared_norm) {
   check::positive({"with_norm", "squared norm"}, squared_norm);
-  distance.squared_norm = squared_norm;
-  distance.norm_variance = 0;
-  distance.covariance = 0;
-  return distance;
+  return relative_to(distance, {.squared_bias = squared_norm});
 }
 
 ImageDistance relative_to(ImageDistance distance, const ImageDistance& norm) {
