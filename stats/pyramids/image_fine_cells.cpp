@@ -705,7 +705,6 @@ FineFindings empty_findings(const ImagePair& pair, std::span<double> z) {
   return {.coarse = empty_blocks(pair),
           .noise = {extent, {pair.a.images.size(), pair.b != nullptr ? pair.b->images.size() : 0}},
           .tiles = std::vector<std::vector<Candidates>>(tiles_across(extent) * down),
-          .counts = {},
           .weights = std::vector<float>(extent.elements()),
           .z = z};
 }

@@ -126,8 +126,7 @@ void NoisePyramid::build() {
     Level coarse{.side = 2 * fine.side,
                  .width = (fine.width + 1) / 2,
                  .height = (fine.height + 1) / 2,
-                 .channels = fine.channels,
-                 .noise = {}};
+                 .channels = fine.channels};
     for (std::size_t s = 0; s < sides_of_pair; ++s) {
       coarse.noise[s].resize(coarse.width * coarse.height * coarse.channels);
       for (std::size_t y = 0; y < fine.height; ++y) {
@@ -148,7 +147,7 @@ NoisePyramid::Around NoisePyramid::around(const Rectangle& window, std::size_t c
   const std::uint32_t size = std::max(window.width, window.height);
   const std::size_t x = window.x + window.width / 2;
   const std::size_t y = window.y + window.height / 2;
-  Around found{.blocks = {}, .first = -PooledNoise::no_octave, .last = PooledNoise::no_octave};
+  Around found{.first = -PooledNoise::no_octave, .last = PooledNoise::no_octave};
   for (const Level& level : levels_) {
     if (level.side < sides_around * size && &level != &levels_.back()) continue;
     const std::size_t block_of = level.index(x / level.side, y / level.side, channel);

@@ -101,13 +101,9 @@ void RowPyramid::add_best(ImageFamily& family) const {
 
 ImageFamily RowPyramid::family() {
   const ElementCounts& counts = found_.counts;
-  ImageFamily family{.log_p = 0,
-                     .winner = {},
-                     .groups = {},
-                     .tested = counts.tested,
+  ImageFamily family{.tested = counts.tested,
                      .equal_constants = counts.equal_constants,
                      .different_constants = counts.different_constants,
-                     .weights = {},
                      .hidden_squares = found_.noise.hidden_squares()};
   if (counts.different_constants > 0) {
     family.groups.push_back(certain_finding(extent_, counts.first_different, counts.difference));
