@@ -51,7 +51,8 @@ struct ChiSquareTwoSample {
 ChiSquareTwoSample chi_square_two_sample(const TwoSampleCounts& counts);
 
 // X2 against the noncentral chi-square of ncp = observations null_effect^2: log_p_upper rejects
-// "w <= null_effect", log_p_lower rejects "w >= null_effect". Asymptotic.
+// "w <= null_effect", log_p_lower rejects "w >= null_effect". Asymptotic. Throws std::domain_error
+// for a negative null_effect.
 TestResult chi_square_effect(const ChiSquareStatistic& statistic, double null_effect);
 
 // Central interval of w: effect_interval of cell_effect.h.

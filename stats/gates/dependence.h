@@ -20,14 +20,15 @@ double autocorrelation(std::span<const double> values, std::size_t lag);
 //   V = (n^4 - 4 n^3 + 3 n^2 + 4 n - 4) / ((n + 1) n^2 (n - 1)^2).
 // The law of Z is taken for normal. Mean and variance of r_1 are exact for normal data (Dufour &
 // Roy 1985, J. Econometrics 29). They hold to first order for any law with a variance (Anderson &
-// Walker 1964). log_p_upper is the tail of positive correlation. Throws for n < 4; ZeroVariance.
+// Walker 1964). log_p_upper is the tail of positive correlation. Throws std::domain_error for
+// n < 4 and non-finite values, ZeroVariance.
 TestResult lag_one_test(std::span<const double> values, const char* caller = "lag_one_test");
 
 // Effective sample size n / tau, tau = -1 + 2 sum Gamma_m, Gamma_m = r_2m + r_(2m+1). The sum runs
 // while Gamma_m is positive, made monotone (Geyer 1992, Stat. Sci. 7, section 3.3). It is about n
 // for independent values, and n (1 - phi) / (1 + phi) for an AR(1) chain. It may exceed n for
 // alternating sequences, up to n log10 n (Vehtari et al. 2021, Bayesian Anal. 16). Time n tau.
-// Throws for n < 4; ZeroVariance.
+// Throws std::domain_error for n < 4 and non-finite values, ZeroVariance.
 double effective_sample_size(std::span<const double> values);
 
 // floor(sqrt n), the default length of a batch.
@@ -38,7 +39,7 @@ std::size_t default_batch(std::size_t n);
 // std::domain_error for fewer than two batches or length 0.
 Moments batch_means(std::span<const double> values, std::size_t length);
 
-// Estimates lim n Var(mean) as length times the variance of batch means.
+// Estimates lim n Var(mean) as length times the variance of batch means. Throws as batch_means.
 double batch_variance(std::span<const double> values, std::size_t length);
 
 // ---- Ranks

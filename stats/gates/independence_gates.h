@@ -43,7 +43,8 @@ Gate lagged_gate(std::span<const double> values);
 std::vector<Gate> drawn_order_gates(std::span<const double> values);
 
 // Integrated autocorrelation time n Var(mean) / Var x by effective_sample_size. More than 8192
-// values are first averaged with neighbours, which keeps n Var(mean).
+// values are first averaged with neighbours, which keeps n Var(mean). Throws as
+// effective_sample_size.
 double autocorrelation_time(std::span<const double> values);
 // Factor for the variance of a mean of n values, for a dependence too weak for the gates. It is the
 // larger of autocorrelation_time and the F of batches of floor(sqrt n) or n / 10. It applies only
@@ -55,7 +56,7 @@ double allowance_for_dependence(std::span<const double> values);
 // autocorrelation times rounded up, and five times the farthest correlated lag. That lag has a
 // positive rank correlation beyond chance for values with such a time. Chains that take turns
 // correlate at their number, where the time has stopped summing. The length is raised until less
-// than a batch is left over.
+// than a batch is left over. Throws as autocorrelation_time.
 std::size_t sufficient_batch(std::span<const double> values);
 
 }  // namespace assay::stats

@@ -55,7 +55,8 @@ Interval quantile_difference_interval(std::span<const double> sorted_x,
                                       double confidence);
 
 // Standard deviation of one observation in the normal limit of a sample quantile, sqrt(q (1 - q)) /
-// density. Pass it to normal_sample_size to plan in units of the value.
+// density (Mosteller 1946). Pass it to normal_sample_size to plan in units of the value. Throws
+// std::domain_error for a probability outside (0, 1) and a density that is not positive.
 double quantile_standard_deviation(double probability, double density);
 
 }  // namespace assay::stats

@@ -28,8 +28,9 @@ struct EffectPlan {
 double normal_sample_size(double standard_deviation, EffectPlan effect, ErrorRates rates);
 
 // ---- A mean against a reference, or two means: Student's t and Welch's
-// Null hypothesis: |theta| <= allow (two-sided) or theta <= allow. Noncentral t, exact for one
-// sample of normal data. A second sample has n * allocation observations. With v the planned
+// Null hypothesis: |theta| <= allow (two-sided) or theta <= allow, in the unit of the values.
+// Noncentral t (Johnson & Welch 1940), exact for one sample of normal data. A second sample has
+// n * allocation observations. With v the planned
 // variances of the means and of the reference, the degrees of freedom are Welch-Satterthwaite's:
 //   (sum v)^2 / (v_x^2 / (n_x - 1) + v_y^2 / (n_y - 1)).
 struct MeanPlan {
@@ -67,7 +68,7 @@ double ks_power_bound(const DistancePlan& plan, double n, double distance);
 double ks_detectable(const DistancePlan& plan, double n);
 std::optional<std::uint64_t> ks_sample_size(const DistancePlan& plan, double detect);
 
-// ---- Chi-square fit: noncentral chi-square, ncp = n w^2
+// ---- Chi-square fit: noncentral chi-square, ncp = n w^2, w^2 = sum (p - p0)^2 / p0 (Cohen 1988)
 struct FitPlan {
   double degrees_of_freedom = 1;
   double allow = 0;  // Effect size w.

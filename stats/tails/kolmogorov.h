@@ -16,12 +16,15 @@ namespace assay::stats {
 LogTails kolmogorov_tails(double distance, std::uint64_t n);
 
 // ln P(sup (F_n - F) >= distance), Smirnov's one-sided law (Birnbaum & Tingey 1951, equation 3.0).
+// Throws as kolmogorov_tails.
 double log_smirnov_one_sided(double distance, std::uint64_t n);
 
 // ln P(K >= z) of the limit law of sqrt(n) D: K(z) = 2 sum (-1)^(k-1) exp(-2 k^2 z^2).
+// Throws std::domain_error for z below 0.
 double log_kolmogorov_limit(double z);
 
-// The distance d with P(D >= d) = exp(log_probability).
+// The distance d with P(D >= d) = exp(log_probability). Throws std::domain_error for n = 0 and for
+// a logarithm that is not below 0.
 double kolmogorov_upper_quantile(double log_probability, std::uint64_t n);
 
 }  // namespace assay::stats
