@@ -15,7 +15,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <numbers>
 #include <stdexcept>
 
@@ -25,38 +24,110 @@ namespace assay::analytic {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-/// The conditions on a family's numbers. Messages show `signature`.
-struct FamilyInformation {
-  const char* name;
-  const char* signature;
-  std::size_t numbers;
-  bool (*allows)(double a, double b);
-  const char* rule;
-};
-
 bool is_probability(double p, double) { return p > 0 && p < 1; }
 bool is_positive(double a, double) { return a > 0; }
 bool has_scale(double, double s) { return s > 0; }
 bool is_interval(double a, double b) { return a < b; }
 
-// In the order of Law::Family.
-constexpr std::array<FamilyInformation, 7> families{{
-    {"bernoulli", "bernoulli(p)", 1, is_probability, "p must lie between 0 and 1"},
-    {"exponential", "exponential(rate)", 1, is_positive, "rate must be above 0"},
-    {"lognormal", "lognormal(location, scale)", 2, has_scale, "scale must be above 0"},
-    {"normal", "normal(mean, sd)", 2, has_scale, "sd must be above 0"},
-    {"student_t", "student_t(freedom)", 1, is_positive, "freedom must be above 0"},
-    {"uniform", "uniform(low, high)", 2, is_interval, "low must be below high"},
-    {"zero_inflated", "zero_inflated(p)", 1, is_probability, "p must lie between 0 and 1"},
+double draw_exponential(Stream& random) { return -std::log(random.uniform_open()); }
+
+constexpr double root_two_pi = 2.5066282746310002;
+
+double normal_density(double x, double mean, double sd) {
+  const double z = (x - mean) / sd;
+  return std::exp(-z * z / 2) / (sd * root_two_pi);
+}
+
+double lognormal_density(double x, double location, double scale) {
+  const double z = (std::log(x) - location) / scale;
+  return x > 0 ? std::exp(-z * z / 2) / (scale * root_two_pi * x) : 0;
+}
+
+// Bailey (1994): sqrt(nu (u^(-2 / nu) - 1)) cos(2 pi v) has the law, for every nu.
+double draw_student_t(Stream& random, double nu, double) {
+  const double radius = std::sqrt(nu * std::expm1(-2 / nu * std::log(random.uniform_open())));
+  return radius * std::cos(2 * std::numbers::pi * random.uniform());
+}
+
+double student_t_density(double x, double nu, double) {
+  const double half = (nu + 1) / 2;
+  const double log_constant =
+      std::lgamma(half) - std::lgamma(nu / 2) - std::log(std::numbers::pi * nu) / 2;
+  return std::exp(log_constant - half * std::log1p(x * x / nu));
+}
+
+}  // namespace
+
+/// A family of laws. Messages show `signature`; `rule` says in words what `allows` tests.
+struct Law::Family {
+  const char* name;
+  const char* signature;
+  std::size_t numbers;
+  const char* rule;
+  bool (*allows)(double a, double b);
+  double (*draw)(Stream& random, double a, double b);
+  double (*density)(double x, double a, double b);  ///< null if there is none
+  Facts (*facts)(double a, double b);
+};
+
+namespace {
+
+// A family of one number has b = a.
+constexpr std::array<Law::Family, 7> families{{
+    {"bernoulli", "bernoulli(p)", 1, "p must lie between 0 and 1", is_probability,
+     [](Stream& random, double p, double) { return random.uniform() < p ? 1.0 : 0.0; }, nullptr,
+     [](double p, double) -> Law::Facts {
+       return {p, p * (1 - p), 0, 1};
+     }},
+    {"exponential", "exponential(rate)", 1, "rate must be above 0", is_positive,
+     [](Stream& random, double rate, double) { return draw_exponential(random) / rate; },
+     [](double x, double rate, double) { return x < 0 ? 0 : rate * std::exp(-rate * x); },
+     [](double rate, double) -> Law::Facts {
+       return {1 / rate, 1 / (rate * rate), 0};
+     }},
+    {"lognormal", "lognormal(location, scale)", 2, "scale must be above 0", has_scale,
+     [](Stream& random, double m, double s) {
+       return std::exp(NormalLaw{m, s}(random));
+     },
+     lognormal_density,
+     [](double m, double s) -> Law::Facts {
+       return {std::exp(m + s * s / 2), std::expm1(s * s) * std::exp(2 * m + s * s), 0};
+     }},
+    {"normal", "normal(mean, sd)", 2, "sd must be above 0", has_scale,
+     [](Stream& random, double mean, double sd) {
+       return NormalLaw{mean, sd}(random);
+     },
+     normal_density,
+     [](double mean, double sd) -> Law::Facts {
+       return {mean, sd * sd};
+     }},
+    {"student_t", "student_t(freedom)", 1, "freedom must be above 0", is_positive, draw_student_t,
+     student_t_density,
+     [](double nu, double) -> Law::Facts {
+       return {nu > 1 ? std::optional(0.0) : std::nullopt,
+               nu > 2 ? std::optional(nu / (nu - 2)) : std::nullopt};
+     }},
+    {"uniform", "uniform(low, high)", 2, "low must be below high", is_interval,
+     [](Stream& random, double a, double b) { return a + (b - a) * random.uniform(); },
+     [](double x, double a, double b) { return x < a || x > b ? 0 : 1 / (b - a); },
+     [](double a, double b) -> Law::Facts {
+       return {(a + b) / 2, (b - a) * (b - a) / 12, a, b};
+     }},
+    {"zero_inflated", "zero_inflated(p)", 1, "p must lie between 0 and 1", is_probability,
+     [](Stream& random, double p, double) {
+       return random.uniform() < p ? draw_exponential(random) : 0;
+     },
+     nullptr,
+     [](double p, double) -> Law::Facts {
+       return {p, 2 * p - p * p, 0};
+     }},
 }};
 
 std::string quoted(std::string_view text) { return "`" + std::string(text) + "`"; }
 
 [[noreturn]] void refuse(const std::string& why) {
   std::string known;
-  for (const FamilyInformation& family : families) {
+  for (const Law::Family& family : families) {
     known += (known.empty() ? "" : ", ") + std::string(family.signature);
   }
   throw std::invalid_argument(why + "; there is " + known);
@@ -91,8 +162,7 @@ Law Law::parse(std::string_view text) {
   }
   const std::string_view name = text.substr(0, open);
   const std::vector<double> numbers = numbers_of(text.substr(open + 1, text.size() - open - 2));
-  for (std::size_t i = 0; i < families.size(); ++i) {
-    const FamilyInformation& family = families[i];
+  for (const Family& family : families) {
     if (name != family.name) continue;
     if (numbers.size() != family.numbers) {
       refuse(quoted(text) + " has not the numbers of " + family.signature);
@@ -100,113 +170,19 @@ Law Law::parse(std::string_view text) {
     if (!family.allows(numbers.front(), numbers.back())) {
       refuse("in " + quoted(text) + " " + family.rule);
     }
-    return {static_cast<Family>(i), numbers};
+    return {family, numbers.front(), numbers.back()};
   }
   refuse("no law is named " + quoted(name));
 }
 
-double Law::draw(Stream& random) const {
-  switch (family_) {
-    case Family::bernoulli:
-      return random.uniform() < a_ ? 1 : 0;
-    case Family::exponential:
-      return -std::log(random.uniform_open()) / a_;
-    case Family::lognormal:
-      return std::exp(NormalLaw{a_, b_}(random));
-    case Family::normal:
-      return NormalLaw{a_, b_}(random);
-    case Family::student_t: {
-      // Bailey (1994): sqrt(nu (u^(-2 / nu) - 1)) cos(2 pi v) has the law, for every nu.
-      const double radius = std::sqrt(a_ * std::expm1(-2 / a_ * std::log(random.uniform_open())));
-      return radius * std::cos(2 * std::numbers::pi * random.uniform());
-    }
-    case Family::uniform:
-      return a_ + (b_ - a_) * random.uniform();
-    case Family::zero_inflated:
-      return random.uniform() < a_ ? -std::log(random.uniform_open()) : 0;
-  }
-  throw std::logic_error("a law of no family");
-}
+Law::Law(const Family& family, double a, double b)
+    : family_(&family), a_(a), b_(b), facts_(family.facts(a, b)) {}
 
-double Law::density(double x) const {
-  constexpr double root_two_pi = 2.5066282746310002;
-  switch (family_) {
-    case Family::exponential:
-      return x < 0 ? 0 : a_ * std::exp(-a_ * x);
-    case Family::lognormal: {
-      const double z = (std::log(x) - a_) / b_;
-      return x > 0 ? std::exp(-z * z / 2) / (b_ * root_two_pi * x) : 0;
-    }
-    case Family::normal: {
-      const double z = (x - a_) / b_;
-      return std::exp(-z * z / 2) / (b_ * root_two_pi);
-    }
-    case Family::student_t: {
-      const double half = (a_ + 1) / 2;
-      const double log_constant =
-          std::lgamma(half) - std::lgamma(a_ / 2) - std::log(std::numbers::pi * a_) / 2;
-      return std::exp(log_constant - half * std::log1p(x * x / a_));
-    }
-    case Family::uniform:
-      return x < a_ || x > b_ ? 0 : 1 / (b_ - a_);
-    case Family::bernoulli:
-    case Family::zero_inflated:
-      break;
-  }
-  throw std::logic_error("a law without a density");
-}
+double Law::draw(Stream& random) const { return family_->draw(random, a_, b_); }
 
-bool Law::has_density() const {
-  return family_ != Family::bernoulli && family_ != Family::zero_inflated;
-}
+double Law::density(double x) const { return family_->density(x, a_, b_); }
 
-std::optional<double> Law::mean() const {
-  switch (family_) {
-    case Family::bernoulli:
-    case Family::zero_inflated:
-    case Family::normal:
-      return a_;
-    case Family::exponential:
-      return 1 / a_;
-    case Family::lognormal:
-      return std::exp(a_ + b_ * b_ / 2);
-    case Family::student_t:
-      return a_ > 1 ? std::optional(0.0) : std::nullopt;
-    case Family::uniform:
-      return (a_ + b_) / 2;
-  }
-  return {};
-}
-
-std::optional<double> Law::variance() const {
-  switch (family_) {
-    case Family::bernoulli:
-      return a_ * (1 - a_);
-    case Family::exponential:
-      return 1 / (a_ * a_);
-    case Family::lognormal:
-      return std::expm1(b_ * b_) * std::exp(2 * a_ + b_ * b_);
-    case Family::normal:
-      return b_ * b_;
-    case Family::student_t:
-      return a_ > 2 ? std::optional(a_ / (a_ - 2)) : std::nullopt;
-    case Family::uniform:
-      return (b_ - a_) * (b_ - a_) / 12;
-    case Family::zero_inflated:
-      return 2 * a_ - a_ * a_;
-  }
-  return {};
-}
-
-double Law::low() const {
-  if (family_ == Family::normal || family_ == Family::student_t) return -infinity;
-  return family_ == Family::uniform ? a_ : 0;
-}
-
-double Law::high() const {
-  if (family_ == Family::bernoulli) return 1;
-  return family_ == Family::uniform ? b_ : infinity;
-}
+bool Law::has_density() const { return family_->density != nullptr; }
 
 Law law_of(Parameters& parameters) {
   try {
@@ -220,9 +196,9 @@ Channel channel_of(const Variable& variable) {
   const auto& [law, shift, scale] = variable;
   // A scale of 0 makes a constant of any range.
   const auto at = [&](double y) { return scale == 0 ? shift : shift + scale * y; };
-  Channel channel{.low = at(law.low()), .high = at(law.high())};
-  if (law.mean()) channel.mean = at(*law.mean());
-  if (law.variance()) channel.variance = scale * scale * *law.variance();
+  Channel channel{.low = at(law.facts().low), .high = at(law.facts().high)};
+  if (law.facts().mean) channel.mean = at(*law.facts().mean);
+  if (law.facts().variance) channel.variance = scale * scale * *law.facts().variance;
   return channel;
 }
 
@@ -246,9 +222,9 @@ ParameterInformation law_parameter() {
 /// Draws X with its density, on an interval of 12 standard deviations about the mean, cut by the
 /// range. Values outside are missing mass.
 std::shared_ptr<const Sampler> sampler(const Variable& v) {
-  const double reach = 6 * std::sqrt(*v.law.variance());
-  const double low = v.shift + v.scale * std::max(v.law.low(), *v.law.mean() - reach);
-  const double high = v.shift + v.scale * std::min(v.law.high(), *v.law.mean() + reach);
+  const double reach = 6 * std::sqrt(*v.law.facts().variance);
+  const double low = v.shift + v.scale * std::max(v.law.facts().low, *v.law.facts().mean - reach);
+  const double high = v.shift + v.scale * std::min(v.law.facts().high, *v.law.facts().mean + reach);
   const auto point = [v, low, high](Stream& random) {
     const double x = v(random);
     return x < low || x > high ? std::nullopt : std::optional(Point{x});
@@ -267,7 +243,7 @@ std::shared_ptr<const Setup> law(Parameters& parameters) {
   const Law law = law_of(parameters);
   const Variable variable{law, parameters.number("shift"), parameters.number("scale")};
   std::vector<NamedSampler> samplers;
-  if (law.has_density() && law.variance()) samplers.push_back({"x", sampler(variable)});
+  if (law.has_density() && law.facts().variance) samplers.push_back({"x", sampler(variable)});
   return averaging(channel_of(variable), variable, std::move(samplers));
 }
 

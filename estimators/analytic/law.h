@@ -3,10 +3,10 @@
 // Named laws, and variables that have them.
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <string_view>
-#include <vector>
 
 #include "estimators/estimator.h"
 #include "estimators/stream.h"
@@ -31,36 +31,32 @@ NormalLaw normal_law(Parameters&);
 /// A law by name and numbers, as "lognormal(0, 0.5)" says it.
 class Law {
  public:
-  enum class Family {
-    bernoulli,
-    exponential,
-    lognormal,
-    normal,
-    student_t,
-    uniform,
-    zero_inflated
+  struct Family;
+  struct Facts {
+    std::optional<double> mean;
+    std::optional<double> variance;
+    double low = -std::numeric_limits<double>::infinity();  ///< no value is below
+    double high = std::numeric_limits<double>::infinity();  ///< no value is above
   };
 
   /// Throws std::invalid_argument, in words for the user, for what is no law.
   static Law parse(std::string_view text);
 
   double draw(Stream& random) const;
-  /// dP/dx where the law has a density.
+  /// dP/dx of a law that has a density.
   double density(double x) const;
   bool has_density() const;
 
-  std::optional<double> mean() const;
-  std::optional<double> variance() const;
-  double low() const;   ///< no value is below
-  double high() const;  ///< no value is above
+  /// The mean and the variance, as far as they exist, and the range.
+  const Facts& facts() const { return facts_; }
 
  private:
-  Law(Family family, const std::vector<double>& numbers)
-      : family_(family), a_(numbers[0]), b_(numbers.size() > 1 ? numbers[1] : 0) {}
+  Law(const Family& family, double a, double b);
 
-  Family family_;
+  const Family* family_;
   double a_;
   double b_;
+  Facts facts_;
 };
 
 /// X = shift + scale Y.

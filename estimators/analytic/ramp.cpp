@@ -18,8 +18,8 @@ using analytic::Variable;
 
 /// The variable of this law with another mean and deviation.
 Variable rescaled(const Law& law, double mean, double deviation) {
-  const double scale = deviation / std::sqrt(*law.variance());
-  return {law, mean - scale * *law.mean(), scale};
+  const double scale = deviation / std::sqrt(*law.facts().variance);
+  return {law, mean - scale * *law.facts().mean, scale};
 }
 
 std::shared_ptr<const Setup> prepare(Parameters& parameters) {
@@ -31,7 +31,7 @@ std::shared_ptr<const Setup> prepare(Parameters& parameters) {
   if (parameters.boolean("colour")) parts.shape.components = {"red", "green", "blue"};
   const double spread = parameters.number("spread");
   const Law law = analytic::law_of(parameters);
-  if (!law.variance()) parameters.refuse("law", "has no variance: nothing brings it to 1");
+  if (!law.facts().variance) parameters.refuse("law", "has no variance: nothing brings it to 1");
   for (std::size_t i = 0; i < parts.shape.elements(); ++i) {
     const std::size_t component = i % parts.shape.components.size();
     const double column = static_cast<double>(i / parts.shape.components.size() % width);
