@@ -1,5 +1,6 @@
 #include "estimators/core/value_checks.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace assay {
@@ -20,6 +21,26 @@ double above_zero(const Value& value, const std::string& what) {
   const double number = finite_number(value, what);
   if (!(number > 0)) throw InputError(value.where(), what + " must be above 0");
   return number;
+}
+
+std::string alternatives(std::string_view name, const std::vector<std::string>& known) {
+  return did_you_mean(name, known, "known are " + quoted(known));
+}
+
+void require_keys(const Value& value, const std::string& what,
+                  const std::vector<std::string>& known) {
+  if (value.kind() != Value::Kind::map) throw InputError(value.where(), what + " must be a map");
+  for (const auto& [key, member] : value.members()) {
+    if (std::ranges::find(known, key) == known.end()) {
+      throw InputError(member.where(),
+                       what + " has no key `" + key + "`" + alternatives(key, known));
+    }
+  }
+}
+
+const Value& required_key(const Value& value, const std::string& what, const char* key) {
+  if (const Value* found = value.find(key)) return *found;
+  throw InputError(value.where(), what + " needs the key `" + key + "`");
 }
 
 }  // namespace assay

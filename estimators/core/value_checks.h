@@ -1,6 +1,8 @@
 #pragma once
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "estimators/core/value.h"
 
@@ -11,5 +13,13 @@ namespace assay {
 double finite_number(const Value& value, const std::string& what);
 double at_least_zero(const Value& value, const std::string& what);
 double above_zero(const Value& value, const std::string& what);
+
+/// Refuses what is not a map, or a map with a key that is not among `known`.
+void require_keys(const Value& value, const std::string& what,
+                  const std::vector<std::string>& known);
+/// The member of a map; InputError where it is missing.
+const Value& required_key(const Value& value, const std::string& what, const char* key);
+/// How a message about an unknown name ends: the nearest known one, or all.
+std::string alternatives(std::string_view name, const std::vector<std::string>& known);
 
 }  // namespace assay

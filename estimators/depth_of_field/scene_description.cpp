@@ -6,14 +6,10 @@
 
 #include "estimators/core/flow.h"
 #include "estimators/core/value_checks.h"
-#include "luminaire/scene_description.h"
 
 namespace assay::depth_of_field {
 
 namespace {
-
-using luminaire::require_keys;
-using luminaire::required_key;
 
 Interval interval(const Value& value, const std::string& what) {
   if (value.kind() != Value::Kind::list || value.items().size() != 2) {
@@ -156,8 +152,8 @@ SceneDescription read_scene(const Value& value) {
   for (const Named& entry : named) {
     if (name == entry.name) return scene(parse_flow(entry.scene));
   }
-  throw InputError(value.where(), "there is no scene `" + name + "`" +
-                                      luminaire::alternatives(name, built_in_scenes()));
+  throw InputError(value.where(),
+                   "there is no scene `" + name + "`" + alternatives(name, built_in_scenes()));
 }
 
 namespace {

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "estimators/core/value_checks.h"
 #include "estimators/parameters.h"
-#include "luminaire/scene_description.h"
 
 namespace assay::direct_light {
 
@@ -45,7 +45,7 @@ ParameterInformation heuristic_parameter() {
 Heuristic read_heuristic(Parameters& given) {
   const Value& value = given.structure("heuristic");
   if (value.kind() == Value::Kind::scalar) return named(given, value.text());
-  luminaire::require_keys(value, "the heuristic", {"power", "cutoff"});
+  require_keys(value, "the heuristic", {"power", "cutoff"});
   if (value.members().size() != 1) {
     given.refuse("heuristic", "must have one of the keys `power` and `cutoff`");
   }

@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "brdf/albedo.h"
+#include "estimators/core/value_checks.h"
 #include "estimators/parameters.h"
 #include "luminaire/area.h"
-#include "luminaire/scene_description.h"
 #include "luminaire/solid_angle.h"
 #include "render/hemisphere.h"
 
@@ -74,7 +74,7 @@ ParameterInformation brdf_parameter() {
 
 SharedReflectance read_reflectance(Parameters& given) {
   const Value& value = given.structure("brdf");
-  luminaire::require_keys(value, "the brdf", {"lambert", "ward", "ashikhmin_shirley"});
+  require_keys(value, "the brdf", {"lambert", "ward", "ashikhmin_shirley"});
   if (value.members().size() != 1) {
     given.refuse("brdf", "must have one of the keys `lambert`, `ward` and `ashikhmin_shirley`");
   }

@@ -3,7 +3,6 @@
 // A point that receives light, a luminaire and what stands between, as a suite states them.
 
 #include <string>
-#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -63,14 +62,6 @@ render::Vector3 read_unit_vector(const Value& value, const std::string& what);
 render::Polygon read_polygon(const Value& value, const std::string& what);
 render::TriangleMesh read_mesh(const Value& value, const std::string& what,
                                const std::string& folder);
-
-/// Refuses what is not a map, or a map with a key that is not among `known`.
-void require_keys(const Value& value, const std::string& what,
-                  const std::vector<std::string>& known);
-/// The member of a map; InputError where it is missing.
-const Value& required_key(const Value& value, const std::string& what, const char* key);
-/// How a message about an unknown name ends: the nearest known one, or all.
-std::string alternatives(std::string_view name, const std::vector<std::string>& known);
 
 /// The built-in scenes' names: triangle, cornell_triangle, rectangle.
 std::vector<std::string> built_in_scenes();

@@ -8,16 +8,12 @@
 
 #include "estimators/core/flow.h"
 #include "estimators/core/value_checks.h"
-#include "luminaire/scene_description.h"
 #include "paths/path.h"
 #include "paths/worlds.h"
 
 namespace assay::metropolis {
 
 namespace {
-
-using luminaire::require_keys;
-using luminaire::required_key;
 
 double value(const Linear& f, double u) { return f.constant + f.slope * u; }
 double value(const Gaussian& f, double u) {
@@ -267,10 +263,10 @@ SharedTarget named(Parameters& given, const std::string& name, std::size_t pixel
   if (name == "sphere" || name == "coloured_sphere") {
     return sphere_of(paths::read_scene(Value::scalar(name), given.folder()), 0.8, pixels);
   }
-  given.refuse("target", "there is no target `" + name + "`" +
-                             luminaire::alternatives(
-                                 name, {"constant", "peak", "coloured_peak", "boundary", "mixture",
-                                        "branches", "sphere", "coloured_sphere"}));
+  given.refuse("target",
+               "there is no target `" + name + "`" +
+                   alternatives(name, {"constant", "peak", "coloured_peak", "boundary", "mixture",
+                                       "branches", "sphere", "coloured_sphere"}));
 }
 
 }  // namespace

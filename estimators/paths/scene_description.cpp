@@ -17,10 +17,6 @@ using render::Vector3;
 
 namespace {
 
-using luminaire::alternatives;
-using luminaire::require_keys;
-using luminaire::required_key;
-
 class Reader {
  public:
   explicit Reader(std::string folder) : folder_(std::move(folder)) {}

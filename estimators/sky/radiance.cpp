@@ -138,9 +138,9 @@ SharedRadiance read_uniform(const Value& value) {
 }
 
 SharedRadiance read_gradient(const Value& value) {
-  luminaire::require_keys(value, "`gradient`", {"base", "slope"});
+  require_keys(value, "`gradient`", {"base", "slope"});
   const auto at = [&](const char* key) -> const Value& {
-    return luminaire::required_key(value, "`gradient`", key);
+    return required_key(value, "`gradient`", key);
   };
   const double base = finite_number(at("base"), "`base`");
   const Vector3 slope = luminaire::read_vector(at("slope"), "`slope`");
@@ -165,9 +165,9 @@ SharedRadiance read_harmonics(const Value& value) {
 }
 
 SharedRadiance read_peak(const Value& value) {
-  luminaire::require_keys(value, "`peak`", {"base", "height", "sharpness", "direction"});
+  require_keys(value, "`peak`", {"base", "height", "sharpness", "direction"});
   const auto at = [&](const char* key) -> const Value& {
-    return luminaire::required_key(value, "`peak`", key);
+    return required_key(value, "`peak`", key);
   };
   const auto number = [&](const char* key) {
     return finite_number(at(key), std::string("`") + key + "`");
