@@ -51,6 +51,9 @@ class PictureFile {
   const std::string& name() const { return name_; }
   /// In the order of the file: part by part, by name.
   const std::vector<FileChannel>& channels() const { return channels_; }
+  std::vector<std::string> channel_names() const;
+  /// True if there is a channel of each of these names.
+  bool has(const std::vector<std::string>& names) const;
   /// The whole picture, of which a crop has windows.
   const PictureWindow& canvas() const { return canvas_; }
   /// The attribute `samplesPerPixel` that pbrt writes.

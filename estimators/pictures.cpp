@@ -3,6 +3,7 @@
 #include <glob.h>
 
 #include <algorithm>
+#include <boost/algorithm/string.hpp>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -31,23 +32,11 @@ std::size_t rank_of(const std::string& channel) {
   return static_cast<std::size_t>(std::ranges::find(order, last_of(channel)) - order.begin());
 }
 
-std::vector<std::string> names_of(const PictureFile& file) {
-  std::vector<std::string> names;
-  for (const FileChannel& channel : file.channels()) names.push_back(channel.name);
-  return names;
-}
-
 std::vector<std::string> split_at_commas(const std::string& text) {
   std::vector<std::string> pieces;
-  std::size_t begin = 0;
-  while (begin <= text.size()) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    std::string piece = text.substr(begin, end - begin);
-    piece.erase(0, std::min(piece.find_first_not_of(' '), piece.size()));
-    piece.erase(piece.find_last_not_of(' ') + 1);
-    if (!piece.empty()) pieces.push_back(piece);
-    begin = end + 1;
-  }
+  boost::split(pieces, text, boost::is_any_of(","));
+  for (std::string& piece : pieces) boost::trim_if(piece, boost::is_any_of(" "));
+  std::erase(pieces, "");
   return pieces;
 }
 
@@ -71,10 +60,9 @@ std::vector<std::string> colours_of(const std::string& layer) {
 }
 
 std::vector<std::string> usual_channels(const PictureFile& file) {
-  const std::vector<std::string> names = names_of(file);
-  const auto has = [&](const char* name) { return std::ranges::find(names, name) != names.end(); };
-  if (has("R") && has("G") && has("B")) return colours_of("");
-  if (has("Y")) return {"Y"};
+  const std::vector<std::string> names = file.channel_names();
+  if (file.has({"R", "G", "B"})) return colours_of("");
+  if (file.has({"Y"})) return {"Y"};
   const std::vector<std::string> layers = coloured_layers(names);
   if (layers.size() == 1) return colours_of(layers[0]);
   for (const std::string& layer : layers) {
@@ -88,7 +76,7 @@ std::vector<std::string> usual_channels(const PictureFile& file) {
 }
 
 std::vector<std::string> matching_channels(const PictureFile& file, const std::string& patterns) {
-  const std::vector<std::string> names = names_of(file);
+  const std::vector<std::string> names = file.channel_names();
   std::set<std::string> chosen;
   for (const std::string& pattern : split_at_commas(patterns)) {
     bool any = false;
@@ -188,13 +176,6 @@ std::vector<std::string> substituted(const std::string& pattern,
   return names;
 }
 
-bool has_all(const PictureFile& file, const std::vector<std::string>& names) {
-  const std::vector<std::string> there = names_of(file);
-  return std::ranges::all_of(names, [&](const std::string& name) {
-    return std::ranges::find(there, name) != there.end();
-  });
-}
-
 /// Samples of every pixel.
 std::vector<double> read_counts(const PictureFile& file, const MomentChannels& errors,
                                 const PictureView& view, double least) {
@@ -266,7 +247,7 @@ PictureChannels choose_channels(const PictureFile& file, const std::string& patt
     sort_channels(channels.names);
   }
   if (channels.names.empty()) refuse(file.name(), "no channel is chosen");
-  name_components(channels, names_of(file));
+  name_components(channels, file.channel_names());
   return channels;
 }
 
@@ -433,8 +414,8 @@ PictureStack open_stack(std::vector<std::string> files, const std::string& patte
 }
 
 MomentChannels usual_moments(const PictureFile& file, const PictureChannels& channels) {
-  if (has_all(file, substituted("Variance.*", channels.names))) return {.variance = "Variance.*"};
-  if (has_all(file, substituted("m2_*", channels.names))) return {.second_moment = "m2_*"};
+  if (file.has(substituted("Variance.*", channels.names))) return {.variance = "Variance.*"};
+  if (file.has(substituted("m2_*", channels.names))) return {.second_moment = "m2_*"};
   return {};
 }
 

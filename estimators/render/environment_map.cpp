@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "estimators/core/value.h"
 #include "estimators/picture_file.h"
 #include "render/picture_kinds.h"
 #include "render/quadrature.h"
@@ -175,17 +176,11 @@ CosineMoments cosine_moments(const Patch& patch, const Vector3& normal) {
 
 EnvironmentMap read_environment(const std::string& file) {
   const std::unique_ptr<const PictureFile> picture = open_picture(file);
-  const auto has = [&](const char* name) {
-    return std::ranges::count(picture->channels(), name, &FileChannel::name) > 0;
-  };
   std::vector<std::string> names{"Y"};
-  if (has("R") && has("G") && has("B")) names = {"R", "G", "B"};
-  if (names.size() == 1 && !has("Y")) {
-    std::string found;
-    for (const FileChannel& each : picture->channels()) {
-      found += (found.empty() ? "" : ", ") + each.name;
-    }
-    refuse_picture(file, "the picture needs the channels R, G and B, or Y; it has " + found);
+  if (picture->has({"R", "G", "B"})) names = {"R", "G", "B"};
+  if (!picture->has(names)) {
+    refuse_picture(file, "the picture needs the channels R, G and B, or Y; it has " +
+                             listed(picture->channel_names()));
   }
   const PictureWindow window = picture->window(names);
   if (window != picture->canvas()) {

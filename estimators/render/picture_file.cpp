@@ -41,16 +41,6 @@ const Kind* kind_of(const std::string& file) {
   return found == std::end(kinds) ? nullptr : found;
 }
 
-std::string listed(const std::vector<FileChannel>& channels) {
-  constexpr std::size_t most = 12;
-  std::string text;
-  for (std::size_t i = 0; i < std::min(most, channels.size()); ++i) {
-    text += (i == 0 ? "`" : ", `") + channels[i].name + "`";
-  }
-  if (channels.size() > most) text += ", … (" + std::to_string(channels.size()) + " in all)";
-  return text.empty() ? "none" : text;
-}
-
 /// To the nearest of 11 significant bits, or multiple of 2^-24; ties go to even.
 float to_half(float value) {
   constexpr float largest = 65520;
@@ -108,10 +98,23 @@ float rounded(float value, Rounding how, bool alpha) {
   return value;
 }
 
+std::vector<std::string> PictureFile::channel_names() const {
+  std::vector<std::string> names;
+  for (const FileChannel& channel : channels_) names.push_back(channel.name);
+  return names;
+}
+
+bool PictureFile::has(const std::vector<std::string>& names) const {
+  return std::ranges::all_of(names, [&](const std::string& name) {
+    return std::ranges::count(channels_, name, &FileChannel::name) > 0;
+  });
+}
+
 const FileChannel& PictureFile::channel(const std::string& name) const {
   const auto found = std::ranges::find(channels_, name, &FileChannel::name);
   if (found != channels_.end()) return *found;
-  render::refuse_picture(name_, "there is no channel `" + name + "`; it has " + listed(channels_));
+  render::refuse_picture(name_,
+                         "there is no channel `" + name + "`; it has " + quoted(channel_names()));
 }
 
 PictureWindow PictureFile::window(std::span<const std::string> names) const {

@@ -61,10 +61,6 @@ struct Layer {
   recorded::PictureChannels of_reference;
 };
 
-bool has(const PictureFile& file, const std::string& name) {
-  return std::ranges::find(file.channels(), name, &FileChannel::name) != file.channels().end();
-}
-
 /// True if a channel is 1 throughout.
 bool is_one(const PictureFile& file, const std::string& name) {
   const PictureWindow window = file.window(std::span(&name, 1));
@@ -80,13 +76,13 @@ std::string usual_with_alpha(const ImagesArguments& arguments, const FirstPictur
   const std::string layer = recorded::layer_of(usual.names[0]);
   const std::string alpha = layer.empty() ? "A" : layer + ".A";
   const auto tells = [&](const PictureFile& file) {
-    return has(file, alpha) && !is_one(file, alpha);
+    return file.has({alpha}) && !is_one(file, alpha);
   };
   if (!tells(*first.candidate) && !tells(*first.reference)) return "usual";
   if (recorded::usual_moments(*first.reference, usual).any()) return "usual";
   const std::string names = fmt::format("{}", fmt::join(usual.names, ","));
   const auto require_alpha = [&](const PictureFile& file, const Location& where) {
-    if (has(file, alpha)) return;
+    if (file.has({alpha})) return;
     refuse(
         where,
         "its pictures have no alpha, and that of the other side is not 1 everywhere; --channels '" +
