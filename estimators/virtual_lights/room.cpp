@@ -1,8 +1,8 @@
 #include "virtual_lights/room.h"
 
+#include <boost/pending/disjoint_sets.hpp>
 #include <map>
 #include <numbers>
-#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -34,27 +34,6 @@ TriangleMesh welded(const TriangleMesh& mesh) {
   return out;
 }
 
-// Sets of triangles that have been found to belong together.
-class Sets {
- public:
-  explicit Sets(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0u); }
-
-  std::uint32_t of(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::uint32_t i, std::uint32_t j) { parent_[of(i)] = of(j); }
-  bool all_one() {
-    for (std::uint32_t i = 1; i < parent_.size(); ++i) {
-      if (of(i) != of(0)) return false;
-    }
-    return true;
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
 struct Side {
   std::uint32_t triangle;
   std::uint32_t opposite;  ///< vertex
@@ -78,26 +57,32 @@ double height(const TriangleMesh& mesh, std::size_t triangle, const Vector3& poi
 }
 
 void find_walls(const TriangleMesh& mesh, Enclosure& room) {
-  Sets walls(mesh.triangles.size());
-  Sets connected(mesh.triangles.size());
+  // Triangles that have been found to belong together.
+  using Sets = boost::disjoint_sets_with_storage<>;
+  const auto count = static_cast<std::uint32_t>(mesh.triangles.size());
+  Sets walls(count);
+  Sets connected(count);
   const auto all = sides(mesh);
   const double tolerance = flat * render::Box(mesh).longest_side();
   for (const auto& [edge, side] : all) {
     const Side& other = all.at({edge.second, edge.first});
-    connected.join(side.triangle, other.triangle);
+    connected.union_set(side.triangle, other.triangle);
     const double out = height(mesh, side.triangle, mesh.vertices[other.opposite]);
     const double inwards = room.counter_clockwise ? out : -out;
     if (inwards < -tolerance) {
       room.why_not_convex = "its walls turn outwards at an edge";
       return;
     }
-    if (inwards <= tolerance) walls.join(side.triangle, other.triangle);
+    if (inwards <= tolerance) walls.union_set(side.triangle, other.triangle);
   }
-  if (!connected.all_one()) {
+  for (std::uint32_t i = 1; i < count; ++i) {
+    if (connected.find_set(i) == connected.find_set(0u)) continue;
     room.why_not_convex = "its walls are not connected";
     return;
   }
-  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) room.wall_of.push_back(walls.of(i));
+  for (std::uint32_t i = 0; i < count; ++i) {
+    room.wall_of.push_back(static_cast<std::uint32_t>(walls.find_set(i)));
+  }
 }
 
 Vertex seen_by_camera(const MeshWorld& world) {
