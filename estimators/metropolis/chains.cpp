@@ -64,7 +64,7 @@ void write_image(const ImageShape& shape, const Tally& tally, std::span<double> 
     const Spectrum value = tally.steps > 0 ? 1 / tally.steps * tally.pixels[p] : Spectrum{};
     sum += value;
     for (std::size_t c = 0; c < components; ++c) {
-      out[p * components + c] = pixels * value.*paths::colours[c].part;
+      out[p * components + c] = pixels * value[c];
     }
   }
   out[shape.elements()] = luminance_of(sum, components);

@@ -149,8 +149,7 @@ class SphereTarget final : public Target {
         sum += common / (high - low) * (surface.emission + surface.diffuse * law.mean_radiance());
         below = top;
       }
-      for (std::size_t c = 0; c < (form_.grey ? 1 : 3); ++c)
-        all.push_back(sum.*paths::colours[c].part);
+      for (std::size_t c = 0; c < (form_.grey ? 1 : 3); ++c) all.push_back(sum[c]);
     }
     return all;
   }
@@ -319,7 +318,7 @@ std::vector<double> ProductTarget::means() const {
       sum += product;
     }
     for (std::size_t c = 0; c < (coloured_ ? 3 : 1); ++c) {
-      all.push_back(sum * colours_[p].*paths::colours[c].part);
+      all.push_back(sum * colours_[p][c]);
     }
   }
   return all;

@@ -26,30 +26,30 @@ Scene scene_of(const MeshScene& form, const Camera& camera) {
 
 // Adds the score of a vertex of a zone, for one colour. The emission that arrives along the
 // camera's ray is added to the mean elsewhere and has no variance.
-void add_score(ZoneSteps& zone, const Scene& scene, const Surface& surface, Colour colour,
+void add_score(ZoneSteps& zone, const Scene& scene, const Surface& surface, std::size_t colour,
                Direct direct) {
   const ZonedScene& law = *scene.law;
   if (direct == Direct::hit) {
-    zone.score = surface.emission.*colour;
+    zone.score = surface.emission[colour];
     return;
   }
-  const double light = law.mean_emission().*colour;
+  const double light = law.mean_emission()[colour];
   zone.score = zone.albedo * light;
   if (direct == Direct::exact) return;
   double square = 0;
   for (const ZonedScene::Zone& z : law.zones) {
-    square += z.fraction * (z.surface.emission.*colour) * (z.surface.emission.*colour);
+    square += z.fraction * z.surface.emission[colour] * z.surface.emission[colour];
   }
   zone.score_variance = zone.albedo * zone.albedo * (square - light * light);
 }
 
-std::vector<ZoneSteps> zone_steps(const Scene& scene, const Steps& steps, Colour colour) {
+std::vector<ZoneSteps> zone_steps(const Scene& scene, const Steps& steps, std::size_t colour) {
   std::vector<ZoneSteps> all;
   for (const ZonedScene::Zone& z : scene.law->zones) {
     ZoneSteps zone{.fraction = z.fraction,
-                   .albedo = z.surface.albedo().*colour,
+                   .albedo = z.surface.albedo()[colour],
                    .survival = steps.survival(z.surface),
-                   .terminal = steps.terminal(z.surface).*colour};
+                   .terminal = steps.terminal(z.surface)[colour]};
     add_score(zone, scene, z.surface, colour, steps.direct);
     all.push_back(zone);
   }
@@ -71,7 +71,7 @@ void add_steps(Knowledge& known, const Scene& scene, const Steps& steps) {
   if (!has_variance(scene, steps)) return;
   const ZonedScene& law = *scene.law;
   for (std::size_t c = 0; c < 3; ++c) {
-    const auto zones = zone_steps(scene, steps, colours[c].part);
+    const auto zones = zone_steps(scene, steps, c);
     const std::optional<double> variance = path_variance(zones, law.seen, steps.splitting);
     const double mean = *known.colours[c].mean;
     // A difference that is nothing but rounding is not stated.
@@ -91,7 +91,7 @@ std::vector<Channel> channels(const Scene& scene, const Knowledge& known) {
   std::vector<Channel> all;
   for (std::size_t c = 0; c < (scene.grey ? 1 : 3); ++c) {
     const Known& colour = known.colours[c];
-    all.push_back({.name = scene.grey ? "radiance" : colours[c].name,
+    all.push_back({.name = scene.grey ? "radiance" : colours[c],
                    .mean = colour.mean,
                    .variance = colour.variance,
                    .low = known.low,
@@ -122,7 +122,7 @@ Knowledge knowledge(const Scene& scene, const std::optional<Steps>& steps) {
   Knowledge known;
   if (!scene.law) return known;
   const Spectrum radiance = scene.law->seen_radiance();
-  for (std::size_t c = 0; c < 3; ++c) known.colours[c].mean = radiance.*colours[c].part;
+  for (std::size_t c = 0; c < 3; ++c) known.colours[c].mean = radiance[c];
   if (steps) add_steps(known, scene, *steps);
   return known;
 }
@@ -138,9 +138,7 @@ std::shared_ptr<const Setup> setup(const Scene& scene, const Knowledge& known, T
     spent.samples += primaries;
     const double n = static_cast<double>(primaries);
     std::size_t at = 0;
-    for (const auto& colour : colours) {
-      if (at == 0 || !grey) out[at++] = tally.value.*colour.part / n;
-    }
+    for (std::size_t c = 0; c < (grey ? 1 : 3); ++c) out[at++] = tally.value[c] / n;
     out[at++] = static_cast<double>(tally.vertices) / n;
     for (std::size_t k = 1; k < Tally::bounces; ++k) {
       out[at++] = static_cast<double>(tally.at_bounce[k]) / n;

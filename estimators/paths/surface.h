@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "render/vector.h"
@@ -18,6 +19,7 @@ struct Spectrum {
   double blue = 0;
 
   static constexpr Spectrum grey(double x) { return {x, x, x}; }
+  constexpr double operator[](std::size_t c) const { return std::array{red, green, blue}[c]; }
   constexpr bool operator==(const Spectrum&) const = default;
   constexpr Spectrum& operator+=(const Spectrum& s) {
     red += s.red;
@@ -27,14 +29,7 @@ struct Spectrum {
   }
 };
 
-/// One of the numbers under its name.
-using Colour = double Spectrum::*;
-struct NamedColour {
-  const char* name;
-  Colour part;
-};
-inline constexpr std::array<NamedColour, 3> colours = {
-    {{"red", &Spectrum::red}, {"green", &Spectrum::green}, {"blue", &Spectrum::blue}}};
+inline constexpr std::array<const char*, 3> colours = {"red", "green", "blue"};
 
 constexpr Spectrum operator+(Spectrum a, const Spectrum& b) { return a += b; }
 constexpr Spectrum operator*(double x, const Spectrum& s) {

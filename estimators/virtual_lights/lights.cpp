@@ -12,9 +12,9 @@ std::vector<Channel> channels(const Scene& scene, const Recipe& recipe) {
   const std::optional<Spectrum> known = twice_reflected(*scene.room);
   std::vector<Channel> all;
   for (std::size_t c = 0; c < (scene.grey ? 1 : 3); ++c) {
-    Channel channel{.name = scene.grey ? "radiance" : paths::colours[c].name, .low = 0};
+    Channel channel{.name = scene.grey ? "radiance" : paths::colours[c], .low = 0};
     if (known) {
-      channel.mean = (*known).*paths::colours[c].part;
+      channel.mean = (*known)[c];
       // Rounding of ratios of sums of thousands of terms.
       channel.rounding = 1e-12 * *channel.mean;
     }
@@ -108,9 +108,7 @@ std::shared_ptr<const Setup> setup(const Scene& scene, Recipe recipe) {
     const Sums sums = recipe.sums(random, primaries, cost);
     const Spectrum value = recipe.result(sums, count);
     std::size_t at = 0;
-    for (const auto& colour : paths::colours) {
-      if (at == 0 || !grey) out[at++] = value.*colour.part;
-    }
+    for (std::size_t c = 0; c < (grey ? 1 : 3); ++c) out[at++] = value[c];
     if (recipe.has_target) out[at] = sums.target / count;
   };
   return setup_of({.channels = std::move(its),
