@@ -140,7 +140,8 @@ struct Ingredients {
 };
 Ingredients read_ingredients(Parameters& given);
 
-/// A sound chain with these rules, started from the bootstrap.
-Recipe recipe(const Ingredients& ingredients, std::shared_ptr<const Rules> rules);
+/// A sound chain, started from the bootstrap. Its rules are MultipleImportanceRules where
+/// `combined`, else MeanValueRules.
+Recipe recipe(const Ingredients& ingredients, bool combined);
 
 }  // namespace assay::metropolis

@@ -128,13 +128,9 @@ class ChainEstimator final : public Estimator {
 std::vector<Channel> image_channels(const Target& target) {
   const ImageShape shape = target.shape();
   const std::vector<double> means = target.means();
-  std::vector<Channel> channels;
+  std::vector<Channel> channels = element_channels(shape, {.low = 0});
+  for (std::size_t i = 0; i < means.size(); ++i) channels[i].mean = means[i];
   double sum = 0;
-  for (std::size_t i = 0; i < shape.elements(); ++i) {
-    Channel channel{.name = element_name(shape, i), .low = 0};
-    if (!means.empty()) channel.mean = means[i];
-    channels.push_back(std::move(channel));
-  }
   const std::size_t components = shape.components.size();
   for (std::size_t i = 0; i < means.size(); i += components) {
     sum += components == 1 ? means[i] : paths::luminance({means[i], means[i + 1], means[i + 2]});
@@ -282,7 +278,9 @@ Ingredients read_ingredients(Parameters& given) {
           .boundary = boundary_of(given.string("boundary"))};
 }
 
-Recipe recipe(const Ingredients& ingredients, std::shared_ptr<const Rules> rules) {
+Recipe recipe(const Ingredients& ingredients, bool combined) {
+  std::shared_ptr<const Rules> rules = std::make_shared<MeanValueRules>();
+  if (combined) rules = std::make_shared<MultipleImportanceRules>(ingredients.p_large);
   return {.target = ingredients.target,
           .p_large = ingredients.p_large,
           .step = std::make_shared<SmallStep>(ingredients.boundary),
@@ -328,9 +326,7 @@ Entry mean_value() {
                           of_channels,
            .parameters = chain_parameters(),
            .averages = false},
-          [](Parameters& given) {
-            return chain(recipe(read_ingredients(given), std::make_shared<MeanValueRules>()));
-          }};
+          [](Parameters& given) { return chain(recipe(read_ingredients(given), false)); }};
 }
 
 Entry multiple_importance() {
@@ -346,10 +342,7 @@ Entry multiple_importance() {
            .parameters = chain_parameters(),
            .bias = BiasClass::inverse_bootstrap,
            .averages = false},
-          [](Parameters& given) {
-            const Ingredients parts = read_ingredients(given);
-            return chain(recipe(parts, std::make_shared<MultipleImportanceRules>(parts.p_large)));
-          }};
+          [](Parameters& given) { return chain(recipe(read_ingredients(given), true)); }};
 }
 
 Entry uniform_start() {
@@ -372,11 +365,7 @@ Entry uniform_start() {
            .averages = false},
           [](Parameters& given) {
             const Ingredients parts = read_ingredients(given);
-            std::shared_ptr<const Rules> rules = std::make_shared<MeanValueRules>();
-            if (given.string("weights") != "mean_value") {
-              rules = std::make_shared<MultipleImportanceRules>(parts.p_large);
-            }
-            Recipe list = recipe(parts, std::move(rules));
+            Recipe list = recipe(parts, given.string("weights") != "mean_value");
             list.start = std::make_shared<UniformStart>(parts.bootstrap);
             return chain(std::move(list));
           }};

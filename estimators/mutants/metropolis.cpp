@@ -176,11 +176,7 @@ Entry entry(const std::string& original, const char* name, const char* defect, D
   return mutant({std::string("metropolis_") + name, original, defect},
                 [original, apply = std::move(apply)](Parameters& given) {
                   const Ingredients parts = read_ingredients(given);
-                  std::shared_ptr<const Rules> sound = std::make_shared<MeanValueRules>();
-                  if (original != "metropolis/mean_value") {
-                    sound = std::make_shared<MultipleImportanceRules>(parts.p_large);
-                  }
-                  Recipe recipe = metropolis::recipe(parts, std::move(sound));
+                  Recipe recipe = metropolis::recipe(parts, original != "metropolis/mean_value");
                   apply(recipe, parts);
                   return chain(std::move(recipe));
                 });
