@@ -45,9 +45,7 @@ ImagePlan read_image_plan(Parameters&, const PredictionRules* rules = nullptr);
 /// The value of a lens sample at a pixel, and its divisor.
 struct SoundShading {
   double sample(const ImagePlan& plan, std::size_t pixel, Stream& random, Cost& cost) const {
-    const double s = random.uniform();
-    const PlanePoint u = UniformDisc{}(s, random.uniform());
-    return plan.setting->radiance(plan.grid.pixel(pixel), u, cost);
+    return plan.setting->radiance(plan.grid.pixel(pixel), lens_point(random), cost);
   }
   double divisor(const ImagePlan& plan, std::size_t pixel) const {
     return static_cast<double>(plan.counts[pixel]);

@@ -34,8 +34,7 @@ struct Reflection {
   bool exact = false;
 
   double operator()(Stream& random) const {
-    const double s = random.uniform();
-    const double u = lens.radius * UniformDisc{}(s, random.uniform()).x;
+    const double u = lens.radius * lens_point(random).x;
     const double turned = analytic::NormalLaw{0, roughness}(random);
     return board.at(exact ? mirror.exact(lens, u, pixel, turned)
                           : mirror.linear(lens, u, pixel, turned));

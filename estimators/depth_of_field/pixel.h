@@ -28,10 +28,7 @@ struct LensPrimary {
   SharedSetting setting;
   PlanePoint pixel;
 
-  PlanePoint draw(Stream& random) const {
-    const double s = random.uniform();
-    return Disc{}(s, random.uniform());
-  }
+  PlanePoint draw(Stream& random) const { return lens_point<Disc>(random); }
   double value(const PlanePoint& u, Cost& cost) const { return setting->radiance(pixel, u, cost); }
 };
 

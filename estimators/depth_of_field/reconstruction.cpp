@@ -97,9 +97,7 @@ double lens_average(const ReconstructionPlan& plan, std::size_t sample, std::uin
   const PlanePoint pixel = plan.grid.pixel(plan.pixel_of(plan.samples[sample]));
   double sum = 0;
   for (std::uint64_t k = 0; k < count; ++k) {
-    const double s = random.uniform();
-    const PlanePoint u = UniformDisc{}(s, random.uniform());
-    sum += plan.setting->radiance(pixel, u, cost);
+    sum += plan.setting->radiance(pixel, lens_point(random), cost);
   }
   return sum / static_cast<double>(count);
 }

@@ -60,14 +60,19 @@ struct UniformDisc {
   }
 };
 
+/// A point of the lens, from two numbers of the stream. `Disc` maps them to the unit disc.
+template <class Disc = UniformDisc>
+PlanePoint lens_point(Stream& random) {
+  const double s = random.uniform();
+  return Disc{}(s, random.uniform());
+}
+
 /// Lens points lifted to the hemisphere above the unit disc, (u, v, sqrt(1 - u^2 - v^2)). Points
 /// uniform on the disc become directions of density cos(theta) / pi (Malley's method, backwards).
-/// The type `Disc` maps two numbers to a point of the disc.
 template <class Disc = UniformDisc>
 std::vector<NamedSampler> lens_samplers() {
   const auto point = [](Stream& random) {
-    const double s = random.uniform();
-    const PlanePoint u = Disc{}(s, random.uniform());
+    const PlanePoint u = lens_point<Disc>(random);
     return Point{u.x, u.y, std::sqrt(std::max(0.0, 1 - u.x * u.x - u.y * u.y))};
   };
   const auto density = [](const Point& w) { return std::max(0.0, w[2]) / std::numbers::pi; };

@@ -27,8 +27,7 @@ struct BlurByDepth {
   double factor;
 
   double operator()(Stream& random, Cost& cost) const {
-    const double s = random.uniform();
-    const PlanePoint u = UniformDisc{}(s, random.uniform());
+    const PlanePoint u = lens_point(random);
     return setting->radiance(pixel, {factor * u.x, factor * u.y}, cost);
   }
 };
