@@ -1,8 +1,9 @@
 #include "estimators/picture_file.h"
 
+#include <half.h>
+
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -41,14 +42,11 @@ const Kind* kind_of(const std::string& file) {
   return found == std::end(kinds) ? nullptr : found;
 }
 
-/// To the nearest of 11 significant bits, or multiple of 2^-24; ties go to even.
+/// Halves are multiples of 2^-24 at the finest, of 11 significant bits. Ties go to even.
 float to_half(float value) {
   constexpr float largest = 65520;
   if (!(std::abs(value) < largest)) return value;
-  if (std::abs(value) < 0x1p-14F) return std::copysign((std::abs(value) + 0.5F) - 0.5F, value);
-  auto bits = std::bit_cast<std::uint32_t>(value);
-  bits += 0xfffU + ((bits >> 13U) & 1U);
-  return std::bit_cast<float>(bits & ~0x1fffU);
+  return imath_half_to_float(imath_float_to_half(value));
 }
 
 // The inverse of from_srgb.
