@@ -75,7 +75,7 @@ class OnChart {
 
 // Cells at a jump of the density are right to 1e-6 together. A million draws tell 1e-4 of a cell,
 // so more digits would cost time for nothing.
-constexpr stats::QuadratureLimits limits{.tolerance = 1e-8, .deepest_bisection = 24};
+constexpr stats::QuadratureLimits limits{.tolerance = 1e-8};
 
 // More cells of a peak find finer defects, but need more points for those that are everywhere
 // (tests/cells_study.sh). A share of 1/32 would be one column of azimuths of a lobe about

@@ -16,7 +16,7 @@
 namespace assay::harness {
 namespace {
 
-constexpr stats::QuadratureLimits table_limits{.tolerance = 1e-7, .deepest_bisection = 24};
+constexpr stats::QuadratureLimits table_limits{.tolerance = 1e-7};
 constexpr std::size_t least_parts = 32;
 
 bool on_interval(const Sampler& sampler) { return sampler.domain() == Domain::interval; }

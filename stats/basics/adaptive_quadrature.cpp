@@ -176,7 +176,7 @@ const std::array<double, AdaptiveQuadrature::nodes>& AdaptiveQuadrature::node_pl
 }
 
 Integral AdaptiveQuadrature::over(const Function& function, Span span) {
-  return refined(function, span, once(function, span), limits_.deepest_bisection);
+  return refined(function, span, once(function, span), deepest_bisection);
 }
 
 Integral AdaptiveQuadrature::refined(const Function& function, Span span, Integral whole,
@@ -233,7 +233,7 @@ std::optional<std::vector<Integral>> AdaptiveQuadrature::side_by_side(const Plan
     parts.push_back({.x = line.x,
                      .span = line.y,
                      .whole = sampled_in(line.y, at).integral,
-                     .depth = limits_.deepest_bisection});
+                     .depth = deepest_bisection});
   }
   for (std::size_t first = 0, last = 0; first < parts.size(); first = last) {
     last = parts.size();

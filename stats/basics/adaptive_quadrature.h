@@ -36,11 +36,11 @@ using PlaneValues = std::function<void(std::span<const double> x, std::span<cons
                                        std::span<double> values)>;
 
 // An adaptive quadrature halves a part until one of these holds. The part's error is below the
-// tolerance, the part was halved this often, or all evaluations are used up. The error estimate
-// covers what is left.
+// tolerance, it was halved `deepest_bisection` times, or all evaluations are used up. The error
+// estimate covers what is left.
+inline constexpr int deepest_bisection = 24;
 struct QuadratureLimits {
   double tolerance = 1e-10;
-  int deepest_bisection = 24;
   std::uint64_t evaluations = 20'000'000;
 };
 

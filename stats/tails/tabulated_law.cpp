@@ -13,7 +13,6 @@ using Slopes = TabulatedLaw::Slopes;
 constexpr std::size_t nodes = AdaptiveQuadrature::nodes;
 constexpr int places_compared = 7;
 constexpr double largest_departure = 1e-6;
-constexpr int deepest_bisection = 24;
 
 // P_0 to P_nodes at t, by Bonnet's recursion.
 std::array<double, nodes + 1> legendre(double t) {
