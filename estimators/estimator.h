@@ -104,6 +104,17 @@ struct NamedSampler {
   std::shared_ptr<const Sampler> sampler;
 };
 
+/// Which observation, of a set-up that may be drawn by streams.
+struct WhichObservation {
+  std::uint64_t index = 0;
+  StreamKey key = {};
+  std::uint64_t primaries = 1;
+};
+
+namespace recorded {
+class Pictures;  // ready_made.h
+}
+
 /// Everything that all workers share: scene, tables, references. Draws nothing at random.
 class Setup {
  public:
@@ -120,6 +131,18 @@ class Setup {
   virtual std::string data_file() const { return {}; }
   /// The stream that ready-made observations were drawn from, where they say so.
   virtual std::optional<StreamKey> data_stream() const { return {}; }
+  /// Tells ready-made observations from those read elsewhere, where that is known.
+  virtual std::optional<std::uint64_t> data_digest() const { return {}; }
+  /// The place of an observation: "b.exr" that holds it alone, "rows.txt:17". "" if it is in no
+  /// file.
+  virtual std::string place_of(const WhichObservation&) const { return {}; }
+  /// True if observations are drawn into files that stay from one run to the next. Drawing one may
+  /// then cost nothing.
+  virtual bool keeps_files() const { return false; }
+  /// Pictures of files as observations; null of other set-ups.
+  virtual const recorded::Pictures* pictures() const { return nullptr; }
+  /// True if there are only the means of the channels, with their errors: nothing can be drawn.
+  virtual bool is_reference() const { return false; }
   /// Replaces the catalogue's `averages` and `bias` if another program must be asked for them.
   virtual std::optional<Nature> nature() const { return {}; }
   virtual Cost cost() const { return {}; }

@@ -89,7 +89,7 @@ class Command final : public Estimator {
   std::vector<float> texels_;  // scratch
 };
 
-class CommandSetup final : public Setup, public recorded::InFiles, public foreign::Rendered {
+class CommandSetup final : public Setup, public foreign::Rendered {
  public:
   CommandSetup(std::shared_ptr<foreign::Renderings> renderings, Contents contents)
       : renderings_(std::move(renderings)),
@@ -108,9 +108,10 @@ class CommandSetup final : public Setup, public recorded::InFiles, public foreig
   std::unique_ptr<Estimator> make() const override {
     return std::make_unique<Command>(renderings_, contents_);
   }
-  std::string place_of(const recorded::WhichObservation& which) const override {
+  std::string place_of(const WhichObservation& which) const override {
     return renderings_->path_of(which.key, which.index, which.primaries);
   }
+  bool keeps_files() const override { return true; }
   std::vector<foreign::MissingFile> missing(StreamKey key, std::uint64_t count,
                                             std::uint64_t primaries) const override {
     return renderings_->missing(key, count, primaries);

@@ -133,7 +133,7 @@ class StackRows final : public PictureRows {
   std::vector<Reading> pictures_;
 };
 
-class PictureSetup final : public Setup, public InFiles {
+class PictureSetup final : public Setup, public Pictures {
  public:
   PictureSetup(PictureStack stack, bool independent, std::string data_file)
       : stack_(std::make_shared<const PictureStack>(std::move(stack))),
@@ -152,14 +152,19 @@ class PictureSetup final : public Setup, public InFiles {
   }
   std::optional<std::uint64_t> observations() const override { return stack_->files.size(); }
   std::string data_file() const override { return data_file_; }
-  std::unique_ptr<PictureRows> rows() const { return std::make_unique<StackRows>(stack_, seen_); }
-  std::size_t channel_count() const { return shape_.elements() + 1; }
   std::string place_of(const WhichObservation& which) const override { return file(which.index); }
-  std::string file(std::uint64_t index) const {
-    return index < stack_->files.size() ? stack_->files[index] : "";
+  const Pictures* pictures() const override { return this; }
+
+  std::size_t channel_count() const override { return shape_.elements() + 1; }
+  void read(std::uint64_t index, std::span<float> texels, Cost& cost) const override {
+    Picture(stack_, seen_).read(index, texels, cost);
   }
-  std::optional<std::pair<std::string, std::string>> shared_with(const PictureSetup& other,
-                                                                 std::uint64_t count) const {
+  std::unique_ptr<PictureRows> rows() const override {
+    return std::make_unique<StackRows>(stack_, seen_);
+  }
+  std::optional<std::pair<std::string, std::string>> shared_with(
+      const Pictures& others, std::uint64_t count) const override {
+    const auto& other = dynamic_cast<const PictureSetup&>(others);
     // One render in two precisions is no copy: rounding has made it so.
     const bool alike = stack_->view.of_files == other.stack_->view.of_files;
     if (seen_ == other.seen_ || !alike) return {};
@@ -169,6 +174,10 @@ class PictureSetup final : public Setup, public InFiles {
   }
 
  private:
+  std::string file(std::uint64_t index) const {
+    return index < stack_->files.size() ? stack_->files[index] : "";
+  }
+
   SharedStack stack_;
   std::shared_ptr<Seen> seen_;
   ImageShape shape_;
@@ -193,6 +202,7 @@ class ReferenceSetup final : public Setup {
     throw std::logic_error("a reference picture has no observations");
   }
   std::optional<std::uint64_t> observations() const override { return 0; }
+  bool is_reference() const override { return true; }
 
  private:
   PictureMoments moments_;
@@ -241,47 +251,6 @@ std::optional<std::pair<std::uint64_t, std::uint64_t>> SeenPictures::shared_with
     found.emplace(mine->second, index);
   }
   return found;
-}
-
-bool is_reference(const Setup& setup) {
-  return dynamic_cast<const ReferenceSetup*>(&setup) != nullptr;
-}
-
-std::optional<std::size_t> unknown_channels(const Setup& setup) {
-  const auto* const pictures = dynamic_cast<const PictureSetup*>(&setup);
-  if (pictures == nullptr) return std::nullopt;
-  return pictures->channel_count();
-}
-
-void read_picture(Estimator& pictures, std::uint64_t index, std::span<float> texels, Cost& cost) {
-  dynamic_cast<Picture&>(pictures).read(index, texels, cost);
-}
-
-std::unique_ptr<PictureRows> picture_rows(const Setup& setup) {
-  const auto* const pictures = dynamic_cast<const PictureSetup*>(&setup);
-  return pictures == nullptr ? nullptr : pictures->rows();
-}
-
-std::string observation_place(const Setup& setup, const WhichObservation& which) {
-  const auto* const files = dynamic_cast<const InFiles*>(&setup);
-  return files == nullptr ? "" : files->place_of(which);
-}
-
-std::optional<std::uint64_t> observations_digest(const Setup& setup) {
-  const auto* const files = dynamic_cast<const InFiles*>(&setup);
-  return files != nullptr ? files->digest() : std::nullopt;
-}
-
-bool keeps_files(const Setup& setup) {
-  return dynamic_cast<const InFiles*>(&setup) != nullptr && !setup.observations();
-}
-
-std::optional<std::pair<std::string, std::string>> shared_picture(const Setup& first,
-                                                                  const Setup& second,
-                                                                  std::uint64_t count) {
-  const auto* const one = dynamic_cast<const PictureSetup*>(&first);
-  const auto* const two = dynamic_cast<const PictureSetup*>(&second);
-  return one == nullptr || two == nullptr ? std::nullopt : one->shared_with(*two, count);
 }
 
 Channel average_channel() { return {.name = "average", .diagnostic = true}; }

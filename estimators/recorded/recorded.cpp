@@ -38,7 +38,7 @@ struct Selection {
   std::size_t count = 1;
 };
 
-class RecordedSetup final : public Setup, public recorded::InFiles {
+class RecordedSetup final : public Setup {
  public:
   RecordedSetup(Reading reading, Selection selection)
       : table_(std::move(reading.table)), selection_(selection), file_(std::move(reading.source)) {}
@@ -68,13 +68,13 @@ class RecordedSetup final : public Setup, public recorded::InFiles {
   }
   std::optional<std::uint64_t> observations() const override { return table_->rows(); }
   std::string data_file() const override { return file_; }
-  std::string place_of(const recorded::WhichObservation& which) const override {
+  std::string place_of(const WhichObservation& which) const override {
     if (which.index >= table_->rows()) return "";
     // An array has no lines: its rows are counted as numpy does.
     return table_->lines.empty() ? file_ + "[" + std::to_string(which.index) + "]"
                                  : file_ + ":" + std::to_string(table_->lines[which.index]);
   }
-  std::optional<std::uint64_t> digest() const override { return table_->digest(); }
+  std::optional<std::uint64_t> data_digest() const override { return table_->digest(); }
   std::optional<StreamKey> data_stream() const override {
     if (!table_->stream) return {};
     return StreamKey{*table_->stream};

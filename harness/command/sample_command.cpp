@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "estimators/core/flush_denormals.h"
-#include "estimators/ready_made.h"
 #include "harness/base/interrupt.h"
 #include "harness/command/commands.h"
 #include "harness/draws/sampler_setup.h"
@@ -94,7 +93,7 @@ int sample(const SampleArguments& arguments) {
   const PreparedEstimator estimator = prepare(entries.front(), ".");
   const Sampled sampled = sampled_by(estimator, source, arguments.seed);
   const auto rows = sampled.setup->observations();
-  if (recorded::is_reference(*sampled.setup)) {
+  if (sampled.setup->is_reference()) {
     refuse(source.where, "`{}` is a reference, a mean without observations", source.estimator);
   }
   if (as_recorded_run(*sampled.setup) != nullptr) {

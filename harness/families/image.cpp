@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimators/ready_made.h"
 #include "harness/base/parallel.h"
 #include "harness/families/families.h"
 #include "harness/image/image_pair.h"
@@ -145,7 +144,7 @@ std::string without_leading_zeros(const std::string& text) {
 std::vector<std::string> keys_of(const Setup& side) {
   std::vector<std::string> names;
   for (std::uint64_t i = 0; i < *side.observations(); ++i) {
-    names.push_back(recorded::observation_place(side, {.index = i}));
+    names.push_back(side.place_of({.index = i}));
   }
   remove_beginnings(names);
   remove_beginnings(names);  // which are the ends now
@@ -163,8 +162,8 @@ void require_partners(const Question& question) {
     refuse(question,
            fmt::format("`{}` and `{}` are no pair of one seed: where the names of a side differ, "
                        "they say `{}` and `{}`; a pair says the same there, and no other does",
-                       recorded::observation_place(first, {.index = i}),
-                       recorded::observation_place(second, {.index = i}), keys[i], others[i]));
+                       first.place_of({.index = i}), second.place_of({.index = i}), keys[i],
+                       others[i]));
   }
 }
 

@@ -8,7 +8,6 @@
 #include <limits>
 #include <memory>
 
-#include "estimators/ready_made.h"
 #include "harness/families/families.h"
 #include "harness/plan/pilot_shape.h"
 #include "harness/plan/sizes.h"
@@ -871,7 +870,7 @@ std::string channel_suffix(const Question& question, std::size_t channel) {
 
 Question MeanTheta::bind(const TestEntry& test, const Estimators& estimators) const {
   Question question = Theta::bind(test, estimators);
-  if (question.of_two() && recorded::is_reference(*question.subjects[1].setup)) {
+  if (question.of_two() && question.subjects[1].setup->is_reference()) {
     question.references = recorded_means(question, question.subjects[1]);
     question.subjects.pop_back();
     question.factor = 1;

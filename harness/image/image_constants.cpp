@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "estimators/ready_made.h"
 #include "harness/question/question_sources.h"
 #include "stats/basics/moments.h"
 #include "stats/means/constant_sample.h"
@@ -58,7 +57,7 @@ stats::ImageStack replaced(const stats::ImageStack& stack,
 class DeclaredElements {
  public:
   explicit DeclaredElements(const Subject& subject) {
-    if (recorded::unknown_channels(*subject.setup)) return;
+    if (subject.setup->pictures()) return;
     const std::vector<Channel> all = subject.setup->channels();
     const double precision = relative_rounding(*subject.setup);
     each_.reserve(subject.channels.size());

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "estimators/ready_made.h"
 #include "harness/base/interrupt.h"
 #include "harness/sampling/recorded_run.h"
 #include "harness/theta/methods.h"
@@ -39,7 +38,7 @@ std::optional<std::uint64_t> usual_images(const Setup& setup, std::uint64_t prim
 
 /// A program that renders each observation is dear.
 std::uint64_t few_of(const PreparedEstimator& estimator) {
-  if (recorded::keeps_files(*estimator.setup)) return few_observations;
+  if (estimator.setup->keeps_files()) return few_observations;
   return std::clamp(primaries_of_few / estimator.primaries.value_or(1), few_observations,
                     many_observations);
 }

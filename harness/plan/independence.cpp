@@ -147,7 +147,10 @@ struct Pair {
 void refuse_shared_pictures(const Question& question, std::uint64_t count) {
   for (const Subject& first : question.subjects) {
     for (const Subject& second : std::span(&first + 1, std::to_address(question.subjects.end()))) {
-      if (const auto files = recorded::shared_picture(*first.setup, *second.setup, count)) {
+      const recorded::Pictures* const one = first.setup->pictures();
+      const recorded::Pictures* const two = second.setup->pictures();
+      if (!one || !two) continue;
+      if (const auto files = one->shared_with(*two, count)) {
         refuse_pair(question, {first, second},
                     fmt::format("`{}` and `{}` are the same picture", files->first, files->second));
       }

@@ -19,7 +19,7 @@ namespace assay::harness {
 inline constexpr std::size_t fewest_in_order = 9;
 
 /// Throws InputError at the claim if the first `count` data of two sides coincide beyond chance.
-/// They may share a picture (recorded::shared_picture) or a run of rows (stats/gates/copies.h).
+/// They may share a picture (recorded::Pictures) or a run of rows (stats/gates/copies.h).
 /// Two sources of one file are another mistake.
 void require_independent_sides(const Question& question, const Pilots& pilots, std::uint64_t count);
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "estimators/ready_made.h"
 #include "harness/theta/decision.h"
 #include "stats/tails/tails.h"
 
@@ -87,7 +86,7 @@ std::uint64_t secondaries_of_floor(const TestOutcome& test) {
   std::uint64_t floor = least_secondaries;
   for (std::size_t i = 0; i < test.question.subjects.size(); ++i) {
     const Setup& setup = *test.question.subjects[i].setup;
-    if (setup.observations() || setup.image() || recorded::keeps_files(setup)) continue;
+    if (setup.observations() || setup.image() || setup.keeps_files()) continue;
     const std::uint64_t each = std::max<std::uint64_t>(1, test.plan.primaries[i]);
     floor = std::max(floor, (floor_of_evidence + each - 1) / each);
   }

@@ -8,7 +8,6 @@
 #include <limits>
 #include <vector>
 
-#include "estimators/ready_made.h"
 #include "harness/draws/consistency_setup.h"
 #include "harness/draws/sampler_setup.h"
 #include "harness/sampling/recorded_run.h"
@@ -276,7 +275,7 @@ void require_drawn(const Question& question) {
       refuse(question.test->place_of("cost"), "`{}` is not drawn but read: its seconds say nothing",
              subject.estimator->name);
     }
-    if (recorded::keeps_files(*subject.setup)) {
+    if (subject.setup->keeps_files()) {
       refuse(question.test->place_of("cost"),
              "`{}` keeps what it made: the seconds of a file that is there say nothing; let "
              "`process` answer, or write the seconds as a number of the observation",
@@ -330,7 +329,7 @@ stats::Range range_of(const Question& question, std::size_t subject, std::size_t
 double rounding_of(const Question& question, std::size_t subject, std::size_t channel) {
   const Subject& side = question.subjects[subject];
   // Pictures declare nothing. Their millions of channel names are not made for one of them.
-  if (recorded::unknown_channels(*side.setup)) return 0;
+  if (side.setup->pictures()) return 0;
   const Channel declared = side.setup->channels()[side.channels[channel]];
   return declared.rounding + relative_rounding(*side.setup) * std::abs(declared.mean.value_or(0));
 }

@@ -9,7 +9,6 @@
 #include <optional>
 
 #include "estimators/map_file.h"
-#include "estimators/ready_made.h"
 #include "harness/base/numbers.h"
 #include "harness/base/parallel.h"
 #include "harness/base/text_hash.h"
@@ -231,7 +230,7 @@ void add_image(const DrawnTest& drawn, reports::Test& test) {
 reports::EstimatorChannel image_channel(const Setup& setup, const Summary& summary,
                                         ImagePicture picture) {
   const ImageShape shape = *setup.image();
-  const bool unknown = recorded::unknown_channels(setup).has_value();
+  const bool unknown = setup.pictures() != nullptr;
   const std::vector<Channel> channels = unknown ? std::vector<Channel>() : setup.channels();
   const double elements = static_cast<double>(shape.elements());
   double mean = 0;

@@ -11,7 +11,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "estimators/ready_made.h"
 #include "harness/base/numbers.h"
 #include "harness/base/record_file.h"
 #include "harness/base/text_hash.h"
@@ -26,7 +25,7 @@ std::string digest_of(const SuiteRun& run) {
   for (const EstimatorEntry& entry : run.suite.estimators) {
     const auto prepared = run.estimators.find(entry.name);
     if (prepared == run.estimators.end()) continue;  // of a skipped suite
-    if (const auto rows = recorded::observations_digest(*prepared->second.setup)) {
+    if (const auto rows = prepared->second.setup->data_digest()) {
       hash = text_hash(fmt::format("{:016x}", *rows), hash);
       continue;
     }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimators/ready_made.h"
 #include "harness/base/parallel.h"
 #include "harness/sampling/element_sums.h"
 #include "harness/sampling/pool.h"
@@ -61,8 +60,8 @@ std::string name_of(const DrawnTest& test, const stats::WhichImage& which) {
   const Question& question = test.outcome.question;
   const Subject& side = question.subjects[which.side];
   const Pool& pool = test.samples[which.side].pool();
-  const std::string place = recorded::observation_place(
-      *side.setup, {.index = which.index, .key = pool.key(), .primaries = pool.primaries()});
+  const std::string place = side.setup->place_of(
+      {.index = which.index, .key = pool.key(), .primaries = pool.primaries()});
   const std::string name = place.empty()
                                ? fmt::format("image {} of `{}`", which.index, side.estimator->name)
                                : "`" + place + "`";

@@ -7,7 +7,6 @@
 
 #include "estimators/core/flush_denormals.h"
 #include "estimators/core/quoting.h"
-#include "estimators/ready_made.h"
 #include "harness/draws/consistency_setup.h"
 #include "harness/draws/sampler_setup.h"
 #include "harness/question/question_sources.h"
@@ -30,8 +29,7 @@ std::string not_finite(const TestOutcome& outcome, const Subject& side, const Dr
   const std::string text = fmt::format(
       "{} of {} observations of `{}`{} are not finite, the first is observation {}",
       summary.nonfinite, drawn.summary().count, side.estimator->name, at, summary.first_nonfinite);
-  const auto place = recorded::observation_place(
-      *side.setup,
+  const auto place = side.setup->place_of(
       {.index = summary.first_nonfinite, .key = pool.key(), .primaries = pool.primaries()});
   if (!place.empty()) return text + ", `" + place + "`; mend or delete it";
   return text + replay_line(outcome, summary.first_nonfinite);

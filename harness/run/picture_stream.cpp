@@ -64,7 +64,7 @@ class Side {
   explicit Side(const Subject& side)
       : setup_(*side.setup),
         extent_(extent_of(*side.image)),
-        reader_(recorded::picture_rows(*side.setup)),
+        reader_(side.setup->pictures()->rows()),
         pictures_(pictures_of(side)),
         size_(rows_there(extent_, 2 * pictures_) * extent_.row()),
         texels_(pictures_ * size_),
@@ -125,8 +125,7 @@ class Side {
       const auto found = std::ranges::find_if_not(texels, [](float x) { return std::isfinite(x); });
       if (found == texels.end()) continue;
       const auto element = rows.there.first + static_cast<std::size_t>(found - texels.begin());
-      return fmt::format("`{}` is not finite at pixel {}",
-                         recorded::observation_place(setup_, {.index = i}),
+      return fmt::format("`{}` is not finite at pixel {}", setup_.place_of({.index = i}),
                          element_name(*setup_.image(), element));
     }
     return "";
@@ -308,10 +307,10 @@ class Looking {
 };
 
 bool is_streamed(const Subject& side, const Subject& other) {
-  const auto channels = recorded::unknown_channels(*side.setup);
-  return channels && *channels > most_kept_channels && side.image && !side.averages &&
-         side.channels.size() + 1 == *channels && pictures_of(side) == pictures_of(other) &&
-         pictures_of(side) >= stats::least_replicates;
+  const recorded::Pictures* const pictures = side.setup->pictures();
+  return pictures && pictures->channel_count() > most_kept_channels && side.image &&
+         !side.averages && side.channels.size() + 1 == pictures->channel_count() &&
+         pictures_of(side) == pictures_of(other) && pictures_of(side) >= stats::least_replicates;
 }
 
 bool is_about(const Question& question, const Subject& side) {

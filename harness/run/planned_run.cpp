@@ -7,7 +7,6 @@
 #include <set>
 
 #include "estimators/core/program_path.h"
-#include "estimators/ready_made.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/refuse.h"
 #include "harness/plan/plan.h"
@@ -73,7 +72,7 @@ Estimators used_by(const SuiteRun& run, const std::vector<bool>& chosen) {
   Estimators used;
   for (const EstimatorEntry& entry : run.suite.estimators) {
     const auto prepared = run.estimators.find(entry.name);
-    if (prepared == run.estimators.end() || recorded::is_reference(*prepared->second.setup)) {
+    if (prepared == run.estimators.end() || prepared->second.setup->is_reference()) {
       continue;
     }
     bool wanted = false;

@@ -49,8 +49,8 @@ const Summary* ready_made(const Setup& setup) {
 }
 
 std::size_t channels_of(const Setup& setup) {
-  const std::optional<std::size_t> unknown = recorded::unknown_channels(setup);
-  return unknown ? *unknown : setup.channels().size();
+  const recorded::Pictures* const pictures = setup.pictures();
+  return pictures ? pictures->channel_count() : setup.channels().size();
 }
 
 /// Sums up the observations of a block, in order. It buffers some, then takes a few channels of all
@@ -225,9 +225,9 @@ std::span<float> Pool::room_for_image(Block& block) const {
 }
 
 /// Reads a picture to where it is kept. Its average follows it.
-void Pool::read_picture(Estimator& estimator, std::uint64_t index, Block& block) const {
+void Pool::read_picture(std::uint64_t index, Block& block) const {
   const std::span<float> picture = room_for_image(block);
-  recorded::read_picture(estimator, index, picture, block.whole.cost);
+  setup_->pictures()->read(index, picture, block.whole.cost);
   stats::ChannelSums sum(1);
   sum.add(picture);
   block.observations->values.push_back({sum.sums()[0] / static_cast<double>(elements_)});
@@ -254,8 +254,8 @@ std::span<const double> Pool::observe(Estimator& estimator, std::uint64_t index,
   Cost before;
   if (kept) before = block.whole.cost;
   std::span<const double> drawn = out;
-  if (kept && recorded::unknown_channels(*setup_)) {
-    read_picture(estimator, index, block);
+  if (kept && setup_->pictures()) {
+    read_picture(index, block);
   } else {
     draw_one(estimator, index, out, block.whole.cost);
     if (kept) {
@@ -276,7 +276,7 @@ Pool::Block Pool::draw(const std::function<Estimator&()>& estimator, std::uint64
   Block block{.whole = no_sums(),
               .values = std::vector<std::vector<double>>(values_kept > 0 ? channels_ : 0),
               .size = last - first};
-  std::vector<double> unsummed(later && !recorded::unknown_channels(*setup_) ? channels_ : 0);
+  std::vector<double> unsummed(later && !setup_->pictures() ? channels_ : 0);
   Intake intake(block.whole.channels);
   auto mark = prefixes_.upper_bound(first);
   Estimator* source = nullptr;
@@ -397,7 +397,7 @@ Recipe Pool::recipe() const {
 
 bool Pool::can_be_drawn_elsewhere() const {
   return !is_ready_made() && !known_ && !keeps_blocks_ && !setup_->observations() &&
-         !recorded::unknown_channels(*setup_) && !recorded::keeps_files(*setup_);
+         !setup_->pictures() && !setup_->keeps_files();
 }
 
 /// Without what end_drawing() makes again.

@@ -208,7 +208,7 @@ class Pool {
   std::span<const double> observe(Estimator& estimator, std::uint64_t index, std::span<double> out,
                                   Block& block) const;
   std::span<float> room_for_image(Block& block) const;
-  void read_picture(Estimator& estimator, std::uint64_t index, Block& block) const;
+  void read_picture(std::uint64_t index, Block& block) const;
   void draw_one(Estimator& estimator, std::uint64_t index, std::span<double> out, Cost& cost) const;
   void keep_block(const Summary& block, std::uint64_t first);
 

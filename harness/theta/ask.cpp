@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "estimators/ready_made.h"
 #include "harness/draws/sampler_setup.h"
 #include "harness/question/question_sources.h"
 #include "harness/sampling/recorded_run.h"
@@ -111,7 +110,7 @@ void check_sizes(const Question& question) {
 /// A mean with its error has no observations, so nothing else can be tested.
 void require_observations(const Question& question) {
   for (const Subject& subject : question.subjects) {
-    if (!recorded::is_reference(*subject.setup)) continue;
+    if (!subject.setup->is_reference()) continue;
     refuse(question.test->claim.left.where,
            "`{0}` is a reference, a mean without observations: it can stand on the right of a "
            "mean, as in `mean(x) == mean({0})`",

@@ -88,7 +88,7 @@ TEST_F(Pictures, AreOneObservationEachInTheOrderOfTheirNames) {
   EXPECT_EQ(pictures.setup->observations(), 3u);
   EXPECT_FALSE(pictures.setup->image()->independent);
   EXPECT_EQ(pictures.channel().name, "x0y0");
-  EXPECT_EQ(recorded::observation_place(*pictures.setup, {.index = 1}), file("b.exr"));
+  EXPECT_EQ(pictures.setup->place_of({.index = 1}), file("b.exr"));
   const auto observed = draws::observe(pictures, 3);
   EXPECT_EQ(observed[0].values[0], 1);
   EXPECT_EQ(observed[0].values[1], 2);
@@ -127,7 +127,7 @@ TEST_F(Pictures, WithTheirVarianceAreReferences) {
   draws::write_scan_lines(
       file("a.exr"), {.width = 1, .height = 1, .channels = {"R", "Variance.R"}, .samples = 16});
   const draws::Prepared reference = prepare("{file: a.exr, channels: R, variance: Variance.*}");
-  EXPECT_TRUE(recorded::is_reference(*reference.setup));
+  EXPECT_TRUE(reference.setup->is_reference());
   const Channel channel = reference.channel();
   EXPECT_EQ(channel.mean, 0.5);
   EXPECT_DOUBLE_EQ(channel.mean_error, std::sqrt(1.5 / 16));
@@ -169,7 +169,7 @@ TEST_F(Pictures, WithSecondMomentsAreReferencesOfOneSampleLess) {
 TEST_F(Pictures, MayBeExactReferences) {
   write_texel("a.exr", {"Y"}, {3});
   const draws::Prepared reference = prepare("{file: a.exr, exact: true}");
-  EXPECT_TRUE(recorded::is_reference(*reference.setup));
+  EXPECT_TRUE(reference.setup->is_reference());
   EXPECT_EQ(reference.channel().mean, 3);
   EXPECT_EQ(reference.channel().mean_error, 0);
 }

@@ -139,7 +139,7 @@ TEST_F(Recorded, KnowsWhereARowOrAnElementStands) {
   const auto expect_places = [&](const std::string& text, const std::vector<std::string>& places) {
     const draws::Prepared rows = prepare(text);
     for (std::size_t i = 0; i < places.size(); ++i) {
-      EXPECT_EQ(recorded::observation_place(*rows.setup, {.index = i}), places[i]) << i;
+      EXPECT_EQ(rows.setup->place_of({.index = i}), places[i]) << i;
     }
   };
   expect_places("# columns: a\n1\n\n2 # note\n# more\nnan\n",
@@ -438,9 +438,7 @@ TEST_F(Recorded, RefusesOtherArraysOfNumpy) {
 }
 
 TEST_F(Recorded, TellsDataApart) {
-  const auto digest = [&](const std::string& text) {
-    return recorded::observations_digest(*prepare(text).setup);
-  };
+  const auto digest = [&](const std::string& text) { return prepare(text).setup->data_digest(); };
   ASSERT_TRUE(digest("1\n2\n").has_value());
   EXPECT_EQ(digest("1\n2\n"), digest("# by another hand\n1.0\n2\n"));
   EXPECT_NE(digest("1\n2\n"), digest("2\n1\n"));

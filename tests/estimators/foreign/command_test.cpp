@@ -4,7 +4,6 @@
 
 #include "estimators/core/waiting.h"
 #include "estimators/foreign/renderings.h"
-#include "estimators/ready_made.h"
 #include "tests/estimators/exr_kinds.h"
 #include "tests/estimators/prelude.h"
 
@@ -139,7 +138,7 @@ TEST_F(Commands, CountTheSecondsOfTheirPrograms) {
   EXPECT_GT(one, 0.001);
   EXPECT_EQ(draw(0), one) << "of a file that is there";
   EXPECT_GT(draw(1), one);
-  EXPECT_TRUE(recorded::keeps_files(*plugin.setup));
+  EXPECT_TRUE(plugin.setup->keeps_files());
 }
 
 TEST_F(Commands, AreToldTheirFolderByTheirEnvironmentToo) {
@@ -163,8 +162,7 @@ TEST_F(Commands, NameTheFileOfAnObservation) {
   write_program("test $2 -lt 8 && echo $1 >$3 || printf '# note\\n1x\\n' >$3");
   const draws::Prepared plugin = prepare();
   draws::observe(plugin, 3, 4);
-  const std::string place =
-      recorded::observation_place(*plugin.setup, {.index = 2, .key = plugin.key, .primaries = 4});
+  const std::string place = plugin.setup->place_of({.index = 2, .key = plugin.key, .primaries = 4});
   EXPECT_EQ(bytes_in(place), std::to_string(foreign::render_seed(plugin.key, 2)) + "\n");
   EXPECT_THAT(thrown([&] { draws::observe(plugin, 1, 8); }),
               HasSubstr(std::to_string(foreign::render_seed(plugin.key, 0)) +
