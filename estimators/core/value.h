@@ -87,6 +87,9 @@ class Value {
 
 /// A number as C or Python writes it: decimal, `inf`, `nan`, perhaps with a sign.
 std::optional<double> parse_number(std::string_view text);
+/// The next word of a line, which is removed from it; empty at the end.
+std::string_view take_word(std::string_view& line);
+
 /// The shortest text that reads back as this number.
 std::string shortest_text(double value);
 

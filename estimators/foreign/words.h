@@ -2,7 +2,6 @@
 
 // Lines and words of what programs write to each other.
 
-#include <algorithm>
 #include <charconv>
 #include <cstdint>
 #include <optional>
@@ -18,14 +17,8 @@ namespace assay::foreign {
 
 /// The words of a line, which blanks and tabs separate.
 inline std::vector<std::string_view> words_of(std::string_view line) {
-  constexpr std::string_view blanks = " \t\r";
   std::vector<std::string_view> words;
-  std::size_t begin = line.find_first_not_of(blanks);
-  while (begin != std::string_view::npos) {
-    const std::size_t end = std::min(line.find_first_of(blanks, begin), line.size());
-    words.push_back(line.substr(begin, end - begin));
-    begin = line.find_first_not_of(blanks, end);
-  }
+  for (auto word = take_word(line); !word.empty(); word = take_word(line)) words.push_back(word);
   return words;
 }
 

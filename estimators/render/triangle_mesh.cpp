@@ -35,18 +35,6 @@ TriangleMesh fan(const Polygon& polygon) {
 
 namespace {
 
-constexpr std::string_view blanks = " \t\r";
-
-// The next word of a line, which is removed from it; empty at the end.
-std::string_view take_word(std::string_view& line) {
-  const std::size_t begin = line.find_first_not_of(blanks);
-  if (begin == std::string_view::npos) return line = {};
-  const std::size_t end = std::min(line.find_first_of(blanks, begin), line.size());
-  const std::string_view word = line.substr(begin, end - begin);
-  line.remove_prefix(end);
-  return word;
-}
-
 template <class Number>
 bool parse(std::string_view word, Number& number) {
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
