@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -189,11 +188,9 @@ std::vector<double> read_counts(const PictureFile& file, const MomentChannels& e
            "it does not say of how many samples its means are; give `samples`, a number or the "
            "name of the channel that counts them");
   }
-  double number = 0;
-  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), number);
   std::vector<double> counts;
-  if (problem == std::errc{} && end == text.data() + text.size()) {
-    counts = everywhere(number);
+  if (const auto number = parse_number(text)) {
+    counts = everywhere(*number);
   } else {
     counts = read_doubles(file, view_of_others(view, {text}));
     for (std::size_t i = 0; i < view.left_out.size(); ++i) {
