@@ -180,7 +180,7 @@ bool all_pictured(const Question& question, const Pilots& pilots) {
   });
 }
 
-// Standard errors above the estimate of tr C^2: pilots of heavy noise differ.
+// Standard errors above estimates of the noise: pilots of heavy noise differ.
 constexpr double errors_above = 2;
 
 ImageViews pilot_views(const Subject& side, const Pilot& pilot) {
@@ -190,9 +190,15 @@ ImageViews pilot_views(const Subject& side, const Pilot& pilot) {
 PlannedImage pilot_image(const stats::ImageStack& pilot) {
   const stats::ImageCovariance found = stats::image_covariance(pilot, on_all_threads);
   const double square = found.squared_trace + errors_above * found.squared_trace_error;
-  return {.trace = found.trace,
-          .root = std::min(found.trace, std::sqrt(square)),
-          .squared_norm = found.squared_mean};
+  const auto images = static_cast<double>(pilot.images.size());
+  const auto pixels = static_cast<double>(pilot.extent.width * pilot.extent.height);
+  double error = 0;
+  for (const Constant& mean : channel_means(pilot)) error = std::max(error, mean.standard_error);
+  return {
+      .trace = found.trace,
+      .root = std::min(found.trace, std::sqrt(square)),
+      .of_mean = error * error * images * pixels * (1 + errors_above * std::sqrt(2 / (images - 1))),
+      .squared_norm = found.squared_mean};
 }
 
 /// The noise of differences, and the brightness of what is subtracted.
@@ -216,6 +222,7 @@ PlannedImage planned_image(const TestOutcome& test, const Pilots& pilots) {
     PlannedImage image = pilot_of_differences(question, pilots);
     image.trace /= question.subjects[0].averaged(primaries[0]);
     image.root /= question.subjects[0].averaged(primaries[0]);
+    image.of_mean /= question.subjects[0].averaged(primaries[0]);
     return image;
   }
   PlannedImage all;
@@ -226,6 +233,7 @@ PlannedImage planned_image(const TestOutcome& test, const Pilots& pilots) {
     const double square = s == 0 ? 1 : question.factor * question.factor;
     all.trace += square * image.trace / side.averaged(primaries[s]);
     all.root += square * image.root / side.averaged(primaries[s]);
+    all.of_mean += square * image.of_mean / side.averaged(primaries[s]);
     all.squared_norm = square * image.squared_norm;
   }
   return all;
@@ -240,6 +248,12 @@ double excluded_square(const PlannedImage& image, double beta, double n) {
   const double t = -stats::student_t_quantile({stats::Tail::lower, std::log(beta)}, n - 1);
   const double square = stats::chi_square_quantile({stats::Tail::upper, std::log(beta)}, degrees);
   return image.root / std::sqrt(degrees) / n * (square - degrees + 2 * t * std::sqrt(square));
+}
+
+/// The same of a distance between the whole images' means, which both one-sided tests exclude.
+double excluded_distance(const PlannedImage& image, double beta, double n) {
+  const double t = -stats::student_t_quantile({stats::Tail::lower, std::log(beta)}, n - 1);
+  return (t + stats::upper_normal_quantile(beta / 2)) * std::sqrt(image.of_mean / n);
 }
 
 /// The square of the margins' unit.
@@ -316,10 +330,15 @@ class ImageTheta : public Theta {
     const double margin = *regions.detect;
     const double unit = squared_unit(test.question, *image);
     const double room = (margin * margin - regions.allow * regions.allow) * unit;
+    const double room_of_mean = (margin - regions.allow) * std::sqrt(unit);
     if (!(room > 0)) return impossible_secondaries;
     std::uint64_t count = stats::least_replicates;
     while (count < impossible_secondaries) {
-      if (excluded_square(*image, share.beta, static_cast<double>(count)) <= room) break;
+      const auto n = static_cast<double>(count);
+      if (excluded_square(*image, share.beta, n) <= room &&
+          excluded_distance(*image, share.beta, n) <= room_of_mean) {
+        break;
+      }
       count += count / 8 + 1;
     }
     return std::min(count, impossible_secondaries);

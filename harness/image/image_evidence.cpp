@@ -101,31 +101,75 @@ ChannelMeans means_held_against(const ImagePair& pair) {
   return means;
 }
 
-/// Replicates at which theta would be excluded from `margin` on. The squared bias's standard error
-/// falls like 1 / R in noise, like 1 / sqrt R if there is a bias.
-double wanted_replicates(const stats::ImageDistance& distance, double margin, const ImageTest& test,
-                         double replicates) {
-  const double estimate = std::max(0.0, distance.squared_bias / distance.squared_norm);
-  const double room = margin * margin - estimate;
-  if (!(room > 0)) return 0;
-  const double t =
-      -stats::student_t_quantile({stats::Tail::lower, std::log(test.share.beta)}, distance.degrees);
-  const double needed = (t + 1) * std::sqrt(distance.bias_variance) / distance.squared_norm / room;
-  return replicates * std::max({1.1, needed, estimate > 0 ? needed * needed : 0.0});
+/// What is known of theta, beside the test of theta = 0.
+struct Distances {
+  stats::ImageDistance of_elements = {};
+  double hidden = 0;  ///< The norm of a bias that values can hide which no element showed.
+  /// The size of each channel's difference between the whole images' means, with its error. Theta
+  /// is at least as large.
+  std::vector<Constant> of_means = {};
+};
+
+std::vector<Constant> distances_of_means(const PictureLook& look, const stats::ImageExtent& extent,
+                                         double squared_norm, bool of_pairs) {
+  const double scale = std::sqrt(static_cast<double>(extent.width * extent.height) / squared_norm);
+  const std::vector<double> errors = uniform_errors(look.means[0], look.means[1]);
+  std::vector<Constant> distances;
+  for (std::size_t c = 0; c < errors.size(); ++c) {
+    const double other = of_pairs ? 0 : look.means[1][c].value;
+    distances.push_back({scale * std::abs(look.means[0][c].value - other), scale * errors[c]});
+  }
+  return distances;
 }
 
-/// Tests of theta = margin. Values that no element showed can hide a bias of norm `hidden`. It may
-/// be part of theta, or make up theta. An estimate below 0 counts as 0, since no bias is
-/// smaller.
-stats::TestResult at_margin(const stats::ImageDistance& distance, double hidden, double margin) {
-  stats::ImageDistance at_least_zero = distance;
-  at_least_zero.squared_bias = std::max(0.0, distance.squared_bias);
+/// The natural logarithm of the p-value of "one of the means is `margin` off or more".
+double log_p_of_means(const Distances& distances, double margin) {
+  double log_p = std::numeric_limits<double>::lowest();
+  for (const Constant& mean : distances.of_means) {
+    const double beyond = (mean.value - margin) / mean.standard_error;
+    const double degrees = distances.of_elements.degrees;
+    if (mean.standard_error > 0) {
+      log_p = std::max(log_p, stats::student_t_tails(beyond, degrees).lower);
+    } else if (mean.value >= margin) {
+      log_p = 0;
+    }
+  }
+  return log_p;
+}
+
+/// Tests of theta = margin. A hidden bias may be part of theta, or make up theta. An estimate below
+/// 0 counts as 0, since no bias is smaller. Noise that all elements share enters the squared
+/// distance squared, so the jackknife misses it where it cancels a bias: the means decide as well.
+stats::TestResult at_margin(const Distances& distances, double margin) {
+  stats::ImageDistance at_least_zero = distances.of_elements;
+  at_least_zero.squared_bias = std::max(0.0, at_least_zero.squared_bias);
   const auto at = [](const stats::ImageDistance& of, double root) {
     return stats::squared_margin_test(of, std::copysign(root * root, root));
   };
-  stats::TestResult result = at(distance, margin + hidden);
-  result.log_p_lower = at(at_least_zero, margin - hidden).log_p_lower;
+  const double least = margin - distances.hidden;
+  stats::TestResult result = at(distances.of_elements, margin + distances.hidden);
+  result.log_p_lower =
+      std::max(at(at_least_zero, least).log_p_lower, log_p_of_means(distances, least));
   return result;
+}
+
+/// Replicates at which theta would be excluded from `margin` on; 0 if the estimate is not below it.
+/// The squared bias's standard error falls like 1 / R in noise, like 1 / sqrt R if there is a bias.
+double wanted_replicates(const Distances& distances, double margin, const ImageTest& test,
+                         double replicates) {
+  const stats::ImageDistance& distance = distances.of_elements;
+  const double estimate = std::max(0.0, distance.squared_bias / distance.squared_norm);
+  const double room = margin * margin - estimate;
+  const double t =
+      -stats::student_t_quantile({stats::Tail::lower, std::log(test.share.beta)}, distance.degrees);
+  const double needed = (t + 1) * std::sqrt(distance.bias_variance) / distance.squared_norm / room;
+  double factor = std::max({1.1, needed, estimate > 0 ? needed * needed : 0.0});
+  bool below = room > 0;
+  for (const Constant& mean : distances.of_means) {
+    below = below && margin > mean.value;
+    factor = std::max(factor, std::pow((t + 1) * mean.standard_error / (margin - mean.value), 2));
+  }
+  return below ? replicates * factor : 0;
 }
 
 /// Tests of a theta that is known exactly.
@@ -139,11 +183,11 @@ stats::TestResult at_exactly(double known, double theta) {
 }
 
 /// Values of theta that at_margin does not reject, found by the square root's signed square.
-stats::Interval interval_of(const stats::ImageDistance& distance, double hidden,
-                            double confidence) {
+stats::Interval interval_of(const Distances& distances, double confidence) {
+  const stats::ImageDistance& distance = distances.of_elements;
   const double step = std::sqrt(distance.bias_variance) / distance.squared_norm;
   const auto at_square = [&](double square) {
-    return at_margin(distance, hidden, std::copysign(std::sqrt(std::abs(square)), square));
+    return at_margin(distances, std::copysign(std::sqrt(std::abs(square)), square));
   };
   const stats::Interval squared = interval_by_inversion(
       at_square, {.estimate = distance.squared_bias / distance.squared_norm, .step = step},
@@ -352,15 +396,18 @@ ChannelEvidence evidence_of_images(const Seen& seen, const ImageTest& test) {
   outcome.z = std::move(look.z);
   add_unseen(extent, outcome);
   note_errors(look.means, relative, test.share, outcome);
+  const stats::ImageFamily& family = outcome.family;
+  const Distances distances{
+      .of_elements = distance,
+      .hidden = std::sqrt(family.hidden_squares / distance.squared_norm),
+      .of_means = distances_of_means(look, extent, distance.squared_norm, question.is().of_pairs)};
   const TestEntry& entry = *question.test;
   const bool within = entry.claim.relation == Relation::within;
   if (within || entry.detect) {
     const double margin = within ? entry.claim.margin.value : entry.detect->value;
     outcome.wanted =
-        wanted_replicates(distance, margin, test, static_cast<double>(outcome.replicates));
+        wanted_replicates(distances, margin, test, static_cast<double>(outcome.replicates));
   }
-  const stats::ImageFamily& family = outcome.family;
-  const double hidden = std::sqrt(family.hidden_squares / distance.squared_norm);
   const stats::TestResult equal{
       .statistic = family.winner.z,
       .distribution = {"image-family", {static_cast<double>(family.tested)}},
@@ -373,12 +420,12 @@ ChannelEvidence evidence_of_images(const Seen& seen, const ImageTest& test) {
                     .at =
                         [=](double theta) {
                           if (theta > 0 && exact) return at_exactly(estimate, theta);
-                          return theta > 0 ? at_margin(distance, hidden, theta) : equal;
+                          return theta > 0 ? at_margin(distances, theta) : equal;
                         },
                     .interval =
                         [=](double confidence) {
                           return exact ? stats::Interval{estimate, estimate, confidence}
-                                       : interval_of(distance, hidden, confidence);
+                                       : interval_of(distances, confidence);
                         },
                     .quantity = relative ? "relative root mean square difference of the images"
                                          : "root mean square difference of the images",

@@ -23,6 +23,7 @@ namespace assay::harness {
 struct PlannedImage {
   double trace = 0;         ///< tr C, of the elements' covariance C
   double root = 0;          ///< sqrt tr C^2, an upper limit
+  double of_mean = 0;       ///< Upper limit of a channel's mean's variance, times the pixels.
   double squared_norm = 0;  ///< Squared norm of the mean.
 };
 

@@ -121,7 +121,7 @@ struct ImageFamily {
   std::size_t tested = 0;           // Elements that vary, all channels.
   std::size_t equal_constants = 0;  // Also those that sums alone test.
   std::size_t different_constants = 0;
-  std::vector<float> weights;  // The elements' in sums.
+  std::vector<float> weights;  // In sums, of the elements that vary or differ.
   // The squared norm of the bias that values can hide which their elements never showed
   // (image_noise.h), in units of the images.
   double hidden_squares = 0;

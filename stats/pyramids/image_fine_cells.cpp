@@ -379,8 +379,12 @@ class FineTiles {
               (y / block_side * coarse_.extent.width + x / block_side) * extent_.channels + c;
           coarse_.third.blocks[block] += all.third[i];
           const double weight = weight_of(element);
-          found_.weights[element] = static_cast<float>(weight);
-          if (halves_that_vary(element) < halves) {
+          const std::size_t vary = halves_that_vary(element);
+          const double difference = cells_.half[0].difference[element - cells_.half[0].first];
+          // What is equal and never varies tells no size of a difference.
+          const bool tells = vary > 0 || difference != 0;
+          found_.weights[element] = tells ? static_cast<float>(weight) : 0;
+          if (vary < halves) {
             note_constant(element);
             found_.z[element] = 0;
             return;

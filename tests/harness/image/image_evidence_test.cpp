@@ -37,7 +37,19 @@ void shared_noise(Philox& random, std::vector<double>& image) {
   for (double& pixel : image) pixel = 1 + 0.1 * (common + random.normal());
 }
 
-ImageOutcome outcome_of(std::uint32_t key, const DrawImage& draw) {
+/// One of twenty pictures is black: the mean is .95.
+void black_now_and_then(Philox& random, std::vector<double>& image) {
+  const double light = random.uniform() < 0.05 ? 0 : 1;
+  for (double& pixel : image) pixel = light * (1 + 0.1 * random.normal());
+}
+
+/// As much brighter than 1 as the standard error of the mean of all images.
+void brighter_by_an_error(Philox& random, std::vector<double>& image) {
+  shared_noise(random, image);
+  for (double& pixel : image) pixel += 0.1 / std::sqrt(replicates);
+}
+
+ChannelEvidence evidence_of(std::uint32_t key, const DrawImage& draw) {
   const auto asked = ask_text(dependent);
   const Question& question = asked->question("t");
   std::vector<std::vector<float>> images(replicates);
@@ -50,7 +62,7 @@ ImageOutcome outcome_of(std::uint32_t key, const DrawImage& draw) {
   ChannelData data[1];
   data[0].images = ImageViews(std::move(images));
   const ImageTest test{.share = {.alpha = alpha, .beta = alpha}, .independent = false};
-  return evidence_of_images({question, 0, data}, test).image.value();
+  return evidence_of_images({question, 0, data}, test);
 }
 
 // Wrong alarms: 2.5e-6 each.
@@ -59,9 +71,23 @@ TEST(ImageEvidence, RareLightsAndSharedNoiseKeepTheLevel) {
     constexpr std::uint32_t keys = 100;
     double failed = 0;
     for (std::uint32_t key = 1; key <= keys; ++key) {
-      failed += outcome_of(key, draw).family.log_p <= std::log(alpha);
+      failed += evidence_of(key, draw).image.value().family.log_p <= std::log(alpha);
     }
     EXPECT_FALSE(tests::too_many(failed / keys, alpha, keys)) << failed;
+  }
+}
+
+// Wrong alarms: 2.5e-6 each. By the squared distance alone about a fifth pass.
+TEST(ImageEvidence, DifferencesOfWholePicturesSeldomPass) {
+  const std::pair<DrawImage, double> margins[] = {
+      {black_now_and_then, 0.02}, {brighter_by_an_error, 0.1 / std::sqrt(replicates)}};
+  for (const auto& [draw, margin] : margins) {
+    constexpr std::uint32_t keys = 300;
+    double passed = 0;
+    for (std::uint32_t key = 1; key <= keys; ++key) {
+      passed += evidence_of(key, draw).evidence.at(margin).log_p_lower <= std::log(alpha);
+    }
+    EXPECT_FALSE(tests::too_many(passed / keys, alpha, keys)) << passed;
   }
 }
 
