@@ -226,10 +226,7 @@ std::vector<std::string> files_of(const std::string& pattern) {
   }
   globfree(&found);
   if (files.empty()) {
-    refuse(pattern, is_pattern(pattern)
-                        ? "no file matches; quote the pattern so that the shell leaves it alone, "
-                          "and see that the folder is right"
-                        : "there is no such file");
+    refuse(pattern, is_pattern(pattern) ? "no file matches" : "there is no such file");
   }
   std::ranges::sort(files);
   return files;

@@ -394,6 +394,13 @@ class Reader {
     if (field.text.empty()) {
       refuse(field.column, "a number is missing; write `nan` if there is none");
     }
+    const bool is_fraction = separator_ == ',' && field.text.size() > 1 && field.text[0] == '0' &&
+                             '0' <= field.text[1] && field.text[1] <= '9';
+    if (is_fraction && !names_line_) {
+      refuse(field.column, in_message(field.text) +
+                               " follows a comma: write a decimal point for it;\n"
+                               "  if these are columns, name them in a first line");
+    }
     const Parsed parsed = parse(field.text, separator_ == ';');
     if (parsed.is_number) return parsed.value;
     const std::string text = in_message(field.text);

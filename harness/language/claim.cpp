@@ -248,6 +248,7 @@ class Parser {
     expect("(", fmt::format("`(` after `{}`", name.text));
     quantity.source = source_of(expect_word("the name of an estimator"));
     while (take(",")) quantity.arguments.push_back(expect_number());
+    if (lexer_.peek().is("%")) refuse(lexer_.peek().where, "a probability is a number, as `0.9`");
     expect(")", "`)` or `,`");
     return quantity;
   }

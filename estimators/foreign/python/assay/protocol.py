@@ -132,7 +132,10 @@ class _Answers:
             value = estimate(stream, primaries)
             return struct.pack("<d", value) if self._is_number else _bytes(self._flat(value))
         if self._is_number:
-            total = math.fsum([estimate(stream) for _ in range(primaries)])
+            values = [estimate(stream) for _ in range(primaries)]
+            if None in values:
+                raise TypeError("the estimate is None: does the function end with `return`?")
+            total = math.fsum(values)
             return struct.pack("<d", total / primaries)
         total = self._flat(estimate(stream)).copy()  # the estimate may use its array again
         for _ in range(primaries - 1):
