@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <sstream>
 
 #include "estimators/catalogue.h"
 #include "harness/command/commands.h"
@@ -276,12 +278,18 @@ std::string text_of(const Table& table) {
 }
 
 int describe(const std::string& name) {
-  std::string pages;  // of all rows of that name
+  std::string pages;
   for (const Table& table : tables()) {
+    std::set<std::string> said;  // Rows of one name have most sentences in common.
     for (const TableRow& row : table.rows) {
       if (row.name != name) continue;
-      pages += fmt::format("{}{}, {}\n{}{}", pages.empty() ? "" : "\n", row.name, table.singular,
-                           wrapped(row.summary, page_width, 2), row.page);
+      if (said.empty()) {
+        pages += fmt::format("{}{}, {}\n", pages.empty() ? "" : "\n", row.name, table.singular);
+      }
+      std::istringstream lines(wrapped(row.summary, page_width, 2) + row.page);
+      for (std::string line; std::getline(lines, line);) {
+        if (said.insert(line).second) pages += line + "\n";
+      }
     }
   }
   fmt::print("{}", pages.empty() ? manual(find_plugin(name, {}), catalogue()) : pages);

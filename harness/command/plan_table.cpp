@@ -256,8 +256,8 @@ void write(Page& page, const SuiteRun& run) {
   for (const Row& row : rows) not_ok += row.not_ok;
   page.blank();
   page.paragraph(fmt::format(
-      "Not ok with probability about {} if every claim holds exactly and every expected failure is "
-      "off by its effect. A test without a forecast counts with its alpha and beta.",
+      "The run is not ok with probability about {} if every claim holds exactly and every planted "
+      "bug is as large as its effect. A test without a forecast counts with its alpha and beta.",
       per_cent(std::min(1.0, not_ok))));
   page.blank();
 }
@@ -307,10 +307,10 @@ void write_totals(Page& page, const PlannedRun& planned) {
     return postponed.empty() ? test.plan.most_secondaries() : postponed.back();
   };
   page.paragraph(fmt::format(
-      "Tests of one estimator share observations: at most {} in all. Most tests end at an earlier "
-      "look: about {} if every claim holds exactly (tests whose mean is not known counted in "
-      "full).",
-      total_text(total_of(planned, most)), total_text(total_of(planned, expected_secondaries))));
+      "Tests of one estimator share observations, and most end at an earlier look: about {} if "
+      "every claim holds exactly (tests whose mean is not known counted in full). Put off until "
+      "the data tell their spread, they take at most {}.",
+      total_text(total_of(planned, expected_secondaries)), total_text(total_of(planned, most))));
   page.paragraph(
       "primaries: of one secondary estimate. last: secondaries of each source at the last look, of "
       "a file all its rows where these are fewer. in all, rays, CPU time: primaries of all sources "

@@ -59,7 +59,7 @@ Evidence inconsistency(const Method&, const Seen& seen) {
     const auto most = std::max_element(counts.begin() + 1, counts.end());
     const auto cell = static_cast<std::size_t>(most - counts.begin()) - 1;
     evidence.most_against =
-        always(fmt::format("; more in one cell than in any other, {} of them, in {}",
+        always(fmt::format("more in one cell than in any other, {} of them, in {}",
                            per_cent(static_cast<double>(*most) / static_cast<double>(inconsistent)),
                            draws.cells().describe(cell)));
   }

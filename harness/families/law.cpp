@@ -39,7 +39,7 @@ constexpr const char* distance_of_parts =
 
 /// Says which part p belongs to: the estimate may be another's.
 std::string p_is_of(const std::string& part, double difference) {
-  return fmt::format("; p is that of {}, {:.4g} apart", part, difference);
+  return fmt::format("p is that of {}, {:.4g} apart", part, difference);
 }
 
 /// Evidence from a sup distance that the law's table leaves uncertain by `error`.
@@ -209,8 +209,8 @@ std::string worst_of(const stats::ChiSquareFit& fit, const DrawCells& cells) {
   const auto worst = std::ranges::max_element(fit.cells, {}, part);
   const auto describe = [&](std::size_t cell) { return cells.describe(cell); };
   std::string text;
-  if (fit.impossible > 0) text = fmt::format("; {} draws where the density is 0", fit.impossible);
-  return text + fmt::format("; farthest off in {}, {} draws where {:.4g} are expected",
+  if (fit.impossible > 0) text = fmt::format("{} draws where the density is 0; ", fit.impossible);
+  return text + fmt::format("farthest off in {}, {} draws where {:.4g} are expected",
                             pool_text(worst->members, describe), worst->observed, worst->expected);
 }
 
@@ -327,7 +327,7 @@ Evidence cells_against_cells(const Method& method, const Seen& seen) {
   return {.estimate = fit.statistic.effect(),
           .at = at,
           .interval = interval,
-          .most_against = always(fmt::format("; farthest apart in {}, {} against {}",
+          .most_against = always(fmt::format("farthest apart in {}, {} against {}",
                                              pool_text(worst.members, place), worst.x, worst.y)),
           .quantity = effect_over_cells,
           .distance = true};

@@ -164,9 +164,9 @@ testing::AssertionResult judged(const std::string& claim, const std::vector<Part
   const reports::Test test = tested(claim, sources, *state.budget);
   record(test, number);
   const bool holds = test.verdict == reports::Verdict::pass;
+  const std::string text = reports::plain_text(test);  // "message: …" and further facts
   return (holds ? testing::AssertionSuccess() : testing::AssertionFailure())
-         << reports::to_string(test.verdict) << ": " << test.message << "\n"
-         << reports::plain_text(test);
+         << reports::to_string(test.verdict) << ": " << text.substr(text.find(": ") + 2);
 }
 
 }  // namespace

@@ -39,8 +39,8 @@ std::string or_if_normal(const TestOutcome& outcome) {
   if (outcome.plan.method.is.of_normal_values) return "";
   for (const Method& method : methods_for(outcome.question)) {
     if (!method.is.of_normal_values) continue;
-    return ", or, if the values are near normal, add " +
-           written_key(*outcome.question.test, "test", method.name);
+    return fmt::format(" (if the values are near normal, write {})",
+                       written_key(*outcome.question.test, "test", method.name));
   }
   return "";
 }
@@ -135,9 +135,9 @@ Reason what_would_help(const TestOutcome& outcome) {
     return {": " + words, reports::Advice{.words = words}};
   }
   return fmt::format(
-      "; {} `secondaries` would do. Without a declared range no test decides on fewer than {} "
-      "primaries: it knows nothing of a rare bright value that it never drew{}",
-      more, floor_of_evidence, or_if_normal(outcome));
+      "; {} `secondaries` may do{}. Without a declared range no test decides on fewer than {} "
+      "primaries: it knows nothing of a rare bright value that it never drew",
+      more, or_if_normal(outcome), floor_of_evidence);
 }
 
 }  // namespace assay::harness

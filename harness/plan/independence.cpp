@@ -214,7 +214,7 @@ void allow_for_dependence(const std::vector<Rows>& all, Plan& plan) {
   if (allowed.empty()) return;
   const std::size_t others = allowed.size() - 1;
   if (others > 1) allowed = {allowed[0], fmt::format("{} others", others)};
-  plan.caution = fmt::format("the interval is wider because successive {} seem correlated",
+  plan.caution = fmt::format("the interval is wider because successive {} may be correlated",
                              fmt::join(allowed, " and "));
 }
 

@@ -117,7 +117,7 @@ std::string found_in_cell(const ChannelOutcome& channel) {
 }
 
 std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& channel) {
-  if (channel.evidence.exact) return "as claimed: what never varies is compared exactly";
+  if (channel.evidence.exact) return "as claimed: what never varies needs no test";
   if (!channel.regions.has_forbidden()) {
     const std::string text = "no evidence against the claim";
     if (channel.finds_nothing) {
@@ -163,17 +163,23 @@ std::string passed_proof(const TestOutcome& outcome, const ChannelOutcome& chann
                      in_channel(outcome, channel), p_text(channel.decision.log_p_forbidden));
 }
 
-std::string failed(const TestOutcome& outcome, const ChannelOutcome& channel) {
+/// Advice in words, which the message has too.
+Reason in_words(const std::string& before, const std::string& words, const char* after = "") {
+  return {before + words + after, reports::Advice{.words = words}};
+}
+
+Reason failed(const TestOutcome& outcome, const ChannelOutcome& channel) {
   if (channel.image) {
     return fmt::format(
         "differs most at {}, {}; {}",
         place_text(channel.image->family.winner, *outcome.question.subjects[0].image),
         p_text(channel.decision.log_p_claimed), finding(channel));
   }
+  const std::string text = fmt::format("{}{}, {}", finding(channel), in_channel(outcome, channel),
+                                       p_text(channel.decision.log_p_claimed));
   const auto& most_against = channel.evidence.most_against;
-  return fmt::format("{}{}, {}{}", finding(channel), in_channel(outcome, channel),
-                     p_text(channel.decision.log_p_claimed),
-                     most_against ? most_against(channel.regions.claimed_edge()) : "");
+  const std::string place = most_against ? most_against(channel.regions.claimed_edge()) : "";
+  return place.empty() ? Reason(text) : in_words(text + "; ", place);
 }
 
 /// Levels of the last look.
@@ -252,11 +258,6 @@ double interval_errors(const ChannelOutcome& channel, double tail) {
   const stats::Distribution law = channel.evidence.at(channel.evidence.estimate).distribution;
   return law.family == "student-t" ? stats::student_t_quantile(beyond, law.parameters.at(0))
                                    : stats::normal_quantile(beyond);
-}
-
-/// Advice in words, which the message has too.
-Reason in_words(const std::string& before, const std::string& words, const char* after = "") {
-  return {before + words + after, reports::Advice{.words = words}};
 }
 
 /// n grows with the square of the factor by which the interval must shrink.

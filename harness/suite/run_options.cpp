@@ -49,7 +49,7 @@ std::string few_of(const std::vector<std::string>& ids) {
   std::string text;
   for (std::size_t i = 0; i < std::min(most, ids.size()); ++i) text += "    " + ids[i] + "\n";
   if (ids.size() > most) {
-    text += fmt::format("    … {} more; `assay list tests` has all\n", ids.size() - most);
+    text += fmt::format("    … {} more; `assay list tests SUITE` has all\n", ids.size() - most);
   }
   return text;
 }
@@ -63,7 +63,7 @@ std::string unknown_tag(const std::vector<Suite>& suites, const std::string& tag
   const std::vector<std::string> tags(known.begin(), known.end());
   return fmt::format(
       "--tag {}: no test has this tag{}\n", shell_quoted(tag),
-      tags.empty() ? ", nor any; `tags: [slow]` in a test gives it one" : suggestion(tag, tags));
+      tags.empty() ? "; a test gets one by `tags: [slow]`" : suggestion(tag, tags));
 }
 
 std::string unmatched_filter(const std::vector<Suite>& suites, const std::string& filter) {

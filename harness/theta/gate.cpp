@@ -7,16 +7,16 @@ namespace assay::harness {
 const std::vector<GateKind>& gate_kinds() {
   static const std::vector<GateKind> table{
       {.name = "level factor by skewness",
-       .sentence = "the observations are so skewed that one tail of the test is off by a factor of "
-                   "{0}, limit {1}",
+       .sentence = "the observations are so skewed that a tail of the test errs {0} times as often "
+                   "as it should, limit {1}",
        .falls = Falls::by_its_logarithm},
       {.name = "effective observations",
-       .sentence = "few observations make up the spread: as much as {0} of equal weight would, and "
-                   "it takes {1} to tell how heavy its tail is",
+       .sentence = "a few large observations make up most of the spread: they count as {0} equal "
+                   "ones, and it takes {1} to tell how heavy the tail is",
        .falls = Falls::inversely},
       {.name = "level factor after correction",
-       .sentence = "the observations are so skewed that one tail of the test is off by a factor of "
-                   "{0} even after correction, limit {1}",
+       .sentence = "the observations are so skewed that a tail of the test errs {0} times as often "
+                   "as it should, even after correction, limit {1}",
        .falls = Falls::by_its_logarithm},
       {.name = "share of one observation",
        .sentence =

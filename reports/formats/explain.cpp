@@ -29,7 +29,7 @@ std::string how_sure(const Test& test, const TestDisplay& words, const std::stri
                        confidence_text(effect.confidence));
   if (test.verdict == Verdict::fail && !words.chance.empty())
     text += fmt::format("The chance of such data, if nothing is wrong, is {}. ", words.chance);
-  if (test.verdict == Verdict::pass && test.detectable && !test.detect)
+  if (test.verdict == Verdict::pass && test.detectable && !test.detect && !is_proof(test))
     text += fmt::format("An error of {} would have been noticed. ",
                         margin_text(*test.detectable, deciding_channel(test).effect));
   return text;

@@ -193,9 +193,9 @@ std::string observations_fact(const Test& test) {
              .second) {
       continue;
     }
-    parts.push_back(fmt::format("{} of {} with {} each", count_text(sample->secondaries),
-                                sample->estimator,
-                                counted(sample->primaries, "primary", "primaries")));
+    parts.push_back(fmt::format("{} of {}", count_text(sample->secondaries), sample->estimator));
+    if (sample->primaries > 1)
+      parts.back() += fmt::format(" with {} each", counted(sample->primaries, "", "primaries"));
     if (sample->nonfinite > 0)
       parts.back() += fmt::format(", {} not finite", count_text(sample->nonfinite));
   }

@@ -378,8 +378,10 @@ std::vector<Step> steps(const Test& test) {
   else if (advice)
     set(advice->key, advice->value);
   const Effect effect = deciding_channel(test).effect;
-  if (is_missed(test) && test.detect && effect.relative)
-    set("detect", fmt::format("{:.2g}%", 50 * *test.detect));
+  if (is_missed(test)) {
+    if (test.detect && effect.relative) set("detect", fmt::format("{:.2g}%", 50 * *test.detect));
+    all.push_back({.label = "or", .words = "leave `expect` out, if there is no bug"});
+  }
   if (!test.no_replay.empty()) all.push_back({.label = "again", .words = test.no_replay});
   if (test.replay.empty()) return all;
   add(test.verdict == Verdict::skipped ? "then" : "again", test.replay);

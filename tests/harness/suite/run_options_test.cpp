@@ -67,7 +67,7 @@ TEST_F(SelectionOfTests, SaysWhichTagsThereAre) {
   Suite bare = suites()[0];
   bare.tests.erase(bare.tests.begin(), bare.tests.begin() + 3);
   EXPECT_EQ(unmatched({bare}, {.tags = {"slow"}}),
-            "--tag slow: no test has this tag, nor any; `tags: [slow]` in a test gives it one\n");
+            "--tag slow: no test has this tag; a test gets one by `tags: [slow]`\n");
 }
 
 TEST_F(SelectionOfTests, SaysHowIdsLook) {
