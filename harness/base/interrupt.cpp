@@ -8,10 +8,10 @@ namespace assay::harness {
 
 namespace {
 
-std::atomic<bool> asked{false};
+std::atomic<bool> was_asked{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may write nothing else");
 
-extern "C" void note_interrupt(int) { asked.store(true); }
+extern "C" void note_interrupt(int) { was_asked.store(true); }
 
 bool is_ignored(int signal) {
   struct sigaction action {};
@@ -31,7 +31,7 @@ void watch(int signal) {
 }  // namespace
 
 void watch_interrupts() {
-  asked.store(false);
+  was_asked.store(false);
   watch(SIGINT);
   // CI jobs and batch systems send SIGTERM: programs that this one started must not outlive it.
   watch(SIGTERM);
@@ -40,7 +40,7 @@ void watch_interrupts() {
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
-bool interrupted() { return asked.load(); }
+bool interrupted() { return was_asked.load(); }
 
 void stop_if_interrupted() {
   if (interrupted()) throw std::runtime_error("interrupted; nothing is written");

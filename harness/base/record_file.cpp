@@ -1,8 +1,12 @@
 #include "harness/base/record_file.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <span>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "estimators/core/quoting.h"
 #include "harness/base/refuse.h"
@@ -28,6 +32,63 @@ reports::Record read_record(const std::string& file) {
            shell_quoted(file));
   }
   return reports::read_json(text.str(), file);
+}
+
+namespace {
+
+/// The nearest id to an unknown one; "" if none is near.
+std::string meant(const std::string& asked, const std::vector<Recorded>& all) {
+  std::vector<std::string> spellings;
+  for (const Recorded& each : all) {
+    spellings.push_back(each.test.id);
+    spellings.push_back(each.test.name);
+  }
+  const std::string near = nearest(asked, spellings);
+  for (const Recorded& each : all) {
+    const bool is_near = !near.empty() && (each.test.id == near || each.test.name == near);
+    if (is_near || (near.empty() && each.test.id.find(asked) != std::string::npos)) {
+      return each.test.id;
+    }
+  }
+  return "";
+}
+
+std::string some_ids(const std::vector<Recorded>& tests) {
+  constexpr std::size_t most = 5;
+  const auto id = [](const Recorded& each) { return each.test.id; };
+  return quoted(names_of(std::span(tests).first(std::min(most, tests.size())), id)) +
+         (tests.size() > most ? ", …" : "");
+}
+
+}  // namespace
+
+Recorded find_test(const reports::Record& record, const std::string& file,
+                   const std::string& name) {
+  std::vector<Recorded> all;
+  std::vector<Recorded> named;
+  std::vector<Recorded> parts;
+  for (const reports::Suite& suite : record.suites) {
+    for (const reports::Test& test : suite.tests) {
+      all.push_back({suite, test});
+      if (test.id == name) return all.back();
+      if (test.name == name) named.push_back(all.back());
+      if (test.id.find(name) != std::string::npos) parts.push_back(all.back());
+    }
+  }
+  if (named.size() == 1) return named.front();
+  const Location where{.file = file};
+  if (!named.empty()) {
+    refuse(where, "{} tests have the name `{}`; give the id of one: {}", named.size(), name,
+           some_ids(named));
+  }
+  if (parts.size() == 1) return parts.front();
+  if (!parts.empty()) {
+    refuse(where, "{} tests have `{}` in their id; give more of one: {}", parts.size(), name,
+           some_ids(parts));
+  }
+  const std::string near = meant(name, all);
+  refuse(where, "no test `{}` in this run; {}", name,
+         near.empty() ? "there is: " + some_ids(all) : "did you mean `" + near + "`?");
 }
 
 }  // namespace assay::harness

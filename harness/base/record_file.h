@@ -9,4 +9,14 @@ namespace assay::harness {
 /// Reads a saved run. InputError if the file cannot be read, reports::ReadError if it is no record.
 reports::Record read_record(const std::string& file);
 
+/// A test in its record.
+struct Recorded {
+  const reports::Suite& suite;
+  const reports::Test& test;
+};
+
+/// The test with this id, part of an id or name in the record of a file. InputError if there is
+/// none or several, with suggestions.
+Recorded find_test(const reports::Record& record, const std::string& file, const std::string& name);
+
 }  // namespace assay::harness

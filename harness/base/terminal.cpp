@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <mutex>
 
-#include "harness/base/environment_variables.h"
 #include "reports/words/text.h"
 
 namespace assay::harness {

@@ -4,13 +4,23 @@
 
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <functional>
 #include <iostream>
 #include <memory>
+#include <string>
 
 #include "harness/base/progress.h"
 
 namespace assay::harness {
+
+/// The value of a variable; "" where it is not set.
+using Environment = std::function<std::string(const std::string&)>;
+
+inline std::string system_environment(const std::string& variable) {
+  const char* value = std::getenv(variable.c_str());
+  return value == nullptr ? "" : value;
+}
 
 /// Columns of the terminal that the stream writes to. Else what COLUMNS says, else 80.
 int terminal_width(std::FILE* stream);

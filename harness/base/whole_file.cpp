@@ -6,20 +6,25 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <stdexcept>
-#include <string>
 #include <system_error>
+#include <thread>
 #include <utility>
+
+#include "harness/base/interrupt.h"
+#include "harness/base/terminal.h"
 
 namespace assay::harness {
 namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void fail(const fs::path& path, int error) {
-  throw std::runtime_error(
-      fmt::format("cannot write {}: {}", path.string(), std::generic_category().message(error)));
+[[noreturn]] void fail(const char* action, const fs::path& path, int error) {
+  throw std::runtime_error(fmt::format("cannot {} {}: {}", action, path.string(),
+                                       std::generic_category().message(error)));
 }
 
 constexpr std::string_view temporary_begin = ".assay-";
@@ -52,7 +57,7 @@ class Output {
       if (descriptor_ >= 0) ::close(descriptor_);
       if (temporary_) ::unlink(file_.c_str());
       descriptor_ = ::open(file_.c_str(), flags | O_WRONLY | O_CLOEXEC, 0666);
-      if (descriptor_ < 0) fail(target_, errno);
+      if (descriptor_ < 0) fail("write", target_, errno);
     } while (temporary_ && !is_ours());
     if (temporary_) lock_ = ::dup(descriptor_);
   }
@@ -68,19 +73,19 @@ class Output {
     while (!text.empty()) {
       const ssize_t written = ::write(descriptor_, text.data(), text.size());
       if (written < 0 && errno == EINTR) continue;
-      if (written < 0) fail(target_, errno);
+      if (written < 0) fail("write", target_, errno);
       text.remove_prefix(static_cast<std::size_t>(written));
     }
   }
 
   void close() {
-    if (temporary_ && ::fsync(descriptor_) != 0) fail(target_, errno);
+    if (temporary_ && ::fsync(descriptor_) != 0) fail("write", target_, errno);
     // A network file system may report only here that the disk is full.
-    if (::close(std::exchange(descriptor_, -1)) != 0) fail(target_, errno);
+    if (::close(std::exchange(descriptor_, -1)) != 0) fail("write", target_, errno);
   }
 
   void rename() {
-    if (::rename(file_.c_str(), target_.c_str()) != 0) fail(target_, errno);
+    if (::rename(file_.c_str(), target_.c_str()) != 0) fail("write", target_, errno);
     temporary_ = false;
   }
 
@@ -112,13 +117,51 @@ fs::path behind_links(const fs::path& path) {
   return ignored ? path : target;
 }
 
+// ---- Locks
+
+constexpr std::chrono::milliseconds longest_pause(50);
+constexpr std::chrono::milliseconds told_after(3000);
+
+int locked(const std::string& path) {
+  const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (descriptor < 0) fail("lock", path, errno);
+  std::chrono::milliseconds waited(0);
+  bool told = false;
+  while (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
+    const int error = errno;
+    if (error == EINTR) continue;
+    if (error == EWOULDBLOCK && !interrupted()) {
+      if (waited > told_after && !std::exchange(told, true)) {
+        say_beside_progress(fmt::format("waiting for {}, to which another run is adding", path));
+      }
+      const auto pause = std::clamp(waited, std::chrono::milliseconds(1), longest_pause);
+      std::this_thread::sleep_for(pause);
+      waited += pause;
+      continue;
+    }
+    ::close(descriptor);
+    if (interrupted()) {
+      throw std::runtime_error(fmt::format("cannot lock {}: the wait was interrupted", path));
+    }
+    fail("lock", path, error);
+  }
+  return descriptor;
+}
+
+bool is_current(int descriptor, const std::string& path) {
+  struct stat open {};
+  struct stat named {};
+  return ::fstat(descriptor, &open) == 0 && ::stat(path.c_str(), &named) == 0 &&
+         open.st_dev == named.st_dev && open.st_ino == named.st_ino;
+}
+
 }  // namespace
 
 void write_whole(const fs::path& path, std::string_view text) {
   const fs::path target = behind_links(path);
   std::error_code ignored;
   const fs::file_status status = fs::status(target, ignored);
-  if (fs::is_directory(status)) fail(path, EISDIR);
+  if (fs::is_directory(status)) fail("write", path, EISDIR);
   if (fs::exists(status) && !fs::is_regular_file(status)) {
     Output direct(target, 0, path);
     direct.write(text);
@@ -130,5 +173,16 @@ void write_whole(const fs::path& path, std::string_view text) {
   output.close();
   output.rename();
 }
+
+LockedFile::LockedFile(std::string path) : path_(std::move(path)), descriptor_(locked(path_)) {
+  while (!is_current(descriptor_, path_)) {
+    ::close(descriptor_);
+    descriptor_ = locked(path_);
+  }
+}
+
+LockedFile::~LockedFile() { ::close(descriptor_); }
+
+void LockedFile::replace(const std::string& text) const { write_whole(path_, text); }
 
 }  // namespace assay::harness

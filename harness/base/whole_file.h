@@ -1,8 +1,9 @@
 #pragma once
 
-// Files written whole or not at all.
+// Files written whole or not at all, by one process at a time.
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 namespace assay::harness {
@@ -13,5 +14,23 @@ namespace assay::harness {
 /// pipe, /dev/stdout) is written to directly, because it must not be replaced. Throws
 /// std::runtime_error that names path and reason, and leaves nothing behind.
 void write_whole(const std::filesystem::path& path, std::string_view text);
+
+/// A file that this process alone may replace while the object lives: two runs that add to one
+/// ledger take turns. The constructor makes the file, empty, if it is missing. It locks the file
+/// itself (flock), and again after another process replaced it. Readers see the old text or the new
+/// one, never a part. Throws std::runtime_error with path and reason.
+class LockedFile {
+ public:
+  explicit LockedFile(std::string path);
+  ~LockedFile();
+  LockedFile(const LockedFile&) = delete;
+  LockedFile& operator=(const LockedFile&) = delete;
+
+  void replace(const std::string& text) const;
+
+ private:
+  std::string path_;
+  int descriptor_;
+};
 
 }  // namespace assay::harness

@@ -125,17 +125,6 @@ Facts facts_of(const std::string& law) {
           .has_density = !x.setup->samplers().empty()};
 }
 
-/// The kinds of `detect`.
-enum class Effect { none, shift, ratio, law, cells, slope, bias, part };
-
-std::optional<Margin> margin_of(Effect effect, const Facts& facts) {
-  if (effect == Effect::none) return std::nullopt;
-  const double values[] = {facts.shift(), variance_effect, law_effect, cell_effect,
-                           slope_effect,  image_bias,      image_part};
-  return Margin{.value = values[static_cast<int>(effect) - 1],
-                .relative = effect == Effect::ratio || effect == Effect::part};
-}
-
 bool any_law(const Facts&) { return true; }
 bool has_density(const Facts& facts) { return facts.has_density; }
 
@@ -145,7 +134,7 @@ struct Draft {
   std::string question;
   std::string holds;
   std::string off = "";
-  Effect detect = Effect::none;
+  std::string detect = "";
   bool is_default = true;
   bool (*suits)(const Facts&) = any_law;
   CostKind cost = CostKind::samples;
@@ -154,62 +143,59 @@ struct Draft {
 
 const std::vector<Draft>& all_drafts() {
   static const std::vector<Draft> drafts{
-      {"t", "mean == number", "mean(x) == {mean}", "mean(x) == {less}", Effect::shift},
-      {"t", "mean <= number", "mean(x) <= {mean}", "mean(x) <= {less}", Effect::shift},
-      {"t", "mean >= number", "mean(x) >= {mean}", "mean(x) >= {more}", Effect::shift},
-      {"welch", "mean == mean", "mean(x) == mean(y)", "mean(shifted) == mean(y)", Effect::shift},
+      {"t", "mean == number", "mean(x) == {mean}", "mean(x) == {less}", "{shift}"},
+      {"t", "mean <= number", "mean(x) <= {mean}", "mean(x) <= {less}", "{shift}"},
+      {"t", "mean >= number", "mean(x) >= {mean}", "mean(x) >= {more}", "{shift}"},
+      {"welch", "mean == mean", "mean(x) == mean(y)", "mean(shifted) == mean(y)", "{shift}"},
       {"tost", "mean within x of number", "mean(x) within {shift} of {mean}",
        "mean(x) within {shift} of {less}"},
-      {"skewness-corrected-t", "mean == number", "mean(x) == {mean}", "", Effect::none, false},
-      {"binomial", "mean == number", "mean(x) == {mean}", "", Effect::none, false,
+      {"skewness-corrected-t", "mean == number", "mean(x) == {mean}", "", "", false},
+      {"binomial", "mean == number", "mean(x) == {mean}", "", "", false,
        [](const Facts& f) { return f.two_valued(); }},
-      {"betting", "mean == number", "mean(x) == {mean}", "", Effect::none, false,
+      {"betting", "mean == number", "mean(x) == {mean}", "", "", false,
        [](const Facts& f) { return f.bounded(); }},
-      {"betting", "mean <= number", "mean(x) <= {mean}", "", Effect::none, false,
+      {"betting", "mean <= number", "mean(x) <= {mean}", "", "", false,
        [](const Facts& f) { return std::isfinite(f.low) && !f.bounded(); }},
       {"chi-square", "variance == number", "variance(x) == {variance}", "variance(x) == {smaller}",
-       Effect::ratio},
+       "{ratio}"},
       {"chi-square", "variance <= number", "variance(x) <= {variance}", "variance(x) <= {smaller}",
-       Effect::ratio},
+       "{ratio}"},
       {"F", "variance == variance", "variance(x) == variance(y)",
-       "variance(x) == {factor} * variance(y)", Effect::ratio},
-      {"influence-t", "variance == number", "variance(x) == {variance}", "", Effect::none, false},
-      {"influence-t", "variance == variance", "variance(x) == variance(y)", "", Effect::none,
-       false},
+       "variance(x) == {factor} * variance(y)", "{ratio}"},
+      {"influence-t", "variance == number", "variance(x) == {variance}", "", "", false},
+      {"influence-t", "variance == variance", "variance(x) == variance(y)", "", "", false},
       {"influence-t", "total variance == number", "total_variance(x) == {variance}",
-       "total_variance(x) == {smaller}", Effect::ratio},
+       "total_variance(x) == {smaller}", "{ratio}"},
       {"influence-t", "efficiency == efficiency", "efficiency(x) == efficiency(y)",
-       "efficiency(y) == efficiency(scaled)", Effect::ratio},
+       "efficiency(y) == efficiency(scaled)", "{ratio}"},
       {"influence-t", "efficiencies at random costs",
-       "efficiency(costly) == efficiency(other_costly)", "", Effect::ratio, true, any_law,
+       "efficiency(costly) == efficiency(other_costly)", "", "{ratio}", true, any_law,
        CostKind::rays},
       {"influence-t", "cost == cost", "cost(costly) == cost(other_costly)",
-       "cost(costly) == {factor} * cost(other_costly)", Effect::ratio, true, any_law,
-       CostKind::rays},
+       "cost(costly) == {factor} * cost(other_costly)", "{ratio}", true, any_law, CostKind::rays},
       {"influence-t", "cost <= cost", "cost(costly) <= cost(other_costly)",
-       "cost(costly) <= {inverse} * cost(other_costly)", Effect::ratio, true, any_law,
-       CostKind::rays},
+       "cost(costly) <= {inverse} * cost(other_costly)", "{ratio}", true, any_law, CostKind::rays},
       {"slope", "slope of variance", "slope(variance(x)) == 2", "slope(variance(x)) == {slope}",
-       Effect::slope},
+       "{exponent}"},
       {"ks", "law == law given", "distribution(x) == {law}", "distribution(moved) == {law}",
-       Effect::law, true, has_density},
+       "{distance}", true, has_density},
       {"ks", "law == law", "distribution(x) == distribution(y)",
-       "distribution(moved) == distribution(y)", Effect::law, true, has_density},
-      {"chi-square-two-sample", "draws == draws", "distribution(x.x) == distribution(y.x)", "",
-       Effect::none, false, has_density},
-      {"chi-square-fit", "draws == density", "distribution(x.x) == density", "", Effect::cells,
-       true, has_density},
+       "distribution(moved) == distribution(y)", "{distance}", true, has_density},
+      {"chi-square-two-sample", "draws == draws", "distribution(x.x) == distribution(y.x)", "", "",
+       false, has_density},
+      {"chi-square-fit", "draws == density", "distribution(x.x) == density", "", "{w}", true,
+       has_density},
       {"quantile", "median == median", "quantile(x, 0.5) == quantile(y, 0.5)",
-       "quantile(shifted, 0.5) == quantile(y, 0.5)", Effect::shift, true, has_density},
-      {"ks", "law == law", "distribution(x) == distribution(y)", "", Effect::law, true,
+       "quantile(shifted, 0.5) == quantile(y, 0.5)", "{shift}", true, has_density},
+      {"ks", "law == law", "distribution(x) == distribution(y)", "", "{distance}", true,
        [](const Facts& f) { return !f.has_density; }},
       {"image", "image == analytic", "mean(picture) == analytic", "bias(picture) == {bias}",
-       Effect::bias, true, any_law, CostKind::samples, classical_replicates},
+       "{bias}", true, any_law, CostKind::samples, classical_replicates},
       {"image", "image == image", "mean(picture) == mean(other_picture)",
-       "mean(picture) == {brighter} * mean(other_picture)", Effect::part, true, any_law,
+       "mean(picture) == {brighter} * mean(other_picture)", "{part}", true, any_law,
        CostKind::samples, classical_replicates},
       {"image", "image within x of analytic", "mean(picture) within {bias} of analytic",
-       "bias(picture) within {bias} of {bias}", Effect::none, true, any_law, CostKind::samples,
+       "bias(picture) within {bias} of {bias}", "", true, any_law, CostKind::samples,
        classical_replicates}};
   return drafts;
 }
@@ -217,6 +203,7 @@ const std::vector<Draft>& all_drafts() {
 std::vector<Draft> drafts_of(const Facts& facts) {
   const auto written = [&](const std::string& claim) {
     const auto exact = [](double value) { return fmt::format("{:.17g}", value); };
+    const auto percent = [](double part) { return fmt::format("{:g}%", 100 * part); };
     const double factor = 1 + variance_effect;
     return fmt::format(
         fmt::runtime(claim), fmt::arg("law", facts.law), fmt::arg("mean", exact(facts.mean)),
@@ -225,7 +212,10 @@ std::vector<Draft> drafts_of(const Facts& facts) {
         fmt::arg("shift", exact(facts.shift())), fmt::arg("variance", exact(facts.variance())),
         fmt::arg("smaller", exact(facts.variance() / factor)), fmt::arg("factor", exact(factor)),
         fmt::arg("inverse", exact(1 / factor)), fmt::arg("slope", 2 - slope_effect),
-        fmt::arg("bias", exact(image_bias)), fmt::arg("brighter", exact(1 + image_part)));
+        fmt::arg("bias", exact(image_bias)), fmt::arg("brighter", exact(1 + image_part)),
+        fmt::arg("ratio", percent(variance_effect)), fmt::arg("part", percent(image_part)),
+        fmt::arg("distance", law_effect), fmt::arg("w", cell_effect),
+        fmt::arg("exponent", slope_effect));
   };
   std::vector<Draft> drafts;
   for (const Draft& draft : all_drafts()) {
@@ -233,6 +223,7 @@ std::vector<Draft> drafts_of(const Facts& facts) {
     drafts.push_back(draft);
     drafts.back().holds = written(draft.holds);
     drafts.back().off = written(draft.off);
+    drafts.back().detect = written(draft.detect);
   }
   return drafts;
 }
@@ -295,7 +286,7 @@ CalibrationCase case_of(const Draft& draft, const Facts& facts,
   const auto planned = [&](const std::string& claim) {
     TestEntry test = test_of(claim, draft);
     test.secondaries = samples;
-    test.detect = margin_of(draft.detect, facts);
+    if (!draft.detect.empty()) test.detect = parse_margin(draft.detect, {}, "`detect`");
     return test;
   };
   made.holds.test = planned(draft.holds);
@@ -370,9 +361,7 @@ std::string calibration_law(const std::string& named) {
 /// InputError with the known methods if this one has no cases.
 void require_calibrated(const std::string& method) {
   std::set<std::string> known;
-  for (const std::string& law : calibration_laws()) {
-    for (const Draft& draft : drafts_of(facts_of(law))) known.insert(draft.method);
-  }
+  for (const Draft& draft : all_drafts()) known.insert(draft.method);
   if (known.contains(method)) return;
   const std::string near = nearest(method, {known.begin(), known.end()});
   refuse({}, "no method `{}` can be calibrated{}; there is {}", method,

@@ -8,14 +8,13 @@
 #include <fstream>
 
 #include "estimators/catalogue.h"
+#include "harness/base/identity.h"
 #include "harness/base/record_file.h"
 #include "harness/base/terminal.h"
-#include "harness/base/text_hash.h"
 #include "harness/command/describe.h"
 #include "harness/command/plan_table.h"
 #include "harness/command/run.h"
 #include "harness/ranks/ranks.h"
-#include "harness/record/find_test.h"
 #include "harness/record/output.h"
 #include "harness/record/record_of.h"
 #include "harness/sampling/checkpoint.h"
@@ -122,7 +121,7 @@ int explain(const ExplainArguments& arguments) {
   if (words.size() > 2) refuse({}, "`assay explain` takes a saved run and one test");
   const std::string file = words.size() > 1 ? words.front() : last_run();
   const reports::Record record = read_record(file);
-  const Recorded found = find_test(record, file, words.back(), true);
+  const Recorded found = find_test(record, file, words.back());
   if (words.size() < 2) fmt::print("The last run with tests began at {}.\n\n", record.started);
   fmt::print("{}",
              reports::explain(found.suite, found.test, std::min(terminal_width(stdout), 100)));

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/base/environment_variables.h"
+#include "harness/base/terminal.h"
 #include "harness/suite/run_options.h"
 
 namespace assay::harness {

@@ -10,14 +10,16 @@
 #include "harness/base/record_file.h"
 #include "harness/base/terminal.h"
 #include "harness/command/cli.h"
+#include "harness/command/describe.h"
 #include "harness/command/loaded.h"
 #include "harness/draws/sampler_setup.h"
 #include "harness/question/question_sources.h"
-#include "harness/record/find_test.h"
 #include "harness/record/output.h"
 #include "harness/record/record_of.h"
 #include "harness/run/looks.h"
 #include "harness/run/planned_run.h"
+#include "reports/words/number.h"
+#include "reports/words/text.h"
 
 namespace assay::harness {
 namespace {
@@ -181,7 +183,9 @@ bool same_line(const char* what, const reports::Number& now, const reports::Numb
 
 bool same_size(const reports::Sample& now, const reports::Sample& then) {
   const auto shown = [](const reports::Sample& sample) {
-    return fmt::format("{} secondaries of {} primaries", sample.secondaries, sample.primaries);
+    return fmt::format(
+        "{} secondaries of {}", sample.secondaries,
+        reports::plain_spaces(reports::counted(sample.primaries, "primary", "primaries")));
   };
   const bool same = shown(now) == shown(then);
   fmt::print("{}.{}: {}{}\n", now.estimator, now.channel, shown(now),
@@ -209,8 +213,9 @@ std::string as_probability(const reports::Number& log10_p) {
 bool print_comparison(const reports::Test& now, const reports::Test& then, bool timed) {
   bool same = true;
   if (then.verdict == reports::Verdict::invalid || then.verdict == reports::Verdict::error) {
-    fmt::print("{}, so the numbers below decide nothing: {}\n", reports::to_string(then.verdict),
-               then.message);
+    fmt::print("{}", wrapped(fmt::format("{}, so the numbers below decide nothing: {}",
+                                         reports::to_string(then.verdict), then.message),
+                             page_width, 0));
   }
   for (std::size_t i = 0; i < now.samples.size() && i < then.samples.size(); ++i) {
     same &= same_size(now.samples[i], then.samples[i]);
@@ -265,8 +270,7 @@ bool replay_test(const Loaded& run, const Recorded& recorded) {
   const bool timed = work.outcome.plan.method.keeps == Keeps::blocks;
   const bool same = print_comparison(now, then, timed);
   fmt::print("{}\n", !same   ? "NOT the numbers recorded: another version, machine or input file?"
-                     : timed ? "the same observations as recorded; seconds do not repeat, and what "
-                               "is made of them differs"
+                     : timed ? "the same observations as recorded; their seconds differ"
                              : "the same numbers as recorded");
   return same;
 }

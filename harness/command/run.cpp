@@ -9,7 +9,7 @@
 #include "harness/base/parallel.h"
 #include "harness/ledger/ledger.h"
 #include "harness/record/record_of.h"
-#include "harness/run/holm.h"
+#include "harness/run/evaluate.h"
 #include "harness/run/looks.h"
 #include "harness/run/planned_run.h"
 

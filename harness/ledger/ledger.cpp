@@ -8,9 +8,9 @@
 #include <set>
 #include <variant>
 
-#include "harness/base/locked_file.h"
+#include "harness/base/identity.h"
 #include "harness/base/text_file.h"
-#include "harness/base/text_hash.h"
+#include "harness/base/whole_file.h"
 #include "harness/ledger/ledger_book.h"
 #include "harness/theta/theta.h"
 #include "stats/tails/tails.h"

@@ -6,8 +6,9 @@
 #include <charconv>
 #include <cmath>
 
+#include "estimators/core/value.h"
+#include "harness/base/identity.h"
 #include "harness/base/text_file.h"
-#include "harness/base/text_hash.h"
 #include "harness/suite/yaml.h"
 #include "reports/words/number.h"
 
@@ -34,130 +35,64 @@ std::string header_of(double budget) { return version_words + reports::round_tri
 constexpr std::string_view escaped = "\"\\\n\t\r";
 constexpr std::string_view letters = "\"\\ntr";
 
-/// Writes the fields of a line from left to right.
-class LineWriter {
+std::string line_of(const LedgerSeries& series) {
+  const std::string kind =
+      series.has_estimates() ? "estimates reference " + reports::round_trip(*series.reference_error)
+                             : "p-values";
+  return fmt::format("series {} {} weight {} {} {}", series.hash, kind,
+                     reports::round_trip(series.weight), in_quotes(series.test),
+                     in_quotes(series.channel));
+}
+
+std::string value_of(const stats::NightEstimate& night) {
+  return fmt::format("estimate {} error {} observations {} effective {}",
+                     reports::round_trip(night.difference),
+                     reports::round_trip(night.standard_error),
+                     reports::round_trip(night.observations), reports::round_trip(night.effective));
+}
+
+std::string value_of(const NightPValue& night) {
+  return "log-p " + reports::round_trip(night.log_p);
+}
+
+std::string line_of(const LedgerNight& night, const LedgerSeries& of) {
+  return fmt::format("night {} seed {} commit {} series {} {} {} {}", night.date, night.seed,
+                     night.commit, of.hash,
+                     std::visit([](const auto& value) { return value_of(value); }, night.value),
+                     in_quotes(of.test), in_quotes(of.channel));
+}
+
+/// The words of a line, and its texts without their quotes. What no ledger writes gives any words.
+class Words {
  public:
-  void word(std::string_view word) { text_.append(text_.empty() ? "" : " ").append(word); }
-  bool either(std::string_view one, std::string_view other, bool is_one) {
-    word(is_one ? one : other);
-    return is_one;
-  }
-  void field(const std::string& text) { word(text); }
-  void field(std::uint64_t count) { word(fmt::format("{}", count)); }
-  void field(double number) { word(reports::round_trip(number)); }
-  void quoted(const std::string& text) { word(in_quotes(text)); }
-  const std::string& text() const { return text_; }
-
- private:
-  std::string text_;
-};
-
-/// Reads the fields that LineWriter writes.
-class LineReader {
- public:
-  explicit LineReader(std::string_view line) : rest_(line) {}
-
-  void word(std::string_view wanted) { note(taken() == wanted); }
-  bool either(std::string_view one, std::string_view other, bool /*is_one*/) {
-    const std::string_view word = taken();
-    note(word == one || word == other);
-    return word == one;
-  }
-  void field(std::string& text) {
-    text = taken();
-    note(!text.empty() && text.front() != '"');
-  }
-  template <class Number>
-  void field(Number& number) {
-    const std::string_view word = taken();
-    const char* const end = word.data() + word.size();
-    const auto [read, error] = std::from_chars(word.data(), end, number);
-    note(error == std::errc() && read == end && std::isfinite(static_cast<double>(number)));
-  }
-  void quoted(std::string& text) {
-    skip_blanks();
-    std::size_t i = rest_.starts_with('"') ? 1 : rest_.size();
-    for (; i < rest_.size() && rest_[i] != '"'; ++i) {
-      const bool escape = rest_[i] == '\\' && i + 1 < rest_.size();
-      const std::size_t at = escape ? letters.find(rest_[++i]) : 0;
-      note(at != std::string_view::npos);
-      text += escape ? escaped[std::min(at, escaped.size() - 1)] : rest_[i];
+  explicit Words(std::string_view line) {
+    for (std::size_t i = 0; i < line.size(); ++i) {
+      if (line[i] == ' ') continue;
+      std::string& word = words_.emplace_back();
+      const char end = line[i] == '"' ? line[i++] : ' ';
+      for (; i < line.size() && line[i] != end; ++i) {
+        const bool escape = end == '"' && line[i] == '\\' && i + 1 < line.size();
+        const std::size_t at = escape ? letters.find(line[++i]) : std::string_view::npos;
+        word += at < escaped.size() ? escaped[at] : line[i];
+      }
     }
-    note(i < rest_.size());
-    rest_.remove_prefix(std::min(i + 1, rest_.size()));
   }
-  /// True if the line has these fields and no more.
-  bool is_read() {
-    skip_blanks();
-    return sound_ && rest_.empty();
+
+  std::size_t size() const { return words_.size(); }
+  /// Empty beyond the last.
+  std::string text(std::size_t i) const { return i < words_.size() ? words_[i] : ""; }
+  /// Zero for anything else.
+  template <class Number = double>
+  Number number(std::size_t i) const {
+    const std::string word = text(i);
+    Number number{};
+    std::from_chars(word.data(), word.data() + word.size(), number);
+    return number;
   }
 
  private:
-  void note(bool sound) { sound_ = sound_ && sound; }
-  void skip_blanks() { rest_.remove_prefix(std::min(rest_.find_first_not_of(' '), rest_.size())); }
-  std::string_view taken() {
-    skip_blanks();
-    const std::string_view word = rest_.substr(0, rest_.find(' '));
-    rest_.remove_prefix(word.size());
-    return word;
-  }
-
-  std::string_view rest_;
-  bool sound_ = true;
+  std::vector<std::string> words_;
 };
-
-template <class Line>
-void named(Line& line, std::string_view name, auto& field) {
-  line.word(name);
-  line.field(field);
-}
-
-template <class Line>
-void visit(Line& line, LedgerSeries& series) {
-  named(line, "series", series.hash);
-  if (line.either("estimates", "p-values", series.has_estimates())) {
-    if (!series.reference_error) series.reference_error.emplace();
-    named(line, "reference", *series.reference_error);
-  }
-  named(line, "weight", series.weight);
-  line.quoted(series.test);
-  line.quoted(series.channel);
-}
-
-/// `of` has the hash, the test and the channel of the night's series.
-template <class Line>
-void visit(Line& line, LedgerNight& night, LedgerSeries& of) {
-  named(line, "night", night.date);
-  named(line, "seed", night.seed);
-  named(line, "commit", night.commit);
-  named(line, "series", of.hash);
-  const bool estimated = std::holds_alternative<stats::NightEstimate>(night.value);
-  if (line.either("estimate", "log-p", estimated)) {
-    if (!estimated) night.value = stats::NightEstimate{};
-    auto& value = std::get<stats::NightEstimate>(night.value);
-    line.field(value.difference);
-    named(line, "error", value.standard_error);
-    named(line, "observations", value.observations);
-    named(line, "effective", value.effective);
-  } else {
-    if (estimated) night.value = NightPValue{};
-    line.field(std::get<NightPValue>(night.value).log_p);
-  }
-  line.quoted(of.test);
-  line.quoted(of.channel);
-}
-
-template <class... Parts>
-std::string line_of(Parts... parts) {
-  LineWriter line;
-  visit(line, parts...);
-  return line.text();
-}
-
-/// "line | 1a2b3c4d": the low 32 bits of a hash.
-std::string with_check(std::string_view line, std::uint64_t hash) {
-  return fmt::format("{} | {:08x}", line, hash & 0xffffffffU);
-}
 
 bool is_possible(const stats::NightEstimate& night) {
   return night.standard_error >= 0 && night.observations > 0 && night.effective >= 1;
@@ -228,7 +163,7 @@ void LedgerBook::begin(const std::string& test) {
 
 void LedgerBook::keep_checked(const std::string& line) {
   check_ = text_hash(line, check_);
-  keep(with_check(line, check_));
+  keep(fmt::format("{} | {:08x}", line, check_ & 0xffffffffU));
 }
 
 std::string LedgerBook::text() const {
@@ -254,13 +189,12 @@ class LedgerReader {
           "this is no ledger of this version: its first line must be `assay-ledger 2 budget B`; "
           "name another file for the ledger");
     }
-    LineReader fields(lines_[0].substr(std::string_view(version_words).size()));
-    double budget = 0;
-    fields.field(budget);
-    if (!fields.is_read() || !is_error_rate(budget)) {
+    const std::optional<double> budget =
+        parse_number(lines_[0].substr(std::string_view(version_words).size()));
+    if (!budget || !is_error_rate(*budget)) {
       refuse("the budget must be a number from 1e-9 to 0.5");
     }
-    book_ = LedgerBook(budget);
+    book_ = LedgerBook(*budget);
     book_.lines_ = {std::string(lines_[0])};
     book_.check_ = text_hash(lines_[0]);
     for (number_ = 1; number_ < lines_.size(); ++number_) take(lines_[number_]);
@@ -290,20 +224,14 @@ class LedgerReader {
     if (line.starts_with("begin ")) return take_begin(line);
     if (ended_) refuse("`end` must be the last line" + mend());
     if (line.starts_with("end ")) return take_end(line);
-    const std::string_view checked = line.substr(0, line.rfind(" | "));
-    const std::uint64_t wanted = text_hash(checked, book_.check_);
-    if (with_check(checked, wanted) != line) changed();
-    line.starts_with("series ") ? take_series(checked) : take_night(checked);
-    book_.check_ = wanted;
-    book_.keep(std::string(line));
+    line.starts_with("series ") ? take_series(Words(line)) : take_night(Words(line));
+    if (book_.lines_.back() != line) changed();
   }
 
   void take_begin(std::string_view line) {
-    LineReader fields(line);
-    std::string test;
-    fields.word("begin");
-    fields.quoted(test);
-    if (!fields.is_read()) {
+    const Words words(line);
+    const std::string test = words.text(1);
+    if (words.size() != 2 || line.find('"') == line.npos) {
       refuse("after `begin` stands the test's id in double quotes, as in the lines of its nights");
     }
     const auto known = [&](const LedgerSeries& series) { return series.test == test; };
@@ -314,11 +242,7 @@ class LedgerReader {
   }
 
   void take_end(std::string_view line) {
-    LineReader fields(line);
-    std::uint64_t count = 0;
-    fields.word("end");
-    fields.field(count);
-    if (!fields.is_read() || count != book_.nights_.size()) {
+    if (line != fmt::format("end {}", book_.nights_.size())) {
       refuse(fmt::format("the ledger has {} nights before this line: lines were added or taken out",
                          book_.nights_.size()) +
              mend());
@@ -326,32 +250,43 @@ class LedgerReader {
     ended_ = true;
   }
 
-  void take_series(std::string_view line) {
-    LedgerSeries series;
-    LineReader fields(line);
-    visit(fields, series);
-    if (!fields.is_read() || !(series.reference_error.value_or(0) >= 0) ||
-        !(series.weight > 0 && series.weight <= 1)) {
+  // Whatever a line says is added to the book. It is sound if the book then writes the same line.
+
+  void take_series(const Words& words) {
+    LedgerSeries series{.hash = words.text(1)};
+    const bool estimates = words.text(2) == "estimates";
+    if (estimates) series.reference_error = words.number(4);
+    const std::size_t weight = estimates ? 6 : 4;
+    series.weight = words.number(weight);
+    series.test = words.text(weight + 1);
+    series.channel = words.text(weight + 2);
+    if (!(series.reference_error.value_or(0) >= 0 && series.weight > 0 && series.weight <= 1)) {
       changed();
     }
-    book_.series_.push_back(series);
-    book_.closed_.push_back(false);
+    book_.open(series);
   }
 
-  void take_night(std::string_view line) {
-    LedgerNight night;
-    LedgerSeries of;
-    LineReader fields(line);
-    visit(fields, night, of);
-    const auto possible = [](const auto& value) { return is_possible(value); };
-    if (!fields.is_read() || !std::visit(possible, night.value)) changed();
-    const LedgerSeries* series = book_.open_series(of);
-    if (series == nullptr) refuse("no open series above has this night's hash and test" + mend());
-    if (series->has_estimates() != std::holds_alternative<stats::NightEstimate>(night.value)) {
-      changed();
+  void take_night(const Words& words) {
+    LedgerNight night{.date = words.text(1),
+                      .seed = words.number<std::uint64_t>(3),
+                      .commit = words.text(5),
+                      .value = NightPValue{words.number(9)}};
+    const bool estimate = words.text(8) == "estimate";
+    if (estimate) {
+      night.value = stats::NightEstimate{.difference = words.number(9),
+                                         .standard_error = words.number(11),
+                                         .observations = words.number(13),
+                                         .effective = words.number(15)};
     }
+    const auto possible = [](const auto& value) { return is_possible(value); };
+    if (!std::visit(possible, night.value)) changed();
+    const std::size_t test = estimate ? 16 : 10;
+    const LedgerSeries* const series = book_.open_series(
+        {.hash = words.text(7), .test = words.text(test), .channel = words.text(test + 1)});
+    if (series == nullptr) refuse("no open series above has this night's hash and test" + mend());
+    if (series->has_estimates() != estimate) changed();
     night.series = static_cast<std::size_t>(series - book_.series_.data());
-    book_.nights_.push_back(night);
+    book_.add(night);
   }
 
   std::string file_;

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/sampling/channel_list.h"
+#include "harness/sampling/image_views.h"
 #include "harness/sampling/prepare.h"
 #include "harness/suite/suite.h"
 

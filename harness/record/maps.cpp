@@ -9,9 +9,9 @@
 #include <optional>
 
 #include "estimators/map_file.h"
+#include "harness/base/identity.h"
 #include "harness/base/numbers.h"
 #include "harness/base/parallel.h"
-#include "harness/base/text_hash.h"
 #include "harness/draws/declared_density.h"
 #include "harness/draws/sampler_setup.h"
 #include "harness/families/law.h"

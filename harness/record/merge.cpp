@@ -11,10 +11,10 @@
 #include <stdexcept>
 #include <utility>
 
+#include "harness/base/identity.h"
 #include "harness/base/numbers.h"
 #include "harness/base/record_file.h"
-#include "harness/base/text_hash.h"
-#include "harness/run/holm.h"
+#include "harness/run/evaluate.h"
 
 namespace assay::harness {
 namespace {

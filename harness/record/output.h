@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/base/environment_variables.h"
+#include "harness/base/terminal.h"
 #include "reports/record/record.h"
 #include "reports/report_formats.h"
 

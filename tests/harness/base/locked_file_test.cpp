@@ -1,4 +1,4 @@
-#include "harness/base/locked_file.h"
+#include "harness/base/whole_file.h"
 
 #include "harness/base/text_file.h"
 #include "tests/harness/prelude.h"

@@ -2,7 +2,6 @@
 
 #include "harness/families/families.h"
 #include "harness/plan/looks.h"
-#include "harness/run/holm.h"
 #include "tests/harness/normal_evidence.h"
 #include "tests/harness/prelude.h"
 
