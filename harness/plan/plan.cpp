@@ -46,7 +46,7 @@ std::string not_finite_in_pilot(const Question& question, const Pilots& pilots) 
       const ChannelSummary& seen = pilot->sums->channels[channel];
       if (seen.nonfinite == 0) continue;
       return fmt::format(
-          "in the pilot {} of {} observations of `{}` had no finite value, first observation {}",
+          "{} of {} observations of `{}` in the pilot are not finite, the first is observation {}",
           seen.nonfinite, pilot->sums->count, subject.estimator->name, seen.first_nonfinite);
     }
   }
