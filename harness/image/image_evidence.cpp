@@ -101,7 +101,7 @@ ChannelMeans means_held_against(const ImagePair& pair) {
   return means;
 }
 
-/// What is known of theta, beside the test of theta = 0.
+/// Estimates of theta, which decide beside the test of theta = 0.
 struct Distances {
   stats::ImageDistance of_elements = {};
   double hidden = 0;  ///< The norm of a bias that values can hide which no element showed.

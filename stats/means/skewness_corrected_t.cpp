@@ -21,7 +21,7 @@ double transformed(double t, double a) {
 struct Part {
   const Moments& x;
   double factor = 1;
-  double share = 0;  // Of the combination's variance: factor^2 M2 / n^2 over the sum.
+  double share = 0;  // Its part of the combination's variance: factor^2 M2 / n^2 over the sum.
 
   double count() const { return static_cast<double>(x.count); }
 };

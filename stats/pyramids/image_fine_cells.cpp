@@ -381,7 +381,7 @@ class FineTiles {
           const double weight = weight_of(element);
           const std::size_t vary = halves_that_vary(element);
           const double difference = cells_.half[0].difference[element - cells_.half[0].first];
-          // What is equal and never varies tells no size of a difference.
+          // An element that is equal and never varies tells no size of a difference.
           const bool tells = vary > 0 || difference != 0;
           found_.weights[element] = tells ? static_cast<float>(weight) : 0;
           if (vary < halves) {

@@ -43,7 +43,7 @@ void black_now_and_then(Philox& random, std::vector<double>& image) {
   for (double& pixel : image) pixel = light * (1 + 0.1 * random.normal());
 }
 
-/// As much brighter than 1 as the standard error of the mean of all images.
+/// The mean is one standard error above 1, that of the mean of all images.
 void brighter_by_an_error(Philox& random, std::vector<double>& image) {
   shared_noise(random, image);
   for (double& pixel : image) pixel += 0.1 / std::sqrt(replicates);
