@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
+#include <cstring>
+#include <sstream>
 
-#include "estimators/core/value.h"
-#include "harness/base/identity.h"
 #include "harness/base/text_file.h"
+#include "harness/base/identity.h"
 #include "harness/suite/yaml.h"
 #include "reports/words/number.h"
 
@@ -35,64 +34,54 @@ std::string header_of(double budget) { return version_words + reports::round_tri
 constexpr std::string_view escaped = "\"\\\n\t\r";
 constexpr std::string_view letters = "\"\\ntr";
 
+/// Reads a text that `in_quotes` wrote. The stream fails if there is none.
+std::string unquoted(std::istream& in) {
+  std::string text;
+  char c = 0;
+  if (in >> c && c != '"') in.setstate(std::ios::failbit);
+  while (in.get(c) && c != '"') {
+    const std::size_t at = c == '\\' && in.get(c) ? letters.find(c) : std::string_view::npos;
+    text += at == std::string_view::npos ? c : escaped[at];
+  }
+  return text;
+}
+
+/// True if everything was read, and the stream has no more than blanks.
+bool is_read(std::istream& in) { return in && (in >> std::ws).eof(); }
+
+std::string text_of(const stats::NightEstimate& night) {
+  using reports::round_trip;
+  return fmt::format("estimate {} error {} observations {} effective {}",
+                     round_trip(night.difference), round_trip(night.standard_error),
+                     round_trip(night.observations), round_trip(night.effective));
+}
+
+std::string text_of(const NightPValue& night) {
+  return "log-p " + reports::round_trip(night.log_p);
+}
+
+std::string names_in_quotes(const LedgerSeries& series) {
+  return in_quotes(series.test) + " " + in_quotes(series.channel);
+}
+
 std::string line_of(const LedgerSeries& series) {
   const std::string kind =
       series.has_estimates() ? "estimates reference " + reports::round_trip(*series.reference_error)
                              : "p-values";
-  return fmt::format("series {} {} weight {} {} {}", series.hash, kind,
-                     reports::round_trip(series.weight), in_quotes(series.test),
-                     in_quotes(series.channel));
-}
-
-std::string value_of(const stats::NightEstimate& night) {
-  return fmt::format("estimate {} error {} observations {} effective {}",
-                     reports::round_trip(night.difference),
-                     reports::round_trip(night.standard_error),
-                     reports::round_trip(night.observations), reports::round_trip(night.effective));
-}
-
-std::string value_of(const NightPValue& night) {
-  return "log-p " + reports::round_trip(night.log_p);
+  return fmt::format("series {} {} weight {} {}", series.hash, kind,
+                     reports::round_trip(series.weight), names_in_quotes(series));
 }
 
 std::string line_of(const LedgerNight& night, const LedgerSeries& of) {
-  return fmt::format("night {} seed {} commit {} series {} {} {} {}", night.date, night.seed,
-                     night.commit, of.hash,
-                     std::visit([](const auto& value) { return value_of(value); }, night.value),
-                     in_quotes(of.test), in_quotes(of.channel));
+  const std::string value = std::visit([](const auto& each) { return text_of(each); }, night.value);
+  return fmt::format("night {} seed {} commit {} series {} {} {}", night.date, night.seed,
+                     night.commit, of.hash, value, names_in_quotes(of));
 }
 
-/// The words of a line, and its texts without their quotes. What no ledger writes gives any words.
-class Words {
- public:
-  explicit Words(std::string_view line) {
-    for (std::size_t i = 0; i < line.size(); ++i) {
-      if (line[i] == ' ') continue;
-      std::string& word = words_.emplace_back();
-      const char end = line[i] == '"' ? line[i++] : ' ';
-      for (; i < line.size() && line[i] != end; ++i) {
-        const bool escape = end == '"' && line[i] == '\\' && i + 1 < line.size();
-        const std::size_t at = escape ? letters.find(line[++i]) : std::string_view::npos;
-        word += at < escaped.size() ? escaped[at] : line[i];
-      }
-    }
-  }
-
-  std::size_t size() const { return words_.size(); }
-  /// Empty beyond the last.
-  std::string text(std::size_t i) const { return i < words_.size() ? words_[i] : ""; }
-  /// Zero for anything else.
-  template <class Number = double>
-  Number number(std::size_t i) const {
-    const std::string word = text(i);
-    Number number{};
-    std::from_chars(word.data(), word.data() + word.size(), number);
-    return number;
-  }
-
- private:
-  std::vector<std::string> words_;
-};
+/// "line | 1a2b3c4d": the low 32 bits of a hash.
+std::string with_check(std::string_view line, std::uint64_t hash) {
+  return fmt::format("{} | {:08x}", line, hash & 0xffffffffU);
+}
 
 bool is_possible(const stats::NightEstimate& night) {
   return night.standard_error >= 0 && night.observations > 0 && night.effective >= 1;
@@ -163,7 +152,7 @@ void LedgerBook::begin(const std::string& test) {
 
 void LedgerBook::keep_checked(const std::string& line) {
   check_ = text_hash(line, check_);
-  keep(fmt::format("{} | {:08x}", line, check_ & 0xffffffffU));
+  keep(with_check(line, check_));
 }
 
 std::string LedgerBook::text() const {
@@ -189,15 +178,16 @@ class LedgerReader {
           "this is no ledger of this version: its first line must be `assay-ledger 2 budget B`; "
           "name another file for the ledger");
     }
-    const std::optional<double> budget =
-        parse_number(lines_[0].substr(std::string_view(version_words).size()));
-    if (!budget || !is_error_rate(*budget)) {
+    std::istringstream fields(std::string(lines_[0].substr(std::strlen(version_words))));
+    double budget = 0;
+    fields >> budget;
+    if (!is_read(fields) || !is_error_rate(budget)) {
       refuse("the budget must be a number from 1e-9 to 0.5");
     }
-    book_ = LedgerBook(*budget);
+    book_ = LedgerBook(budget);
     book_.lines_ = {std::string(lines_[0])};
     book_.check_ = text_hash(lines_[0]);
-    for (number_ = 1; number_ < lines_.size(); ++number_) take(lines_[number_]);
+    for (number_ = 1; number_ < lines_.size(); ++number_) take(std::string(lines_[number_]));
     if (!ended_) {
       --number_;
       refuse("the ledger is cut short after this line: its last line must be `end N`" + mend());
@@ -219,29 +209,31 @@ class LedgerReader {
         mend());
   }
 
-  void take(std::string_view line) {
-    if (line.empty() || line.starts_with("#")) return book_.keep(std::string(line));
+  /// A series or a night is sound if adding what was read of it writes the line again.
+  void take(const std::string& line) {
+    if (line.empty() || line.starts_with("#")) return book_.keep(line);
     if (line.starts_with("begin ")) return take_begin(line);
     if (ended_) refuse("`end` must be the last line" + mend());
     if (line.starts_with("end ")) return take_end(line);
-    line.starts_with("series ") ? take_series(Words(line)) : take_night(Words(line));
+    const std::string checked = line.substr(0, line.rfind(" | "));
+    if (with_check(checked, text_hash(checked, book_.check_)) != line) changed();
+    line.starts_with("series ") ? take_series(checked) : take_night(checked);
     if (book_.lines_.back() != line) changed();
   }
 
-  void take_begin(std::string_view line) {
-    const Words words(line);
-    const std::string test = words.text(1);
-    if (words.size() != 2 || line.find('"') == line.npos) {
+  void take_begin(const std::string& line) {
+    std::istringstream fields(line.substr(std::strlen("begin")));
+    const std::string test = unquoted(fields);
+    if (!is_read(fields)) {
       refuse("after `begin` stands the test's id in double quotes, as in the lines of its nights");
     }
-    const auto known = [&](const LedgerSeries& series) { return series.test == test; };
-    if (std::ranges::none_of(book_.series_, known)) {
+    if (std::ranges::count(book_.series_, test, &LedgerSeries::test) == 0) {
       refuse(fmt::format("the ledger has no test {} before this line", in_quotes(test)));
     }
     book_.begin(test);
   }
 
-  void take_end(std::string_view line) {
+  void take_end(const std::string& line) {
     if (line != fmt::format("end {}", book_.nights_.size())) {
       refuse(fmt::format("the ledger has {} nights before this line: lines were added or taken out",
                          book_.nights_.size()) +
@@ -250,41 +242,44 @@ class LedgerReader {
     ended_ = true;
   }
 
-  // Whatever a line says is added to the book. It is sound if the book then writes the same line.
-
-  void take_series(const Words& words) {
-    LedgerSeries series{.hash = words.text(1)};
-    const bool estimates = words.text(2) == "estimates";
-    if (estimates) series.reference_error = words.number(4);
-    const std::size_t weight = estimates ? 6 : 4;
-    series.weight = words.number(weight);
-    series.test = words.text(weight + 1);
-    series.channel = words.text(weight + 2);
-    if (!(series.reference_error.value_or(0) >= 0 && series.weight > 0 && series.weight <= 1)) {
+  void take_series(const std::string& line) {
+    std::istringstream fields(line);
+    LedgerSeries series;
+    std::string word;
+    fields >> word >> series.hash >> word;
+    if (word == "estimates") fields >> word >> series.reference_error.emplace();
+    fields >> word >> series.weight;
+    series.test = unquoted(fields);
+    series.channel = unquoted(fields);
+    if (!(series.reference_error.value_or(0) >= 0) || !(series.weight > 0 && series.weight <= 1)) {
       changed();
     }
     book_.open(series);
   }
 
-  void take_night(const Words& words) {
-    LedgerNight night{.date = words.text(1),
-                      .seed = words.number<std::uint64_t>(3),
-                      .commit = words.text(5),
-                      .value = NightPValue{words.number(9)}};
-    const bool estimate = words.text(8) == "estimate";
-    if (estimate) {
-      night.value = stats::NightEstimate{.difference = words.number(9),
-                                         .standard_error = words.number(11),
-                                         .observations = words.number(13),
-                                         .effective = words.number(15)};
+  void take_night(const std::string& line) {
+    std::istringstream fields(line);
+    LedgerNight night;
+    LedgerSeries of;
+    std::string word;
+    fields >> word >> night.date >> word >> night.seed >> word >> night.commit >> word >> of.hash;
+    fields >> word;
+    if (word == "estimate") {
+      auto& value = night.value.emplace<stats::NightEstimate>();
+      fields >> value.difference >> word >> value.standard_error >> word >> value.observations;
+      fields >> word >> value.effective;
+    } else {
+      fields >> night.value.emplace<NightPValue>().log_p;
     }
+    of.test = unquoted(fields);
+    of.channel = unquoted(fields);
     const auto possible = [](const auto& value) { return is_possible(value); };
     if (!std::visit(possible, night.value)) changed();
-    const std::size_t test = estimate ? 16 : 10;
-    const LedgerSeries* const series = book_.open_series(
-        {.hash = words.text(7), .test = words.text(test), .channel = words.text(test + 1)});
+    const LedgerSeries* series = book_.open_series(of);
     if (series == nullptr) refuse("no open series above has this night's hash and test" + mend());
-    if (series->has_estimates() != estimate) changed();
+    if (series->has_estimates() != std::holds_alternative<stats::NightEstimate>(night.value)) {
+      changed();
+    }
     night.series = static_cast<std::size_t>(series - book_.series_.data());
     book_.add(night);
   }
