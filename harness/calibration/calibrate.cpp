@@ -137,11 +137,13 @@ struct Draft {
   std::string detect = "";
   bool is_default = true;
   bool (*suits)(const Facts&) = any_law;
-  CostKind cost = CostKind::samples;
   std::uint64_t alone = classical_samples;  ///< Observations of a method alone.
+  TestKeys keys = {};                       ///< Other keys of its tests.
 };
 
 const std::vector<Draft>& all_drafts() {
+  static const TestKeys in_samples{{"cost", "samples"}};
+  static const TestKeys over_scales{{"over", "{scale: [1, 2, 4, 8]}"}};
   static const std::vector<Draft> drafts{
       {"t", "mean == number", "mean(x) == {mean}", "mean(x) == {less}", "{shift}"},
       {"t", "mean <= number", "mean(x) <= {mean}", "mean(x) <= {less}", "{shift}"},
@@ -157,53 +159,51 @@ const std::vector<Draft>& all_drafts() {
       {"betting", "mean <= number", "mean(x) <= {mean}", "", "", false,
        [](const Facts& f) { return std::isfinite(f.low) && !f.bounded(); }},
       {"chi-square", "variance == number", "variance(x) == {variance}", "variance(x) == {smaller}",
-       "{ratio}"},
+       "{variance_effect}%"},
       {"chi-square", "variance <= number", "variance(x) <= {variance}", "variance(x) <= {smaller}",
-       "{ratio}"},
+       "{variance_effect}%"},
       {"F", "variance == variance", "variance(x) == variance(y)",
-       "variance(x) == {factor} * variance(y)", "{ratio}"},
+       "variance(x) == {factor} * variance(y)", "{variance_effect}%"},
       {"influence-t", "variance == number", "variance(x) == {variance}", "", "", false},
       {"influence-t", "variance == variance", "variance(x) == variance(y)", "", "", false},
       {"influence-t", "total variance == number", "total_variance(x) == {variance}",
-       "total_variance(x) == {smaller}", "{ratio}"},
+       "total_variance(x) == {smaller}", "{variance_effect}%"},
       {"influence-t", "efficiency == efficiency", "efficiency(x) == efficiency(y)",
-       "efficiency(y) == efficiency(scaled)", "{ratio}"},
+       "efficiency(y) == efficiency(scaled)", "{variance_effect}%", true, any_law,
+       classical_samples, in_samples},
       {"influence-t", "efficiencies at random costs",
-       "efficiency(costly) == efficiency(other_costly)", "", "{ratio}", true, any_law,
-       CostKind::rays},
+       "efficiency(costly) == efficiency(other_costly)", "", "{variance_effect}%"},
       {"influence-t", "cost == cost", "cost(costly) == cost(other_costly)",
-       "cost(costly) == {factor} * cost(other_costly)", "{ratio}", true, any_law, CostKind::rays},
+       "cost(costly) == {factor} * cost(other_costly)", "{variance_effect}%"},
       {"influence-t", "cost <= cost", "cost(costly) <= cost(other_costly)",
-       "cost(costly) <= {inverse} * cost(other_costly)", "{ratio}", true, any_law, CostKind::rays},
+       "cost(costly) <= {inverse} * cost(other_costly)", "{variance_effect}%"},
       {"slope", "slope of variance", "slope(variance(x)) == 2", "slope(variance(x)) == {slope}",
-       "{exponent}"},
+       "{slope_effect}", true, any_law, classical_samples, over_scales},
       {"ks", "law == law given", "distribution(x) == {law}", "distribution(moved) == {law}",
-       "{distance}", true, has_density},
+       "{law_effect}", true, has_density},
       {"ks", "law == law", "distribution(x) == distribution(y)",
-       "distribution(moved) == distribution(y)", "{distance}", true, has_density},
+       "distribution(moved) == distribution(y)", "{law_effect}", true, has_density},
       {"chi-square-two-sample", "draws == draws", "distribution(x.x) == distribution(y.x)", "", "",
        false, has_density},
-      {"chi-square-fit", "draws == density", "distribution(x.x) == density", "", "{w}", true,
-       has_density},
+      {"chi-square-fit", "draws == density", "distribution(x.x) == density", "", "{cell_effect}",
+       true, has_density},
       {"quantile", "median == median", "quantile(x, 0.5) == quantile(y, 0.5)",
        "quantile(shifted, 0.5) == quantile(y, 0.5)", "{shift}", true, has_density},
-      {"ks", "law == law", "distribution(x) == distribution(y)", "", "{distance}", true,
+      {"ks", "law == law", "distribution(x) == distribution(y)", "", "{law_effect}", true,
        [](const Facts& f) { return !f.has_density; }},
       {"image", "image == analytic", "mean(picture) == analytic", "bias(picture) == {bias}",
-       "{bias}", true, any_law, CostKind::samples, classical_replicates},
+       "{bias}", true, any_law, classical_replicates},
       {"image", "image == image", "mean(picture) == mean(other_picture)",
-       "mean(picture) == {brighter} * mean(other_picture)", "{part}", true, any_law,
-       CostKind::samples, classical_replicates},
+       "mean(picture) == {brighter} * mean(other_picture)", "{image_part}%", true, any_law,
+       classical_replicates},
       {"image", "image within x of analytic", "mean(picture) within {bias} of analytic",
-       "bias(picture) within {bias} of {bias}", "", true, any_law, CostKind::samples,
-       classical_replicates}};
+       "bias(picture) within {bias} of {bias}", "", true, any_law, classical_replicates}};
   return drafts;
 }
 
 std::vector<Draft> drafts_of(const Facts& facts) {
   const auto written = [&](const std::string& claim) {
     const auto exact = [](double value) { return fmt::format("{:.17g}", value); };
-    const auto percent = [](double part) { return fmt::format("{:g}%", 100 * part); };
     const double factor = 1 + variance_effect;
     return fmt::format(
         fmt::runtime(claim), fmt::arg("law", facts.law), fmt::arg("mean", exact(facts.mean)),
@@ -213,29 +213,19 @@ std::vector<Draft> drafts_of(const Facts& facts) {
         fmt::arg("smaller", exact(facts.variance() / factor)), fmt::arg("factor", exact(factor)),
         fmt::arg("inverse", exact(1 / factor)), fmt::arg("slope", 2 - slope_effect),
         fmt::arg("bias", exact(image_bias)), fmt::arg("brighter", exact(1 + image_part)),
-        fmt::arg("ratio", percent(variance_effect)), fmt::arg("part", percent(image_part)),
-        fmt::arg("distance", law_effect), fmt::arg("w", cell_effect),
-        fmt::arg("exponent", slope_effect));
+        fmt::arg("variance_effect", 100 * variance_effect), fmt::arg("law_effect", law_effect),
+        fmt::arg("cell_effect", cell_effect), fmt::arg("slope_effect", slope_effect),
+        fmt::arg("image_part", 100 * image_part));
   };
   std::vector<Draft> drafts;
   for (const Draft& draft : all_drafts()) {
     if (!draft.suits(facts)) continue;
     drafts.push_back(draft);
-    drafts.back().holds = written(draft.holds);
-    drafts.back().off = written(draft.off);
-    drafts.back().detect = written(draft.detect);
+    for (auto text : {&Draft::holds, &Draft::off, &Draft::detect}) {
+      drafts.back().*text = written(draft.*text);
+    }
   }
   return drafts;
-}
-
-TestEntry test_of(const std::string& claim, const Draft& draft) {
-  TestEntry test{.name = claim, .id = "calibration/" + claim, .claim = parse_claim(claim, {})};
-  test.cost = draft.cost;
-  if (test.claim.left.slope) {
-    test.over = Sweep{
-        "scale", {Value::scalar("1"), Value::scalar("2"), Value::scalar("4"), Value::scalar("8")}};
-  }
-  return test;
 }
 
 using reports::Verdict;
@@ -279,18 +269,16 @@ CalibrationCase case_of(const Draft& draft, const Facts& facts,
                         std::optional<std::uint64_t> samples) {
   CalibrationCase made{.law = facts.law, .method = draft.method, .question = draft.question};
   made.proof = parse_claim(draft.holds, {}).relation == Relation::within;
-  TestEntry& alone = made.alone.test.emplace(test_of(made.proof ? draft.off : draft.holds, draft));
-  alone.method = draft.method;
-  alone.secondaries = samples.value_or(draft.alone);
+  TestKeys keys = draft.keys;
+  if (samples) keys["secondaries"] = fmt::format("{}", *samples);
+  TestKeys forced = keys;
+  forced["test"] = draft.method;
+  forced.emplace("secondaries", fmt::format("{}", draft.alone));
+  made.alone.test = test_of("calibration", made.proof ? draft.off : draft.holds, forced);
   if (!draft.is_default) return made;
-  const auto planned = [&](const std::string& claim) {
-    TestEntry test = test_of(claim, draft);
-    test.secondaries = samples;
-    if (!draft.detect.empty()) test.detect = parse_margin(draft.detect, {}, "`detect`");
-    return test;
-  };
-  made.holds.test = planned(draft.holds);
-  if (!draft.off.empty()) made.off.test = planned(draft.off);
+  if (!draft.detect.empty()) keys["detect"] = draft.detect;
+  made.holds.test = test_of("calibration", draft.holds, keys);
+  if (!draft.off.empty()) made.off.test = test_of("calibration", draft.off, keys);
   return made;
 }
 
