@@ -555,7 +555,7 @@ std::vector<Source> sources_of(const Claim& claim) {
 
 Suite load_suite(const std::string& file) {
   const std::string text = read_text_file(file);
-  const Document document = read_yaml_text(text, file);
+  const Document document(file, text);
   const Keys keys(document, document.root(), "a suite",
                   {"suite", "about", "alpha", "beta", "seed", "needs", "budget", "scenes",
                    "estimators", "tests", "statements"});

@@ -106,12 +106,13 @@ class DocumentBuilder final : public YAML::EventHandler {
     Location where;
     std::vector<Value> items = {};
     std::vector<Value::Member> members = {};
-    std::map<std::string, Location, std::less<>> seen = {};
+    std::map<std::string, YAML::Mark, std::less<>> seen = {};
     std::optional<std::string> key = {};
     Location key_place = {};
   };
 
   Location place(const YAML::Mark& mark) const {
+    if (document_.only_place_) return *document_.only_place_;
     return {document_.file_, mark.line + 1, mark.column + 1};
   }
 
@@ -133,7 +134,7 @@ class DocumentBuilder final : public YAML::EventHandler {
     Location where = place(mark);
     const std::string_view line = document_.line(where.line);
     const auto at = static_cast<std::size_t>(mark.column);
-    if (at >= line.size()) return where;
+    if (at >= line.size() || document_.only_place_) return where;
     if (line[at] == '"' || line[at] == '\'') ++where.column;
     if (line[at] != '|' && line[at] != '>') return where;
     const std::size_t text = document_.line(where.line + 1).find_first_not_of(' ');
@@ -146,10 +147,10 @@ class DocumentBuilder final : public YAML::EventHandler {
     const Location where = place(mark);
     if (plain && text == "<<") refuse(where, "merge keys `<<` are not read; write the keys out");
     if (text.empty()) refuse(where, "a key is missing before the `:`");
-    const auto [first, unseen] = frame.seen.emplace(text, where);
+    const auto [first, unseen] = frame.seen.emplace(text, mark);
     if (!unseen) {
-      refuse(where, "duplicate key `{}`; it is already given at {}:{}", text, first->second.line,
-             first->second.column);
+      refuse(where, "duplicate key `{}`; it is already given at {}:{}", text,
+             first->second.line + 1, first->second.column + 1);
     }
     frame.key = text;
     frame.key_place = where;
@@ -227,7 +228,8 @@ void refuse_tabs(const std::vector<std::string>& lines, const std::string& file)
 
 }  // namespace
 
-Document::Document(std::string file, std::string_view text) : file_(std::move(file)) {
+Document::Document(std::string file, std::string_view text, std::optional<Location> only_place)
+    : file_(std::move(file)), only_place_(std::move(only_place)) {
   require_utf8(text, file_);
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   for (const std::string_view line : lines_of(text)) lines_.emplace_back(line);
@@ -262,32 +264,6 @@ std::string_view Document::line(int number) const {
   return number < 1 || index >= lines_.size() ? std::string_view{} : lines_[index];
 }
 
-Document read_yaml_text(std::string_view text, const std::string& file) { return {file, text}; }
-
-namespace {
-
-Value moved_to(const Value& value, const Location& where) {
-  std::vector<Value> items;
-  for (const Value& item : value.items()) items.push_back(moved_to(item, where));
-  std::vector<Value::Member> members;
-  for (const auto& [key, member] : value.members()) {
-    members.emplace_back(key, moved_to(member, where));
-  }
-  switch (value.kind()) {
-    case Value::Kind::null:
-      return {};
-    case Value::Kind::scalar:
-      return Value::scalar(value.text(), where);
-    case Value::Kind::list:
-      return Value::list(std::move(items), where);
-    case Value::Kind::map:
-      return Value::map(std::move(members), where);
-  }
-  return {};
-}
-
-}  // namespace
-
 Value read_flow(std::string_view text, const Location& where) {
   if (text.find('\n') != std::string_view::npos) refuse(where, "a value is one line");
   if (text.find_first_not_of(' ') == std::string_view::npos) {
@@ -296,7 +272,7 @@ Value read_flow(std::string_view text, const Location& where) {
   // Standard input, not a list.
   if (text == "-") return Value::scalar("-", where);
   try {
-    return moved_to(read_yaml_text(text, "").root(), where);
+    return Document("", text, where).root();
   } catch (const InputError& e) {
     refuse(where, "`{}`: {}", text, e.message());
   }

@@ -3,6 +3,7 @@
 // Strict YAML: text that readers could understand differently is an error at its place.
 
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -21,7 +22,11 @@ class Document {
  public:
   /// No text: keys have the places of their values.
   Document() = default;
-  Document(std::string file, std::string_view text);
+  /// Reads one YAML document. InputError at its place in `file` for any of these. Text not UTF-8.
+  /// Syntax error, no document or several, tab in indentation, nesting deeper than 64. Key that is
+  /// repeated, empty or not text. Merge key `<<`, anchor, alias or tag. Key or list item without a
+  /// value. Every node has `only_place` if it is given.
+  Document(std::string file, std::string_view text, std::optional<Location> only_place = {});
 
   const Value& root() const { return root_; }
   const std::string& file() const { return file_; }
@@ -37,16 +42,11 @@ class Document {
   Location at_most_last(int line, int column) const;
 
   std::string file_;
+  std::optional<Location> only_place_;
   std::vector<std::string> lines_;
   std::map<std::pair<int, int>, Location> keys_;
   Value root_;
 };
-
-/// Reads one YAML document. InputError at its place in `file` for any of these. Text not UTF-8.
-/// Syntax error, no document or several, tab in indentation, nesting deeper than 64. Key that is
-/// repeated, empty or not text. Merge key `<<`, anchor, alias or tag. Key or list item without a
-/// value.
-Document read_yaml_text(std::string_view text, const std::string& file);
 
 /// Reads one line of YAML flow from a command line. `where` is the place of every node and error.
 Value read_flow(std::string_view text, const Location& where);

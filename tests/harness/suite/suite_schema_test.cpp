@@ -16,7 +16,7 @@ const std::string shipped_suites = std::string(ASSAY_SOURCE_DIR) + "/suites/";
 /// The schema of a test's key. JSON is YAML.
 Value schema_of(const std::string& key) {
   const std::string file = shipped_suites + "suite.schema.json";
-  static const Document schema = read_yaml_text(read_text_file(file), file);
+  static const Document schema(file, read_text_file(file));
   return *schema.root().find("definitions")->find("test")->find("properties")->find(key);
 }
 

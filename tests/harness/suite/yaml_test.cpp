@@ -7,7 +7,7 @@
 namespace assay::harness {
 namespace {
 
-Document read(const std::string& text) { return read_yaml_text(text, "x.yaml"); }
+Document read(const std::string& text) { return {"x.yaml", text}; }
 
 std::string refused(const std::string& text) {
   return refusal([&] { read(text); });
