@@ -92,7 +92,7 @@ reports::Sample sample_of(const TestOutcome& outcome, std::size_t subject, const
   const bool costs = outcome.plan.method.keeps == Keeps::costs;
   for (std::size_t i = 0; costs && i < details.joint.size(); ++i) {
     const stats::JointMoments joint = details.joint[i].moments();
-    sample.with_cost.push_back({.kind = i == rays_cost ? "rays" : "samples",
+    sample.with_cost.push_back({.kind = cost_words[i],
                                 .mean = joint.of_cost.mean,
                                 .m2 = joint.sum(0, 2),
                                 .m11 = joint.sum(1, 1),
@@ -209,9 +209,7 @@ std::string reference_text(const TestEntry& test) {
 }
 
 std::string cost_text(const TestEntry& test) {
-  if (!test.claim.left.row->counts_cost) return "";
-  constexpr const char* kinds[] = {"rays", "samples", "seconds"};
-  return kinds[static_cast<int>(test.cost)];
+  return test.claim.left.row->counts_cost ? cost_words[static_cast<std::size_t>(test.cost)] : "";
 }
 
 /// True if the clock affects the numbers.

@@ -62,12 +62,10 @@ Cost cost_of(const reports::Cost& recorded) {
           .samples = recorded.samples};
 }
 
-constexpr const char* kinds[] = {"rays", "samples"};
-
 /// Joint moments of values and one kind of cost; nullopt if unknown.
 std::optional<stats::JointMoments> joint_of(const reports::Sample& sample, CountedCost kind) {
   for (const reports::CostMoments& kept : sample.with_cost) {
-    if (kept.kind != kinds[kind]) continue;
+    if (kept.kind != cost_words[kind]) continue;
     stats::JointMoments joint = stats::joint_of_four(moments_of(sample), kept.mean);
     joint.sums[stats::JointMoments::place(0, 2)] = kept.m2;
     joint.sums[stats::JointMoments::place(1, 1)] = kept.m11;

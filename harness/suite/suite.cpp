@@ -359,7 +359,7 @@ void read_test_keys(const Document& document, const Value& map, TestEntry& test)
   if (const Value* v = map.find("over")) test.over = read_sweep(*v);
   if (const Value* v = map.find("reference")) read_reference(*v, test);
   if (const Value* v = map.find("cost")) {
-    test.cost = static_cast<CostKind>(choice(*v, "`cost`", {"rays", "samples", "seconds"}));
+    test.cost = static_cast<CostKind>(choice(*v, "`cost`", {cost_words.begin(), cost_words.end()}));
   }
   if (const Value* v = map.find("paired")) {
     test.paired = choice(*v, "`paired`", {"false", "true"}) == 1;

@@ -2,6 +2,7 @@
 
 // A suite file, read and checked. Nothing is sampled or prepared here.
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -41,6 +42,8 @@ struct Sweep {
 };
 
 enum class CostKind { rays, samples, seconds };
+/// The words of CostKind; the first two are those of CountedCost.
+inline constexpr std::array cost_words{"rays", "samples", "seconds"};
 
 /// An entry of `tests:`.
 struct TestEntry {

@@ -106,8 +106,7 @@ std::string null_hypothesis(const Question& question, std::size_t channel) {
   if (test.reference) text += fmt::format(", reference mean({})", to_string(*test.reference));
   text += question.theta->circumstances(question);
   if (test.claim.left.row->counts_cost) {
-    constexpr const char* kinds[] = {"rays", "samples", "seconds"};
-    text += fmt::format(", cost in {}", kinds[static_cast<int>(test.cost)]);
+    text += fmt::format(", cost in {}", cost_words[static_cast<std::size_t>(test.cost)]);
   }
   if (test.over) text += fmt::format(" over {}", test.over->parameter);
   if (question.channel_count() > 1) {
