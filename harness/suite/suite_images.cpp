@@ -35,14 +35,6 @@ void require_enough(const char* option, const std::string& pattern, std::size_t 
          count, count == 1 ? "picture matches" : "pictures match", stats::least_replicates);
 }
 
-EstimatorEntry entry(const std::string& name, const Location& where,
-                     std::vector<Value::Member> members) {
-  return {.name = name,
-          .plugin = "recorded",
-          .parameters = Value::map(std::move(members), where),
-          .where = where};
-}
-
 Value::Member member(const char* key, const std::string& text, const Location& where) {
   return {key, Value::scalar(text, where)};
 }
@@ -185,18 +177,10 @@ std::vector<Value::Member> members_of(const ImagesArguments& arguments, const Fi
   return members;
 }
 
-/// A stack of pictures.
-EstimatorEntry stack_entry(const std::string& name, std::vector<Value::Member> members,
-                           const Location& where, const ImagesArguments& arguments) {
-  if (arguments.independent_pixels) members.push_back(member("pixels", "independent", where));
-  return entry(name, where, std::move(members));
-}
-
-/// One reference file, with the error that its channels tell.
-EstimatorEntry reference_entry(const std::string& name, std::vector<Value::Member> members,
-                               const Location& where, const PictureFile& picture,
-                               const recorded::PictureChannels& channels,
-                               const ImagesArguments& arguments) {
+/// Adds the error of one reference file that its channels tell.
+void add_error(std::vector<Value::Member>& members, const ImagesArguments& arguments,
+               const PictureFile& picture, const recorded::PictureChannels& channels,
+               const Location& where) {
   const recorded::MomentChannels errors = recorded::usual_moments(picture, channels);
   if (errors.any()) {
     if (!arguments.samples && !picture.samples_per_pixel()) {
@@ -216,7 +200,6 @@ EstimatorEntry reference_entry(const std::string& name, std::vector<Value::Membe
     }
     members.push_back(member("exact", "true", where));
   }
-  return entry(name, where, std::move(members));
 }
 
 Margin within(const ImagesArguments& arguments) {
@@ -282,17 +265,21 @@ Suite suite_of_images(const ImagesArguments& arguments) {
   const FirstPictures first = first_pictures(arguments, candidates[0], references[0]);
   Suite suite{.name = "images", .stem = "images", .folder = "."};
   for (const Layer& layer : layers_of(arguments, first)) {
-    suite.estimators.push_back(
-        stack_entry("candidate" + layer.suffix,
-                    members_of(arguments, first, layer, arguments.candidate, of_candidate),
-                    of_candidate, arguments));
-    std::vector<Value::Member> members = members_of(
-        arguments, first, layer, one ? references[0] : arguments.reference, of_reference);
-    const std::string name = "reference" + layer.suffix;
-    suite.estimators.push_back(
-        one ? reference_entry(name, std::move(members), of_reference, *first.reference,
-                              layer.of_reference, arguments)
-            : stack_entry(name, std::move(members), of_reference, arguments));
+    const auto add = [&](const char* side, const std::string& file, const Location& where,
+                         bool is_mean) {
+      std::vector<Value::Member> members = members_of(arguments, first, layer, file, where);
+      if (is_mean) {
+        add_error(members, arguments, *first.reference, layer.of_reference, where);
+      } else if (arguments.independent_pixels) {
+        members.push_back(member("pixels", "independent", where));
+      }
+      suite.estimators.push_back({.name = side + layer.suffix,
+                                  .plugin = "recorded",
+                                  .parameters = Value::map(std::move(members), where),
+                                  .where = where});
+    };
+    add("candidate", arguments.candidate, of_candidate, false);
+    add("reference", one ? references[0] : arguments.reference, of_reference, one);
     suite.tests.push_back(test_of(arguments, layer.suffix));
   }
   return suite;
