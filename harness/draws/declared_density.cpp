@@ -29,18 +29,9 @@ Panels affordable(Panels panels) {
 Densities checked(const NamedSampler& named, Densities densities) {
   return [&named, densities](std::span<const Point> points, std::span<double> out) {
     const std::size_t written = densities(points, out);
-    for (std::size_t i = 0; i < written; ++i) {
-      if (i > 0 && !(out[i] >= 0 && std::isfinite(out[i]))) return i;
-      sound_density(named, points[i], out[i]);
-    }
+    for (std::size_t i = 0; i < written; ++i) sound_density(named, points[i], out[i]);
     return written;
   };
-}
-
-void write_all(const Densities& densities, std::span<const Point> points, std::span<double> out) {
-  for (std::size_t done = 0; done < points.size();) {
-    done += densities(points.subspan(done), out.subspan(done));
-  }
 }
 
 class OnChart {
@@ -103,6 +94,12 @@ void append(stats::CellProbabilities& all, const stats::CellProbabilities& more)
 }
 
 }  // namespace
+
+void write_all(const Densities& densities, std::span<const Point> points, std::span<double> out) {
+  for (std::size_t done = 0; done < points.size();) {
+    done += densities(points.subspan(done), out.subspan(done));
+  }
+}
 
 Densities densities_of(const NamedSampler& named) {
   return checked(named, [&named](std::span<const Point> points, std::span<double> out) {

@@ -19,6 +19,9 @@ namespace assay::harness {
 /// as sound_density().
 using Densities = std::function<std::size_t(std::span<const Point>, std::span<double>)>;
 
+/// Asks until every point has its density.
+void write_all(const Densities& densities, std::span<const Point> points, std::span<double> out);
+
 /// The density of all lobes together, and of one lobe. Both keep a reference to the sampler's name.
 Densities densities_of(const NamedSampler& named);
 Densities densities_of_lobe(const NamedSampler& named, int lobe);

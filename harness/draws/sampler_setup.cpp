@@ -45,30 +45,6 @@ stats::TabulatedLaw law_of(const NamedSampler& named, std::size_t marginal,
   return stats::tabulate(stats::marginal_density(density, rule), parts, rule);
 }
 
-std::vector<SamplerDraw> sound_draws(const NamedSampler& named, std::span<const Stream> streams) {
-  std::vector<SamplerDraw> draws = draws_of(*named.sampler, streams);
-  for (std::size_t i = 0; i < draws.size(); ++i) {
-    try {
-      sound(named, draws[i]);
-    } catch (const std::runtime_error&) {
-      if (i == 0) throw;
-      draws.resize(i);
-    }
-  }
-  return draws;
-}
-
-std::size_t write_some(std::span<const Point> points, std::span<double> out,
-                       const Densities& numbers) {
-  std::size_t done = 0;
-  try {
-    while (done < points.size()) done += numbers(points.subspan(done), out.subspan(done));
-  } catch (...) {
-    if (done == 0) throw;
-  }
-  return done;
-}
-
 /// A draw, and whether its sampler declares that there is none.
 struct CheckedDraw {
   SamplerDraw draw;
@@ -146,27 +122,16 @@ bool has_density(const Sampler& sampler, const SamplerDraw& draw) {
 
 JudgedDraws judged_draws(const NamedSampler& named, std::span<const Stream> streams,
                          const std::vector<Densities>& kinds) {
-  JudgedDraws judged{.draws = sound_draws(named, streams)};
+  JudgedDraws judged{.draws = draws_of(*named.sampler, streams)};
   std::vector<Point> points;
   for (std::size_t i = 0; i < judged.draws.size(); ++i) {
+    sound(named, judged.draws[i]);
     if (!has_density(*named.sampler, judged.draws[i])) continue;
     judged.places.push_back(i);
     points.push_back(judged.draws[i].point);
   }
-  std::size_t known = 0;
-  try {
-    std::size_t asked = points.size();
-    for (const Densities& kind : kinds) {
-      std::vector<double>& numbers = judged.numbers.emplace_back(points.size());
-      asked = write_some(std::span(points).first(asked), numbers, kind);
-    }
-    known = asked;
-  } catch (...) {
-    if (judged.places.front() == 0) throw;
-  }
-  if (known < judged.places.size()) {
-    judged.draws.resize(judged.places[known]);
-    judged.places.resize(known);
+  for (const Densities& kind : kinds) {
+    write_all(kind, points, judged.numbers.emplace_back(points.size()));
   }
   return judged;
 }

@@ -42,13 +42,12 @@ std::vector<SamplerDraw> draws_of(const Sampler& sampler, std::span<const Stream
 /// True if the density at its point is about the draw.
 bool has_density(const Sampler& sampler, const SamplerDraw& draw);
 
-/// Draws before the first that is unsound or whose numbers cannot be had.
 struct JudgedDraws {
   std::vector<SamplerDraw> draws;
   std::vector<std::size_t> places;           ///< of the draws that have a density
   std::vector<std::vector<double>> numbers;  ///< of each kind asked for, at each place
 };
-/// Draws of the first few streams, with numbers at their points. Throws if the first has none, or
+/// Draws of the first few streams, with numbers at their points. Throws if one of them has none, or
 /// is unsound.
 JudgedDraws judged_draws(const NamedSampler& named, std::span<const Stream> streams,
                          const std::vector<Densities>& kinds);

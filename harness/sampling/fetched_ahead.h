@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <exception>
 #include <span>
 #include <vector>
 
@@ -17,13 +18,19 @@ class FetchedAhead {
   void announce(const Announcement& next) { announced_ = next; }
 
   /// The row of an observation. `fetch` gets streams and makes the rows of the first few, at least
-  /// one. It throws if it cannot make the first.
+  /// one. If it throws for several, each is fetched alone, and the one at fault throws again.
   template <class Fetch>
   const Row& of(const Stream& random, Fetch fetch) {
     if (!holds(random)) {
       rows_.clear();
       std::vector<Stream> streams = streams_from(random);
-      rows_ = fetch(std::span(streams));
+      try {
+        rows_ = fetch(std::span(streams));
+      } catch (const std::exception&) {
+        if (streams.size() == 1) throw;
+        announced_ = {};
+        rows_ = fetch(std::span(streams).first(1));
+      }
       key_ = random.key();
       first_ = random.observation();
     }
