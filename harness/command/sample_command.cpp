@@ -25,63 +25,31 @@ std::string in_header(const std::string& name) {
   return quoted + "\"";
 }
 
-/// A source's channels: an estimator's, or the marginals of one of its samplers.
-struct Sampled {
-  std::shared_ptr<const Setup> setup;
-  std::string purpose = "";
-  std::vector<std::size_t> columns = {};
-};
-
-void add_columns(Sampled& sampled, const std::string& name) {
-  const std::vector<Channel> channels = sampled.setup->channels();
-  for (std::size_t i = 0; i < channels.size(); ++i) {
-    if (name.empty() ? channels[i].name != cell_channel : channels[i].name == name) {
-      sampled.columns.push_back(i);
-    }
-  }
-}
-
-bool has_marginal(const NamedSampler& named, const std::string& name) {
-  const std::vector<Marginal> all = marginals(named.sampler->domain());
-  return std::ranges::find(all, name, &Marginal::name) != all.end();
-}
-
-/// Computes the cells if their numbers are to be printed.
-void ask_for_cells(const Sampled& sampled, const Source& source) {
-  const auto* draws = dynamic_cast<const SamplerSetup*>(sampled.setup.get());
-  if (draws == nullptr) return;
-  const std::vector<Channel> channels = draws->channels();
-  const auto is_cell = [&](std::size_t column) { return channels[column].name == cell_channel; };
-  if (std::ranges::none_of(sampled.columns, is_cell)) return;
+/// The draws of a sampler by the numbers of their cells, which are computed here.
+Subject cells_of(const Source& sampler, const Estimators& estimators, std::uint64_t seed) {
+  Subject sampled = draws(sampler, estimators, Draws::cells);
+  const StreamKey key = stream_of_cells(*sampled.estimator, sampled.purpose, seed);
+  const auto& named = dynamic_cast<const SamplerSetup&>(*sampled.setup).named();
+  const auto setup = sampler_setup(named, sampler.where, key);
   try {
-    draws->density_cells();
+    setup->density_cells();
   } catch (const std::domain_error& error) {
-    refuse(source.where, error.what());
+    refuse(sampler.where, error.what());
   }
+  sampled.setup = setup;
+  return sampled;
 }
 
-Sampled sampled_by(const PreparedEstimator& estimator, const Source& source, std::uint64_t seed) {
-  Sampled sampled{.setup = estimator.setup};
-  add_columns(sampled, source.part);
-  if (!sampled.columns.empty()) return sampled;
-  const auto dot = source.part.find('.');
-  const std::vector<NamedSampler> samplers = estimator.setup->samplers();
-  for (const NamedSampler& named : samplers) {
-    const bool by_name = named.name == source.part.substr(0, dot);
-    // A marginal of the only sampler needs no sampler's name.
-    const bool by_marginal = samplers.size() == 1 && has_marginal(named, source.part);
-    if (!by_name && !by_marginal) continue;
-    const StreamKey cells = stream_of_cells(estimator, named.name, seed);
-    sampled = Sampled{.setup = sampler_setup(named, source.where, cells), .purpose = named.name};
-    const std::string rest = dot == std::string::npos ? "" : source.part.substr(dot + 1);
-    add_columns(sampled, by_name ? rest : source.part);
+/// A source's channels: all of an estimator, or a part of it.
+Subject sampled_by(const Source& source, const Estimators& estimators, std::uint64_t seed) {
+  const std::string cell = "." + cell_channel;
+  if (source.part.ends_with(cell)) {
+    const std::string sampler = source.part.substr(0, source.part.size() - cell.size());
+    return cells_of({source.estimator, sampler, source.where}, estimators, seed);
   }
-  if (!sampled.columns.empty()) {
-    ask_for_cells(sampled, source);
-    return sampled;
-  }
-  refuse(source.where, "`{}` has no part `{}`; `assay describe {}` lists them", source.estimator,
-         source.part, estimator.entry->information.name);
+  Subject sampled = values(source, estimators);
+  if (source.part.empty()) sampled.channels = {0, 1, sampled.setup->channels().size()};
+  return sampled;
 }
 
 }  // namespace
@@ -90,8 +58,9 @@ int sample(const SampleArguments& arguments) {
   const Source source = parse_source(arguments.source, {arguments.source, 0, 0});
   const std::vector<EstimatorEntry> entries =
       estimators_of({source}, arguments.estimators, arguments.primaries);
-  const PreparedEstimator estimator = prepare(entries.front(), ".");
-  const Sampled sampled = sampled_by(estimator, source, arguments.seed);
+  const Estimators estimators{{source.estimator, prepare(entries.front(), ".")}};
+  const Subject sampled = sampled_by(source, estimators, arguments.seed);
+  const PreparedEstimator& estimator = *sampled.estimator;
   const auto rows = sampled.setup->observations();
   if (sampled.setup->is_reference()) {
     refuse(source.where, "`{}` is a reference, a mean without observations", source.estimator);
@@ -108,7 +77,7 @@ int sample(const SampleArguments& arguments) {
 
   std::vector<std::string> names;
   const std::vector<Channel> channels = sampled.setup->channels();
-  for (const std::size_t column : sampled.columns) {
+  for (const std::size_t column : sampled.channels.all()) {
     names.push_back(in_header(channels[column].name));
   }
   fmt::print("# {} {} of {} primaries, seed {}\n", estimator.entry->information.name,
@@ -128,7 +97,7 @@ int sample(const SampleArguments& arguments) {
     Cost unused;
     worker->secondary(random, arguments.primaries, out, unused);
     std::string line;
-    for (const std::size_t column : sampled.columns) {
+    for (const std::size_t column : sampled.channels.all()) {
       line += fmt::format("{}{}", line.empty() ? "" : " ", out[column]);
     }
     fmt::print("{}\n", line);
