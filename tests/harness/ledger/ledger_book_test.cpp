@@ -115,13 +115,16 @@ TEST(LedgerBook, NamesTheLineThatWasChangedAndTheMend) {
   }
 }
 
-TEST(LedgerBook, FindsEveryLineTakenOutOrMoved) {
+TEST(LedgerBook, FindsEveryLineTakenOutDoubledOrMoved) {
   const std::vector<std::string> lines = lines_in(example().text());
   for (std::size_t i = 0; i < lines.size(); ++i) {
     if (lines[i].starts_with("#")) continue;
     std::vector<std::string> cut = lines;
     cut.erase(cut.begin() + static_cast<std::ptrdiff_t>(i));
     EXPECT_THAT(refused(joined(cut)), HasSubstr("n.ledger:")) << lines[i];
+    std::vector<std::string> doubled = lines;
+    doubled.insert(doubled.begin() + static_cast<std::ptrdiff_t>(i), lines[i]);
+    EXPECT_THAT(refused(joined(doubled)), HasSubstr("n.ledger:")) << lines[i];
     std::vector<std::string> swapped = lines;
     if (i + 1 == lines.size() || lines[i + 1].starts_with("#")) continue;
     std::swap(swapped[i], swapped[i + 1]);
@@ -145,6 +148,9 @@ TEST(LedgerBook, RefusesWhatIsNoLedger) {
   std::vector<std::string> lines = lines_in(example().text());
   lines.push_back("begin \"suite/other\"");
   EXPECT_THAT(refused(joined(lines)), HasSubstr("has no test \"suite/other\""));
+  lines.back() = "begin " + in_quotes(score.test);
+  lines.back().pop_back();
+  EXPECT_THAT(refused(joined(lines)), HasSubstr("the test's id in double quotes"));
   lines.back() = "<<<<<<< HEAD";
   EXPECT_THAT(refused(joined(lines)), HasSubstr("n.ledger:" + std::to_string(lines.size()) + ":"));
 }
