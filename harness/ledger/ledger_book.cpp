@@ -6,8 +6,8 @@
 #include <cstring>
 #include <sstream>
 
-#include "harness/base/text_file.h"
 #include "harness/base/identity.h"
+#include "harness/base/text_file.h"
 #include "harness/suite/yaml.h"
 #include "reports/words/number.h"
 

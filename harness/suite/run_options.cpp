@@ -61,9 +61,8 @@ std::string unknown_tag(const std::vector<Suite>& suites, const std::string& tag
   }
   if (known.contains(tag)) return "";
   const std::vector<std::string> tags(known.begin(), known.end());
-  return fmt::format(
-      "--tag {}: no test has this tag{}\n", shell_quoted(tag),
-      tags.empty() ? "; a test gets one by `tags: [slow]`" : suggestion(tag, tags));
+  return fmt::format("--tag {}: no test has this tag{}\n", shell_quoted(tag),
+                     tags.empty() ? "; a test gets one by `tags: [slow]`" : suggestion(tag, tags));
 }
 
 std::string unmatched_filter(const std::vector<Suite>& suites, const std::string& filter) {
