@@ -12,6 +12,7 @@ import re
 import shutil
 import subprocess
 import tempfile
+import textwrap
 import typing
 from pathlib import Path
 
@@ -220,7 +221,12 @@ class ClaimItem(pytest.Item):
 def _words(test: dict[str, typing.Any]) -> str:
     sentence = test["display"]["sentence"]
     facts = [(fact["label"], fact["text"]) for fact in test["display"]["facts"] if fact["text"] != sentence]
+    lines = [_wrapped(f"{test['verdict']}: {sentence}", "  "),
+             *(_wrapped(f"  {label:<16} {text}", " " * 19) for label, text in facts)]
     if test["replay"]:
-        facts.append(("replay", test["replay"]))
-    lines = [f"{test['verdict']}: {sentence}", *(f"  {label:<16} {text}" for label, text in facts)]
+        lines.append(f"  {'replay':<16} {test['replay']}")
     return "\n".join(lines).replace("\N{NO-BREAK SPACE}", " ")
+
+
+def _wrapped(text: str, indent: str) -> str:
+    return textwrap.fill(text, 80, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False)
