@@ -17,6 +17,7 @@
 #include <thread>
 
 #include "estimators/core/flush_denormals.h"
+#include "estimators/core/quoting.h"
 #include "estimators/foreign/protocol.h"
 #include "estimators/foreign/shared_library.h"
 
