@@ -218,6 +218,8 @@ def test_wrong_parameters_refuse(program, words, answer):
 
 
 @pytest.mark.parametrize("body, line", [
+    ("def mine(rng):\n  rng.random()\nassay.serve(mine)",
+     "TypeError: the estimate is None: does the function end with `return`?"),
     ("def mine(rng):\n  return 1 / 0\nassay.serve(mine)",
      "ZeroDivisionError: division by zero, at mine.py:3 in mine"),
     ("def mine(rng):\n  raise ValueError('no\\n light')\nassay.serve(mine)",

@@ -133,9 +133,12 @@ class _Answers:
             return struct.pack("<d", value) if self._is_number else _bytes(self._flat(value))
         if self._is_number:
             values = [estimate(stream) for _ in range(primaries)]
-            if None in values:
-                raise TypeError("the estimate is None: does the function end with `return`?")
-            total = math.fsum(values)
+            try:
+                total = math.fsum(values)
+            except TypeError:
+                if None not in values:
+                    raise
+                raise TypeError("the estimate is None: does the function end with `return`?") from None
             return struct.pack("<d", total / primaries)
         total = self._flat(estimate(stream)).copy()  # the estimate may use its array again
         for _ in range(primaries - 1):
