@@ -45,10 +45,7 @@ std::string meant(const std::string& asked, const std::vector<Recorded>& all) {
   }
   const std::string near = nearest(asked, spellings);
   for (const Recorded& each : all) {
-    const bool is_near = !near.empty() && (each.test.id == near || each.test.name == near);
-    if (is_near || (near.empty() && each.test.id.find(asked) != std::string::npos)) {
-      return each.test.id;
-    }
+    if (!near.empty() && (each.test.id == near || each.test.name == near)) return each.test.id;
   }
   return "";
 }

@@ -213,28 +213,31 @@ PlannedImage pilot_of_differences(const Question& question, const Pilots& pilots
   return image;
 }
 
+/// Adds the noise of one more side, whose pilot this is, times the square of its factor.
+void add_noise(PlannedImage& all, const PlannedImage& pilot, double square, double averaged) {
+  all.trace += square * pilot.trace / averaged;
+  all.root += square * pilot.root / averaged;
+  all.of_mean += square * pilot.of_mean / averaged;
+  all.squared_norm = square * pilot.squared_norm;
+}
+
 /// The noise of an observation, and the brightness that margins are relative to. The root of two
 /// sides is at most the sum of theirs.
 PlannedImage planned_image(const TestOutcome& test, const Pilots& pilots) {
   const Question& question = test.question;
   const std::vector<std::uint64_t>& primaries = test.plan.primaries;
-  if (question.is().of_pairs) {
-    PlannedImage image = pilot_of_differences(question, pilots);
-    image.trace /= question.subjects[0].averaged(primaries[0]);
-    image.root /= question.subjects[0].averaged(primaries[0]);
-    image.of_mean /= question.subjects[0].averaged(primaries[0]);
-    return image;
-  }
   PlannedImage all;
+  if (question.is().of_pairs) {
+    add_noise(all, pilot_of_differences(question, pilots), 1,
+              question.subjects[0].averaged(primaries[0]));
+    return all;
+  }
   for (std::size_t s = 0; s < question.subjects.size(); ++s) {
     const Subject& side = question.subjects[s];
     const ImageViews views = pilot_views(side, pilot_at(question, s, pilots));
     const PlannedImage image = pilot_image({extent_of(*side.image), views.images()});
     const double square = s == 0 ? 1 : question.factor * question.factor;
-    all.trace += square * image.trace / side.averaged(primaries[s]);
-    all.root += square * image.root / side.averaged(primaries[s]);
-    all.of_mean += square * image.of_mean / side.averaged(primaries[s]);
-    all.squared_norm = square * image.squared_norm;
+    add_noise(all, image, square, side.averaged(primaries[s]));
   }
   return all;
 }

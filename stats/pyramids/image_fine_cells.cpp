@@ -385,7 +385,7 @@ class FineTiles {
           const bool tells = vary > 0 || difference != 0;
           found_.weights[element] = tells ? static_cast<float>(weight) : 0;
           if (vary < halves) {
-            note_constant(element);
+            note_constant(element, vary, difference);
             found_.z[element] = 0;
             return;
           }
@@ -494,9 +494,8 @@ class FineTiles {
   }
 
   // An element that varied in one half alone is in sums only.
-  void note_constant(std::size_t element) {
-    const double difference = cells_.half[0].difference[element - cells_.half[0].first];
-    if (halves_that_vary(element) > 0 || difference == 0 || !cells_.constants_decide) {
+  void note_constant(std::size_t element, std::size_t vary, double difference) {
+    if (vary > 0 || difference == 0 || !cells_.constants_decide) {
       ++counts_.equal_constants;
     } else {
       counts_.merge(
