@@ -98,7 +98,7 @@ std::shared_ptr<const Setup> fixed(SharedPairs source, double lambda) {
   const auto estimate = [source, lambda](Stream& random, std::uint64_t primaries,
                                          std::span<double> out, Cost& cost) {
     const auto& colours = source->colours();
-    Rgb sum{};
+    Rgb sum;
     for_each_pair(*source, primaries, random, cost, [&](const Pair& pair) {
       for (std::size_t c = 0; c < colours.size(); ++c) {
         sum[c] += pair.full[c] + lambda * (colours[c].control_integral - pair.control[c]);
@@ -153,12 +153,10 @@ std::shared_ptr<const Setup> ratio(SharedPairs source) {
   const auto estimate = [source](Stream& random, std::uint64_t primaries, std::span<double> out,
                                  Cost& cost) {
     const auto& colours = source->colours();
-    Rgb full{}, control{};
+    Rgb full, control;
     for_each_pair(*source, primaries, random, cost, [&](const Pair& pair) {
-      for (std::size_t c = 0; c < colours.size(); ++c) {
-        full[c] += pair.full[c];
-        control[c] += pair.control[c];
-      }
+      full += pair.full;
+      control += pair.control;
     });
     for (std::size_t c = 0; c < colours.size(); ++c) {
       out[c] = control[c] == 0 ? 0 : colours[c].control_integral * full[c] / control[c];

@@ -27,8 +27,8 @@ using render::Rgb;
 
 /// f/p and g/p of one random point, a number for each colour; grey sources use the first alone.
 struct Pair {
-  Rgb full{};
-  Rgb control{};
+  Rgb full;
+  Rgb control;
 };
 
 /// Second moments of a pair.

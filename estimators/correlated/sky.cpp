@@ -49,11 +49,8 @@ class SkyPairs final : public PairSource {
       const sky::Direction direction = directions_->draw(u, random.uniform());
       pair = {};
       if (direction.w.z <= 0) continue;
-      const Rgb received = setting_->received(direction.w, cost);
-      for (std::size_t c = 0; c < colours_.size(); ++c) {
-        pair.full[c] = received[c] / direction.density;
-        pair.control[c] = mean_[c] * direction.w.z / direction.density;
-      }
+      pair.full = setting_->received(direction.w, cost) / direction.density;
+      pair.control = direction.w.z * mean_ / direction.density;
     }
   }
   std::vector<NamedSampler> samplers() const override {

@@ -58,13 +58,10 @@ struct Primaries {
 /// The channels r, g, b. Under the open sky with mean and variance.
 std::vector<Channel> irradiance_channels(const Sky& sky, const Primaries& primaries) {
   const render::EnvironmentMap& map = sky.picture->map();
-  Rgb square{};
+  Rgb square;
   for (std::size_t texel = 0; sky.setting->open() && texel < map.size(); ++texel) {
     const auto moments = cosine_moments(map.patch(texel), sky.setting->frame().normal);
-    const double second = primaries.second_moment(texel, moments);
-    for (std::size_t c = 0; c < 3; ++c) {
-      square[c] += map.radiance(texel)[c] * map.radiance(texel)[c] * second;
-    }
+    square += primaries.second_moment(texel, moments) * (map.radiance(texel) * map.radiance(texel));
   }
   std::vector<Channel> channels = sky::irradiance_channels(*sky.setting);
   for (std::size_t c = 0; c < 3; ++c) {
@@ -100,8 +97,6 @@ std::shared_ptr<const Setup> prepare_cosine(Parameters& given) {
 // + g + b, its solid angle O, and S = sum s O. The density is p = s / S per solid angle.
 //   X_c = (L_c / s) S cos+ V. E[X_c] = E_c, since s > 0 wherever any L_c > 0.
 //   E[X_c^2] = S sum over texels of (L_c^2 / s) times the integral of cos+^2.
-
-double sum(const Rgb& rgb) { return rgb[0] + rgb[1] + rgb[2]; }
 
 std::vector<double> powers(const render::EnvironmentMap& map) {
   std::vector<double> all;
@@ -150,10 +145,7 @@ class EmittanceSampler final : public Sampler {
   }
   /// X: radiance times cos+ V over the density.
   Rgb contribution(const Choice& choice, Cost& cost) const {
-    const double factor = received(choice.direction, cost) / density(choice.texel);
-    Rgb value = map().radiance(choice.texel);
-    for (double& x : value) x *= factor;
-    return value;
+    return received(choice.direction, cost) / density(choice.texel) * map().radiance(choice.texel);
   }
   double total() const { return texels_.total(); }
 
@@ -174,9 +166,8 @@ Primaries primaries(const Sky& sky, double total) {
   const render::EnvironmentMap& map = sky.picture->map();
   for (std::size_t texel = 0; texel < map.size(); ++texel) {
     const Rgb& radiance = map.radiance(texel);
-    for (std::size_t c = 0; c < 3 && sum(radiance) > 0; ++c) {
-      result.largest[c] = std::max(result.largest[c], total * radiance[c] / sum(radiance));
-    }
+    if (sum(radiance) == 0) continue;
+    result.largest = brighter(result.largest, total * radiance / sum(radiance));
   }
   result.second_moment = [&map, total](std::size_t texel, const render::CosineMoments& moments) {
     const double brightness = sum(map.radiance(texel));

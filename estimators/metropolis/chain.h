@@ -24,13 +24,11 @@ struct Step {
 
 /// Sums over steps.
 struct Tally {
-  std::vector<Spectrum> pixels;
+  std::vector<Rgb> pixels;
   double steps = 0;
   double acceptance = 0;
 
-  void add(std::size_t pixel, double weight, const Spectrum& value) {
-    pixels[pixel] += weight * value;
-  }
+  void add(std::size_t pixel, double weight, const Rgb& value) { pixels[pixel] += weight * value; }
 };
 
 /// The factors of F(y) and F(x) in a step.

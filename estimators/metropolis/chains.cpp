@@ -50,18 +50,18 @@ std::vector<NamedSampler> step_samplers(const std::shared_ptr<const SmallStep>& 
           {"coordinate", sampler_of({Domain::interval, moved, uniform_density(1)})}};
 }
 
-double luminance_of(const Spectrum& s, std::size_t components) {
-  return components == 1 ? s.red : paths::luminance(s);
+double luminance_of(const Rgb& s, std::size_t components) {
+  return components == 1 ? s[0] : luminance(s);
 }
 
 /// Writes an image of sums over `count` points, and the mean over its pixels.
 void write_image(const ImageShape& shape, const Tally& tally, std::span<double> out) {
   const std::size_t components = shape.components.size();
   const auto pixels = static_cast<double>(shape.pixels());
-  Spectrum sum;
+  Rgb sum;
   for (std::size_t p = 0; p < shape.pixels(); ++p) {
     // A chain without a single state brings nothing.
-    const Spectrum value = tally.steps > 0 ? 1 / tally.steps * tally.pixels[p] : Spectrum{};
+    const Rgb value = tally.steps > 0 ? 1 / tally.steps * tally.pixels[p] : Rgb{};
     sum += value;
     for (std::size_t c = 0; c < components; ++c) {
       out[p * components + c] = pixels * value[c];
@@ -133,7 +133,7 @@ std::vector<Channel> image_channels(const Target& target) {
   double sum = 0;
   const std::size_t components = shape.components.size();
   for (std::size_t i = 0; i < means.size(); i += components) {
-    sum += components == 1 ? means[i] : paths::luminance({means[i], means[i + 1], means[i + 2]});
+    sum += components == 1 ? means[i] : render::luminance({means[i], means[i + 1], means[i + 2]});
   }
   Channel whole{.name = "image_mean", .low = 0, .diagnostic = true};
   if (!means.empty()) whole.mean = sum / static_cast<double>(shape.pixels());

@@ -41,8 +41,8 @@ std::size_t pixel_of(double u, std::size_t width) {
   return static_cast<std::size_t>(u * static_cast<double>(width));
 }
 
-std::vector<Spectrum> row_of_colours(std::size_t width, bool coloured) {
-  std::vector<Spectrum> colours(width, Spectrum::grey(1));
+std::vector<Rgb> row_of_colours(std::size_t width, bool coloured) {
+  std::vector<Rgb> colours(width, Rgb::grey(1));
   for (std::size_t p = 0; coloured && p < width; ++p) {
     const double t = static_cast<double>(p) / static_cast<double>(width - 1);
     colours[p] = {1 - 0.8 * t, 0.5, 0.2 + 0.8 * t};
@@ -85,7 +85,7 @@ class BranchingTarget final : public Target {
     const double f = pixel % 2 == 0
                          ? form_.level
                          : form_.lobe.height * value(form_.lobe.factors[0], point.uniform());
-    return {pixel, Spectrum::grey(f), f};
+    return {pixel, Rgb::grey(f), f};
   }
   std::vector<double> means() const override {
     std::vector<double> all;
@@ -131,7 +131,7 @@ class SphereTarget final : public Target {
     paths::Tally tally;
     paths::walk(*world_, world_->zones().vertex(position), form_.survival, point, tally, cost);
     return {pixel_of(u, form_.width), tally.value,
-            form_.grey ? tally.value.red : paths::luminance(tally.value)};
+            form_.grey ? tally.value[0] : luminance(tally.value)};
   }
   std::vector<double> means() const override {
     const paths::ZonedScene& law = world_->zones().law();
@@ -140,7 +140,7 @@ class SphereTarget final : public Target {
       const auto width = static_cast<double>(form_.width);
       const double low = 2 * static_cast<double>(p) / width - 1;
       const double high = 2 * static_cast<double>(p + 1) / width - 1;
-      Spectrum sum;
+      Rgb sum;
       double below = -1;
       for (std::size_t z = 0; z < law.zones.size(); ++z) {
         const double top = form_.scene.zones[z].top;
@@ -301,8 +301,8 @@ Contribution ProductTarget::at(Coordinates& point, Cost&) const {
   }
   double f = 0;
   for (std::size_t k = 0; k < sum_.size(); ++k) f += products[k];
-  const Spectrum value = f * colours_[pixel];
-  return {pixel, value, coloured_ ? paths::luminance(value) : f};
+  const Rgb value = f * colours_[pixel];
+  return {pixel, value, coloured_ ? render::luminance(value) : f};
 }
 
 std::vector<double> ProductTarget::means() const {

@@ -14,12 +14,12 @@
 
 namespace assay::metropolis {
 
-using paths::Spectrum;
+using render::Rgb;
 
 /// The light of one point of the primary sample space.
 struct Contribution {
   std::size_t pixel = 0;
-  Spectrum value;         ///< F, not negative; of a grey target all three are alike
+  Rgb value;              ///< F, not negative; of a grey target all three are alike
   double importance = 0;  ///< I, the luminance of F: what chains follow
 };
 
@@ -83,7 +83,7 @@ class ProductTarget final : public Target {
  private:
   std::vector<Product> sum_;
   std::size_t dimensions_;
-  std::vector<Spectrum> colours_;  ///< of the pixels
+  std::vector<Rgb> colours_;  ///< of the pixels
   bool coloured_;
 };
 

@@ -46,7 +46,7 @@ struct AddedTwice final : AlteredPairs {
   void draw(Stream& random, std::span<Pair> out, Cost& cost) const override {
     source_->draw(random, out, cost);
     for (Pair& pair : out) {
-      for (double& g : pair.control) g = -g;
+      pair.control = -1 * pair.control;
     }
   }
 };

@@ -15,62 +15,59 @@ using namespace paths;
 // Replacements for parts of the roulette.
 
 struct TerminalNotSubtracted : Roulette {
-  Spectrum on_going_on(const Spectrum&, double) const { return {}; }
+  Rgb on_going_on(const Rgb&, double) const { return {}; }
 };
 
 struct ThroughputNotDivided : Roulette {
-  Spectrum continued(const Spectrum& throughput, const Spectrum& reflectance, double) const {
+  Rgb continued(const Rgb& throughput, const Rgb& reflectance, double) const {
     return throughput * reflectance;
   }
 };
 
 struct DarkSurfacesEnd : Roulette {
-  Survival survival(const Spectrum& throughput, const Surface& surface) const {
+  Survival survival(const Rgb& throughput, const Surface& surface) const {
     return largest(surface.albedo()) < 0.3 ? Survival{} : Roulette::survival(throughput, surface);
   }
 };
 
 struct SurvivalAboveOne : Roulette {
-  Survival survival(const Spectrum& throughput, const Surface& surface) const {
+  Survival survival(const Rgb& throughput, const Surface& surface) const {
     const Survival s = Roulette::survival(throughput, surface);
     return {1.2 * s.diffuse, 1.2 * s.mirror};
   }
 };
 
 struct DividedByItself : Roulette {
-  Spectrum continued(const Spectrum& throughput, const Spectrum&, double) const {
-    return throughput;
-  }
+  Rgb continued(const Rgb& throughput, const Rgb&, double) const { return throughput; }
 };
 
 struct ClampedSurvival : Roulette {
-  Survival survival(const Spectrum& throughput, const Surface& surface) const {
+  Survival survival(const Rgb& throughput, const Surface& surface) const {
     const Survival s = Roulette::survival(throughput, surface);
     const double factor = s.total() > 0 ? std::max(s.total(), 0.5) / s.total() : 0;
     return {factor * s.diffuse, factor * s.mirror};
   }
-  Spectrum continued(const Spectrum& throughput, const Spectrum& reflectance, double) const {
+  Rgb continued(const Rgb& throughput, const Rgb& reflectance, double) const {
     return 1 / rule(throughput, reflectance) * (throughput * reflectance);
   }
 };
 
 struct DarkPathsKilled : Roulette {
-  Survival survival(const Spectrum& throughput, const Surface& surface) const {
+  Survival survival(const Rgb& throughput, const Surface& surface) const {
     const Survival s = Roulette::survival(throughput, surface);
     return s.total() < 0.1 ? Survival{} : s;
   }
 };
 
 struct LuminanceThroughput : Roulette {
-  Spectrum continued(const Spectrum& throughput, const Spectrum& reflectance,
-                     double probability) const {
-    return Spectrum::grey(luminance(Roulette::continued(throughput, reflectance, probability)));
+  Rgb continued(const Rgb& throughput, const Rgb& reflectance, double probability) const {
+    return Rgb::grey(luminance(Roulette::continued(throughput, reflectance, probability)));
   }
 };
 
 struct SurvivalAfterUpdate : Roulette {
-  Spectrum continued(const Spectrum& throughput, const Spectrum& reflectance, double) const {
-    const Spectrum outgoing = throughput * reflectance;
+  Rgb continued(const Rgb& throughput, const Rgb& reflectance, double) const {
+    const Rgb outgoing = throughput * reflectance;
     return 1 / rule(outgoing, reflectance) * outgoing;
   }
 };
@@ -90,7 +87,7 @@ class EightReflections {
     const Vertex next = world_.mirrored(from, cost);
     return ++reflections_ > 8 ? Vertex{} : next;
   }
-  Spectrum direct_light(const Vertex& v, Direct direct, Stream& random, Cost& cost) const {
+  Rgb direct_light(const Vertex& v, Direct direct, Stream& random, Cost& cost) const {
     return world_.direct_light(v, direct, random, cost);
   }
 
@@ -99,22 +96,18 @@ class EightReflections {
   mutable int reflections_ = 0;
 };
 
-Spectrum brighter(const Spectrum& a, const Spectrum& b) {
-  return {std::max(a.red, b.red), std::max(a.green, b.green), std::max(a.blue, b.blue)};
-}
-
 // A path whose terminal value is raised to what it finds when it goes on, before that is taken off.
 template <class World>
 void trace_hindsight(const World& world, const Roulette& roulette, Stream& random, Tally& tally,
                      Cost& cost) {
-  Spectrum throughput = Spectrum::grey(1);
+  Rgb throughput = Rgb::grey(1);
   Vertex v = world.camera(cost);
   for (std::size_t bounce = 0; v.surface; ++bounce) {
     tally.count(bounce);
     tally.value += throughput * v.surface->emission;
     const Surface& surface = *v.surface;
     const Survival s = roulette.survival(throughput, surface);
-    const Spectrum terminal = roulette.terminal(v);
+    const Rgb terminal = roulette.terminal(v);
     const double u = random.uniform();
     if (u >= s.total()) {
       tally.value += throughput * roulette.on_end(terminal);
@@ -122,7 +115,7 @@ void trace_hindsight(const World& world, const Roulette& roulette, Stream& rando
     }
     const bool mirror = u >= s.diffuse;
     v = mirror ? world.mirrored(v, cost) : world.reflected(v, random, cost);
-    const Spectrum found = v.surface ? surface.albedo() * v.surface->emission : Spectrum{};
+    const Rgb found = v.surface ? surface.albedo() * v.surface->emission : Rgb{};
     tally.value += throughput * roulette.on_going_on(brighter(terminal, found), s.total());
     throughput = mirror ? roulette.continued(throughput, surface.mirror, s.mirror)
                         : roulette.continued(throughput, surface.diffuse, s.diffuse);
@@ -214,9 +207,7 @@ std::shared_ptr<const Setup> survival_above_one(const Scene& scene, const Roulet
 // Replacements for how many children there are and what they weigh.
 
 struct DrawnNumber : Winners {
-  Spectrum weight(const Spectrum& reflectance, double, double drawn) const {
-    return 1 / drawn * reflectance;
-  }
+  Rgb weight(const Rgb& reflectance, double, double drawn) const { return 1 / drawn * reflectance; }
 };
 
 struct AtLeastOneChild : Winners {

@@ -123,8 +123,7 @@ Outcome absolute_cosine(const sky::Setting& setting, const Direction& direction,
   if (direction.w.z > 0) return sky::outcome(setting, direction, cost);
   Outcome result{.below = 1, .nodes = static_cast<double>(direction.nodes)};
   if (!setting.visible(direction.w, cost)) return result;
-  result.value = setting.radiance(direction.w);
-  for (double& x : result.value) x *= -direction.w.z / direction.density;
+  result.value = -direction.w.z / direction.density * setting.radiance(direction.w);
   return result;
 }
 
@@ -165,7 +164,7 @@ std::shared_ptr<const Setup> clamped(const Parts& parts, double offset) {
 
 std::shared_ptr<const Setup> analytic_normaliser(const Parts& parts) {
   const auto sound = steered(parts);
-  sky::Rgb irradiance{};
+  sky::Rgb irradiance;
   for (std::size_t c = 0; c < parts.setting->colours(); ++c) {
     irradiance[c] = parts.setting->radiance().irradiance(parts.setting->frame().normal, c).value;
   }
@@ -205,9 +204,7 @@ std::shared_ptr<const Setup> redrawn(const Parts& parts) {
         const double u = (static_cast<double>(j) + random.uniform()) / k;
         d = sound->draw(u, random.uniform());
       } while (d.w.z <= 0);
-      const Outcome one = sky::outcome(*parts.setting, d, cost);
-      for (std::size_t c = 0; c < 3; ++c) sum.value[c] += one.value[c] / k;
-      sum.nodes += one.nodes / k;
+      sum += sky::outcome(*parts.setting, d, cost) / k;
     }
     return sum;
   };

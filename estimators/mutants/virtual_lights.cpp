@@ -17,8 +17,8 @@ using std::numbers::pi;
 // Replacements for parts of the kernels.
 
 struct TargetIntegralOne : Weighted {
-  Spectrum result(const Sums& sums, double) const {
-    return sums.target > 0 ? 1 / sums.target * sums.full : Spectrum{};
+  Rgb result(const Sums& sums, double) const {
+    return sums.target > 0 ? 1 / sums.target * sums.full : Rgb{};
   }
 };
 
@@ -36,20 +36,20 @@ struct TargetUnhidden : Weighted {
 
 // Sums of the ratios and of their number.
 struct MeanOfWeights : Weighted {
-  Spectrum full(const LightPath& path, double geometry) const {
+  Rgb full(const LightPath& path, double geometry) const {
     return 1 / Weighted::target(path, geometry, true) * Weighted::full(path, geometry);
   }
   double target(const LightPath&, double, bool seen) const { return seen ? 1 : 0; }
 };
 
 struct PowerNotDivided : Classic {
-  Spectrum result(const Sums& sums, double) const { return sums.full; }
+  Rgb result(const Sums& sums, double) const { return sums.full; }
 };
 
 struct ClampedDistance : Classic {
   double least = 0;  ///< distance, in units of the scene's longest side
 
-  Spectrum full(const LightPath& path, double geometry) const {
+  Rgb full(const LightPath& path, double geometry) const {
     const double square = squared_length(path.at.position - room->receiver().position);
     const double clamped = std::max(square, least * least);
     return Classic::full(path, geometry * square / clamped);

@@ -19,8 +19,6 @@ namespace {
 
 using std::numbers::pi;
 
-double largest(const Colour& c) { return std::max({c.x, c.y, c.z}); }
-
 Vector3 mirrored(const Vector3& direction, const Vector3& normal) {
   return direction - 2 * dot(direction, normal) * normal;
 }
@@ -32,11 +30,11 @@ class Lobe {
       : material_(material), normal_(normal), axis_(mirrored(direction, normal)) {}
 
   /// bsdf times cosine.
-  Colour value(const Vector3& out) const {
+  Rgb value(const Vector3& out) const {
     const double cosine = dot(normal_, out);
     if (!(cosine > 0)) return {};
-    if (material_.surface == Surface::diffuse) return material_.colour * (cosine / pi);
-    return material_.colour * (cosine * (material_.exponent + 2) / (2 * pi) * lobe(out));
+    if (material_.surface == Surface::diffuse) return cosine / pi * material_.colour;
+    return cosine * (material_.exponent + 2) / (2 * pi) * lobe(out) * material_.colour;
   }
   double density(const Vector3& out) const {
     if (material_.surface == Surface::diffuse) return std::max(0.0, dot(normal_, out)) / pi;
@@ -86,8 +84,6 @@ Vector3 through_glass(const Hit& hit, const Vector3& direction, double schlick, 
   return render::normalised(direction / ratio + (cosine / ratio - inner) * normal);
 }
 
-const std::vector<std::string> colours{"red", "green", "blue"};
-
 /// The tile that a shift moves.
 bool in_tile(const Picture& picture, std::size_t x, std::size_t y) {
   return x >= picture.width / 2 && x < picture.width / 2 + picture.width / 4 &&
@@ -101,13 +97,13 @@ Integrator integrator_of(const std::string& name) {
   return name == "bsdf" ? Integrator::bsdf : Integrator::multiple;
 }
 
-Colour radiance(const Scene& scene, Integrator integrator, const Defects& defects, Ray ray,
-                Stream& random, Cost& cost) {
+Rgb radiance(const Scene& scene, Integrator integrator, const Defects& defects, Ray ray,
+             Stream& random, Cost& cost) {
   // Mirrors and glass could go on for ever.
   constexpr std::size_t most_ideal = 16;
   constexpr std::size_t first_roulette = 2;
-  Colour sum;
-  Colour throughput{1, 1, 1};
+  Rgb sum;
+  Rgb throughput{1, 1, 1};
   bool ideal = true;   // The last bounce, or the camera, could not have been found from a light.
   double density = 0;  // Of the last bounce.
   std::size_t ideals = 0;
@@ -124,7 +120,7 @@ Colour radiance(const Scene& scene, Integrator integrator, const Defects& defect
         weight = density / (density + scene.light_density(ray.origin, *hit, ray.direction));
         weight += defects.weight * (1 - weight);
       }
-      sum += weight * times(throughput, material.colour);
+      sum += weight * (throughput * material.colour);
       break;
     }
     if (bounce == scene.bounces() || ideals == most_ideal) break;
@@ -133,7 +129,7 @@ Colour radiance(const Scene& scene, Integrator integrator, const Defects& defect
       ray = {hit->point,
              mirror ? mirrored(ray.direction, hit->normal)
                     : through_glass(*hit, ray.direction, defects.schlick, random.uniform())};
-      if (mirror) throughput = times(throughput, material.colour);
+      if (mirror) throughput = throughput * material.colour;
       ideal = true;
       ++ideals;
       ++cost.closest_hit_rays;
@@ -145,7 +141,7 @@ Colour radiance(const Scene& scene, Integrator integrator, const Defects& defect
       const double choice = random.uniform();
       const double u = random.uniform();
       const LightPoint light = scene.sample_light(hit->point, choice, u, random.uniform());
-      const Colour value = lobe.value(light.direction);
+      const Rgb value = lobe.value(light.direction);
       if (light.density > 0 && largest(value) > 0) {
         ++cost.shadow_rays;
         const double least = Scene::offset + defects.shadow_offset;
@@ -155,16 +151,16 @@ Colour radiance(const Scene& scene, Integrator integrator, const Defects& defect
                   ? light.density / (light.density + lobe.density(light.direction))
                   : 1;
           sum += weight / (light.density * (1 + defects.light_density)) *
-                 times(throughput, times(value, light.radiance));
+                 (throughput * (value * light.radiance));
         }
       }
     }
     const double u = random.uniform();
     const Vector3 out = lobe.sample(u, random.uniform());
     density = lobe.density(out);
-    const Colour value = lobe.value(out);
+    const Rgb value = lobe.value(out);
     if (!(density > 0) || !(largest(value) > 0)) break;
-    throughput = times(throughput, value) / density;
+    throughput = throughput * value / density;
     if (bounce >= first_roulette) {
       const double survives = std::min(0.95, largest(throughput));
       if (random.uniform() >= survives) break;
@@ -176,8 +172,7 @@ Colour radiance(const Scene& scene, Integrator integrator, const Defects& defect
     ++cost.closest_hit_rays;
   }
   if (defects.clamp > 0) {
-    sum = {std::min(sum.x, defects.clamp), std::min(sum.y, defects.clamp),
-           std::min(sum.z, defects.clamp)};
+    for (double& x : sum.values) x = std::min(x, defects.clamp);
   }
   return sum;
 }
@@ -190,7 +185,7 @@ void render(const Picture& picture, Stream& random, std::uint64_t primaries, std
       const std::size_t pixel = y * picture.width + x;
       Stream mine = random.substream(static_cast<std::uint32_t>(pixel));
       const double shift = in_tile(picture, x, y) ? picture.shift : 0;
-      Colour sum;
+      Rgb sum;
       for (std::uint64_t i = 0; i < primaries; ++i) {
         const double s =
             (static_cast<double>(x) + shift + mine.uniform()) / static_cast<double>(picture.width);
@@ -202,9 +197,7 @@ void render(const Picture& picture, Stream& random, std::uint64_t primaries, std
       }
       const bool dead = x == picture.width / 3 && y == picture.height / 2;
       const double scale = (dead ? 1 - picture.dead : 1) / static_cast<double>(primaries);
-      out[3 * pixel] = scale * sum.x;
-      out[3 * pixel + 1] = scale * sum.y;
-      out[3 * pixel + 2] = scale * sum.z;
+      std::ranges::copy((scale * sum).values, out.subspan(3 * pixel).begin());
     }
   }
   cost.samples += primaries;
@@ -219,7 +212,8 @@ Picture read_picture(Parameters& given) {
 
 std::shared_ptr<const Setup> image_setup(Picture picture) {
   const auto shared = std::make_shared<const Picture>(std::move(picture));
-  const ImageShape shape{shared->width, shared->height, colours, true};
+  const ImageShape shape{
+      shared->width, shared->height, {render::colours.begin(), render::colours.end()}, true};
   return setup_of(
       {.channels = element_channels(shape, {.low = 0}),
        .make = estimating([shared](Stream& random, std::uint64_t primaries, std::span<double> out,

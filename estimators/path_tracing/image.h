@@ -31,8 +31,8 @@ struct Defects {
 };
 
 /// One path from the camera. Russian roulette from the third bounce on.
-Colour radiance(const Scene& scene, Integrator integrator, const Defects& defects, Ray ray,
-                Stream& random, Cost& cost);
+Rgb radiance(const Scene& scene, Integrator integrator, const Defects& defects, Ray ray,
+             Stream& random, Cost& cost);
 
 /// A picture to render, and its defects.
 struct Picture {

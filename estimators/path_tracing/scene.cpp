@@ -128,8 +128,8 @@ double Scene::light_density(const Vector3& from, const Hit& hit, const Vector3& 
 
 namespace {
 
-Material diffuse(const Colour& albedo) { return {.surface = Surface::diffuse, .colour = albedo}; }
-Material glossy(const Colour& albedo, double exponent) {
+Material diffuse(const Rgb& albedo) { return {.surface = Surface::diffuse, .colour = albedo}; }
+Material glossy(const Rgb& albedo, double exponent) {
   return {.surface = Surface::glossy, .colour = albedo, .exponent = exponent};
 }
 Material emitter(double radiance) {

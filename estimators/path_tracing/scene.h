@@ -8,24 +8,20 @@
 #include <string>
 #include <vector>
 
+#include "estimators/render/rgb.h"
 #include "estimators/render/vector.h"
 
 namespace assay::path_tracing {
 
+using render::Rgb;
 using render::Vector3;
-
-/// Red, green and blue; products are componentwise.
-using Colour = Vector3;
-constexpr Colour times(const Colour& a, const Colour& b) {
-  return {a.x * b.x, a.y * b.y, a.z * b.z};
-}
 
 /// Light ends at an emitter, which reflects nothing.
 enum class Surface { diffuse, glossy, mirror, glass, emitter };
 
 struct Material {
   Surface surface = Surface::diffuse;
-  Colour colour = {};     ///< albedo, or emitted radiance
+  Rgb colour;             ///< albedo, or emitted radiance
   double exponent = 0;    ///< of a glossy lobe cos^n about the mirrored direction
   double refraction = 1;  ///< index of glass
 };
@@ -64,7 +60,7 @@ struct LightPoint {
   Vector3 direction;
   double distance = 0;
   double density = 0;  ///< per steradian
-  Colour radiance;
+  Rgb radiance;
 };
 
 class Scene {

@@ -61,7 +61,7 @@ std::vector<ZoneSteps> zone_steps(const Scene& scene, const Steps& steps, std::s
 bool has_variance(const Scene& scene, const Steps& steps) {
   bool mirrors = false;
   for (const ZonedScene::Zone& z : scene.law->zones) {
-    mirrors = mirrors || !(z.surface.mirror == Spectrum{});
+    mirrors = mirrors || !(z.surface.mirror == Rgb{});
   }
   if (mirrors && !(scene.grey && steps.direct == Direct::hit && steps.splitting == 1)) return false;
   return steps.direct != Direct::sampled || std::holds_alternative<SharedSphere>(scene.world);
@@ -91,7 +91,7 @@ std::vector<Channel> channels(const Scene& scene, const Knowledge& known) {
   std::vector<Channel> all;
   for (std::size_t c = 0; c < (scene.grey ? 1 : 3); ++c) {
     const Known& colour = known.colours[c];
-    all.push_back({.name = scene.grey ? "radiance" : colours[c],
+    all.push_back({.name = scene.grey ? "radiance" : render::colours[c],
                    .mean = colour.mean,
                    .variance = colour.variance,
                    .low = known.low,
@@ -121,7 +121,7 @@ Scene read_scene(Parameters& parameters) {
 Knowledge knowledge(const Scene& scene, const std::optional<Steps>& steps) {
   Knowledge known;
   if (!scene.law) return known;
-  const Spectrum radiance = scene.law->seen_radiance();
+  const Rgb radiance = scene.law->seen_radiance();
   for (std::size_t c = 0; c < 3; ++c) known.colours[c].mean = radiance[c];
   if (steps) add_steps(known, scene, *steps);
   return known;

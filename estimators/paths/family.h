@@ -44,7 +44,7 @@ struct Knowledge {
 /// The steps of a path in the zones of a sphere or of a furnace.
 struct Steps {
   std::function<double(const Surface&)> survival;
-  std::function<Spectrum(const Surface&)> terminal;
+  std::function<Rgb(const Surface&)> terminal;
   Direct direct = Direct::hit;
   double splitting = 1;
 };
@@ -90,7 +90,7 @@ struct RoulettePlan {
   Rule rule = Rule::max_albedo;
   Direct direct = Direct::hit;
   /// e of each patch; empty for the classical roulette.
-  std::vector<Spectrum> terminal = {};
+  std::vector<Rgb> terminal = {};
   /// The global estimate and the factor that e was made with; nothing for local estimates.
   std::optional<Incoming> incoming = {};
   double scale = 0;
@@ -103,7 +103,7 @@ RoulettePlan read_classical(Parameters& parameters, const Scene& scene);
 RoulettePlan read_improved(Parameters& parameters, const Scene& scene);
 
 /// e of every patch of a scene from its global estimate.
-std::vector<Spectrum> global_terminal(const Scene& scene, const Incoming& incoming, Direct direct,
-                                      double scale);
+std::vector<Rgb> global_terminal(const Scene& scene, const Incoming& incoming, Direct direct,
+                                 double scale);
 
 }  // namespace assay::paths

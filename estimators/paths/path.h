@@ -39,10 +39,10 @@ struct Survival {
 class Roulette {
  public:
   /// `terminal` holds e of each patch, or nothing for e = 0.
-  Roulette(Rule rule, const Spectrum& mean_radiance, std::vector<Spectrum> terminal)
+  Roulette(Rule rule, const Rgb& mean_radiance, std::vector<Rgb> terminal)
       : rule_(rule), mean_radiance_(mean_radiance), terminal_(std::move(terminal)) {}
 
-  double rule(const Spectrum& throughput, const Spectrum& albedo) const {
+  double rule(const Rgb& throughput, const Rgb& albedo) const {
     switch (rule_) {
       case Rule::max_albedo:
         return largest(albedo);
@@ -55,37 +55,34 @@ class Roulette {
       case Rule::radiance:
         break;
     }
-    const Spectrum weight = throughput * mean_radiance_;
+    const Rgb weight = throughput * mean_radiance_;
     // Nothing is lost if no light can arrive in any channel that the path still carries.
     return sum(weight) > 0 ? sum(weight * albedo) / sum(weight) : 0;
   }
 
   /// The rule's value for the whole albedo, split between the lobes by the rule's value for each.
-  Survival survival(const Spectrum& throughput, const Surface& surface) const {
+  Survival survival(const Rgb& throughput, const Surface& surface) const {
     const double total = rule(throughput, surface.albedo());
-    if (surface.mirror == Spectrum{} || total == 0) return {.diffuse = total};
+    if (surface.mirror == Rgb{} || total == 0) return {.diffuse = total};
     const double diffuse = rule(throughput, surface.diffuse);
     const double mirror = rule(throughput, surface.mirror);
     return {total * diffuse / (diffuse + mirror), total * mirror / (diffuse + mirror)};
   }
 
-  Spectrum terminal(const Vertex& v) const {
-    return terminal_.empty() ? Spectrum{} : terminal_[v.patch];
-  }
-  Spectrum on_end(const Spectrum& terminal) const { return terminal; }
-  Spectrum on_going_on(const Spectrum& terminal, double survival) const {
+  Rgb terminal(const Vertex& v) const { return terminal_.empty() ? Rgb{} : terminal_[v.patch]; }
+  Rgb on_end(const Rgb& terminal) const { return terminal; }
+  Rgb on_going_on(const Rgb& terminal, double survival) const {
     return (survival - 1) / survival * terminal;
   }
   /// The throughput after a reflection that was chosen with this probability.
-  Spectrum continued(const Spectrum& throughput, const Spectrum& reflectance,
-                     double probability) const {
+  Rgb continued(const Rgb& throughput, const Rgb& reflectance, double probability) const {
     return 1 / probability * (throughput * reflectance);
   }
 
  private:
   Rule rule_;
-  Spectrum mean_radiance_;
-  std::vector<Spectrum> terminal_;
+  Rgb mean_radiance_;
+  std::vector<Rgb> terminal_;
 };
 
 /// The light of a path, and its number of vertices at each bounce. Bounce 0 is what the camera
@@ -93,7 +90,7 @@ class Roulette {
 struct Tally {
   static constexpr std::size_t bounces = 7;
 
-  Spectrum value;
+  Rgb value;
   std::uint64_t vertices = 0;
   std::array<std::uint64_t, bounces> at_bounce{};
 
@@ -106,11 +103,10 @@ struct Tally {
 /// The score of a vertex by itself. Emission counts if the path arrived by the camera's ray or a
 /// mirror. Elsewhere it counts only if light is found by hits.
 template <class World>
-Spectrum score(const World& world, const Vertex& v, Direct direct, bool sees_emission,
-               Stream& random, Cost& cost) {
-  const Spectrum emission =
-      sees_emission || direct == Direct::hit ? v.surface->emission : Spectrum{};
-  if (direct == Direct::hit || v.surface->diffuse == Spectrum{}) return emission;
+Rgb score(const World& world, const Vertex& v, Direct direct, bool sees_emission, Stream& random,
+          Cost& cost) {
+  const Rgb emission = sees_emission || direct == Direct::hit ? v.surface->emission : Rgb{};
+  if (direct == Direct::hit || v.surface->diffuse == Rgb{}) return emission;
   return emission + world.direct_light(v, direct, random, cost);
 }
 
@@ -119,7 +115,7 @@ Spectrum score(const World& world, const Vertex& v, Direct direct, bool sees_emi
 template <class World, class Roulette>
 void trace(const World& world, const Roulette& roulette, Direct direct, Stream& random,
            Tally& tally, Cost& cost) {
-  Spectrum throughput = Spectrum::grey(1);
+  Rgb throughput = Rgb::grey(1);
   bool sees_emission = true;
   Vertex v = world.camera(cost);
   for (std::size_t bounce = 0; v.surface; ++bounce) {
@@ -127,7 +123,7 @@ void trace(const World& world, const Roulette& roulette, Direct direct, Stream& 
     tally.value += throughput * score(world, v, direct, sees_emission, random, cost);
     const Surface& surface = *v.surface;
     const Survival s = roulette.survival(throughput, surface);
-    const Spectrum terminal = roulette.terminal(v);
+    const Rgb terminal = roulette.terminal(v);
     const double u = random.uniform();
     if (u >= s.total()) {
       tally.value += throughput * roulette.on_end(terminal);
@@ -151,12 +147,12 @@ void trace(const World& world, const Roulette& roulette, Direct direct, Stream& 
 /// one more at a mirror, and two for a diffuse direction.
 template <class World, class Random>
 void walk(const World& world, Vertex v, double survival, Random& random, Tally& tally, Cost& cost) {
-  Spectrum throughput = Spectrum::grey(1);
+  Rgb throughput = Rgb::grey(1);
   for (std::size_t bounce = 0; v.surface; ++bounce) {
     tally.count(bounce);
     tally.value += throughput * v.surface->emission;
     if (random.uniform() >= survival) return;
-    const bool mirrors = !(v.surface->mirror == Spectrum{});
+    const bool mirrors = !(v.surface->mirror == Rgb{});
     if (mirrors && random.uniform() < 0.5) {
       throughput = 2 / survival * (throughput * v.surface->mirror);
       v = world.mirrored(v, cost);
@@ -176,16 +172,16 @@ class Winners {
   explicit Winners(double splitting) : splitting_(splitting) {}
 
   /// The expected number of children, fixed before any of them is seen.
-  double diffuse_children(const Spectrum& weight, const Surface& surface) const {
+  double diffuse_children(const Rgb& weight, const Surface& surface) const {
     return mean(weight * surface.diffuse) * splitting_;
   }
-  double mirror_children(const Spectrum& weight, const Surface& surface) const {
+  double mirror_children(const Rgb& weight, const Surface& surface) const {
     return mean(weight * surface.mirror);
   }
   /// floor(n + u): n children on average.
   double drawn(double expected, double u) const { return std::floor(expected + u); }
   /// The reflectance is divided by the expected number, not by the drawn one.
-  Spectrum weight(const Spectrum& reflectance, double expected, double /*drawn*/) const {
+  Rgb weight(const Rgb& reflectance, double expected, double /*drawn*/) const {
     return 1 / expected * reflectance;
   }
 
@@ -202,13 +198,13 @@ class Tree {
 
   struct Node {
     Vertex vertex;
-    Spectrum weight;
+    Rgb weight;
     std::size_t bounce;
     bool sees_emission;
   };
 
   void trace(Stream& random, Tally& tally, Cost& cost) const {
-    grow({world_.camera(cost), Spectrum::grey(1), 0, true}, random, tally, cost);
+    grow({world_.camera(cost), Rgb::grey(1), 0, true}, random, tally, cost);
   }
 
   /// Adds what a vertex scores and all that grows from it.
@@ -221,18 +217,18 @@ class Tree {
     const double diffuse = rule_.diffuse_children(node.weight, surface);
     const double drawn = rule_.drawn(diffuse, random.uniform());
     if (drawn > 0) {
-      const Spectrum weight = node.weight * rule_.weight(surface.diffuse, diffuse, drawn);
+      const Rgb weight = node.weight * rule_.weight(surface.diffuse, diffuse, drawn);
       for (double i = 0; i < drawn; ++i) {
         grow({world_.reflected(v, random, cost), weight, node.bounce + 1, false}, random, tally,
              cost);
       }
     }
-    if (surface.mirror == Spectrum{}) return;
+    if (surface.mirror == Rgb{}) return;
     const double mirror = rule_.mirror_children(node.weight, surface);
     // Weights are at most 1 on average over the colours, so there is one reflection or none.
     const double reflections = rule_.drawn(mirror, random.uniform());
     if (reflections > 0) {
-      const Spectrum weight = node.weight * rule_.weight(surface.mirror, mirror, reflections);
+      const Rgb weight = node.weight * rule_.weight(surface.mirror, mirror, reflections);
       grow({world_.mirrored(v, cost), weight, node.bounce + 1, true}, random, tally, cost);
     }
   }

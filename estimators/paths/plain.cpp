@@ -23,10 +23,10 @@ ParameterInformation survival_parameter() {
 
 std::optional<Steps> steps(const Scene& scene, double survival) {
   for (const ZonedScene::Zone& z : scene.law ? scene.law->zones : std::vector<ZonedScene::Zone>{}) {
-    if (!(z.surface.mirror == Spectrum{})) return {};
+    if (!(z.surface.mirror == Rgb{})) return {};
   }
   return Steps{.survival = [survival](const Surface&) { return survival; },
-               .terminal = [](const Surface&) { return Spectrum{}; }};
+               .terminal = [](const Surface&) { return Rgb{}; }};
 }
 
 Knowledge known(const Scene& scene, double survival) {

@@ -73,17 +73,16 @@ Rule read_rule(Parameters& parameters) {
 
 /// The terminal value e of a surface: scale x albedo x arriving radiance. If direct light is found
 /// separately, its part of the diffuse reflection is left out.
-Spectrum terminal_value(const Surface& surface, const Incoming& incoming, Direct direct,
-                        double scale) {
-  const Spectrum& diffuse = direct == Direct::hit ? incoming.all : incoming.reflected;
+Rgb terminal_value(const Surface& surface, const Incoming& incoming, Direct direct, double scale) {
+  const Rgb& diffuse = direct == Direct::hit ? incoming.all : incoming.reflected;
   return scale * (surface.diffuse * diffuse + surface.mirror * incoming.all);
 }
 
 }  // namespace
 
-std::vector<Spectrum> global_terminal(const Scene& scene, const Incoming& incoming, Direct direct,
-                                      double scale) {
-  std::vector<Spectrum> all;
+std::vector<Rgb> global_terminal(const Scene& scene, const Incoming& incoming, Direct direct,
+                                 double scale) {
+  std::vector<Rgb> all;
   for (const Surface& surface : patch_surfaces(scene)) {
     all.push_back(terminal_value(surface, incoming, direct, scale));
   }
@@ -143,7 +142,7 @@ std::optional<Steps> exact_steps(const Scene& scene, const RoulettePlan& plan) {
   if (!plan.terminal.empty() && !plan.incoming) return {};
   const Roulette roulette = plan.roulette(scene);
   const auto survival = [roulette](const Surface& surface) {
-    return roulette.survival(Spectrum::grey(1), surface).total();
+    return roulette.survival(Rgb::grey(1), surface).total();
   };
   const auto terminal = [incoming = plan.incoming.value_or(Incoming{}), direct = plan.direct,
                          scale = plan.scale](const Surface& surface) {

@@ -51,8 +51,8 @@ class Reader {
   }
 
   // A number for all colours, or a list of three.
-  Spectrum spectrum(const Value& value, const std::string& what) {
-    if (value.kind() != Value::Kind::list) return Spectrum::grey(at_least_zero(value, what));
+  Rgb spectrum(const Value& value, const std::string& what) {
+    if (value.kind() != Value::Kind::list) return Rgb::grey(at_least_zero(value, what));
     grey_ = false;
     const std::vector<Value>& items = value.items();
     if (items.size() != 3) {
@@ -181,7 +181,7 @@ TriangleMesh cube() {
 }
 
 constexpr Surface grey_surface(double emission, double albedo) {
-  return {Spectrum::grey(emission), Spectrum::grey(albedo), {}};
+  return {Rgb::grey(emission), Rgb::grey(albedo), {}};
 }
 
 constexpr Camera downwards = {{0, 0, 0}, {0, 0, -1}};

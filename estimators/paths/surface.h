@@ -1,64 +1,25 @@
 #pragma once
 
-// Colours, surfaces, and points of them that a path has reached.
+// Surfaces, and points of them that a path has reached. A grey scene carries the same number in all
+// three colours.
 
-#include <algorithm>
-#include <array>
-#include <cstddef>
 #include <cstdint>
 
+#include "render/rgb.h"
 #include "render/vector.h"
 
 namespace assay::paths {
 
-// Three numbers, one a colour channel. A grey scene carries the same number three times.
-
-struct Spectrum {
-  double red = 0;
-  double green = 0;
-  double blue = 0;
-
-  static constexpr Spectrum grey(double x) { return {x, x, x}; }
-  constexpr double operator[](std::size_t c) const { return std::array{red, green, blue}[c]; }
-  constexpr bool operator==(const Spectrum&) const = default;
-  constexpr Spectrum& operator+=(const Spectrum& s) {
-    red += s.red;
-    green += s.green;
-    blue += s.blue;
-    return *this;
-  }
-};
-
-inline constexpr std::array<const char*, 3> colours = {"red", "green", "blue"};
-
-constexpr Spectrum operator+(Spectrum a, const Spectrum& b) { return a += b; }
-constexpr Spectrum operator*(double x, const Spectrum& s) {
-  return {x * s.red, x * s.green, x * s.blue};
-}
-constexpr Spectrum operator-(const Spectrum& a, const Spectrum& b) { return a + -1 * b; }
-/// Channel by channel.
-constexpr Spectrum operator*(const Spectrum& a, const Spectrum& b) {
-  return {a.red * b.red, a.green * b.green, a.blue * b.blue};
-}
-constexpr Spectrum operator/(const Spectrum& a, const Spectrum& b) {
-  return {a.red / b.red, a.green / b.green, a.blue / b.blue};
-}
-constexpr double sum(const Spectrum& s) { return s.red + s.green + s.blue; }
-constexpr double mean(const Spectrum& s) { return sum(s) / 3; }
-constexpr double largest(const Spectrum& s) { return std::max({s.red, s.green, s.blue}); }
-/// The luminance of linear sRGB primaries (ITU-R BT.709).
-constexpr double luminance(const Spectrum& s) {
-  return 0.2126 * s.red + 0.7152 * s.green + 0.0722 * s.blue;
-}
+using render::Rgb;
 
 /// Emits evenly into the hemisphere; reflects `diffuse` evenly and `mirror` as a mirror does. Both
 /// sides are alike.
 struct Surface {
-  Spectrum emission;  ///< radiance
-  Spectrum diffuse;   ///< diffuse albedo
-  Spectrum mirror;    ///< reflectance as a mirror
+  Rgb emission;  ///< radiance
+  Rgb diffuse;   ///< diffuse albedo
+  Rgb mirror;    ///< reflectance as a mirror
 
-  constexpr Spectrum albedo() const { return diffuse + mirror; }
+  constexpr Rgb albedo() const { return diffuse + mirror; }
 };
 
 /// A point where a path has arrived.

@@ -17,7 +17,7 @@ using namespace paths;
 std::optional<Steps> exact_steps(const Scene& scene, Direct direct, double splitting) {
   if (!scene.law || !scene.grey) return {};
   return Steps{.survival = [](const Surface& surface) { return mean(surface.albedo()); },
-               .terminal = [](const Surface&) { return Spectrum{}; },
+               .terminal = [](const Surface&) { return Rgb{}; },
                .direct = direct,
                .splitting = splitting};
 }

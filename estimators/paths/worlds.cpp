@@ -36,8 +36,8 @@ double recurrence(std::size_t index, int dimension) {
 }
 
 template <class Property>
-Spectrum area_mean(const MeshWorld& world, const Property& property) {
-  Spectrum total;
+Rgb area_mean(const MeshWorld& world, const Property& property) {
+  Rgb total;
   double area = 0;
   for (std::size_t i = 0; i < world.patches(); ++i) {
     area += world.patch_area(i);
@@ -123,7 +123,7 @@ Vertex MeshWorld::on_patch(std::size_t patch, double u, double v) const {
   return vertex(static_cast<std::uint32_t>(patch / 2), point, arriving);
 }
 
-Spectrum MeshWorld::sampled_light(const Vertex& v, Stream& random, Cost& cost) const {
+Rgb MeshWorld::sampled_light(const Vertex& v, Stream& random, Cost& cost) const {
   double x = random.uniform();
   const std::uint32_t triangle = light_.pick(x);
   const double y = random.uniform();
@@ -135,21 +135,21 @@ Spectrum MeshWorld::sampled_light(const Vertex& v, Stream& random, Cost& cost) c
       leaving * std::abs(dot(way, triangles_[triangle].normal)) / (square * square);
   if (!(leaving > 0) || cosines == 0) return {};
   if (!sees(v, light, cost)) return {};
-  const Spectrum& emission = light.surface->emission;
+  const Rgb& emission = light.surface->emission;
   const double area_over_share = light_.total() / mean(emission);
   return cosines * area_over_share / std::numbers::pi * (v.surface->diffuse * emission);
 }
 
-Incoming global_incoming(const Spectrum& mean_emission, const Spectrum& mean_albedo) {
-  const Spectrum all = mean_emission / (Spectrum::grey(1) - mean_albedo);
+Incoming global_incoming(const Rgb& mean_emission, const Rgb& mean_albedo) {
+  const Rgb all = mean_emission / (Rgb::grey(1) - mean_albedo);
   return {all, mean_albedo * all};
 }
 
-Spectrum mean_emission(const MeshWorld& world) {
+Rgb mean_emission(const MeshWorld& world) {
   return area_mean(world, [](const Surface& s) { return s.emission; });
 }
 
-Spectrum mean_albedo(const MeshWorld& world) {
+Rgb mean_albedo(const MeshWorld& world) {
   return area_mean(world, [](const Surface& s) { return s.albedo(); });
 }
 
@@ -164,7 +164,7 @@ std::vector<Incoming> local_incoming(const MeshWorld& world, std::size_t rays, C
     for (std::size_t i = 0; i < seen.size(); ++i) {
       Incoming next;
       for (const std::uint32_t j : seen[i]) {
-        const Spectrum reflected = world.surface(j).albedo() * incoming[j].all;
+        const Rgb reflected = world.surface(j).albedo() * incoming[j].all;
         next.reflected += reflected;
         next.all += world.surface(j).emission + reflected;
       }

@@ -84,7 +84,7 @@ class SphereWorld {
   Vertex mirrored(const Vertex&, Cost&) const { return {}; }
 
   /// The direct light that v reflects: the irradiance over pi is the mean emission everywhere.
-  Spectrum direct_light(const Vertex& v, Direct direct, Stream& random, Cost& cost) const {
+  Rgb direct_light(const Vertex& v, Direct direct, Stream& random, Cost& cost) const {
     if (direct == Direct::sampled) return sampled_light(v, random, cost);
     return v.surface->diffuse * mean_emission_;
   }
@@ -93,15 +93,15 @@ class SphereWorld {
   /// Counts one shadow ray to a point uniform on the sphere, which is convex: nothing is between.
   /// The product of the cosines of two points over their squared distance is 1/4. With the area
   /// 4 pi and albedo / pi this leaves albedo x emission.
-  Spectrum sampled_light(const Vertex& v, Stream& random, Cost& cost) const {
+  Rgb sampled_light(const Vertex& v, Stream& random, Cost& cost) const {
     const Vertex light = zones_.vertex(uniform_on_sphere(random));
-    if (light.surface->emission == Spectrum{}) return {};
+    if (light.surface->emission == Rgb{}) return {};
     ++cost.shadow_rays;
     return v.surface->diffuse * light.surface->emission;
   }
 
   Zones zones_;
-  Spectrum mean_emission_;
+  Rgb mean_emission_;
 };
 
 /// Without rays: the next vertex is a uniform point, as the hit of a cosine-distributed ray is.
@@ -174,7 +174,7 @@ class MeshWorld {
     return arrive(from.position, from.arriving - 2 * dot(from.arriving, from.normal) * from.normal);
   }
   /// The direct light that v reflects; in closed form in a furnace only.
-  Spectrum direct_light(const Vertex& v, Direct direct, Stream& random, Cost& cost) const {
+  Rgb direct_light(const Vertex& v, Direct direct, Stream& random, Cost& cost) const {
     if (direct == Direct::sampled) return sampled_light(v, random, cost);
     return v.surface->diffuse * v.surface->emission;
   }
@@ -197,7 +197,7 @@ class MeshWorld {
   /// Albedo / pi x emission x cosines / squared distance x area, of a point of an emitter. The
   /// point is drawn in proportion to mean emission x area. The value is 0 if something stands
   /// between. Traces one shadow ray if a cosine is positive.
-  Spectrum sampled_light(const Vertex& v, Stream& random, Cost& cost) const;
+  Rgb sampled_light(const Vertex& v, Stream& random, Cost& cost) const;
 
   static Triangle triangle(const std::array<render::Vector3, 3>& corners);
   static render::ShareTable light_shares(const std::vector<Triangle>& triangles,
@@ -232,17 +232,17 @@ class MeshWorld {
 
 /// Radiance that arrives on average, and the part of it that has been reflected at least once.
 struct Incoming {
-  Spectrum all;
-  Spectrum reflected;
+  Rgb all;
+  Rgb reflected;
 };
 
 /// One estimate for the whole scene: what is emitted, times the geometric series of the mean
 /// albedo.
-Incoming global_incoming(const Spectrum& mean_emission, const Spectrum& mean_albedo);
+Incoming global_incoming(const Rgb& mean_emission, const Rgb& mean_albedo);
 
 /// Means over the area of a mesh, both sides alike.
-Spectrum mean_emission(const MeshWorld& world);
-Spectrum mean_albedo(const MeshWorld& world);
+Rgb mean_emission(const MeshWorld& world);
+Rgb mean_albedo(const MeshWorld& world);
 
 /// One estimate for each patch. `rays` rays from each, at fixed points along fixed directions, say
 /// which patches it sees. Light is then passed around until it no longer changes. Adds the rays to

@@ -4,23 +4,21 @@
 
 namespace assay::paths {
 
-Spectrum ZonedScene::mean_emission() const {
-  Spectrum total;
+Rgb ZonedScene::mean_emission() const {
+  Rgb total;
   for (const Zone& zone : zones) total += zone.fraction * zone.surface.emission;
   return total;
 }
 
-Spectrum ZonedScene::mean_albedo() const {
-  Spectrum total;
+Rgb ZonedScene::mean_albedo() const {
+  Rgb total;
   for (const Zone& zone : zones) total += zone.fraction * zone.surface.albedo();
   return total;
 }
 
-Spectrum ZonedScene::mean_radiance() const {
-  return mean_emission() / (Spectrum::grey(1) - mean_albedo());
-}
+Rgb ZonedScene::mean_radiance() const { return mean_emission() / (Rgb::grey(1) - mean_albedo()); }
 
-Spectrum ZonedScene::seen_radiance() const {
+Rgb ZonedScene::seen_radiance() const {
   const Surface& surface = zones[seen].surface;
   return surface.emission + surface.albedo() * mean_radiance();
 }

@@ -24,12 +24,12 @@ struct ZonedScene {
   std::vector<Zone> zones;
   std::size_t seen = 0;  ///< the zone that the camera sees
 
-  Spectrum mean_emission() const;
-  Spectrum mean_albedo() const;
+  Rgb mean_emission() const;
+  Rgb mean_albedo() const;
   /// Mean of L over the area: mean emission / (1 - mean albedo).
-  Spectrum mean_radiance() const;
+  Rgb mean_radiance() const;
   /// Le + albedo x mean radiance, of the zone that the camera sees.
-  Spectrum seen_radiance() const;
+  Rgb seen_radiance() const;
 };
 
 /// The step of a path in one zone, for one colour.

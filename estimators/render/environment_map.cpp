@@ -22,7 +22,7 @@ namespace {
 using std::numbers::pi;
 
 bool is_radiance(const Rgb& texel) {
-  return std::ranges::all_of(texel, [](double x) { return std::isfinite(x) && x >= 0; });
+  return std::ranges::all_of(texel.values, [](double x) { return std::isfinite(x) && x >= 0; });
 }
 
 // The cell of [0, 1) cut into `count` that x falls in; rounding must not lead outside.

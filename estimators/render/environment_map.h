@@ -7,12 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "render/rgb.h"
 #include "render/vector.h"
 
 namespace assay::render {
-
-/// Red, green, blue.
-using Rgb = std::array<double, 3>;
 
 /// Directions with polar angle in [theta[0], theta[1]] and azimuth in [phi[0], phi[1]], radians.
 struct Patch {

@@ -73,9 +73,14 @@ class DirectionSampler final : public Sampler {
 };
 
 struct Outcome {
-  Rgb value{};
+  Rgb value;
   double below = 0;  ///< 1 if the direction lay below the horizon
   double nodes = 0;  ///< of a tree, that were passed through
+
+  Outcome& operator+=(const Outcome& o) {
+    return *this = {value + o.value, below + o.below, nodes + o.nodes};
+  }
+  Outcome operator/(double n) const { return {value / n, below / n, nodes / n}; }
 };
 
 /// L cos+ V / p.
@@ -83,8 +88,7 @@ inline Outcome outcome(const Setting& setting, const Direction& direction, Cost&
   Outcome result{.below = direction.w.z > 0 ? 0.0 : 1.0,
                  .nodes = static_cast<double>(direction.nodes)};
   if (direction.w.z <= 0) return result;
-  result.value = setting.received(direction.w, cost);
-  for (double& x : result.value) x /= direction.density;
+  result.value = setting.received(direction.w, cost) / direction.density;
   return result;
 }
 
@@ -102,10 +106,7 @@ struct StratifiedPrimary {
     Outcome sum;
     for (std::uint64_t j = 0; j < strata; ++j) {
       const double u = (static_cast<double>(j) + random.uniform()) / k;
-      const Outcome one = follow(*setting, directions->draw(u, random.uniform()), cost);
-      for (std::size_t c = 0; c < 3; ++c) sum.value[c] += one.value[c] / k;
-      sum.below += one.below / k;
-      sum.nodes += one.nodes / k;
+      sum += follow(*setting, directions->draw(u, random.uniform()), cost) / k;
     }
     cost.samples += strata;
     return sum;
@@ -126,17 +127,12 @@ std::shared_ptr<const Setup> sky_setup(std::vector<Channel> channels, Primary pr
                             Stream& random, std::uint64_t primaries, std::span<double> out,
                             Cost& cost) {
     Outcome sum;
-    for (std::uint64_t i = 0; i < primaries; ++i) {
-      const Outcome one = primary(random, cost);
-      for (std::size_t c = 0; c < 3; ++c) sum.value[c] += one.value[c];
-      sum.below += one.below;
-      sum.nodes += one.nodes;
-    }
-    const auto n = static_cast<double>(primaries);
-    for (std::size_t c = 0; c < colours; ++c) out[c] = sum.value[c] / n;
+    for (std::uint64_t i = 0; i < primaries; ++i) sum += primary(random, cost);
+    const Outcome mean = sum / static_cast<double>(primaries);
+    for (std::size_t c = 0; c < colours; ++c) out[c] = mean.value[c];
     if (!diagnostic) return;
-    out[colours] = sum.below / n;
-    out[colours + 1] = sum.nodes / n;
+    out[colours] = mean.below;
+    out[colours + 1] = mean.nodes;
   };
   return setup_of({.channels = std::move(channels),
                    .make = estimating(estimate),

@@ -200,9 +200,9 @@ Picture::Picture(render::EnvironmentMap map) : map_(std::move(map)) {
   for (std::size_t t = 0; t < map_.size(); ++t) {
     const double part = solid_angle(map_.patch(t));
     area += part;
-    for (std::size_t c = 0; c < 3; ++c) mean_[c] += part * map_.radiance(t)[c];
+    mean_ += part * map_.radiance(t);
   }
-  for (double& x : mean_) x /= area;
+  mean_ = mean_ / area;
 }
 
 double Picture::most(std::size_t colour) const {

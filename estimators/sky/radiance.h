@@ -30,9 +30,7 @@ class Radiance {
   /// The mean over the sphere.
   virtual Rgb mean() const = 0;
   /// The mean of the colours of a value: what samplers of directions follow.
-  double grey(const Rgb& rgb) const {
-    return colours() == 1 ? rgb[0] : (rgb[0] + rgb[1] + rgb[2]) / 3;
-  }
+  double grey(const Rgb& rgb) const { return colours() == 1 ? rgb[0] : render::mean(rgb); }
   /// No radiance is above.
   virtual double most(std::size_t colour) const = 0;
   /// The integral of L(w) max(0, n . w) over the sphere, n a unit vector.
@@ -55,7 +53,7 @@ class Picture final : public Radiance {
 
  private:
   render::EnvironmentMap map_;
-  Rgb mean_{};
+  Rgb mean_;
 };
 
 /// The parameter `sky`: a map with one of the keys

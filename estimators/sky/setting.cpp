@@ -32,10 +32,7 @@ Receiver read_receiver(Parameters& given) {
 }
 
 Rgb Setting::received(const Vector3& w, Cost& cost) const {
-  if (w.z <= 0 || !visible(w, cost)) return {};
-  Rgb value = radiance(w);
-  for (double& x : value) x *= w.z;
-  return value;
+  return w.z <= 0 || !visible(w, cost) ? Rgb{} : w.z * radiance(w);
 }
 
 std::vector<ParameterInformation> parameters() { return with_receiver(sky_parameter()); }

@@ -9,10 +9,10 @@ namespace assay::virtual_lights {
 namespace {
 
 std::vector<Channel> channels(const Scene& scene, const Recipe& recipe) {
-  const std::optional<Spectrum> known = twice_reflected(*scene.room);
+  const std::optional<Rgb> known = twice_reflected(*scene.room);
   std::vector<Channel> all;
   for (std::size_t c = 0; c < (scene.grey ? 1 : 3); ++c) {
-    Channel channel{.name = scene.grey ? "radiance" : paths::colours[c], .low = 0};
+    Channel channel{.name = scene.grey ? "radiance" : render::colours[c], .low = 0};
     if (known) {
       channel.mean = (*known)[c];
       // Rounding of ratios of sums of thousands of terms.
@@ -30,10 +30,10 @@ void require_diffuse(Parameters& parameters, const paths::MeshWorld& world) {
   bool light = false;
   for (std::size_t i = 0; i < world.patches(); ++i) {
     const paths::Surface& surface = world.surface(i);
-    if (!(surface.mirror == Spectrum{})) {
+    if (!(surface.mirror == Rgb{})) {
       parameters.refuse("scene", "a virtual light reflects diffusely: every `mirror` must be 0");
     }
-    light = light || paths::largest(surface.emission) > 0;
+    light = light || render::largest(surface.emission) > 0;
   }
   if (!light) parameters.refuse("scene", "there is no light to shoot: no surface emits");
 }
@@ -42,7 +42,7 @@ void require_receiver(Parameters& parameters, const paths::MeshWorld& world) {
   Cost uncounted;
   const Vertex seen = world.camera(uncounted);
   if (!seen.surface) parameters.refuse("scene", "the camera sees no surface");
-  if (seen.surface->diffuse == Spectrum{}) {
+  if (seen.surface->diffuse == Rgb{}) {
     parameters.refuse("scene", "the camera sees a surface of albedo 0, which reflects no light");
   }
 }
@@ -106,7 +106,7 @@ std::shared_ptr<const Setup> setup(const Scene& scene, Recipe recipe) {
                             Cost& cost) {
     const double count = static_cast<double>(primaries);
     const Sums sums = recipe.sums(random, primaries, cost);
-    const Spectrum value = recipe.result(sums, count);
+    const Rgb value = recipe.result(sums, count);
     std::size_t at = 0;
     for (std::size_t c = 0; c < (grey ? 1 : 3); ++c) out[at++] = value[c];
     if (recipe.has_target) out[at] = sums.target / count;
@@ -147,12 +147,12 @@ std::shared_ptr<const Setup> classic(Parameters& parameters) {
   return setup(scene, recipe(Classic{scene.room}));
 }
 
-Spectrum gathered(const Room& room, bool sampled, Stream& random, Cost& cost) {
+Rgb gathered(const Room& room, bool sampled, Stream& random, Cost& cost) {
   const paths::MeshWorld& world = room.world();
   const Vertex first = world.reflected(room.receiver(), random, cost);
   if (!first.surface) return {};
   const double lobe = room.lobe(dot(first.arriving, room.receiver().normal));
-  const Spectrum albedo = lobe * room.receiver().surface->diffuse;
+  const Rgb albedo = lobe * room.receiver().surface->diffuse;
   if (sampled) {
     return albedo * world.direct_light(first, paths::Direct::sampled, random, cost);
   }

@@ -13,7 +13,7 @@ namespace assay::virtual_lights {
 
 /// Sums over the light paths of an observation.
 struct Sums {
-  Spectrum full;      ///< of f / p
+  Rgb full;           ///< of f / p
   double target = 0;  ///< of g / p
 };
 
@@ -22,11 +22,9 @@ struct Classic {
   SharedRoom room;
 
   LightPath shoot(Stream& random, Cost& cost) const { return room->shoot(random, cost); }
-  Spectrum full(const LightPath& path, double geometry) const {
-    return room->reflected(path, geometry);
-  }
+  Rgb full(const LightPath& path, double geometry) const { return room->reflected(path, geometry); }
   double target(const LightPath&, double /*geometry*/, bool /*seen*/) const { return 0; }
-  Spectrum result(const Sums& sums, double count) const { return 1 / count * sums.full; }
+  Rgb result(const Sums& sums, double count) const { return 1 / count * sums.full; }
 };
 
 /// Weighted importance sampling: G sum (f / p) / sum (g / p), g = geometry V / pi. 0 if no path has
@@ -42,8 +40,8 @@ struct Weighted : Classic {
   double target(const LightPath& path, double geometry, bool seen) const {
     return seen ? geometry / (std::numbers::pi * density(path)) : 0;
   }
-  Spectrum result(const Sums& sums, double /*count*/) const {
-    return sums.target > 0 ? target_integral / sums.target * sums.full : Spectrum{};
+  Rgb result(const Sums& sums, double /*count*/) const {
+    return sums.target > 0 ? target_integral / sums.target * sums.full : Rgb{};
   }
 };
 
@@ -86,7 +84,7 @@ Weighted read_weighted(Parameters&, SharedRoom);
 
 /// Writes one observation of `primaries` light paths.
 using Observe = std::function<Sums(Stream&, std::uint64_t primaries, Cost&)>;
-using Result = std::function<Spectrum(const Sums&, double primaries)>;
+using Result = std::function<Rgb(const Sums&, double primaries)>;
 
 /// The way an observation is made. It may have the diagnostic channel `target`, the mean of g / p,
 /// with its mean G if that is known.

@@ -95,7 +95,7 @@ std::vector<std::uint32_t> emitting_sides(const MeshWorld& world, const Enclosur
   for (std::uint32_t i = 0; i < world.patches(); ++i) {
     const bool inner = (i % 2 == 0) == room.counter_clockwise;
     const bool may = !room.why_open.empty() || inner;
-    if (may && paths::largest(world.surface(i).emission) > 0) sides.push_back(i);
+    if (may && render::largest(world.surface(i).emission) > 0) sides.push_back(i);
   }
   return sides;
 }
@@ -103,7 +103,7 @@ std::vector<std::uint32_t> emitting_sides(const MeshWorld& world, const Enclosur
 std::vector<double> powers(const MeshWorld& world, const std::vector<std::uint32_t>& sides) {
   std::vector<double> list;
   for (const std::uint32_t i : sides) {
-    list.push_back(world.patch_area(i) * paths::mean(world.surface(i).emission));
+    list.push_back(world.patch_area(i) * render::mean(world.surface(i).emission));
   }
   return list;
 }
@@ -166,9 +166,9 @@ Room::Room(paths::SharedMesh world, double shininess)
   }
 }
 
-std::optional<Spectrum> Room::find_even_emission() const {
+std::optional<Rgb> Room::find_even_emission() const {
   if (!enclosure_.why_open.empty()) return {};
-  const Spectrum& emission = world_->surface(0).emission;
+  const Rgb& emission = world_->surface(0).emission;
   for (std::size_t i = 0; i < world_->patches(); ++i) {
     if (!(world_->surface(i).emission == emission)) return {};
   }
@@ -181,8 +181,8 @@ LightPath Room::shoot(Stream& random, Cost& cost) const {
   const double y = random.uniform();
   LightPath path{.from = world_->on_patch(side, x, y)};
   path.at = world_->reflected(path.from, random, cost);
-  const Spectrum& emission = path.from.surface->emission;
-  path.power = pi * shares_.total() / paths::mean(emission) * emission;
+  const Rgb& emission = path.from.surface->emission;
+  path.power = pi * shares_.total() / render::mean(emission) * emission;
   return path;
 }
 
@@ -195,7 +195,7 @@ double Room::geometry(const Vertex& light) const {
   return here * there / (square * square) * lobe(here / std::sqrt(square));
 }
 
-Spectrum Room::reflected(const LightPath& path, double geometry) const {
+Rgb Room::reflected(const LightPath& path, double geometry) const {
   return geometry / (pi * pi) *
          (path.power * path.at.surface->diffuse * receiver_.surface->diffuse);
 }
@@ -214,7 +214,7 @@ double Room::form_factor(const Vertex& from, std::size_t triangle) const {
 }
 
 double Room::marginal_density(const Vertex& at) const {
-  if (even_emission_) return paths::mean(*even_emission_) / shares_.total();
+  if (even_emission_) return render::mean(*even_emission_) / shares_.total();
   double irradiance = 0;
   for (const std::uint32_t lamp : lamps_) {
     if (enclosure_.wall_of[lamp] == enclosure_.wall_of[at.patch / 2]) continue;
@@ -254,15 +254,15 @@ Known target_integral(const Room& room, Weighting weighting) {
   return {sum};
 }
 
-std::optional<Spectrum> twice_reflected(const Room& room) {
+std::optional<Rgb> twice_reflected(const Room& room) {
   if (!room.even_emission()) return {};
   const paths::MeshWorld& world = room.world();
-  const Spectrum first = room.receiver().surface->diffuse * *room.even_emission();
+  const Rgb first = room.receiver().surface->diffuse * *room.even_emission();
   if (even_albedo(room)) return first * world.surface(0).diffuse;
   const Enclosure& walls = room.walls();
   if (room.shininess() > 0 || !walls.why_not_convex.empty()) return {};
   const std::uint32_t own = walls.wall_of[room.receiver().patch / 2];
-  Spectrum seen;
+  Rgb seen;
   for (std::size_t i = 0; i < walls.wall_of.size(); ++i) {
     if (walls.wall_of[i] != own) seen += room.form_factor(i) * world.surface(2 * i).diffuse;
   }

@@ -15,8 +15,8 @@
 
 namespace assay::virtual_lights {
 
-using paths::Spectrum;
 using paths::Vertex;
+using render::Rgb;
 
 struct Enclosure {
   /// Why the triangles do not enclose the point; empty where they do.
@@ -43,7 +43,7 @@ struct LightPath {
   Vertex at;  ///< Without a surface: the light has left the scene.
   /// Emitted power divided by the density of the path. The point y0 is drawn in proportion to the
   /// radiance averaged over the colours, the direction in proportion to the cosine.
-  Spectrum power;
+  Rgb power;
 
   double from_cosine() const { return dot(at.arriving, from.normal); }
   double at_cosine() const { return -dot(at.arriving, at.normal); }
@@ -75,7 +75,7 @@ class Room {
   double geometry(const Vertex& light) const;
   bool sees(const Vertex& light, Cost& cost) const { return world_->sees(receiver_, light, cost); }
   /// The radiance that the receiver reflects of one virtual light that it sees.
-  Spectrum reflected(const LightPath& path, double geometry) const;
+  Rgb reflected(const LightPath& path, double geometry) const;
 
   /// Density of y1 by area given y0: cos cos' / (pi r^2).
   static double conditional_density(const LightPath& path);
@@ -85,7 +85,7 @@ class Room {
   const std::string& why_no_marginal() const { return why_no_marginal_; }
 
   /// The radiance that all inner sides emit, if it is the same everywhere in a closed room.
-  const std::optional<Spectrum>& even_emission() const { return even_emission_; }
+  const std::optional<Rgb>& even_emission() const { return even_emission_; }
   /// The form factor from the receiver to a triangle that nothing hides.
   double form_factor(std::size_t triangle) const { return form_factor(receiver_, triangle); }
   /// The share of all power of each wall of a convex room, by the number of the wall.
@@ -93,9 +93,9 @@ class Room {
 
  private:
   double form_factor(const Vertex& from, std::size_t triangle) const;
-  std::optional<Spectrum> find_even_emission() const;
+  std::optional<Rgb> find_even_emission() const;
   double brightness(std::size_t triangle) const {
-    return paths::mean(world_->surface(2 * triangle).emission);
+    return render::mean(world_->surface(2 * triangle).emission);
   }
 
   paths::SharedMesh world_;
@@ -105,7 +105,7 @@ class Room {
   std::vector<std::uint32_t> sides_;  // that emit: patches of the world
   std::vector<std::uint32_t> lamps_;  // triangles that emit
   render::ShareTable shares_;
-  std::optional<Spectrum> even_emission_;
+  std::optional<Rgb> even_emission_;
   std::string why_no_marginal_;
 };
 
@@ -139,6 +139,6 @@ Known target_integral(const Room& room, Weighting weighting);
 /// changes virtual lights by some 2^-14 of a wall's length over the receiver's distance to the
 /// nearest other wall. That is 1e-4 in the middle of a cube, and up to a hundredth at a 200th of
 /// its side from two walls.
-std::optional<Spectrum> twice_reflected(const Room& room);
+std::optional<Rgb> twice_reflected(const Room& room);
 
 }  // namespace assay::virtual_lights

@@ -30,7 +30,7 @@ stats::Moments green_of(const Scene& scene, Integrator integrator, const Ray& ra
   Cost cost;
   for (std::uint64_t i = 0; i < paths; ++i) {
     Stream random(stream_key(1, "path_tracing_test", "", 0), i);
-    moments.add(radiance(scene, integrator, {}, ray, random, cost).y);
+    moments.add(radiance(scene, integrator, {}, ray, random, cost)[1]);
   }
   return moments;
 }

@@ -189,8 +189,8 @@ TEST(LazyCoordinates, OneStepFromTheStationaryLawIsInDetailedBalance) {
 }
 
 TEST(Rules, OfAStepAddUpToTheNormaliser) {
-  const Contribution x{.pixel = 0, .value = Spectrum::grey(2), .importance = 2};
-  const Contribution y{.pixel = 1, .value = Spectrum::grey(.5), .importance = .5};
+  const Contribution x{.pixel = 0, .value = Rgb::grey(2), .importance = 2};
+  const Contribution y{.pixel = 1, .value = Rgb::grey(.5), .importance = .5};
   const MeanValueRules rules;
   EXPECT_EQ(rules.acceptance(.5, 2), .25);
   EXPECT_EQ(rules.acceptance(2, .5), 1);

@@ -64,7 +64,7 @@ TEST(MeshWorld, NoRaySlipsThroughFromEdgesAndCorners) {
 
 // A sphere by meridians and parallels: the triangles at its poles are slivers.
 MeshScene sphere_of_slivers(std::uint32_t count) {
-  MeshScene scene{{}, {}, {{Spectrum::grey(1), Spectrum::grey(0.5), {}}}, true};
+  MeshScene scene{{}, {}, {{Rgb::grey(1), Rgb::grey(0.5), {}}}, true};
   render::TriangleMesh& mesh = scene.mesh;
   mesh.vertices = {{0, 0, 1}, {0, 0, -1}};
   for (std::uint32_t i = 1; i < count; ++i) {

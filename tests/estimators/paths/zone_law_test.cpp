@@ -52,10 +52,9 @@ TEST(ZoneLaw, SplittingDividesTheVarianceOfTheChildren) {
 
 TEST(ZoneLaw, SeenRadianceIsEmissionAndReflectedMean) {
   const ZonedScene scene{
-      {{0.9, {{}, Spectrum::grey(0.8), {}}}, {0.1, {Spectrum::grey(1), Spectrum::grey(0.8), {}}}},
-      0};
-  EXPECT_DOUBLE_EQ(scene.mean_radiance().red, 0.5);
-  EXPECT_DOUBLE_EQ(scene.seen_radiance().red, 0.4);
+      {{0.9, {{}, Rgb::grey(0.8), {}}}, {0.1, {Rgb::grey(1), Rgb::grey(0.8), {}}}}, 0};
+  EXPECT_DOUBLE_EQ(scene.mean_radiance()[0], 0.5);
+  EXPECT_DOUBLE_EQ(scene.seen_radiance()[0], 0.4);
 }
 
 }  // namespace
