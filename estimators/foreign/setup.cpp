@@ -222,56 +222,8 @@ bool is_whole(std::span<const double> item) {
   return std::ranges::none_of(item, [](double number) { return std::isnan(number); });
 }
 
-/// Asks whoever is idle. Its draws are of streams whose key and observation are the next
-/// two words of Assay's. NoAnswer, with the point in question, if the program ends, takes too long
-/// or says something else. NoAnswer, too, if it answers differently when it is asked again.
-class ForeignSampler final : public Sampler {
- public:
-  /// The sampler that stands at this place in the hello.
-  ForeignSampler(std::shared_ptr<Children> children, std::size_t index);
-
-  Domain domain() const override { return note_.domain; }
-  std::array<double, 2> bounds() const override { return note_.bounds; }
-  SamplerDraw sample(Stream& random) const override;
-  double density(const Point& point) const override;
-  double evaluate(const Point& point) const override;
-  double rounding() const override;
-
-  std::size_t samples(std::span<const Stream> random, std::span<SamplerDraw> draws) const override;
-  std::size_t densities(std::span<const Point> points, std::span<double> out) const override;
-  std::size_t lobe_densities(int lobe, std::span<const Point> points,
-                             std::span<double> out) const override;
-  std::size_t evaluations(std::span<const Point> points, std::span<double> out) const override;
-  double seconds_elsewhere() const override;
-
- private:
-  struct Items;
-
-  std::size_t at_points(Asked what, std::span<const Point> points, std::span<double> out) const;
-  std::vector<double> ask(const Items& items) const;
-  std::vector<double> ask_once(Items& items) const;
-  void witness(Respondent& dialogue, const Question& question, const Items& items) const;
-  void require_alone(Respondent& dialogue, const Question& question, const Items& items,
-                     std::span<const double> numbers) const;
-  void require_whole(const Items& items, std::span<const double> numbers) const;
-  std::vector<double> narrowed(const Items& items, const NoAnswer& failure) const;
-
-  std::shared_ptr<Children> children_;
-  std::size_t index_;
-  SamplerNote note_;
-  /// The first question of each kind, about one item, and its answer.
-  struct Witness {
-    Question question;
-    std::string item;
-    std::vector<double> numbers;
-  };
-  mutable std::mutex mutex_;
-  mutable std::map<Asked, Witness> witnesses_;
-  mutable std::set<Asked> asked_alone_;
-};
-
-/// The items of a question, as they are sent.
-struct ForeignSampler::Items {
+/// The items of a question to a sampler, as they are sent.
+struct Items {
   Asked what;
   std::string_view bytes;
 
@@ -291,173 +243,189 @@ struct ForeignSampler::Items {
   std::size_t bytes_of_one() const { return 8 * item_words(what); }
 };
 
-ForeignSampler::ForeignSampler(std::shared_ptr<Children> children, std::size_t index)
-    : children_(std::move(children)), index_(index), note_(children_->hello().samplers.at(index)) {}
+/// Asks whoever is idle. Its draws are of streams whose key and observation are the next
+/// two words of Assay's. NoAnswer, with the point in question, if the program ends, takes too long
+/// or says something else. NoAnswer, too, if it answers differently when it is asked again.
+class ForeignSampler final : public Sampler {
+ public:
+  /// The sampler that stands at this place in the hello.
+  ForeignSampler(std::shared_ptr<Children> children, std::size_t index)
+      : children_(std::move(children)),
+        index_(index),
+        note_(children_->hello().samplers.at(index)) {}
 
-double ForeignSampler::seconds_elsewhere() const { return seconds_of_programs; }
-
-double ForeignSampler::rounding() const {
-  return note_.rounding > 0 ? note_.rounding : Sampler::rounding();
-}
-
-SamplerDraw ForeignSampler::sample(Stream& random) const {
-  SamplerDraw draw;
-  samples({&random, 1}, {&draw, 1});
-  for (std::size_t i = 0; i < item_words(Asked::draws); ++i) random();
-  return draw;
-}
-
-double ForeignSampler::density(const Point& point) const {
-  double density = 0;
-  densities({&point, 1}, {&density, 1});
-  return density;
-}
-
-double ForeignSampler::evaluate(const Point& point) const {
-  double value = 0;
-  evaluations({&point, 1}, {&value, 1});
-  return value;
-}
-
-std::size_t ForeignSampler::samples(std::span<const Stream> random,
-                                    std::span<SamplerDraw> draws) const {
-  const Question first = draw_of(random.front());
-  children_->refuse_after_failure(first);
-  std::vector<std::uint64_t> words;
-  for (Stream stream : random) {
-    for (std::size_t i = 0; i < item_words(Asked::draws); ++i) words.push_back(stream());
+  Domain domain() const override { return note_.domain; }
+  std::array<double, 2> bounds() const override { return note_.bounds; }
+  double rounding() const override {
+    return note_.rounding > 0 ? note_.rounding : Sampler::rounding();
   }
-  try {
-    const std::vector<double> numbers =
-        ask({Asked::draws,
-             {reinterpret_cast<const char*>(words.data()), sizeof words[0] * words.size()}});
-    const std::size_t count = numbers.size() / numbers_of(Asked::draws);
-    for (std::size_t i = 0; i < count; ++i) {
-      draws[i] = draw_from(numbers.data() + i * numbers_of(Asked::draws));
+  double seconds_elsewhere() const override { return seconds_of_programs; }
+
+  SamplerDraw sample(Stream& random) const override {
+    SamplerDraw draw;
+    samples({&random, 1}, {&draw, 1});
+    for (std::size_t i = 0; i < item_words(Asked::draws); ++i) random();
+    return draw;
+  }
+  double density(const Point& point) const override {
+    double density = 0;
+    densities({&point, 1}, {&density, 1});
+    return density;
+  }
+  double evaluate(const Point& point) const override {
+    double value = 0;
+    evaluations({&point, 1}, {&value, 1});
+    return value;
+  }
+
+  std::size_t samples(std::span<const Stream> random, std::span<SamplerDraw> draws) const override {
+    const Question first = draw_of(random.front());
+    children_->refuse_after_failure(first);
+    std::vector<std::uint64_t> words;
+    for (Stream stream : random) {
+      for (std::size_t i = 0; i < item_words(Asked::draws); ++i) words.push_back(stream());
     }
-    return count;
-  } catch (const NoAnswer& failure) {
-    children_->note_failure(first, failure.what());
-    throw;
-  }
-}
-
-std::size_t ForeignSampler::densities(std::span<const Point> points, std::span<double> out) const {
-  return at_points(Asked::densities, points, out);
-}
-
-std::size_t ForeignSampler::lobe_densities(int /*lobe*/, std::span<const Point> points,
-                                           std::span<double> out) const {
-  return densities(points, out);
-}
-
-std::size_t ForeignSampler::evaluations(std::span<const Point> points,
-                                        std::span<double> out) const {
-  return at_points(Asked::evaluations, points, out);
-}
-
-std::size_t ForeignSampler::at_points(Asked what, std::span<const Point> points,
-                                      std::span<double> out) const {
-  const std::vector<double> numbers =
-      ask({what, {reinterpret_cast<const char*>(points.data()), points.size_bytes()}});
-  std::ranges::copy(numbers, out.begin());
-  return numbers.size();
-}
-
-/// About the first few; `items` becomes those.
-std::vector<double> ForeignSampler::ask_once(Items& items) const {
-  const std::uint64_t denormals = FlushDenormals::is_on() ? denormals_flushed : 0;
-  Question question{.key = index_,
-                    .first = static_cast<std::uint64_t>(items.what) + denormals,
-                    .count = items.size(),
-                    .primaries = 0};
-  std::unique_ptr<Respondent> dialogue = children_->take();
-  question.count = dialogue->well_sized(question);
-  items = items.range(0, question.count);
-  std::vector<double> numbers;
-  {
-    const Counted counted(*dialogue);
-    if (dialogue->meets(question)) witness(*dialogue, question, items);
-    numbers = dialogue->ask(question, items.bytes);
-    if (question.count > 1) require_alone(*dialogue, question, items, numbers);
-  }
-  require_whole(items, numbers);
-  children_->give_back(std::move(dialogue));
-  return numbers;
-}
-
-/// Asks for the last of the first many of each kind alone. A program that draws on from the state
-/// of its random numbers gives others.
-void ForeignSampler::require_alone(Respondent& dialogue, const Question& question,
-                                   const Items& items, std::span<const double> numbers) const {
-  {
-    const std::scoped_lock lock(mutex_);
-    if (asked_alone_.contains(items.what)) return;
-  }
-  Question last = question;
-  last.count = 1;
-  const Items item = items.range(items.size() - 1, 1);
-  const std::vector<double> alone = dialogue.ask(last, item.bytes);
-  const std::span<const double> among = numbers.last(alone.size());
-  if (same_bits(alone, {among.begin(), among.end()})) {
-    const std::scoped_lock lock(mutex_);
-    asked_alone_.insert(items.what);
-    return;
-  }
-  throw NoAnswer(other_numbers_alone(children_->name(), question));
-}
-
-void ForeignSampler::require_whole(const Items& items, std::span<const double> numbers) const {
-  const std::size_t size = numbers_of(items.what);
-  for (std::size_t i = 0; i * size < numbers.size(); ++i) {
-    const std::span<const double> item = numbers.subspan(i * size, size);
-    if (is_whole(item)) continue;
-    std::string words;
-    for (const double number : item) words += (words.empty() ? "" : ", ") + shortest_text(number);
-    throw NoAnswer("`" + children_->name() + "` gave " + words +
-                   (size > 1 ? ", which is no draw: five numbers, and 1 for a point or 0 for none"
-                             : ", which is no number"));
-  }
-}
-
-/// Each program is asked for the very same as the first one, and that one twice.
-void ForeignSampler::witness(Respondent& dialogue, const Question& question,
-                             const Items& items) const {
-  Question one = question;
-  one.count = 1;
-  Witness first{one, std::string(items.range(0, 1).bytes), {}};
-  first.numbers = dialogue.ask(one, first.item);
-  {
-    const std::scoped_lock lock(mutex_);
-    first = witnesses_.try_emplace(items.what, first).first->second;
-  }
-  if (same_bits(dialogue.ask(first.question, first.item), first.numbers)) return;
-  throw NoAnswer(other_numbers(children_->name(), one));
-}
-
-std::vector<double> ForeignSampler::ask(const Items& items) const {
-  Items asked = items;
-  try {
-    return ask_once(asked);
-  } catch (const NoAnswer& failure) {
-    return narrowed(asked, failure);
-  }
-}
-
-/// Asks a new program about the items one by one.
-std::vector<double> ForeignSampler::narrowed(const Items& items, const NoAnswer& failure) const {
-  const auto at = [&](const Items& part, const NoAnswer& why) {
-    return NoAnswer("sampler `" + note_.name + "`" + part.place(note_.domain) + ": " + why.what());
-  };
-  return one_by_one(items.size(), at(items, failure), [&](std::uint64_t i) {
-    Items one = items.range(i, 1);
     try {
-      return ask_once(one);
-    } catch (const NoAnswer& alone) {
-      throw at(one, alone);
+      const std::vector<double> numbers =
+          ask({Asked::draws,
+               {reinterpret_cast<const char*>(words.data()), sizeof words[0] * words.size()}});
+      const std::size_t count = numbers.size() / numbers_of(Asked::draws);
+      for (std::size_t i = 0; i < count; ++i) {
+        draws[i] = draw_from(numbers.data() + i * numbers_of(Asked::draws));
+      }
+      return count;
+    } catch (const NoAnswer& failure) {
+      children_->note_failure(first, failure.what());
+      throw;
     }
-  });
-}
+  }
+  std::size_t densities(std::span<const Point> points, std::span<double> out) const override {
+    return at_points(Asked::densities, points, out);
+  }
+  std::size_t lobe_densities(int /*lobe*/, std::span<const Point> points,
+                             std::span<double> out) const override {
+    return densities(points, out);
+  }
+  std::size_t evaluations(std::span<const Point> points, std::span<double> out) const override {
+    return at_points(Asked::evaluations, points, out);
+  }
+
+ private:
+  std::size_t at_points(Asked what, std::span<const Point> points, std::span<double> out) const {
+    const std::vector<double> numbers =
+        ask({what, {reinterpret_cast<const char*>(points.data()), points.size_bytes()}});
+    std::ranges::copy(numbers, out.begin());
+    return numbers.size();
+  }
+
+  /// About the first few; `items` becomes those.
+  std::vector<double> ask_once(Items& items) const {
+    const std::uint64_t denormals = FlushDenormals::is_on() ? denormals_flushed : 0;
+    Question question{.key = index_,
+                      .first = static_cast<std::uint64_t>(items.what) + denormals,
+                      .count = items.size(),
+                      .primaries = 0};
+    std::unique_ptr<Respondent> dialogue = children_->take();
+    question.count = dialogue->well_sized(question);
+    items = items.range(0, question.count);
+    std::vector<double> numbers;
+    {
+      const Counted counted(*dialogue);
+      if (dialogue->meets(question)) witness(*dialogue, question, items);
+      numbers = dialogue->ask(question, items.bytes);
+      if (question.count > 1) require_alone(*dialogue, question, items, numbers);
+    }
+    require_whole(items, numbers);
+    children_->give_back(std::move(dialogue));
+    return numbers;
+  }
+
+  /// Asks for the last of the first many of each kind alone. A program that draws on from the state
+  /// of its random numbers gives others.
+  void require_alone(Respondent& dialogue, const Question& question, const Items& items,
+                     std::span<const double> numbers) const {
+    {
+      const std::scoped_lock lock(mutex_);
+      if (asked_alone_.contains(items.what)) return;
+    }
+    Question last = question;
+    last.count = 1;
+    const Items item = items.range(items.size() - 1, 1);
+    const std::vector<double> alone = dialogue.ask(last, item.bytes);
+    const std::span<const double> among = numbers.last(alone.size());
+    if (same_bits(alone, {among.begin(), among.end()})) {
+      const std::scoped_lock lock(mutex_);
+      asked_alone_.insert(items.what);
+      return;
+    }
+    throw NoAnswer(other_numbers_alone(children_->name(), question));
+  }
+
+  void require_whole(const Items& items, std::span<const double> numbers) const {
+    const std::size_t size = numbers_of(items.what);
+    for (std::size_t i = 0; i * size < numbers.size(); ++i) {
+      const std::span<const double> item = numbers.subspan(i * size, size);
+      if (is_whole(item)) continue;
+      std::string words;
+      for (const double number : item) words += (words.empty() ? "" : ", ") + shortest_text(number);
+      throw NoAnswer("`" + children_->name() + "` gave " + words +
+                     (size > 1 ? ", which is no draw: five numbers, and 1 for a point or 0 for none"
+                               : ", which is no number"));
+    }
+  }
+
+  /// Each program is asked for the very same as the first one, and that one twice.
+  void witness(Respondent& dialogue, const Question& question, const Items& items) const {
+    Question one = question;
+    one.count = 1;
+    Witness first{one, std::string(items.range(0, 1).bytes), {}};
+    first.numbers = dialogue.ask(one, first.item);
+    {
+      const std::scoped_lock lock(mutex_);
+      first = witnesses_.try_emplace(items.what, first).first->second;
+    }
+    if (same_bits(dialogue.ask(first.question, first.item), first.numbers)) return;
+    throw NoAnswer(other_numbers(children_->name(), one));
+  }
+
+  std::vector<double> ask(const Items& items) const {
+    Items asked = items;
+    try {
+      return ask_once(asked);
+    } catch (const NoAnswer& failure) {
+      return narrowed(asked, failure);
+    }
+  }
+
+  /// Asks a new program about the items one by one.
+  std::vector<double> narrowed(const Items& items, const NoAnswer& failure) const {
+    const auto at = [&](const Items& part, const NoAnswer& why) {
+      return NoAnswer("sampler `" + note_.name + "`" + part.place(note_.domain) + ": " +
+                      why.what());
+    };
+    return one_by_one(items.size(), at(items, failure), [&](std::uint64_t i) {
+      Items one = items.range(i, 1);
+      try {
+        return ask_once(one);
+      } catch (const NoAnswer& alone) {
+        throw at(one, alone);
+      }
+    });
+  }
+
+  std::shared_ptr<Children> children_;
+  std::size_t index_;
+  SamplerNote note_;
+  /// The first question of each kind, about one item, and its answer.
+  struct Witness {
+    Question question;
+    std::string item;
+    std::vector<double> numbers;
+  };
+  mutable std::mutex mutex_;
+  mutable std::map<Asked, Witness> witnesses_;
+  mutable std::set<Asked> asked_alone_;
+};
 
 class ForeignSetup final : public Setup {
  public:
