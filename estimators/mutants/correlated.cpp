@@ -2,6 +2,7 @@
 // one thing wrong. Biases are for the built-in rectangle, of J = 1.320523614, unless said
 // otherwise.
 
+#include <functional>
 #include <numbers>
 #include <utility>
 
@@ -15,109 +16,102 @@ namespace {
 
 using namespace correlated;
 
+/// Changes pairs that have just been drawn of a source.
+using ChangePairs = std::function<void(const PairSource&, Stream&, std::span<Pair>)>;
+
 /// Another source's pairs with its colours or pairs changed.
-class AlteredPairs : public PairSource {
+class AlteredPairs final : public PairSource {
  public:
-  explicit AlteredPairs(SharedPairs source)
-      : source_(std::move(source)), colours_(source_->colours()) {}
+  AlteredPairs(SharedPairs source, std::vector<Colour> colours, ChangePairs change)
+      : source_(std::move(source)), colours_(std::move(colours)), change_(std::move(change)) {}
 
   const std::vector<Colour>& colours() const override { return colours_; }
   void draw(Stream& random, std::span<Pair> out, Cost& cost) const override {
     source_->draw(random, out, cost);
+    if (change_) change_(*source_, random, out);
   }
   std::vector<NamedSampler> samplers() const override { return source_->samplers(); }
 
- protected:
-  // The reference stays the original's; its variance is the original's alone.
-  void forget_moments() {
-    for (Colour& colour : colours_) colour.moments.reset();
-  }
-  void scale_integral(double factor) {
-    for (Colour& colour : colours_) colour.control_integral *= factor;
-    forget_moments();
-  }
-
+ private:
   SharedPairs source_;
   std::vector<Colour> colours_;
+  ChangePairs change_;
 };
 
-struct AddedTwice final : AlteredPairs {
-  explicit AddedTwice(SharedPairs source) : AlteredPairs(std::move(source)) { forget_moments(); }
-  void draw(Stream& random, std::span<Pair> out, Cost& cost) const override {
-    source_->draw(random, out, cost);
-    for (Pair& pair : out) {
-      pair.control = -1 * pair.control;
-    }
-  }
-};
+// The reference stays the original's; its variance is the original's alone.
+SharedPairs changed(const SharedPairs& source, ChangePairs change) {
+  std::vector<Colour> colours = source->colours();
+  for (Colour& colour : colours) colour.moments.reset();
+  return std::make_shared<AlteredPairs>(source, std::move(colours), std::move(change));
+}
 
-struct WithoutPi final : AlteredPairs {
-  explicit WithoutPi(SharedPairs source) : AlteredPairs(std::move(source)) {
-    scale_integral(1 / std::numbers::pi);
+SharedPairs with_integral(const SharedPairs& source, double integral) {
+  std::vector<Colour> colours = source->colours();
+  for (Colour& colour : colours) {
+    colour.control_integral = integral;
+    colour.moments.reset();
   }
-};
+  return std::make_shared<AlteredPairs>(source, std::move(colours), nullptr);
+}
 
-struct VisibleControl final : AlteredPairs {
-  explicit VisibleControl(SharedPairs source) : AlteredPairs(std::move(source)) {
-    forget_moments();
-  }
-  void draw(Stream& random, std::span<Pair> out, Cost& cost) const override {
-    source_->draw(random, out, cost);
+double integral_of(const SharedPairs& pairs) { return pairs->colours()[0].control_integral; }
+
+SharedPairs added_twice(Parameters& given) {
+  return changed(read_area_pairs(given), [](const PairSource&, Stream&, std::span<Pair> out) {
+    for (Pair& pair : out) pair.control = -1 * pair.control;
+  });
+}
+
+SharedPairs visible_control(Parameters& given) {
+  return changed(read_area_pairs(given), [](const PairSource&, Stream&, std::span<Pair> out) {
     for (Pair& pair : out) pair.control = pair.full;
-  }
-};
+  });
+}
 
 // Each f with the g of a point of its own: means stay, what the control was for is lost.
-struct OtherPoints final : AlteredPairs {
-  explicit OtherPoints(SharedPairs source) : AlteredPairs(std::move(source)) {}
-  void draw(Stream& random, std::span<Pair> out, Cost& cost) const override {
-    source_->draw(random, out, cost);
+SharedPairs other_points(Parameters& given) {
+  const SharedPairs sound = read_area_pairs(given);
+  const auto exchange = [](const PairSource& source, Stream& random, std::span<Pair> out) {
     std::vector<Pair> others(out.size());
     Cost uncounted;
-    source_->draw(random, others, uncounted);
+    source.draw(random, others, uncounted);
     for (std::size_t i = 0; i < out.size(); ++i) out[i].control = others[i].control;
-  }
-};
-
-template <class Mutant>
-std::shared_ptr<const Setup> altered(Parameters& given) {
-  return fixed(std::make_shared<Mutant>(read_area_pairs(given)), given.number("lambda"));
+  };
+  return std::make_shared<AlteredPairs>(sound, sound->colours(), exchange);
 }
 
-struct GivenIntegral final : AlteredPairs {
-  GivenIntegral(SharedPairs source, double integral) : AlteredPairs(std::move(source)) {
-    forget_moments();
-    colours_[0].control_integral = integral;
-  }
-};
+SharedPairs without_pi(Parameters& given) {
+  const SharedPairs pairs = read_area_pairs(given);
+  return with_integral(pairs, integral_of(pairs) * (1 / std::numbers::pi));
+}
 
-std::shared_ptr<const Setup> unclipped_integral(Parameters& given) {
+SharedPairs unclipped_integral(Parameters& given) {
   const luminaire::SharedSetting setting = luminaire::read_setting(given);
-  return fixed(std::make_shared<GivenIntegral>(read_area_pairs(given),
-                                               luminaire::unclipped_irradiance(*setting)),
-               given.number("lambda"));
+  return with_integral(read_area_pairs(given), luminaire::unclipped_irradiance(*setting));
 }
 
-std::shared_ptr<const Setup> without_radiance(Parameters& given) {
+SharedPairs without_radiance(Parameters& given) {
   const double radiance = luminaire::read_setting(given)->radiance();
   if (radiance == 0) given.refuse("scene", "the luminaire must have a radiance above 0");
   const SharedPairs pairs = read_area_pairs(given);
-  return fixed(
-      std::make_shared<GivenIntegral>(pairs, pairs->colours()[0].control_integral / radiance),
-      given.number("lambda"));
+  return with_integral(pairs, integral_of(pairs) / radiance);
 }
 
 // One integral, the mean of the colours', for all of them.
-struct GreyIntegral final : AlteredPairs {
-  explicit GreyIntegral(SharedPairs source) : AlteredPairs(std::move(source)) {
-    double sum = 0;
-    for (const Colour& colour : colours_) sum += colour.control_integral;
-    for (Colour& colour : colours_) {
-      colour.control_integral = sum / static_cast<double>(colours_.size());
-    }
-    forget_moments();
-  }
-};
+SharedPairs grey_integral(Parameters& given) {
+  const SharedPairs pairs = read_sky_pairs(given);
+  double sum = 0;
+  for (const Colour& colour : pairs->colours()) sum += colour.control_integral;
+  return with_integral(pairs, sum / static_cast<double>(pairs->colours().size()));
+}
+
+/// A mutant of the estimator with a given lambda, by other pairs.
+Entry entry(const char* name, const char* original, const char* defect,
+            SharedPairs (*pairs_of)(Parameters&)) {
+  return mutant({name, original, defect}, [pairs_of](Parameters& given) {
+    return fixed(pairs_of(given), given.number("lambda"));
+  });
+}
 
 // Sum f g, not about the means, over the spread of g about its mean.
 double uncentred(const Sums& sums, double integral) {
@@ -175,29 +169,29 @@ std::shared_ptr<const Setup> pooled_lambda(Parameters& given) {
 
 std::vector<Entry> mutants_correlated() {
   return {
-      mutant({"control_added_twice", "correlated/area",
-              "adds the control where it should be taken away, J + g: 2 lambda J too much."},
-             altered<AddedTwice>),
-      mutant({"control_unclipped", "correlated/area",
-              "integrates the control over the whole polygon, that below the receiver's "
-              "horizon too: nothing on `rectangle`, lambda (unclipped - clipped) where the "
-              "luminaire crosses the horizon."},
-             unclipped_integral),
-      mutant({"control_without_pi", "correlated/area",
-              "takes the form factor for the control's integral, J / pi: lambda J (1/pi - 1)."},
-             altered<WithoutPi>),
-      mutant({"control_without_radiance", "correlated/area",
-              "leaves the luminaire's radiance L out of J: lambda J (1/L - 1), nothing at L = "
-              "1."},
-             without_radiance),
-      mutant({"control_visible", "correlated/area",
-              "lets occluders shade the control's samples but not its integral: lambda (J - "
-              "I)."},
-             altered<VisibleControl>),
-      mutant({"control_elsewhere", "correlated/area",
-              "evaluates the control at other points than the integrand: no bias, but the "
-              "variance grows to Var f + lambda^2 Var g."},
-             altered<OtherPoints>),
+      entry("control_added_twice", "correlated/area",
+            "adds the control where it should be taken away, J + g: 2 lambda J too much.",
+            added_twice),
+      entry("control_unclipped", "correlated/area",
+            "integrates the control over the whole polygon, that below the receiver's "
+            "horizon too: nothing on `rectangle`, lambda (unclipped - clipped) where the "
+            "luminaire crosses the horizon.",
+            unclipped_integral),
+      entry("control_without_pi", "correlated/area",
+            "takes the form factor for the control's integral, J / pi: lambda J (1/pi - 1).",
+            without_pi),
+      entry("control_without_radiance", "correlated/area",
+            "leaves the luminaire's radiance L out of J: lambda J (1/L - 1), nothing at L = "
+            "1.",
+            without_radiance),
+      entry("control_visible", "correlated/area",
+            "lets occluders shade the control's samples but not its integral: lambda (J - "
+            "I).",
+            visible_control),
+      entry("control_elsewhere", "correlated/area",
+            "evaluates the control at other points than the integrand: no bias, but the "
+            "variance grows to Var f + lambda^2 Var g.",
+            other_points),
       mutant({"lambda_uncentred", "correlated/area_cross_fitted",
               "divides the sum of f g, not taken about the means, by the spread of g: lambda "
               "tends to (Cov + I J) / Var g; no bias, more variance."},
@@ -214,13 +208,10 @@ std::vector<Entry> mutants_correlated() {
               "takes one lambda from the samples of three receivers side by side and corrects "
               "those samples with it: about a third of the bias of one receiver alone."},
              pooled_lambda),
-      mutant({"control_grey_integral", "correlated/sky",
-              "has one J for all colours, the mean of theirs, beside a control in colour: lambda "
-              "(mean J - J) in each, nothing under a grey sky."},
-             [](Parameters& given) {
-               return fixed(std::make_shared<GreyIntegral>(read_sky_pairs(given)),
-                            given.number("lambda"));
-             }),
+      entry("control_grey_integral", "correlated/sky",
+            "has one J for all colours, the mean of theirs, beside a control in colour: lambda "
+            "(mean J - J) in each, nothing under a grey sky.",
+            grey_integral),
   };
 }
 
