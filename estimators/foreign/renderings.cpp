@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cctype>
+#include <boost/algorithm/string.hpp>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -74,18 +74,10 @@ std::string stamp_of(const fs::path& file, bool program) {
 /// The words of an argument that may name a file: all of it, the part after a `=`, and the words of
 /// a shell's line.
 std::vector<std::string> names_in(const std::string& argument) {
-  std::vector<std::string> names{argument};
-  std::string name;
-  for (const char c : argument + ' ') {
-    const bool ends = std::isspace(static_cast<unsigned char>(c)) != 0 ||
-                      std::string_view("=;&|<>()\"'`").find(c) != std::string_view::npos;
-    if (!ends) {
-      name += c;
-    } else if (!name.empty()) {
-      if (name != argument) names.push_back(name);
-      name.clear();
-    }
-  }
+  std::vector<std::string> names;
+  boost::split(names, argument, boost::is_space() || boost::is_any_of("=;&|<>()\"'`"));
+  std::erase_if(names, [&](const std::string& name) { return name.empty() || name == argument; });
+  names.insert(names.begin(), argument);
   return names;
 }
 
@@ -124,13 +116,6 @@ std::string stamp_of(const Rendering& rendering) {
     hash.add(stamp_of(path, false));
   }
   return hash.text();
-}
-
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  for (std::size_t at = text.find(what); at != text.npos; at = text.find(what, at + by.size())) {
-    text.replace(at, what.size(), by);
-  }
-  return text;
 }
 
 /// Removes the unfinished files of programs that no longer run.
@@ -252,10 +237,11 @@ std::vector<std::string> Renderings::words_of(const Task& task, const std::strin
   }
   std::vector<std::string> words;
   for (std::string word : rendering_.command) {
-    word = replaced(std::move(word), "{seeds}", seeds);
-    word = replaced(std::move(word), "{seed}", std::to_string(task.seeds.front()));
-    word = replaced(std::move(word), "{samples}", std::to_string(task.samples));
-    words.push_back(replaced(std::move(word), "{out}", out));
+    boost::replace_all(word, "{seeds}", seeds);
+    boost::replace_all(word, "{seed}", std::to_string(task.seeds.front()));
+    boost::replace_all(word, "{samples}", std::to_string(task.samples));
+    boost::replace_all(word, "{out}", out);
+    words.push_back(std::move(word));
   }
   return words;
 }
