@@ -315,7 +315,7 @@ void PictureView::read(const PictureFile& file, std::span<float> texels, std::si
 namespace {
 
 void require_inside(const PictureFile& file, const PictureWindow& window,
-                    const PictureWindow& whole, const char* what) {
+                    const PictureWindow& whole) {
   const auto ends_inside = [](std::int64_t begin, std::size_t size, std::int64_t from,
                               std::size_t of) {
     return begin >= from &&
@@ -326,9 +326,23 @@ void require_inside(const PictureFile& file, const PictureWindow& window,
     return;
   }
   refuse(file.name(), "its " + size_text(whole) + " pixels at x " + std::to_string(whole.left) +
-                          ", y " + std::to_string(whole.top) + " do not cover the " + what +
-                          " of " + size_text(window) + " at x " + std::to_string(window.left) +
-                          ", y " + std::to_string(window.top));
+                          ", y " + std::to_string(whole.top) + " do not cover the window of " +
+                          size_text(window) + " at x " + std::to_string(window.left) + ", y " +
+                          std::to_string(window.top));
+}
+
+/// The pixels of a part in which one of the numbers is such.
+std::vector<bool> pixels_with(const PictureFile& file, const PictureView& part,
+                              bool (*is_such)(float)) {
+  require_inside(file, part.window, part.whole);
+  const ImageShape shape = part.shape();
+  std::vector<float> texels(shape.elements());
+  part.read(file, texels);
+  std::vector<bool> found(shape.pixels());
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    if (is_such(texels[i])) found[i / shape.components.size()] = true;
+  }
+  return found;
 }
 
 /// Leaves out where all colours of the mask are 0. It covers the window, or has its size.
@@ -341,14 +355,7 @@ void apply_mask(const std::string& name, PictureView& view) {
   if (mask.whole.width == view.window.width && mask.whole.height == view.window.height) {
     mask.window = mask.whole;
   }
-  require_inside(*file, mask.window, mask.whole, "window");
-  std::vector<float> texels(mask.shape().elements());
-  mask.read(*file, texels);
-  const std::size_t components = mask.channels.components.size();
-  std::vector<bool> lit(view.left_out.size());
-  for (std::size_t i = 0; i < texels.size(); ++i) {
-    if (texels[i] != 0) lit[i / components] = true;
-  }
+  const std::vector<bool> lit = pixels_with(*file, mask, [](float x) { return x != 0; });
   for (std::size_t i = 0; i < lit.size(); ++i) view.left_out[i] = view.left_out[i] || !lit[i];
 }
 
@@ -359,13 +366,8 @@ void apply_finite(const std::string& patterns, const std::string& chosen, Pictur
       const std::unique_ptr<const PictureFile> file = open_picture(name);
       PictureView all{.window = view.window, .channels = choose_channels(*file, chosen)};
       all.whole = file->window(all.channels.names);
-      require_inside(*file, all.window, all.whole, "window");
-      std::vector<float> texels(all.shape().elements());
-      all.read(*file, texels);
-      const std::size_t components = all.channels.components.size();
-      for (std::size_t i = 0; i < texels.size(); ++i) {
-        if (!std::isfinite(texels[i])) view.left_out[i / components] = true;
-      }
+      const auto bad = pixels_with(*file, all, [](float x) { return !std::isfinite(x); });
+      for (std::size_t i = 0; i < bad.size(); ++i) view.left_out[i] = view.left_out[i] || bad[i];
     }
   }
 }
@@ -378,7 +380,7 @@ PictureView view_of(const PictureFile& file, const std::string& patterns,
   view.whole = file.window(view.channels.names);
   view.of_files = file.channel(view.channels.names[0]).rounding;
   view.window = treatment.crop.value_or(view.whole);
-  require_inside(file, view.window, view.whole, "window");
+  require_inside(file, view.window, view.whole);
   if (treatment.mask.empty() && treatment.finite.empty()) return view;
   view.left_out.resize(view.window.width * view.window.height);
   if (!treatment.mask.empty()) apply_mask(treatment.mask, view);
