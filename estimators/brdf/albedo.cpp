@@ -110,8 +110,7 @@ std::vector<ParameterInformation> incident_parameters() {
 
 std::shared_ptr<const Sampler> published_sampler(SharedBrdf brdf) {
   const auto point_of = [brdf](Stream& random) {
-    const double u = random.uniform();
-    const Vector3 out = brdf->reflected(brdf->half_vector(u, random.uniform_open()));
+    const Vector3 out = published_direction(*brdf, random);
     return out.z > 0 ? std::optional(point(out)) : std::nullopt;
   };
   return brdf_sampler(brdf, point_of, [brdf](const Point& p) { return brdf->density(vector(p)); });
@@ -137,9 +136,8 @@ ParameterInformation sampler_parameter() {
 }
 
 // The directional albedo of the Ashikhmin-Shirley reflectance (specular part): E = the integral of
-// f cos_o over the hemisphere, by the half vector (render/brdf.h). Like
-// Ward's, the published algorithm follows its own p(w_o); directions below the horizon count as
-// zero.
+// f cos_o over the hemisphere, by the half vector (render/brdf.h). Like Ward's, the published
+// algorithm follows its own p(w_o); directions below the horizon count as zero.
 
 std::vector<ParameterInformation> ashikhmin_shirley_parameters() {
   return joined(
@@ -152,9 +150,9 @@ std::vector<ParameterInformation> ashikhmin_shirley_parameters() {
 
 // The directional albedo of Ward's reflectance: E = the integral of f cos_o over the hemisphere.
 //
-// Directions are drawn by the half vector (render/brdf.h). The published algorithm
-// follows its own density p(w_o), so the weight f cos / p is not constant. Directions below the
-// horizon count as zero: so the mean of the weights is the albedo.
+// Directions are drawn by the half vector (render/brdf.h). The published algorithm follows its own
+// density p(w_o), so the weight f cos / p is not constant. Directions below the horizon count as
+// zero: so the mean of the weights is the albedo.
 
 std::vector<ParameterInformation> ward_parameters() {
   return joined({number_parameter("alpha_x", "roughness along x", "0.15", {0.02, 1}),
@@ -181,9 +179,7 @@ std::vector<Entry> brdf_albedo() {
             "samplers propose cos_o = xi^2 and are normalised by quadrature.",
         .parameters = joined(brdf::ashikhmin_shirley_parameters(), {brdf::sampler_parameter()})},
        [](Parameters& given) {
-         const auto brdf =
-             std::make_shared<render::AshikhminShirley>(brdf::ashikhmin_shirley(given));
-         return brdf::prepare_albedo(brdf, given);
+         return brdf::prepare_albedo(brdf::ashikhmin_shirley(given), given);
        }},
       {{.name = "brdf/ward",
         .summary = "Directional albedo of Ward's anisotropic reflectance.",
@@ -198,10 +194,7 @@ std::vector<Entry> brdf_albedo() {
             "The rejection samplers propose cos_o = xi^2, because f is unbounded where w_o "
             "grazes the surface, and are normalised by quadrature.",
         .parameters = joined(brdf::ward_parameters(), {brdf::sampler_parameter()})},
-       [](Parameters& given) {
-         const auto ward = std::make_shared<render::Ward>(brdf::ward(given));
-         return brdf::prepare_albedo(ward, given);
-       }}};
+       [](Parameters& given) { return brdf::prepare_albedo(brdf::ward(given), given); }}};
 }
 
 }  // namespace assay::plugins

@@ -14,8 +14,14 @@ namespace assay::brdf {
 
 using SharedBrdf = std::shared_ptr<const render::HalfVectorBrdf>;
 
-/// The sampler that the reflectance's paper gives, with p(w_o); directions below the horizon are
-/// invalid draws of weight 0. evaluate = f cos.
+/// A direction by the sampler that the reflectance's paper gives; below the horizon none came out.
+inline render::Vector3 published_direction(const render::HalfVectorBrdf& brdf, Stream& random) {
+  const double u = random.uniform();
+  return brdf.reflected(brdf.half_vector(u, random.uniform_open()));
+}
+
+/// That sampler, with p(w_o); directions below the horizon are invalid draws of weight 0. evaluate
+/// = f cos.
 std::shared_ptr<const Sampler> published_sampler(SharedBrdf);
 
 /// Estimates the integral of f cos over the upper hemisphere, whose value stands in `channel`, by
@@ -32,26 +38,28 @@ std::vector<ParameterInformation> ashikhmin_shirley_parameters();
 
 /// Reads them; `Brdf` is constructible as AshikhminShirley is.
 template <class Brdf = render::AshikhminShirley>
-Brdf ashikhmin_shirley(Parameters& parameters) {
+std::shared_ptr<const Brdf> ashikhmin_shirley(Parameters& parameters) {
   const double u = parameters.number("nu");
   const double v = parameters.number("nv");
   const double reflectance = parameters.number("reflectance");
   const double theta = parameters.number("theta_i");
   const double phi = parameters.number("phi_i");
-  return Brdf({.exponents = {.u = u, .v = v}, .reflectance = reflectance},
-              {.theta = theta, .phi = phi});
+  return std::make_shared<Brdf>(
+      typename Brdf::Material{.exponents = {.u = u, .v = v}, .reflectance = reflectance},
+      render::Angles{.theta = theta, .phi = phi});
 }
 
 /// alpha_x, alpha_y, theta_i, phi_i.
 std::vector<ParameterInformation> ward_parameters();
 /// Reads them; `Brdf` is constructible as Ward is.
 template <class Brdf = render::Ward>
-Brdf ward(Parameters& parameters) {
+std::shared_ptr<const Brdf> ward(Parameters& parameters) {
   const double x = parameters.number("alpha_x");
   const double y = parameters.number("alpha_y");
   const double theta = parameters.number("theta_i");
   const double phi = parameters.number("phi_i");
-  return Brdf({.x = x, .y = y}, {.theta = theta, .phi = phi});
+  return std::make_shared<Brdf>(render::Roughness{.x = x, .y = y},
+                                render::Angles{.theta = theta, .phi = phi});
 }
 
 }  // namespace assay::brdf

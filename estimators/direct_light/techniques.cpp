@@ -37,29 +37,22 @@ class Lambert final : public Reflectance {
   double albedo_;
 };
 
-template <class Brdf>
 class Glossy final : public Reflectance {
  public:
-  explicit Glossy(Brdf brdf) : brdf_(std::move(brdf)) {}
+  explicit Glossy(brdf::SharedBrdf brdf) : brdf_(std::move(brdf)) {}
 
-  double value(const Vector3& w) const override { return brdf_.value(w); }
+  double value(const Vector3& w) const override { return brdf_->value(w); }
   Vector3 sample(Stream& random) const override {
-    const double u = random.uniform();
-    return brdf_.reflected(brdf_.half_vector(u, random.uniform_open()));
+    return brdf::published_direction(*brdf_, random);
   }
-  double density(const Vector3& w) const override { return brdf_.density(w); }
-  double weight_bound() const override { return brdf_.weight_bound(); }
+  double density(const Vector3& w) const override { return brdf_->density(w); }
+  double weight_bound() const override { return brdf_->weight_bound(); }
   // The lobe of w is twice as wide as that of the half vector.
-  double width() const override { return 2 * brdf_.width(); }
+  double width() const override { return 2 * brdf_->width(); }
 
  private:
-  Brdf brdf_;
+  brdf::SharedBrdf brdf_;
 };
-
-template <class Brdf>
-SharedReflectance glossy(Brdf brdf) {
-  return std::make_shared<Glossy<Brdf>>(std::move(brdf));
-}
 
 }  // namespace
 
@@ -84,11 +77,11 @@ SharedReflectance read_reflectance(Parameters& given) {
   };
   if (kind == "ward") {
     Parameters ward = parameters(brdf::ward_parameters());
-    return glossy(brdf::ward(ward));
+    return std::make_shared<Glossy>(brdf::ward(ward));
   }
   if (kind == "ashikhmin_shirley") {
     Parameters ashikhmin_shirley = parameters(brdf::ashikhmin_shirley_parameters());
-    return glossy(brdf::ashikhmin_shirley(ashikhmin_shirley));
+    return std::make_shared<Glossy>(brdf::ashikhmin_shirley(ashikhmin_shirley));
   }
   Parameters lambert =
       parameters({number_parameter("albedo", "reflected part of the light", "", {0, 1})});

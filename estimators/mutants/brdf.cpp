@@ -156,7 +156,7 @@ struct OfWard {
   static constexpr const char* name = "brdf/ward";
   template <class Brdf>
   static auto read(Parameters& given) {
-    return std::make_shared<Brdf>(brdf::ward<Brdf>(given));
+    return brdf::ward<Brdf>(given);
   }
 };
 
@@ -165,7 +165,7 @@ struct OfAshikhminShirley {
   static constexpr const char* name = "brdf/ashikhmin_shirley";
   template <class Brdf>
   static auto read(Parameters& given) {
-    return std::make_shared<Brdf>(brdf::ashikhmin_shirley<Brdf>(given));
+    return brdf::ashikhmin_shirley<Brdf>(given);
   }
 };
 
