@@ -90,7 +90,7 @@ std::vector<Entry> correlated_area() {
            "nothing stood in the way: g/p = A L cos+(receiver) cos+(light) / r^2 at points uniform "
            "on its area A, f = g [visible]; J is Lambert's formula for the polygon clipped at the "
            "receiver's horizon. One shadow ray a primary, none where a cosine is zero.",
-       .parameters = luminaire::information("", "", "").parameters,
+       .parameters = {luminaire::scene_parameter()},
        .read = correlated::read_area_pairs});
 }
 

@@ -5,7 +5,7 @@
 namespace assay::direct_light {
 
 std::vector<ParameterInformation> common_parameters() {
-  return joined(luminaire::information("", "", "").parameters, {brdf_parameter()});
+  return {luminaire::scene_parameter(), brdf_parameter()};
 }
 
 std::vector<ParameterInformation> parameters_with(std::vector<ParameterInformation> more) {

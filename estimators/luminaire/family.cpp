@@ -6,13 +6,6 @@ namespace assay::luminaire {
 
 namespace {
 
-const ParameterInformation scene_parameter = structure_parameter(
-    "scene",
-    "a built-in scene (triangle, cornell_triangle, rectangle), or receiver, light and "
-    "occluders: `{receiver: {position: [0, 0, 0], normal: [0, 0, 1]}, light: {obj: lamp.obj}, "
-    "occluders: [{obj: chair.obj}]}`",
-    "triangle");
-
 std::optional<double> variance(double mean, const std::optional<double>& second_moment) {
   if (!second_moment) return {};
   const double difference = *second_moment - mean * mean;
@@ -23,11 +16,20 @@ std::optional<double> variance(double mean, const std::optional<double>& second_
 
 }  // namespace
 
+ParameterInformation scene_parameter() {
+  return structure_parameter(
+      "scene",
+      "a built-in scene (triangle, cornell_triangle, rectangle), or receiver, light and "
+      "occluders: `{receiver: {position: [0, 0, 0], normal: [0, 0, 1]}, light: {obj: lamp.obj}, "
+      "occluders: [{obj: chair.obj}]}`",
+      "triangle");
+}
+
 Information information(std::string name, std::string summary, std::string description) {
   return {.name = std::move(name),
           .summary = std::move(summary),
           .description = std::move(description),
-          .parameters = {scene_parameter}};
+          .parameters = {scene_parameter()}};
 }
 
 SharedSetting read_setting(Parameters& parameters) {

@@ -20,7 +20,8 @@ namespace assay::luminaire {
 
 using SharedSetting = std::shared_ptr<const Setting>;
 
-/// Static information with the parameter `scene`, common to the family.
+/// The parameter `scene`, common to the family, and static information with it.
+ParameterInformation scene_parameter();
 Information information(std::string name, std::string summary, std::string description);
 
 SharedSetting read_setting(Parameters& parameters);

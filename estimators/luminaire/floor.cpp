@@ -28,13 +28,12 @@ double highest(const Setting& setting) {
 }  // namespace
 
 std::vector<ParameterInformation> floor_parameters() {
-  return joined(
-      information("", "", "").parameters,
-      {count_parameter("width", "columns of receivers", "32", {2, 1024}),
-       count_parameter("height", "rows of receivers", "32", {2, 1024}),
-       number_parameter("size", "length of the plane's rectangle along the width", "4", above(0)),
-       boolean_parameter("shared", "whether all receivers look at the same points of the luminaire",
-                         false)});
+  return {
+      scene_parameter(), count_parameter("width", "columns of receivers", "32", {2, 1024}),
+      count_parameter("height", "rows of receivers", "32", {2, 1024}),
+      number_parameter("size", "length of the plane's rectangle along the width", "4", above(0)),
+      boolean_parameter("shared", "whether all receivers look at the same points of the luminaire",
+                        false)};
 }
 
 Floor read_floor(Parameters& parameters) {
