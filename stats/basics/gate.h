@@ -18,9 +18,12 @@ struct Gate {
   GateState state = GateState::green;
 };
 
-inline GateState state_of(const Gate& gate, double green_up_to) {
-  if (gate.value <= green_up_to) return GateState::green;
-  return gate.low > gate.limit ? GateState::red : GateState::amber;
+// The gate with its state.
+inline Gate judged(Gate gate, double green_up_to) {
+  gate.state = gate.value <= green_up_to ? GateState::green
+               : gate.low > gate.limit   ? GateState::red
+                                         : GateState::amber;
+  return gate;
 }
 
 }  // namespace assay::stats

@@ -100,10 +100,9 @@ SkewnessPart skewness_part(const Moments& x, double variance_share, double cube)
 Gate skewness_gate_of(SkewnessPart first, SkewnessPart second, double cube) {
   const double size = std::abs(first.value - second.value);
   const double low = std::max(0.0, size - std::hypot(first.allowance, second.allowance));
-  Gate gate{"level factor by skewness", std::exp(std::min(size * cube, 700.0)),
-            std::exp(std::min(low * cube, 700.0)), red_factor, GateState::green};
-  gate.state = state_of(gate, green_factor);
-  return gate;
+  return judged({"level factor by skewness", std::exp(std::min(size * cube, 700.0)),
+                 std::exp(std::min(low * cube, 700.0)), red_factor},
+                green_factor);
 }
 
 double checked_cube(double critical_value) {
@@ -270,9 +269,8 @@ Gate dominance_gate(const Moments& x) {
     return deviation / (n - 1) * deviation;
   };
   const double limit = std::max(red_share, critical(false_red));
-  Gate gate{"share of one observation", value, value, limit, GateState::green};
-  gate.state = state_of(gate, std::max(green_share, critical(0.05)));
-  return gate;
+  return judged({"share of one observation", value, value, limit},
+                std::max(green_share, critical(0.05)));
 }
 
 Gate effective_observations_gate(std::span<const Moments> samples) {
@@ -300,10 +298,8 @@ Gate kurtosis_gate(const Moments& x) {
   const double value = x.kurtosis() - 3;
   const double allowance =
       normal_kurtosis_quantile(static_cast<double>(x.count)) * kurtosis_widening(kurtosis_limit);
-  Gate gate{"excess kurtosis", value, std::max(value - allowance, -2.0), kurtosis_limit,
-            GateState::green};
-  gate.state = state_of(gate, kurtosis_limit);
-  return gate;
+  return judged({"excess kurtosis", value, std::max(value - allowance, -2.0), kurtosis_limit},
+                kurtosis_limit);
 }
 
 double kurtosis_upper_limit(const Moments& x) {
@@ -322,10 +318,8 @@ Gate quantisation_gate(std::span<const double> sorted, double level) {
   check::finite({"quantisation_gate", "largest value"}, sorted.back());
   const double rejected = std::sqrt(std::log(2 / level) / (2 * static_cast<double>(sorted.size())));
   const double ties = is_lattice(sorted) ? tie_probability(sorted) : 0;
-  Gate gate{.name = "rounding", .value = ties / (2 * rejected), .limit = rounding_limit};
-  gate.low = gate.value;
-  gate.state = state_of(gate, rounding_limit);
-  return gate;
+  const double value = ties / (2 * rejected);
+  return judged({"rounding", value, value, rounding_limit}, rounding_limit);
 }
 
 Gate averages_gate(std::span<const double> values, std::span<const double> means,
@@ -346,8 +340,7 @@ Gate averages_gate(std::span<const double> values, std::span<const double> means
   for (double& score : scores) score *= score;
   gate.value = std::max(gate.value, deviation_of_sum(scores, groups));
   gate.low = gate.value;
-  gate.state = state_of(gate, limit(false_amber_of_averages));
-  return gate;
+  return judged(gate, limit(false_amber_of_averages));
 }
 
 }  // namespace assay::stats

@@ -140,10 +140,11 @@ Gate lag_one_gate(std::span<const double> values) {
 
 Gate batch_gate(std::span<const double> values) {
   const BatchRatio batches = batch_ratio("batch_gate", values, default_batch(values.size()));
-  Gate gate{.name = "variance of batch means", .value = batches.value, .low = batches.value};
-  gate.limit = batches.quantile(false_red_of_dependence);
-  gate.state = state_of(gate, batches.quantile(false_amber));
-  return gate;
+  return judged({.name = "variance of batch means",
+                 .value = batches.value,
+                 .low = batches.value,
+                 .limit = batches.quantile(false_red_of_dependence)},
+                batches.quantile(false_amber));
 }
 
 Gate lagged_gate(std::span<const double> values) {

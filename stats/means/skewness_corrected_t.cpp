@@ -102,12 +102,11 @@ constexpr const char* of_gate = "residual_skewness_gate";
 
 Gate gate_of(const Combination& means, double critical_value) {
   check::positive({of_gate, "critical_value"}, critical_value);
-  Gate gate{.name = "level factor after correction",
-            .value = level_factor(means, critical_value, excess_or_zero),
-            .low = level_factor(means, critical_value, lower_excess),
-            .limit = 2};
-  gate.state = state_of(gate, 1.25);
-  return gate;
+  return judged({.name = "level factor after correction",
+                 .value = level_factor(means, critical_value, excess_or_zero),
+                 .low = level_factor(means, critical_value, lower_excess),
+                 .limit = 2},
+                1.25);
 }
 
 }  // namespace
