@@ -176,11 +176,8 @@ ChiSquareFit chi_square_fit(const CellCounts& counts, FitOptions options) {
   const bool two_ways = fit.impossible > 0;
   const double impossible = impossible_tails(fit, 0).upper;
   const double log_p = two_ways ? std::min(tails.upper, impossible) + std::log(2.0) : tails.upper;
-  fit.test = {statistic,
-              {"chi-square", {fit.degrees_of_freedom}},
-              tails.lower,
-              special::clamp_log(log_p),
-              Exactness::asymptotic};
+  fit.test = by_tails(statistic, {"chi-square", {fit.degrees_of_freedom}},
+                      {tails.lower, special::clamp_log(log_p)}, Exactness::asymptotic);
   fit.effect = effect_of(fit);
   return fit;
 }
@@ -188,13 +185,11 @@ ChiSquareFit chi_square_fit(const CellCounts& counts, FitOptions options) {
 TestResult chi_square_fit_effect(const ChiSquareFit& fit, double null_effect) {
   check::non_negative({"chi_square_fit_effect", "null_effect"}, null_effect);
   const CellEffect cells = cell_effect(fit);
-  const LogTails tails = effect_tails(fit, cells, null_effect);
   const double n = static_cast<double>(fit.observations);
-  return {cells.statistic(null_effect),
-          {"noncentral-chi-square", {fit.degrees_of_freedom, n * null_effect * null_effect}},
-          tails.lower,
-          tails.upper,
-          Exactness::asymptotic};
+  return by_tails(
+      cells.statistic(null_effect),
+      {"noncentral-chi-square", {fit.degrees_of_freedom, n * null_effect * null_effect}},
+      effect_tails(fit, cells, null_effect), Exactness::asymptotic);
 }
 
 Interval chi_square_fit_interval(const ChiSquareFit& fit, double confidence) {

@@ -79,12 +79,9 @@ ChiSquareTwoSample chi_square_two_sample(const TwoSampleCounts& counts) {
   result.statistic = {.value = sum,
                       .degrees_of_freedom = static_cast<double>(result.cells.size() - 1),
                       .observations = m * n / (m + n)};
-  const LogTails tails = chi_square_tails(sum, result.statistic.degrees_of_freedom);
-  result.test = {sum,
-                 {"chi-square", {result.statistic.degrees_of_freedom}},
-                 tails.lower,
-                 tails.upper,
-                 Exactness::asymptotic};
+  const double degrees = result.statistic.degrees_of_freedom;
+  result.test = by_tails(sum, {"chi-square", {degrees}}, chi_square_tails(sum, degrees),
+                         Exactness::asymptotic);
   return result;
 }
 
@@ -94,13 +91,10 @@ double ChiSquareStatistic::effect() const {
 
 TestResult chi_square_effect(const ChiSquareStatistic& statistic, double null_effect) {
   check::non_negative({"chi_square_effect", "null_effect"}, null_effect);
-  const LogTails tails = effect_tails(statistic, null_effect);
-  return {statistic.value,
-          {"noncentral-chi-square",
-           {statistic.degrees_of_freedom, statistic.observations * null_effect * null_effect}},
-          tails.lower,
-          tails.upper,
-          Exactness::asymptotic};
+  const double noncentrality = statistic.observations * null_effect * null_effect;
+  return by_tails(statistic.value,
+                  {"noncentral-chi-square", {statistic.degrees_of_freedom, noncentrality}},
+                  effect_tails(statistic, null_effect), Exactness::asymptotic);
 }
 
 Interval chi_square_effect_interval(const ChiSquareStatistic& statistic, double confidence) {

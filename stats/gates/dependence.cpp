@@ -22,8 +22,7 @@ struct NormalEstimate {
 // Null hypothesis: theta = 0 (<= 0, >= 0), by z = value / standard_error. Asymptotic.
 TestResult normal_test(NormalEstimate estimate) {
   const double z = estimate.value / estimate.standard_error;
-  const LogTails tails = normal_tails(z);
-  return {z, {"normal", {}}, tails.lower, tails.upper, Exactness::asymptotic};
+  return by_tails(z, {"normal", {}}, normal_tails(z), Exactness::asymptotic);
 }
 
 class Sequence {

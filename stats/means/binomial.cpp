@@ -98,12 +98,10 @@ double log_p_upper(const TwoValued& x, const TwoValued& y, Contrast null_value) 
 TestResult binomial(Successes observed, double null_probability) {
   check_counts("binomial", observed);
   check::unit({"binomial", "null_probability"}, null_probability);
-  const LogTails tails = binomial_tails(observed.successes, {observed.trials, null_probability});
-  return {static_cast<double>(observed.successes),
-          {"binomial", {static_cast<double>(observed.trials), null_probability}},
-          tails.lower,
-          tails.upper,
-          Exactness::exact};
+  return by_tails(static_cast<double>(observed.successes),
+                  {"binomial", {static_cast<double>(observed.trials), null_probability}},
+                  binomial_tails(observed.successes, {observed.trials, null_probability}),
+                  Exactness::exact);
 }
 
 Interval clopper_pearson(Successes observed, double confidence) {

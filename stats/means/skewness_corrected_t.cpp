@@ -71,8 +71,8 @@ Combination combination(const char* caller, const Moments& x, const Moments& y, 
 TestResult result_of(const char* caller, double difference, const Combination& means) {
   const double h = transformed(difference / means.standard_error(), means.a());
   check::finite({caller, "transformed statistic"}, h);
-  const LogTails tails = student_t_tails(h, means.degrees);
-  return {h, {"student-t", {means.degrees}}, tails.lower, tails.upper, Exactness::asymptotic};
+  return by_tails(h, {"student-t", {means.degrees}}, student_t_tails(h, means.degrees),
+                  Exactness::asymptotic);
 }
 
 // ---- The remaining error

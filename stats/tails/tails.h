@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "stats/tails/test_result.h"
 
@@ -17,6 +18,12 @@ struct LogTails {
 
 // ln min(1, 2 min(lower, upper)).
 double log_p_two_sided(LogTails tails);
+
+// The result of a statistic whose law has these tails there.
+inline TestResult by_tails(double statistic, Distribution law, LogTails tails,
+                           Exactness exactness) {
+  return {statistic, std::move(law), tails.lower, tails.upper, exactness};
+}
 
 enum class Tail { lower, upper };
 

@@ -33,8 +33,8 @@ TestResult chi_square_variance(const Moments& x, double null_variance) {
   check::positive({"chi_square_variance", "null_variance"}, null_variance);
   const double degrees = static_cast<double>(x.count - 1);
   const double statistic = x.m2 / null_variance;
-  const LogTails tails = chi_square_tails(statistic, degrees);
-  return {statistic, {"chi-square", {degrees}}, tails.lower, tails.upper, Exactness::exact};
+  return by_tails(statistic, {"chi-square", {degrees}}, chi_square_tails(statistic, degrees),
+                  Exactness::exact);
 }
 
 Interval chi_square_variance_interval(const Moments& x, double confidence) {
@@ -51,12 +51,8 @@ TestResult f_ratio(const Moments& x, const Moments& y, double null_ratio) {
   check::positive({"f_ratio", "null_ratio"}, null_ratio);
   const FDegrees degrees = degrees_of(x, y);
   const double f = x.variance() / y.variance() / null_ratio;
-  const LogTails tails = f_tails(f, degrees);
-  return {f,
-          {"F", {degrees.numerator, degrees.denominator}},
-          tails.lower,
-          tails.upper,
-          Exactness::exact};
+  return by_tails(f, {"F", {degrees.numerator, degrees.denominator}}, f_tails(f, degrees),
+                  Exactness::exact);
 }
 
 Interval f_ratio_interval(const Moments& x, const Moments& y, double confidence) {
