@@ -15,7 +15,16 @@ using namespace paths;
 // Replacements for parts of the roulette.
 
 struct TerminalNotSubtracted : Roulette {
-  Rgb on_going_on(const Rgb&, double) const { return {}; }
+  Rgb on_going_on(const Rgb&, double, const Surface&, const Vertex&) const { return {}; }
+};
+
+// The terminal value is raised to what the path finds when it goes on, before that is taken off.
+struct TerminalFromHindsight : Roulette {
+  Rgb on_going_on(const Rgb& terminal, double survival, const Surface& from,
+                  const Vertex& next) const {
+    const Rgb found = next.surface ? from.albedo() * next.surface->emission : Rgb{};
+    return Roulette::on_going_on(brighter(terminal, found), survival, from, next);
+  }
 };
 
 struct ThroughputNotDivided : Roulette {
@@ -96,32 +105,6 @@ class EightReflections {
   mutable int reflections_ = 0;
 };
 
-// A path whose terminal value is raised to what it finds when it goes on, before that is taken off.
-template <class World>
-void trace_hindsight(const World& world, const Roulette& roulette, Stream& random, Tally& tally,
-                     Cost& cost) {
-  Rgb throughput = Rgb::grey(1);
-  Vertex v = world.camera(cost);
-  for (std::size_t bounce = 0; v.surface; ++bounce) {
-    tally.count(bounce);
-    tally.value += throughput * v.surface->emission;
-    const Surface& surface = *v.surface;
-    const Survival s = roulette.survival(throughput, surface);
-    const Rgb terminal = roulette.terminal(v);
-    const double u = random.uniform();
-    if (u >= s.total()) {
-      tally.value += throughput * roulette.on_end(terminal);
-      return;
-    }
-    const bool mirror = u >= s.diffuse;
-    v = mirror ? world.mirrored(v, cost) : world.reflected(v, random, cost);
-    const Rgb found = v.surface ? surface.albedo() * v.surface->emission : Rgb{};
-    tally.value += throughput * roulette.on_going_on(brighter(terminal, found), s.total());
-    throughput = mirror ? roulette.continued(throughput, surface.mirror, s.mirror)
-                        : roulette.continued(throughput, surface.diffuse, s.diffuse);
-  }
-}
-
 // Entries.
 
 // Paths of which only the means are known.
@@ -184,9 +167,7 @@ std::shared_ptr<const Setup> depth_limit(const Scene& scene, const RoulettePlan&
 
 std::shared_ptr<const Setup> from_hindsight(const Scene& scene, const RoulettePlan& plan,
                                             Parameters&) {
-  return broken_paths(scene, [sound = plan.roulette(scene)](const auto& world, auto&... run) {
-    trace_hindsight(world, sound, run...);
-  });
+  return paths_by(scene, TerminalFromHindsight{plan.roulette(scene)}, Direct::hit);
 }
 
 // Twice counted: e as if light were learnt of by hits, whatever the way it is learnt of.

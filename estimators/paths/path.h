@@ -70,8 +70,9 @@ class Roulette {
   }
 
   Rgb terminal(const Vertex& v) const { return terminal_.empty() ? Rgb{} : terminal_[v.patch]; }
-  Rgb on_end(const Rgb& terminal) const { return terminal; }
-  Rgb on_going_on(const Rgb& terminal, double survival) const {
+  /// What a path adds that goes on `from` a surface to the next vertex.
+  Rgb on_going_on(const Rgb& terminal, double survival, const Surface& /*from*/,
+                  const Vertex& /*next*/) const {
     return (survival - 1) / survival * terminal;
   }
   /// The throughput after a reflection that was chosen with this probability.
@@ -126,18 +127,15 @@ void trace(const World& world, const Roulette& roulette, Direct direct, Stream& 
     const Rgb terminal = roulette.terminal(v);
     const double u = random.uniform();
     if (u >= s.total()) {
-      tally.value += throughput * roulette.on_end(terminal);
+      tally.value += throughput * terminal;
       return;
     }
-    tally.value += throughput * roulette.on_going_on(terminal, s.total());
-    sees_emission = u >= s.diffuse;
-    if (sees_emission) {
-      throughput = roulette.continued(throughput, surface.mirror, s.mirror);
-      v = world.mirrored(v, cost);
-    } else {
-      throughput = roulette.continued(throughput, surface.diffuse, s.diffuse);
-      v = world.reflected(v, random, cost);
-    }
+    const bool mirror = u >= s.diffuse;
+    sees_emission = mirror;
+    v = mirror ? world.mirrored(v, cost) : world.reflected(v, random, cost);
+    tally.value += throughput * roulette.on_going_on(terminal, s.total(), surface, v);
+    throughput = mirror ? roulette.continued(throughput, surface.mirror, s.mirror)
+                        : roulette.continued(throughput, surface.diffuse, s.diffuse);
   }
 }
 
