@@ -56,20 +56,12 @@ bool Children::is_to_draw(const Question& wanted) {
   return known.being_drawn;
 }
 
-void Children::keep(const FirstObservations& drawn, double seconds) {
+/// Ends the drawing of first observations. If they are not known, the next one who comes draws
+/// them.
+void Children::settle(std::uint64_t primaries, Known known) {
   {
     const std::scoped_lock lock(mutex_);
-    known_.at(drawn.question.primaries) = {
-        .first = drawn, .complete = true, .seconds = seconds, .usual = drawn.usual()};
-  }
-  drawn_.notify_all();
-}
-
-/// Leaves the first observations to the next one who comes.
-void Children::leave_undrawn(const Question& wanted) {
-  {
-    const std::scoped_lock lock(mutex_);
-    known_.at(wanted.primaries).being_drawn = false;
+    known_.at(primaries) = std::move(known);
   }
   drawn_.notify_all();
 }
@@ -118,11 +110,14 @@ bool Children::examine_first(Respondent& dialogue, const Question& wanted) {
   try {
     runs = draw_ahead(dialogue, mine);
   } catch (...) {
-    leave_undrawn(wanted);
+    settle(wanted.primaries, {});
     throw;
   }
   const auto count = static_cast<double>(std::max<std::size_t>(mine.count(), 1));
-  keep(mine, (spent() - begin) / count);
+  settle(wanted.primaries, {.first = mine,
+                            .complete = true,
+                            .seconds = (spent() - begin) / count,
+                            .usual = mine.usual()});
   if (!runs) return false;
   const auto ask = [&](const Question& one) { return dialogue.ask(one); };
   refuse_unless_empty(why_not_repeated(ask, mine, name_));

@@ -76,8 +76,7 @@ class Children {
 
   bool is_to_draw(const Question& wanted);
   bool draw_ahead(Respondent& dialogue, FirstObservations& mine);
-  void keep(const FirstObservations& drawn, double seconds);
-  void leave_undrawn(const Question& wanted);
+  void settle(std::uint64_t primaries, Known known);
   void refuse_unless_empty(const std::string& why);
   bool examine_first(Respondent& dialogue, const Question& wanted);
   void examine_further(Respondent& dialogue, const Question& wanted);
