@@ -14,41 +14,11 @@
 
 namespace assay::render {
 
-[[noreturn]] void embree_failed(const char* message);
+namespace {
 
-/// One device for the process: it pins the instruction set. Its own `threads` setting must stay
-/// away: Embree would limit oneTBB to that number in the whole process for as long as the device
-/// lives.
-class Device {
- public:
-  Device();
-  ~Device() { rtcReleaseDevice(handle_); }
-  Device(const Device&) = delete;
-  Device& operator=(const Device&) = delete;
-
-  static const std::shared_ptr<const Device>& shared();
-
-  RTCDevice handle() const { return handle_; }
-  const std::string& isa() const { return isa_; }
-
-  /// Throws what Embree has to complain of; it keeps the first error of each thread until asked.
-  void check() const;
-
-  /// An empty scene that keeps the device alive. The scene is then built on the calling thread, so
-  /// that the tree does not depend on the number of processors.
-  static std::shared_ptr<RTCSceneTy> new_scene();
-  static void commit(RTCScene scene);
-
- private:
-  std::string isa_;
-  RTCDevice handle_ = nullptr;
-};
-
-void embree_failed(const char* message) {
+[[noreturn]] void embree_failed(const char* message) {
   throw std::runtime_error(std::string("Embree: ") + message);
 }
-
-namespace {
 
 std::string best_isa() {
 #ifdef __x86_64__
@@ -58,55 +28,69 @@ std::string best_isa() {
 #endif
 }
 
-}  // namespace
-
-Device::Device() : isa_(best_isa()) {
-  const std::string settings = "isa=" + isa_ + ",set_affinity=0";
-  handle_ = rtcNewDevice(settings.c_str());
-  if (!handle_) embree_failed("no device could be made");
-}
-
-const std::shared_ptr<const Device>& Device::shared() {
-  static const std::shared_ptr<const Device> device = std::make_shared<const Device>();
-  return device;
-}
-
-void Device::check() const {
-  switch (rtcGetDeviceError(handle_)) {
-    case RTC_ERROR_NONE:
-      return;
-    case RTC_ERROR_INVALID_ARGUMENT:
-      embree_failed("invalid argument");
-    case RTC_ERROR_INVALID_OPERATION:
-      embree_failed("invalid operation");
-    case RTC_ERROR_OUT_OF_MEMORY:
-      embree_failed("out of memory");
-    case RTC_ERROR_UNSUPPORTED_CPU:
-      embree_failed("this processor is not supported");
-    default:
-      embree_failed("unknown error");
+/// One device for the process: it pins the instruction set. Its own `threads` setting must stay
+/// away: Embree would limit oneTBB to that number in the whole process for as long as the device
+/// lives.
+class Device {
+ public:
+  Device() : isa_(best_isa()) {
+    const std::string settings = "isa=" + isa_ + ",set_affinity=0";
+    handle_ = rtcNewDevice(settings.c_str());
+    if (!handle_) embree_failed("no device could be made");
   }
-}
+  ~Device() { rtcReleaseDevice(handle_); }
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
 
-std::shared_ptr<RTCSceneTy> Device::new_scene() {
-  const std::shared_ptr<const Device> device = shared();
-  // The deleter holds the device, which must outlive its scenes.
-  std::shared_ptr<RTCSceneTy> scene(rtcNewScene(device->handle()),
-                                    [device](RTCScene held) { rtcReleaseScene(held); });
-  rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
-  rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
-  return scene;
-}
-
-void Device::commit(RTCScene scene) {
-  {
-    const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
-    rtcCommitScene(scene);
+  static const std::shared_ptr<const Device>& shared() {
+    static const std::shared_ptr<const Device> device = std::make_shared<const Device>();
+    return device;
   }
-  shared()->check();
-}
 
-namespace {
+  RTCDevice handle() const { return handle_; }
+  const std::string& isa() const { return isa_; }
+
+  /// Throws what Embree has to complain of; it keeps the first error of each thread until asked.
+  void check() const {
+    switch (rtcGetDeviceError(handle_)) {
+      case RTC_ERROR_NONE:
+        return;
+      case RTC_ERROR_INVALID_ARGUMENT:
+        embree_failed("invalid argument");
+      case RTC_ERROR_INVALID_OPERATION:
+        embree_failed("invalid operation");
+      case RTC_ERROR_OUT_OF_MEMORY:
+        embree_failed("out of memory");
+      case RTC_ERROR_UNSUPPORTED_CPU:
+        embree_failed("this processor is not supported");
+      default:
+        embree_failed("unknown error");
+    }
+  }
+
+  /// An empty scene that keeps the device alive. The scene is then built on the calling thread, so
+  /// that the tree does not depend on the number of processors.
+  static std::shared_ptr<RTCSceneTy> new_scene() {
+    const std::shared_ptr<const Device> device = shared();
+    // The deleter holds the device, which must outlive its scenes.
+    std::shared_ptr<RTCSceneTy> scene(rtcNewScene(device->handle()),
+                                      [device](RTCScene held) { rtcReleaseScene(held); });
+    rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
+    return scene;
+  }
+  static void commit(RTCScene scene) {
+    {
+      const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
+      rtcCommitScene(scene);
+    }
+    shared()->check();
+  }
+
+ private:
+  std::string isa_;
+  RTCDevice handle_ = nullptr;
+};
 
 void put(float* target, const Vector3& v) {
   target[0] = static_cast<float>(v.x);
