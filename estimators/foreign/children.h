@@ -1,7 +1,7 @@
 #pragma once
 
-// What answers the workers of one set-up, one for each, kept from one round of sampling to the
-// next.
+// The programs that answer the workers of one set-up, one for each. They are kept from one round of
+// sampling to the next.
 
 #include <condition_variable>
 #include <cstdint>

@@ -45,7 +45,8 @@ class Refused : public NoAnswer {
   using NoAnswer::NoAnswer;
 };
 
-/// What answers questions about an estimator: a program, or a library in this process.
+/// A respondent answers questions about an estimator. It is a program, or a library in this
+/// process.
 class Respondent {
  public:
   virtual ~Respondent() = default;

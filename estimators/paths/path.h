@@ -70,7 +70,7 @@ class Roulette {
   }
 
   Rgb terminal(const Vertex& v) const { return terminal_.empty() ? Rgb{} : terminal_[v.patch]; }
-  /// What a path adds that goes on `from` a surface to the next vertex.
+  /// A path that goes on `from` a surface to the next vertex adds this.
   Rgb on_going_on(const Rgb& terminal, double survival, const Surface& /*from*/,
                   const Vertex& /*next*/) const {
     return (survival - 1) / survival * terminal;

@@ -301,7 +301,7 @@ struct Look {
   ASSAY_FIELDS(Look, secondaries, alpha, beta, log10_p, p_pass, log10_p_pass, effect)
 };
 
-/// What a reader of a test can do next: a setting to write, or else words.
+/// A reader of a test can do this next: write a setting, or else follow the words.
 struct Advice {
   std::string words;       ///< "give about 44000 rows in all"
   std::string key, value;  ///< "secondaries", "12000"

@@ -98,7 +98,7 @@ double adjusted(double log_p, GroupSize group);
 inline constexpr std::uint32_t typical_side = 16;
 struct CellNoiseOfMean {
   double variance = 0;
-  double growth = 0;  // What a difference of 1 adds to the variance (image_noise.h).
+  double growth = 0;  // A difference of 1 adds this to the variance (image_noise.h).
 };
 // The standard error x of a difference of so many of them: x^2 = variance + errors x growth.
 double standard_error_at(const CellNoiseOfMean& noise, double errors);

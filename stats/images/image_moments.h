@@ -24,10 +24,10 @@ struct MomentArrays {
   }
 };
 
-// Mean and sum of squared deviations of each of the elements [first, first + mean.size()) over the
-// images start, start + step, start + 2 step, … All are in memory. Deviations are taken from the
-// first of these images. It belongs to the sample, so sum d^2 <= (n + 1) m2 and subtracting costs
-// at most n + 1 roundings. So m2 is exactly zero for constants and only for them.
+// Mean and sum of squared deviations of each of the elements [first, first + mean.size()). They are
+// over every `step`-th image from `start` on, all in memory. Deviations are taken from the first of
+// these images. It belongs to the sample, so sum d^2 <= (n + 1) m2 and subtracting costs at most
+// n + 1 roundings. So m2 is exactly zero for constants and only for them.
 struct EveryImage {
   std::size_t start = 0;
   std::size_t step = 1;

@@ -50,9 +50,9 @@ std::vector<std::uint64_t> geometric_sizes(LookRange range, double growth);
 
 // Null hypothesis: that of every look. `log_p` holds ln p_k of the first looks, in order. A
 // two-sided p_k is twice the smaller tail. The p-value is the least error over all looks at which
-// one of those taken rejects (repeated p-value, Jennison & Turnbull 2000, ch. 9). So it is at most
-// an error exactly if a look rejects at that error's nominal level, and it is valid wherever
-// sampling stops.
+// one of those taken rejects (repeated p-value, Jennison & Turnbull 2000, ch. 9). It is at most an
+// error exactly if a look rejects at that error's nominal level. It is valid wherever sampling
+// stops. K looks are scheduled:
 //   unknown                 K min p_k (Bonferroni 1936)
 //   independent_increments  P(some z_k t_k^(1/4) reaches the largest seen)
 //   anytime_valid           min p_k

@@ -134,7 +134,7 @@ struct ElementCounts {
 };
 
 // Input of the test of fine cells: replicates, halves with the weights that each gives the other,
-// groups of cells, and whether constants that differ are a finding.
+// and groups of cells. With `constants_decide` constants that differ are a finding.
 struct FineCells {
   const ImagePair& pair;
   const std::array<Half, halves>& half;

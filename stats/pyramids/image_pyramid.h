@@ -71,7 +71,7 @@ class RowPyramid {
   bool constants_decide_;
   std::vector<double> own_z_;
   std::vector<WindowGroup> groups_;
-  std::array<Half, halves> half_;  // Of the rows taken last.
+  std::array<Half, halves> half_;  // They are of the rows taken last.
   FineFindings found_;
   std::vector<BestCell> best_;  // One per group.
 };

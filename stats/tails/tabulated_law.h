@@ -30,10 +30,10 @@ struct TabulatedLaw {
   double operator()(double x) const;
 };
 
-// Halves parts where the mass is and where the density is no polynomial, the worst first, until the
-// visible part of their error is below 1e-6. `parts` are contiguous and ascending. It stops when
-// the rule's evaluations are used up. Throws std::domain_error when there is no mass, or a density
-// is negative or not finite.
+// Halves parts where the mass is and where the density is no polynomial, the worst first. The
+// visible part of their error is then below 1e-6. `parts` are contiguous and ascending. It stops
+// when the rule's evaluations are used up. Throws std::domain_error when there is no mass, or a
+// density is negative or not finite.
 TabulatedLaw tabulate(const AdaptiveQuadrature::Function& density, const std::vector<Span>& parts,
                       AdaptiveQuadrature& rule);
 

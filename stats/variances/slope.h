@@ -47,8 +47,8 @@ TestResult slope_test(const SlopeData& data, double null_slope);
 // The smallest interval that holds every slope with p > 1 - confidence. Confidence is that of the
 // equality test, not split over two sides. Slopes outside are rejected at 1 - confidence each. So
 // the interval at confidence 1 - beta rejects "slope outside [low, high]" at beta. Both ends are
-// NaN if no power law fits the points. An end is infinite where the estimates at the small or the
-// large sizes cannot be told from zero, so that no slope is too steep.
+// NaN if no power law fits the points. An end is infinite if no slope is too steep: the estimates
+// at the small or the large sizes cannot be told from zero.
 Interval slope_set(const SlopeData& data, double confidence);
 
 struct SlopeEstimate {
