@@ -59,11 +59,8 @@ std::vector<ZoneSteps> zone_steps(const Scene& scene, const Steps& steps, std::s
 // True if the variance's recursion describes the path. Mirrors keep it only in grey furnaces whose
 // light is found by hits. A furnace's shadow rays have no closed form.
 bool has_variance(const Scene& scene, const Steps& steps) {
-  bool mirrors = false;
-  for (const ZonedScene::Zone& z : scene.law->zones) {
-    mirrors = mirrors || !(z.surface.mirror == Rgb{});
-  }
-  if (mirrors && !(scene.grey && steps.direct == Direct::hit && steps.splitting == 1)) return false;
+  const bool plain = scene.grey && steps.direct == Direct::hit && steps.splitting == 1;
+  if (scene.law->has_mirrors() && !plain) return false;
   return steps.direct != Direct::sampled || std::holds_alternative<SharedSphere>(scene.world);
 }
 

@@ -22,9 +22,7 @@ ParameterInformation survival_parameter() {
 }
 
 std::optional<Steps> steps(const Scene& scene, double survival) {
-  for (const ZonedScene::Zone& z : scene.law ? scene.law->zones : std::vector<ZonedScene::Zone>{}) {
-    if (!(z.surface.mirror == Rgb{})) return {};
-  }
+  if (scene.law && scene.law->has_mirrors()) return {};
   return Steps{.survival = [survival](const Surface&) { return survival; },
                .terminal = [](const Surface&) { return Rgb{}; }};
 }

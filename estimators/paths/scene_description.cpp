@@ -51,7 +51,7 @@ class Reader {
   }
 
   // A number for all colours, or a list of three.
-  Rgb spectrum(const Value& value, const std::string& what) {
+  Rgb colour(const Value& value, const std::string& what) {
     if (value.kind() != Value::Kind::list) return Rgb::grey(at_least_zero(value, what));
     grey_ = false;
     const std::vector<Value>& items = value.items();
@@ -64,11 +64,11 @@ class Reader {
 
   Surface surface(const Value& value, const std::string& what, bool may_mirror) {
     Surface out;
-    out.emission = spectrum(required_key(value, what, "emission"), what + "'s emission");
+    out.emission = colour(required_key(value, what, "emission"), what + "'s emission");
     const Value& albedo = required_key(value, what, "albedo");
-    out.diffuse = spectrum(albedo, what + "'s albedo");
+    out.diffuse = colour(albedo, what + "'s albedo");
     const Value* const mirror = may_mirror ? value.find("mirror") : nullptr;
-    if (mirror) out.mirror = spectrum(*mirror, what + "'s mirror");
+    if (mirror) out.mirror = colour(*mirror, what + "'s mirror");
     if (largest(out.albedo()) >= 1) {
       throw InputError(albedo.where(),
                        what + "'s albedo" + (mirror ? ", `mirror` included," : "") +

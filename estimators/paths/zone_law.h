@@ -8,6 +8,7 @@
 // B is 1 with probability s(z), e is the terminal value, and D is the vertex's own score. X' is the
 // same from a vertex of a random zone. Means and second moments follow from one linear equation.
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -24,6 +25,9 @@ struct ZonedScene {
   std::vector<Zone> zones;
   std::size_t seen = 0;  ///< the zone that the camera sees
 
+  bool has_mirrors() const {
+    return std::ranges::any_of(zones, [](const Zone& z) { return z.surface.mirror != Rgb{}; });
+  }
   Rgb mean_emission() const;
   Rgb mean_albedo() const;
   /// Mean of L over the area: mean emission / (1 - mean albedo).
