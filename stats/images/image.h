@@ -66,6 +66,15 @@ struct ImagePair {
 inline ImagePair pair_of(const ImageStack& a, const ImageStack& b) { return {a, &b, nullptr}; }
 inline ImagePair pair_of(const ImageStack& a, const ImageReference& b) { return {a, nullptr, &b}; }
 
+// The sum of products of two images' elements.
+inline double dot(std::span<const float> a, std::span<const float> b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    sum += static_cast<double>(a[i]) * static_cast<double>(b[i]);
+  }
+  return sum;
+}
+
 // Methods on images need this many replicates for a variance of their own. With fewer, Student's
 // tails at the level of thousands of elements reject nothing (15 degrees: |t| > 12 at 5e-9).
 inline constexpr std::size_t least_replicates = 16;

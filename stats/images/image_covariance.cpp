@@ -11,14 +11,6 @@ namespace {
 constexpr const char* function_name = "image_covariance";
 constexpr std::size_t most_pairs = 128;
 
-double dot(const std::vector<float>& a, const std::vector<float>& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    sum += static_cast<double>(a[i]) * static_cast<double>(b[i]);
-  }
-  return sum;
-}
-
 // Differences of neighbours over the square root of 2: mean 0 and covariance C.
 std::vector<std::vector<float>> differences_of(const ImageStack& stack) {
   check::image_stack(function_name, stack);

@@ -190,11 +190,7 @@ std::vector<Scores> scored(const std::vector<std::vector<std::vector<float>>>& s
 }
 
 double correlation(const std::vector<float>& a, const std::vector<float>& b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    sum += static_cast<double>(a[i]) * static_cast<double>(b[i]);
-  }
-  return sum / static_cast<double>(a.size());
+  return dot(a, b) / static_cast<double>(a.size());
 }
 
 // The mean correlation of pairs whose indices differ by `apart`, if it departs by too many errors
