@@ -8,10 +8,8 @@
 #include "estimators/catalogue.h"
 #include "harness/command/describe.h"
 #include "harness/command/init.h"
-#include "harness/command/option_values.h"
 #include "harness/command/options.h"
 #include "harness/language/quantities.h"
-#include "harness/suite/yaml.h"
 #include "reports/report_formats.h"
 
 namespace assay::harness {

@@ -8,7 +8,7 @@
 
 #include "estimators/estimator.h"
 #include "harness/base/refuse.h"
-#include "harness/command/option_values.h"
+#include "harness/command/options.h"
 #include "harness/pilot/pilot.h"
 #include "harness/plan/plan.h"
 #include "harness/record/record_of.h"
