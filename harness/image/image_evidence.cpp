@@ -11,7 +11,6 @@
 #include "harness/base/interrupt.h"
 #include "harness/base/parallel.h"
 #include "harness/image/image_pair.h"
-#include "harness/sampling/element_sums.h"
 #include "harness/theta/evidence.h"
 #include "harness/theta/theta.h"
 #include "stats/basics/moments.h"

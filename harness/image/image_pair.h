@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "harness/question/question.h"
-#include "harness/sampling/element_sums.h"
+#include "harness/sampling/summary.h"
 #include "harness/theta/methods.h"
 #include "stats/images/image.h"
 

@@ -13,8 +13,8 @@
 
 #include "harness/base/progress.h"
 #include "harness/question/question.h"
-#include "harness/sampling/element_sums.h"
 #include "harness/sampling/executor.h"
+#include "harness/sampling/summary.h"
 
 namespace assay::harness {
 

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "harness/base/parallel.h"
-#include "harness/sampling/element_sums.h"
 #include "harness/sampling/pool.h"
 #include "harness/theta/ask.h"
 #include "stats/images/image_dependence.h"

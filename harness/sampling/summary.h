@@ -15,11 +15,16 @@
 #include <vector>
 
 #include "estimators/cost.h"
-#include "harness/sampling/element_sums.h"
+#include "harness/base/large_vector.h"
+#include "harness/language/claim.h"
 #include "harness/sampling/image_views.h"
 #include "reports/record/record.h"
 #include "stats/basics/joint_moments.h"
 #include "stats/basics/moments.h"
+#include "stats/images/image.h"
+#include "stats/images/image_dependence.h"
+#include "stats/images/image_equivalence.h"
+#include "stats/images/image_family.h"
 
 namespace assay::harness {
 
@@ -105,6 +110,52 @@ struct ChannelSummary {
   /// Empty details if there are none.
   const ChannelDetails& details() const { return rare ? *rare : no_details(); }
 };
+
+// ---- Sums over pictures of millions of elements, whose rows are read once.
+
+/// Extremes over some elements.
+struct Extremes {
+  double minimum = std::numeric_limits<double>::infinity();
+  double maximum = -std::numeric_limits<double>::infinity();
+  std::uint64_t nonzero = 0;  ///< values that are not zero
+
+  void merge(const Extremes& other);
+  /// Takes values, all of them finite.
+  void add(std::span<const float> values);
+};
+
+/// The moments of every element that maps show. All values are finite.
+struct ElementSums {
+  std::uint64_t count = 0;  ///< number of pictures
+  LargeVector<double> mean = {};
+  LargeVector<double> m2 = {};
+  stats::Moments first = {};    ///< all moments of the first element
+  stats::Moments average = {};  ///< moments of the pictures' averages
+  Extremes extremes = {};
+
+  /// The moments of an element, or of the average, which follows the elements.
+  stats::Moments moments(std::size_t channel) const;
+  /// Room for the moments of the rows that follow. Takes those of the first element.
+  stats::MomentArrays room_for(const stats::ImageStack& stack, stats::RowRange rows);
+  /// Takes the rows that follow.
+  void take(const stats::ImageStack& stack, stats::RowRange rows);
+};
+
+/// The mean of each image channel over the pixels, with its standard error.
+using ChannelMeans = std::vector<Constant>;
+
+/// Results of reading two stacks of pictures for one claim.
+struct PictureLook {
+  std::uint64_t pictures = 0;          ///< of each side
+  stats::ImageDistance distance = {};  ///< In the images' own units.
+  stats::ImageFamily family = {};      ///< With cells of every size.
+  stats::ImageDependence dependence = {};
+  std::vector<double> z = {};  ///< For every element.
+  /// One for each side; of a paired claim those of the differences, and the second's without error.
+  std::vector<ChannelMeans> means = {};
+};
+
+// ---- Sums of observations
 
 /// A kind of cost of an observation, the index of a channel's joint moments.
 enum CountedCost : std::size_t { rays_cost, samples_cost, counted_costs };
