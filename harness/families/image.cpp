@@ -169,10 +169,6 @@ void require_partners(const Question& question) {
 
 // ---- Sizes
 
-const Pilot& pilot_at(const Question& question, std::size_t subject, const Pilots& pilots) {
-  return pilots.at(question.subjects[subject].estimator->name);
-}
-
 bool all_pictured(const Question& question, const Pilots& pilots) {
   return std::ranges::all_of(question.subjects, [&](const Subject& side) {
     const Pilot* pilot = pilot_of(side, pilots);
@@ -183,8 +179,8 @@ bool all_pictured(const Question& question, const Pilots& pilots) {
 // Standard errors above estimates of the noise: pilots of heavy noise differ.
 constexpr double errors_above = 2;
 
-ImageViews pilot_views(const Subject& side, const Pilot& pilot) {
-  return {pilot.images, side.channels};
+ImageViews pilot_views(const Subject& side, const Pilots& pilots) {
+  return {pilot_of(side, pilots)->images, side.channels};
 }
 
 PlannedImage pilot_image(const stats::ImageStack& pilot) {
@@ -204,8 +200,8 @@ PlannedImage pilot_image(const stats::ImageStack& pilot) {
 /// The noise of differences, and the brightness of what is subtracted.
 PlannedImage pilot_of_differences(const Question& question, const Pilots& pilots) {
   std::vector<ChannelData> data;
-  for (std::size_t s = 0; s < 2; ++s) {
-    data.push_back({.images = pilot_views(question.subjects[s], pilot_at(question, s, pilots))});
+  for (const Subject& side : question.subjects) {
+    data.push_back({.images = pilot_views(side, pilots)});
   }
   const ImagePair pair({question, 0, data});
   PlannedImage image = pilot_image(pair.first);
@@ -234,7 +230,7 @@ PlannedImage planned_image(const TestOutcome& test, const Pilots& pilots) {
   }
   for (std::size_t s = 0; s < question.subjects.size(); ++s) {
     const Subject& side = question.subjects[s];
-    const ImageViews views = pilot_views(side, pilot_at(question, s, pilots));
+    const ImageViews views = pilot_views(side, pilots);
     const PlannedImage image = pilot_image({extent_of(*side.image), views.images()});
     const double square = s == 0 ? 1 : question.factor * question.factor;
     add_noise(all, image, square, side.averaged(primaries[s]));
@@ -315,9 +311,6 @@ class ImageTheta : public Theta {
 
   std::uint64_t choose(TestOutcome& test, const Pilots& pilots, std::uint64_t most) const override {
     const Question& question = test.question;
-    if (const Pilot* const pilot = pilot_of(question.subjects[0], pilots)) {
-      test.plan.look = pilot->look;
-    }
     const bool in_looks = has_planned_size(question) && !question.test->secondaries;
     if (!in_looks || !all_pictured(question, pilots)) return stats::least_replicates;
     // Rows have one look, whose size nothing plans.
@@ -350,10 +343,10 @@ class ImageTheta : public Theta {
   double piloted_size(const Question& question, const Pilots& pilots) const override {
     if (!question.of_two() || !all_pictured(question, pilots)) return 0;
     const Subject& second = question.subjects[1];
-    const Pilot& pilot = *pilot_of(second, pilots);
-    const ImageViews views = pilot_views(second, pilot);
-    const double sum = pilot.look
-                           ? pilot.look->distance.squared_norm
+    const ImageViews views = pilot_views(second, pilots);
+    const PictureLook* const look = pilot_of(second, pilots)->sums->look();
+    const double sum = look != nullptr
+                           ? look->distance.squared_norm
                            : stats::image_squared_mean({extent_of(*second.image), views.images()});
     const auto elements = static_cast<double>(second.channels.size());
     return std::abs(question.factor) * std::sqrt(std::max(0.0, sum) / elements);

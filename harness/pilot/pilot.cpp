@@ -107,20 +107,17 @@ std::shared_ptr<const Summary> sums_of(const Drawn& drawn) {
   return sums;
 }
 
-std::variant<Pilot, Fault> read(const Pool& pool) {
-  const Sample sample = pool.sample(pool.requested());
+std::variant<Pilot, Fault> read(const std::shared_ptr<const Pool>& pool) {
+  const Sample sample = pool->sample(pool->requested());
   if (sample.fault() != nullptr) return *sample.fault();
   const Drawn& drawn = *sample.drawn();
-  Pilot pilot{.sums = sums_of(drawn), .primaries = pool.primaries()};
-  for (std::size_t i = 0; i < pool.plan().size() && pool.plan()[i].keep > 0; ++i) {
-    const std::span<const double> kept = drawn.values(i);
-    if (kept.empty()) continue;
-    pilot.values.emplace_back(kept.begin(), kept.end());
-    pilot.order_gates.push_back(drawn.order_gates(i));
-  }
-  pilot.kept = pool.kept();
-  pilot.images = drawn.images(usual_images(*pool.setup(), pool.primaries()).value_or(0));
-  return pilot;
+  const std::uint64_t images = usual_images(*pool->setup(), pool->primaries()).value_or(0);
+  return Pilot{.sums = sums_of(drawn),
+               .primaries = pool->primaries(),
+               .kept = pool->kept(),
+               .drawn = drawn,
+               .pool = pool,
+               .images = drawn.images(images)};
 }
 
 /// Estimators whose costs some claim is about.
@@ -170,9 +167,7 @@ const Pilot* pilot_of(const Subject& subject, const Pilots& pilots) {
 
 PilotChannel pilot_channel(const Subject& subject, const Pilot& pilot, std::size_t channel) {
   const std::size_t index = subject.channels[channel];
-  return {.moments = pilot.moments(index),
-          .values = index < pilot.values.size() ? std::span<const double>(pilot.values[index])
-                                                : std::span<const double>()};
+  return {.moments = pilot.moments(index), .values = pilot.values(index)};
 }
 
 PilotChannel pilot_channel(const Question& question, std::size_t subject, std::size_t channel,
@@ -212,7 +207,7 @@ Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators, const
   draw_all(pools, {.executor = run.executor, .phase = "pilot"}, progress);
   Pilots pilots;
   if (interrupted()) return pilots;
-  for (const auto& [name, pool] : named) pilots.add(name, read(*pool));
+  for (const auto& [name, pool] : named) pilots.add(name, read(pool));
   return pilots;
 }
 

@@ -5,6 +5,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -21,20 +22,21 @@ namespace assay::harness {
 struct Pilot {
   /// Sums of secondaries with `primaries` primaries each.
   std::shared_ptr<const Summary> sums = {};
-  std::vector<std::vector<double>> values = {};            ///< of the first channels, as drawn
-  std::vector<std::vector<stats::Gate>> order_gates = {};  ///< of the same
   std::uint64_t primaries = 1;
-  /// Whole observations of an image, and their owner.
-  Images images = {};
   std::shared_ptr<const KeptObservations> kept = {};
-  /// The look at pictures while reading them, in place of `images`.
-  std::shared_ptr<const PictureLook> look = {};
+  /// What was drawn, and its owner. Unset for pictures that were looked at while reading.
+  std::optional<Drawn> drawn = {};
+  std::shared_ptr<const Pool> pool = {};
+  Images images = {};  ///< Whole observations of an image.
 
   std::size_t image_count() const {
-    if (look) return look->pictures;
-    return images.size();
+    return sums->look() != nullptr ? sums->look()->pictures : images.size();
   }
   stats::Moments moments(std::size_t channel) const { return sums->moments(channel); }
+  /// The values of a channel, as drawn; empty if they are not kept.
+  std::span<const double> values(std::size_t channel) const {
+    return drawn ? drawn->values(channel) : std::span<const double>();
+  }
 };
 
 /// A pilot keeps the values of estimators with at most so many channels.
@@ -47,8 +49,6 @@ class Pilots {
  public:
   /// Null if there is none, or a fault.
   const Pilot* find(const std::string& name) const { return get<Pilot>(name); }
-  /// Throws std::out_of_range if find() returns null.
-  const Pilot& at(const std::string& name) const { return std::get<Pilot>(all_.at(name)); }
   /// The fault of an estimator's pilot, or of its sampler's draws for `purpose`; null if none.
   const Fault* fault(const std::string& estimator, const std::string& purpose) const;
   bool empty() const { return all_.empty(); }

@@ -43,7 +43,7 @@ std::vector<Rows> rows_of(const Question& question, const Pilots& pilots, std::u
   for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
     const Subject& side = question.subjects[subject];
     const Pilot* pilot = pilot_of(side, pilots);
-    if (!is_recorded(side) || pilot == nullptr || pilot->values.empty()) continue;
+    if (!is_recorded(side) || pilot == nullptr || pilot->values(0).empty()) continue;
     for (std::size_t channel = 0; channel < side.channels.size(); ++channel) {
       const PilotChannel data = pilot_channel(side, *pilot, channel);
       const std::size_t used = std::min<std::uint64_t>(data.values.size(), count);
@@ -308,29 +308,18 @@ bool shows_order(const Subject& subject) {
   return !is_recorded(subject) && !subject.setup->image();
 }
 
-std::string why_dependent(const Subject& subject, std::span<const stats::Gate> order,
-                          std::vector<Gate>& gates) {
-  std::string why;
-  for (const stats::Gate& gate : order) {
-    if (gate.state != stats::GateState::red) continue;
-    gates.push_back(gate_of(gate, ", " + subject.estimator->name));
-    if (!why.empty()) continue;
-    why = fmt::format(
-        "the observations of `{}` are not independent: {}; an observation may rest on its own "
-        "random numbers alone, not on what was drawn before it or beside it",
-        subject.estimator->name, red_gates({gates.back()}));
-  }
-  return why;
-}
-
-void judge_drawn_order(TestOutcome& test, const Pilots& pilots) {
-  for (const Subject& side : test.question.subjects) {
-    const Pilot* pilot = pilot_of(side, pilots);
-    if (!shows_order(side) || pilot == nullptr) continue;
-    for (const std::size_t channel : side.channels.all()) {
-      if (channel >= pilot->order_gates.size()) continue;
-      std::string why = why_dependent(side, pilot->order_gates[channel], test.plan.gates);
-      if (test.plan.invalid.empty()) test.plan.invalid = std::move(why);
+void judge_order(const Subject& subject, const Drawn& drawn, std::vector<Gate>& gates,
+                 Reason& invalid) {
+  if (!shows_order(subject)) return;
+  for (const std::size_t channel : subject.channels.all()) {
+    for (const stats::Gate& gate : drawn.order_gates(channel)) {
+      if (gate.state != stats::GateState::red) continue;
+      gates.push_back(gate_of(gate, ", " + subject.estimator->name));
+      if (!invalid.empty()) continue;
+      invalid = fmt::format(
+          "the observations of `{}` are not independent: {}; an observation may rest on its own "
+          "random numbers alone, not on what was drawn before it or beside it",
+          subject.estimator->name, red_gates({gates.back()}));
     }
   }
 }

@@ -39,18 +39,13 @@ stats::Moments as_tested(const Plan& plan, std::size_t subject, std::size_t chan
 /// pipe or device in backquotes; else empty.
 std::string passing_rows(const Suite& suite, const EstimatorEntry& entry);
 
-// The order of drawn observations shows whether they are independent.
-
-/// True if a subject's observations are drawn one by one, and not as pictures. judge_independence
-/// judges rows.
+/// True if the order of a subject's observations shows whether they are independent: they are drawn
+/// one by one, and not as pictures. judge_independence judges rows.
 bool shows_order(const Subject& subject);
 
-/// Why values with these gates on their order are not independent, or "". Adds red gates.
-std::string why_dependent(const Subject& subject, std::span<const stats::Gate> order,
-                          std::vector<Gate>& gates);
-
-/// Judges what estimators drew in their pilots. Dependence makes every method invalid, a forced one
-/// as well.
-void judge_drawn_order(TestOutcome& test, const Pilots& pilots);
+/// Adds the red gates on the order of what a subject drew, in its pilot or for the test. Dependence
+/// makes every method invalid, a forced one as well.
+void judge_order(const Subject& subject, const Drawn& drawn, std::vector<Gate>& gates,
+                 Reason& invalid);
 
 }  // namespace assay::harness

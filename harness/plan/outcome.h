@@ -55,8 +55,6 @@ struct Plan {
   std::string error = "";  ///< Reason why nothing can be planned, or "".
   /// Reason why the pilot makes an error of a test with sound numbers, or "".
   std::string pilot_error = "";
-  /// Set for pictures that were examined while they were read.
-  std::shared_ptr<const PictureLook> look = {};
   std::optional<PlannedImage> image = {};  ///< Set where the sizes of looks at images are planned.
 
   std::uint64_t most_secondaries() const { return looks.sizes.back(); }

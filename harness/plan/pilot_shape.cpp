@@ -74,7 +74,7 @@ std::string unusable_pilot(const Question& question, const Pilots& pilots) {
   for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
     const Subject& side = question.subjects[subject];
     const Pilot* pilot = pilot_of(side, pilots);
-    if (pilot == nullptr || pilot->look || !side.purpose.empty()) continue;
+    if (pilot == nullptr || pilot->sums->elements || !side.purpose.empty()) continue;
     for (std::size_t channel = 0; channel < side.channels.size(); ++channel) {
       const stats::Moments moments = pilot->moments(side.channels[channel]);
       const std::string reason = beyond_doubles(moments, side.estimator->name);

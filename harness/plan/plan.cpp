@@ -125,7 +125,11 @@ std::uint64_t choose_method(TestOutcome& test, const Pilots& pilots, std::uint64
   }
   const std::uint64_t least = question.theta->choose(test, pilots, most);
   if (has_rows(question)) judge_independence(test, pilots, used);
-  judge_drawn_order(test, pilots);
+  for (const Subject& side : question.subjects) {
+    const Pilot* const pilot = pilot_of(side, pilots);
+    if (pilot == nullptr || !pilot->drawn) continue;
+    judge_order(side, *pilot->drawn, test.plan.gates, test.plan.invalid);
+  }
   return least;
 }
 

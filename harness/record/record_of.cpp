@@ -336,11 +336,9 @@ stats::Moments of_fewer(stats::Moments x, double factor) {
 std::span<const double> rows_of(const PreparedEstimator& estimator, const SuiteRun& run,
                                 std::size_t channel, std::uint64_t count) {
   const Pilot* const pilot = run.pilots.find(estimator.name);
-  if (!estimator.setup->observations() || pilot == nullptr || channel >= pilot->values.size() ||
-      count > pilot->values[channel].size()) {
-    return {};
-  }
-  return std::span(pilot->values[channel]).first(count);
+  if (!estimator.setup->observations() || pilot == nullptr) return {};
+  const std::span<const double> all = pilot->values(channel);
+  return count > all.size() ? std::span<const double>() : all.first(count);
 }
 
 /// Moments, which for dependent rows count only as many as independent ones would be worth.

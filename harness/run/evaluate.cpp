@@ -231,20 +231,6 @@ void conclude(TestOutcome& outcome, const std::vector<ConstantVerdict>& constant
   }
 }
 
-/// Judges the order of the test's own draws. A dependence that the pilot did not show is no plan's
-/// to mend.
-void judge_drawn_order(TestOutcome& outcome, const DrawnTest& test) {
-  for (std::size_t subject = 0; subject < test.samples.size(); ++subject) {
-    const Subject& side = outcome.question.subjects[subject];
-    if (!shows_order(side)) continue;
-    for (const std::size_t channel : side.channels.all()) {
-      std::string why =
-          why_dependent(side, test.samples[subject].order_gates(channel), outcome.gates);
-      if (outcome.plan.invalid.empty()) outcome.plan.invalid = std::move(why);
-    }
-  }
-}
-
 void require_activation(TestOutcome& outcome, const DrawnTest& test) {
   // A plan that is invalid draws little, and has its own reason.
   if (outcome.question.test->expect != reports::Verdict::fail || !outcome.plan.invalid.empty())
@@ -315,7 +301,11 @@ void add_caveat(TestOutcome& outcome) {
 
 void take_sound_look(TestWork& work, const DrawnTest& test, bool may_go_on) {
   TestOutcome& outcome = work.outcome;
-  judge_drawn_order(outcome, test);
+  // A dependence that the pilot did not show is no plan's to mend.
+  for (std::size_t subject = 0; subject < test.samples.size(); ++subject) {
+    judge_order(outcome.question.subjects[subject], test.samples[subject], outcome.gates,
+                outcome.plan.invalid);
+  }
   judge(outcome, test);
   const bool last =
       outcome.look == work.last_look || outcome.look + 1 == outcome.plan.looks.count();

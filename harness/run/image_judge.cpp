@@ -127,7 +127,7 @@ ImageTest image_test(const DrawnTest& test) {
   return {.share = outcome.share(),
           .independent = std::all_of(subjects.begin(), subjects.end(),
                                      [](const Subject& s) { return s.image->independent; }),
-          .look = outcome.plan.look.get(),
+          .look = test.samples[0].summary().look(),
           .labels = stream_key(test.samples[0].pool().key().bits, "labels", "", 0),
           .require_independent = [&](const auto& found) { require_independent(test, found); }};
 }

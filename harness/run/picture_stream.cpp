@@ -217,6 +217,7 @@ class Looking {
     finish();
     Pilots pilots;
     for (std::size_t s = 0; s < sides_.size(); ++s) {
+      sums_[s].look = look_;
       sums_[s].extremes = sides_[s].extremes();
       for (const double average : sides_[s].averages()) sums_[s].average.add(average);
       auto summary = std::make_shared<Summary>();
@@ -227,9 +228,8 @@ class Looking {
       auto kept = std::make_shared<KeptObservations>();
       kept->costs.assign(pictures_, Cost{.samples = 1});
       kept->sums[pictures_] = summary;
-      Pilot pilot{.sums = std::move(summary), .kept = std::move(kept)};
-      pilot.look = look_;
-      pilots.add(pilot_name(question_.subjects[s]), std::move(pilot));
+      pilots.add(pilot_name(question_.subjects[s]),
+                 Pilot{.sums = std::move(summary), .kept = std::move(kept)});
     }
     return pilots;
   }

@@ -124,23 +124,6 @@ struct Extremes {
   void add(std::span<const float> values);
 };
 
-/// The moments of every element that maps show. All values are finite.
-struct ElementSums {
-  std::uint64_t count = 0;  ///< number of pictures
-  LargeVector<double> mean = {};
-  LargeVector<double> m2 = {};
-  stats::Moments first = {};    ///< all moments of the first element
-  stats::Moments average = {};  ///< moments of the pictures' averages
-  Extremes extremes = {};
-
-  /// The moments of an element, or of the average, which follows the elements.
-  stats::Moments moments(std::size_t channel) const;
-  /// Room for the moments of the rows that follow. Takes those of the first element.
-  stats::MomentArrays room_for(const stats::ImageStack& stack, stats::RowRange rows);
-  /// Takes the rows that follow.
-  void take(const stats::ImageStack& stack, stats::RowRange rows);
-};
-
 /// The mean of each image channel over the pixels, with its standard error.
 using ChannelMeans = std::vector<Constant>;
 
@@ -153,6 +136,24 @@ struct PictureLook {
   std::vector<double> z = {};  ///< For every element.
   /// One for each side; of a paired claim those of the differences, and the second's without error.
   std::vector<ChannelMeans> means = {};
+};
+
+/// The moments of every element that maps show. All values are finite.
+struct ElementSums {
+  std::uint64_t count = 0;                       ///< number of pictures
+  std::shared_ptr<const PictureLook> look = {};  ///< at the pictures of both sides
+  LargeVector<double> mean = {};
+  LargeVector<double> m2 = {};
+  stats::Moments first = {};    ///< all moments of the first element
+  stats::Moments average = {};  ///< moments of the pictures' averages
+  Extremes extremes = {};
+
+  /// The moments of an element, or of the average, which follows the elements.
+  stats::Moments moments(std::size_t channel) const;
+  /// Room for the moments of the rows that follow. Takes those of the first element.
+  stats::MomentArrays room_for(const stats::ImageStack& stack, stats::RowRange rows);
+  /// Takes the rows that follow.
+  void take(const stats::ImageStack& stack, stats::RowRange rows);
 };
 
 // ---- Sums of observations
@@ -183,6 +184,8 @@ struct Summary {
   stats::Moments moments(std::size_t channel) const {
     return elements ? elements->moments(channel) : channels[channel].moments;
   }
+  /// Null unless the pictures were looked at while they were read.
+  const PictureLook* look() const { return elements ? elements->look.get() : nullptr; }
   const ChannelDetails& details(std::size_t channel) const {
     return elements ? no_details() : channels[channel].details();
   }

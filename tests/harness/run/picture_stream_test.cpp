@@ -66,7 +66,7 @@ class PictureStream : public ::testing::Test {
   bool streams(const std::string& lines) const {
     Silence silence;
     const PlannedRun planned = plan_run({suite(lines)}, {}, silence);
-    return planned.suites[0]->pilots.at("a").look != nullptr;
+    return planned.suites[0]->pilots.find("a")->sums->look() != nullptr;
   }
 
   reports::Test finding(const std::string& lines) const {
