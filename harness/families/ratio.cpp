@@ -164,9 +164,7 @@ class LogTheta : public Theta {
 
   std::optional<PlannedChannel> planned(const TestOutcome& test, const Regions& regions,
                                         const Pilots& pilots) const override {
-    for (const Subject& side : test.question.subjects) {
-      if (is_recorded(side)) return std::nullopt;
-    }
+    if (has_rows(test.question)) return std::nullopt;
     return from_pilots(test, std::nullopt, regions, pilots);
   }
 
@@ -536,23 +534,21 @@ Moments logarithms(const Seen& seen, std::size_t subject) {
 /// on both sides.
 Evidence evidence_of_replicates(const Method&, const Seen& seen) {
   const Question& question = seen.question;
+  const bool two = question.of_two();
   const Moments x = logarithms(seen, 0);
-  if (!question.of_two()) {
-    const double null = std::log(seen.reference().value);
-    return {.estimate = x.mean - null,
-            .at = [=](double t) { return stats::student_t(x, {.value = null + t}); },
-            .interval =
-                [=](double confidence) {
-                  return stats::student_t_interval(x, {.value = null}, confidence);
-                },
-            .quantity = quantity_of(question),
-            .ratio = true};
-  }
-  Moments y = logarithms(seen, 1);
-  y.mean += std::log(question.factor);
+  Moments y = two ? logarithms(seen, 1) : Moments{};
+  y.mean += std::log(two ? question.factor : seen.reference().value);
+  const auto at = [=](double theta) {
+    return two ? stats::welch_t(x, y, {.scale = 1, .offset = theta})
+               : stats::student_t(x, {.value = y.mean + theta});
+  };
+  const auto interval = [=](double confidence) {
+    return two ? stats::welch_t_interval(x, y, confidence)
+               : stats::student_t_interval(x, {.value = y.mean}, confidence);
+  };
   return {.estimate = x.mean - y.mean,
-          .at = [=](double t) { return stats::welch_t(x, y, {.scale = 1, .offset = t}); },
-          .interval = [=](double confidence) { return stats::welch_t_interval(x, y, confidence); },
+          .at = at,
+          .interval = interval,
           .quantity = quantity_of(question),
           .ratio = true};
 }

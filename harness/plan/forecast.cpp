@@ -52,7 +52,7 @@ std::optional<std::vector<ChannelData>> expected_data(const TestOutcome& test, s
   }
   if (!known) return std::nullopt;
   for (std::size_t i = 0; i < data.size(); ++i) {
-    if (!question.subjects[i].setup->observations()) continue;
+    if (!is_recorded(question.subjects[i])) continue;
     data[i].primaries = data[*known].primaries;
     data[i].moments = data[*known].moments;
   }
@@ -156,9 +156,7 @@ std::optional<PlannedChannel> expected_channel(const TestOutcome& test, std::siz
   if (!question.is().of_moments) {
     return question.theta->planned(test, regions, pilots);
   }
-  for (const Subject& side : question.subjects) {
-    if (is_recorded(side)) return std::nullopt;
-  }
+  if (has_rows(question)) return std::nullopt;
   const auto data = expected_data(test, channel, pilots, secondaries);
   if (!data) return std::nullopt;
   return question.theta->observed({question, channel, *data}, regions);
