@@ -652,12 +652,17 @@ class MeanTheta : public Theta {
     return choose_for_mean(test, pilots);
   }
 
-  std::optional<std::uint64_t> secondaries(const TestOutcome& test, const ErrorShare& share,
-                                           const Pilots& pilots) const override {
-    if (!all_piloted(test.question, pilots)) return std::nullopt;
-    return most_of_channels(test.question, [&](std::size_t channel) {
-      return of_channel(test, channel, share, pilots);
-    });
+  std::optional<std::uint64_t> secondaries_of(const TestOutcome& test, std::size_t index,
+                                              const ErrorShare& share,
+                                              const Pilots& pilots) const override {
+    const Regions& regions = test.plan.regions[index];
+    const std::optional<PlannedChannel> channel = from_pilots(test, index, pilots);
+    if (!channel || !regions.detect) return std::nullopt;
+    const stats::ErrorRates rates = planned_rates(share, regions);
+    if (!test.plan.method.is.plans) return secondaries_by_t(test.plan.method, rates, *channel);
+    const auto count = exact_secondaries(test, *channel, rates);
+    const std::uint64_t most = channel->unseen ? most_for_the_unseen : impossible_secondaries;
+    return std::min(count.value_or(impossible_secondaries), most);
   }
 
   double piloted_size(const Question& question, const Pilots& pilots) const override {
@@ -796,18 +801,6 @@ class MeanTheta : public Theta {
           planned, pilot, as_secondaries(question.subjects[0], pilot.values, plan.primaries[0]));
     }
     return planned;
-  }
-
-  static std::optional<std::uint64_t> of_channel(const TestOutcome& test, std::size_t index,
-                                                 const ErrorShare& share, const Pilots& pilots) {
-    const Regions& regions = test.plan.regions[index];
-    const std::optional<PlannedChannel> channel = from_pilots(test, index, pilots);
-    if (!channel || !regions.detect) return std::nullopt;
-    const stats::ErrorRates rates = planned_rates(share, regions);
-    if (!test.plan.method.is.plans) return secondaries_by_t(test.plan.method, rates, *channel);
-    const auto count = exact_secondaries(test, *channel, rates);
-    const std::uint64_t most = channel->unseen ? most_for_the_unseen : impossible_secondaries;
-    return std::min(count.value_or(impossible_secondaries), most);
   }
 
   /// The least effect on one side; nullopt if the range ends before.

@@ -151,15 +151,13 @@ class LogTheta : public Theta {
     return std::max(usual_secondaries, secondaries_of_floor(test));
   }
 
-  std::optional<std::uint64_t> secondaries(const TestOutcome& test, const ErrorShare& share,
-                                           const Pilots& pilots) const override {
-    if (!all_piloted(test.question, pilots)) return std::nullopt;
-    return most_of_channels(test.question, [&](std::size_t i) -> std::optional<std::uint64_t> {
-      const Regions& regions = test.plan.regions[i];
-      const auto channel = from_pilots(test, i, regions, pilots);
-      if (!channel || !regions.detect) return std::nullopt;
-      return secondaries_by_t(test.plan.method, planned_rates(share, regions), *channel);
-    });
+  std::optional<std::uint64_t> secondaries_of(const TestOutcome& test, std::size_t i,
+                                              const ErrorShare& share,
+                                              const Pilots& pilots) const override {
+    const Regions& regions = test.plan.regions[i];
+    const auto channel = from_pilots(test, i, regions, pilots);
+    if (!channel || !regions.detect) return std::nullopt;
+    return secondaries_by_t(test.plan.method, planned_rates(share, regions), *channel);
   }
 
   std::optional<PlannedChannel> planned(const TestOutcome& test, const Regions& regions,

@@ -208,16 +208,11 @@ std::string point_without_spread(const Seen& seen) {
 // Standard errors that the fitted constant must exceed: a fainter power law cannot be planned.
 constexpr double least_visibility = 3;
 
-Moments moments_of(const Question& question, std::size_t subject, std::size_t channel,
-                   const Pilots& pilots) {
-  return pilot_channel(question, subject, channel, pilots).moments;
-}
-
 /// The variance of b, or of ln b, at size i from one observation.
 double point_variance(const TestOutcome& test, std::size_t i, std::size_t channel,
                       const Pilots& pilots) {
   const Question& question = test.question;
-  const Moments& pilot = moments_of(question, i, channel, pilots);
+  const Moments pilot = pilot_channel(question, i, channel, pilots).moments;
   const double n = question.subjects[i].averaged(test.plan.primaries[i]);
   if (!(pilot.m2 > 0)) return 0;
   if (question.is().of_spread) return 2 + (pilot.kurtosis() - 3) / n;
@@ -235,11 +230,11 @@ Fit fit_constant(const Question& question, std::size_t channel, const Pilots& pi
   double weight = 0;
   double sum = 0;
   for (std::size_t i = 0; i < question.compared(); ++i) {
-    const Moments& pilot = moments_of(question, i, channel, pilots);
+    const Moments pilot = pilot_channel(question, i, channel, pilots).moments;
     const double shape = std::pow(question.sizes[i], exponent);
     double truth = 0;
     if (question.has_reference_subject) {
-      truth = moments_of(question, question.compared(), channel, pilots).mean;
+      truth = pilot_channel(question, question.compared(), channel, pilots).moments.mean;
     } else if (!question.truths.empty()) {
       truth = question.truths[i][channel].value;
     }
@@ -275,26 +270,6 @@ std::optional<SlopeData> expected_points(const TestOutcome& test, std::size_t ch
   return data;
 }
 
-std::optional<std::uint64_t> slope_channel(const TestOutcome& test, std::size_t channel,
-                                           const ErrorShare& share, const Pilots& pilots) {
-  const Regions& regions = test.plan.regions[channel];
-  const double distance = distance_of(regions);
-  if (!(distance > 0)) return std::nullopt;
-  const double null = test.question.references[channel].value;
-  const stats::ErrorRates rates = planned_rates(share, regions);
-  const auto expected = expected_points(test, channel, pilots, null);
-  if (!expected) return std::nullopt;
-  double most = 0;
-  for (const double edge : {null - distance, null + distance}) {
-    const auto factor = stats::slope_sample_factor(
-        *expected, edge,
-        {.alpha = rates.two_sided ? rates.alpha / 2 : rates.alpha, .beta = rates.beta});
-    if (!factor) return impossible_secondaries;
-    most = std::max(most, *factor);
-  }
-  return whole_secondaries(most);
-}
-
 /// The level at which the verdict rejects theta: a pass beyond its margin, a fail elsewhere.
 double largest_level(const ErrorShare& share, const Regions& regions) {
   return regions.has_forbidden() ? std::max(share.alpha, share.beta) : share.alpha;
@@ -326,12 +301,25 @@ class SlopeTheta : public Theta {
 
   /// Size for each subject, from a pilot that shows the claimed power law: its constant at the
   /// claimed exponent exceeds three standard errors. Nullopt if it does not.
-  std::optional<std::uint64_t> secondaries(const TestOutcome& test, const ErrorShare& share,
-                                           const Pilots& pilots) const override {
-    if (!all_piloted(test.question, pilots) || of_costs(test.question)) return std::nullopt;
-    return most_over_channels(test.question, [&](std::size_t channel) {
-      return slope_channel(test, channel, share, pilots);
-    });
+  std::optional<std::uint64_t> secondaries_of(const TestOutcome& test, std::size_t channel,
+                                              const ErrorShare& share,
+                                              const Pilots& pilots) const override {
+    const Regions& regions = test.plan.regions[channel];
+    const double distance = distance_of(regions);
+    if (!(distance > 0) || of_costs(test.question)) return std::nullopt;
+    const double null = test.question.references[channel].value;
+    const stats::ErrorRates rates = planned_rates(share, regions);
+    const auto expected = expected_points(test, channel, pilots, null);
+    if (!expected) return std::nullopt;
+    double most = 0;
+    for (const double edge : {null - distance, null + distance}) {
+      const auto factor = stats::slope_sample_factor(
+          *expected, edge,
+          {.alpha = rates.two_sided ? rates.alpha / 2 : rates.alpha, .beta = rates.beta});
+      if (!factor) return impossible_secondaries;
+      most = std::max(most, *factor);
+    }
+    return whole_secondaries(most);
   }
 
   std::string lack_of_numbers(const TestOutcome& test, const Seen& seen) const override {

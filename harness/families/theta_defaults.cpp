@@ -71,6 +71,18 @@ std::uint64_t Theta::choose(TestOutcome&, const Pilots&, std::uint64_t) const {
   return least_secondaries;
 }
 
+std::optional<std::uint64_t> Theta::secondaries(const TestOutcome& test, const ErrorShare& share,
+                                                const Pilots& pilots) const {
+  std::optional<std::uint64_t> most;
+  if (!all_piloted(test.question, pilots)) return most;
+  for (std::size_t channel = 0; channel < test.question.channel_count(); ++channel) {
+    const auto count = secondaries_of(test, channel, share, pilots);
+    if (!count) continue;
+    most = std::max(most.value_or(least_secondaries), std::min(*count, impossible_secondaries));
+  }
+  return most;
+}
+
 std::uint64_t Theta::usual_size() const { return usual_secondaries; }
 
 std::string Theta::why_impossible(const Question& question) const {

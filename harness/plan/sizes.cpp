@@ -106,23 +106,6 @@ double distance_of(const Regions& regions) {
   return regions.detect ? *regions.detect - regions.allow : 0;
 }
 
-std::optional<std::uint64_t> most_over_channels(const Question& question,
-                                                const SizeOfChannel& of_channel) {
-  std::optional<std::uint64_t> most;
-  for (std::size_t channel = 0; channel < question.channel_count(); ++channel) {
-    const std::optional<std::uint64_t> count = of_channel(channel);
-    if (count) most = std::max(most.value_or(0), *count);
-  }
-  return most;
-}
-
-std::optional<std::uint64_t> most_of_channels(const Question& question,
-                                              const SizeOfChannel& of_channel) {
-  const auto most = most_over_channels(question, of_channel);
-  if (!most) return most;
-  return std::clamp(*most, least_secondaries, impossible_secondaries);
-}
-
 stats::ErrorRates Sized::rates() const { return planned_rates(size.share, channel.regions); }
 
 stats::SampleSizes Sized::sizes() const { return sizes_of(test.question, size.secondaries); }

@@ -3,7 +3,6 @@
 // Sizes of tests: levels at which they are planned, secondaries of each subject, floors.
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 
 #include "harness/pilot/pilot.h"
@@ -83,15 +82,6 @@ bool all_piloted(const Question& question, const Pilots& pilots);
 
 /// The distance to find from the claimed region's edge; 0 if there is none.
 double distance_of(const Regions& regions);
-
-using SizeOfChannel = std::function<std::optional<std::uint64_t>(std::size_t channel)>;
-
-/// The most secondaries that a channel needs; nullopt if none says.
-std::optional<std::uint64_t> most_over_channels(const Question& question,
-                                                const SizeOfChannel& of_channel);
-/// The same, `least_secondaries` at least and `impossible_secondaries` at most.
-std::optional<std::uint64_t> most_of_channels(const Question& question,
-                                              const SizeOfChannel& of_channel);
 
 /// The least theta that a test of that size finds with probability 1 - beta. For `within` it is the
 /// least margin that the test proves if theta is 0. Returns nullopt if no formula tells.

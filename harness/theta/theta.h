@@ -124,9 +124,15 @@ class Theta {
   /// that the method takes.
   virtual std::uint64_t choose(TestOutcome&, const Pilots&, std::uint64_t most) const;
   /// Secondaries of each subject that find `detect`, or prove `within`, with this share of errors
-  /// in every channel. `impossible_secondaries` if no number does.
+  /// in every channel. `impossible_secondaries` if no number does. By default the most that a
+  /// channel needs, if all subjects have pilots.
   virtual std::optional<std::uint64_t> secondaries(const TestOutcome&, const ErrorShare&,
-                                                   const Pilots&) const = 0;
+                                                   const Pilots&) const;
+  /// Those that one channel needs; nullopt if nothing tells.
+  virtual std::optional<std::uint64_t> secondaries_of(const TestOutcome&, std::size_t /*channel*/,
+                                                      const ErrorShare&, const Pilots&) const {
+    return std::nullopt;
+  }
   /// Secondaries of a claim without a margin.
   virtual std::uint64_t usual_size() const;
   /// Why no number of secondaries is enough.
