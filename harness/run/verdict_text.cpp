@@ -66,18 +66,8 @@ double excluded_beyond(const ChannelOutcome& channel) {
   // A missing end lies at infinity.
   const double low = channel.effect.low.value_or(-HUGE_VAL);
   const double high = channel.effect.high.value_or(HUGE_VAL);
-  switch (channel.regions.relation) {
-    case Relation::at_most:
-    case Relation::less:
-      return high;
-    case Relation::at_least:
-    case Relation::greater:
-      return low;
-    case Relation::equal:
-    case Relation::within:
-      break;
-  }
-  return farther(low, high, channel.evidence);
+  if (channel.regions.two_sided()) return farther(low, high, channel.evidence);
+  return channel.regions.bounds_above() ? high : low;
 }
 
 /// A distance's interval reaches 0, unless even 0 is too large for these data.
@@ -203,18 +193,8 @@ Room room_of(const TestOutcome& outcome, const ChannelOutcome& channel) {
   const auto proof = [&](double spare) {
     return Room{std::abs(spare), z(spare < 0 ? share.alpha : share.beta) + 1};
   };
-  switch (regions.relation) {
-    case Relation::within:
-      return proof(*regions.detect - std::abs(estimate));
-    case Relation::less:
-      return proof(-estimate);
-    case Relation::greater:
-      return proof(estimate);
-    case Relation::equal:
-    case Relation::at_most:
-    case Relation::at_least:
-      break;
-  }
+  if (regions.within()) return proof(*regions.detect - std::abs(estimate));
+  if (regions.proof()) return proof(regions.bounds_above() ? -estimate : estimate);
   const double alpha = regions.two_sided() ? share.alpha / 2 : share.alpha;
   return {regions.detect.value_or(0) - regions.allow, z(alpha) + z(share.beta)};
 }
