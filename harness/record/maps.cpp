@@ -304,22 +304,6 @@ bool are_divided(const DensityCells& density, const stats::PlaneGrid& grid) {
   return density.cells.in_domain() > grid.size();
 }
 
-/// The residual of each cell in the domain that is tested alone.
-std::vector<std::optional<double>> residuals_of(const DensityCells& density,
-                                                const ChannelData& data) {
-  const double least = stats::FitOptions{}.minimum_expected;
-  const auto total = static_cast<double>(data.moments.count);
-  const std::vector<std::uint64_t> counts = density.in_cells(data.cells);
-  std::vector<std::optional<double>> residuals;
-  for (std::size_t i = 0; i < density.cells.in_domain(); ++i) {
-    const double expected = total * density.mass.probability[i];
-    const auto observed = static_cast<double>(counts[i]);
-    residuals.push_back(expected >= least ? std::optional(residual(observed, expected))
-                                          : std::nullopt);
-  }
-  return residuals;
-}
-
 /// Counts in the grid's cells, summed over lobes and parts of halved cells. The residual is the
 /// largest of the parts that are tested alone, else that of the sum.
 Cells of_density(const SamplerSetup& draws, const ChannelData& data) {
@@ -331,16 +315,18 @@ Cells of_density(const SamplerSetup& draws, const ChannelData& data) {
               .height = grid.rows(),
               .observed = std::vector<double>(grid.size()),
               .expected = std::vector<double>(grid.size())};
-  const std::vector<std::optional<double>> tested = residuals_of(density, data);
+  const double least = stats::FitOptions{}.minimum_expected;
   std::vector<std::optional<double>> farthest(grid.size());
   const std::vector<std::uint64_t> counts = density.in_cells(data.cells);
   for (std::size_t i = 0; i < density.cells.in_domain(); ++i) {
     const std::size_t place = density.cells.grid_cell(i);
-    cells.observed[place] += static_cast<double>(counts[i]);
-    cells.expected[place] += total * density.mass.probability[i];
-    if (std::abs(tested[i].value_or(0)) > std::abs(farthest[place].value_or(0))) {
-      farthest[place] = tested[i];
-    }
+    const auto observed = static_cast<double>(counts[i]);
+    const double expected = total * density.mass.probability[i];
+    cells.observed[place] += observed;
+    cells.expected[place] += expected;
+    if (expected < least) continue;
+    const double part = residual(observed, expected);
+    if (std::abs(part) > std::abs(farthest[place].value_or(0))) farthest[place] = part;
   }
   for (std::size_t i = 0; i < grid.size(); ++i) {
     cells.z.push_back(farthest[i].value_or(residual(cells.observed[i], cells.expected[i])));
