@@ -64,9 +64,7 @@ std::string range_text(const ParameterInformation& p) {
 }
 
 std::string field(const char* name, const std::string& text) {
-  if (text.empty()) return "";
-  // The first line is beside the field's name.
-  return fmt::format("{:<12}", name) + wrapped(text, page_width, 12).substr(12);
+  return text.empty() ? "" : beside(name, text, 12);
 }
 
 std::string parameter_text(const ParameterInformation& p) {
@@ -163,6 +161,12 @@ std::string wrapped(const std::string& text, std::size_t width, std::size_t inde
     out += (line.empty() ? "" : std::string(indent, ' ')) + line + "\n";
   }
   return out;
+}
+
+std::string beside(const std::string& left, const std::string& right, std::size_t column) {
+  const std::string lines = wrapped(right, page_width, column);
+  if (left.size() >= column) return left + "\n" + lines;
+  return left + lines.substr(left.size());
 }
 
 std::string manual(const Entry& plugin, const std::vector<Entry>& entries) {
@@ -270,10 +274,7 @@ std::string text_of(const Table& table) {
   std::size_t longest = 0;
   for (const TableRow& row : table.rows) longest = std::max(longest, row.name.size());
   std::string text;
-  for (const TableRow& row : table.rows) {
-    const std::string lines = wrapped(row.summary, page_width, longest + 2);
-    text += fmt::format("{:<{}}  {}", row.name, longest, lines.substr(longest + 2));
-  }
+  for (const TableRow& row : table.rows) text += beside(row.name, row.summary, longest + 2);
   return text;
 }
 

@@ -19,6 +19,10 @@ std::string manual(const Entry& plugin, const std::vector<Entry>& entries);
 /// The text in lines of at most `width` columns, each after `indent` blanks. Its line ends stay.
 std::string wrapped(const std::string& text, std::size_t width, std::size_t indent);
 
+/// Two columns of a page, the right one from `column` on. A left side that is too long has its own
+/// line.
+std::string beside(const std::string& left, const std::string& right, std::size_t column);
+
 // The tables that a user can read: methods, quantities, laws, gates, reports.
 
 struct TableRow {

@@ -33,15 +33,8 @@ constexpr std::array<std::pair<const char*, const char*>, 7> exit_codes{{
     {"130", "interrupted"},
 }};
 
-/// Two columns, the right one from `column` on. A left side that is too long has its own line.
-std::string entry(const std::string& left, const std::string& right, std::size_t column) {
-  const std::string lines = wrapped(right, page_width, column);
-  if (left.size() >= column) return left + "\n" + lines;
-  return left + lines.substr(left.size());
-}
-
 std::string entry(const CommandText& command) {
-  return entry("  " + command.name, command.summary, list_column);
+  return beside("  " + command.name, command.summary, list_column);
 }
 
 /// "--filter GLOB ..."
@@ -64,7 +57,7 @@ std::string usage(const CommandText& command) {
 std::string exit_code_lines() {
   std::string text;
   for (const auto& [code, meaning] : exit_codes) {
-    text += entry(fmt::format("  {}", code), meaning, 7);
+    text += beside(fmt::format("  {}", code), meaning, 7);
   }
   return text;
 }
@@ -191,7 +184,7 @@ Options:
 std::string help_of_all(const std::vector<CommandText>& commands) {
   std::string text = "Commands (each has its own --help, with examples and defaults):\n";
   for (const CommandText& command : commands) text += entry(command);
-  text += entry("  help", "the first page, or that of a command: `assay help run`", list_column);
+  text += beside("  help", "the first page, or that of a command: `assay help run`", list_column);
   return text + "\nExit codes:\n" + exit_code_lines();
 }
 
@@ -201,9 +194,9 @@ std::string help_of(const CommandText& command) {
   std::string options;
   for (const OptionText& option : command.options) {
     (option.is_argument() ? arguments : options) +=
-        entry("  " + called(option), option.about, column);
+        beside("  " + called(option), option.about, column);
   }
-  options += entry("  -h, --help", "this text", column);
+  options += beside("  -h, --help", "this text", column);
   if (!arguments.empty()) arguments = "Arguments:\n" + arguments + "\n";
   return fmt::format("{}\nUsage: {}\n\n{}Options:\n{}", command.about, usage(command), arguments,
                      options);
