@@ -13,7 +13,7 @@
 #include "harness/command/describe.h"
 #include "harness/command/loaded.h"
 #include "harness/draws/sampler_setup.h"
-#include "harness/question/question_sources.h"
+#include "harness/question/question.h"
 #include "harness/record/output.h"
 #include "harness/record/record_of.h"
 #include "harness/run/looks.h"

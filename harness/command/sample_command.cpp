@@ -7,7 +7,7 @@
 #include "harness/base/interrupt.h"
 #include "harness/command/commands.h"
 #include "harness/draws/sampler_setup.h"
-#include "harness/question/question_sources.h"
+#include "harness/question/question.h"
 #include "harness/sampling/pool.h"
 #include "harness/sampling/prepare.h"
 #include "harness/sampling/recorded_run.h"

@@ -10,7 +10,7 @@
 #include "harness/families/families.h"
 #include "harness/families/law.h"
 #include "harness/plan/sizes.h"
-#include "harness/question/question_sources.h"
+#include "harness/question/question.h"
 #include "harness/run/evaluate.h"
 #include "harness/run/observation_faults.h"
 #include "stats/means/binomial.h"

@@ -8,7 +8,7 @@
 #include "harness/families/families.h"
 #include "harness/image/image_pair.h"
 #include "harness/plan/sizes.h"
-#include "harness/question/question_sources.h"
+#include "harness/question/question.h"
 #include "harness/run/image_judge.h"
 #include "harness/sampling/image_views.h"
 #include "harness/theta/ask.h"

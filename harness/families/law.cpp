@@ -16,7 +16,7 @@
 #include "harness/language/quantities.h"
 #include "harness/plan/pilot_shape.h"
 #include "harness/plan/sizes.h"
-#include "harness/question/question_sources.h"
+#include "harness/question/question.h"
 #include "harness/run/evaluate.h"
 #include "stats/basics/sorted.h"
 #include "stats/cells/chi_square_fit.h"

@@ -11,7 +11,7 @@
 #include "harness/families/families.h"
 #include "harness/plan/pilot_shape.h"
 #include "harness/plan/sizes.h"
-#include "harness/question/question_sources.h"
+#include "harness/question/question.h"
 #include "harness/run/evaluate.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/constant.h"

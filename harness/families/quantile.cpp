@@ -6,7 +6,7 @@
 
 #include "harness/families/families.h"
 #include "harness/plan/sizes.h"
-#include "harness/question/question_sources.h"
+#include "harness/question/question.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/theta.h"
 #include "stats/basics/sorted.h"

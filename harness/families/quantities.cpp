@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "harness/families/families.h"
-#include "harness/question/question_sources.h"
+#include "harness/question/question.h"
 
 namespace assay::harness {
 

@@ -16,7 +16,7 @@
 #include "harness/plan/outcome.h"
 #include "harness/plan/pilot_shape.h"
 #include "harness/plan/sizes.h"
-#include "harness/question/question_sources.h"
+#include "harness/question/question.h"
 #include "harness/run/evaluate.h"
 #include "harness/theta/constant.h"
 #include "harness/theta/evidence.h"

@@ -8,7 +8,7 @@
 
 #include "harness/families/families.h"
 #include "harness/plan/sizes.h"
-#include "harness/question/question_sources.h"
+#include "harness/question/question.h"
 #include "harness/run/evaluate.h"
 #include "harness/suite/suite.h"
 #include "harness/theta/constant.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "harness/plan/sizes.h"
-#include "harness/question/question_sources.h"
+#include "harness/question/question.h"
 #include "harness/run/evaluate.h"
 #include "harness/sampling/summary.h"
 #include "harness/theta/ask.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "harness/question/question_sources.h"
+#include "harness/question/question.h"
 #include "harness/sampling/summary.h"
 #include "harness/theta/constant.h"
 #include "harness/theta/gate.h"

@@ -12,7 +12,7 @@
 #include "harness/plan/looks.h"
 #include "harness/plan/pilot_shape.h"
 #include "harness/plan/sizes.h"
-#include "harness/question/question_sources.h"
+#include "harness/question/question.h"
 #include "harness/sampling/summary.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/constant.h"

@@ -15,7 +15,7 @@
 #include "harness/draws/declared_density.h"
 #include "harness/draws/sampler_setup.h"
 #include "harness/families/law.h"
-#include "harness/question/question_sources.h"
+#include "harness/question/question.h"
 #include "harness/run/image_judge.h"
 #include "stats/cells/chi_square_fit.h"
 #include "stats/tails/kolmogorov.h"

@@ -16,7 +16,7 @@
 #include "harness/base/numbers.h"
 #include "harness/base/version.h"
 #include "harness/plan/independence.h"
-#include "harness/question/question_sources.h"
+#include "harness/question/question.h"
 #include "harness/record/maps.h"
 #include "harness/record/merge.h"
 #include "harness/run/pools.h"

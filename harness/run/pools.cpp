@@ -9,7 +9,7 @@
 
 #include "harness/draws/consistency_setup.h"
 #include "harness/plan/independence.h"
-#include "harness/question/question_sources.h"
+#include "harness/question/question.h"
 #include "stats/means/student_t.h"
 
 namespace assay::harness {

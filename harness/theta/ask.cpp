@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "harness/draws/sampler_setup.h"
-#include "harness/question/question_sources.h"
+#include "harness/question/question.h"
 #include "harness/sampling/recorded_run.h"
 #include "harness/theta/theta.h"
 
@@ -157,12 +157,6 @@ void ask_of_pairs(Question& question) {
 bool has_image(const Question& question) {
   return std::ranges::any_of(question.subjects,
                              [](const Subject& subject) { return subject.image.has_value(); });
-}
-
-std::optional<std::uint64_t> Question::most_rows() const {
-  std::optional<std::uint64_t> most;
-  for (const Subject& subject : subjects) most = std::max(most, subject.setup->observations());
-  return most;
 }
 
 Question ask(const TestEntry& test, const Estimators& estimators, std::uint64_t seed) {

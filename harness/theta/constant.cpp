@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "harness/question/question_sources.h"
+#include "harness/question/question.h"
 #include "harness/theta/theta.h"
 
 namespace assay::harness {

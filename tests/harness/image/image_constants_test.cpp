@@ -2,7 +2,7 @@
 
 #include "harness/image/image_constants.h"
 
-#include "harness/question/question_sources.h"
+#include "harness/question/question.h"
 #include "tests/harness/questions.h"
 #include "tests/prelude.h"
 #include "tests/stats/calibration.h"

@@ -1,4 +1,4 @@
-#include "harness/question/question_sources.h"
+#include "harness/question/question.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -98,6 +98,12 @@ const NamedSampler* sampler_named(const std::vector<NamedSampler>& samplers,
 }
 
 }  // namespace
+
+std::optional<std::uint64_t> Question::most_rows() const {
+  std::optional<std::uint64_t> most;
+  for (const Subject& subject : subjects) most = std::max(most, subject.setup->observations());
+  return most;
+}
 
 const PreparedEstimator& estimator_of(const Source& source, const Estimators& estimators) {
   const auto found = estimators.find(source.estimator);
