@@ -5,7 +5,6 @@
 #include <fstream>
 #include <span>
 #include <sstream>
-#include <string>
 #include <vector>
 
 #include "estimators/core/quoting.h"

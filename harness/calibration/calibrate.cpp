@@ -9,11 +9,8 @@
 #include <cmath>
 #include <map>
 #include <mutex>
-#include <optional>
 #include <set>
-#include <string>
 #include <thread>
-#include <vector>
 
 #include "harness/base/interrupt.h"
 #include "harness/base/parallel.h"

@@ -7,7 +7,6 @@
 
 #include "estimators/catalogue.h"
 #include "harness/command/describe.h"
-#include "harness/command/init.h"
 #include "harness/command/options.h"
 #include "harness/language/quantities.h"
 #include "reports/report_formats.h"

@@ -8,17 +8,14 @@
 #include <fstream>
 
 #include "estimators/catalogue.h"
-#include "harness/base/identity.h"
 #include "harness/base/record_file.h"
 #include "harness/base/terminal.h"
 #include "harness/command/describe.h"
 #include "harness/command/plan_table.h"
 #include "harness/command/run.h"
 #include "harness/ranks/ranks.h"
-#include "harness/record/output.h"
 #include "harness/record/record_of.h"
 #include "harness/sampling/checkpoint.h"
-#include "harness/suite/suite.h"
 #include "reports/report_formats.h"
 
 namespace assay::harness {

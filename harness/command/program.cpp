@@ -15,7 +15,6 @@
 #include "harness/base/interrupt.h"
 #include "harness/base/terminal.h"
 #include "harness/base/text_file.h"
-#include "harness/command/cli.h"
 #include "harness/command/commands.h"
 #include "harness/command/environment.h"
 #include "harness/command/loaded.h"

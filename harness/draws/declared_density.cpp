@@ -7,9 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <utility>
-#include <vector>
 
-#include "harness/draws/draw_cells.h"
 #include "harness/draws/sound_draw.h"
 
 namespace assay::harness {

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
-#include <stdexcept>
 
 #include "estimators/core/flush_denormals.h"
 #include "harness/draws/sound_draw.h"

@@ -16,13 +16,11 @@
 #include "harness/language/quantities.h"
 #include "harness/plan/pilot_shape.h"
 #include "harness/plan/sizes.h"
-#include "harness/question/question.h"
 #include "harness/run/evaluate.h"
 #include "stats/basics/sorted.h"
 #include "stats/cells/chi_square_fit.h"
 #include "stats/cells/chi_square_two_sample.h"
 #include "stats/gates/assumption_gates.h"
-#include "stats/laws/kolmogorov_smirnov.h"
 #include "stats/means/binomial.h"
 #include "stats/planning/power.h"
 

@@ -2,7 +2,6 @@
 
 #include <cstdlib>
 #include <map>
-#include <memory>
 #include <stdexcept>
 #include <utility>
 

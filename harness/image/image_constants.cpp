@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "harness/question/question.h"
 #include "stats/basics/moments.h"
 #include "stats/means/constant_sample.h"
 #include "stats/tails/tails.h"

@@ -10,8 +10,6 @@
 #include "estimators/stream.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/parallel.h"
-#include "harness/image/image_pair.h"
-#include "harness/theta/evidence.h"
 #include "harness/theta/theta.h"
 #include "stats/basics/moments.h"
 #include "stats/images/image_equivalence.h"

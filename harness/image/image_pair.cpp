@@ -1,6 +1,5 @@
 #include "harness/image/image_pair.h"
 
-#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>

@@ -6,12 +6,10 @@
 #include <cmath>
 #include <filesystem>
 #include <set>
-#include <variant>
 
 #include "harness/base/identity.h"
 #include "harness/base/text_file.h"
 #include "harness/base/whole_file.h"
-#include "harness/ledger/ledger_book.h"
 #include "harness/theta/theta.h"
 #include "stats/tails/tails.h"
 

@@ -5,14 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <vector>
 
 #include "estimators/ready_made.h"
 #include "harness/plan/gate_text.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/constant.h"
 #include "harness/theta/gate.h"
-#include "harness/theta/methods.h"
 #include "harness/theta/theta.h"
 #include "stats/gates/copies.h"
 #include "stats/gates/dependence.h"

@@ -9,7 +9,6 @@
 
 #include "harness/plan/gate_text.h"
 #include "harness/plan/independence.h"
-#include "harness/plan/looks.h"
 #include "harness/plan/pilot_shape.h"
 #include "harness/plan/sizes.h"
 #include "harness/question/question.h"

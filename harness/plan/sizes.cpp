@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "harness/theta/decision.h"
 #include "stats/tails/tails.h"
 
 namespace assay::harness {

@@ -10,12 +10,10 @@
 
 #include "estimators/core/quoting.h"
 #include "estimators/parameters.h"
-#include "harness/base/terminal.h"
 #include "harness/base/whole_file.h"
 #include "harness/record/maps.h"
 #include "harness/sampling/pool.h"
 #include "harness/suite/suite.h"
-#include "reports/report_formats.h"
 #include "reports/words/display.h"
 
 namespace assay::harness {

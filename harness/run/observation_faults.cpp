@@ -9,7 +9,6 @@
 #include "estimators/core/quoting.h"
 #include "harness/draws/consistency_setup.h"
 #include "harness/draws/sampler_setup.h"
-#include "harness/question/question.h"
 
 namespace assay::harness {
 namespace {

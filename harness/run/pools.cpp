@@ -5,7 +5,6 @@
 #include <iterator>
 #include <limits>
 #include <utility>
-#include <vector>
 
 #include "harness/draws/consistency_setup.h"
 #include "harness/plan/independence.h"

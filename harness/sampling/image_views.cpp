@@ -1,7 +1,5 @@
 #include "harness/sampling/image_views.h"
 
-#include <utility>
-
 namespace assay::harness {
 namespace {
 

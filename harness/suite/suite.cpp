@@ -6,13 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <map>
 
 #include "estimators/catalogue.h"
 #include "estimators/core/text_pattern.h"
 #include "harness/base/text_file.h"
 #include "harness/language/quantities.h"
-#include "harness/suite/yaml.h"
 
 namespace assay::harness {
 namespace {

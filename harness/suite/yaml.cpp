@@ -6,10 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <sstream>
 
-#include "harness/base/refuse.h"
 #include "harness/base/text_file.h"
 
 namespace assay::harness {

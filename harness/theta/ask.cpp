@@ -4,10 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "harness/draws/sampler_setup.h"
-#include "harness/question/question.h"
 #include "harness/sampling/recorded_run.h"
 #include "harness/theta/theta.h"
 
