@@ -317,7 +317,6 @@ Evidence by_influence(const Method&, const Seen& seen) {
           .at = at,
           .interval = interval,
           .quantity = quantity_of(seen.question),
-          .ratio = true,
           .exact = error == 0};
 }
 
@@ -359,8 +358,7 @@ Evidence of_normal_values(const Method&, const Seen& seen) {
   return {.estimate = std::log(x.variance() / (two ? y.variance() : 1) / null),
           .at = at,
           .interval = interval,
-          .quantity = quantity_of(seen.question),
-          .ratio = true};
+          .quantity = quantity_of(seen.question)};
 }
 
 /// True if the pilot leaves no doubt that F and chi-square keep their level. Adds a gate for each
@@ -547,8 +545,7 @@ Evidence evidence_of_replicates(const Method&, const Seen& seen) {
   return {.estimate = x.mean - y.mean,
           .at = at,
           .interval = interval,
-          .quantity = quantity_of(question),
-          .ratio = true};
+          .quantity = quantity_of(question)};
 }
 
 bool in_seconds(const Question& question) { return question.test->cost == CostKind::seconds; }

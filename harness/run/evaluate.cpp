@@ -39,13 +39,13 @@ double deciding_error(const TestOutcome& outcome, const ChannelOutcome& channel,
 }
 
 /// With a factor the effect is relative to factor * second.
-std::string quantity_of(const Evidence& evidence, double factor) {
+std::string quantity_of(const Evidence& evidence, const Question& question) {
+  const bool ratio = question.is().logarithm;
   std::string quantity = evidence.quantity;
-  if (factor != 1) {
-    quantity += fmt::format(" {} {:g} times the second",
-                            quantity.starts_with("ratio") ? "to" : "from", factor);
+  if (question.factor != 1) {
+    quantity += fmt::format(" {} {:g} times the second", ratio ? "to" : "from", question.factor);
   }
-  return evidence.ratio ? "ln(" + quantity + ")" : quantity;
+  return ratio ? "ln(" + quantity + ")" : quantity;
 }
 
 /// The effect with the interval behind the verdict. Its ends are at this look's levels, so it holds
@@ -59,7 +59,7 @@ reports::Effect effect_of(const TestOutcome& outcome, const ChannelOutcome& chan
   constexpr double least_error = 1e-12;
   const double error = std::max(deciding_error(outcome, channel, outcome.share()), least_error);
   const stats::Interval interval = evidence.interval(1 - error);
-  return {.quantity = quantity_of(evidence, outcome.question.factor),
+  return {.quantity = quantity_of(evidence, outcome.question),
           .estimate = number(evidence.estimate),
           .low = number(interval.low),
           .high = number(interval.high),

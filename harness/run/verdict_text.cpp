@@ -54,19 +54,19 @@ const ChannelOutcome& least_excluded(const TestOutcome& outcome) {
 
 /// The theta that is shown as the larger. For ratios -14.3 % is shown as less than +16.2 %, though
 /// their logarithms are equally far from 0.
-double farther(double x, double y, const Evidence& evidence) {
+double farther(double x, double y, bool ratio) {
   constexpr double near = std::numbers::ln2;
-  const bool in_per_cent = evidence.ratio && std::abs(x) <= near && std::abs(y) <= near;
+  const bool in_per_cent = ratio && std::abs(x) <= near && std::abs(y) <= near;
   const auto size = [&](double theta) { return std::abs(in_per_cent ? std::expm1(theta) : theta); };
   return size(x) > size(y) ? x : y;
 }
 
 /// The largest effect in the claim's forbidden direction inside the interval.
-double excluded_beyond(const ChannelOutcome& channel) {
+double excluded_beyond(const TestOutcome& outcome, const ChannelOutcome& channel) {
   // A missing end lies at infinity.
   const double low = channel.effect.low.value_or(-HUGE_VAL);
   const double high = channel.effect.high.value_or(HUGE_VAL);
-  if (channel.regions.two_sided()) return farther(low, high, channel.evidence);
+  if (channel.regions.two_sided()) return farther(low, high, outcome.question.is().logarithm);
   return channel.regions.bounds_above() ? high : low;
 }
 
@@ -133,7 +133,7 @@ std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& chann
                        text, finding(channel));
   }
   if (holds_no_effect(channel)) return passed_by_empty_interval(channel);
-  const double excluded = excluded_beyond(channel);
+  const double excluded = excluded_beyond(outcome, channel);
   const std::string interval =
       fmt::format("the {}{}", reports::interval_name(channel.effect), in_channel(outcome, channel));
   const bool one_sided = !channel.regions.two_sided();

@@ -24,7 +24,6 @@ struct Evidence {
   std::function<std::string(double)> most_against = {};
   std::string quantity;   ///< Name of theta.
   bool relative = false;  ///< Shown in per cent.
-  bool ratio = false;     ///< Theta is the logarithm of a ratio.
   bool distance = false;  ///< Theta cannot be negative: `==` has one direction.
   bool exact = false;     ///< The estimate has no error, as with costs that never vary.
 };
