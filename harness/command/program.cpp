@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
-#include <map>
 #include <new>
 #include <stdexcept>
 
@@ -16,7 +14,6 @@
 #include "harness/base/terminal.h"
 #include "harness/base/text_file.h"
 #include "harness/command/commands.h"
-#include "harness/command/environment.h"
 #include "harness/command/loaded.h"
 #include "harness/ranks/ranks.h"
 #include "harness/run/planned_run.h"

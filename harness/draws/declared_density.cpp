@@ -1,10 +1,7 @@
 #include "harness/draws/declared_density.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <utility>
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <set>
 
 #include "harness/base/identity.h"
 #include "harness/base/text_file.h"

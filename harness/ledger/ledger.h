@@ -20,8 +20,7 @@
 #include <vector>
 
 #include "harness/ledger/ledger_book.h"
-#include "harness/record/record_of.h"
-#include "harness/run/evaluate.h"
+#include "harness/run/planned_run.h"
 #include "harness/theta/decision.h"
 #include "reports/record/record.h"
 

@@ -11,7 +11,6 @@
 #include "harness/pilot/pilot.h"
 #include "harness/plan/outcome.h"
 #include "harness/theta/methods.h"
-#include "stats/gates/assumption_gates.h"
 
 namespace assay::harness {
 

@@ -2,7 +2,6 @@
 
 // The outcome of a test: numbers of each channel, then a verdict in words.
 
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>

@@ -1,7 +1,5 @@
 #include "harness/plan/pilot_shape.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 

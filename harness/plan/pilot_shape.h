@@ -10,7 +10,6 @@
 #include "harness/pilot/pilot.h"
 #include "harness/plan/outcome.h"
 #include "harness/plan/sizes.h"
-#include "stats/gates/assumption_gates.h"
 
 namespace assay::harness {
 

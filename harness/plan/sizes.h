@@ -11,7 +11,6 @@
 #include "harness/theta/decision.h"
 #include "harness/theta/family.h"
 #include "harness/theta/theta.h"
-#include "stats/gates/assumption_gates.h"
 #include "stats/planning/power.h"
 
 namespace assay::harness {

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "harness/theta/decision.h"
-#include "harness/theta/family.h"
 #include "harness/theta/methods.h"
 #include "reports/record/record.h"
 
