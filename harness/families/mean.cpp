@@ -273,20 +273,6 @@ Evidence evidence_of_means(const Method&, const Seen& seen) {
 // A shift of so many standard errors moves a tail of one per cent by a third at most.
 constexpr double tolerated_shift = 0.1;
 
-/// Errors of one side, on the scale of the first mean.
-struct RoundedPart {
-  double rounding = 0;
-  double standard_error = 0;
-};
-
-RoundedPart part_of(const Seen& seen, std::size_t subject) {
-  const Moments& moments = seen.moments(subject);
-  if (moments.count < 2) return {};
-  const double factor = subject == 0 ? 1 : std::abs(seen.question.factor);
-  return {.rounding = factor * stats::rounding_of_mean(moments),
-          .standard_error = factor * moments.standard_error()};
-}
-
 /// Why means cannot be compared: rounding adds more than the tolerated shift; "" if it adds less.
 std::string lost_to_rounding(const Seen& seen) {
   std::size_t worst = 0;
@@ -294,11 +280,14 @@ std::string lost_to_rounding(const Seen& seen) {
   double rounding = 0;
   double error = seen.question.of_two() ? 0 : seen.reference().standard_error;
   for (std::size_t subject = 0; subject < seen.data.size(); ++subject) {
-    const RoundedPart part = part_of(seen, subject);
-    if (part.rounding > most) worst = subject;
-    most = std::max(most, part.rounding);
-    rounding = std::hypot(rounding, part.rounding);
-    error = std::hypot(error, part.standard_error);
+    const Moments& moments = seen.moments(subject);
+    if (moments.count < 2) continue;
+    const double factor = subject == 0 ? 1 : std::abs(seen.question.factor);
+    const double own = factor * stats::rounding_of_mean(moments);
+    if (own > most) worst = subject;
+    most = std::max(most, own);
+    rounding = std::hypot(rounding, own);
+    error = std::hypot(error, factor * moments.standard_error());
   }
   if (!(rounding > tolerated_shift * error)) return "";
   return fmt::format(
@@ -475,30 +464,6 @@ bool can_afford_bets(TestOutcome betting, const Pilots& pilots) {
   return size.value_or(0) <= most_bets;
 }
 
-std::uint64_t choose_for_mean(TestOutcome& test, const Pilots& pilots) {
-  const Question& question = test.question;
-  Plan& plan = test.plan;
-  const std::vector<Known> channels = known_channels(test, pilots);
-  bool near_normal = true;
-  for (const Known& known : channels) {
-    const stats::Gate gate = near_normal_gate(known);
-    near_normal = near_normal && gate.state == GateState::green;
-    note(plan, known, gate);
-  }
-  if (!question.test->method) {
-    if (!channels.empty() && are_two_valued(test, channels)) {
-      plan.method = find_method(question, "binomial");
-    } else if (bets_on_range(question, pilots) && can_afford_bets(test, pilots)) {
-      plan.method = find_method(question, "betting");
-    } else if (!near_normal) {
-      plan.method = find_method(question, "skewness-corrected-t");
-    }
-  }
-  // Without a size to plan, the floor is as usual as any.
-  return plan.method.is.exact && has_planned_size(question) ? least_secondaries
-                                                            : secondaries_of_floor(test);
-}
-
 // ---- Data
 
 /// Why two means cannot be compared if one is constant and its unseen values could decide; "" if
@@ -649,7 +614,27 @@ class MeanTheta : public Theta {
   }
 
   std::uint64_t choose(TestOutcome& test, const Pilots& pilots, std::uint64_t) const override {
-    return choose_for_mean(test, pilots);
+    const Question& question = test.question;
+    Plan& plan = test.plan;
+    const std::vector<Known> channels = known_channels(test, pilots);
+    bool near_normal = true;
+    for (const Known& known : channels) {
+      const stats::Gate gate = near_normal_gate(known);
+      near_normal = near_normal && gate.state == GateState::green;
+      note(plan, known, gate);
+    }
+    if (!question.test->method) {
+      if (!channels.empty() && are_two_valued(test, channels)) {
+        plan.method = find_method(question, "binomial");
+      } else if (bets_on_range(question, pilots) && can_afford_bets(test, pilots)) {
+        plan.method = find_method(question, "betting");
+      } else if (!near_normal) {
+        plan.method = find_method(question, "skewness-corrected-t");
+      }
+    }
+    // Without a size to plan, the floor is as usual as any.
+    return plan.method.is.exact && has_planned_size(question) ? least_secondaries
+                                                              : secondaries_of_floor(test);
   }
 
   std::optional<std::uint64_t> secondaries_of(const TestOutcome& test, std::size_t index,
