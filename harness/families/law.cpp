@@ -221,10 +221,9 @@ const DensityCells& density_of(const Question& question) {
 Points points_of(const Seen& seen, std::size_t subject) {
   const std::span<const double> values = seen.data[subject].values;
   Points points{.sorted = {values.begin(), values.end()}, .draws = values.size()};
-  const Subject& side = seen.question.subjects[subject];
-  if (const auto* draws = dynamic_cast<const SamplerSetup*>(side.setup.get())) {
+  if (const auto none = no_point_of(seen.question.subjects[subject], seen.channel)) {
     points.of_a_sampler = true;
-    std::erase(points.sorted, no_point(draws->marginals()[side.channels[seen.channel]]));
+    std::erase(points.sorted, *none);
   }
   points.sorted = stats::sorted(std::move(points.sorted));
   return points;

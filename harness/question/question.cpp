@@ -338,10 +338,10 @@ double rounding_of(const Question& question, std::size_t subject, std::size_t ch
   return declared.rounding + relative_rounding(*side.setup) * std::abs(declared.mean.value_or(0));
 }
 
-std::optional<double> no_point_of(const Subject& side) {
+std::optional<double> no_point_of(const Subject& side, std::size_t channel) {
   const auto* draws = dynamic_cast<const SamplerSetup*>(side.setup.get());
   if (draws == nullptr) return std::nullopt;
-  return no_point(draws->marginals()[side.channels[0]]);
+  return no_point(draws->marginals()[side.channels[channel]]);
 }
 
 }  // namespace assay::harness

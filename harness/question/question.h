@@ -171,7 +171,7 @@ stats::Range range_of(const Question& question, std::size_t subject, std::size_t
 /// The rounding that a channel declares of its values, and that of their mean in single precision.
 double rounding_of(const Question& question, std::size_t subject, std::size_t channel);
 
-/// The value of a subject's first channel that stands for "no point"; only samplers have one.
-std::optional<double> no_point_of(const Subject& side);
+/// The value of a subject's channel that stands for "no point"; only samplers have one.
+std::optional<double> no_point_of(const Subject& side, std::size_t channel = 0);
 
 }  // namespace assay::harness
