@@ -29,9 +29,6 @@ constexpr double least_p_of_fit = 1e-5;
 
 bool of_costs(const Question& question) { return question.test->claim.left.row->counts_cost; }
 
-/// Each point of a bias has a truth.
-bool of_biases(const Question& question) { return !question.truths.empty(); }
-
 bool of_logarithms(const Question& question) {
   return question.is().of_spread || of_costs(question);
 }
@@ -57,7 +54,7 @@ SlopeData biases(const Seen& seen) {
     const Moments& x = seen.moments(i);
     SlopePoint point{
         .size = question.sizes[i], .estimate = x.mean, .standard_error = x.standard_error()};
-    if (of_biases(question)) {
+    if (!question.truths.empty()) {  // each point of a bias has one
       const Constant truth = truth_of(seen, i);
       point.estimate -= truth.value;
       if (reference_is_shared(question)) {

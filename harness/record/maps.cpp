@@ -299,11 +299,6 @@ std::string axes_of(const SamplerSetup& draws, const stats::PlaneGrid& grid) {
                      axis(coordinates[0], grid.x_borders), axis(coordinates[1], grid.y_borders));
 }
 
-/// True if some grid cells hold several counted ones: parts, or lobes.
-bool are_divided(const DensityCells& density, const stats::PlaneGrid& grid) {
-  return density.cells.in_domain() > grid.size();
-}
-
 /// Counts in the grid's cells, summed over lobes and parts of halved cells. The residual is the
 /// largest of the parts that are tested alone, else that of the sum.
 Cells of_density(const SamplerSetup& draws, const ChannelData& data) {
@@ -331,9 +326,8 @@ Cells of_density(const SamplerSetup& draws, const ChannelData& data) {
   for (std::size_t i = 0; i < grid.size(); ++i) {
     cells.z.push_back(farthest[i].value_or(residual(cells.observed[i], cells.expected[i])));
   }
-  if (are_divided(density, grid)) {
-    cells.of_z = "; of the parts of a cell the one that is farthest off";
-  }
+  const bool parts_or_lobes = density.cells.in_domain() > grid.size();
+  if (parts_or_lobes) cells.of_z = "; of the parts of a cell the one that is farthest off";
   return cells;
 }
 
@@ -411,10 +405,6 @@ reports::EmpiricalLaw empirical_law(const Points& points, double confidence,
   return drawn;
 }
 
-bool is_drawn(const TestOutcome& outcome) {
-  return outcome.question.is().of_a_law && outcome.plan.method.keeps == Keeps::values;
-}
-
 }  // namespace
 
 void add_cells(const DrawnTest& drawn, reports::Test& test) {
@@ -439,7 +429,7 @@ void add_cells(const DrawnTest& drawn, reports::Test& test) {
 std::vector<reports::EmpiricalLaw> empirical_laws(const DrawnTest& test, std::size_t channel) {
   std::vector<reports::EmpiricalLaw> laws;
   const Question& question = test.outcome.question;
-  if (!is_drawn(test.outcome)) return laws;
+  if (!question.is().of_a_law || test.outcome.plan.method.keeps != Keeps::values) return laws;
   std::optional<DeclaredLaw> law;
   if (!question.of_two()) law = declared_law(question, channel);
   const double confidence = 1 - test.outcome.share().alpha;
