@@ -8,10 +8,9 @@
 
 namespace assay::harness {
 
-/// Tables of at most 80 columns without colours. A test's row has its method, primaries per
-/// secondary, looks, secondaries of the first and last look, and the last look's cost. It then has
-/// the effect that this look finds, the expected share of it if theta = 0, and the pilot's gates.
-/// Totals follow.
+/// Tables of at most 80 columns without colours. A test's row has its method, primaries of a
+/// secondary, looks, secondaries of the last look, its cost, and the effect that it finds. Notes
+/// with the forecast and the pilot's gates follow. Totals end the page.
 std::string plan_text(const PlannedRun& planned);
 
 /// Returns 1 if a selected test cannot come out as expected: no method is valid, or a source

@@ -65,11 +65,11 @@ bool is_about(const Question& question, const std::string& estimator) {
                      [&](const Subject& s) { return s.estimator->listed == estimator; });
 }
 
-using Estimators = std::vector<const PreparedEstimator*>;
+using Used = std::vector<const PreparedEstimator*>;
 
 /// Estimators of the chosen tests, in the suite's order. A reference has nothing to draw.
-Estimators used_by(const SuiteRun& run, const std::vector<bool>& chosen) {
-  Estimators used;
+Used used_by(const SuiteRun& run, const std::vector<bool>& chosen) {
+  Used used;
   for (const EstimatorEntry& entry : run.suite.estimators) {
     const auto prepared = run.estimators.find(entry.name);
     if (prepared == run.estimators.end() || prepared->second.setup->is_reference()) {
@@ -85,8 +85,7 @@ Estimators used_by(const SuiteRun& run, const std::vector<bool>& chosen) {
 }
 
 /// The estimators, and those at the points of the chosen tests' sweeps.
-Estimators with_sweeps(Estimators estimators, const SuiteRun& run,
-                       const std::vector<bool>& chosen) {
+Used with_sweeps(Used estimators, const SuiteRun& run, const std::vector<bool>& chosen) {
   std::set<std::string> known;
   for (std::size_t i = 0; i < run.questions.size(); ++i) {
     for (const Subject& subject : run.questions[i].subjects) {
@@ -105,7 +104,7 @@ PilotRun pilot_run(const SuiteRun& run, const std::vector<bool>& chosen,
 /// The pilots of a suite's estimators: first of pictures that are read row by row, then the others.
 Pilots piloted(const SuiteRun& run, const std::vector<bool>& chosen, const RunOptions& options,
                Progress& progress) {
-  Estimators used = run.used;
+  Used used = run.used;
   Pilots pilots;
   for (const Question* const question : streamed(run.questions, chosen)) {
     StreamedPictures taken = stream_pictures(*question, progress);
@@ -244,7 +243,7 @@ void add_missing(const Pool& pool, std::uint64_t count, Missing& missing) {
 
 Missing missing_in_pilots(const SuiteRun& run, const RunOptions& options) {
   const std::vector<bool> chosen = chosen_of(run, options);
-  const Estimators used = with_sweeps(used_by(run, chosen), run, chosen);
+  const Used used = with_sweeps(used_by(run, chosen), run, chosen);
   Missing missing;
   for (const auto& [name, pool] : pilot_pools(used, pilot_run(run, chosen, options))) {
     add_missing(*pool, pool->requested(), missing);
