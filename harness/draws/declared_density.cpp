@@ -71,7 +71,10 @@ constexpr double largest_share = 1.0 / 40;
 stats::AdaptiveCells cells_of_lobe(const NamedSampler& named, const stats::PlaneGrid& grid,
                                    std::span<const Point> drawn, int lobe) {
   const Sampler& sampler = *named.sampler;
-  const Densities densities = densities_of_lobe(named, lobe);
+  const auto of_lobe = [&named, lobe](std::span<const Point> points, std::span<double> out) {
+    return named.sampler->lobe_densities(lobe, points, out);
+  };
+  const Densities densities = checked(named, of_lobe);
   // A grid's own cells must not all be halved if they are slightly above the mean.
   const double share = std::max(largest_share, 2 / static_cast<double>(grid.size()));
   if (sampler.domain() == Domain::interval) {
@@ -99,12 +102,6 @@ void write_all(const Densities& densities, std::span<const Point> points, std::s
 Densities densities_of(const NamedSampler& named) {
   return checked(named, [&named](std::span<const Point> points, std::span<double> out) {
     return named.sampler->densities(points, out);
-  });
-}
-
-Densities densities_of_lobe(const NamedSampler& named, int lobe) {
-  return checked(named, [&named, lobe](std::span<const Point> points, std::span<double> out) {
-    return named.sampler->lobe_densities(lobe, points, out);
   });
 }
 

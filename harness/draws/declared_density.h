@@ -21,9 +21,8 @@ using Densities = std::function<std::size_t(std::span<const Point>, std::span<do
 /// Asks until every point has its density.
 void write_all(const Densities& densities, std::span<const Point> points, std::span<double> out);
 
-/// The density of all lobes together, and of one lobe. Both keep a reference to the sampler's name.
+/// The density of all lobes together. Keeps a reference to the sampler's name.
 Densities densities_of(const NamedSampler& named);
-Densities densities_of_lobe(const NamedSampler& named, int lobe);
 
 /// Points that a sampler draws show the quadrature where its density has peaks.
 stats::LineDensity line_density(const Sampler& sampler, std::span<const Point> drawn,

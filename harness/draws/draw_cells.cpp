@@ -155,14 +155,6 @@ DomainChart chart_by(Domain domain, std::size_t marginal) {
   return marginal == 0 ? straight() : turned(straight(), domain);
 }
 
-stats::PlaneGrid grid_between(Domain domain, std::span<const double> first,
-                              std::span<const double> second) {
-  const DomainChart chart = chart_by(domain, 0);
-  const auto below = [&](double share) { return quantile(domain, share); };
-  const auto beside = [&](double share) { return share * chart.second.width(); };
-  return {borders(chart.first, first, below), borders(chart.second, second, beside)};
-}
-
 namespace {
 
 // Fine enough to see a defect of one quadrant or a wrong exponent. The test pools cells that expect
@@ -172,8 +164,11 @@ constexpr std::size_t interval_cells = 64;
 
 stats::PlaneGrid grid_of(const Sampler& sampler, const auto& shares) {
   if (sampler.domain() != Domain::interval) {
-    const std::vector<double> first = shares(plane_cells[0]);
-    return grid_between(sampler.domain(), first, shares(plane_cells[1]));
+    const DomainChart chart = chart_by(sampler.domain(), 0);
+    const auto below = [&](double share) { return quantile(sampler.domain(), share); };
+    const auto beside = [&](double share) { return share * chart.second.width(); };
+    std::vector<double> first = borders(chart.first, shares(plane_cells[0]), below);
+    return {std::move(first), borders(chart.second, shares(plane_cells[1]), beside)};
   }
   const auto [low, high] = sampler.bounds();
   stats::PlaneGrid grid{.x_borders = {low}, .y_borders = {0, 1}};
@@ -197,8 +192,6 @@ std::vector<double> equal_shares(std::size_t cells) {
 
 }  // namespace
 
-stats::PlaneGrid measure_grid(const Sampler& sampler) { return grid_of(sampler, equal_shares); }
-
 stats::PlaneGrid shifted_grid(const Sampler& sampler, StreamKey key) {
   Stream random(key, 0);
   return grid_of(sampler, [&](std::size_t cells) {
@@ -214,7 +207,7 @@ stats::PlaneGrid shifted_grid(const Sampler& sampler, StreamKey key) {
 
 DrawCells::DrawCells(const Sampler& sampler)
     : DrawCells(sampler, std::vector(static_cast<std::size_t>(sampler.lobes()),
-                                     stats::whole_cells(measure_grid(sampler)))) {}
+                                     stats::whole_cells(grid_of(sampler, equal_shares)))) {}
 
 DrawCells::DrawCells(const Sampler& sampler, std::vector<stats::HalvedCells> of_lobes)
     : sampler_(sampler), of_lobes_(std::move(of_lobes)) {

@@ -63,25 +63,17 @@ class RememberedCoordinates {
 /// The chart whose first coordinate is this marginal, 0 or 1. Not for intervals.
 DomainChart chart_by(Domain domain, std::size_t marginal);
 
-/// Cells in the chart by the first marginal. These shares of the measure (solid angle, area) lie
-/// below their borders.
-stats::PlaneGrid grid_between(Domain domain, std::span<const double> first,
-                              std::span<const double> second);
-
-/// Cells of equal measure: 16 x 32 for two coordinates, 64 for an interval. An
-/// interval with fewer doubles has a cell for each.
-stats::PlaneGrid measure_grid(const Sampler& sampler);
-
-/// The same with each border moved at random, by one cell at most to either side. Borders beyond an
-/// end come back as far inside. A defect that repeats itself from cell to cell, such as a coarse
-/// rounding, would leave equal cells alone.
+/// Cells in the chart by the first marginal: 16 x 32, of an interval 64. An interval with fewer
+/// doubles has a cell for each. Each border lies beside that of equal measure (solid angle, area)
+/// at random, by one cell at most. Borders beyond an end come back as far inside. A defect that
+/// repeats itself from cell to cell, such as a coarse rounding, would leave equal cells alone.
 stats::PlaneGrid shifted_grid(const Sampler& sampler, StreamKey key);
 
 /// The cells of all lobes in turn, then one for each point mass, then one for draws without a
 /// point.
 class DrawCells {
  public:
-  /// Uses the same grid for every lobe. Keeps a reference to the sampler.
+  /// Every lobe has the same cells, of equal measure. Keeps a reference to the sampler.
   explicit DrawCells(const Sampler& sampler);
   /// Gives each lobe its own cells.
   DrawCells(const Sampler& sampler, std::vector<stats::HalvedCells> of_lobes);

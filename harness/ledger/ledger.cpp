@@ -147,12 +147,6 @@ std::string series_hash(const TestWork& work, std::size_t channel) {
   return fmt::format("{:016x}", text_hash(text));
 }
 
-stats::PooledNights pooled_nights(const std::vector<LedgerNight>& nights) {
-  stats::PooledNights pooled;
-  for (const stats::NightEstimate& night : estimates_of(nights)) pooled.add(night);
-  return pooled;
-}
-
 std::vector<double> log_e_path(const LedgerSeries& series, const std::vector<LedgerNight>& nights,
                                const stats::Range& claimed) {
   std::vector<double> path;
@@ -176,8 +170,10 @@ Moved moved(const LedgerSeries& series, const std::vector<LedgerNight>& nights,
             const stats::Range& claimed) {
   const auto change = [&] {
     if (!series.has_estimates()) return stats::change_point(log_p_values_of(nights));
-    return stats::change_point(estimates_of(nights),
-                               nearest(claimed, pooled_nights(nights), series));
+    const std::vector<stats::NightEstimate> estimates = estimates_of(nights);
+    stats::PooledNights pooled;
+    for (const stats::NightEstimate& night : estimates) pooled.add(night);
+    return stats::change_point(estimates, nearest(claimed, pooled, series));
   }();
   const std::vector<std::size_t> credible = stats::credible_nights(change, credibility);
   return {change.night, credible.front(), credible.back()};

@@ -58,9 +58,6 @@ struct Moved {
 Moved moved(const LedgerSeries& series, const std::vector<LedgerNight>& nights,
             const stats::Range& claimed);
 
-/// The sum of all nights that have estimates.
-stats::PooledNights pooled_nights(const std::vector<LedgerNight>& nights);
-
 /// The share of a test's error budget for its k-th series: 1 / (zeta(3) k^3). The shares sum to 1,
 /// so a claim keeps its budget however often it is changed or begun anew. The first has 0.83.
 double generation_share(int generation);

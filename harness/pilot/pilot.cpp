@@ -211,21 +211,14 @@ Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators, const
   return pilots;
 }
 
-std::vector<const Subject*> piloted_draws(const Question& question) {
-  std::vector<const Subject*> draws;
-  if (methods_for(question).front().keeps != Keeps::points) return draws;
-  for (const Subject& side : question.subjects) {
-    if (!side.purpose.empty()) draws.push_back(&side);
-  }
-  return draws;
-}
-
 PilotRun pilot_run_of(const std::vector<Question>& questions, const std::vector<bool>& chosen,
                       std::uint64_t seed, std::shared_ptr<Executor> executor) {
   PilotRun run{.seed = seed, .executor = std::move(executor), .with_cost = costly(questions)};
   for (std::size_t i = 0; i < questions.size(); ++i) {
-    if (!chosen[i]) continue;
-    for (const Subject* subject : piloted_draws(questions[i])) run.draws.push_back(subject);
+    if (!chosen[i] || methods_for(questions[i]).front().keeps != Keeps::points) continue;
+    for (const Subject& side : questions[i].subjects) {
+      if (!side.purpose.empty()) run.draws.push_back(&side);
+    }
   }
   return run;
 }

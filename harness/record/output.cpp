@@ -71,6 +71,14 @@ std::string append_summary(const reports::Record& record, const std::string& fil
   return stream ? "" : "the step's summary cannot be written";
 }
 
+/// The last run's file; "" if there is no folder for it.
+std::string last_run_file() {
+  std::string folder = system_environment("XDG_CACHE_HOME");
+  const std::string home = system_environment("HOME");
+  if (folder.empty() && !home.empty()) folder = home + "/.cache";
+  return folder.empty() ? "" : folder + "/assay/last_run.json";
+}
+
 }  // namespace
 
 void require_writable(const Output& output, const std::vector<std::string>& kept) {
@@ -162,13 +170,6 @@ std::string tell_github(const reports::Record& record, const Environment& enviro
   const std::string trouble = append_summary(record, file);
   if (!trouble.empty()) text += fmt::format("::warning title=assay::{}\n", trouble);
   return text;
-}
-
-std::string last_run_file() {
-  std::string folder = system_environment("XDG_CACHE_HOME");
-  const std::string home = system_environment("HOME");
-  if (folder.empty() && !home.empty()) folder = home + "/.cache";
-  return folder.empty() ? "" : folder + "/assay/last_run.json";
 }
 
 std::string last_run() {

@@ -104,6 +104,12 @@ class Intake {
   std::vector<Waiting> waiting_;
 };
 
+/// True if a channel's sums need the cost of each observation.
+bool counts_costs(std::span<const ChannelPlan> plan) {
+  return std::ranges::any_of(
+      plan, [](const ChannelPlan& each) { return each.powers == Powers::with_costs; });
+}
+
 }  // namespace
 
 std::string sentence_of(const Fault& fault, const std::string& estimator, const std::string& when) {
@@ -153,11 +159,6 @@ std::uint64_t most_kept(std::span<const ChannelPlan> plan) {
   std::uint64_t most = 0;
   for (const ChannelPlan& channel : plan) most = std::max(most, channel.keep);
   return most;
-}
-
-bool counts_costs(std::span<const ChannelPlan> plan) {
-  return std::ranges::any_of(
-      plan, [](const ChannelPlan& each) { return each.powers == Powers::with_costs; });
 }
 
 std::uint64_t primaries_of_observation(const Setup& setup, std::uint64_t primaries) {

@@ -89,8 +89,6 @@ struct Recipe {
 
 /// Channels keep values of observations below it.
 std::uint64_t most_kept(std::span<const ChannelPlan> plan);
-/// True if a channel's sums need the cost of each observation.
-bool counts_costs(std::span<const ChannelPlan> plan);
 
 class Sample;
 
