@@ -174,15 +174,13 @@ void write_whole(const fs::path& path, std::string_view text) {
   output.rename();
 }
 
-LockedFile::LockedFile(std::string path) : path_(std::move(path)), descriptor_(locked(path_)) {
-  while (!is_current(descriptor_, path_)) {
+LockedFile::LockedFile(const std::string& path) : descriptor_(locked(path)) {
+  while (!is_current(descriptor_, path)) {
     ::close(descriptor_);
-    descriptor_ = locked(path_);
+    descriptor_ = locked(path);
   }
 }
 
 LockedFile::~LockedFile() { ::close(descriptor_); }
-
-void LockedFile::replace(const std::string& text) const { write_whole(path_, text); }
 
 }  // namespace assay::harness

@@ -21,15 +21,12 @@ void write_whole(const std::filesystem::path& path, std::string_view text);
 /// one, never a part. Throws std::runtime_error with path and reason.
 class LockedFile {
  public:
-  explicit LockedFile(std::string path);
+  explicit LockedFile(const std::string& path);
   ~LockedFile();
   LockedFile(const LockedFile&) = delete;
   LockedFile& operator=(const LockedFile&) = delete;
 
-  void replace(const std::string& text) const;
-
  private:
-  std::string path_;
   int descriptor_;
 };
 

@@ -338,7 +338,7 @@ reports::Ledger add_to_ledger(const LedgerRun& ledger,
       }
     }
   }
-  if (is_new || book.nights().size() > before) lock.replace(book.text());
+  if (is_new || book.nights().size() > before) write_whole(ledger.file, book.text());
   return result;
 }
 
