@@ -24,7 +24,7 @@ struct Pilot {
   std::shared_ptr<const Summary> sums = {};
   std::uint64_t primaries = 1;
   std::shared_ptr<const KeptObservations> kept = {};
-  /// What was drawn, and its owner. Unset for pictures that were looked at while reading.
+  /// The pool owns what was drawn. Pictures that were looked at while reading have neither.
   std::optional<Drawn> drawn = {};
   std::shared_ptr<const Pool> pool = {};
   Images images = {};  ///< Whole observations of an image.

@@ -38,8 +38,8 @@ stats::Moments as_tested(const Plan& plan, std::size_t subject, std::size_t chan
 /// pipe or device in backquotes; else empty.
 std::string passing_rows(const Suite& suite, const EstimatorEntry& entry);
 
-/// True if the order of a subject's observations shows whether they are independent: they are drawn
-/// one by one, and not as pictures. judge_independence judges rows.
+/// True if a subject's observations are drawn one by one, and not as pictures. Their order then
+/// shows whether they are independent. judge_independence judges rows.
 bool shows_order(const Subject& subject);
 
 /// Adds the red gates on the order of what a subject drew, in its pilot or for the test. Dependence
