@@ -142,6 +142,8 @@ Interval welch_ratio_interval(const Moments& x, const Moments& y, double confide
     const double t = std::abs(y.mean) / std::sqrt(y.variance() / ny);
     if (t <= critical_value(confidence, ny - 1)) return unbounded;
   }
+  // A mean that is 0 without spread is no other part of y's than 0.
+  if (x.m2 == 0 && x.mean == 0) return {-1, -1, confidence};
   const double centre = x.mean / y.mean;
   const double step =
       scale_of("welch_ratio_interval", x, y, centre).standard_error / std::abs(y.mean);

@@ -40,6 +40,13 @@ TEST(WelchT, ARatioToAMeanNearZeroIsUnbounded) {
   EXPECT_EQ(ratio.high, std::numeric_limits<double>::infinity());
 }
 
+TEST(WelchT, WhatIsZeroWithoutSpreadIsNoPartOfTheOther) {
+  const Moments zeros = moments_of(std::vector<double>(5, 0.0));
+  const Interval ratio = welch_ratio_interval(zeros, moments_of(std::vector{3., 4., 5.}), .95);
+  EXPECT_EQ(ratio.low, -1);
+  EXPECT_EQ(ratio.high, -1);
+}
+
 TEST(WelchT, OneConstantSampleCountsAsExactlyKnown) {
   const TestResult result =
       welch_t(moments_of(golden_x), moments_of(std::vector<double>{1, 1, 1}), {});
