@@ -207,6 +207,20 @@ bool passes_without_fit(const TestOutcome& outcome) {
          outcome.plan.regions[0].has_forbidden() && !red_gates(outcome.gates).empty();
 }
 
+/// Says what the observations exclude nothing of, where no others of this number could fail the
+/// claim: it passes by not failing, which then says nothing.
+std::string cannot_fail(const TestOutcome& outcome) {
+  for (ChannelOutcome channel : outcome.channels) {
+    const Regions& regions = channel.regions;
+    channel.effect = effect_of(outcome, channel);
+    std::string what = outcome.question.theta->not_excluded(channel);
+    const bool by_large = regions.bounds_above() && channel.effect.low;
+    const bool by_small = regions.bounds_below() && channel.effect.high;
+    if (!what.empty() && !by_large && !by_small) return what;
+  }
+  return "";
+}
+
 void conclude(TestOutcome& outcome, const std::vector<ConstantVerdict>& constants) {
   const std::string red = outcome.plan.gates_invalidate ? red_gates(outcome.gates) : "";
   remember(outcome, red.empty());
@@ -222,6 +236,11 @@ void conclude(TestOutcome& outcome, const std::vector<ConstantVerdict>& constant
     return;
   }
   settle(outcome, verdict_of_channels(outcome), {});
+  if (outcome.verdict == Verdict::pass && !outcome.plan.regions[0].has_forbidden()) {
+    if (const std::string what = cannot_fail(outcome); !what.empty()) {
+      settle(outcome, Verdict::inconclusive, excludes_no(what));
+    }
+  }
   if (passes_without_fit(outcome)) settle(outcome, Verdict::invalid, red_gates(outcome.gates));
   for (const ConstantVerdict& constant : constants) {
     const bool says_all = outcome.channels.empty() && outcome.message.empty();

@@ -117,10 +117,7 @@ std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& chann
           text, outcome.secondaries(), 1 - outcome.place.share.beta);
     }
     if (const std::string all = outcome.question.theta->not_excluded(channel); !all.empty()) {
-      return fmt::format(
-          "{}; but these observations exclude no {} at all: take more of them, or say with "
-          "`detect` how far off it must not be",
-          text, all);
+      return fmt::format("{}; but {}", text, excludes_no(all).text);
     }
     if (channel.detectable) {
       const char* how = outcome.question.theta->detectable_text();
@@ -308,6 +305,11 @@ Reason told(const TestOutcome& outcome) {
 }
 
 }  // namespace
+
+Reason excludes_no(const std::string& what) {
+  return in_words(fmt::format("these observations exclude no {} at all: ", what),
+                  "take more of them, or say with `detect` how far off it must not be");
+}
 
 Reason narrate(const TestOutcome& outcome) {
   if (outcome.channels.empty()) return {};

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "harness/plan/outcome.h"
 
 namespace assay::harness {
@@ -7,5 +9,9 @@ namespace assay::harness {
 /// A tested claim's verdict in one or two sentences. They say what was found, what is excluded, and
 /// what could be missed or how many more samples would decide.
 Reason narrate(const TestOutcome& outcome);
+
+/// What to do where no observations of this number could fail the claim. `what` they exclude none
+/// of: "exponent".
+Reason excludes_no(const std::string& what);
 
 }  // namespace assay::harness
