@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "harness/base/parallel.h"
 #include "harness/sampling/pool.h"
@@ -144,17 +145,19 @@ std::optional<PlaceEffect> effect_at_place(const DrawnTest& test) {
   const stats::ImageFamily& family = outcome.channels[0].image->family;
   const stats::ImageFinding& winner = family.winner;
   if (winner.alternation || winner.window.width == 0) return {};
-  const std::vector<std::size_t> elements = elements_of(winner, *question.subjects[0].image);
+  std::vector<std::size_t> elements = elements_of(winner, *question.subjects[0].image);
   const stats::ImageEffect& effect = winner.effect;
   if (!(effect.standard_error > 0)) {
+    const std::vector<double>& z = outcome.channels[0].image->z;
+    std::erase_if(elements, [&](std::size_t i) { return std::abs(z[i]) < std::abs(winner.z); });
     const double base = other_mean(test, elements, {});
     const double difference = mean_over(test, 0, elements, {}) - base;
     return PlaceEffect{difference, {difference, difference, 1}, base};
   }
-  const double half =
-      effect.standard_error *
-      stats::student_t_quantile({stats::Tail::upper, std::log((1 - confidence_at_place) / 2)},
-                                effect.degrees);
+  const double log_level = stats::unadjusted(std::log(1 - confidence_at_place), winner.group);
+  const double half = effect.standard_error *
+                      stats::student_t_quantile({stats::Tail::upper, log_level - std::numbers::ln2},
+                                                effect.degrees);
   return PlaceEffect{
       .estimate = effect.estimate,
       .interval = {effect.estimate - half, effect.estimate + half, confidence_at_place},

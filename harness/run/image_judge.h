@@ -17,7 +17,8 @@ ImageViews images_of(const DrawnTest& test, std::size_t subject);
 inline constexpr double confidence_at_place = 0.99;
 
 /// The mean difference over the cell that speaks most against equality, in units of the images and
-/// weighted as the test weighs it. The interval is of this one cell.
+/// weighted as the test weighs it. The cell was searched for: the interval is one of those that
+/// hold the differences of all cells at once.
 struct PlaceEffect {
   double estimate = 0;
   stats::Interval interval = {};

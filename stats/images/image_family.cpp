@@ -119,6 +119,13 @@ std::vector<WindowGroup> window_groups(const ImageExtent& extent, std::uint32_t 
   return groups;
 }
 
+Rectangle around(const Rectangle& a, const Rectangle& b) {
+  const std::uint32_t x = std::min(a.x, b.x);
+  const std::uint32_t y = std::min(a.y, b.y);
+  return {x, y, std::max(a.x + a.width, b.x + b.width) - x,
+          std::max(a.y + a.height, b.y + b.height) - y};
+}
+
 WindowSums::WindowSums(const ImageExtent& extent)
     : width_(extent.width), table_((extent.width + 1) * (extent.height + 1)) {}
 
@@ -159,6 +166,10 @@ double adjusted(double log_p, GroupSize group) {
                                 ? log_p + std::log(group.count)
                                 : log_complement(group.count * std::log1p(-std::exp(log_p)));
   return std::min(0.0, one_of_all - std::log(group.share));
+}
+
+double unadjusted(double log_p, GroupSize group) {
+  return log_complement(std::log1p(-group.share * std::exp(log_p)) / group.count);
 }
 
 double standard_error_at(const CellNoiseOfMean& noise, double errors) {

@@ -18,6 +18,8 @@ struct Rectangle {
 
   friend bool operator==(const Rectangle&, const Rectangle&) = default;
 };
+// The smallest that holds both.
+Rectangle around(const Rectangle& a, const Rectangle& b);
 
 // The sums of an image that are looked at. Level `size` has the cells of a grid of that size, the
 // last cut off at the edge (aligned). It also has all other whole cells at steps of size / 4
@@ -73,6 +75,12 @@ struct ImageEffect {
   double degrees = 1;
 };
 
+// The sums among which one was found, and their share of the level.
+struct GroupSize {
+  double count = 1;
+  double share = 1;
+};
+
 // The most extreme statistic of a group: which sum, where, and how far from zero.
 struct ImageFinding {
   std::optional<Alternation> alternation = {};  // None of a plain sum over the window.
@@ -83,15 +91,16 @@ struct ImageFinding {
   double z = 0;               // Positive where the first image is brighter.
   double log_p = 0;           // Of this one sum, two-sided.
   double adjusted_log_p = 0;  // In the family of everything that was looked at; at most 0.
+  GroupSize group = {};
   ImageEffect effect = {};
 };
 
 // Adjusts one p-value for its group: ln(1 - (1 - p)^count) - ln share, at most 0.
-struct GroupSize {
-  double count = 1;
-  double share = 1;
-};
 double adjusted(double log_p, GroupSize group);
+
+// The p-value that adjusted() turns into this one. Intervals of all cells at this level miss any of
+// theirs with the level at most, so the one that was searched for does too.
+double unadjusted(double log_p, GroupSize group);
 
 // The noise of the mean difference in a typical aligned cell of this side: medians over cells.
 // Smaller images have none.

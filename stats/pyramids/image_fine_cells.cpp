@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 #include <optional>
 
@@ -384,9 +385,12 @@ class FineTiles {
           // An element that is equal and never varies tells no size of a difference.
           const bool tells = vary > 0 || difference != 0;
           found_.weights[element] = tells ? static_cast<float>(weight) : 0;
+          const Rectangle place{static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 1, 1};
           if (vary < halves) {
-            note_constant(element, vary, difference);
-            found_.z[element] = 0;
+            const bool certain = vary == 0 && difference != 0 && cells_.constants_decide;
+            note_constant(element, certain ? difference : 0, place);
+            found_.z[element] =
+                certain ? std::copysign(std::numeric_limits<double>::infinity(), difference) : 0;
             return;
           }
           ++counts_.tested;
@@ -399,7 +403,6 @@ class FineTiles {
           const StudentValue value = own_value(noise);
           found_.z[element] = t_to_z(value);
           if (!candidates_[0].wants(value.t)) return;
-          const Rectangle place{static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 1, 1};
           candidates_[0].keep({{.window = place, .channel = c, .z = found_.z[element]}, noise});
         });
   }
@@ -494,12 +497,14 @@ class FineTiles {
   }
 
   // An element that varied in one half alone is in sums only.
-  void note_constant(std::size_t element, std::size_t vary, double difference) {
-    if (vary > 0 || difference == 0 || !cells_.constants_decide) {
+  void note_constant(std::size_t element, double certain_difference, const Rectangle& place) {
+    if (certain_difference == 0) {
       ++counts_.equal_constants;
     } else {
-      counts_.merge(
-          {.different_constants = 1, .first_different = element, .difference = difference});
+      counts_.merge({.different_constants = 1,
+                     .first_different = element,
+                     .difference = certain_difference,
+                     .different = place});
     }
   }
 
@@ -697,6 +702,9 @@ void ElementCounts::merge(const ElementCounts& other) {
     first_different = other.first_different;
     difference = other.difference;
   }
+  different = different_constants == 0         ? other.different
+              : other.different_constants == 0 ? different
+                                               : around(different, other.different);
   tested += other.tested;
   equal_constants += other.equal_constants;
   different_constants += other.different_constants;

@@ -91,6 +91,7 @@ void RowPyramid::add_best(ImageFamily& family) const {
                          std::vector<ImageFinding>& findings) {
       finding.log_p = log_p_two_sided(tails_of(value));
       finding.adjusted_log_p = adjusted(finding.log_p, size);
+      finding.group = size;
       divide_by_weights(finding, found_.weights, extent_);
       findings.push_back(finding);
     };
@@ -107,6 +108,7 @@ ImageFamily RowPyramid::family() {
                      .hidden_squares = found_.noise.hidden_squares()};
   if (counts.different_constants > 0) {
     family.groups.push_back(certain_finding(extent_, counts.first_different, counts.difference));
+    family.groups.back().window = counts.different;
   } else {
     family.typical.noise = offer_cells();
     add_best(family);

@@ -347,6 +347,47 @@ TEST(ImagePyramid, TheWinnerSaysWhereTheDefectIs) {
   EXPECT_LT(family.winner.z, -10);
 }
 
+// Of a tile that is brighter, the winner's window has this true mean difference and its interval
+// holds it where the p-value is above 1 - confidence.
+double log_p_of_the_true_effect(Philox& random, bool adjust) {
+  constexpr double brighter = 1.2;
+  const auto is_tile = [](std::size_t x, std::size_t y) { return x / 4 == 1 && y / 5 == 1; };
+  const OwnedStack a = draw_stack(small, 16, [&](std::size_t e) {
+    const bool brightened = is_tile(e % small.width, e / small.width);
+    return random.normal() + (brightened ? brighter : 0);
+  });
+  const ImageFamily family = image_pyramid(a.view(), normal_stack(random, 16).view());
+  const ImageFinding& found = family.winner;
+  if (found.alternation) return 0;
+  double sum = 0;
+  double weight = 0;
+  for (std::size_t y = found.window.y; y < found.window.y + found.window.height; ++y) {
+    for (std::size_t x = found.window.x; x < found.window.x + found.window.width; ++x) {
+      const double w = static_cast<double>(family.weights[y * small.width + x]);
+      sum += is_tile(x, y) ? w * brighter : 0;
+      weight += w;
+    }
+  }
+  const double t = (found.effect.estimate - sum / weight) / found.effect.standard_error;
+  const double log_p = two_sided(student_t_tails(t, found.effect.degrees));
+  return adjust ? adjusted(log_p, found.group) : log_p;
+}
+
+CALIBRATED(ImagePyramid, TheWinnersIntervalHoldsItsTrueEffect, 830, 4000, Shape::at_most_uniform) {
+  return log_p_of_the_true_effect(random, true);
+}
+
+CAUGHT(ImagePyramid, AnIntervalThatForgetsTheSearchIsCaught, 830, 4000, Shape::at_most_uniform) {
+  return log_p_of_the_true_effect(random, false);
+}
+
+TEST(ImagePyramid, ALevelIsSharedOutAsItIsAdjusted) {
+  for (const GroupSize& group : {GroupSize{1, 1}, GroupSize{3, .4}, GroupSize{6e6, .01}}) {
+    const double one = unadjusted(std::log(.01), group);
+    EXPECT_NEAR(adjusted(one, group), std::log(.01), 1e-9) << group.count;
+  }
+}
+
 TEST(ImagePyramid, OneDifferentConstantIsCertainAndPlaced) {
   Philox random(841);
   OwnedStack a = normal_stack(random, 16);
@@ -363,6 +404,23 @@ TEST(ImagePyramid, OneDifferentConstantIsCertainAndPlaced) {
   EXPECT_EQ(different.log_p, std::numeric_limits<double>::lowest());
   EXPECT_EQ(different.winner.window, (Rectangle{3, 2, 1, 1}));
   EXPECT_LT(different.winner.z, 0);
+}
+
+TEST(ImagePyramid, AllDifferentConstantsLieInThePlaceAndAreCertain) {
+  Philox random(842);
+  OwnedStack a = normal_stack(random, 16);
+  OwnedStack b = normal_stack(random, 16);
+  const std::size_t constant[] = {27, 40, 95};
+  for (const std::size_t e : constant) {
+    for (auto& image : a.images) image[e] = 1;
+    for (auto& image : b.images) image[e] = e == 40 ? 1 : 2;
+  }
+  std::vector<double> z(small.elements());
+  const ImageFamily family = image_pyramid(a.view(), b.view(), {.z = z});
+  EXPECT_EQ(family.winner.window, (Rectangle{3, 2, 9, 6}));
+  EXPECT_EQ(z[27], -std::numeric_limits<double>::infinity());
+  EXPECT_EQ(z[95], z[27]);
+  EXPECT_EQ(z[40], 0);
 }
 
 // Half of it black, one side has fewer degrees of freedom there: a cell half beside the defect has
