@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numeric>
 #include <vector>
 
 #include "harness/base/interrupt.h"
@@ -86,23 +87,34 @@ Loaded recorded_run(const Recorded& recorded, const ReplayArguments& arguments) 
 
 bool is_of(const TestEntry* test, const Recorded& recorded) { return test->id == recorded.test.id; }
 
-/// Says whether the value is possible: it is in the recorded range, or some recorded values are not
-/// finite.
-bool print_against(const reports::Sample& sample, double value) {
+/// A value beside the recorded ones: it is possible in their range, or if some are not finite.
+struct Comparison {
+  bool same = true;
+  std::string text = "";
+};
+
+Comparison compared(const reports::Sample& sample, double value) {
   if (!std::isfinite(value)) {
-    const bool same = sample.nonfinite > 0;
-    fmt::print("  {}\n",
-               same ? fmt::format("not finite, as {} of the {} recorded", sample.nonfinite,
-                                  sample.secondaries)
-                    : fmt::format("NOT as recorded: all {} were finite", sample.secondaries));
-    return same;
+    if (sample.nonfinite == 0) {
+      return {false, fmt::format("  NOT as recorded: all {} were finite\n", sample.secondaries)};
+    }
+    return {.text = fmt::format("  not finite, as {} of the {} recorded\n", sample.nonfinite,
+                                sample.secondaries)};
   }
-  if (!sample.min || !sample.max) return true;
+  if (!sample.min || !sample.max) return {};
   const bool same = *sample.min <= value && value <= *sample.max;
-  fmt::print("  {} [{}, {}], the range of the {} recorded\n",
-             same ? "lies in" : "NOT as recorded: lies outside", *sample.min, *sample.max,
-             sample.secondaries);
-  return same;
+  return {same, fmt::format("  {} [{}, {}], the range of the {} recorded\n",
+                            same ? "lies in" : "NOT as recorded: lies outside", *sample.min,
+                            *sample.max, sample.secondaries)};
+}
+
+/// True if a channel is printed even if it is as recorded: of an image those of the finding's first
+/// pixel, or those that the claim names.
+bool is_shown(const Setup& setup, const reports::Test& test, std::size_t channel, bool named) {
+  const auto& shape = setup.image();
+  if (!shape || !test.image) return !shape || named;
+  const reports::ImageFinding& found = test.image->winner;
+  return channel / shape->components.size() == found.y * shape->width + found.x;
 }
 
 /// True if the record does not contradict the observation.
@@ -134,11 +146,18 @@ bool print_observation(const Question& question, const Recorded& recorded, std::
     }
     for (std::size_t c = 0; c < values.size(); ++c) {
       if (channels[c].name == cell_channel && values[c] == no_cell) continue;
-      fmt::print("{}.{}  observation {}: {}\n", side.estimator->name, channels[c].name, index,
-                 values[c]);
       const reports::Sample* sample = recorded_of(recorded.test, question, i, c);
-      if (sample == nullptr || index >= sample->secondaries) continue;
-      same &= print_against(*sample, values[c]);
+      const bool has_range = sample != nullptr && index < sample->secondaries;
+      const Comparison comparison = has_range ? compared(*sample, values[c]) : Comparison{};
+      same &= comparison.same;
+      if (comparison.same && !is_shown(*side.setup, recorded.test, c, has_range)) continue;
+      fmt::print("{}.{}  observation {}: {}\n{}", side.estimator->name, channels[c].name, index,
+                 values[c], comparison.text);
+    }
+    if (side.setup->image()) {
+      fmt::print(
+          "{}  mean of observation {}: {}\n", side.estimator->name, index,
+          std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size()));
     }
     if (const auto* draws = dynamic_cast<const SamplerSetup*>(side.setup.get())) {
       fmt::print("  draw of `{}`: {}\n", draws->name(),

@@ -93,7 +93,11 @@ tests:
   for (const reports::Test& test : record.suites[0].tests) {
     EXPECT_EQ(test.paired, test.name == "first" || test.name == "second");
     expect_same_numbers(file, test.id);
-    EXPECT_EQ(said({.record = file, .test = test.id, .observation = 15}).code, 0);
+    const Said one = said({.record = file, .test = test.id, .observation = 15});
+    EXPECT_EQ(one.code, 0);
+    // One pixel and the mean of each side.
+    EXPECT_THAT(one.text, HasSubstr("mean of observation 15: "));
+    EXPECT_LE(std::ranges::count(one.text, '\n'), 14) << one.text;
   }
 }
 
@@ -155,7 +159,9 @@ tests:
   - {name: pixel, claim: mean(image.x1y1) == analytic, secondaries: 32}
 )");
   for (std::uint64_t index = 0; index < 32; ++index) {
-    EXPECT_EQ(said({.record = file, .test = "pixel", .observation = index}).code, 0) << index;
+    const Said now = said({.record = file, .test = "pixel", .observation = index});
+    EXPECT_EQ(now.code, 0) << index;
+    EXPECT_THAT(now.text, AllOf(HasSubstr("image.x1y1"), Not(HasSubstr("image.x0y0"))));
   }
 }
 
