@@ -221,7 +221,7 @@ void add_image(const DrawnTest& drawn, reports::Test& test) {
                         .estimate = number(effect->estimate / unit),
                         .low = number(effect->interval.low / unit),
                         .high = number(effect->interval.high / unit),
-                        .confidence = confidence_at_place,
+                        .confidence = stats::confidence_at_place,
                         .relative = relative};
   }
   add_maps(drawn, found, test);

@@ -154,13 +154,14 @@ std::optional<PlaceEffect> effect_at_place(const DrawnTest& test) {
     const double difference = mean_over(test, 0, elements, {}) - base;
     return PlaceEffect{difference, {difference, difference, 1}, base};
   }
-  const double log_level = stats::unadjusted(std::log(1 - confidence_at_place), winner.group);
+  const double log_level =
+      stats::unadjusted(std::log(1 - stats::confidence_at_place), winner.group);
   const double half = effect.standard_error *
                       stats::student_t_quantile({stats::Tail::upper, log_level - std::numbers::ln2},
                                                 effect.degrees);
   return PlaceEffect{
       .estimate = effect.estimate,
-      .interval = {effect.estimate - half, effect.estimate + half, confidence_at_place},
+      .interval = {effect.estimate - half, effect.estimate + half, stats::confidence_at_place},
       .other = other_mean(test, elements, family.weights)};
 }
 

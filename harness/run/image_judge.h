@@ -14,8 +14,6 @@ ImageTest image_test(const DrawnTest& test);
 /// The observations of this look: the subject's elements of each.
 ImageViews images_of(const DrawnTest& test, std::size_t subject);
 
-inline constexpr double confidence_at_place = 0.99;
-
 /// The mean difference over the cell that speaks most against equality, in units of the images and
 /// weighted as the test weighs it. The cell was searched for: the interval is one of those that
 /// hold the differences of all cells at once.

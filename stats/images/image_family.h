@@ -137,9 +137,12 @@ struct ImageFamily {
   TypicalCell typical = {};
 };
 
+// Of the interval at a finding's place.
+inline constexpr double confidence_at_place = 0.99;
+
 // Sets the family's p-value, the smallest over the groups. The winner is the clearest of the cells
-// that overlap the cell of this p-value and have its root or less. If a finer cell in it is as
-// clear, that one wins: elements around it tell nothing.
+// that overlap the cell of this p-value, have its root or less, and whose intervals exclude 0. If a
+// finer cell in it is as clear, that one wins: elements around it tell nothing.
 void decide(ImageFamily& family);
 
 // A certain finding: different constants.

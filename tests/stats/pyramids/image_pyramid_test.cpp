@@ -377,6 +377,23 @@ CALIBRATED(ImagePyramid, TheWinnersIntervalHoldsItsTrueEffect, 830, 4000, Shape:
   return log_p_of_the_true_effect(random, true);
 }
 
+TEST(ImagePyramid, TheWinnersIntervalExcludesZeroWhereItIsAFinding) {
+  Philox random(831);
+  int findings = 0;
+  for (int run = 0; run < 400; ++run) {
+    const OwnedStack a = draw_stack(small, 16, [&](std::size_t e) {
+      return random.normal() + (e % small.width / 4 == 1 && e / small.width / 5 == 1 ? .8 : 0);
+    });
+    const ImageFinding found = image_pyramid(a.view(), normal_stack(random, 16).view()).winner;
+    if (found.alternation || found.adjusted_log_p > std::log(1 - confidence_at_place)) continue;
+    const double t = found.effect.estimate / found.effect.standard_error;
+    const double own = adjusted(two_sided(student_t_tails(t, found.effect.degrees)), found.group);
+    EXPECT_LE(own, std::log(1 - confidence_at_place)) << run;
+    ++findings;
+  }
+  EXPECT_GT(findings, 50);
+}
+
 CAUGHT(ImagePyramid, AnIntervalThatForgetsTheSearchIsCaught, 830, 4000, Shape::at_most_uniform) {
   return log_p_of_the_true_effect(random, false);
 }
