@@ -27,6 +27,7 @@ done
 cp -r "$source_folder/tests/consumer" "$work/project"
 cp "$source_folder/estimators/foreign/examples/darts_library.c" "$work/project"
 cd "$work/project" || exit 1
+sed -n '/^```cpp$/,/^```$/{/^```/!p}' "$source_folder/README.md" >readme_test.cpp
 
 run cmake -S . -B build -DCMAKE_PREFIX_PATH="$work/prefix" || fail 'the project is not configured'
 run cmake --build build || fail 'the project is not built'
@@ -37,6 +38,7 @@ contains 'again:claims/mean(normal) == 2 '
 # The second set-up makes the mean 3.
 contains 'darts/mean(darts) == 3.141592653589793 '
 contains '80% tests passed, 1 tests failed out of 5'
+run build/readme_test || fail 'the example of README.md fails'
 
 # 50 true claims at alpha 0.01 together, coarse, since a run takes a second. By chance 3 of 4 seeds
 # fail with probability 4e-6, and 5 of 30 with 1.2e-5 (binomial at .01).
