@@ -345,9 +345,14 @@ class ImageTheta : public Theta {
     const Subject& second = question.subjects[1];
     const ImageViews views = pilot_views(second, pilots);
     const PictureLook* const look = pilot_of(second, pilots)->sums->look();
-    const double sum = look != nullptr
-                           ? look->distance.squared_norm
-                           : stats::image_squared_mean({extent_of(*second.image), views.images()});
+    const stats::ImageStack stack{extent_of(*second.image), views.images()};
+    const ChannelMeans means = look != nullptr ? look->means[1] : channel_means(stack);
+    const bool is_known = std::ranges::any_of(means, [](const Constant& mean) {
+      return exceeds_its_error(mean.value, mean.standard_error);
+    });
+    if (!is_known) return 0;
+    const double sum =
+        look != nullptr ? look->distance.squared_norm : stats::image_squared_mean(stack);
     const auto elements = static_cast<double>(second.channels.size());
     return std::abs(question.factor) * std::sqrt(std::max(0.0, sum) / elements);
   }

@@ -97,12 +97,15 @@ std::string misdeclared(const Question& question, const Pilots& pilots) {
   return "";
 }
 
-/// Possible slip of the user: a `detect` by default, or a margin larger than what it is about.
-std::string caution_of(const Question& question, const Pilots& pilots) {
-  if (question.test->detect_by_default) {
-    return fmt::format("`detect` is {}, the default of claims about laws",
-                       question.test->detect->value);
-  }
+/// Possible slip of the user: a `detect` by default.
+std::string caution_of(const Question& question) {
+  if (!question.test->detect_by_default) return "";
+  return fmt::format("`detect` is {}, the default of claims about laws",
+                     question.test->detect->value);
+}
+
+/// A margin larger than the other side, which `ask_as_written` cannot know; "" if there is none.
+std::string larger_than_other_side(const Question& question, const Pilots& pilots) {
   if (!has_margin(*question.test, false)) return "";
   const double size = question.theta->piloted_size(question, pilots);
   for (const Margin& margin : margins_of(*question.test)) {
@@ -118,7 +121,9 @@ std::uint64_t choose_method(TestOutcome& test, const Pilots& pilots, std::uint64
   const Question& question = test.question;
   const std::uint64_t used = std::min(most, question.test->secondaries.value_or(most));
   if (has_rows(question)) require_independent_sides(question, pilots, used);
-  if (std::string reason = unusable_pilot(question, pilots); !reason.empty()) {
+  std::string reason = unusable_pilot(question, pilots);
+  if (reason.empty()) reason = larger_than_other_side(question, pilots);
+  if (!reason.empty()) {
     test.plan.invalid = std::move(reason);
     return least_secondaries;
   }
@@ -210,7 +215,7 @@ TestOutcome plan_test(const Question& question, const FamilyPlace& place, const 
     } else {
       plan.looks = look_for_its_picture(test);
     }
-    const std::string slip = caution_of(question, pilots);
+    const std::string slip = caution_of(question);
     plan.caution += (plan.caution.empty() || slip.empty() ? "" : "; ") + slip;
   } catch (const std::domain_error& error) {
     plan.looks = one_look(2, place.share);
