@@ -188,11 +188,18 @@ Reason too_few_to_tell(TestOutcome& test, const Pilots& pilots, std::uint64_t co
             ? ""
             : fmt::format("; if they are independent, add {}",
                           written_key(*test.question.test, "test", test.plan.method.name));
-    reason = {fmt::format("`{}` has {} row{}, and it takes {} to see that they do not depend on "
-                          "each other: give more{}",
-                          side.estimator->name, rows, rows == 1 ? "" : "s", fewest_in_order_to_tell,
-                          forced),
-              reports::Advice{.words = fmt::format("give {} rows", fewest_in_order_to_tell)}};
+    const std::uint64_t there = side.setup->observations().value_or(rows);
+    const char* const key = test.question.test->budget ? "budget" : "secondaries";
+    const bool limited = rows < there;
+    reason = {
+        fmt::format("`{}` has {} row{}{}, and it takes {} to see that they do not depend on "
+                    "each other: give {}{}",
+                    side.estimator->name, there, there == 1 ? "" : "s",
+                    limited ? fmt::format(", of which `{}` allows {}", key, rows) : "",
+                    fewest_in_order_to_tell, limited ? fmt::format("a larger `{}`", key) : "more",
+                    forced),
+        reports::Advice{.words = limited ? fmt::format("give a larger `{}`", key)
+                                         : fmt::format("give {} rows", fewest_in_order_to_tell)}};
   }
   return reason;
 }

@@ -110,6 +110,11 @@ test_mistakes_in_a_check_say_what_to_write() {
     check 'mean(x) == 1' --estimator recorded,file=one.txt
   expect 1 check 'mean(x) == 1' --estimator x=recorded,file=one.txt
   contains out '`x` has 1 row, and it takes 100 to see that they do not depend on each other'
+  seq 500 >many.txt
+  expect 1 check 'mean(x) == 1' --estimator x=recorded,file=many.txt --budget 10
+  contains out 'to decide: give a larger `budget`'
+  expect 0 check --help
+  contains out 'the most it may cost: 1e7 are primaries, 30s are CPU time'
 }
 
 "$3"
