@@ -43,7 +43,7 @@ void watch_interrupts() {
 bool interrupted() { return was_asked.load(); }
 
 void stop_if_interrupted() {
-  if (interrupted()) throw std::runtime_error("interrupted; nothing is written");
+  if (interrupted()) throw std::runtime_error("interrupted; no report is written");
 }
 
 }  // namespace assay::harness
