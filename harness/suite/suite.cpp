@@ -601,7 +601,9 @@ bool is_same_file(const std::string& one, const std::string& other) {
   std::error_code failure;
   if (fs::equivalent(one, other, failure)) return true;
   const auto whole = [&](const std::string& path) {
-    return fs::weakly_canonical(fs::absolute(path, failure), failure);
+    const fs::path absolute = fs::absolute(path, failure);
+    const fs::path found = fs::weakly_canonical(absolute, failure);
+    return failure ? absolute.lexically_normal() : found;  // of a folder that may not be read
   };
   return whole(one) == whole(other);
 }

@@ -109,6 +109,14 @@ TEST(Suite, LoadsWithoutANameOfItsFolder) {
   EXPECT_EQ(suite.folder, ".");
 }
 
+// Of such paths no canonical form can be had, as in a folder that may not be read.
+TEST(Suite, AReportReplacesNothingOfAnotherName) {
+  const std::string folder(300, 'x');
+  refuse_overwriting(folder + "/run.html", {folder + "/run.yaml"});
+  EXPECT_THAT(refusal([&] { refuse_overwriting(folder + "/a", {folder + "/./a"}); }),
+              testing::HasSubstr("a report would replace it"));
+}
+
 // Each bad file breaks one rule; its first line is `# expect: ` and the refusal.
 TEST(Suite, ThatIsWrongIsRefusedWhereItIs) {
   int count = 0;
