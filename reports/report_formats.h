@@ -30,7 +30,7 @@ class Console {
   std::string broken(const Suite&, const Test&);
 
   /// Suites, then claims that are not as they should be and were not told, then the verdict.
-  std::string rest(const Record&) const;
+  std::string rest(const Record&, const ConsoleOptions&) const;
 
  private:
   ConsoleOptions options_;

@@ -87,11 +87,16 @@ void require_writable(const Output& output, const std::vector<std::string>& kept
     refuse_overwriting(request.path, kept);
     const std::filesystem::path path(request.path);
     const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-    if (!std::filesystem::is_directory(folder)) {
+    std::error_code failure;
+    const bool is_there = std::filesystem::is_directory(folder, failure);
+    if (failure == std::errc::permission_denied) {
+      refuse({.file = request.path}, "cannot be written: {}", failure.message());
+    }
+    if (!is_there) {
       refuse({.file = request.path}, "its folder does not exist; make it by `mkdir -p {}`",
              shell_quoted(folder.string()));
     }
-    if (std::filesystem::is_directory(path)) {
+    if (std::filesystem::is_directory(path, failure)) {
       refuse({.file = request.path}, "is a folder; name the file to write");
     }
   }
@@ -100,13 +105,13 @@ void require_writable(const Output& output, const std::vector<std::string>& kept
 void write_reports(const Output& output, const ReportWriter& written) {
   std::string to_stdout;
   std::string failures;
-  bool console_placed = false;
-  for (const ReportRequest& request : output.reports) {
-    console_placed = console_placed || request.kind == "console";
+  Output done = output;  // without what could not be written, which the console does not name
+  std::vector<ReportRequest> files_first = output.reports;
+  std::ranges::stable_partition(files_first, [](const auto& each) { return each.path != "-"; });
+  for (const ReportRequest& request : files_first) {
     const bool standard = request.path == "-";
     try {
-      const std::string text =
-          written(request, console_options(output, standard ? stdout : nullptr));
+      const std::string text = written(request, console_options(done, standard ? stdout : nullptr));
       if (standard) {
         to_stdout += text;
       } else {
@@ -114,12 +119,13 @@ void write_reports(const Output& output, const ReportWriter& written) {
       }
     } catch (...) {  // a full disk does not stop the other reports
       failures += (failures.empty() ? "" : "\n") + words_of(std::current_exception());
+      std::erase_if(done.reports, [&](const auto& each) { return each.path == request.path; });
     }
   }
-  if (!console_placed) {
+  if (std::ranges::count(output.reports, "console", &ReportRequest::kind) == 0) {
     std::FILE* stream = console_stream(output);
     fmt::print(stream, "{}",
-               written({.kind = "console", .path = "-"}, console_options(output, stream)));
+               written({.kind = "console", .path = "-"}, console_options(done, stream)));
   }
   fmt::print("{}", to_stdout);
   if (!failures.empty()) throw std::runtime_error(failures);
@@ -136,7 +142,7 @@ void RunReports::tell(const reports::Suite& suite, const reports::Test& broken) 
 
 void RunReports::write(reports::Record& record) const {
   write_reports(output_, [&](const ReportRequest& request, const reports::ConsoleOptions& options) {
-    if (request.kind == "console" && request.path == "-") return console_.rest(record);
+    if (request.kind == "console" && request.path == "-") return console_.rest(record, options);
     if (request.kind == "json" && request.path != "-") write_maps(record, request.path);
     return reports::report_format(request.kind).of_record(record, options);
   });

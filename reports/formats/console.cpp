@@ -126,7 +126,9 @@ class Screen {
     slowest(record);
     blank();
     if (in_full()) paragraph("Claims: " + counts_text(standings(record)) + ".");
-    const Standing how = alarms(record.ledger) > 0 ? Standing::broken : worst(standings(record));
+    Standings count = standings(record);
+    Standing how = alarms(record.ledger) > 0 ? Standing::broken : worst(count);
+    if (!is_trouble(how) && count[Standing::not_run] > 0) how = Standing::not_run;
     std::string text = mark(how) + " " + run_sentence(record);
     if (record.seconds > 0) text += " in " + time(record.seconds);
     text += ".";
@@ -446,15 +448,15 @@ std::string Console::broken(const Suite& suite, const Test& test) {
   return screen.take();
 }
 
-std::string Console::rest(const Record& record) const {
-  Screen screen(options_);
+std::string Console::rest(const Record& record, const ConsoleOptions& options) const {
+  Screen screen(options);
   screen.all(record, told_);
   screen.end(record);
   return screen.take();
 }
 
 std::string console(const Record& record, const ConsoleOptions& options) {
-  return Console(options).rest(record);
+  return Console(options).rest(record, options);
 }
 
 }  // namespace assay::reports

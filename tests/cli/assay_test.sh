@@ -401,6 +401,9 @@ test_full_disk_is_no_success() {
   "$assay" run good.yaml --report json=- >/dev/full 2>err || code=$?
   [ "$code" -eq 2 ] || fail "ended with $code, not 2"
   contains err 'No space left on device'
+  expect 2 run good.yaml --report html=/dev/full
+  contains err 'cannot write /dev/full'
+  lacks out '/dev/full'
 }
 
 # A build by tools that say what they are asked and fail as asked.

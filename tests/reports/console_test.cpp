@@ -37,13 +37,20 @@ TEST(Console, PlantedBugsThatAreCaughtAreCounted) {
   EXPECT_THAT(console(record), HasSubstr("3 hold, 1 planted bug caught"));
 }
 
+TEST(Console, ClaimsThatWereNotRunTakeTheTickAway) {
+  Record record = first_suite();
+  std::erase_if(record.suites[0].tests, [](const reports::Test& test) { return !test.ok; });
+  record.suites[0].tests.back().verdict = Verdict::skipped;
+  EXPECT_THAT(console(record), HasSubstr("– 3 of 4 claims as they should be, 1 not tested"));
+}
+
 TEST(Console, ABrokenClaimIsToldOnce) {
   const Record record = example_record();
   Console screen({});
   const std::string told = screen.broken(record.suites[0], record.suites[0].tests[2]);
   EXPECT_THAT(console(record), HasSubstr(told));
-  EXPECT_EQ(screen.rest(record).find(told), std::string::npos);
-  EXPECT_THAT(screen.rest(record), HasSubstr("3 of 13 claims broken, 2 without a verdict"));
+  EXPECT_EQ(screen.rest(record, {}).find(told), std::string::npos);
+  EXPECT_THAT(screen.rest(record, {}), HasSubstr("3 of 13 claims broken, 2 without a verdict"));
 }
 
 // A prefix with a star selects the test too.
