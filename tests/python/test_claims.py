@@ -99,7 +99,7 @@ def more(rng):
     folder.makepyfile(test_cube=text)
     result = run(folder, "-k", "more or plain")
     result.assert_outcomes(passed=2, failed=1, deselected=19)
-    assert "has no function `cubes`" in " ".join(result.stdout.str().split())
+    assert "has no function `cubes`; did you mean `cube`?" in " ".join(result.stdout.str().split())
 
 
 def test_a_decorator_without_a_claim_is_refused(folder):

@@ -224,7 +224,9 @@ def test_wrong_parameters_refuse(program, words, answer):
      "ZeroDivisionError: division by zero, at mine.py:3 in mine"),
     ("def mine(rng):\n  raise ValueError('no\\n light')\nassay.serve(mine)",
      "ValueError: no light, at mine.py:3 in mine"),
-    ("assay.serve(lambda rng: (1, 2))", "TypeError: must be real number, not tuple"),
+    ("assay.serve(lambda rng: (1, 2))",
+     "TypeError: the estimate is (1, 2), not 1 number: name the channels, or the image"),
+    ("assay.serve(lambda rng, primaries: (1, 2))", "TypeError: the estimate is (1, 2), not 1 number"),
     ("assay.serve(lambda rng: (1, 2), channels=['a', 'b', 'c'])",
      "ValueError: the estimate has 2 numbers or rows where 3 are declared"),
     ("assay.serve(lambda rng: 3, channels=['a', 'b'])",
@@ -240,6 +242,27 @@ def test_an_exception_ends_the_program_with_its_last_line(program, body, line):
     status, out, errors = mine.ending()
     assert (status, out) == (1, b"")
     assert errors.splitlines()[-1].startswith(line)
+
+
+@pytest.mark.parametrize("arguments, answer", [
+    ("", "`mine` takes no argument: write `def mine(rng):` and draw from `rng`"),
+    ("rng, primaries, scale",
+     "`mine` has the parameter `scale` without a value: give it a default value, or write `*` before it")])
+def test_a_function_of_other_arguments_refuses(program, arguments, answer):
+    mine = program(f"def mine({arguments}):\n  return 1\nassay.serve(mine)")
+    assert mine.hello() == ["assay 1 binary", f"error TypeError: {answer}"]
+
+
+@pytest.mark.parametrize("draw, domain, more, wanted", [
+    ("0.5", "interval", "", "(point, density), not 0.5"),
+    ("(0.5, 0.25)", "square", "", "(point, density), not (0.5, 0.25)"),
+    ("(0.5, 1)", "interval", ", evaluate=lambda x: x", "(point, density, weight), not (0.5, 1)")])
+def test_a_draw_says_what_it_must_return(program, draw, domain, more, wanted):
+    mine = program(f"one = assay.Sampler('one', '{domain}', lambda rng: {draw}, lambda x: 1{more})\n"
+                   "assay.serve(lambda rng: 1, samplers=[one])")
+    mine.hello()
+    mine.child.stdin.write(struct.pack("<6Q", 0, 0, 1, 0, 8, 0))
+    assert f"TypeError: draw() of `one` must return {wanted}" in mine.ending()[2]
 
 
 RAMP = '''

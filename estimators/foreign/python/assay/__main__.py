@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import importlib.util
 import sys
 import typing
@@ -19,8 +20,12 @@ def _prepare() -> tuple[typing.Callable[..., typing.Any], Declaration, list[str]
     sys.modules[module_name] = module
     specification.loader.exec_module(module)
 
+    functions = [name for name, value in vars(module).items() if callable(value)]
+
     def missing(rng: typing.Any) -> float:  # an error of its own claims, not of the module's
-        raise LookupError(f"{module_name} has no function `{function_name}`")
+        near = difflib.get_close_matches(function_name, ["it", *functions], 1)
+        raise LookupError(f"{module_name} has no function `{function_name}`"
+                          + "".join(f"; did you mean `{name}`?" for name in near))
 
     function = getattr(module, function_name, missing)
     return function, declaration_of(function), []

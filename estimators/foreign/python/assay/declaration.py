@@ -163,10 +163,17 @@ _READERS: dict[typing.Any, Callable[[str], typing.Any]] = {
 
 
 def takes_primaries(function: Callable[..., typing.Any]) -> bool:
-    """True of `estimate(rng, primaries)`, False of `estimate(rng)`."""
-    required = [p for p in inspect.signature(function).parameters.values()
-                if p.default is p.empty and p.kind in (p.POSITIONAL_ONLY, p.POSITIONAL_OR_KEYWORD)]
-    return len(required) > 1
+    """True of `estimate(rng, primaries)`, False of `estimate(rng)`; TypeError for others."""
+    name = getattr(function, "__name__", "estimate")
+    positional = [p for p in inspect.signature(function).parameters.values()
+                  if p.kind not in (p.KEYWORD_ONLY, p.VAR_KEYWORD)]
+    if not positional:
+        raise TypeError(f"`{name}` takes no argument: write `def {name}(rng):` and draw from `rng`")
+    others = [p.name for p in positional if p.default is p.empty and p.kind is not p.VAR_POSITIONAL][1:]
+    if len(others) > 1:
+        raise TypeError(f"`{name}` has the parameter `{others[1]}` without a value: "
+                        "give it a default value, or write `*` before it")
+    return bool(others)
 
 
 def parameters_of(function: Callable[..., typing.Any], words: Sequence[str]) -> dict[str, typing.Any]:

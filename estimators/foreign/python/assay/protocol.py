@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import reprlib
 import struct
 import sys
 import traceback
@@ -130,15 +131,15 @@ class _Answers:
         stream, estimate = self._stream, self._estimate
         if self._whole:
             value = estimate(stream, primaries)
-            return struct.pack("<d", value) if self._is_number else _bytes(self._flat(value))
+            return _number(value) if self._is_number else _bytes(self._flat(value))
         if self._is_number:
             values = [estimate(stream) for _ in range(primaries)]
             try:
                 total = math.fsum(values)
             except TypeError:
-                if None not in values:
-                    raise
-                raise TypeError("the estimate is None: does the function end with `return`?") from None
+                for value in values:
+                    _number(value)
+                raise
             return struct.pack("<d", total / primaries)
         total = self._flat(estimate(stream)).copy()  # the estimate may use its array again
         for _ in range(primaries - 1):
@@ -179,12 +180,14 @@ def _draw(sampler: Sampler, stream: Stream) -> tuple[float, ...]:
     drawn = sampler.draw(stream)
     if drawn is None:
         return (0.0,) * 6
-    point, density, *weight = drawn
-    if sampler.evaluate is None:
-        weight = [1.0]
-    if len(weight) != 1:
-        raise ValueError(f"a draw of `{sampler.name}`, which evaluates, is (point, density, weight)")
-    coordinates = (point,) if sampler.dimensions == 1 else tuple(point)
+    wanted = "(point, density)" if sampler.evaluate is None else "(point, density, weight)"
+    try:
+        point, density, *weight = drawn
+        coordinates = (point,) if sampler.dimensions == 1 else tuple(point)
+        weight = [1.0] if sampler.evaluate is None else weight
+        (_,) = weight
+    except (TypeError, ValueError):
+        raise TypeError(f"draw() of `{sampler.name}` must return {wanted}, not {reprlib.repr(drawn)}") from None
     if len(coordinates) != sampler.dimensions:
         raise ValueError(f"a point of `{sampler.name}` has {sampler.dimensions} coordinates, not {len(coordinates)}")
     return (*coordinates, *(0.0,) * (3 - len(coordinates)), density, weight[0], 1.0)
@@ -192,6 +195,21 @@ def _draw(sampler: Sampler, stream: Stream) -> tuple[float, ...]:
 
 def _is_array(value: typing.Any) -> bool:
     return hasattr(value, "__array__")
+
+
+def _wrong(value: typing.Any, size: int) -> TypeError:
+    """The error for a value that is not so many numbers."""
+    if value is None:
+        return TypeError("the estimate is None: does the function end with `return`?")
+    return TypeError(f"the estimate is {reprlib.repr(value)}, not {size} number{'s' if size > 1 else ''}: "
+                     "name the channels, or the image")
+
+
+def _number(value: typing.Any) -> bytes:
+    try:
+        return struct.pack("<d", value)
+    except (struct.error, TypeError):
+        raise _wrong(value, 1) from None
 
 
 def _numbers(value: typing.Any, shape: tuple[int, ...]) -> typing.Any:
@@ -205,7 +223,7 @@ def _numbers(value: typing.Any, shape: tuple[int, ...]) -> typing.Any:
             raise ValueError(f"the estimate has the shape {array.shape}, not {shape}")
         return array.ravel()
     if not isinstance(value, (list, tuple)):
-        raise TypeError(f"the estimate is {value!r}, not {size} numbers: name the channels, or the image")
+        raise _wrong(value, size)
     if len(value) == size and not isinstance(value[0], (list, tuple)):
         return [float(each) for each in value]
     numbers: list[float] = []
