@@ -188,7 +188,8 @@ void check_command(const Parameters& parameters, const std::vector<std::string>&
   for (const std::string& word : command) check_places(parameters, word);
   if (program_path(command[0], parameters.folder()).empty()) {
     parameters.refuse("command", "names the program `" + command[0] +
-                                     "`, which cannot be started: there is none");
+                                     "`, which cannot be started: there is none" +
+                                     foreign::mend_of_program(command[0]));
   }
 }
 

@@ -455,6 +455,16 @@ std::shared_ptr<const Setup> setup_of(std::shared_ptr<Children> children) {
   return std::make_shared<ForeignSetup>(std::move(children), std::move(samplers));
 }
 
+std::string mend_of_program(const std::string& program) {
+  std::string list;
+  const std::vector<std::string_view> words = words_of(program);
+  for (const std::string_view word : words) list += (list.empty() ? "" : ", ") + std::string(word);
+  if (words.size() > 1) return "; put commas between the words: `[" + list + "]`";
+  return program.find('/') == std::string::npos
+             ? "; a program in the suite's folder is written `./" + program + "`"
+             : "; it is sought from the suite's folder";
+}
+
 std::shared_ptr<const Setup> start(Terms terms, const Parameters& parameters,
                                    std::string_view name) {
   const std::string program = terms.launch.command.front();
@@ -466,12 +476,8 @@ std::shared_ptr<const Setup> start(Terms terms, const Parameters& parameters,
   } catch (const Refused& refusal) {
     parameters.refuse(name, std::string("starts no estimator: ") + refusal.what());
   } catch (const std::system_error& failure) {
-    const bool is_word = program.find('/') == std::string::npos;
-    parameters.refuse(
-        name, "names the program `" + program +
-                  "`, which cannot be started: " + failure.code().message() +
-                  (is_word ? "; a program in the suite's folder is written `./" + program + "`"
-                           : "; it is sought from the suite's folder"));
+    parameters.refuse(name, "names the program `" + program + "`, which cannot be started: " +
+                                failure.code().message() + mend_of_program(program));
   }
 }
 

@@ -3,6 +3,7 @@
 // Estimators whose observations are drawn by another program.
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "estimators/estimator.h"
@@ -13,6 +14,9 @@ namespace assay::foreign {
 /// The set-up of what a hello says, whoever answers. An observation is a function of the stream's
 /// key and its index: what is answered for them. Nothing is drawn from the stream itself.
 std::shared_ptr<const Setup> setup_of(std::shared_ptr<Children> children);
+
+/// What to write in place of a program that cannot be started: "; it is sought …".
+std::string mend_of_program(const std::string& program);
 
 /// Starts the program. InputError at the parameter `name`, whose value says which program it is,
 /// where it cannot be started or refuses; NoAnswer where it ends, or says what is no hello.

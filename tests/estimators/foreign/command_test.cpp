@@ -292,7 +292,9 @@ TEST_F(Commands, NeedPlacesForSeedAndFile) {
            {{"render", "{seed}"}, "has no place `{out}`"},
            {{"render", "{seed}", "{seeds}", "{out}"}, "one picture a program"},
            {{"render", "{seed}", "{sample}", "{out}"}, "did you mean `{samples}`?"},
-           {{"no_such_program_anywhere", "{seed}", "{out}"}, "cannot be started"}}) {
+           {{"no_such_program_anywhere", "{seed}", "{out}"},
+            "written `./no_such_program_anywhere`"},
+           {{"render {seed} {out}"}, "between the words: `[render, {seed}, {out}]`"}}) {
     EXPECT_THAT(thrown([&] { prepare_command(words, {}); }), HasSubstr(why));
   }
 }
