@@ -130,9 +130,12 @@ Texts with_an_option_each(const Texts& words) {
 }
 
 /// CLI11's refusal, reworded: it names the methods if one was expected. CLI11 says "--detect: 1
-/// required X missing" if a value is missing.
+/// required X missing" if a value is missing, and "--detect: At Most 1 required" if there are two.
 std::string in_words(const CLI::ParseError& error) {
   std::string text = error.what();
+  if (const std::size_t most = text.find(": At Most 1 required"); most != std::string::npos) {
+    return text.substr(0, most) + " is given more than once; leave the others out";
+  }
   const std::size_t colon = text.find(": 1 required ");
   if (colon != std::string::npos && text.ends_with(" missing")) {
     const std::size_t kind = colon + std::string_view(": 1 required ").size();

@@ -78,6 +78,7 @@ test_mistakes_on_the_command_line_say_what_to_write() {
   answers 2 'has no option `--thread`; did you mean `--threads`?' run s.yaml --thread 2
   answers 2 '--seed must be a whole number from 0 to 18446744073709551615, or `random`, but it is `one`' \
     run s.yaml --seed one
+  answers 2 '--coarsen is given more than once' run s.yaml --coarsen 2 --coarsen 3
   answers 2 '--coarsen needs a value: `--coarsen F`' run s.yaml --coarsen
   answers 2 'it is `html`; write `--report html=run.html`' run s.yaml --report html
   answers 2 'it is `out/a.xml`; write `--report junit=out/a.xml`' run s.yaml --report out/a.xml
