@@ -105,7 +105,21 @@ class Lexer {
     Token token = taken(Token::Kind::number, found.length);
     token.number = found.value;
     if (found.overflows) refuse(where, "the number `{}` does not fit a double", token.text);
+    refuse_quotient(token);
     return token;
+  }
+
+  /// InputError, with its value, for a number that another divides.
+  void refuse_quotient(const Token& number) const {
+    Lexer after = *this;
+    while (is_blank(after.ahead(0))) ++after.at_;
+    if (after.ahead(0) != '/') return;
+    do ++after.at_;
+    while (is_blank(after.ahead(0)));
+    const double divisor = scan_number(after.rest()).value;
+    if (divisor == 0) return;
+    refuse(number.where, "a claim has no arithmetic; write the quotient as one number, `{}`",
+           number.number / divisor);
   }
 
   Token symbol() {
@@ -141,7 +155,8 @@ class Lexer {
     }
     std::size_t length = 1;
     while ((static_cast<unsigned char>(ahead(length)) & 0xC0U) == 0x80) ++length;
-    refuse(place(), "`{}` has no meaning in a claim", rest().substr(0, length));
+    refuse(place(), "`{}` has no meaning in a claim{}", rest().substr(0, length),
+           length > 1 ? "; a name has letters from a to z, digits, `_`, `-` and `/`" : "");
   }
 
   /// The text that is not yet taken.
