@@ -35,6 +35,11 @@ reports::Record read_record(const std::string& file) {
 
 namespace {
 
+std::string without_blanks(std::string text) {
+  std::erase(text, ' ');
+  return text;
+}
+
 /// The nearest id to an unknown one; "" if none is near.
 std::string meant(const std::string& asked, const std::vector<Recorded>& all) {
   std::vector<std::string> spellings;
@@ -63,12 +68,13 @@ Recorded find_test(const reports::Record& record, const std::string& file,
   std::vector<Recorded> all;
   std::vector<Recorded> named;
   std::vector<Recorded> parts;
+  const std::string asked = without_blanks(name);
   for (const reports::Suite& suite : record.suites) {
     for (const reports::Test& test : suite.tests) {
       all.push_back({suite, test});
       if (test.id == name) return all.back();
-      if (test.name == name) named.push_back(all.back());
-      if (test.id.find(name) != std::string::npos) parts.push_back(all.back());
+      if (without_blanks(test.name) == asked) named.push_back(all.back());
+      if (without_blanks(test.id).find(asked) != std::string::npos) parts.push_back(all.back());
     }
   }
   if (named.size() == 1) return named.front();

@@ -241,6 +241,7 @@ TEST_F(Replays, NamesTestsWhereNoneIsNear) {
     return refusal([&] { replay({.record = file, .test = test}); });
   };
   EXPECT_EQ(refused("stream"), "(nothing was refused)");
+  EXPECT_EQ(refused("onestream"), "(nothing was refused)");
   EXPECT_EQ(refused("one straem"),
             "no test `one straem` in this run; did you mean `suite/one stream`?");
   EXPECT_EQ(refused("XX"),
