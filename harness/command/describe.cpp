@@ -59,7 +59,8 @@ const char* domain_name(Domain domain) {
 std::string range_text(const ParameterInformation& p) {
   if (!p.choices.empty()) return fmt::format("{}", fmt::join(p.choices, " | "));
   if (std::isinf(p.low) && std::isinf(p.high)) return "";
-  return fmt::format("{}{}, {}{}", p.low_excluded || std::isinf(p.low) ? "(" : "[", p.low, p.high,
+  const double low = p.type == ParameterType::count ? std::max(p.low, 0.0) : p.low;
+  return fmt::format("{}{}, {}{}", p.low_excluded || std::isinf(low) ? "(" : "[", low, p.high,
                      p.high_excluded || std::isinf(p.high) ? ")" : "]");
 }
 

@@ -308,6 +308,8 @@ test_a_library_does_not_outlive_the_run() {
 }
 
 test_manuals_tell_all() {
+  expect 0 describe command
+  contains out 'jobs: count, [0, 1024]'
   expect 0 describe process
   tells out 'assay 1 text'
   tells out 'timeout: number, (0, 1000000], s, default 60'
