@@ -447,6 +447,8 @@ test_calibration_tells_what_errs_and_writes_its_reports() {
   contains err 'influence-t'
   expect 2 calibrate --law cauchy
   contains err 'student_t(5)'
+  expect 2 calibrate --law 'pareto(1, 1.5)'
+  contains err '`pareto(1, 1.5)` is no law that can be drawn; there is normal(0, 1), exponential(1)'
   expect 2 calibrate --report junit=c.xml
   contains err 'no junit report'
   expect 2 calibrate t --alpha 0.01 --alpha 1e-2
