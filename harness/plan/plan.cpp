@@ -106,9 +106,9 @@ std::string caution_of(const Question& question) {
 
 /// A margin larger than the other side, which `ask_as_written` cannot know; "" if there is none.
 std::string larger_than_other_side(const Question& question, const Pilots& pilots) {
-  if (!has_margin(*question.test, false)) return "";
+  if (question.written.empty() || !has_margin(*question.test, false)) return "";
   const double size = question.theta->piloted_size(question, pilots);
-  for (const Margin& margin : margins_of(*question.test)) {
+  for (const Margin& margin : question.written) {
     if (const auto text = missing_per_cent(margin, size); !text.empty())
       return "the margin " + text;
   }

@@ -84,7 +84,8 @@ struct Question {
   /// The truth for each subject and channel, about which a mean squared error in an efficiency or a
   /// bias in a slope is taken. Empty: the variance, or the mean itself.
   std::vector<std::vector<Constant>> truths = {};
-  std::vector<double> sizes = {};  ///< For a slope: the values of the swept parameter.
+  std::vector<double> sizes = {};    ///< For a slope: the values of the swept parameter.
+  std::vector<Margin> written = {};  ///< The user's margins, before `--coarsen`.
 
   const ThetaTraits& is() const;
   std::size_t channel_count() const {

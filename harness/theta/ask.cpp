@@ -213,6 +213,7 @@ Question ask_as_written(TestEntry& test, const Estimators& estimators, std::uint
     }
   }
   refuse_missing_per_cent(question);
+  question.written = margins_of(test);
   return question;
 }
 

@@ -261,6 +261,9 @@ TEST_F(PlanTable, TakesACoarsenedMarginBeyondItsReference) {
   const PlannedRun coarse =
       planned("  - {claim: mean(normal) == 2, detect: 1.5}\n", {.coarsen = 4});
   EXPECT_EQ(coarse.suites[0]->tests[0].outcome.plan.regions[0].detect, 6);
+  const PlannedRun pair =
+      planned("  - {claim: mean(normal) == mean(normal), detect: 1.5}\n", {.coarsen = 4});
+  EXPECT_TRUE(pair.suites[0]->tests[0].outcome.plan.invalid.empty());
 }
 
 }  // namespace
