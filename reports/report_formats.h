@@ -27,7 +27,7 @@ class Console {
   explicit Console(ConsoleOptions options) : options_(std::move(options)) {}
 
   /// A broken claim in 5 lines at most, and an empty line. It may be told before the run ends.
-  std::string broken(const Suite&, const Test&);
+  std::string broken(const Test&);
 
   /// Suites, then claims that are not as they should be and were not told, then the verdict.
   std::string rest(const Record&, const ConsoleOptions&) const;

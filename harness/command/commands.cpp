@@ -64,8 +64,7 @@ int run_suites(const std::vector<Suite>& suites, const RunOptions& options, cons
     drawn.executor = checkpoint;
   }
   reports::Record record = run(
-      suites, drawn, *progress,
-      [&](const reports::Suite& suite, const reports::Test& test) { console.tell(suite, test); },
+      suites, drawn, *progress, [&](const reports::Test& test) { console.tell(test); },
       &ledger_fault);
   console.write_and_annotate(record);
   if (output.kept) keep_last_run(record, output.detail > 0);

@@ -79,7 +79,7 @@ class Listener {
   void tell(const SuiteRun& run, reports::Test test, const TestEntry& entry) {
     if (first_.empty()) first_ = test.id;
     add_replay(entry, run, planned_.suites, options_, test);
-    if (broken_) broken_(head_of(run), test);
+    if (broken_) broken_(test);
   }
 
   const PlannedRun& planned_;

@@ -12,7 +12,7 @@
 namespace assay::harness {
 
 /// Hears of a broken claim when it is decided. The suite has no tests yet.
-using Broken = std::function<void(const reports::Suite& suite, const reports::Test& test)>;
+using Broken = std::function<void(const reports::Test&)>;
 
 /// Runs the selected tests of the suites. InputError for any mistake found before sampling. A
 /// ledger that cannot be written is a std::runtime_error, or goes to `ledger_fault`.

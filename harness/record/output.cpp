@@ -136,8 +136,8 @@ RunReports::RunReports(const Output& output)
       stream_(console_stream(output)),
       console_(console_options(output, stream_)) {}
 
-void RunReports::tell(const reports::Suite& suite, const reports::Test& broken) {
-  if (stream_ != nullptr) write_beside_progress(console_.broken(suite, broken), stream_);
+void RunReports::tell(const reports::Test& broken) {
+  if (stream_ != nullptr) write_beside_progress(console_.broken(broken), stream_);
 }
 
 void RunReports::write(reports::Record& record) const {

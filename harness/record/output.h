@@ -53,7 +53,7 @@ class RunReports {
   explicit RunReports(const Output& output);
 
   /// Tells of a broken claim at once, beside the progress.
-  void tell(const reports::Suite& suite, const reports::Test& broken);
+  void tell(const reports::Test& broken);
 
   /// Writes the reports. Maps are written beside the JSON report, and the record gets their names.
   void write(reports::Record& record) const;

@@ -511,21 +511,17 @@ bool is_broken(const TestWork& work) {
          outcome.verdict != outcome.question.test->expect;
 }
 
-reports::Suite head_of(const SuiteRun& run) {
-  return {.name = run.suite.name,
-          .file = run.suite.file,
-          .about = run.suite.about,
-          .seed = run.seed,
-          .alpha = run.suite.alpha,
-          .beta = run.suite.beta};
-}
-
 reports::Record record_of(const SuiteRuns& runs, const RunOptions& options) {
   reports::Record record{.tool = this_tool(), .environment = this_environment(options.threads)};
   record.seed = runs.empty() ? options.seed.value_or(1) : runs.front()->seed;
   bool whole = true;
   for (const auto& run : runs) {
-    reports::Suite suite = head_of(*run);
+    reports::Suite suite{.name = run->suite.name,
+                         .file = run->suite.file,
+                         .about = run->suite.about,
+                         .seed = run->seed,
+                         .alpha = run->suite.alpha,
+                         .beta = run->suite.beta};
     std::map<const TestEntry*, reports::Test> tests;  // in the order of the suite's file
     for (const Untested& each : run->untested) {
       tests.emplace(each.test, record_of_untested(each, *run));

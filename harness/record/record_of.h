@@ -39,7 +39,4 @@ bool is_broken(const TestWork& work);
 
 reports::Record record_of(const SuiteRuns& runs, const RunOptions& options);
 
-/// A suite without its tests.
-reports::Suite head_of(const SuiteRun& run);
-
 }  // namespace assay::harness

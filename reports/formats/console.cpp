@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/erase.hpp>
 #include <functional>
 #include <limits>
 #include <map>
@@ -77,8 +78,7 @@ class Screen {
     blank();
     for (const Suite& suite : record.suites) {
       for (const Test& test : suite.tests) {
-        if (is_trouble(standing(test)) && !told.contains(test.id) && !in_full())
-          block(suite.name, test);
+        if (is_trouble(standing(test)) && !told.contains(test.id) && !in_full()) block(test);
       }
     }
     left_out(record);
@@ -94,18 +94,22 @@ class Screen {
 
   /// A claim that is not as it should be: where, what, and what to do. If that takes too many
   /// lines, the last one says where to read all of it. The claim of `check` has no place.
-  void block(const std::string& suite, const Test& test) {
+  void block(const Test& test) {
     const Standing how = standing(test);
-    const int used = head(fmt::format("{} {}: {}", mark(how), suite, test.name), place(test), how);
-    const std::vector<std::string> text = wrapped(trouble(test), options_.width - block_indent);
+    const std::string verdict = verdict_text(test) + ": ";
+    const int used = head(fmt::format("{} {}{}", mark(how), verdict, test.id), place(test), how);
     const std::vector<Step> all = steps(test);
+    std::string told = trouble(test);
+    if (told.starts_with(verdict)) told.erase(0, verdict.size());
+    if (!all.empty() && !all[0].words.empty()) boost::erase_last(told, "; " + all[0].words);
+    const std::vector<std::string> text = wrapped(told, options_.width - block_indent);
     std::vector<std::string> next;
     if (!all.empty()) next = step_lines(all[0]);
     const auto room = [&] {
       return place(test).empty() ? unlimited
                                  : std::max(1, block_lines - used - static_cast<int>(next.size()));
     };
-    // The words end with what a user is asked for; it is a step of its own.
+    // What a user is asked for is a step of its own.
     const bool asked =
         !all.empty() && all[0].paste != test.replay && all[0].words != test.no_replay;
     if (room() < static_cast<int>(text.size()) && test.verdict != Verdict::fail && !asked)
@@ -243,6 +247,12 @@ class Screen {
     return counts.empty() ? Standing::not_run : counts.begin()->first;
   }
 
+  /// What the ids of its tests begin with.
+  static std::string name_of(const Suite& suite) {
+    const std::string id = suite.tests.empty() ? suite.name : suite.tests[0].id;
+    return plain(id.substr(0, id.find('/')));
+  }
+
   /// A line a suite; beside it the CPU time of its draws, if there is room.
   void suites(const Record& record) {
     constexpr int gap = 4;  // two columns before the mark, two with it
@@ -252,7 +262,7 @@ class Screen {
     };
     int name = 0, text = 0, cost = 0;
     for (const Suite& suite : record.suites) {
-      name = std::max(name, columns(plain(suite.name)));
+      name = std::max(name, columns(name_of(suite)));
       text = std::max(text, columns(counts_text(standings(suite))));
       cost = std::max(cost, columns(spent(suite)));
     }
@@ -263,7 +273,7 @@ class Screen {
       const Standing how = worst(standings(suite));
       const bool marked = is_trouble(how);
       const std::string left =
-          fmt::format("{}  {} {}", pad_right(shorten(plain(suite.name), name), name),
+          fmt::format("{}  {} {}", pad_right(shorten(name_of(suite), name), name),
                       marked ? mark(how) : " ", counts_text(standings(suite)));
       const std::string right = cost > 0 ? spent(suite) : std::string();
       line(pad_right(left, name + gap + text + cost - columns(right)) + right,
@@ -292,6 +302,7 @@ class Screen {
     }
     constexpr int margin = 4, gap = 2;
     if (margin + name + gap + number + gap + cost > options_.width) cost = 0;
+    const bool below = cost == 0 && all.size() == 1;
     const int end =
         std::min(options_.width, margin + name + gap + number + (cost > 0 ? gap + cost : 0));
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -306,6 +317,7 @@ class Screen {
       line(fmt::format("  {} {}", mark(standing(test)), plain_spaces(first)), style);
       for (std::size_t part = 1; part < left.size(); ++part)
         line(spaces(margin) + plain_spaces(left[part]), style);
+      if (below) indented(all[i].cost);
       if (in_full() && (is_trouble(standing(test)) || all.size() == 1)) explain(test);
     }
     blank();
@@ -441,10 +453,10 @@ class Screen {
 
 }  // namespace
 
-std::string Console::broken(const Suite& suite, const Test& test) {
+std::string Console::broken(const Test& test) {
   told_.insert(test.id);
   Screen screen(options_);
-  screen.block(suite.name, test);
+  screen.block(test);
   return screen.take();
 }
 

@@ -28,7 +28,7 @@ test_failing_suite_is_1() {
   write_suite fails.yaml "$good" "$wrong"
   expect 1 run fails.yaml
   contains out '✗ 1 of 2 claims broken in'
-  contains out '✗ small: wrong'
+  contains out '✗ fail: fails/wrong'
 }
 
 test_bad_suite_is_2_with_its_place() {
@@ -350,7 +350,7 @@ test_threads_do_not_change_a_bit() {
 test_broken_claims_are_told_before_a_run_ends_early() {
   write_suite hasty.yaml "$long" "$wrong"
   expect 1 run hasty.yaml --fail-fast --durations 1
-  contains out '✗ small: wrong'
+  contains out '✗ fail: hasty/wrong'
   contains out 'the run ended early: `hasty/wrong` is broken'
   contains out 'Slowest, by CPU time of their draws:'
   expect 2 run hasty.yaml --fail-fast --ledger n.ledger

@@ -141,7 +141,7 @@ test_seeds_that_do_nothing_are_errors_under_every_seed() {
     for estimator in unseeded index; do
       expect 1 check 'mean(mine) == 3.14159' --detect 1% --seed "$seed" \
         --estimator "mine=process,command=[/usr/bin/python3, $estimator.py]"
-      tells out '✗ check: mean(mine) == 3.14159'
+      tells out '✗ error: check/mean(mine) == 3.14159'
     done
     tells out 'gave the same numbers for two keys'
   done

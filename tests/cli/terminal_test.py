@@ -122,13 +122,13 @@ def check_width(assay, width):
         fail("a live line that is too long, or counts draws", written)
     if "[#" in shown or "[." in shown:
         fail("the live line stays or scrolls", shown)
-    told = [block for block in blocks(shown) if block[0].startswith(("✗ a suite", "? a suite"))]
+    told = [block for block in blocks(shown) if re.match("[✗?] .*: bad/", block[0])]
     if len(told) != 4 or max(map(len, told)) > 5 or min(map(len, told)) < 3:
         fail("not four claims in three to five lines", shown)
     if not re.search("\n✗ 3 of 7\\s+claims\\s+broken in .* s. False\\s+alarms: at most 2\\s+runs\\s+in"
                      "\\s+100.\n  run.html$", shown.rstrip("\n")):
         fail("no verdict with the report below", shown)
-    if shown.index("✗ a suite of claims: wrong") > re.search("^sound +2 hold", shown, re.M).start():
+    if shown.index("✗ fail: bad/wrong") > re.search("^sound +2 hold", shown, re.M).start():
         fail("a broken claim waits for the end", shown)
     commands = re.findall("again: (assay run .*?)\n\n", shown, re.DOTALL)
     for command in commands:

@@ -47,7 +47,7 @@ TEST(Console, ClaimsThatWereNotRunTakeTheTickAway) {
 TEST(Console, ABrokenClaimIsToldOnce) {
   const Record record = example_record();
   Console screen({});
-  const std::string told = screen.broken(record.suites[0], record.suites[0].tests[2]);
+  const std::string told = screen.broken(record.suites[0].tests[2]);
   EXPECT_THAT(console(record), HasSubstr(told));
   EXPECT_EQ(screen.rest(record, {}).find(told), std::string::npos);
   EXPECT_THAT(screen.rest(record, {}), HasSubstr("3 of 13 claims broken, 2 without a verdict"));
@@ -59,7 +59,7 @@ TEST(Console, AnIdThatIsTooLongForALineEndsInAStar) {
   reports::Test& test = record.suites[0].tests[2];
   test.replay = "assay run a.yaml --seed 1 --filter 'a/it'\\''s " + std::string(100, 'x') + "'";
   Console screen({.width = 60});
-  const std::string text = screen.broken(record.suites[0], test);
+  const std::string text = screen.broken(test);
   EXPECT_THAT(text, HasSubstr("--seed 1 \\\n           --filter 'a/it'\\''s xxx"));
   EXPECT_THAT(text, HasSubstr("xxx*'\n"));
   for (const std::string& line : lines(text)) EXPECT_LE(columns(line), 60) << line;
@@ -112,12 +112,38 @@ TEST(Console, NeverCutsTheNumberThatAUserIsAskedFor) {
   Record record = record_of({undecided(), undecided()});
   reports::Test& test = record.suites[0].tests[0];
   test.ok = false;
-  test.message = "neither shown nor refuted" + std::string(300, 'x');
   test.advice = {.words = "give about 44000 rows in all"};
+  test.message = "neither shown nor refuted" + std::string(300, 'x') + "; " + test.advice->words;
   for (const Verdict verdict : {Verdict::inconclusive, Verdict::invalid}) {
     test.verdict = verdict;
     EXPECT_THAT(console(record), HasSubstr("\n    to decide: give about 44000 rows in all\n"));
   }
+  test.message = "neither shown nor refuted; " + test.advice->words;
+  EXPECT_THAT(console(record), HasSubstr("    neither shown nor refuted\n    to decide: give"));
+}
+
+// The heading is what `explain` and `--filter` take.
+TEST(Console, AClaimThatIsNotAPassIsHeadedByItsVerdictAndId) {
+  Record record = record_of({undecided()});
+  reports::Test& test = record.suites[0].tests[0];
+  test.id = "file/claim";
+  test.file = "";
+  test.expected = Verdict::pass;
+  EXPECT_THAT(console(record), StartsWith("? inconclusive: file/claim\n    the budget ended"));
+  test.expected = Verdict::fail;
+  EXPECT_THAT(console(record),
+              StartsWith("? inconclusive, but fail expected: file/claim\n    the budget ended"));
+  record.suites.push_back(record.suites[0]);
+  record.suites[1].tests[0].id = "other/claim";
+  EXPECT_THAT(console(record), AllOf(HasSubstr("file   ? 1"), HasSubstr("other  ? 1")));
+}
+
+// Numbers stand beside a claim that leaves them no room for the cost.
+TEST(Console, ALongClaimKeepsItsCost) {
+  Record record = with_one_test();
+  reports::Test& test = record.suites[0].tests[0];
+  test.name = "mean(" + std::string(50, 'x') + ") == analytic";
+  EXPECT_THAT(console(record), HasSubstr("\n    " + plain_spaces(cost_text(total_cost(test)))));
 }
 
 TEST(Console, AFailedClaimWithACaveatCanStillBeRepeated) {

@@ -27,10 +27,9 @@ struct Heard {
 Heard heard(const Workplace& place, const std::string& text, const RunOptions& options) {
   Heard all;
   Silence silence;
-  all.record = run({load_suite(place.write("suite.yaml", text))}, options, silence,
-                   [&](const reports::Suite& in, const reports::Test& test) {
-                     all.broken.push_back(in.name + ": " + test.name + ": " + test.replay);
-                   });
+  all.record =
+      run({load_suite(place.write("suite.yaml", text))}, options, silence,
+          [&](const reports::Test& test) { all.broken.push_back(test.id + ": " + test.replay); });
   return all;
 }
 
@@ -39,8 +38,8 @@ using BrokenClaims = Placed;
 TEST_F(BrokenClaims, AreToldWithTheirCommandWhenTheyAreDecided) {
   const Heard all = heard(place, hasty_suite, {.command = "assay run"});
   const std::string again = "assay run " + place.file("suite.yaml") + " --seed 1 --filter ";
-  EXPECT_THAT(all.broken, ElementsAre("hasty: wrong: " + again + "suite/wrong",
-                                      "hasty: bug missed: " + again + "'suite/bug missed'"));
+  EXPECT_THAT(all.broken, ElementsAre("suite/wrong: " + again + "suite/wrong",
+                                      "suite/bug missed: " + again + "'suite/bug missed'"));
   EXPECT_EQ(reports::standings(all.record)[reports::Standing::broken], 2);
 }
 
