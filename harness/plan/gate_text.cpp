@@ -92,6 +92,10 @@ std::string in_words(const std::exception& error) {
   return "there is no test of these numbers: " + text.substr(colon + 2);
 }
 
+const char* rows_noun(const Question& question) {
+  return question.subjects[0].setup->pictures() != nullptr ? "pictures" : "rows";
+}
+
 std::string sizes_text(const TestOutcome& outcome, double factor) {
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < outcome.question.compared(); ++i) {
@@ -130,8 +134,8 @@ Reason what_would_help(const TestOutcome& outcome) {
   const std::string more =
       factor > 1 && std::isfinite(factor) ? "about " + sizes_text(outcome, factor) : "more";
   if (rows) {
-    const std::string words = fmt::format("give {} rows, or rows that each average several{}", more,
-                                          or_if_normal(outcome));
+    const std::string words = fmt::format("give {0} {1}, or {1} that each average several{2}", more,
+                                          rows_noun(outcome.question), or_if_normal(outcome));
     return {": " + words, reports::Advice{.words = words}};
   }
   return fmt::format(

@@ -16,6 +16,9 @@ std::string red_gates(const std::vector<Gate>& gates);
 /// The message of an error from stats as a sentence, without the leading "function: ".
 std::string in_words(const std::exception& error);
 
+/// "rows" or "pictures" of a file.
+const char* rows_noun(const Question&);
+
 /// The look's size times `factor`: "1200", or "1200 and 750" if the subjects' sizes differ.
 std::string sizes_text(const TestOutcome& outcome, double factor);
 

@@ -151,8 +151,8 @@ std::string passed_proof(const TestOutcome& outcome, const ChannelOutcome& chann
 }
 
 /// Advice in words, which the message has too.
-Reason in_words(const std::string& before, const std::string& words, const char* after = "") {
-  return {before + words + after, reports::Advice{.words = words}};
+Reason in_words(const std::string& before, const std::string& words) {
+  return {before + words, reports::Advice{.words = words}};
 }
 
 Reason failed(const TestOutcome& outcome, const ChannelOutcome& channel) {
@@ -237,16 +237,30 @@ double interval_errors(const ChannelOutcome& channel, double tail) {
                                    : stats::normal_quantile(beyond);
 }
 
+/// So many times the observations would decide.
+Reason with_more(const TestOutcome& outcome, const ChannelOutcome& channel, double factor) {
+  if (has_rows(outcome.question)) {
+    return in_words("", fmt::format("give about {} {} {}", sizes_text(outcome, factor),
+                                    rows_noun(outcome.question),
+                                    outcome.question.of_two() ? "a side" : "in all"));
+  }
+  if (const auto& budget = outcome.question.test->budget; budget && budget->of_suite) {
+    return in_words(times_as_many(outcome, factor) + " would decide; ",
+                    fmt::format("give the suite {} times its `budget`",
+                                reports::human(std::ceil(10 * factor) / 10, 2)));
+  }
+  const reports::Advice next = setting(outcome, factor);
+  return {fmt::format("about {} would decide{}; write {}", times_as_many(outcome, factor),
+                      channel.regions.proof() ? " if the estimate stays as it is" : "",
+                      written_key(*outcome.question.test, next.key, next.value)),
+          next};
+}
+
 /// n grows with the square of the factor by which the interval must shrink.
 Reason what_would_decide(const TestOutcome& outcome, const ChannelOutcome& channel) {
-  if (channel.image) {
-    if (channel.image->wanted == 0) {
-      return in_words("the estimate lies where the claim must not pass, yet not clearly so; ",
-                      "give twice as many pictures");
-    }
-    return in_words(
-        "", fmt::format("give about {} pictures a side", reports::human(channel.image->wanted, 2)),
-        ", which decide if the estimate stands");
+  if (channel.image && channel.image->wanted > 0) {
+    return with_more(outcome, channel,
+                     channel.image->wanted / static_cast<double>(channel.image->replicates));
   }
   const double beta = last_levels(outcome).beta;
   const stats::Interval interval = channel.evidence.interval(1 - 2 * beta);
@@ -257,7 +271,7 @@ Reason what_would_decide(const TestOutcome& outcome, const ChannelOutcome& chann
            range_advice(outcome.question);
   }
   if (!(half > 0) || !std::isfinite(half) || !(room.size > 0)) {
-    return Reason("the estimate lies where the claim must not pass, yet not clearly so");
+    return Reason("these observations do not tell how many would decide");
   }
   // The samples' standard errors must shrink to the room that the reference's leaves.
   const double fixed = reference_error(outcome, channel);
@@ -267,19 +281,7 @@ Reason what_would_decide(const TestOutcome& outcome, const ChannelOutcome& chann
   if (!(wanted > 0)) {
     return Reason("no number of observations would decide: the reference's own error forbids it");
   }
-  const double factor = std::max(1.1, std::max(0.0, sampled) / wanted);
-  if (has_rows(outcome.question))
-    return in_words("", fmt::format("give about {} rows in all", sizes_text(outcome, factor)));
-  if (const auto& budget = outcome.question.test->budget; budget && budget->of_suite) {
-    return in_words(times_as_many(outcome, factor) + " would decide; ",
-                    fmt::format("give the suite {} times its `budget`",
-                                reports::human(std::ceil(10 * factor) / 10, 2)));
-  }
-  const reports::Advice next = setting(outcome, factor);
-  return {fmt::format("about {} would decide{}; write {}", times_as_many(outcome, factor),
-                      channel.regions.proof() ? " if the estimate stands" : "",
-                      written_key(*outcome.question.test, next.key, next.value)),
-          next};
+  return with_more(outcome, channel, std::max(1.1, std::max(0.0, sampled) / wanted));
 }
 
 Reason undecided(const TestOutcome& outcome, const ChannelOutcome& channel) {

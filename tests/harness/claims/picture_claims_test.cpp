@@ -67,6 +67,25 @@ TEST_F(PictureClaims, StacksOfOneLawPass) {
   EXPECT_FALSE(test.maps.empty());
 }
 
+// Two stacks of 24 exclude about a hundredth of the mean: a hundredth of that takes 10^4 times as
+// many, and the estimate may lie on either side of it.
+TEST_F(PictureClaims, ThatAreUndecidedSayHowManyPicturesWouldDecide) {
+  write(place, "a");
+  write(place, "b");
+  for (const char* claim :
+       {"mean(a) == mean(b)\n    detect: 0.01%", "mean(a) within 0.01% of mean(b)",
+        "mean(a.average) == mean(b.average)\n    detect: 0.01%"}) {
+    const reports::Test test = tested(claim);
+    expect_said(test, Verdict::inconclusive, {"; give about "});
+    double pictures = 0;
+    ASSERT_EQ(
+        std::sscanf(test.advice.value().words.c_str(), "give about %lf pictures a side", &pictures),
+        1)
+        << test.message;
+    EXPECT_GT(pictures, 1000 * 24);
+  }
+}
+
 // Pixels that may depend on each other: signs of whole pictures are flipped, in as many groups of
 // pictures as the side with fewer has.
 TEST_F(PictureClaims, StacksOfUnequalNumbersAreComparedWhole) {
