@@ -25,14 +25,12 @@ std::string p_text(double log_p) {
   return "p = " + reports::p_text(std::exp(log_p), log_p / std::log(10.0));
 }
 
-/// "difference from the reference is +0.31 % [+0.12 %, +0.5 %] (99 % interval)".
+/// "difference from the reference is +0.31 % (99 % interval: +0.12 % to +0.5 %)".
 std::string finding(const reports::Effect& effect) {
   // An exponent of which only one point differs from zero.
   if (!effect.estimate) {
-    const std::string interval = reports::interval_text(effect);
-    return fmt::format(
-        "{} is no finite number{}", reports::effect_name(effect),
-        interval.empty() ? "" : fmt::format(" {} ({})", interval, reports::interval_name(effect)));
+    return fmt::format("{} is no finite number{}", reports::effect_name(effect),
+                       reports::named_range_text(effect));
   }
   return fmt::format("{} is {}", reports::effect_name(effect), reports::named_effect_text(effect));
 }
@@ -125,7 +123,7 @@ std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& chann
                          reports::margin_text(*channel.detectable, channel.effect), how,
                          1 - outcome.place.share.beta, found_in_cell(channel));
     }
-    if (reports::interval_text(channel.effect).empty()) return text;
+    if (reports::range_text(channel.effect).empty()) return text;
     return fmt::format("{}, nor is it shown: {}; say with `detect` how far off it must not be",
                        text, finding(channel));
   }

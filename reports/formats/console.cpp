@@ -444,7 +444,7 @@ class Screen {
     const bool known = estimate.value && !std::isnan(*estimate.value);
     const std::string value = known ? human(*estimate.value) : "none";
     if (!estimate.low || !estimate.high) return value;
-    return fmt::format("{} [{}, {}]", value, human(estimate.low), human(estimate.high));
+    return fmt::format("{} ({} to {})", value, human(estimate.low), human(estimate.high));
   }
 
   ConsoleOptions options_;

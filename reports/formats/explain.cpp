@@ -24,7 +24,7 @@ std::string how_sure(const Test& test, const TestDisplay& words, const std::stri
   std::string text;
   const Effect effect = effect_in_sentence(test);
   const bool shown = found.find(words.sentence) != std::string::npos;
-  if (shown && effect.estimate && !interval_text(effect).empty() && effect.confidence > 0)
+  if (shown && effect.estimate && !range_text(effect).empty() && effect.confidence > 0)
     text = fmt::format("The range holds the true value with a confidence of {}. ",
                        confidence_text(effect.confidence));
   if (test.verdict == Verdict::fail && !words.chance.empty())

@@ -108,9 +108,7 @@ std::string estimate_fact(const Effect& effect) {
   std::string text =
       fmt::format("{} {}", effect_name(effect), theta_text(*effect.estimate, effect));
   if (is_ratio(effect)) text += fmt::format(" (ln {})", with_sign(*effect.estimate, false));
-  if (const std::string interval = interval_text(effect); !interval.empty())
-    text += fmt::format(", {} {}", interval_name(effect), interval);
-  return text;
+  return text + named_range_text(effect);
 }
 
 // The meaning of `detect` depends on the claim.

@@ -20,15 +20,6 @@ std::string non_finite(double value) {
   return value > 0 ? "Infinity" : "-Infinity";
 }
 
-/// The ends of the interval that exist, in the text for both, the lower one or the upper one.
-std::string ends_text(const Effect& effect, const char* both, const char* from, const char* to) {
-  const auto end = [&](const Number& value) { return theta_text(*value, effect); };
-  if (is_finite(effect.low) && is_finite(effect.high))
-    return fmt::format(fmt::runtime(both), end(effect.low), end(effect.high));
-  if (is_finite(effect.low)) return fmt::format(fmt::runtime(from), end(effect.low));
-  return is_finite(effect.high) ? fmt::format(fmt::runtime(to), end(effect.high)) : "";
-}
-
 }  // namespace
 
 bool is_finite(const Number& value) { return value && std::isfinite(*value); }
@@ -167,29 +158,33 @@ std::string theta_text(double theta, const Effect& effect) {
   return is_factor(effect) ? "×" + factor_text(theta) : with_sign(std::expm1(theta), true);
 }
 
-std::string interval_text(const Effect& effect) {
-  return ends_text(effect, "[{}, {}]", "[from {}]", "[to {}]");
-}
-
 std::string range_text(const Effect& effect) {
-  return ends_text(effect, "{} to {}", "at least {}", "at most {}");
+  const auto end = [&](const Number& value) { return theta_text(*value, effect); };
+  if (is_finite(effect.low) && is_finite(effect.high))
+    return fmt::format("{} to {}", end(effect.low), end(effect.high));
+  if (is_finite(effect.low)) return "at least " + end(effect.low);
+  return is_finite(effect.high) ? "at most " + end(effect.high) : "";
 }
 
 std::string interval_name(const Effect& effect) {
-  return interval_text(effect).empty() ? std::string()
-                                       : confidence_text(effect.confidence) + " interval";
+  return range_text(effect).empty() ? std::string()
+                                    : confidence_text(effect.confidence) + " interval";
 }
 
 std::string effect_text(const Effect& effect) {
   if (!effect.estimate) return {};
   const std::string text = theta_text(*effect.estimate, effect);
-  const std::string interval = interval_text(effect);
-  return interval.empty() ? text : fmt::format("{} {}", text, interval);
+  const std::string range = range_text(effect);
+  return range.empty() ? text : fmt::format("{} ({})", text, range);
+}
+
+std::string named_range_text(const Effect& effect) {
+  const std::string range = range_text(effect);
+  return range.empty() ? range : fmt::format(" ({}: {})", interval_name(effect), range);
 }
 
 std::string named_effect_text(const Effect& effect) {
-  const std::string text = effect_text(effect), name = interval_name(effect);
-  return text.empty() || name.empty() ? text : fmt::format("{} ({})", text, name);
+  return effect.estimate ? theta_text(*effect.estimate, effect) + named_range_text(effect) : "";
 }
 
 std::string margin_text(double margin, const Effect& effect) {

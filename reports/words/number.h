@@ -70,19 +70,19 @@ std::string effect_name(const Effect&);
 /// one, else "×0.0717".
 std::string theta_text(double theta, const Effect&);
 
-/// "[-0.094 %, +0.156 %]", "[from +0.12 %]" where one-sided, empty where there is none.
-std::string interval_text(const Effect&);
-
 /// "-0.094 % to +0.156 %", "at least +0.12 %"; empty where there is none.
 std::string range_text(const Effect&);
 
 /// "99.98 % interval"; empty where there is no interval.
 std::string interval_name(const Effect&);
 
-/// Estimate and interval: "+0.31 % [+0.12 %, +0.5 %]"; empty where there is no estimate.
+/// Estimate and interval: "+0.31 % (+0.12 % to +0.5 %)"; empty where there is no estimate.
 std::string effect_text(const Effect&);
 
-/// effect_text() with the confidence of its interval: "+0.31 % [+0.12 %, +0.5 %] (99 % interval)".
+/// " (99 % interval: +0.12 % to +0.5 %)"; empty where there is no interval.
+std::string named_range_text(const Effect&);
+
+/// effect_text() with the confidence of its interval: "+0.31 % (99 % interval: +0.12 % to +0.5 %)".
 std::string named_effect_text(const Effect&);
 
 /// The distance of theta from no effect, as theta_text() without a sign: "0.31 %". A ratio gives

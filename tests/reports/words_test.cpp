@@ -67,7 +67,7 @@ const std::map<std::string, std::string (*)(const Arguments&)> functions{
     {"effect", [](auto& a) { return effect_text(effect_of(a)); }},
     {"named effect", [](auto& a) { return named_effect_text(effect_of(a)); }},
     {"effect name", [](auto& a) { return effect_name({.quantity = a[0]}); }},
-    {"interval", [](auto& a) { return interval_text(effect_of(a)); }},
+    {"interval", [](auto& a) { return range_text(effect_of(a)); }},
     {"size of low end", [](auto& a) { return size_text(*effect_of(a).low, effect_of(a)); }},
     {"size of high end", [](auto& a) { return size_text(*effect_of(a).high, effect_of(a)); }},
     {"margin", [](auto& a) { return margin_text(*number(a[0]), effect_of(a, 1)); }},

@@ -36,8 +36,8 @@ tests: [{name: t, claim: mean(area) == 1}]
                   .starts_with("difference from the claimed slope is no finite number, p = "));
   EXPECT_TRUE(
       said({.quantity = "difference from the claimed slope", .high = -3., .confidence = .98})
-          .starts_with("difference from the claimed slope is no finite number [to -3] "
-                       "(98 % interval), p = "));
+          .starts_with("difference from the claimed slope is no finite number (98 % "
+                       "interval: at most -3), p = "));
 }
 
 // An interval that excludes even no effect has an end that excludes nothing.
@@ -148,7 +148,7 @@ TEST(Narrate, ShowsANumberInTheFormThatReportsShowItIn) {
   const std::string shown =
       reports::theta_text(*factor.channels[0].effect.estimate, factor.channels[0].effect);
   EXPECT_TRUE(shown.starts_with("×")) << shown;
-  expect_said(factor, Verdict::fail, {"is " + shown + " ["});
+  expect_said(factor, Verdict::fail, {"is " + shown + " ("});
 }
 
 }  // namespace
