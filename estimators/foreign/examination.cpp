@@ -120,8 +120,9 @@ bool ignores_index(const Source& source, const Others& others, std::size_t numbe
 /// A program of the package `assay` knows neither key nor index.
 const std::string seeding =
     "take random numbers only from a generator seeded with key and index (in Python: from `rng`)";
-const std::string rule = "an observation must be a function of key and index alone: " + seeding +
-                         ", and add in one order whatever the threads do";
+const std::string rule =
+    "an observation must be a function of key and index alone (a run's seed makes the key): " +
+    seeding + ", and add in one order whatever the threads do";
 constexpr const char* rule_of_samplers =
     "a draw must be a function of its stream alone, a density and an evaluation of their point";
 

@@ -492,9 +492,8 @@ ParameterInformation memory_parameter() {
 }
 
 std::vector<ParameterInformation> terms_parameters() {
-  return {timeout_parameter("how long a hello or a reply may take; a question is made so large "
-                            "that it is answered in some hundredths of a second, or asks for one "
-                            "observation",
+  return {timeout_parameter("how long a hello or a reply may take; Assay asks for as many "
+                            "observations at once as take some hundredths of a second",
                             "60"),
           memory_parameter()};
 }

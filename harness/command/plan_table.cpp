@@ -164,10 +164,10 @@ Row row_of(const TestOutcome& test, const Pilots& pilots) {
                effect_text(test, expected)};
   if (plan.invalid.empty()) {
     if (expected.if_off) {
-      row.notes.insert(row.notes.begin(), outlook_text("is off", *expected.if_off));
+      row.notes.insert(row.notes.begin(), outlook_text("if off by the effect", *expected.if_off));
     }
     if (expected.if_true) {
-      row.notes.insert(row.notes.begin(), outlook_text("holds", *expected.if_true));
+      row.notes.insert(row.notes.begin(), outlook_text("if it holds", *expected.if_true));
     }
   }
   row.not_ok = not_ok(test, expected);
@@ -256,8 +256,9 @@ void write(Page& page, const SuiteRun& run) {
   for (const Row& row : rows) not_ok += row.not_ok;
   page.blank();
   page.paragraph(fmt::format(
-      "The run is not ok with probability about {} if every claim holds exactly and every planted "
-      "bug is as large as its effect. A test without a forecast counts with its alpha and beta.",
+      "The run ends with a fail or an undecided claim with probability about {} if every claim "
+      "holds exactly and every planted bug is as large as its effect. A test without a forecast "
+      "counts with its alpha and beta.",
       per_cent(std::min(1.0, not_ok))));
   page.blank();
 }
@@ -308,19 +309,18 @@ void write_totals(Page& page, const PlannedRun& planned) {
   };
   page.paragraph(fmt::format(
       "Tests of one estimator share observations, and most end at an earlier look: about {} if "
-      "every claim holds exactly (tests whose mean is not known counted in full). Put off until "
-      "the data tell their spread, they take at most {}.",
+      "every claim holds exactly (tests whose mean is not known counted in full). Looks that the "
+      "run plans only when it knows the spread may raise this to {}.",
       total_text(total_of(planned, expected_secondaries)), total_text(total_of(planned, most))));
   page.paragraph(
       "primaries: of one secondary estimate. last: secondaries of each source at the last look, of "
       "a file all its rows where these are fewer. in all, rays, CPU time: primaries of all sources "
       "up to the last look, of images those of every pixel and component, and what they cost by "
+      "the pilot. effect: what the last look finds (or shows, of within and of < and >) with "
+      "probability 1 - beta. if it holds, if off by the effect: how probable each verdict is if "
       "the "
-      "pilot. "
-      "effect: what the last look finds (or shows, of within and of < and >) with probability 1 - "
-      "beta. holds, is off: probabilities if the claim holds exactly, or is off by the effect, and "
-      "the mean part of the last look that is drawn; by the normal law and the pilot's spread, "
-      "without gates on the test's own data.");
+      "claim holds exactly, or if it is wrong by the effect. draws: the mean part of the last look "
+      "that is drawn. These take the pilot's spread for the true one, and no data for invalid.");
 }
 
 }  // namespace

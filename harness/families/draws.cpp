@@ -36,8 +36,8 @@ Evidence integral(const Method&, const Seen& seen) {
       from_probability({.successes = cells.in_cells(counts).back(), .trials = sum(counts)},
                        cells.mass.total - seen.reference().value, cells.tolerance());
   evidence.quantity = fmt::format(
-      "integral of the density ({:.10g}, quadrature error {:.1g}) and the mass without a point, "
-      "less {:g},",
+      "total probability (integral of the density {:.10g} +- {:.1g}, and the counted share "
+      "of draws without a point) minus {:g}",
       cells.mass.total, cells.tolerance(), seen.reference().value);
   return evidence;
 }

@@ -160,8 +160,8 @@ void require_partners(const Question& question) {
   for (std::uint64_t i = 0; i < keys.size(); ++i) {
     if (keys[i] == others[i] && std::ranges::count(keys, keys[i]) == 1) continue;
     refuse(question,
-           fmt::format("`{}` and `{}` are no pair of one seed: where the names of a side differ, "
-                       "they say `{}` and `{}`; a pair says the same there, and no other does",
+           fmt::format("`{}` and `{}` are no pair of one seed: their names say `{}` and `{}`; name "
+                       "both pictures of a seed alike, and those of two seeds differently",
                        first.place_of({.index = i}), second.place_of({.index = i}), keys[i],
                        others[i]));
   }
@@ -380,7 +380,7 @@ class ImageTheta : public Theta {
   }
 
   /// Other cells see the same difference in a few pixels, or of both signs, from other sizes on.
-  const char* detectable_text() const override { return " that is the same all over the image"; }
+  const char* detectable_text() const override { return " all over the image"; }
   std::string where_it_differs(const DrawnTest& test) const override {
     return means_where_it_differs(test);
   }

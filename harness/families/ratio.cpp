@@ -18,6 +18,7 @@
 #include "harness/plan/sizes.h"
 #include "harness/question/question.h"
 #include "harness/run/evaluate.h"
+#include "harness/theta/ask.h"
 #include "harness/theta/constant.h"
 #include "harness/theta/evidence.h"
 #include "harness/theta/methods.h"
@@ -681,8 +682,8 @@ const JointMoments& counted_cost(const Question& question, const ChannelData& da
   const JointMoments& sample = by_its_cost(question, data.joint);
   if (sample.of_cost.mean > 0) return sample;
   throw std::domain_error(
-      "no cost was counted: an estimator that traces no rays counts its `samples`; say `cost: "
-      "samples`");
+      "no cost was counted: an estimator that traces no rays counts its `samples`; write " +
+      written_key(*question.test, "cost", "samples"));
 }
 
 JointMoments powers_of_values(const ChannelData& data) {

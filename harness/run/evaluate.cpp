@@ -43,7 +43,7 @@ std::string quantity_of(const Evidence& evidence, const Question& question) {
   const bool ratio = question.is().logarithm;
   std::string quantity = evidence.quantity;
   if (question.factor != 1) {
-    quantity += fmt::format(" {} {:g} times the second", ratio ? "to" : "from", question.factor);
+    quantity += fmt::format(" (the second times {:g})", question.factor);
   }
   return ratio ? "ln(" + quantity + ")" : quantity;
 }

@@ -99,7 +99,7 @@ std::string passed_by_empty_interval(const ChannelOutcome& channel) {
 std::string found_in_cell(const ChannelOutcome& channel) {
   if (!channel.image || !channel.image->detectable_in_cell) return "";
   return fmt::format(
-      "; in a typical square of {0} x {0} pixels, a difference of {1}{2} would have been found",
+      "; in one typical square of {0} x {0} pixels alone, {1}{2} would have been found",
       stats::typical_side, reports::margin_text(*channel.image->detectable_in_cell, channel.effect),
       channel.effect.relative ? " of the image's mean" : "");
 }
@@ -137,14 +137,14 @@ std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& chann
     return fmt::format("no evidence against the claim, which holds with {} to spare by {}",
                        reports::size_text(excluded, channel.effect), interval);
   }
-  return fmt::format("{}; {}{} or more is excluded by {}{}", evidence_against(outcome, channel),
+  return fmt::format("{}; {} or more{} is excluded by {}{}", evidence_against(outcome, channel),
                      reports::size_text(excluded, channel.effect),
                      channel.image ? " over the whole image" : "", interval,
                      found_in_cell(channel));
 }
 
 std::string passed_proof(const TestOutcome& outcome, const ChannelOutcome& channel) {
-  return fmt::format("shown: {}{}, {} against the contrary", finding(channel),
+  return fmt::format("shown: {}{}, {} if the claim were wrong", finding(channel),
                      in_channel(outcome, channel), p_text(channel.decision.log_p_forbidden));
 }
 

@@ -83,7 +83,7 @@ double unseen_shift(const Seen& seen, std::size_t subject, double level) {
 }
 
 std::string range_advice(const Question& question) {
-  return std::string(has_rows(question) ? "a file has no range: let a program draw the values and "
+  return std::string(has_rows(question) ? "let a program draw the values instead of a file, and "
                                         : "") +
          "declare the range of its channel, `low` to `high`";
 }
@@ -107,11 +107,12 @@ ConstantVerdict judge_constant(const Seen& seen, const Regions& regions) {
             "bounded by no number of observations; " +
                 range_advice(seen.question)};
   }
-  return {Verdict::invalid,
-          fmt::format("every observation is {:.10g}, which differs from the reference by {:.3g}; "
-                      "without a spread there is no test, and a rare value may be unseen; {}{}",
-                      seen.moments(0).mean, difference.value, range_advice(seen.question),
-                      seeds(seen.question))};
+  return {
+      Verdict::invalid,
+      fmt::format("every observation is {:.10g}, off by {:.3g}: rare other values may be unseen, "
+                  "and could make up for it; {}{}",
+                  seen.moments(0).mean, difference.value, range_advice(seen.question),
+                  seeds(seen.question))};
 }
 
 std::optional<ConstantVerdict> judge_constant_variance(const Seen& seen, const Regions& regions) {

@@ -7,20 +7,19 @@ namespace assay::harness {
 const std::vector<GateKind>& gate_kinds() {
   static const std::vector<GateKind> table{
       {.name = "level factor by skewness",
-       .sentence = "the observations are so skewed that a tail of the test errs {0} times as often "
-                   "as it should, limit {1}",
+       .sentence = "the observations are so skewed that false alarms on one side are {0} times as "
+                   "frequent as they should be, limit {1}",
        .falls = Falls::by_its_logarithm},
       {.name = "effective observations",
        .sentence = "a few large observations make up most of the spread: they count as {0} equal "
                    "ones, and it takes {1} to tell how heavy the tail is",
        .falls = Falls::inversely},
       {.name = "level factor after correction",
-       .sentence = "the observations are so skewed that a tail of the test errs {0} times as often "
-                   "as it should, even after correction, limit {1}",
+       .sentence = "the observations are so skewed that false alarms on one side are {0} times as "
+                   "frequent as they should be, even after correction, limit {1}",
        .falls = Falls::by_its_logarithm},
       {.name = "share of one observation",
-       .sentence =
-           "one observation outweighs the others: it has {0} of the sum of squares, limit {1}",
+       .sentence = "one observation alone makes up {0} of the sum of squares, limit {1}",
        .falls = Falls::as_one_observation},
       {.name = "excess kurtosis",
        .sentence = "the observations are not normal enough for this test of their variance: their "

@@ -64,11 +64,11 @@ std::string console_rows(const Calibration& calibration, const CalibrationCell& 
 
 constexpr const char* legend =
     R"(holds   the claim holds exactly        off  the claim is off by `detect`
-alone   the method forced, in one look, gates without effect, where it can err
+alone   this method forced, in one look, its warnings (gates) ignored
 open    inconclusive        red  with a red gate        n  mean observations
 by      the method that judges most runs
-errs    the exact lower limit of the rate of mistakes: true claims that fail, or for tost and other
-        proofs claims off by `detect` that pass
+errs    the rate of mistakes is at least this. A mistake is a true claim that fails;
+        for tost and other proofs, a claim off by `detect` that passes
 !!  mistaken too often for certain        !  alone mistaken too often for certain without a red gate
 )";
 

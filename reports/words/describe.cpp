@@ -45,12 +45,12 @@ bool rests_on_contrary(const Test& test) {
   return is_proof(test) && test.verdict != Verdict::fail && least_excluded(test) != nullptr;
 }
 
-// " over 3 of 8 looks (0.79 at the last alone)".
+// " after 3 of 8 looks (0.79 if the last were the only one)".
 std::string over_looks(const Test& test, Number Look::*log10_p) {
   if (test.planned_looks.size() < 2 || test.looks.empty() || test.channels.size() > 1) return {};
   const Number at_last = test.looks.back().*log10_p;
   if (!at_last) return {};
-  return fmt::format(" over {} of {} looks ({} at the last alone)", test.looks.size(),
+  return fmt::format(" after {} of {} looks ({} if the last were the only one)", test.looks.size(),
                      test.planned_looks.size(), p_text({}, at_last));
 }
 
@@ -75,7 +75,7 @@ std::string about_the_claim(const Test& test) {
 }
 
 std::string about_the_contrary(const Test& test) {
-  return test.beta ? "; beta is " + human(test.beta, 3) : "";
+  return test.beta ? fmt::format("; a pass takes beta, {}, or less", human(test.beta, 3)) : "";
 }
 
 /// "24 images", or "24 and 32 images" where the sides have not as many.
@@ -268,10 +268,11 @@ std::string exclusion_text(const Test& test) {
   const bool of_claim = rests_on_contrary(test);
   const NamedP p = of_claim ? p_of_claim(test) : p_of_contrary(test);
   if (!p.exists()) return {};
-  const std::string text = p.text() + (of_claim ? about_the_claim(test) : about_the_contrary(test));
-  if (is_proof(test) || !test.detect) return text;
-  return fmt::format("an error of {} would give such data with {}",
-                     margin_text(*test.detect, deciding_channel(test).effect), text);
+  if (of_claim) return p.text() + about_the_claim(test);
+  const Effect effect = deciding_channel(test).effect;
+  const bool of_margin = !is_proof(test) && test.detect;
+  return p.text() + (of_margin ? " if the error is " + margin_text(*test.detect, effect) : "") +
+         about_the_contrary(test);
 }
 
 std::vector<const Sample*> worst_samples(const Test& test) {

@@ -339,6 +339,11 @@ test_saved_run_gives_other_reports() {
   cmp -s out run.md || fail 'the Markdown of the saved run differs'
 }
 
+test_settings_are_advised_in_the_options_of_a_command_line() {
+  expect 1 check 'cost(a) == 1' --estimator a=analytic/normal
+  contains out 'write `--cost samples`'
+}
+
 test_threads_do_not_change_a_bit() {
   write_suite all.yaml "$good" "$wrong" '  - {claim: mean(hemisphere) == analytic, detect: 5%}'
   expect 1 run all.yaml --threads 1 --report json=one.json

@@ -138,6 +138,16 @@ TEST(Console, AClaimThatIsNotAPassIsHeadedByItsVerdictAndId) {
   EXPECT_THAT(console(record), AllOf(HasSubstr("file   ? 1"), HasSubstr("other  ? 1")));
 }
 
+TEST(Console, TheNumberOfOneChannelOfSeveralNamesIt) {
+  Record record = with_one_test();
+  std::vector<Channel>& channels = record.suites[0].tests[0].channels;
+  EXPECT_THAT(console(record), Not(HasSubstr(" of y")));
+  channels[0].name = "y";
+  channels.push_back(channels[0]);
+  channels[1].name = "z";
+  EXPECT_THAT(console(record), HasSubstr("+0.156 %) of y"));
+}
+
 // Numbers stand beside a claim that leaves them no room for the cost.
 TEST(Console, ALongClaimKeepsItsCost) {
   Record record = with_one_test();

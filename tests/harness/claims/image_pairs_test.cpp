@@ -86,7 +86,7 @@ TEST_F(ImagePairs, AreFoundByNumberAndRefusedWithoutAPartner) {
   EXPECT_EQ(of_files(place, paired).verdict, Verdict::fail);
   const auto refused = [&] { return refusal([&] { of_files(place, paired); }); };
   std::filesystem::rename(place.file("new31.exr"), place.file("new32.exr"));
-  EXPECT_THAT(refused(), HasSubstr("they say `32` and `31`; a pair says the same there"));
+  EXPECT_THAT(refused(), HasSubstr("their names say `32` and `31`; name both pictures"));
   std::filesystem::remove(place.file("new32.exr"));
   EXPECT_THAT(refused(), HasSubstr("needs a partner of the same seed"));
 }

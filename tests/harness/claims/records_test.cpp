@@ -17,9 +17,9 @@ TEST(MoreClaims, OfAFactorSayWhatTheEffectIsAgainst) {
     return tested("{claim: '" + claim + "', secondaries: 500}").channels[0].effect.quantity;
   };
   EXPECT_EQ(quantity("variance(uniform) < 2 * variance(scaled)"),
-            "ln(ratio of variances to 2 times the second)");
+            "ln(ratio of variances (the second times 2))");
   EXPECT_EQ(quantity("mean(uniform) == 0.5 * mean(scaled)"),
-            "relative difference of means from 0.5 times the second");
+            "relative difference of means (the second times 0.5)");
   EXPECT_EQ(quantity("mean(uniform) == mean(scaled)"), "relative difference of means");
 }
 

@@ -167,8 +167,8 @@ TEST_F(PlanTable, ShowsEveryTestInEightyColumns) {
   const PlannedRun planned = planned_of(suites);
   const std::string text = plan_text(planned);
   for (const TestEntry& test : suites[0].tests) EXPECT_THAT(text, HasSubstr("\n  " + test.name));
-  for (const char* heading :
-       {"method", "primaries", "looks", "CPU time", "effect", "holds: pass", "is off: pass"}) {
+  for (const char* heading : {"method", "primaries", "looks", "CPU time", "effect",
+                              "if it holds: pass", "if off by the effect: pass"}) {
     EXPECT_THAT(text, HasSubstr(heading));
   }
   EXPECT_THAT(text, HasSubstr("0.5 %"));
