@@ -318,8 +318,7 @@ void write_totals(Page& page, const PlannedRun& planned) {
       "up to the last look, of images those of every pixel and component, and what they cost by "
       "the pilot. effect: what the last look finds (or shows, of within and of < and >) with "
       "probability 1 - beta. if it holds, if off by the effect: how probable each verdict is if "
-      "the "
-      "claim holds exactly, or if it is wrong by the effect. draws: the mean part of the last look "
+      "the claim holds exactly, or is wrong by the effect. draws: the mean part of the last look "
       "that is drawn. These take the pilot's spread for the true one, and no data for invalid.");
 }
 

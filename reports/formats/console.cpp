@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/algorithm/string/erase.hpp>
 #include <functional>
 #include <limits>
 #include <map>
@@ -71,6 +70,7 @@ class Screen {
 
   /// Each level of detail adds to the one below it.
   void all(const Record& record, const std::set<std::string>& told) {
+    if (is_single(record) && options_.detail > 0) options_.detail = 2;
     if (is_single(record) && !in_full()) {
       alone(record.suites[0]);
     } else {
@@ -102,7 +102,9 @@ class Screen {
     const std::vector<Step> all = steps(test);
     std::string told = trouble(test);
     if (told.starts_with(verdict)) told.erase(0, verdict.size());
-    if (!all.empty() && !all[0].words.empty()) boost::erase_last(told, "; " + all[0].words);
+    const std::string asked_for = all.empty() ? "" : all[0].words;
+    const std::size_t at = asked_for.empty() ? std::string::npos : told.rfind(asked_for);
+    if (at != std::string::npos && at > 1) told.erase(at - 2, asked_for.size() + 2);  // with "; "
     const std::vector<std::string> text = wrapped(told, options_.width - block_indent);
     std::vector<std::string> next;
     if (!all.empty()) next = step_lines(all[0]);

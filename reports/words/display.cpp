@@ -199,8 +199,8 @@ std::string tally_sentence(Standings count) {
   if (broken > 0)
     return of_claims(broken, total) + " broken" +
            (none > 0 ? fmt::format(", {} without a verdict", none) : "");
-  if (none > 0) return of_claims(none, total) + " without a verdict, none broken";
-  if (undecided > 0) return of_claims(undecided, total) + " undecided, none broken";
+  if (none > 0) return of_claims(none, total) + " without a verdict";
+  if (undecided > 0) return of_claims(undecided, total) + " undecided";
   if (total == 1) return skipped > 0 ? "The claim was not tested" : "The claim is as it should be";
   if (skipped == total) return fmt::format("None of {} claims was tested", total);
   if (skipped > 0)

@@ -76,8 +76,10 @@ TEST(Console, ClaimsThatWereNotRunAreNamedTogether) {
 }
 
 TEST(Console, ATestThatIsOkIsExplainedIfItIsAlone) {
-  EXPECT_THAT(console(with_one_test(), {.detail = 2}),
-              HasSubstr("replay           assay replay run.json"));
+  for (const int detail : {1, 2}) {
+    EXPECT_THAT(console(with_one_test(), {.detail = detail}),
+                HasSubstr("replay           assay replay run.json"));
+  }
 }
 
 TEST(Console, ManyChannelsAreFewLines) {
@@ -120,6 +122,8 @@ TEST(Console, NeverCutsTheNumberThatAUserIsAskedFor) {
   }
   test.message = "neither shown nor refuted; " + test.advice->words;
   EXPECT_THAT(console(record), HasSubstr("    neither shown nor refuted\n    to decide: give"));
+  test.message = "the sample is skewed: " + test.advice->words + "; mind";
+  EXPECT_THAT(console(record), HasSubstr("    the sample is skewed; mind\n    to decide: give"));
 }
 
 // The heading is what `explain` and `--filter` take.

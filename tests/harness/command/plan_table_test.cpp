@@ -246,7 +246,7 @@ TEST_F(Forecasts, OfProofsHoldsByTheAdvantageOrStandsAtTheBorder) {
 TEST_F(PlanTable, BoundsTheProbabilityThatASuiteIsNotOk) {
   EXPECT_THAT(plan_text(planned("  - {name: a, claim: mean(normal) == 2, detect: 0.01}\n"
                                 "  - {name: b, claim: mean(normal) <= 2, detect: 0.01}\n")),
-              HasSubstr("is not ok with probability about 0.9"));
+              HasSubstr("a fail or an undecided claim with probability about 0.9"));
 }
 
 TEST_F(PlanTable, SaysWhereTheDetectOfALawIsTheDefault) {
