@@ -224,7 +224,7 @@ void require_independent(const ImageTest& test, const ImagePair& pair) {
   }));
 }
 
-/// What kept pictures show.
+/// The look of kept pictures.
 PictureLook look_at(const Question& question, const ImageTest& test, const ImagePair& pair,
                     std::vector<UnseenElement>& unseen) {
   const auto [fewest, most] = pair.replicates();

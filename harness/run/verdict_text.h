@@ -10,8 +10,8 @@ namespace assay::harness {
 /// what could be missed or how many more samples would decide.
 Reason narrate(const TestOutcome& outcome);
 
-/// What to do where no observations of this number could fail the claim. `what` they exclude none
-/// of: "exponent".
+/// Says that no observations of this number could fail the claim, and what to do. They exclude no
+/// `what`: "exponent".
 Reason excludes_no(const std::string& what);
 
 }  // namespace assay::harness

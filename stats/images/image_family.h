@@ -137,7 +137,7 @@ struct ImageFamily {
   TypicalCell typical = {};
 };
 
-// Of the interval at a finding's place.
+// The interval at a finding's place has this confidence.
 inline constexpr double confidence_at_place = 0.99;
 
 // Sets the family's p-value, the smallest over the groups. The winner is the clearest of the cells

@@ -109,7 +109,7 @@ TEST(Suite, LoadsWithoutANameOfItsFolder) {
   EXPECT_EQ(suite.folder, ".");
 }
 
-// Of such paths no canonical form can be had, as in a folder that may not be read.
+// Such paths have no canonical form, like those of a folder that may not be read.
 TEST(Suite, AReportReplacesNothingOfAnotherName) {
   const std::string folder(300, 'x');
   refuse_overwriting(folder + "/run.html", {folder + "/run.yaml"});

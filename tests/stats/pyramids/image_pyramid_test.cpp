@@ -347,8 +347,8 @@ TEST(ImagePyramid, TheWinnerSaysWhereTheDefectIs) {
   EXPECT_LT(family.winner.z, -10);
 }
 
-// Of a tile that is brighter, the winner's window has this true mean difference and its interval
-// holds it where the p-value is above 1 - confidence.
+// A tile is brighter. The interval of the winner's window holds its true mean difference where this
+// p-value is above 1 - confidence.
 double log_p_of_the_true_effect(Philox& random, bool adjust) {
   constexpr double brighter = 1.2;
   const auto is_tile = [](std::size_t x, std::size_t y) { return x / 4 == 1 && y / 5 == 1; };
