@@ -141,7 +141,8 @@ TEST_F(ImagePairs, AreFoundByWhatTellsTheNamesOfASideApart) {
   rename("b{:02}.exr", 0, "b2_{:03}_128spp.exr", 10);
   EXPECT_EQ(of_files(place, paired).verdict, Verdict::fail);
   rename("b2_{:03}_128spp.exr", 10, "b2_{:03}_64spp.exr", 110);
-  EXPECT_THAT(refusal([&] { of_files(place, paired); }), HasSubstr("they say `110` and `10`"));
+  EXPECT_THAT(refusal([&] { of_files(place, paired); }),
+              HasSubstr("their names say `110` and `10`"));
 }
 
 /// Pictures 3 and 7 of a side are the same in their first tile.

@@ -82,7 +82,9 @@ TEST_F(PictureClaims, ThatAreUndecidedSayHowManyPicturesWouldDecide) {
         std::sscanf(test.advice.value().words.c_str(), "give about %lf pictures a side", &pictures),
         1)
         << test.message;
-    EXPECT_GT(pictures, 1000 * 24);
+    // The estimate lies beyond the margin of `within`: fewer would refute it.
+    const bool proof = test.claim.find("within") != std::string::npos;
+    EXPECT_GT(pictures, (proof ? 1 : 1000) * 24) << test.message;
   }
 }
 

@@ -103,8 +103,8 @@ TEST_F(PlanTable, SaysTheMostThatCanBeDrawn) {
   std::string text = plan_text(planned);
   std::ranges::replace(text, '\n', ' ');
   const auto count = static_cast<std::uint64_t>(std::llround(most));
-  EXPECT_THAT(text, HasSubstr("at most " + reports::plain_spaces(reports::count_text(count)) +
-                              " primaries"));
+  EXPECT_THAT(text, HasSubstr("may raise this to " +
+                              reports::plain_spaces(reports::count_text(count)) + " primaries"));
 }
 
 // A plan foretells the effect that a fixed number of observations finds, and the run finds it in
