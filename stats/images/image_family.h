@@ -145,6 +145,9 @@ inline constexpr double confidence_at_place = 0.99;
 // finer cell in it is as clear, that one wins: elements around it tell nothing.
 void decide(ImageFamily& family);
 
+// Each of different constants has this z: no double is as small as the normal tail beyond.
+inline constexpr double certain_z = 39;
+
 // A certain finding: different constants.
 ImageFinding certain_finding(const ImageExtent& extent, std::size_t element, double sign);
 

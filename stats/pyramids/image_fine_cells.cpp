@@ -2,7 +2,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <numeric>
 #include <optional>
 
@@ -389,8 +388,7 @@ class FineTiles {
           if (vary < halves) {
             const bool certain = vary == 0 && difference != 0 && cells_.constants_decide;
             note_constant(element, certain ? difference : 0, place);
-            found_.z[element] =
-                certain ? std::copysign(std::numeric_limits<double>::infinity(), difference) : 0;
+            found_.z[element] = certain ? std::copysign(certain_z, difference) : 0;
             return;
           }
           ++counts_.tested;
