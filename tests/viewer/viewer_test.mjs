@@ -33,7 +33,8 @@ async function opened(name, { size = "wide", scheme = "light", hash = "", script
   });
   page.on("request", (request) => page.asked.push(request.url()));
   await page.goto(`file://${resolve(pages, name)}.html${hash}`);
-  page.setDefaultTimeout(20000);
+  // A guard against hanging on a busy machine; the part `times` measures.
+  page.setDefaultTimeout(60000);
   if (scripts) await page.waitForFunction(() => document.documentElement.dataset.ready === "yes");
   return page;
 }
