@@ -150,7 +150,8 @@ std::optional<PlaceEffect> effect_at_place(const DrawnTest& test) {
   if (!(effect.standard_error > 0)) {
     const std::vector<double>& z = outcome.channels[0].image->z;
     const double least = std::min(std::abs(winner.z), stats::certain_z);
-    std::erase_if(elements, [&](std::size_t i) { return std::abs(z[i]) < least; });
+    std::erase_if(elements,
+                  [&](std::size_t i) { return std::copysign(1.0, winner.z) * z[i] < least; });
     const double base = other_mean(test, elements, {});
     const double difference = mean_over(test, 0, elements, {}) - base;
     return PlaceEffect{difference, {difference, difference, 1}, base};
