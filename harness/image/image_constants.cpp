@@ -153,7 +153,7 @@ DeclaredElements mapped_elements(const Question& question) {
 
 double z_of(const UnseenElement& unseen) {
   if (unseen.log_p == std::numeric_limits<double>::lowest()) {
-    return unseen.sign * std::numeric_limits<double>::infinity();
+    return unseen.sign * stats::certain_z;
   }
   return unseen.sign * stats::normal_quantile({stats::Tail::upper, unseen.log_p - std::log(2.0)});
 }

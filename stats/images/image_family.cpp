@@ -119,13 +119,6 @@ std::vector<WindowGroup> window_groups(const ImageExtent& extent, std::uint32_t 
   return groups;
 }
 
-Rectangle around(const Rectangle& a, const Rectangle& b) {
-  const std::uint32_t x = std::min(a.x, b.x);
-  const std::uint32_t y = std::min(a.y, b.y);
-  return {x, y, std::max(a.x + a.width, b.x + b.width) - x,
-          std::max(a.y + a.height, b.y + b.height) - y};
-}
-
 WindowSums::WindowSums(const ImageExtent& extent)
     : width_(extent.width), table_((extent.width + 1) * (extent.height + 1)) {}
 

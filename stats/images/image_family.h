@@ -18,8 +18,6 @@ struct Rectangle {
 
   friend bool operator==(const Rectangle&, const Rectangle&) = default;
 };
-// The smallest that holds both.
-Rectangle around(const Rectangle& a, const Rectangle& b);
 
 // The sums of an image that are looked at. Level `size` has the cells of a grid of that size, the
 // last cut off at the edge (aligned). It also has all other whole cells at steps of size / 4
@@ -141,8 +139,9 @@ struct ImageFamily {
 inline constexpr double confidence_at_place = 0.99;
 
 // Sets the family's p-value, the smallest over the groups. The winner is the clearest of the cells
-// that overlap the cell of this p-value, have its root or less, and whose intervals exclude 0. If a
-// finer cell in it is as clear, that one wins: elements around it tell nothing.
+// that overlap the cell of this p-value, have its root or less, and whose intervals exclude 0,
+// where the family's p-value is as small. If a finer cell in it is as clear, that one wins:
+// elements around it tell nothing.
 void decide(ImageFamily& family);
 
 // Each of different constants has this z: no double is as small as the normal tail beyond.

@@ -130,7 +130,6 @@ struct ElementCounts {
   std::size_t different_constants = 0;
   std::size_t first_different = 0;  // The first such element, if there is any.
   double difference = 0;            // Its own.
-  Rectangle different = {};         // It holds them all.
   void merge(const ElementCounts& other);
 };
 

@@ -384,11 +384,8 @@ class FineTiles {
           // An element that is equal and never varies tells no size of a difference.
           const bool tells = vary > 0 || difference != 0;
           found_.weights[element] = tells ? static_cast<float>(weight) : 0;
-          const Rectangle place{static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 1, 1};
           if (vary < halves) {
-            const bool certain = vary == 0 && difference != 0 && cells_.constants_decide;
-            note_constant(element, certain ? difference : 0, place);
-            found_.z[element] = certain ? std::copysign(certain_z, difference) : 0;
+            note_constant(element, vary == 0 && cells_.constants_decide ? difference : 0);
             return;
           }
           ++counts_.tested;
@@ -401,6 +398,7 @@ class FineTiles {
           const StudentValue value = own_value(noise);
           found_.z[element] = t_to_z(value);
           if (!candidates_[0].wants(value.t)) return;
+          const Rectangle place{static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 1, 1};
           candidates_[0].keep({{.window = place, .channel = c, .z = found_.z[element]}, noise});
         });
   }
@@ -495,15 +493,14 @@ class FineTiles {
   }
 
   // An element that varied in one half alone is in sums only.
-  void note_constant(std::size_t element, double certain_difference, const Rectangle& place) {
+  void note_constant(std::size_t element, double certain_difference) {
     if (certain_difference == 0) {
       ++counts_.equal_constants;
     } else {
-      counts_.merge({.different_constants = 1,
-                     .first_different = element,
-                     .difference = certain_difference,
-                     .different = place});
+      counts_.merge(
+          {.different_constants = 1, .first_different = element, .difference = certain_difference});
     }
+    found_.z[element] = certain_difference == 0 ? 0 : std::copysign(certain_z, certain_difference);
   }
 
   void keep_blocks(const Tile& tile, std::size_t y, const double* sums, auto& blocks) const {
@@ -700,9 +697,6 @@ void ElementCounts::merge(const ElementCounts& other) {
     first_different = other.first_different;
     difference = other.difference;
   }
-  different = different_constants == 0         ? other.different
-              : other.different_constants == 0 ? different
-                                               : around(different, other.different);
   tested += other.tested;
   equal_constants += other.equal_constants;
   different_constants += other.different_constants;

@@ -32,6 +32,23 @@ void divide_by_weights(ImageFinding& finding, const std::vector<float>& weights,
   finding.effect.standard_error /= sum;
 }
 
+// The rectangle of the elements that have the channel and the z of this one.
+Rectangle rectangle_like(std::size_t element, std::span<const double> z,
+                         const ImageExtent& extent) {
+  std::size_t left = extent.width, right = 0, top = extent.height, bottom = 0;
+  for (std::size_t i = element % extent.channels; i < z.size(); i += extent.channels) {
+    if (z[i] != z[element]) continue;
+    const std::size_t x = i / extent.channels % extent.width;
+    const std::size_t y = i / extent.channels / extent.width;
+    left = std::min(left, x);
+    right = std::max(right, x + 1);
+    top = std::min(top, y);
+    bottom = std::max(bottom, y + 1);
+  }
+  return {static_cast<std::uint32_t>(left), static_cast<std::uint32_t>(top),
+          static_cast<std::uint32_t>(right - left), static_cast<std::uint32_t>(bottom - top)};
+}
+
 }  // namespace
 
 RowPyramid::RowPyramid(const ImagePair& pair, const PyramidOptions& options)
@@ -108,7 +125,7 @@ ImageFamily RowPyramid::family() {
                      .hidden_squares = found_.noise.hidden_squares()};
   if (counts.different_constants > 0) {
     family.groups.push_back(certain_finding(extent_, counts.first_different, counts.difference));
-    family.groups.back().window = counts.different;
+    family.groups.back().window = rectangle_like(counts.first_different, found_.z, extent_);
   } else {
     family.typical.noise = offer_cells();
     add_best(family);

@@ -423,14 +423,14 @@ TEST(ImagePyramid, OneDifferentConstantIsCertainAndPlaced) {
   EXPECT_LT(different.winner.z, 0);
 }
 
-TEST(ImagePyramid, AllDifferentConstantsLieInThePlaceAndAreCertain) {
+TEST(ImagePyramid, AllDifferentConstantsOfOneSignAreThePlaceAndCertain) {
   Philox random(842);
   OwnedStack a = normal_stack(random, 16);
   OwnedStack b = normal_stack(random, 16);
-  const std::size_t constant[] = {27, 40, 95};
+  const std::size_t constant[] = {27, 40, 95, 119};
   for (const std::size_t e : constant) {
     for (auto& image : a.images) image[e] = 1;
-    for (auto& image : b.images) image[e] = e == 40 ? 1 : 2;
+    for (auto& image : b.images) image[e] = e == 40 ? 1.0F : e == 119 ? 0.0F : 2.0F;
   }
   std::vector<double> z(small.elements());
   const ImageFamily family = image_pyramid(a.view(), b.view(), {.z = z});
@@ -439,6 +439,7 @@ TEST(ImagePyramid, AllDifferentConstantsLieInThePlaceAndAreCertain) {
   EXPECT_EQ(z[27], -certain_z);
   EXPECT_EQ(z[95], z[27]);
   EXPECT_EQ(z[40], 0);
+  EXPECT_EQ(z[119], certain_z);
 }
 
 // Half of it black, one side has fewer degrees of freedom there: a cell half beside the defect has
