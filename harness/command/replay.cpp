@@ -108,13 +108,18 @@ Comparison compared(const reports::Sample& sample, double value) {
                             *sample.max, sample.secondaries)};
 }
 
-/// True if a channel is printed even if it is as recorded: of an image those of the finding's first
-/// pixel, or those that the claim names.
-bool is_shown(const Setup& setup, const reports::Test& test, std::size_t channel, bool named) {
-  const auto& shape = setup.image();
-  if (!shape || !test.image) return !shape || named;
-  const reports::ImageFinding& found = test.image->winner;
-  return channel / shape->components.size() == found.y * shape->width + found.x;
+/// The mean of an image's component over the finding's rectangle.
+double mean_at(const reports::ImageFinding& found, const ImageShape& shape,
+               const std::vector<double>& values) {
+  const auto component = std::ranges::find(shape.components, found.component);
+  double sum = 0;
+  for (std::uint64_t y = found.y; y < found.y + found.height; ++y) {
+    for (std::uint64_t x = found.x; x < found.x + found.width; ++x) {
+      sum += values.at((y * shape.width + x) * shape.components.size() +
+                       static_cast<std::size_t>(component - shape.components.begin()));
+    }
+  }
+  return sum / static_cast<double>(found.width * found.height);
 }
 
 /// True if the record does not contradict the observation.
@@ -150,14 +155,21 @@ bool print_observation(const Question& question, const Recorded& recorded, std::
       const bool has_range = sample != nullptr && index < sample->secondaries;
       const Comparison comparison = has_range ? compared(*sample, values[c]) : Comparison{};
       same &= comparison.same;
-      if (comparison.same && !is_shown(*side.setup, recorded.test, c, has_range)) continue;
+      // Of an image those that the claim names, and those that are not as recorded.
+      const bool is_one_of_many = side.setup->image() && (recorded.test.image || !has_range);
+      if (comparison.same && is_one_of_many) continue;
       fmt::print("{}.{}  observation {}: {}\n{}", side.estimator->name, channels[c].name, index,
                  values[c], comparison.text);
     }
-    if (side.setup->image()) {
+    if (const auto& shape = side.setup->image()) {
       fmt::print(
           "{}  mean of observation {}: {}\n", side.estimator->name, index,
           std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size()));
+      if (recorded.test.image && recorded.test.image->winner.width > 0) {
+        fmt::print("{}  its mean at {}: {}\n", side.estimator->name,
+                   recorded.test.image->winner.place,
+                   mean_at(recorded.test.image->winner, *shape, values));
+      }
     }
     if (const auto* draws = dynamic_cast<const SamplerSetup*>(side.setup.get())) {
       fmt::print("  draw of `{}`: {}\n", draws->name(),

@@ -95,8 +95,9 @@ tests:
     expect_same_numbers(file, test.id);
     const Said one = said({.record = file, .test = test.id, .observation = 15});
     EXPECT_EQ(one.code, 0);
-    // One pixel and the mean of each side.
+    // The mean of each side, and that at the finding's place.
     EXPECT_THAT(one.text, HasSubstr("mean of observation 15: "));
+    EXPECT_THAT(one.text, HasSubstr("its mean at " + test.image->winner.place + ": "));
     EXPECT_LE(std::ranges::count(one.text, '\n'), 14) << one.text;
   }
 }
