@@ -169,18 +169,19 @@ double quantile_deviation(const TestOutcome& test, std::size_t subject, std::siz
 class QuantileTheta final : public Theta {
  public:
   QuantileTheta()
-      : Theta({.of_single_values = true}, {{"binomial",
-                                            "exact: a quantile against a number",
-                                            of_one,
-                                            Keeps::values,
-                                            quantile,
-                                            {.exact = true}},
-                                           {"quantile",
-                                            "exact: two quantiles, by the counts on both sides",
-                                            of_two,
-                                            Keeps::values,
-                                            quantile,
-                                            {.exact = true}}}) {}
+      : Theta({.of_single_values = true, .may_be_unbounded = true},
+              {{"binomial",
+                "exact: a quantile against a number",
+                of_one,
+                Keeps::values,
+                quantile,
+                {.exact = true}},
+               {"quantile",
+                "exact: two quantiles, by the counts on both sides",
+                of_two,
+                Keeps::values,
+                quantile,
+                {.exact = true}}}) {}
 
   Question bind(const TestEntry& test, const Estimators& estimators) const override {
     Question question = Theta::bind(test, estimators);

@@ -275,7 +275,7 @@ double largest_level(const ErrorShare& share, const Regions& regions) {
 /// theta = s - the claimed exponent, where the quantity goes like (swept parameter)^s.
 class SlopeTheta : public Theta {
  public:
-  explicit SlopeTheta(const ThetaTraits& traits = {.fit_decides = true})
+  explicit SlopeTheta(const ThetaTraits& traits = {.fit_decides = true, .may_be_unbounded = true})
       : Theta(traits,
               {{"slope", "weighted fit of a power law: costs over a parameter", of_costs,
                 Keeps::costs, slope},
@@ -338,7 +338,8 @@ class SlopeTheta : public Theta {
 
 class VarianceSlopeTheta final : public SlopeTheta {
  public:
-  VarianceSlopeTheta() : SlopeTheta({.of_spread = true, .fit_decides = true}) {}
+  VarianceSlopeTheta()
+      : SlopeTheta({.of_spread = true, .fit_decides = true, .may_be_unbounded = true}) {}
 };
 
 // ---- Binding

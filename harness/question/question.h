@@ -67,6 +67,7 @@ struct ThetaTraits {
   bool of_pairs = false;          ///< Observations share random numbers and are subtracted.
   bool batches_serve = false;     ///< Means of consecutive rows serve as well as the rows.
   bool fit_decides = false;       ///< Without a fit, a rejected theta says nothing: no pass.
+  bool may_be_unbounded = false;  ///< Data may exclude nothing at all (Theta::not_excluded).
 };
 
 /// A claim, bound to the suite's estimators.

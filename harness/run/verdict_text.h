@@ -10,8 +10,7 @@ namespace assay::harness {
 /// what could be missed or how many more samples would decide.
 Reason narrate(const TestOutcome& outcome);
 
-/// Says that no observations of this number could fail the claim, and what to do. They exclude no
-/// `what`: "exponent".
+/// Says that these observations exclude no `what` ("exponent"), and what to do.
 Reason excludes_no(const std::string& what);
 
 }  // namespace assay::harness
