@@ -64,8 +64,8 @@ void add_output(Options& options, Output& output) {
           {{"auto", Colour::automatic}, {"always", Colour::always}, {"never", Colour::never}}},
       "auto, always or never; default auto: on a terminal, as NO_COLOR and FORCE_COLOR say");
   options.count("-v",
-                "a line a test on the console; -vv all numbers of those that need a look; default "
-                "a line a suite",
+                "a line a test on the console; -vv, or -v of a single test, all numbers of those "
+                "that need a look; default a line a suite",
                 output.detail);
   options.add({"--durations", "N", Replay::nowhere}, output.slowest, at_least(1),
               "name the N slowest tests at the end; default none");

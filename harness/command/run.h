@@ -11,7 +11,7 @@
 
 namespace assay::harness {
 
-/// Hears of a broken claim when it is decided. The suite has no tests yet.
+/// Hears of a broken claim when it is decided.
 using Broken = std::function<void(const reports::Test&)>;
 
 /// Runs the selected tests of the suites. InputError for any mistake found before sampling. A

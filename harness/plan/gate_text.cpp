@@ -93,7 +93,9 @@ std::string in_words(const std::exception& error) {
 }
 
 const char* rows_noun(const Question& question) {
-  return question.subjects[0].setup->pictures() != nullptr ? "pictures" : "rows";
+  const bool pictures = std::ranges::any_of(
+      question.subjects, [](const Subject& side) { return side.setup->pictures() != nullptr; });
+  return pictures ? "pictures" : "rows";
 }
 
 std::string sizes_text(const TestOutcome& outcome, double factor) {

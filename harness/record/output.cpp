@@ -106,9 +106,11 @@ void write_reports(const Output& output, const ReportWriter& written) {
   std::string to_stdout;
   std::string failures;
   Output done = output;  // without what could not be written, which the console does not name
-  std::vector<ReportRequest> files_first = output.reports;
-  std::ranges::stable_partition(files_first, [](const auto& each) { return each.path != "-"; });
-  for (const ReportRequest& request : files_first) {
+  std::vector<ReportRequest> consoles_last = output.reports;
+  std::ranges::stable_sort(consoles_last, {}, [](const ReportRequest& each) {
+    return each.path == "-" ? 2 : each.kind == "console" ? 1 : 0;
+  });
+  for (const ReportRequest& request : consoles_last) {
     const bool standard = request.path == "-";
     try {
       const std::string text = written(request, console_options(done, standard ? stdout : nullptr));

@@ -39,9 +39,9 @@ std::string whole_answer(const Suite&, const Statement&);
 /// "31 statements: 14 yes, 12 only if, 5 no."
 std::string statement_totals(const Record&);
 
-/// The findings of one of a statement's lists in one line: "ratio of variances ×0.0717 [×0.07,
-/// ×0.0734] (99 % interval)". Without an effect it is the p-value, without that the verdict; "not
-/// run" if the test is not in the record. Tests that are not as expected come first, then the
+/// The findings of one of a statement's lists in one line: "ratio of variances ×0.0717 (99 %
+/// interval: ×0.07 to ×0.0734)". Without an effect it is the p-value, without that the verdict;
+/// "not run" if the test is not in the record. Tests that are not as expected come first, then the
 /// undecided ones, then the rest in the order of the list. The rest of more than two are counted.
 std::string findings(const Suite&, const std::vector<std::string>& names);
 
