@@ -32,8 +32,9 @@ build_project() {
   [ "${1:-}" = -- ] && shift
   local launcher=()
   if command -v ccache >/dev/null; then launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
-  # ccache asks for this with precompiled headers; no file here uses the time of its compiling.
-  export CCACHE_SLOPPINESS=pch_defines,time_macros
+  # ccache asks for the first with precompiled headers; no file here uses the time of its compiling.
+  # The compiler knows a precompiled header again by its comments too, so they count.
+  export CCACHE_SLOPPINESS=pch_defines,time_macros CCACHE_COMMENTS=1
   mkdir -p "$folder"
   log=$folder/build.log
   if [ ! -e "$folder/build.ninja" ]; then
