@@ -331,13 +331,16 @@ std::vector<Constant> recorded_means(const Question& question, const Subject& re
 
 // ---- Sizes
 
-// Normal quantile: one pilot in a thousand exceeds the upper limit of its variance.
-constexpr double pilot_quantile = 3.09;
+// Errors of .01 grow by n^-6.5 as the size falls.
+constexpr double elasticity = 6.5;
 
-double upper_variance(const Moments& pilot) {
+/// The variance for which a test is planned. The logarithm of a pilot's variance has the variance
+/// s^2 = (kurtosis - 1) / n. Errors a n^-e, averaged over such pilots, are the planned ones for
+/// e^(e s^2 / 2) times the pilot's variance.
+double planned_variance(const Moments& pilot) {
   const double n = static_cast<double>(pilot.count);
-  const double error = std::sqrt(std::max(0.0, pilot.kurtosis() - 1) / n);
-  return pilot.variance() * std::exp(pilot_quantile * error);
+  const double spread = std::max(0.0, pilot.kurtosis() - 1) / n;
+  return pilot.variance() * std::exp(elasticity / 2 * spread);
 }
 
 // Beyond this a constant's unseen values stay undecided: they may not exist.
@@ -757,7 +760,7 @@ class MeanTheta : public Theta {
     if (constant && !bets && !question.of_two()) return std::nullopt;
     if (!constant) {
       planned.standard_deviation =
-          std::sqrt(upper_variance(first) / question.subjects[0].averaged(plan.primaries[0]));
+          std::sqrt(planned_variance(first) / question.subjects[0].averaged(plan.primaries[0]));
     }
     double other_mean = 0;
     if (question.of_two()) {
@@ -768,7 +771,7 @@ class MeanTheta : public Theta {
       } else {
         planned.other_deviation =
             std::abs(question.factor) *
-            std::sqrt(upper_variance(second) / question.subjects[1].averaged(plan.primaries[1]));
+            std::sqrt(planned_variance(second) / question.subjects[1].averaged(plan.primaries[1]));
       }
     } else if (!question.references.empty()) {
       planned.reference_error = question.references[channel].standard_error;
