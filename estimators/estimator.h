@@ -50,6 +50,12 @@ struct Announcement {
   StreamKey key;
   std::uint64_t first = 0;
   std::uint64_t last = 0;
+
+  /// The end of those from this one on; the observation alone if it is not announced.
+  std::uint64_t end_from(StreamKey stream, std::uint64_t observation) const {
+    const bool ahead = stream == key && observation >= first && observation < last;
+    return ahead ? last : observation + 1;
+  }
 };
 
 /// Yields secondary estimates. One object per worker; nothing leaks from one call to the next, so

@@ -29,6 +29,11 @@ constexpr bool has_directions(Domain domain) {
   return domain == Domain::hemisphere || domain == Domain::sphere;
 }
 
+/// Numbers of a point that the domain uses.
+constexpr std::size_t coordinates(Domain domain) {
+  return domain == Domain::interval ? 1 : has_directions(domain) ? 3 : 2;
+}
+
 /// Coordinates of a point of a domain; those the domain does not use are 0.
 using Point = std::array<double, 3>;
 
@@ -40,6 +45,8 @@ struct SamplerDraw {
   double weight = 0;   ///< what the estimator multiplies by: evaluate / density
   int lobe = 0;        ///< which discrete choice made the point
   bool valid = true;
+
+  bool operator==(const SamplerDraw&) const = default;
 };
 
 /// A coordinate of a point under a name: theta and phi of a direction, u and v of a square.

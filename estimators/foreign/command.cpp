@@ -70,13 +70,10 @@ class Command final : public Estimator {
           "` would change nothing; give it the place, or leave it out");
     }
     const std::uint64_t index = random.observation();
-    const bool ahead =
-        announced_.key == random.key() && index >= announced_.first && index < announced_.last;
-    seconds_ += renderings_->make({.key = random.key(),
-                                   .first = index,
-                                   .last = ahead ? announced_.last : index + 1,
-                                   .samples = primaries});
-    if (ahead) announced_.last = index;  // once a block
+    const std::uint64_t last = announced_.end_from(random.key(), index);
+    seconds_ += renderings_->make(
+        {.key = random.key(), .first = index, .last = last, .samples = primaries});
+    if (last > index + 1) announced_ = {};  // once a block
     read_file(*contents_, renderings_->file(random.key(), index, primaries), texels_, out);
     cost.samples += primaries * (contents_->shape ? contents_->shape->pixels() : 1);
   }

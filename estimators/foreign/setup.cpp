@@ -105,13 +105,6 @@ class ForeignEstimator final : public Estimator {
     dialogue_.reset();
   }
 
-  /// How far the caller has announced to go from here.
-  std::uint64_t ahead(const Question& wanted) const {
-    const bool announced = announced_.key.bits == wanted.key && wanted.first >= announced_.first &&
-                           wanted.first < announced_.last;
-    return announced ? announced_.last - wanted.first : 1;
-  }
-
   void fetch(const Question& wanted) {
     numbers_.clear();
     try {
@@ -127,7 +120,7 @@ class ForeignEstimator final : public Estimator {
     Question question = wanted;
     try {
       take(wanted);
-      question.count = ahead(wanted);
+      question.count = announced_.end_from({wanted.key}, wanted.first) - wanted.first;
       if (!recall(question)) {
         question.count = dialogue_->well_sized(question);
         numbers_ = ask(question);

@@ -94,9 +94,9 @@ void require_whole(const AssaySampler& sampler) {
 
 /// The sampler's facts. require_whole() has passed.
 SamplerNote note_of(const AssaySampler& sampler) {
-  constexpr std::array<Domain, 5> domains{Domain::interval, Domain::square, Domain::triangle,
-                                          Domain::hemisphere, Domain::sphere};
-  SamplerNote note{.name = sampler.name, .domain = domains[sampler.domain]};
+  // In the order of plugin_abi.h.
+  static_assert(static_cast<int>(Domain::sphere) == ASSAY_SPHERE);
+  SamplerNote note{.name = sampler.name, .domain = static_cast<Domain>(sampler.domain)};
   if (note.domain == Domain::interval) note.bounds = {sampler.low, sampler.high};
   if (sampler.rounding > 0) note.rounding = sampler.rounding;
   return note;
@@ -212,13 +212,10 @@ Channel element_of(const AssayImage& theirs) {
 
 std::optional<BiasClass> bias_of(std::uint32_t theirs) {
   // In the order of plugin_abi.h.
-  constexpr std::array<std::optional<BiasClass>, 6> known{std::nullopt,
-                                                          BiasClass::unbiased,
-                                                          BiasClass::inverse_primaries,
-                                                          BiasClass::inverse_bootstrap,
-                                                          BiasClass::start_up,
-                                                          BiasClass::reconstruction};
-  if (theirs < known.size()) return known[theirs];
+  static_assert(static_cast<int>(BiasClass::reconstruction) ==
+                ASSAY_BIAS_RECONSTRUCTION - ASSAY_UNBIASED);
+  if (theirs == ASSAY_BIAS_UNKNOWN) return {};
+  if (theirs <= ASSAY_BIAS_RECONSTRUCTION) return static_cast<BiasClass>(theirs - ASSAY_UNBIASED);
   throw LibraryError("declares the bias " + std::to_string(theirs) + ", which is none");
 }
 

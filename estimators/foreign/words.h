@@ -31,10 +31,10 @@ inline std::optional<std::uint64_t> whole_of(std::string_view word) {
 
 /// The coordinates that the domain uses: "(0.25, 1)".
 inline std::string text_of(const Point& point, Domain domain) {
-  const bool direction = domain == Domain::hemisphere || domain == Domain::sphere;
-  const std::size_t used = domain == Domain::interval ? 1 : direction ? 3 : 2;
   std::string text;
-  for (std::size_t i = 0; i < used; ++i) text += (i == 0 ? "(" : ", ") + shortest_text(point[i]);
+  for (std::size_t i = 0; i < coordinates(domain); ++i) {
+    text += (i == 0 ? "(" : ", ") + shortest_text(point[i]);
+  }
   return text + ")";
 }
 

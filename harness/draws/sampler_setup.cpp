@@ -102,10 +102,6 @@ class SamplerEstimator final : public Estimator {
   FetchedAhead<CheckedDraw> ahead_;
 };
 
-std::size_t coordinates(Domain domain) {
-  return domain == Domain::interval ? 1 : has_directions(domain) ? 3 : 2;
-}
-
 }  // namespace
 
 std::vector<SamplerDraw> draws_of(const Sampler& sampler, std::span<const Stream> streams) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <string>
 
@@ -23,8 +24,7 @@ constexpr double single_rounding = std::numeric_limits<float>::epsilon();
 
 std::string in_words(const Sampler& sampler, const Point& p) {
   if (sampler.domain() == Domain::interval) return fmt::format("{}", p[0]);
-  if (!has_directions(sampler.domain())) return fmt::format("({}, {})", p[0], p[1]);
-  return fmt::format("({}, {}, {})", p[0], p[1], p[2]);
+  return fmt::format("({})", fmt::join(std::span(p).first(coordinates(sampler.domain())), ", "));
 }
 
 std::string domain_in_words(const Sampler& sampler) {

@@ -35,13 +35,11 @@ std::string not_finite(const TestOutcome& outcome, const Subject& side, const Dr
 }
 
 /// The sampler of that name, or the only one.
-const Sampler* sampler_of(const Setup& setup, const std::string& name,
-                          std::vector<NamedSampler>& keep) {
-  keep = setup.samplers();
-  for (const NamedSampler& named : keep) {
-    if (named.name == name) return named.sampler.get();
-  }
-  return keep.size() == 1 ? keep[0].sampler.get() : nullptr;
+std::shared_ptr<const Sampler> sampler_of(const Setup& setup, const std::string& name) {
+  const std::vector<NamedSampler> all = setup.samplers();
+  const auto named = std::ranges::find(all, name, &NamedSampler::name);
+  if (named != all.end()) return named->sampler;
+  return all.size() == 1 ? all[0].sampler : nullptr;
 }
 
 bool same_number(double one, double other) {
@@ -54,23 +52,17 @@ bool same_at(const Point& point, const Sampler& one, const Sampler& other) {
          same_number(one.evaluate(point), other.evaluate(point));
 }
 
-bool same_draw(const SamplerDraw& one, const SamplerDraw& other) {
-  return one.point == other.point && one.density == other.density && one.weight == other.weight &&
-         one.lobe == other.lobe && one.valid == other.valid;
-}
-
 bool draws_differ(const Subject& subject, const Pool& pool, std::uint64_t observations) {
   const auto& setup = dynamic_cast<const SamplerSetup&>(*subject.setup);
   const Sampler& mine = setup.sampler();
-  std::vector<NamedSampler> keep;
-  const Sampler* original = sampler_of(*subject.estimator->original, setup.name(), keep);
+  const auto original = sampler_of(*subject.estimator->original, setup.name());
   if (original == nullptr) return true;
   const FlushDenormals flush;
   for (std::uint64_t i = 0; i < observations; ++i) {
     Stream one(pool.key(), i);
     Stream other(pool.key(), i);
     const SamplerDraw draw = mine.sample(one);
-    if (!same_draw(draw, original->sample(other))) return true;
+    if (draw != original->sample(other)) return true;
     if (draw.valid && !same_at(draw.point, mine, *original)) return true;
   }
   return false;

@@ -47,12 +47,9 @@ class FetchedAhead {
 
   std::vector<Stream> streams_from(const Stream& random) const {
     const std::uint64_t first = random.observation();
-    const bool announced = random.key() == announced_.key && first >= announced_.first;
-    const std::uint64_t end = announced ? std::min(announced_.last, first + most) : 0;
+    const std::uint64_t end = std::min(announced_.end_from(random.key(), first), first + most);
     std::vector<Stream> streams;
-    for (std::uint64_t i = first; i < std::max(end, first + 1); ++i) {
-      streams.emplace_back(random.key(), i);
-    }
+    for (std::uint64_t i = first; i < end; ++i) streams.emplace_back(random.key(), i);
     return streams;
   }
 
