@@ -95,7 +95,7 @@ reports::Sample sample_of(const TestOutcome& outcome, std::size_t subject, const
   const std::size_t index = side.channels[channel];
   const ChannelSummary& kept = drawn.summary().channels[index];
   const stats::Moments& moments = kept.moments;
-  const ChannelDetails& details = kept.details();
+  const ChannelDetails& details = drawn.summary().details(index);
   const bool spread = moments.count > 1 && moments.m2 > 0;
   reports::Sample sample = sample_of(outcome, subject, drawn, side.setup->channels()[index].name);
   sample.nonzero = moments.nonzero;

@@ -9,7 +9,7 @@ namespace assay::harness {
 namespace {
 
 constexpr std::string_view magic = "assay ";
-constexpr char format = '3';  // Another one for each change of what is packed.
+constexpr char format = '4';  // Another one for each change of what is packed.
 
 struct Head {
   std::array<char, 8> name{'a', 's', 's', 'a', 'y', ' ', format, '\n'};
@@ -138,19 +138,16 @@ void parts(Archive& a, T& details) {
   a.fixed(details.joint);
 }
 
-ChannelDetails& details_of(ChannelSummary& channel) { return channel.rare.made(); }
-const ChannelDetails& details_of(const ChannelSummary& channel) { return *channel.rare; }
-
 template <class Archive, maybe_const<ChannelSummary> T>
 void parts(Archive& a, T& channel) {
   a(channel.moments, channel.nonfinite, channel.first_nonfinite);
-  if (channel.rare) a(details_of(channel));
 }
 
 template <class Archive, maybe_const<Summary> T>
 void parts(Archive& a, T& summary) {
   a(summary.count, summary.group_variances, summary.cost, summary.seconds);
   a.fixed(summary.channels);
+  for (auto& [channel, details] : summary.detailed) a(details);
 }
 
 void parts(Packer& a, const KeptObservations& kept) { a(kept.images, kept.values, kept.costs); }

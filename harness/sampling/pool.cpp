@@ -58,15 +58,13 @@ std::size_t channels_of(const Setup& setup) {
 /// channel's sums are the same as if values were taken one by one.
 class Intake {
  public:
-  explicit Intake(std::vector<ChannelSummary>& channels)
-      : channels_(channels),
-        most_rows_(
-            std::clamp<std::size_t>(at_a_time / std::max<std::size_t>(channels.size(), 1), 1, 32)),
-        rows_(most_rows_ * channels.size()) {}
+  explicit Intake(Summary& sums)
+      : sums_(sums),
+        width_(sums.channels.size()),
+        most_rows_(std::clamp<std::size_t>(at_a_time / std::max<std::size_t>(width_, 1), 1, 32)),
+        rows_(most_rows_ * width_) {}
 
-  std::span<double> row() {
-    return std::span(rows_).subspan(filled_ * channels_.size(), channels_.size());
-  }
+  std::span<double> row() { return std::span(rows_).subspan(filled_ * width_, width_); }
 
   /// Takes an observation drawn in row(), or one that stays in place until the block ends.
   void take(std::span<const double> values, std::uint64_t index, const ObservationCost& cost) {
@@ -76,13 +74,16 @@ class Intake {
   }
 
   void take_waiting() {
-    for (std::size_t first = 0; first < channels_.size(); first += at_a_time) {
-      const std::size_t last = std::min(first + at_a_time, channels_.size());
+    for (std::size_t first = 0; first < width_; first += at_a_time) {
+      const std::size_t last = std::min(first + at_a_time, width_);
       for (const Waiting& each : waiting_) {
         for (std::size_t c = first; c < last; ++c) {
-          add_observation(channels_[c], each.values[c], each.index, each.cost);
+          add_observation(sums_.channels[c], each.values[c], each.index);
         }
       }
+    }
+    for (auto& [channel, details] : sums_.detailed) {
+      for (const Waiting& each : waiting_) add_details(details, each.values[channel], each.cost);
     }
     waiting_.clear();
     filled_ = 0;
@@ -97,7 +98,8 @@ class Intake {
 
   static constexpr std::size_t at_a_time = 512;
 
-  std::vector<ChannelSummary>& channels_;
+  Summary& sums_;
+  std::size_t width_;
   std::size_t most_rows_;
   std::size_t filled_ = 0;
   std::vector<double> rows_;
@@ -278,7 +280,7 @@ Pool::Block Pool::draw(const std::function<Estimator&()>& estimator, std::uint64
               .values = std::vector<std::vector<double>>(values_kept > 0 ? channels_ : 0),
               .size = last - first};
   std::vector<double> unsummed(later && !setup_->pictures() ? channels_ : 0);
-  Intake intake(block.whole.channels);
+  Intake intake(block.whole);
   auto mark = prefixes_.upper_bound(first);
   Estimator* source = nullptr;
   const auto seconds = [&source] {
@@ -334,23 +336,13 @@ std::shared_ptr<const Summary> Pool::sums_of_first(std::uint64_t count, const Su
 
 /// Takes what is kept beside moments of kept observations, as draw() does of others.
 void Pool::take_details(Summary& summary) const {
-  std::vector<std::size_t> detailed;
-  for (std::size_t c = 0; c < plan_.size(); ++c) {
-    if (plan_[c].has_details()) detailed.push_back(c);
-  }
-  Summary empty(channels_, plan_);
-  for (const std::size_t c : detailed) {
-    summary.channels[c].rare = std::move(empty.channels[c].rare);
-  }
+  summary.detailed = Summary(channels_, plan_).detailed;
   GroupVariance groups(grouped_channels_);
   std::vector<double> out(channels_);
   for (std::uint64_t index = 0; index < summary.count; ++index) {
     const std::span<const double> values = all_kept().whole(index, out);
     const ObservationCost cost = counted(all_kept().costs[index]);
-    for (const std::size_t c : detailed) {
-      if (!std::isfinite(values[c])) continue;
-      add_details(summary.channels[c].rare.made(), values[c], cost);
-    }
+    for (auto& [channel, details] : summary.detailed) add_details(details, values[channel], cost);
     if (const auto variance = groups.add(values)) summary.group_variances.add(*variance);
   }
 }
@@ -410,6 +402,7 @@ Pool::Block Pool::drawn_block() const {
     auto partial = std::make_shared<Summary>(*sums);
     if (sums_later()) {
       partial->channels.clear();
+      partial->detailed.clear();
       partial->group_variances = {};
     }
     block.partial.emplace_back(count, std::move(partial));

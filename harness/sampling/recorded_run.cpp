@@ -87,12 +87,13 @@ RecordedRun::Contents contents_of(const Kept& kept, const reports::Suite& suite)
   contents.summary.seconds = first.cost.seconds;
   for (const reports::Sample* sample : kept) {
     contents.channels.push_back(sample->channel);
-    ChannelSummary& channel = contents.summary.channels.emplace_back();
-    channel.moments = moments_of(*sample);
+    const stats::Moments moments = moments_of(*sample);
+    ChannelDetails& details = contents.summary.detailed[contents.summary.channels.size()];
+    contents.summary.channels.push_back({.moments = moments});
     for (const CountedCost kind : {rays_cost, samples_cost}) {
       const auto joint = joint_of(*sample, kind);
       contents.knows_cost[kind] = contents.knows_cost[kind] && joint;
-      channel.rare.made().joint.emplace_back(joint.value_or(stats::joint_of_four(channel.moments)));
+      details.joint.emplace_back(joint.value_or(stats::joint_of_four(moments)));
     }
   }
   for (const reports::EstimatorSummary& row : suite.estimators) {

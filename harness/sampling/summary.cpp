@@ -76,6 +76,7 @@ void Histogram::merge(const Histogram& other) {
 }
 
 void add_details(ChannelDetails& details, double value, const ObservationCost& cost) {
+  if (!std::isfinite(value)) return;
   if (!details.histogram.counts.empty()) details.histogram.add(value);
   for (std::size_t k = 0; k < details.joint.size(); ++k) details.joint[k].add(value, cost[k]);
   if (!details.cells.empty()) count_in(details.cells, value);
@@ -91,7 +92,7 @@ Summary::Summary(std::size_t count_of_channels, std::span<const ChannelPlan> pla
     : channels(count_of_channels) {
   for (std::size_t i = 0; i < plan.size(); ++i) {
     if (!plan[i].has_details()) continue;
-    ChannelDetails& details = channels[i].rare.made();
+    ChannelDetails& details = detailed[i];
     details.cells.resize(plan[i].cells);
     if (plan[i].powers != Powers::none) {
       details.joint.resize(plan[i].powers == Powers::with_costs ? std::size_t{counted_costs} : 1);
@@ -113,10 +114,16 @@ void Summary::append(const Summary& next) {
     ChannelSummary& ours = channels[i];
     const ChannelSummary& theirs = next.channels[i];
     ours.moments.merge(theirs.moments);
-    if (ours.rare) merge(ours.rare.made(), theirs.details());
     ours.nonfinite += theirs.nonfinite;
     ours.first_nonfinite = std::min(ours.first_nonfinite, theirs.first_nonfinite);
   }
+  for (auto& [channel, details] : detailed) merge(details, next.detailed.at(channel));
+}
+
+const ChannelDetails& Summary::details(std::size_t channel) const {
+  static const ChannelDetails none;
+  const auto found = detailed.find(channel);
+  return found == detailed.end() ? none : found->second;
 }
 
 void Extremes::add(std::span<const float> values) {

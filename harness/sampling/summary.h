@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -69,46 +70,11 @@ struct ChannelDetails {
   std::vector<stats::JointSums> joint = {};
 };
 
-inline const ChannelDetails& no_details() {
-  static const ChannelDetails none;
-  return none;
-}
-
-/// Details of a channel that has any, copied with it. An image's millions of channels have none and
-/// take no room.
-class RareDetails {
- public:
-  RareDetails() = default;
-  RareDetails(const RareDetails& other)
-      : details_(other ? std::make_unique<ChannelDetails>(*other) : nullptr) {}
-  RareDetails(RareDetails&&) noexcept = default;
-  RareDetails& operator=(RareDetails other) noexcept {
-    details_ = std::move(other.details_);
-    return *this;
-  }
-  ~RareDetails() = default;
-
-  explicit operator bool() const { return details_ != nullptr; }
-  const ChannelDetails& operator*() const { return *details_; }
-  /// Makes them if there are none.
-  ChannelDetails& made() {
-    if (!details_) details_ = std::make_unique<ChannelDetails>();
-    return *details_;
-  }
-
- private:
-  std::unique_ptr<ChannelDetails> details_;
-};
-
 /// One channel of consecutive observations.
 struct ChannelSummary {
   stats::Moments moments = {};  ///< of the finite values
   std::uint64_t nonfinite = 0;
   std::uint64_t first_nonfinite = std::numeric_limits<std::uint64_t>::max();
-  RareDetails rare = {};
-
-  /// Empty details if there are none.
-  const ChannelDetails& details() const { return rare ? *rare : no_details(); }
 };
 
 // ---- Sums over pictures of millions of elements, whose rows are read once.
@@ -169,6 +135,8 @@ inline ObservationCost counted(const Cost& cost) {
 struct Summary {
   std::uint64_t count = 0;
   std::vector<ChannelSummary> channels = {};
+  /// By channel. An image's millions of channels have none and take no room.
+  std::map<std::size_t, ChannelDetails> detailed = {};
   /// In place of `channels` for pictures that are read once, row by row.
   std::shared_ptr<const ElementSums> elements = {};
   stats::Moments group_variances = {};  ///< of whole groups, if kept (GroupVariance)
@@ -186,24 +154,21 @@ struct Summary {
   }
   /// Null unless the pictures were looked at while they were read.
   const PictureLook* look() const { return elements ? elements->look.get() : nullptr; }
-  const ChannelDetails& details(std::size_t channel) const {
-    return elements ? no_details() : channels[channel].details();
-  }
+  /// Empty details if the channel has none.
+  const ChannelDetails& details(std::size_t channel) const;
 };
 
 std::vector<stats::JointMoments> joint_moments(const ChannelDetails& details);
 
-/// Takes a finite value and its observation's cost.
+/// Takes a value, if it is finite, and its observation's cost.
 void add_details(ChannelDetails& details, double value, const ObservationCost& cost);
 
 /// Adds one channel's value of observation `index`.
-inline void add_observation(ChannelSummary& summary, double value, std::uint64_t index,
-                            const ObservationCost& cost = {}) {
+inline void add_observation(ChannelSummary& summary, double value, std::uint64_t index) {
   if (!(value - value == 0)) {
     if (summary.nonfinite++ == 0) summary.first_nonfinite = index;
   } else {
     summary.moments.add(value);
-    if (summary.rare) add_details(summary.rare.made(), value, cost);
   }
 }
 

@@ -83,8 +83,7 @@ void expect_same(const Summary& one, const Summary& other) {
   ASSERT_EQ(one.channels.size(), other.channels.size());
   for (std::size_t c = 0; c < one.channels.size(); ++c) {
     EXPECT_EQ(one.channels[c].moments, other.channels[c].moments) << "channel " << c;
-    EXPECT_EQ(one.channels[c].details().histogram.counts,
-              other.channels[c].details().histogram.counts);
+    EXPECT_EQ(one.details(c).histogram.counts, other.details(c).histogram.counts);
     EXPECT_EQ(one.channels[c].nonfinite, other.channels[c].nonfinite);
   }
 }
@@ -276,7 +275,7 @@ TEST(Pool, OfBoundedDataEndsWhereTheyEnd) {
 
 TEST(Pool, HistogramHoldsEveryFiniteValue) {
   const auto pool = drawn({.prefixes = {5000}});
-  const Histogram& histogram = sample_of(*pool, 5000).summary().channels[0].details().histogram;
+  const Histogram& histogram = sample_of(*pool, 5000).summary().details(0).histogram;
   std::uint64_t total = histogram.below + histogram.above;
   for (const std::uint64_t count : histogram.counts) total += count;
   EXPECT_EQ(total, 5000);
