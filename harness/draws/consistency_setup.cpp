@@ -20,36 +20,17 @@ double relative_difference(double a, double b) {
 
 double farther(double one, double other) { return std::isnan(one) || one > other ? one : other; }
 
-double without_density(const SamplerDraw& draw) {
-  return draw.valid || draw.weight == 0 ? 0 : std::numeric_limits<double>::infinity();
-}
-
-struct JudgedDraw {
-  SamplerDraw draw;
-  double difference = 0;
-  double density = 0;  ///< declared at its point, if asked for
-};
-
-/// The difference of a draw is the larger of two relative differences |a - b| / max(|a|, |b|), 0 if
-/// a = b. One compares the draw's density with density(point), the other weight x density(point)
-/// with evaluate(point). It is infinite for a draw without a point whose weight is not 0. Point
-/// masses have no density and give 0. It is NaN if one of the numbers is NaN.
-std::vector<JudgedDraw> judged(const NamedSampler& named, std::span<const Stream> streams) {
-  const Sampler& sampler = *named.sampler;
-  const JudgedDraws judged =
-      judged_draws(named, streams,
-                   {[&](auto some, auto out) { return sampler.densities(some, out); },
-                    [&](auto some, auto out) { return sampler.evaluations(some, out); }});
-  std::vector<JudgedDraw> all;
-  for (const SamplerDraw& draw : judged.draws) all.push_back({draw, without_density(draw)});
-  for (std::size_t i = 0; i < judged.places.size(); ++i) {
-    JudgedDraw& mine = all[judged.places[i]];
-    mine.density = judged.numbers[0][i];
-    mine.difference =
-        farther(relative_difference(mine.draw.density, mine.density),
-                relative_difference(mine.draw.weight * mine.density, judged.numbers[1][i]));
+/// The larger of two relative differences |a - b| / max(|a|, |b|), 0 if a = b. One compares the
+/// draw's density with density(point), the other weight x density(point) with evaluate(point). It
+/// is infinite for a draw without a point whose weight is not 0. Point masses have no density and
+/// give 0. It is NaN if one of the numbers is NaN.
+double difference_of(const AskedDraw& asked) {
+  const SamplerDraw& draw = asked.draw;
+  if (!asked.density) {
+    return draw.valid || draw.weight == 0 ? 0 : std::numeric_limits<double>::infinity();
   }
-  return all;
+  return farther(relative_difference(draw.density, *asked.density),
+                 relative_difference(draw.weight * *asked.density, asked.evaluation));
 }
 
 class ConsistencyEstimator final : public Estimator {
@@ -61,23 +42,21 @@ class ConsistencyEstimator final : public Estimator {
   double seconds_elsewhere() const override { return setup_.sampler().seconds_elsewhere(); }
 
   void secondary(Stream& random, std::uint64_t, std::span<double> out, Cost& cost) override {
-    const auto [draw, difference, density] = next(random);
-    if (density < 0) sound_density(setup_.named(), draw.point, density);
-    const bool consistent = difference <= rounding_;
+    const NamedSampler& named = setup_.named();
+    const AskedDraw& asked =
+        ahead_.of(random, [&](auto streams) { return asked_draws(named, streams, true); });
+    if (asked.density.value_or(0) < 0) sound_density(named, asked.draw.point, *asked.density);
+    out[1] = difference_of(asked);
+    const bool consistent = out[1] <= rounding_;
     out[0] =
-        consistent ? 0 : 1 + static_cast<double>(setup_.cells().index(sound(setup_.named(), draw)));
-    out[1] = difference;
+        consistent ? 0 : 1 + static_cast<double>(setup_.cells().index(sound(named, asked.draw)));
     cost.samples += 1;
   }
 
  private:
-  JudgedDraw next(Stream& random) {
-    return ahead_.of(random, [&](auto streams) { return judged(setup_.named(), streams); });
-  }
-
   const ConsistencySetup& setup_;
   double rounding_;
-  FetchedAhead<JudgedDraw> ahead_;
+  FetchedAhead<AskedDraw> ahead_;
 };
 
 }  // namespace

@@ -21,6 +21,8 @@ class ConsistencySetup final : public SamplerSetup {
 
   std::vector<Channel> channels() const override;
   std::unique_ptr<Estimator> make() const override;
+  std::vector<Marginal> marginals() const override { return {}; }
+  std::size_t cell_numbers() const override { return 1 + cells_.size(); }
 
  private:
   DrawCells cells_;

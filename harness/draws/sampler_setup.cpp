@@ -43,23 +43,6 @@ stats::TabulatedLaw law_of(const NamedSampler& named, std::size_t marginal,
   return stats::tabulate(stats::marginal_density(density, rule), parts, rule);
 }
 
-/// A draw, and whether its sampler declares that there is none.
-struct CheckedDraw {
-  SamplerDraw draw;
-  bool impossible = false;
-};
-
-std::vector<CheckedDraw> checked_draws(const NamedSampler& named, std::span<const Stream> streams) {
-  const JudgedDraws judged = judged_draws(named, streams, {densities_of(named)});
-  std::vector<CheckedDraw> all;
-  for (const SamplerDraw& draw : judged.draws) all.push_back({draw});
-  for (std::size_t i = 0; i < judged.places.size(); ++i) {
-    CheckedDraw& mine = all[judged.places[i]];
-    mine.impossible = is_impossible(*named.sampler, mine.draw.point, judged.numbers[0][i]);
-  }
-  return all;
-}
-
 /// A sampler whose draws are the observations of an estimator.
 class SamplerEstimator final : public Estimator {
  public:
@@ -70,36 +53,40 @@ class SamplerEstimator final : public Estimator {
   double seconds_elsewhere() const override { return setup_.sampler().seconds_elsewhere(); }
 
   void secondary(Stream& random, std::uint64_t, std::span<double> out, Cost& cost) override {
-    const CheckedDraw checked = next(random);
-    const SamplerDraw draw = sound(setup_.named(), checked.draw);
+    const AskedDraw& asked = next(random);
+    const SamplerDraw draw = sound(setup_.named(), asked.draw);
     const bool point = has_density(setup_.sampler(), draw);
     for (std::size_t i = 0; i < marginals_.size(); ++i) {
       out[i] = point ? marginals_[i].coordinate(draw.point) : no_point(marginals_[i]);
     }
-    out[marginals_.size()] = density_cells_ ? number_of(checked, draw) : no_cell;
+    out[marginals_.size()] = density_cells_ ? number_of(asked, draw) : no_cell;
     cost.samples += 1;
   }
 
  private:
   /// Only a claim that counts in cells asks for the density at each draw.
-  CheckedDraw next(Stream& random) {
+  const AskedDraw& next(Stream& random) {
     return ahead_.of(random, [&](auto streams) {
-      if (density_cells_) return checked_draws(setup_.named(), streams);
-      std::vector<CheckedDraw> all;
+      if (density_cells_) return asked_draws(setup_.named(), streams, false);
+      std::vector<AskedDraw> all;
       for (const SamplerDraw& draw : draws_of(setup_.sampler(), streams)) all.push_back({draw});
       return all;
     });
   }
 
-  double number_of(const CheckedDraw& checked, const SamplerDraw& draw) const {
+  double number_of(const AskedDraw& asked, const SamplerDraw& draw) const {
     const DrawCells& cells = density_cells_->cells;
-    return static_cast<double>(cells.index(draw) + (checked.impossible ? cells.size() : 0));
+    const Point& point = asked.draw.point;
+    const bool impossible =
+        asked.density && is_impossible(setup_.sampler(), point,
+                                       sound_density(setup_.named(), point, *asked.density));
+    return static_cast<double>(cells.index(draw) + (impossible ? cells.size() : 0));
   }
 
   const SamplerSetup& setup_;
   std::vector<Marginal> marginals_;
   std::shared_ptr<const DensityCells> density_cells_;
-  FetchedAhead<CheckedDraw> ahead_;
+  FetchedAhead<AskedDraw> ahead_;
 };
 
 }  // namespace
@@ -114,20 +101,29 @@ bool has_density(const Sampler& sampler, const SamplerDraw& draw) {
   return draw.valid && sampler.point_mass(draw.lobe) == 0;
 }
 
-JudgedDraws judged_draws(const NamedSampler& named, std::span<const Stream> streams,
-                         const std::vector<Densities>& kinds) {
-  JudgedDraws judged{.draws = draws_of(*named.sampler, streams)};
+std::vector<AskedDraw> asked_draws(const NamedSampler& named, std::span<const Stream> streams,
+                                   bool evaluations) {
+  const Sampler& sampler = *named.sampler;
+  std::vector<AskedDraw> all;
+  std::vector<std::size_t> places;
   std::vector<Point> points;
-  for (std::size_t i = 0; i < judged.draws.size(); ++i) {
-    sound(named, judged.draws[i]);
-    if (!has_density(*named.sampler, judged.draws[i])) continue;
-    judged.places.push_back(i);
-    points.push_back(judged.draws[i].point);
+  for (const SamplerDraw& draw : draws_of(sampler, streams)) {
+    sound(named, draw);
+    if (has_density(sampler, draw)) {
+      places.push_back(all.size());
+      points.push_back(draw.point);
+    }
+    all.push_back({draw});
   }
-  for (const Densities& kind : kinds) {
-    write_all(kind, points, judged.numbers.emplace_back(points.size()));
-  }
-  return judged;
+  std::vector<double> numbers(points.size());
+  const auto ask = [&](const Densities& of_points, auto number) {
+    write_all(of_points, points, numbers);
+    for (std::size_t i = 0; i < numbers.size(); ++i) all[places[i]].*number = numbers[i];
+  };
+  ask([&](auto some, auto out) { return sampler.densities(some, out); }, &AskedDraw::density);
+  if (!evaluations) return all;
+  ask([&](auto some, auto out) { return sampler.evaluations(some, out); }, &AskedDraw::evaluation);
+  return all;
 }
 
 void require_sound(const NamedSampler& named, const Location& where) {

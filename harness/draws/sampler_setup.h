@@ -42,15 +42,16 @@ std::vector<SamplerDraw> draws_of(const Sampler& sampler, std::span<const Stream
 /// True if the density at its point is about the draw.
 bool has_density(const Sampler& sampler, const SamplerDraw& draw);
 
-struct JudgedDraws {
-  std::vector<SamplerDraw> draws;
-  std::vector<std::size_t> places;           ///< of the draws that have a density
-  std::vector<std::vector<double>> numbers;  ///< of each kind asked for, at each place
+/// A draw, and what its sampler says of its point when it is asked.
+struct AskedDraw {
+  SamplerDraw draw;
+  std::optional<double> density = {};  ///< None if no density is about the draw.
+  double evaluation = 0;
 };
-/// Draws of the first few streams, with numbers at their points. Throws if one of them has none, or
-/// is unsound.
-JudgedDraws judged_draws(const NamedSampler& named, std::span<const Stream> streams,
-                         const std::vector<Densities>& kinds);
+/// Draws of the first few streams, with the densities at their points and perhaps the evaluations.
+/// Throws if one of them has none, or is unsound.
+std::vector<AskedDraw> asked_draws(const NamedSampler& named, std::span<const Stream> streams,
+                                   bool evaluations);
 
 class SamplerSetup : public Setup {
  public:
@@ -72,7 +73,10 @@ class SamplerSetup : public Setup {
   const Sampler& sampler() const { return *named_.sampler; }
   const NamedSampler& named() const { return named_; }
   const std::string& name() const { return named_.name; }
-  std::vector<Marginal> marginals() const;
+  /// The marginals that have channels, the first ones.
+  virtual std::vector<Marginal> marginals() const;
+  /// How many numbers the channel has that is counted in cells. Throws NoDensity.
+  virtual std::size_t cell_numbers() const { return density_cells().numbers(); }
 
  private:
   auto integrated(auto table) const;

@@ -11,7 +11,7 @@
 #include "harness/base/interrupt.h"
 #include "harness/base/parallel.h"
 #include "harness/base/refuse.h"
-#include "harness/draws/consistency_setup.h"
+#include "harness/draws/sampler_setup.h"
 #include "harness/sampling/packing.h"
 
 namespace assay::harness {
@@ -554,9 +554,7 @@ class Servant {
     const auto* const draws = dynamic_cast<const SamplerSetup*>(setup->second.get());
     const bool counts =
         std::ranges::any_of(named.recipe.plan, [](const auto& each) { return each.cells > 0; });
-    if (draws != nullptr && counts && dynamic_cast<const ConsistencySetup*>(draws) == nullptr) {
-      draws->density_cells();
-    }
+    if (draws != nullptr && counts) draws->cell_numbers();
     SomePools& pools = round_->pools;
     pools.resize(std::max<std::size_t>(pools.size(), named.pool + 1));
     pools[named.pool] = std::make_shared<Pool>(pool_of(named.recipe, setup->second));

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "harness/draws/consistency_setup.h"
+#include "harness/draws/sampler_setup.h"
 #include "harness/plan/independence.h"
 #include "harness/question/question.h"
 #include "stats/means/student_t.h"
@@ -35,14 +35,11 @@ Range expected_range(const Channel& channel, const stats::Moments& pilot, double
 }
 
 std::vector<ChannelPlan> sampler_plan(const SamplerSetup& setup) {
-  if (const auto* consistency = dynamic_cast<const ConsistencySetup*>(&setup)) {
-    return {{.cells = 1 + consistency->cells().size()}, {}};
-  }
   std::vector<ChannelPlan> plan;
   for (const Marginal& marginal : setup.marginals()) {
     plan.push_back(with_histogram({marginal.low, marginal.high}));
   }
-  plan.push_back({});
+  plan.resize(setup.channels().size());
   return plan;
 }
 
@@ -68,14 +65,13 @@ std::vector<ChannelPlan> estimator_plan(const Pool& pool, const PreparedEstimato
   return plan;
 }
 
-/// Counts draws in the cells of their density. It uses the pool's own set-up, whose cells its
-/// workers count; the subject's may belong to an equal sampler. If the density is out of reach, the
-/// plan or the look says so.
+/// Counts draws in cells. It uses the pool's own set-up, whose cells its workers count; the
+/// subject's may belong to an equal sampler. If the density is out of reach, the plan or the look
+/// says so.
 void count_cells(const Subject& side, Pool& pool) {
   const auto& draws = dynamic_cast<const SamplerSetup&>(*pool.setup());
-  if (dynamic_cast<const ConsistencySetup*>(&draws) != nullptr) return;
   try {
-    pool.plans()[side.channels[0]].cells = draws.density_cells().numbers();
+    pool.plans()[side.channels[0]].cells = draws.cell_numbers();
   } catch (const NoDensity&) {
   } catch (const std::domain_error&) {
   }
