@@ -80,20 +80,12 @@ void parts(Archive& a, T& named) {
 /// bytes wait here: only the next block's holder may then send.
 class Ranks::Window {
  public:
-  /// A block that came in a message, which others may share.
-  struct Packed {
-    std::shared_ptr<const std::string> message = {};
-    std::string_view block = {};
-  };
   struct Slot {
     Task task;
     int holder = 0;
     Clock::time_point given = {};
     std::unique_ptr<Pool::Block> drawn = {};
-    Packed packed = {};
     std::size_t bytes = 0;
-
-    bool is_there() const { return drawn || packed.message; }
   };
 
   Window(Round& round, const std::map<const Setup*, std::string>& names, std::size_t most_bytes)
@@ -136,15 +128,15 @@ class Ranks::Window {
     return some;
   }
 
-  /// Takes a reply's block, unless it was drawn again meanwhile.
-  void put(std::uint64_t number, const Packed& packed, double block_seconds, double waited) {
+  /// Takes a reply's block, unless it was drawn again meanwhile. Throws Unpackable if it is none.
+  void put(std::uint64_t number, std::string_view packed, double block_seconds, double waited) {
     if (number < front_) return;
     Slot& slot = slots_[number - front_];
-    if (slot.is_there()) return;
-    Usual& usual = usual_[slot.task.pool];
-    usual = {block_seconds, std::max(usual.wait, waited)};
-    slot.packed = packed;
-    wait_with(slot, packed.block.size());
+    if (slot.drawn) return;
+    Pool::Block block = unpacked_block(packed, pool(slot), slot.task.first);
+    Unpacker::require(block.fault || block.whole.count == slot.task.last - slot.task.first,
+                      "a block of another length");
+    note(slot, std::move(block), packed.size(), block_seconds, waited);
   }
 
   /// Draws blocks on this rank's threads; false if there are none to draw.
@@ -163,26 +155,23 @@ class Ranks::Window {
     if (some.empty()) some = overdue();
     for (const std::uint64_t number : some) give_to(0, number);
     const Clock::time_point start = Clock::now();
-    on_all_threads(some.size(), [&](std::size_t i) {
-      Slot& slot = slots_[some[i] - front_];
-      slot.drawn = std::make_unique<Pool::Block>(workers_.draw(slot.task));
-    });
+    std::vector<Pool::Block> blocks(some.size());
+    on_all_threads(some.size(),
+                   [&](std::size_t i) { blocks[i] = workers_.draw(at(some[i]).task); });
     const double seconds = seconds_since(start);
-    for (const std::uint64_t number : some) {
-      Slot& slot = slots_[number - front_];
-      Usual& usual = usual_[slot.task.pool];
-      usual = {seconds, std::max(usual.wait, seconds)};
-      wait_with(slot, bytes_of(*slot.drawn));
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      const std::size_t bytes = bytes_of(blocks[i]);
+      note(slots_[some[i] - front_], std::move(blocks[i]), bytes, seconds, seconds);
     }
     return !some.empty();
   }
 
-  /// Folds the blocks that are next. Throws Unpackable for one that its holder packed wrongly.
+  /// Folds the blocks that are next.
   bool fold() {
     bool folded = false;
-    for (; !empty() && slots_.front().is_there(); slots_.pop_front(), ++front_) {
+    for (; !empty() && slots_.front().drawn; slots_.pop_front(), ++front_) {
       Slot& slot = slots_.front();
-      round_.fold(slot.task, slot.drawn ? std::move(*slot.drawn) : unpacked(slot));
+      round_.fold(slot.task, std::move(*slot.drawn));
       waiting_ = {waiting_.blocks - 1, waiting_.bytes - slot.bytes};
       folded = true;
     }
@@ -203,14 +192,15 @@ class Ranks::Window {
     return bytes;
   }
 
-  Pool::Block unpacked(const Slot& slot) const {
-    Pool::Block block = unpacked_block(slot.packed.block, pool(slot), slot.task.first);
-    Unpacker::require(block.fault || block.whole.count == slot.task.last - slot.task.first,
-                      "a block of another length");
-    return block;
+  /// Notes a block, and how long it took.
+  void note(Slot& slot, Pool::Block block, std::size_t bytes, double block_seconds, double waited) {
+    Usual& usual = usual_[slot.task.pool];
+    usual = {block_seconds, std::max(usual.wait, waited)};
+    keep(slot, std::move(block), bytes);
   }
 
-  void wait_with(Slot& slot, std::size_t bytes) {
+  void keep(Slot& slot, Pool::Block block, std::size_t bytes) {
+    slot.drawn = std::make_unique<Pool::Block>(std::move(block));
     slot.bytes = bytes;
     waiting_ = {waiting_.blocks + 1, waiting_.bytes + bytes};
     most_waiting_ = {std::max(most_waiting_.blocks, waiting_.blocks),
@@ -242,16 +232,14 @@ class Ranks::Window {
   /// Drops this rank's next blocks of pools that failed; false if no block remains.
   bool skip_failed() {
     for (; !own_.empty() && pool(at(own_.front())).fault(); own_.pop_front()) {
-      Slot& slot = slots_[own_.front() - front_];
-      slot.drawn = std::make_unique<Pool::Block>();
-      wait_with(slot, 0);
+      keep(slots_[own_.front() - front_], Pool::Block(), 0);
     }
     return !own_.empty();
   }
 
   /// The next block, if a rank has had it for much longer than usual.
   std::vector<std::uint64_t> overdue() const {
-    if (empty() || slots_.front().is_there()) return {};
+    if (empty() || slots_.front().drawn) return {};
     const double usual = usual_[slots_.front().task.pool].wait;
     const double limit = usual > 0 ? std::max(least_wait, usual_waits * usual) : unknown_wait;
     if (seconds_since(slots_.front().given) < limit) return {};
@@ -283,11 +271,6 @@ Ranks::Ranks(Messages& messages, std::optional<std::uint64_t> seed, Identity ide
 std::string Ranks::name_of(int rank) const {
   const std::string& host = ranks_[static_cast<std::size_t>(rank)].host;
   return fmt::format("rank {}{}", rank, host.empty() ? "" : " on " + host);
-}
-
-void Ranks::refuse_bytes(int rank, const Unpackable& refusal) const {
-  throw std::runtime_error(
-      fmt::format("{} sent what cannot be read: {}", name_of(rank), refusal.what()));
 }
 
 unsigned Ranks::workers() const {
@@ -345,9 +328,8 @@ void Ranks::introduce(const NamedSetups& setups) {
   }
 }
 
-void Ranks::take_reply(Messages::Message message, Window& window) {
-  const auto bytes = std::make_shared<const std::string>(std::move(message.bytes));
-  Unpacker unpack(unframed(*bytes));
+void Ranks::take_reply(const Messages::Message& message, Window& window) {
+  Unpacker unpack(unframed(message.bytes));
   Kind kind{};
   unpack(kind);
   if (kind == Kind::failed) {
@@ -370,32 +352,24 @@ void Ranks::take_reply(Messages::Message message, Window& window) {
   --ranks_[static_cast<std::size_t>(message.from)].batches;
   if (batch.round != round_) return;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
-    window.put(batch.slots[i], {bytes, blocks[i]}, seconds / static_cast<double>(blocks.size()),
+    window.put(batch.slots[i], blocks[i], seconds / static_cast<double>(blocks.size()),
                seconds_since(batch.sent));
   }
 }
 
-bool Ranks::fold(Window& window) {
-  try {
-    return window.fold();
-  } catch (const Unpackable& refusal) {
-    refuse_bytes(window.holder(), refusal);
-  }
-}
-
 bool Ranks::take_replies(Window& window) {
-  bool taken = fold(window);
+  bool taken = window.fold();
   for (;;) {
     const bool full = window.is_full(messages_.arriving());
-    auto message = messages_.receive(full ? window.holder() : Messages::anyone);
+    const auto message = messages_.receive(full ? window.holder() : Messages::anyone);
     if (!message) return taken;
-    const int from = message->from;
     try {
-      take_reply(std::move(*message), window);
+      take_reply(*message, window);
     } catch (const Unpackable& refusal) {
-      refuse_bytes(from, refusal);
+      throw std::runtime_error(
+          fmt::format("{} sent what cannot be read: {}", name_of(message->from), refusal.what()));
     }
-    fold(window);
+    window.fold();
     taken = true;
   }
 }

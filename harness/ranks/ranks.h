@@ -19,8 +19,6 @@
 
 namespace assay::harness {
 
-class Unpackable;
-
 /// Messages between the ranks of a job: processes of one command that a launcher such as mpirun
 /// started. Those of one sender arrive in their order.
 class Messages {
@@ -92,12 +90,10 @@ class Ranks final : public Executor {
   };
 
   std::string name_of(int rank) const;
-  [[noreturn]] void refuse_bytes(int rank, const Unpackable& refusal) const;
   unsigned workers() const;
   void greet(const Messages::Message& message, const std::set<std::string>& names);
-  bool fold(Window& window);
   bool take_replies(Window& window);
-  void take_reply(Messages::Message message, Window& window);
+  void take_reply(const Messages::Message& message, Window& window);
   void give(Window& window);
   void send_batch(int rank, std::vector<std::uint64_t> slots, const Window& window);
 
