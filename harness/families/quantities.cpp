@@ -32,7 +32,6 @@ const std::vector<QuantityRow>& quantities() {
        .summary = "The variance of a primary estimate, channel by channel.",
        .theta = &theta_of_variances(),
        .slope = &theta_of_variance_slopes(),
-       .never_negative = true,
        .tested_as_a_ratio = true,
        .analytic = analytic_variance,
        .told_by_moments = true},
@@ -40,7 +39,6 @@ const std::vector<QuantityRow>& quantities() {
        .example = "total_variance(a) < total_variance(b)",
        .summary = "The sum of the variances of all channels.",
        .theta = &theta_of_total_variances(),
-       .never_negative = true,
        .tested_as_a_ratio = true,
        .over_all_channels = true,
        .told_by_moments = true},
@@ -48,7 +46,6 @@ const std::vector<QuantityRow>& quantities() {
        .example = "worst_variance(a) <= 2",
        .summary = "The largest of the variances of all channels.",
        .theta = &theta_of_worst_variances(),
-       .never_negative = true,
        .tested_as_a_ratio = true,
        .over_all_channels = true,
        .told_by_moments = true},
@@ -63,7 +60,6 @@ const std::vector<QuantityRow>& quantities() {
        .example = "efficiency(a) > efficiency(b)",
        .summary = "One over the product of mean squared error and cost.",
        .theta = &theta_of_efficiencies(),
-       .never_negative = true,
        .tested_as_a_ratio = true,
        .told_by_moments = true,
        .takes_reference = true,
@@ -73,7 +69,6 @@ const std::vector<QuantityRow>& quantities() {
        .summary = "Rays, samples or CPU seconds of a primary estimate, as `cost` says.",
        .theta = &theta_of_costs(),
        .slope = &theta_of_slopes(),
-       .never_negative = true,
        .tested_as_a_ratio = true,
        .told_by_moments = true,
        .counts_cost = true},
@@ -86,14 +81,12 @@ const std::vector<QuantityRow>& quantities() {
        .example = "integral(a.sampler) == 1",
        .summary = "What the density that a sampler declares integrates to.",
        .theta = &theta_of_integrals(),
-       .of_a_sampler = true,
-       .never_negative = true},
+       .of_a_sampler = true},
       {.word = "inconsistency",
        .example = "inconsistency(a.sampler) == 0",
        .summary = "The probability that a draw contradicts what its sampler declares.",
        .theta = &theta_of_inconsistencies(),
-       .of_a_sampler = true,
-       .never_negative = true}};
+       .of_a_sampler = true}};
   return table;
 }
 

@@ -460,7 +460,7 @@ void check_side(const Claim& claim, const ScaledQuantity& side) {
   if (side.factor == 1) return;
   if (q.row->of_a_law) refuse(q.where, "a distribution cannot be multiplied");
   if (side.factor == 0) refuse(q.where, "a factor of 0 leaves nothing to compare; give the number");
-  if (q.row->never_negative && side.factor < 0) {
+  if (q.row->never_negative() && side.factor < 0) {
     refuse(q.where, "`{}` is never negative; the factor must be above 0", q.row->word);
   }
 }
@@ -474,7 +474,7 @@ void check_side(const Claim& claim, const Constant& side) {
     refuse(left.where, "`{}` is held against an exact number: `+-` has no method here",
            left.slope ? "slope" : left.row->word);
   }
-  if (left.row->never_negative && !left.slope && side.value < 0) {
+  if (left.row->never_negative() && !left.slope && side.value < 0) {
     refuse(left.where, "`{}` is never negative, but it is compared with {}", left.row->word,
            side.value);
   }

@@ -31,7 +31,6 @@ struct QuantityRow {
   bool of_a_sampler = false;
   bool of_a_law = false;          ///< It is compared with a law by `==`, not with a number.
   bool of_a_probability = false;  ///< It takes a probability beside the estimator.
-  bool never_negative = false;
   bool tested_as_a_ratio = false;  ///< The claimed number is above 0 and exact.
   bool over_all_channels = false;
   /// Gives what a channel's plugin knows of it, or InputError; null if no plugin knows any.
@@ -42,6 +41,7 @@ struct QuantityRow {
   bool takes_reference = false;  ///< The test may have `reference`.
   bool counts_cost = false;      ///< The test may have `cost`.
 
+  bool never_negative() const { return tested_as_a_ratio || of_a_sampler; }
   /// Its margins are differences of probabilities, so they lie below 1.
   bool is_a_probability() const { return of_a_law || of_a_sampler; }
 };

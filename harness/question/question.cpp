@@ -15,24 +15,18 @@ namespace {
 
 std::string parts_of(const PreparedEstimator& estimator) {
   std::string text;
-  const auto add = [&](const std::string& name) {
-    text += (text.empty() ? "`" : ", `") + name + "`";
-  };
   if (const auto image = estimator.setup->image()) {
-    for (const std::string& component : image->components) add(component);
-    add(element_name(*image, 0));
-    text += ", …";
-    add(element_name(*image, image->elements() - 1));
+    std::vector<std::string> names = image->components;
+    names.push_back(element_name(*image, 0));
+    text = fmt::format("`{}`, …, `{}`", fmt::join(names, "`, `"),
+                       element_name(*image, image->elements() - 1));
   } else {
-    constexpr std::size_t most = 16;
-    const std::vector<Channel> channels = estimator.setup->channels();
-    for (std::size_t i = 0; i < std::min(most, channels.size()); ++i) add(channels[i].name);
-    if (channels.size() > most) text += fmt::format(", … ({} in all)", channels.size());
+    text = quoted(names_of(estimator.setup->channels(), &Channel::name));
   }
   for (const NamedSampler& named : estimator.setup->samplers()) {
-    add(named.name);
+    text += fmt::format(", `{}`", named.name);
     for (const Marginal& marginal : marginals(named.sampler->domain())) {
-      add(named.name + "." + marginal.name);
+      text += fmt::format(", `{}.{}`", named.name, marginal.name);
     }
   }
   return text;

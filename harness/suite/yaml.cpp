@@ -307,7 +307,7 @@ std::string suggestion(std::string_view name, const std::vector<std::string>& ca
 
 Keys::Keys(const Document& document, const Value& map, std::string what,
            const std::vector<std::string>& known)
-    : document_(document), map_(map), what_(std::move(what)) {
+    : map_(map), what_(std::move(what)) {
   if (map.kind() != Value::Kind::map) {
     refuse(map.where(), "{} must be a map of keys and values", what_);
   }

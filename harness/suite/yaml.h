@@ -29,7 +29,6 @@ class Document {
   Document(std::string file, std::string_view text, std::optional<Location> only_place = {});
 
   const Value& root() const { return root_; }
-  const std::string& file() const { return file_; }
   /// The place of the key of this member of a map; for other values their own place.
   Location key(const Value& member) const;
   /// A line without its end, counted from 1; "" where there is none.
@@ -64,10 +63,8 @@ class Keys {
   const Value* find(std::string_view key) const { return map_.find(key); }
   /// The value of the key. InputError at the map if it is missing, with a line to write.
   const Value& require(std::string_view key, std::string_view example) const;
-  Location where(const Value& member) const { return document_.key(member); }
 
  private:
-  const Document& document_;
   const Value& map_;
   std::string what_;
 };
