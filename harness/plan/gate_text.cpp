@@ -136,9 +136,9 @@ Reason what_would_help(const TestOutcome& outcome) {
   const std::string more =
       factor > 1 && std::isfinite(factor) ? "about " + sizes_text(outcome, factor) : "more";
   if (rows) {
-    const std::string words = fmt::format("give {0} {1}, or {1} that each average several{2}", more,
-                                          rows_noun(outcome.question), or_if_normal(outcome));
-    return {": " + words, reports::Advice{.words = words}};
+    return Reason::advising(": ",
+                            fmt::format("give {0} {1}, or {1} that each average several{2}", more,
+                                        rows_noun(outcome.question), or_if_normal(outcome)));
   }
   return fmt::format(
       "; {} `secondaries` may do{}. Without a declared range no test decides on fewer than {} "

@@ -78,39 +78,37 @@ std::string enough_of_a_chain(const Question& question, double time) {
                      fewest_batches * std::max(apart, fewest_batches));
 }
 
-/// What is wrong with rows, and words that mend it.
-Reason wrong(const std::string& what, const std::string& mend) {
-  return {what + "; " + mend, reports::Advice{.words = mend}};
-}
-
 /// `at_a_lag`: values some steps apart show the dependence, not neighbours.
 Reason dependent(const Question& question, const Rows& rows, bool at_a_lag) {
   const double time = std::max(1.0, stats::autocorrelation_time(rows.values));
   const stats::LaggedCorrelation worst = stats::worst_of(stats::lagged_correlations(rows.values));
   if (at_a_lag && worst.correlation > 0 && static_cast<double>(worst.lag) > time) {
-    return wrong(fmt::format("the {} are not independent: those {} apart have a rank correlation "
-                             "of {:.2g}, as where so many chains take turns",
-                             rows.label, worst.lag, worst.correlation),
-                 "give one row a chain");
+    return Reason::advising(
+        fmt::format("the {} are not independent: those {} apart have a rank correlation of {:.2g}, "
+                    "as where so many chains take turns; ",
+                    rows.label, worst.lag, worst.correlation),
+        "give one row a chain");
   }
   if (!(time > 1)) {
     const stats::LaggedCorrelation any =
         stats::worst_of(stats::lagged_correlations(rows.values, 1));
-    return wrong(fmt::format("the {} are not independent: those {} apart have a rank correlation "
-                             "of {:.2g}",
-                             rows.label, any.lag, any.correlation),
-                 "give the mean of rows that were drawn together as one row");
+    return Reason::advising(
+        fmt::format(
+            "the {} are not independent: those {} apart have a rank correlation of {:.2g}; ",
+            rows.label, any.lag, any.correlation),
+        "give the mean of rows that were drawn together as one row");
   }
   const double worth = static_cast<double>(rows.values.size()) / time;
-  return wrong(fmt::format("the {} are not independent: {} of them are worth about {:.0f} "
-                           "independent ones",
-                           rows.label, rows.values.size(), worth),
-               "give one row a chain, or " + enough_of_a_chain(question, time));
+  return Reason::advising(
+      fmt::format(
+          "the {} are not independent: {} of them are worth about {:.0f} independent ones; ",
+          rows.label, rows.values.size(), worth),
+      "give one row a chain, or " + enough_of_a_chain(question, time));
 }
 
 /// A red gate on something that chance does not make.
 Gate red_gate(const char* name, std::size_t value, std::size_t limit, const Rows& rows) {
-  return gate_of(gate_of(name, static_cast<double>(value), static_cast<double>(limit), "red"),
+  return gate_of(name, static_cast<double>(value), static_cast<double>(limit), "red",
                  ", " + rows.label);
 }
 
@@ -119,11 +117,12 @@ std::string from_to(std::size_t first, std::size_t length) {
 }
 
 Reason repeated(const Rows& rows, const stats::RepeatedRun& again) {
-  return wrong(fmt::format("of the {} those from {} are those from {} again, bit for bit: they are "
-                           "no observations of their own",
-                           rows.label, from_to(again.second, again.length),
-                           from_to(again.first, again.length)),
-               "give each run of the program that writes them a seed of its own");
+  return Reason::advising(
+      fmt::format("of the {} those from {} are those from {} again, bit for bit: they are no "
+                  "observations of their own; ",
+                  rows.label, from_to(again.second, again.length),
+                  from_to(again.first, again.length)),
+      "give each run of the program that writes them a seed of its own");
 }
 
 /// Two samples that are held against each other.

@@ -34,6 +34,10 @@ struct Reason {
   Reason() = default;
   Reason(std::string words, std::optional<reports::Advice> next = {})  // NOLINT: words are one
       : text(std::move(words)), advice(std::move(next)) {}
+  /// Words that end with the advice.
+  static Reason advising(const std::string& before, const std::string& mend) {
+    return {before + mend, reports::Advice{.words = mend}};
+  }
   bool empty() const { return text.empty(); }
 };
 

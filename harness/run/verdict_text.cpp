@@ -148,11 +148,6 @@ std::string passed_proof(const TestOutcome& outcome, const ChannelOutcome& chann
                      in_channel(outcome, channel), p_text(channel.decision.log_p_forbidden));
 }
 
-/// Advice in words, which the message has too.
-Reason in_words(const std::string& before, const std::string& words) {
-  return {before + words, reports::Advice{.words = words}};
-}
-
 Reason failed(const TestOutcome& outcome, const ChannelOutcome& channel) {
   if (channel.image) {
     return fmt::format(
@@ -164,7 +159,7 @@ Reason failed(const TestOutcome& outcome, const ChannelOutcome& channel) {
                                        p_text(channel.decision.log_p_claimed));
   const auto& most_against = channel.evidence.most_against;
   const std::string place = most_against ? most_against(channel.regions.claimed_edge()) : "";
-  return place.empty() ? Reason(text) : in_words(text + "; ", place);
+  return place.empty() ? Reason(text) : Reason::advising(text + "; ", place);
 }
 
 /// Levels of the last look.
@@ -238,14 +233,14 @@ double interval_errors(const ChannelOutcome& channel, double tail) {
 /// So many times the observations would decide.
 Reason with_more(const TestOutcome& outcome, const ChannelOutcome& channel, double factor) {
   if (has_rows(outcome.question)) {
-    return in_words("", fmt::format("give about {} {} {}", sizes_text(outcome, factor),
-                                    rows_noun(outcome.question),
-                                    outcome.question.of_two() ? "a side" : "in all"));
+    return Reason::advising("", fmt::format("give about {} {} {}", sizes_text(outcome, factor),
+                                            rows_noun(outcome.question),
+                                            outcome.question.of_two() ? "a side" : "in all"));
   }
   if (const auto& budget = outcome.question.test->budget; budget && budget->of_suite) {
-    return in_words(times_as_many(outcome, factor) + " would decide; ",
-                    fmt::format("give the suite {} times its `budget`",
-                                reports::human(std::ceil(10 * factor) / 10, 2)));
+    return Reason::advising(times_as_many(outcome, factor) + " would decide; ",
+                            fmt::format("give the suite {} times its `budget`",
+                                        reports::human(std::ceil(10 * factor) / 10, 2)));
   }
   const reports::Advice next = setting(outcome, factor);
   return {fmt::format("about {} would decide{}; write {}", times_as_many(outcome, factor),
@@ -307,8 +302,8 @@ Reason told(const TestOutcome& outcome) {
 }  // namespace
 
 Reason excludes_no(const std::string& what) {
-  return in_words(fmt::format("these observations exclude no {} at all: ", what),
-                  "take more of them, or say with `detect` how far off it must not be");
+  return Reason::advising(fmt::format("these observations exclude no {} at all: ", what),
+                          "take more of them, or say with `detect` how far off it must not be");
 }
 
 Reason narrate(const TestOutcome& outcome) {

@@ -61,20 +61,14 @@ bool need_more(const std::vector<Gate>& gates) {
       gates, [](const Gate& gate) { return !gate.is_red() || gate.row().needs_more(); });
 }
 
-Gate gate_of(const reports::Gate& gate, const std::string& where) {
-  Gate result{gate, gate.name};
-  result.name += where;
-  return result;
+Gate gate_of(const std::string& kind, double value, double limit, const char* state,
+             const std::string& where) {
+  return {{.name = kind + where, .value = value, .limit = limit, .state = state}, kind};
 }
 
 Gate gate_of(const stats::Gate& gate, const std::string& where) {
   constexpr const char* states[] = {"green", "amber", "red"};
-  return gate_of(gate_of(gate.name, gate.value, gate.limit, states[static_cast<int>(gate.state)]),
-                 where);
-}
-
-Gate gate_of(const std::string& name, double value, double limit, const char* state) {
-  return gate_of(reports::Gate{.name = name, .value = value, .limit = limit, .state = state});
+  return gate_of(gate.name, gate.value, gate.limit, states[static_cast<int>(gate.state)], where);
 }
 
 }  // namespace assay::harness

@@ -40,10 +40,9 @@ struct Gate : reports::Gate {
 /// True if more observations mend all red gates.
 bool need_more(const std::vector<Gate>& gates);
 
-/// A gate of its own kind. `where` follows the kind in its name.
-Gate gate_of(const reports::Gate& gate, const std::string& where = "");
+/// A gate of this kind. `where` follows the kind in its name.
+Gate gate_of(const std::string& kind, double value, double limit, const char* state,
+             const std::string& where = "");
 Gate gate_of(const stats::Gate& gate, const std::string& where);
-/// The same of a value with its limit.
-Gate gate_of(const std::string& name, double value, double limit, const char* state);
 
 }  // namespace assay::harness

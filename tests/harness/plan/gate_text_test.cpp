@@ -8,22 +8,23 @@ namespace assay::harness {
 namespace {
 
 /// The advice for a mean of 1000 observations with this red gate.
-std::string help_for(const reports::Gate& gate, const std::string& where = "") {
+std::string help_for(const Gate& gate) {
   const auto asked = ask_text(
       "suite: gates\nestimators: {it: {plugin: analytic/normal}}\n"
       "tests: [{name: test, claim: mean(it) == 0}]\n");
   TestOutcome outcome{.question = asked->questions[0]};
   outcome.plan.looks = one_look(1000, outcome.place.share);
-  outcome.gates = {gate_of(gate, where)};
+  outcome.gates = {gate};
   return what_would_help(outcome).text;
 }
 
-reports::Gate red(const std::string& name, double value = 4, double limit = 2) {
-  return {.name = name, .value = value, .limit = limit, .state = "red"};
+Gate red(const std::string& kind, double value = 4, double limit = 2,
+         const std::string& where = "") {
+  return gate_of(kind, value, limit, "red", where);
 }
 
 TEST(GateText, OfHeavyTailsAdvisesNoMoreObservations) {
-  const std::string help = help_for(red("excess kurtosis"), " of it");
+  const std::string help = help_for(red("excess kurtosis", 4, 2, " of it"));
   EXPECT_THAT(help, HasSubstr("heavy-tailed"));
   EXPECT_THAT(help, HasSubstr("a quantile"));
   EXPECT_THAT(help, Not(HasSubstr("secondaries")));
@@ -50,7 +51,7 @@ TEST(GateText, OfOneObservationSaysHowManyOthersWouldDo) {
 TEST(GateText, NamesFewOfManyRedGates) {
   std::vector<Gate> gates;
   for (int i = 0; i < 1000; ++i) {
-    gates.push_back(gate_of(red("excess kurtosis"), ", value" + std::to_string(i)));
+    gates.push_back(red("excess kurtosis", 4, 2, ", value" + std::to_string(i)));
   }
   const std::string all = red_gates(gates);
   EXPECT_THAT(all, HasSubstr("value3)"));
