@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -238,9 +239,9 @@ struct VerdictCounts {
   std::map<std::string, std::uint64_t> methods = {};  ///< Number of runs that each method judged.
 };
 
-/// A claim, if the case has it, and its outcomes.
+/// A claim as a suite of its own, if the case has it, and its outcomes.
 struct CalibratedClaim {
-  std::optional<TestEntry> test = {};
+  std::optional<Suite> suite = {};
   VerdictCounts counts = {};
 };
 
@@ -260,7 +261,17 @@ struct CalibrationCase {
   /// The claim on which a verdict against the level is possible, with this method forced and all
   /// observations in one look. Gates are shown but have no effect.
   CalibratedClaim alone = {};
+
+  std::array<CalibratedClaim*, 3> claims() { return {&holds, &off, &alone}; }
 };
+
+constexpr double usual_beta = 0.01;
+
+Suite suite_of(const std::string& claim, const TestKeys& keys) {
+  Suite suite{.name = "calibration", .stem = "calibration", .beta = usual_beta};
+  suite.tests = {test_of("calibration", claim, keys)};
+  return suite;
+}
 
 CalibrationCase case_of(const Draft& draft, const Facts& facts,
                         std::optional<std::uint64_t> samples) {
@@ -271,11 +282,11 @@ CalibrationCase case_of(const Draft& draft, const Facts& facts,
   TestKeys forced = keys;
   forced["test"] = draft.method;
   forced.emplace("secondaries", fmt::format("{}", draft.alone));
-  made.alone.test = test_of("calibration", made.proof ? draft.off : draft.holds, forced);
+  made.alone.suite = suite_of(made.proof ? draft.off : draft.holds, forced);
   if (!draft.is_default) return made;
   if (!draft.detect.empty()) keys["detect"] = draft.detect;
-  made.holds.test = test_of("calibration", draft.holds, keys);
-  if (!draft.off.empty()) made.off.test = test_of("calibration", draft.off, keys);
+  made.holds.suite = suite_of(draft.holds, keys);
+  if (!draft.off.empty()) made.off.suite = suite_of(draft.off, keys);
   return made;
 }
 
@@ -360,30 +371,18 @@ using reports::CalibrationCell;
 using reports::Rate;
 using reports::VerdictRates;
 
-constexpr double usual_beta = 0.01;
-
-/// One test of a case, as a suite of its own.
-struct Item {
-  VerdictCounts& counts;
-  bool proof;
-  Suite suite;
-};
-
-std::vector<Item> items_of(std::vector<CalibrationCase>& all) {
-  std::vector<Item> items;
+/// The claims of cases at a level. A proof errs by passing, so its level is beta.
+std::vector<CalibratedClaim*> claims_of(std::vector<CalibrationCase>& all) {
+  std::vector<CalibratedClaim*> claims;
   for (CalibrationCase& each : all) {
-    for (CalibratedClaim* const claim : {&each.holds, &each.off, &each.alone}) {
-      if (!claim->test) continue;
-      // A proof errs by passing, so its level is beta.
-      Suite suite{.name = "calibration",
-                  .stem = "calibration",
-                  .alpha = each.alpha,
-                  .beta = each.proof ? each.alpha : usual_beta};
-      suite.tests = {*claim->test};
-      items.push_back({claim->counts, each.proof, std::move(suite)});
+    for (CalibratedClaim* const claim : each.claims()) {
+      if (!claim->suite) continue;
+      claim->suite->alpha = each.alpha;
+      if (each.proof) claim->suite->beta = each.alpha;
+      claims.push_back(claim);
     }
   }
-  return items;
+  return claims;
 }
 
 /// Turns off histograms, which a calibration does not show.
@@ -393,11 +392,12 @@ void leave_out_pictures(const Pools& pools) {
   }
 }
 
-void tally(const TestOutcome& outcome, bool proof, VerdictCounts& counts) {
+void tally(const TestOutcome& outcome, VerdictCounts& counts) {
   const auto any_red = [](const std::vector<Gate>& gates) {
     return std::ranges::any_of(gates, &Gate::is_red);
   };
   const bool red = any_red(outcome.plan.gates) || any_red(outcome.gates);
+  const bool proof = is_proof(outcome.question.test->claim.relation);
   const bool mistaken = outcome.verdict == (proof ? Verdict::pass : Verdict::fail);
   ++counts.verdicts[outcome.verdict == Verdict::error ? Verdict::invalid : outcome.verdict];
   counts.red += red ? 1 : 0;
@@ -406,20 +406,20 @@ void tally(const TestOutcome& outcome, bool proof, VerdictCounts& counts) {
   ++counts.methods[outcome.plan.method.name];
 }
 
-/// All items see the same observations.
-void run_once(const CalibrationBench& bench, const std::vector<Item>& items, std::uint64_t seed,
-              std::mutex& counting) {
+/// All claims see the same observations.
+void run_once(const CalibrationBench& bench, const std::vector<CalibratedClaim*>& claims,
+              std::uint64_t seed, std::mutex& counting) {
   std::vector<Question> questions;
-  for (const Item& item : items) {
-    questions.push_back(ask(item.suite.tests[0], bench.estimators, seed));
+  for (const CalibratedClaim* const claim : claims) {
+    questions.push_back(ask(claim->suite->tests[0], bench.estimators, seed));
   }
   const Pilots pilots = pilots_of(questions, seed, threads(1));
   Pools pools;
-  std::vector<std::optional<TestWork>> works(items.size());
+  std::vector<std::optional<TestWork>> works(claims.size());
   std::vector<TestWork*> open;
-  for (std::size_t i = 0; i < items.size(); ++i) {
+  for (std::size_t i = 0; i < claims.size(); ++i) {
     try {
-      works[i] = TestWork{.outcome = plan_alone(items[i].suite, questions[i], pilots),
+      works[i] = TestWork{.outcome = plan_alone(*claims[i]->suite, questions[i], pilots),
                           .verdict_only = true};
     } catch (const InputError&) {
       continue;  // a run would stop before sampling
@@ -433,11 +433,11 @@ void run_once(const CalibrationBench& bench, const std::vector<Item>& items, std
   sample_in_looks(open, pools.all(), {.executor = threads(1)}, silence);
   if (interrupted()) return;
   const std::lock_guard lock(counting);
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    VerdictCounts& counts = items[i].counts;
+  for (std::size_t i = 0; i < claims.size(); ++i) {
+    VerdictCounts& counts = claims[i]->counts;
     ++counts.runs;
     if (works[i]) {
-      tally(works[i]->outcome, items[i].proof, counts);
+      tally(works[i]->outcome, counts);
     } else {
       ++counts.verdicts[Verdict::invalid];
     }
@@ -452,14 +452,14 @@ std::vector<CalibrationCase> measure(const CalibrationBench& bench,
   for (const double alpha : arguments.alphas) {
     for (const CalibrationCase& each : bench.cases) all.emplace_back(each).alpha = alpha;
   }
-  const std::vector<Item> items = items_of(all);
+  const std::vector<CalibratedClaim*> claims = claims_of(all);
   std::atomic<std::uint64_t> next{0};
   std::mutex mutex;
   std::exception_ptr trouble;
   const auto work = [&](bool tells) {
     try {
       for (std::uint64_t run = next++; run < arguments.runs && !interrupted(); run = next++) {
-        run_once(bench, items, arguments.seed + run, mutex);
+        run_once(bench, claims, arguments.seed + run, mutex);
         if (tells) done(std::min(next.load(), arguments.runs));
       }
     } catch (...) {
