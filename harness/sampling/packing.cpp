@@ -164,7 +164,8 @@ void parts(Archive& a, T& fault) {
 Pool pool_of(const Recipe& recipe, std::shared_ptr<const Setup> setup) {
   Unpacker::require(setup != nullptr, "there is no such set-up");
   Unpacker::require(recipe.primaries > 0, "observations of no primaries");
-  Pool pool(std::move(setup), recipe.key, recipe.primaries);
+  Unpacker::require(std::ranges::count(recipe.marks, 0U) == 0, "a mark at no observation");
+  Pool pool(std::move(setup), recipe);
   Unpacker::require(recipe.plan.empty() || recipe.plan.size() == pool.channels(),
                     "a plan of other channels than the set-up has");
   for (const ChannelPlan& channel : recipe.plan) {
@@ -173,13 +174,6 @@ Pool pool_of(const Recipe& recipe, std::shared_ptr<const Setup> setup) {
   }
   for (const std::size_t channel : recipe.grouped_channels) {
     Unpacker::require(channel < pool.channels(), "a channel that the set-up does not have");
-  }
-  pool.plan(recipe.plan);
-  pool.keep_group_variances(recipe.grouped_channels);
-  pool.keep_observations(recipe.kept_observations);
-  for (const std::uint64_t mark : recipe.marks) {
-    Unpacker::require(mark > 0, "a mark at no observation");
-    pool.mark(mark);
   }
   return pool;
 }

@@ -172,22 +172,25 @@ std::uint64_t block_size_of(std::uint64_t primaries) {
   return std::bit_floor(std::clamp(primaries_per_block / primaries, least_block, most_block));
 }
 
-Pool::Pool(std::shared_ptr<const Setup> setup, StreamKey key, std::uint64_t primaries)
+Pool::Pool(std::shared_ptr<const Setup> setup, Recipe recipe)
     : setup_(std::move(setup)),
       ready_made_(ready_made(*setup_)),
-      key_(key),
-      primaries_(primaries),
-      block_size_(block_size_of(primaries_of_observation(*setup_, primaries))),
+      recipe_(std::move(recipe)),
+      block_size_(block_size_of(primaries_of_observation(*setup_, recipe_.primaries))),
       channels_(channels_of(*setup_)),
-      elements_(elements_of(*setup_)),
-      kept_observations_(kept_anyway(*setup_)) {}
-
-std::vector<ChannelPlan>& Pool::plans() {
-  plan_.resize(channels_);
-  return plan_;
+      elements_(elements_of(*setup_)) {
+  keep_observations(kept_anyway(*setup_));
+  for (const std::uint64_t count : std::exchange(recipe_.marks, {})) mark(count);
 }
 
-Summary Pool::no_sums() const { return sums_later() ? Summary() : Summary(channels_, plan_); }
+std::vector<ChannelPlan>& Pool::plans() {
+  recipe_.plan.resize(channels_);
+  return recipe_.plan;
+}
+
+Summary Pool::no_sums() const {
+  return sums_later() ? Summary() : Summary(channels_, recipe_.plan);
+}
 
 void Pool::mark(std::uint64_t count) {
   const bool known = !prefixes_.try_emplace(count, std::make_shared<const Summary>()).second;
@@ -239,8 +242,8 @@ void Pool::read_picture(std::uint64_t index, Block& block) const {
 /// Draws one observation; an image in single precision.
 void Pool::draw_one(Estimator& estimator, std::uint64_t index, std::span<double> out,
                     Cost& cost) const {
-  Stream random(key_, index);
-  estimator.secondary(random, primaries_, out, cost);
+  Stream random(recipe_.key, index);
+  estimator.secondary(random, recipe_.primaries, out, cost);
   for (double& number : out.first(elements_)) number = static_cast<float>(number);
 }
 
@@ -251,7 +254,7 @@ std::span<const double> Pool::observe(Estimator& estimator, std::uint64_t index,
     block.whole.cost += known_->costs[index];
     return sums_later() ? std::span<const double>() : known_->whole(index, out);
   }
-  const bool kept = !known_ && index < kept_observations_;
+  const bool kept = !known_ && index < recipe_.kept_observations;
   // Counted at the sum: reading back at once what an estimator just stored in parts stalls the
   // processor.
   Cost before;
@@ -275,7 +278,7 @@ std::span<const double> Pool::observe(Estimator& estimator, std::uint64_t index,
 Pool::Block Pool::draw(const std::function<Estimator&()>& estimator, std::uint64_t first,
                        std::uint64_t last) const {
   const bool later = sums_later();
-  const std::uint64_t values_kept = later ? 0 : most_kept(plan_);
+  const std::uint64_t values_kept = later ? 0 : most_kept(recipe_.plan);
   Block block{.whole = no_sums(),
               .values = std::vector<std::vector<double>>(values_kept > 0 ? channels_ : 0),
               .size = last - first};
@@ -288,14 +291,14 @@ Pool::Block Pool::draw(const std::function<Estimator&()>& estimator, std::uint64
   };
   double start = seconds();
   std::uint64_t index = first;
-  GroupVariance groups(later ? std::vector<std::size_t>() : grouped_channels_);
-  const bool with_costs = !later && counts_costs(plan_);
+  GroupVariance groups(later ? std::vector<std::size_t>() : recipe_.grouped_channels);
+  const bool with_costs = !later && counts_costs(recipe_.plan);
   ObservationCost cost{};
   const FlushDenormals flush;
   try {
     source = &estimator();
     start = seconds();
-    source->announce({.key = key_, .first = first, .last = last});
+    source->announce({.key = recipe_.key, .first = first, .last = last});
     for (; index < last; ++index) {
       Cost before;
       if (with_costs) before = block.whole.cost;
@@ -304,7 +307,7 @@ Pool::Block Pool::draw(const std::function<Estimator&()>& estimator, std::uint64
       if (with_costs) cost = counted(block.whole.cost - before);
       if (!later) intake.take(drawn, index, cost);
       for (std::size_t c = 0; index < values_kept && c < drawn.size(); ++c) {
-        if (index < plan_[c].keep) block.values[c].push_back(drawn[c]);
+        if (index < recipe_.plan[c].keep) block.values[c].push_back(drawn[c]);
       }
       if (const auto variance = groups.add(drawn)) block.whole.group_variances.add(*variance);
       ++block.whole.count;
@@ -336,8 +339,8 @@ std::shared_ptr<const Summary> Pool::sums_of_first(std::uint64_t count, const Su
 
 /// Takes what is kept beside moments of kept observations, as draw() does of others.
 void Pool::take_details(Summary& summary) const {
-  summary.detailed = Summary(channels_, plan_).detailed;
-  GroupVariance groups(grouped_channels_);
+  summary.detailed = Summary(channels_, recipe_.plan).detailed;
+  GroupVariance groups(recipe_.grouped_channels);
   std::vector<double> out(channels_);
   for (std::uint64_t index = 0; index < summary.count; ++index) {
     const std::span<const double> values = all_kept().whole(index, out);
@@ -349,14 +352,14 @@ void Pool::take_details(Summary& summary) const {
 
 /// Stores the values of channels that asked for them, from kept observations.
 void Pool::keep_values() {
-  const std::uint64_t most = std::min(most_kept(plan_), drawn());
+  const std::uint64_t most = std::min(most_kept(recipe_.plan), drawn());
   if (values_taken_ >= most) return;  // reserve no room for a whole picture
   std::vector<double> out(channels_);
   values_.resize(channels_);
   for (; values_taken_ < most; ++values_taken_) {
     const std::span<const double> values = all_kept().whole(values_taken_, out);
-    for (std::size_t c = 0; c < plan_.size(); ++c) {
-      if (values_taken_ < plan_[c].keep) values_[c].push_back(values[c]);
+    for (std::size_t c = 0; c < recipe_.plan.size(); ++c) {
+      if (values_taken_ < recipe_.plan[c].keep) values_[c].push_back(values[c]);
     }
   }
 }
@@ -364,8 +367,8 @@ void Pool::keep_values() {
 void Pool::end_drawing() {
   if (!sums_later()) return;
   keep_values();
-  const bool plain =
-      grouped_channels_.empty() && std::ranges::none_of(plan_, &ChannelPlan::has_details);
+  const bool plain = recipe_.grouped_channels.empty() &&
+                     std::ranges::none_of(recipe_.plan, &ChannelPlan::has_details);
   for (auto& [count, prefix] : prefixes_) {
     if (count > drawn() || count == 0 || !prefix->channels.empty()) continue;
     std::shared_ptr<const Summary> sums = sums_of_first(count, *prefix);
@@ -379,11 +382,7 @@ void Pool::end_drawing() {
 }
 
 Recipe Pool::recipe() const {
-  Recipe recipe{.key = key_,
-                .primaries = primaries_,
-                .plan = plan_,
-                .grouped_channels = grouped_channels_,
-                .kept_observations = kept_observations_};
+  Recipe recipe = recipe_;
   for (const auto& [count, unused] : prefixes_) recipe.marks.push_back(count);
   return recipe;
 }
@@ -423,7 +422,7 @@ void Pool::keep_block(const Summary& block, std::uint64_t first) {
 void Pool::fold(Block&& block) {
   if (drawn() == 0) {
     running_ = no_sums();
-    if (most_kept(plan_) > 0 && !sums_later()) values_.resize(channels_);
+    if (most_kept(recipe_.plan) > 0 && !sums_later()) values_.resize(channels_);
   }
   if (fault_) return;
   for (auto& [count, partial] : block.partial) {

@@ -94,25 +94,26 @@ class Sample;
 
 class Pool {
  public:
-  Pool(std::shared_ptr<const Setup> setup, StreamKey key, std::uint64_t primaries);
+  Pool(std::shared_ptr<const Setup> setup, Recipe recipe);
+  Pool(std::shared_ptr<const Setup> setup, StreamKey key, std::uint64_t primaries)
+      : Pool(std::move(setup), {.key = key, .primaries = primaries}) {}
 
   std::shared_ptr<const Setup> setup() const { return setup_; }
-  StreamKey key() const { return key_; }
-  std::uint64_t primaries() const { return primaries_; }
+  StreamKey key() const { return recipe_.key; }
+  std::uint64_t primaries() const { return recipe_.primaries; }
 
   std::size_t channels() const { return channels_; }
   /// The first channels, of an image; 0 without one.
   std::size_t elements() const { return elements_; }
   /// Sets what to keep of each channel beyond moments, before anything is drawn. An image's
   /// millions of channels need no plans.
-  void plan(std::vector<ChannelPlan> channels) { plan_ = std::move(channels); }
-  const std::vector<ChannelPlan>& plan() const { return plan_; }
+  void plan(std::vector<ChannelPlan> channels) { recipe_.plan = std::move(channels); }
   /// The plan of each channel, to be changed.
   std::vector<ChannelPlan>& plans();
 
   /// Sums the variances of these channels in groups. Call it before anything is drawn.
   void keep_group_variances(std::vector<std::size_t> channels) {
-    grouped_channels_ = std::move(channels);
+    recipe_.grouped_channels = std::move(channels);
   }
   /// Keeps every block's sums, some hundred bytes for each 16384 primaries. Call it before anything
   /// is drawn.
@@ -121,7 +122,7 @@ class Pool {
   /// Stores the first `count` observations whole. Call it before anything is drawn. An image's
   /// numbers are rounded to single precision when they are drawn, as those of files.
   void keep_observations(std::uint64_t count) {
-    kept_observations_ = std::max(kept_observations_, count);
+    recipe_.kept_observations = std::max(recipe_.kept_observations, count);
   }
 
   /// The kept observations, to share with another pool.
@@ -170,7 +171,7 @@ class Pool {
   void draw_again(Estimator& estimator, std::uint64_t index, std::span<double> out) const;
   /// True for images that are all kept. Their blocks have neither sums of channels nor values,
   /// which end_drawing() makes.
-  bool sums_later() const { return elements_ > 0 && kept_observations_ >= most_marked(); }
+  bool sums_later() const { return elements_ > 0 && recipe_.kept_observations >= most_marked(); }
   /// Sums of no observations, as those of a block begin.
   Summary no_sums() const;
   /// All that is drawn, as one block.
@@ -191,12 +192,10 @@ class Pool {
  private:
   std::shared_ptr<const Setup> setup_;
   const Summary* ready_made_;  ///< points into `setup_`
-  StreamKey key_;
-  std::uint64_t primaries_;
+  Recipe recipe_;              ///< without the marks, of which `prefixes_` has the sums
   std::uint64_t block_size_;
   std::size_t channels_;
   std::size_t elements_;
-  std::vector<ChannelPlan> plan_;
   friend class Drawn;
 
   const KeptObservations& all_kept() const { return known_ ? *known_ : *kept_; }
@@ -216,10 +215,8 @@ class Pool {
   std::vector<std::vector<double>> values_;
   /// By channel and number of values: judged once for all tests and looks, on one thread.
   mutable std::map<std::pair<std::size_t, std::size_t>, std::vector<stats::Gate>> order_gates_;
-  std::vector<std::size_t> grouped_channels_;
   std::shared_ptr<KeptObservations> kept_ = std::make_shared<KeptObservations>();
   std::shared_ptr<const KeptObservations> known_;
-  std::uint64_t kept_observations_;
   std::uint64_t values_taken_ = 0;  ///< kept observations copied to `values_`
   bool keeps_blocks_ = false;
   std::vector<BlockSums> blocks_;
