@@ -180,30 +180,23 @@ TriangleMesh cube() {
   return mesh;
 }
 
-constexpr Surface grey_surface(double emission, double albedo) {
-  return {Rgb::grey(emission), Rgb::grey(albedo), {}};
-}
-
-constexpr Camera downwards = {{0, 0, 0}, {0, 0, -1}};
-
 SceneDescription furnace() {
-  MeshScene scene{cube(), std::vector<std::uint32_t>(12, 0), {grey_surface(1, 0.5)}, true};
+  MeshScene scene{
+      cube(), std::vector<std::uint32_t>(12, 0), {{Rgb::grey(1), Rgb::grey(0.5), {}}}, true};
   return {scene, {{0.5, 0.5, 0.5}, render::normalised({0.3, 0.2, -1})}, true};
 }
 
 // A tenth of the area shines.
-SceneDescription sphere() {
-  return {SphereScene{{{0.8, grey_surface(0, 0.8)}, {1, grey_surface(1, 0.8)}}}, downwards, true};
-}
+const char* const sphere =
+    "{zones: [{top: .8, emission: 0, albedo: .8}, {top: 1, emission: 1, albedo: .8}], "
+    "camera: {position: [0,0,0], direction: [0,0,-1]}}";
 
 // Red, green and blue zones under a cap that shines.
-SceneDescription coloured_sphere() {
-  return {SphereScene{{{-0.4, {{}, {0.8, 0.2, 0.1}, {}}},
-                       {0.2, {{}, {0.15, 0.75, 0.2}, {}}},
-                       {0.8, {{}, {0.1, 0.25, 0.85}, {}}},
-                       {1, {{1, 0.9, 0.6}, {0.6, 0.6, 0.6}, {}}}}},
-          downwards, false};
-}
+const char* const coloured_sphere =
+    "{zones: [{top: -.4, emission: 0, albedo: [.8,.2,.1]}, "
+    "{top: .2, emission: 0, albedo: [.15,.75,.2]}, {top: .8, emission: 0, albedo: [.1,.25,.85]}, "
+    "{top: 1, emission: [1,.9,.6], albedo: [.6,.6,.6]}], "
+    "camera: {position: [0,0,0], direction: [0,0,-1]}}";
 
 // The proportions of a box with a red and a green wall, a lamp below the ceiling and a block; not
 // Cornell's measured one.
@@ -227,9 +220,10 @@ const char* const box =
 SceneDescription named(const Value& value) {
   const std::string& name = value.string("the scene");
   if (name == "furnace") return furnace();
-  if (name == "sphere") return sphere();
-  if (name == "coloured_sphere") return coloured_sphere();
-  if (name == "box") return Reader("").scene(parse_flow(box));
+  for (const auto& [known, scene] :
+       {std::pair{"sphere", sphere}, {"coloured_sphere", coloured_sphere}, {"box", box}}) {
+    if (name == known) return Reader("").scene(parse_flow(scene));
+  }
   throw InputError(value.where(),
                    "there is no scene `" + name + "`" + alternatives(name, built_in_scenes()));
 }
