@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "estimators/core/flow.h"
+
 namespace assay {
 
 double finite_number(const Value& value, const std::string& what) {
@@ -41,6 +43,17 @@ void require_keys(const Value& value, const std::string& what,
 const Value& required_key(const Value& value, const std::string& what, const char* key) {
   if (const Value* found = value.find(key)) return *found;
   throw InputError(value.where(), what + " needs the key `" + key + "`");
+}
+
+Value scene_of(const Value& value, std::span<const NamedScene> built_in) {
+  if (value.kind() != Value::Kind::scalar) return value;
+  const std::string& name = value.string("the scene");
+  std::vector<std::string> names;
+  for (const NamedScene& scene : built_in) {
+    if (name == scene.name) return parse_flow(scene.text);
+    names.emplace_back(scene.name);
+  }
+  throw InputError(value.where(), "there is no scene `" + name + "`" + alternatives(name, names));
 }
 
 }  // namespace assay

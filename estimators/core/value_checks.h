@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,5 +22,14 @@ void require_keys(const Value& value, const std::string& what,
 const Value& required_key(const Value& value, const std::string& what, const char* key);
 /// How a message about an unknown name ends: the nearest known one, or all.
 std::string alternatives(std::string_view name, const std::vector<std::string>& known);
+
+/// A built-in scene, written as in a suite.
+struct NamedScene {
+  const char* name;
+  const char* text;
+};
+/// The scene as it is written. A name stands for the text of a built-in one; InputError if there is
+/// none.
+Value scene_of(const Value& value, std::span<const NamedScene> built_in);
 
 }  // namespace assay

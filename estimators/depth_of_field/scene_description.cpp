@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "estimators/core/flow.h"
 #include "estimators/core/value_checks.h"
 
 namespace assay::depth_of_field {
@@ -91,12 +90,7 @@ SceneDescription scene(const Value& value) {
   return out;
 }
 
-struct Named {
-  const char* name;
-  const char* scene;
-};
-
-constexpr Named named[] = {
+constexpr NamedScene built_in[] = {
     // A black half-plane before a sharp white one: discs of confusion of radius 0.1 on the half-
     // plane, 0.2 on the focal plane.
     {"edge",
@@ -140,21 +134,7 @@ Interval SceneDescription::range() const {
   return out;
 }
 
-std::vector<std::string> built_in_scenes() {
-  std::vector<std::string> names;
-  for (const Named& entry : named) names.emplace_back(entry.name);
-  return names;
-}
-
-SceneDescription read_scene(const Value& value) {
-  if (value.kind() != Value::Kind::scalar) return scene(value);
-  const std::string& name = value.string("the scene");
-  for (const Named& entry : named) {
-    if (name == entry.name) return scene(parse_flow(entry.scene));
-  }
-  throw InputError(value.where(),
-                   "there is no scene `" + name + "`" + alternatives(name, built_in_scenes()));
-}
+SceneDescription read_scene(const Value& value) { return scene(scene_of(value, built_in)); }
 
 namespace {
 

@@ -62,8 +62,6 @@ struct SceneDescription {
 /// wavelength, and for a radiance that is negative somewhere.
 SceneDescription read_scene(const Value& value);
 
-std::vector<std::string> built_in_scenes();
-
 class Setting {
  public:
   explicit Setting(SceneDescription scene);

@@ -26,11 +26,6 @@ Receiver receiver(const Value& value) {
           read_unit_vector(required_key(value, "the receiver", "normal"), "the receiver's normal")};
 }
 
-// True if a polygon is seen clockwise from the side that `direction` points to.
-bool is_clockwise(const Polygon& vertices, const Vector3& direction) {
-  return dot(render::area_vector(vertices), direction) < 0;
-}
-
 // With `normal` the side that it points from emits, else the side that the receiver is on.
 Light polygon_light(const Value& value, const Receiver& receiver, double radiance) {
   Polygon vertices =
@@ -43,7 +38,7 @@ Light polygon_light(const Value& value, const Receiver& receiver, double radianc
   if (given && std::abs(cosine) < 0.99) {
     throw InputError(given->where(), "the light's normal must be at right angles to its polygon");
   }
-  const bool clockwise = is_clockwise(vertices, emitting);
+  const bool clockwise = dot(render::area_vector(vertices), emitting) < 0;
   return {std::move(vertices), radiance, clockwise};
 }
 
@@ -83,29 +78,19 @@ Occluder occluder(const Value& value, const std::string& folder) {
   return read_mesh(form, "an occluder's file", folder);
 }
 
-const std::vector<std::pair<std::string, SceneDescription>>& built_in() {
-  static const Receiver upward{{0, 0, 0}, {0, 0, 1}};
-  static const Polygon triangle = {{.2, -.4, 1}, {1.6, .3, 1.4}, {-.3, 1.2, 1.1}};
-  static const Polygon rectangle = {{-.8, -.6, 1}, {-.8, .8, 1}, {.9, .8, 1}, {.9, -.6, 1}};
-  // Cornell University, CS 667, homework 4: `tri-lum-normal`, an equilateral triangle to 4 digits.
-  static const Receiver along_y{{0, 0, 0}, {0, 1, 0}};
-  static const Polygon cornell = {{0, 5, 1}, {-.866, 5, -.5}, {.866, 5, -.5}};
-  static const std::vector<std::pair<std::string, SceneDescription>> scenes = {
-      {"triangle", {upward, {triangle, 1, true}, {}}},
-      {"cornell_triangle", {along_y, {cornell, 20, is_clockwise(cornell, {0, -1, 0})}, {}}},
-      {"rectangle", {upward, {rectangle, 1, is_clockwise(rectangle, {0, 0, -1})}, {}}},
-  };
-  return scenes;
-}
-
-SceneDescription named(const Value& value) {
-  const std::string& name = value.string("the scene");
-  for (const auto& [known, scene] : built_in()) {
-    if (known == name) return scene;
-  }
-  throw InputError(value.where(),
-                   "there is no scene `" + name + "`" + alternatives(name, built_in_scenes()));
-}
+constexpr NamedScene built_in[] = {
+    {"triangle",
+     "{receiver: {position: [0, 0, 0], normal: [0, 0, 1]}, "
+     "light: {polygon: [[.2, -.4, 1], [1.6, .3, 1.4], [-.3, 1.2, 1.1]], radiance: 1}}"},
+    // Cornell University, CS 667, homework 4: `tri-lum-normal`, an equilateral triangle to 4
+    // digits.
+    {"cornell_triangle",
+     "{receiver: {position: [0, 0, 0], normal: [0, 1, 0]}, "
+     "light: {polygon: [[0, 5, 1], [-.866, 5, -.5], [.866, 5, -.5]], radiance: 20}}"},
+    {"rectangle",
+     "{receiver: {position: [0, 0, 0], normal: [0, 0, 1]}, "
+     "light: {polygon: [[-.8, -.6, 1], [-.8, .8, 1], [.9, .8, 1], [.9, -.6, 1]], radiance: 1}}"},
+};
 
 }  // namespace
 
@@ -172,14 +157,8 @@ std::vector<Occluder> read_occluders(const Value& value, const std::string& fold
   return list;
 }
 
-std::vector<std::string> built_in_scenes() {
-  std::vector<std::string> names;
-  for (const auto& [name, scene] : built_in()) names.push_back(name);
-  return names;
-}
-
-SceneDescription read_scene(const Value& value, const std::string& folder) {
-  if (value.kind() == Value::Kind::scalar) return named(value);
+SceneDescription read_scene(const Value& given, const std::string& folder) {
+  const Value value = scene_of(given, built_in);
   require_keys(value, "the scene", {"receiver", "light", "occluders"});
   SceneDescription scene;
   scene.receiver = receiver(required_key(value, "the scene", "receiver"));

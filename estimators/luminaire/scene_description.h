@@ -63,7 +63,4 @@ render::Polygon read_polygon(const Value& value, const std::string& what);
 render::TriangleMesh read_mesh(const Value& value, const std::string& what,
                                const std::string& folder);
 
-/// The built-in scenes' names: triangle, cornell_triangle, rectangle.
-std::vector<std::string> built_in_scenes();
-
 }  // namespace assay::luminaire

@@ -5,7 +5,6 @@
 #include <numbers>
 #include <utility>
 
-#include "estimators/core/flow.h"
 #include "estimators/core/value_checks.h"
 #include "luminaire/scene_description.h"
 #include "render/polygon.h"
@@ -186,47 +185,38 @@ SceneDescription furnace() {
   return {scene, {{0.5, 0.5, 0.5}, render::normalised({0.3, 0.2, -1})}, true};
 }
 
-// A tenth of the area shines.
-const char* const sphere =
-    "{zones: [{top: .8, emission: 0, albedo: .8}, {top: 1, emission: 1, albedo: .8}], "
-    "camera: {position: [0,0,0], direction: [0,0,-1]}}";
-
-// Red, green and blue zones under a cap that shines.
-const char* const coloured_sphere =
-    "{zones: [{top: -.4, emission: 0, albedo: [.8,.2,.1]}, "
-    "{top: .2, emission: 0, albedo: [.15,.75,.2]}, {top: .8, emission: 0, albedo: [.1,.25,.85]}, "
-    "{top: 1, emission: [1,.9,.6], albedo: [.6,.6,.6]}], "
-    "camera: {position: [0,0,0], direction: [0,0,-1]}}";
-
-// The proportions of a box with a red and a green wall, a lamp below the ceiling and a block; not
-// Cornell's measured one.
-const char* const box =
-    "{surfaces: [ "
-    "{polygon: [[0,0,0],[1,0,0],[1,1,0],[0,1,0]], emission: 0, albedo: [.7,.7,.7]}, "
-    "{polygon: [[0,0,1],[0,1,1],[1,1,1],[1,0,1]], emission: 0, albedo: [.7,.7,.7]}, "
-    "{polygon: [[0,1,0],[1,1,0],[1,1,1],[0,1,1]], emission: 0, albedo: [.7,.7,.7]}, "
-    "{polygon: [[0,0,0],[0,1,0],[0,1,1],[0,0,1]], emission: 0, albedo: [.6,.06,.05]}, "
-    "{polygon: [[1,0,0],[1,0,1],[1,1,1],[1,1,0]], emission: 0, albedo: [.1,.45,.1]}, "
-    "{polygon: [[0,0,0],[0,0,1],[1,0,1],[1,0,0]], emission: 0, albedo: [.7,.7,.7]}, "
-    "{polygon: [[.3,.3,.98],[.3,.7,.98],[.7,.7,.98],[.7,.3,.98]], emission: [12,10,7], albedo: 0}, "
-    "{polygon: [[.5,.5,.35],[.8,.4,.35],[.9,.7,.35],[.6,.8,.35]], emission: 0, albedo: "
-    "[.7,.7,.7]}, "
-    "{polygon: [[.5,.5,0],[.8,.4,0],[.8,.4,.35],[.5,.5,.35]], emission: 0, albedo: [.7,.7,.7]}, "
-    "{polygon: [[.8,.4,0],[.9,.7,0],[.9,.7,.35],[.8,.4,.35]], emission: 0, albedo: [.7,.7,.7]}, "
-    "{polygon: [[.9,.7,0],[.6,.8,0],[.6,.8,.35],[.9,.7,.35]], emission: 0, albedo: [.7,.7,.7]}, "
-    "{polygon: [[.6,.8,0],[.5,.5,0],[.5,.5,.35],[.6,.8,.35]], emission: 0, albedo: [.7,.7,.7]}], "
-    "camera: {position: [.5,.02,.5], direction: [-.28,.6,-.48]}}";
-
-SceneDescription named(const Value& value) {
-  const std::string& name = value.string("the scene");
-  if (name == "furnace") return furnace();
-  for (const auto& [known, scene] :
-       {std::pair{"sphere", sphere}, {"coloured_sphere", coloured_sphere}, {"box", box}}) {
-    if (name == known) return Reader("").scene(parse_flow(scene));
-  }
-  throw InputError(value.where(),
-                   "there is no scene `" + name + "`" + alternatives(name, built_in_scenes()));
-}
+constexpr NamedScene built_in[] = {
+    {"furnace", "furnace"},  // A cube of shared vertices, for which there is no text.
+    // A tenth of the area shines.
+    {"sphere",
+     "{zones: [{top: .8, emission: 0, albedo: .8}, {top: 1, emission: 1, albedo: .8}], "
+     "camera: {position: [0,0,0], direction: [0,0,-1]}}"},
+    // Red, green and blue zones under a cap that shines.
+    {"coloured_sphere",
+     "{zones: [{top: -.4, emission: 0, albedo: [.8,.2,.1]}, "
+     "{top: .2, emission: 0, albedo: [.15,.75,.2]}, {top: .8, emission: 0, albedo: [.1,.25,.85]}, "
+     "{top: 1, emission: [1,.9,.6], albedo: [.6,.6,.6]}], "
+     "camera: {position: [0,0,0], direction: [0,0,-1]}}"},
+    // The proportions of a box with a red and a green wall, a lamp below the ceiling and a block;
+    // not Cornell's measured one.
+    {"box",
+     "{surfaces: [ "
+     "{polygon: [[0,0,0],[1,0,0],[1,1,0],[0,1,0]], emission: 0, albedo: [.7,.7,.7]}, "
+     "{polygon: [[0,0,1],[0,1,1],[1,1,1],[1,0,1]], emission: 0, albedo: [.7,.7,.7]}, "
+     "{polygon: [[0,1,0],[1,1,0],[1,1,1],[0,1,1]], emission: 0, albedo: [.7,.7,.7]}, "
+     "{polygon: [[0,0,0],[0,1,0],[0,1,1],[0,0,1]], emission: 0, albedo: [.6,.06,.05]}, "
+     "{polygon: [[1,0,0],[1,0,1],[1,1,1],[1,1,0]], emission: 0, albedo: [.1,.45,.1]}, "
+     "{polygon: [[0,0,0],[0,0,1],[1,0,1],[1,0,0]], emission: 0, albedo: [.7,.7,.7]}, "
+     "{polygon: [[.3,.3,.98],[.3,.7,.98],[.7,.7,.98],[.7,.3,.98]], emission: [12,10,7], albedo: "
+     "0}, "
+     "{polygon: [[.5,.5,.35],[.8,.4,.35],[.9,.7,.35],[.6,.8,.35]], emission: 0, albedo: "
+     "[.7,.7,.7]}, "
+     "{polygon: [[.5,.5,0],[.8,.4,0],[.8,.4,.35],[.5,.5,.35]], emission: 0, albedo: [.7,.7,.7]}, "
+     "{polygon: [[.8,.4,0],[.9,.7,0],[.9,.7,.35],[.8,.4,.35]], emission: 0, albedo: [.7,.7,.7]}, "
+     "{polygon: [[.9,.7,0],[.6,.8,0],[.6,.8,.35],[.9,.7,.35]], emission: 0, albedo: [.7,.7,.7]}, "
+     "{polygon: [[.6,.8,0],[.5,.5,0],[.5,.5,.35],[.6,.8,.35]], emission: 0, albedo: [.7,.7,.7]}], "
+     "camera: {position: [.5,.02,.5], direction: [-.28,.6,-.48]}}"},
+};
 
 }  // namespace
 
@@ -257,12 +247,9 @@ int winding_number(const TriangleMesh& mesh, const Vector3& point) {
   return static_cast<int>(std::lround(angle / (4 * std::numbers::pi)));
 }
 
-std::vector<std::string> built_in_scenes() {
-  return {"furnace", "sphere", "coloured_sphere", "box"};
-}
-
 SceneDescription read_scene(const Value& value, const std::string& folder) {
-  return value.kind() == Value::Kind::scalar ? named(value) : Reader(folder).scene(value);
+  const Value scene = scene_of(value, built_in);
+  return scene.kind() == Value::Kind::scalar ? furnace() : Reader(folder).scene(scene);
 }
 
 }  // namespace assay::paths

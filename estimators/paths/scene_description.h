@@ -60,8 +60,6 @@ struct SceneDescription {
 /// refuse.
 SceneDescription read_scene(const Value& value, const std::string& folder);
 
-std::vector<std::string> built_in_scenes();
-
 /// Empty if every edge of a triangle is an edge of exactly one other, run through the opposite way.
 /// Else a sentence that names an edge which is not (vertices counted from 1).
 std::string why_not_closed(const render::TriangleMesh& mesh);

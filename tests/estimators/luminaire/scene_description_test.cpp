@@ -44,8 +44,9 @@ TEST(SceneDescription, APolygonEmitsTowardsTheReceiverUnlessToldOtherwise) {
 }
 
 TEST(SceneDescription, EveryBuiltInSceneIsThere) {
-  EXPECT_THAT(built_in_scenes(), testing::ElementsAre("triangle", "cornell_triangle", "rectangle"));
-  for (const std::string& name : built_in_scenes()) EXPECT_NO_THROW(read(name));
+  for (const char* name : {"triangle", "cornell_triangle", "rectangle"}) {
+    EXPECT_NO_THROW(read(name)) << name;
+  }
 }
 
 TEST(SceneDescription, MistakesAreShownWhereTheyStand) {

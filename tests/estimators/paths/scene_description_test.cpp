@@ -33,7 +33,7 @@ TEST(Furnaces, AreAnyClosedMeshAboutTheCamera) {
 }
 
 TEST(BuiltInScenes, AreSound) {
-  for (const std::string& name : built_in_scenes()) {
+  for (const char* name : {"furnace", "sphere", "coloured_sphere", "box"}) {
     EXPECT_EQ(refusal(name), thrown([] {})) << name;
   }
 }
