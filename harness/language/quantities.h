@@ -29,8 +29,8 @@ struct QuantityRow {
   /// What `slope(…)` of it is about; null if it has no slope.
   const Theta* slope = nullptr;
   bool of_a_sampler = false;
-  bool of_a_law = false;          ///< It is compared with a law by `==`, not with a number.
-  bool of_a_probability = false;  ///< It takes a probability beside the estimator.
+  bool of_a_law = false;           ///< It is compared with a law by `==`, not with a number.
+  bool of_a_probability = false;   ///< It takes a probability beside the estimator.
   bool tested_as_a_ratio = false;  ///< The claimed number is above 0 and exact.
   bool over_all_channels = false;
   /// Gives what a channel's plugin knows of it, or InputError; null if no plugin knows any.
