@@ -31,10 +31,10 @@ std::vector<ClaimLine> lines_of(const CalibrationCell& cell) {
   return lines;
 }
 
-/// A line of the table. Mark and law take 21 columns before it.
+/// A line of the table, which stands below its law.
 template <class... Cells>
 std::string row(const Cells&... cells) {
-  return fmt::format(" {:>5} {:>6} {:>7} {:>6} {:>7} {:>7} {:>5} {:>7} {:>20}\n", cells...);
+  return fmt::format("{:>7} {:>6} {:>6} {:>6} {:>7} {:>7} {:>5} {:>7} {:>20}\n", cells...);
 }
 
 std::string row_of(const ClaimLine& line) {
@@ -53,12 +53,8 @@ const char* mark_of(const Calibration& calibration, const CalibrationCell& cell)
 }
 
 std::string console_rows(const Calibration& calibration, const CalibrationCell& cell) {
-  std::string out;
-  for (const ClaimLine& line : lines_of(cell)) {
-    out += out.empty() ? mark_of(calibration, cell) + pad_right(shorten(cell.law, 18), 18)
-                       : std::string(21, ' ');
-    out += row_of(line);
-  }
+  std::string out = mark_of(calibration, cell) + cell.law + "\n";
+  for (const ClaimLine& line : lines_of(cell)) out += row_of(line);
   return out;
 }
 
@@ -67,9 +63,10 @@ constexpr const char* legend =
 alone   this method forced, in one look, its warnings (gates) ignored
 open    inconclusive        red  with a red gate        n  mean observations
 by      the method that judges most runs
-errs    the rate of mistakes is at least this. A mistake is a true claim that fails;
-        for tost and other proofs, a claim off by `detect` that passes
-!!  mistaken too often for certain        !  alone mistaken too often for certain without a red gate
+errs    the rate of mistakes is at least this. A mistake is a true claim that
+        fails; for tost and other proofs, a claim off by `detect` that passes
+!!  mistaken too often for certain
+!   alone mistaken too often for certain, without a red gate
 )";
 
 }  // namespace
@@ -105,8 +102,7 @@ std::string console(const Calibration& calibration) {
       group.clear();
       out += fmt::format("{}alpha {:g}: {} runs a cell, seeds from {}\n", out.empty() ? "" : "\n",
                          alpha, calibration.runs, calibration.seed);
-      out += std::string(21, ' ') +
-             row("claim", "pass", "fail", "open", "invalid", "errs", "red", "n", "by");
+      out += row("claim", "pass", "fail", "open", "invalid", "errs", "red", "n", "by");
     }
     if (cell.method + cell.question != group) {
       group = cell.method + cell.question;
@@ -115,7 +111,7 @@ std::string console(const Calibration& calibration) {
     out += console_rows(calibration, cell);
   }
   return fmt::format("{}\n{}{}\n\n{}\n", out, legend,
-                     fmt::join(wrap("detect    " + calibration.detect, 100), "\n"),
+                     fmt::join(wrap("detect    " + calibration.detect, 80), "\n"),
                      verdict_sentence(calibration));
 }
 

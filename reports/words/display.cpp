@@ -30,7 +30,8 @@ bool is_missed(const Test& test) {
 
 std::string bracket(const Effect& effect) {
   const std::string text = range_text(effect);
-  return text.empty() ? text : fmt::format(" ({})", text);
+  const bool says_more = !text.empty() && text != theta_text(*effect.estimate, effect);
+  return says_more ? fmt::format(" ({})", text) : "";
 }
 
 /// "mean(area) is 1.07 % above analytic (+0.06 % to +2.1 %)".
@@ -210,6 +211,7 @@ std::string tally_sentence(Standings count) {
 }
 
 std::string run_sentence(const Record& record) {
+  if (record.shard && tests_of(record).empty()) return "This shard, which has no claim, ended";
   const auto alarm_count = static_cast<std::uint64_t>(alarms(record.ledger));
   const std::string nights =
       alarm_count > 0 ? "; " + counted(alarm_count, "ledger alarm", "ledger alarms") : "";
@@ -304,6 +306,7 @@ TestDisplay display(const Test& test) {
   if (shown.estimate) {
     words.effect = theta_text(*shown.estimate, shown);
     words.interval = range_text(shown);
+    if (words.interval == words.effect) words.interval.clear();
   }
   if (is_evidence(test) && !is_proof(test)) words.chance = one_in(worst_channel(test).log10_p);
   return words;

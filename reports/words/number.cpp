@@ -160,8 +160,10 @@ std::string theta_text(double theta, const Effect& effect) {
 
 std::string range_text(const Effect& effect) {
   const auto end = [&](const Number& value) { return theta_text(*value, effect); };
-  if (is_finite(effect.low) && is_finite(effect.high))
-    return fmt::format("{} to {}", end(effect.low), end(effect.high));
+  if (is_finite(effect.low) && is_finite(effect.high)) {
+    const std::string low = end(effect.low), high = end(effect.high);
+    return low == high ? low : fmt::format("{} to {}", low, high);
+  }
   if (is_finite(effect.low)) return "at least " + end(effect.low);
   return is_finite(effect.high) ? "at most " + end(effect.high) : "";
 }
