@@ -41,10 +41,12 @@ test_init_gtest_says_how_to_build_its_library() {
 test_init_github_runs_at_once() {
   runs_at_once 'All 2 claims are as they should be' github
   is_a_job 'a folder/.github/workflows/assay.yml'
+  contains 'a folder/.github/workflows/assay.yml' '#     cmake -S . -B build'
 }
 test_init_gitlab_runs_at_once() {
   runs_at_once 'All 2 claims are as they should be' gitlab
   is_a_job 'a folder/.gitlab-ci.yml'
+  contains 'a folder/.gitlab-ci.yml' '# - cmake -S . -B build'
 }
 
 # Each script of the job is a shell's, and the reports that it makes are there.
