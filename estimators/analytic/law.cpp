@@ -1,13 +1,5 @@
 // A variable of a named law, X = shift + scale Y. Statistical methods are calibrated on these
 // shapes.
-//   Y                                               mean              variance
-//   bernoulli(p)      1 with probability p, else 0  p                 p (1 - p)
-//   exponential(rate) -ln U / rate                  1 / rate          1 / rate^2
-//   lognormal(m, s)   exp(m + s Z)                  exp(m + s^2 / 2)  (exp(s^2) - 1) mean^2
-//   normal(m, s)      m + s Z                       m                 s^2
-//   student_t(nu)     by Bailey's polar method      0, nu > 1         nu / (nu - 2), nu > 2
-//   uniform(a, b)     a + (b - a) U                 (a + b) / 2       (b - a)^2 / 12
-//   zero_inflated(p)  -ln U with probability p      p                 2 p - p^2
 
 #include "analytic/law.h"
 
@@ -73,7 +65,7 @@ struct Law::Family {
 namespace {
 
 // A family of one number has b = a.
-constexpr std::array<Law::Family, 7> families{{
+constexpr std::array<Law::Family, 8> families{{
     {"bernoulli", "bernoulli(p)", 1, "p must lie between 0 and 1", is_probability,
      [](Stream& random, double p, double) { return random.uniform() < p ? 1.0 : 0.0; }, nullptr,
      [](double p, double) -> Law::Facts {
@@ -100,6 +92,15 @@ constexpr std::array<Law::Family, 7> families{{
      normal_density,
      [](double mean, double sd) -> Law::Facts {
        return {mean, sd * sd};
+     }},
+    {"pareto", "pareto(scale, shape)", 2, "scale and shape must be above 0",
+     [](double s, double a) { return s > 0 && a > 0; },
+     [](Stream& random, double s, double a) { return s * std::exp(draw_exponential(random) / a); },
+     [](double x, double s, double a) { return x < s ? 0 : a / x * std::pow(s / x, a); },
+     [](double s, double a) -> Law::Facts {
+       const double mean = a * s / (a - 1);
+       return {a > 1 ? std::optional(mean) : std::nullopt,
+               a > 2 ? std::optional(mean * mean / a / (a - 2)) : std::nullopt, s};
      }},
     {"student_t", "student_t(freedom)", 1, "freedom must be above 0", is_positive, draw_student_t,
      student_t_density,
@@ -269,7 +270,8 @@ std::vector<Entry> analytic_law() {
             .description =
                 "Estimates the mean of shift + scale Y, Y of the law: bernoulli(p), "
                 "exponential(rate), lognormal(location, scale), normal(mean, sd), "
-                "student_t(freedom), uniform(low, high), zero_inflated(p), which is exponential(1) "
+                "pareto(scale, shape), student_t(freedom), uniform(low, high), zero_inflated(p), "
+                "which is exponential(1) "
                 "with probability p and else 0. Mean, variance and range are declared where they "
                 "exist. What has a density can be sampled as `x`, within 6 standard deviations of "
                 "the mean. `assay calibrate` measures the methods on it.",

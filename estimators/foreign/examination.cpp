@@ -197,9 +197,7 @@ std::optional<std::size_t> first_unusual(std::span<const double> numbers,
 
 std::string other_numbers(const std::string& name, const Question& question) {
   return gave_other_numbers(
-      name,
-      to_text(question) + (question.is_to_sampler() ? std::string(" again: ") + rule_of_samplers
-                                                    : " of the same key again: " + rule));
+      name, to_text(question) + " again: " + (question.is_to_sampler() ? rule_of_samplers : rule));
 }
 
 std::string other_numbers_alone(const std::string& name, const Question& question) {

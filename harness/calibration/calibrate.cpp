@@ -342,16 +342,16 @@ std::string calibration_effects() {
 /// The law that a user names: a family's default, or any with its numbers. InputError with the
 /// known laws if there is none.
 std::string calibration_law(const std::string& named) {
-  const std::size_t bracket = named.find('(');
-  for (const std::string& law : calibration_laws()) {
-    if (!law.starts_with(named.substr(0, bracket) + "(")) continue;
-    if (bracket == std::string::npos) return law;
+  if (named.ends_with(')')) {
     facts_of(named);
     return named;
   }
+  for (const std::string& law : calibration_laws()) {
+    if (law.starts_with(named + "(")) return law;
+  }
   refuse({},
-         "--law: `{}` is no law that can be drawn; there is {}, and any of these families with "
-         "other numbers (`assay list laws` has those that a claim may name)",
+         "--law: `{}` is no law that is calibrated by default; there is {}, and any law of "
+         "`assay describe analytic/law` with its numbers",
          named, fmt::join(calibration_laws(), ", "));
 }
 

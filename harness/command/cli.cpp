@@ -228,7 +228,8 @@ Examples:
                  "of the means of two images: both draw the same random numbers, and their "
                  "differences are tested; default their own");
   options.add_key({"--budget", "B"}, given.keys,
-                  "the most it may cost: 1e7 are primaries, 30s are CPU time; default none");
+                  "the most it may cost: 1e7 are primaries, those of the pilot too; 30s are CPU "
+                  "time of the test, which a program that waits does not spend; default none");
   add_estimators(options, given.estimators);
   options.add({"--primaries", "N"}, given.primaries, at_least(1),
               "primary estimates of an observation; default chosen from the pilot");

@@ -185,19 +185,6 @@ std::string manual(const Entry& plugin, const std::vector<Entry>& entries) {
 
 namespace {
 
-const char* kept_text(Keeps keeps) {
-  constexpr const char* texts[] = {"four moments of a channel",
-                                   "the values of a channel",
-                                   "the values of all channels together",
-                                   "counts in the cells of the density",
-                                   "eight moments of a channel",
-                                   "moments of values and costs together",
-                                   "moments of the channels' summed variances",
-                                   "values and CPU times of 32 replicates",
-                                   "whole images"};
-  return texts[static_cast<int>(keeps)];
-}
-
 /// A sentence for each property that a user may have to know.
 std::string page_of(const MethodRow& row) {
   std::string page;
@@ -205,7 +192,6 @@ std::string page_of(const MethodRow& row) {
     if (holds) page += wrapped(sentence, page_width, 2);
   };
   say(true, fmt::format("Force it by `test: {0}` in a suite, or by `--test {0}`.", row.name));
-  say(true, fmt::format("It keeps {}.", kept_text(row.keeps)));
   say(row.is.exact, "Its level holds at every sample size.");
   say(!row.is.exact, "Its level is asymptotic; gates refuse data of too unusual a shape.");
   say(row.is.in_range, "The channel must declare the range of its values.");

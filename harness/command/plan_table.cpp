@@ -93,33 +93,18 @@ std::string gate_text(const Gate& gate) {
                      reports::human(gate.limit));
 }
 
-/// The gates that are not green in words, and the number of green ones.
+/// The gates that are not green.
 std::vector<std::string> gate_notes(const std::vector<Gate>& gates) {
   std::vector<std::string> notes;
-  std::size_t green = 0;
   std::size_t more = 0;
-  const Gate* nearest = nullptr;
-  const auto nearness = [](const Gate& gate) {
-    return std::abs(gate.value.value_or(0)) / gate.limit.value_or(1);
-  };
   for (const Gate& gate : gates) {
-    if (gate.state != "green") {
-      if (notes.size() < most_gates)
-        notes.push_back(gate_text(gate));
-      else
-        ++more;
-      continue;
-    }
-    ++green;
-    if (nearest == nullptr || nearness(gate) > nearness(*nearest)) nearest = &gate;
+    if (gate.state == "green") continue;
+    if (notes.size() < most_gates)
+      notes.push_back(gate_text(gate));
+    else
+      ++more;
   }
   if (more > 0) notes.push_back(fmt::format("{} more gates that are not green", more));
-  if (green == 1) notes.push_back(gate_text(*nearest));
-  if (green > 1) {
-    notes.push_back(fmt::format("{} gates green, nearest to its limit {} {}, limit {}", green,
-                                nearest->name, reports::human(nearest->value),
-                                reports::human(nearest->limit)));
-  }
   return notes;
 }
 

@@ -1,5 +1,7 @@
 #include "harness/googletest/claims.h"
 
+#include <fmt/ranges.h>
+
 #include <cstdlib>
 #include <map>
 #include <stdexcept>
@@ -18,6 +20,7 @@
 #include "harness/theta/ask.h"
 #include "reports/words/describe.h"
 #include "reports/words/number.h"
+#include "reports/words/text.h"
 
 namespace assay::googletest {
 namespace {
@@ -163,9 +166,10 @@ testing::AssertionResult judged(const std::string& claim, const std::vector<Part
   const reports::Test test = tested(claim, sources, *state.budget);
   record(test, number);
   const bool holds = test.verdict == reports::Verdict::pass;
-  const std::string text = reports::plain_text(test);  // "message: …" and further facts
+  std::string whole = reports::plain_text(test);  // "message: …" and further facts
+  whole.replace(0, whole.find(':'), reports::to_string(test.verdict));
   return (holds ? testing::AssertionSuccess() : testing::AssertionFailure())
-         << reports::to_string(test.verdict) << ": " << text.substr(text.find(": ") + 2);
+         << fmt::format("{}", fmt::join(reports::wrap(whole, 80), "\n"));
 }
 
 }  // namespace

@@ -361,22 +361,24 @@ ChannelEvidence evidence_of_image_laws(const Seen& seen, const ImageTest& test) 
 std::string place_text(const stats::ImageFinding& finding, const ImageShape& shape) {
   const std::string component =
       shape.components.size() > 1 ? " of " + shape.components[finding.channel] : "";
-  const std::string z = fmt::format("z = {:+.3g}", finding.z);
+  // What never varies has no z.
+  const std::string z =
+      std::isfinite(finding.z) ? fmt::format(", z = {:+.3g}", finding.z) : std::string();
   const stats::Rectangle& window = finding.window;
   if (finding.alternation) {
     constexpr const char* patterns[] = {"columns in turn", "rows in turn", "a checkerboard"};
-    return fmt::format("the whole image{} with alternating signs ({}), {}", component,
+    return fmt::format("the whole image{} with alternating signs ({}){}", component,
                        patterns[static_cast<int>(*finding.alternation)], z);
   }
   const std::int64_t x = shape.left + window.x;
   const std::int64_t y = shape.top + window.y;
   if (window.width == 1 && window.height == 1) {
-    return fmt::format("pixel x {}, y {}{}, {}", x, y, component, z);
+    return fmt::format("pixel x {}, y {}{}{}", x, y, component, z);
   }
   if (window.width == shape.width && window.height == shape.height) {
-    return fmt::format("the whole image{}, {}", component, z);
+    return fmt::format("the whole image{}{}", component, z);
   }
-  return fmt::format("{}, {}{} ({} x {} pixels), {}", range_text(x, window.width, "column"),
+  return fmt::format("{}, {}{} ({} x {} pixels){}", range_text(x, window.width, "column"),
                      range_text(y, window.height, "row"), component, window.width, window.height,
                      z);
 }

@@ -1,6 +1,7 @@
 #include "harness/pilot/pilot.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "harness/base/interrupt.h"
 #include "harness/sampling/recorded_run.h"
@@ -24,6 +25,10 @@ constexpr std::uint64_t primaries_of_few = std::uint64_t{1} << 14;
 // variance.
 constexpr std::uint64_t image_elements = std::uint64_t{1} << 20;
 constexpr std::uint64_t least_images = 2 * stats::least_replicates;
+// An estimator has at most three pools. Together they take a quarter of a budget, unless that is
+// less than least_replicates of each.
+constexpr std::uint64_t parts_of_budget = 12;
+constexpr std::uint64_t unlimited = std::numeric_limits<std::uint64_t>::max();
 
 /// Separates the observations that show whether an estimator averages. No sampler has this name.
 const std::string averages_purpose = "(averages)";
@@ -43,14 +48,33 @@ std::uint64_t few_of(const PreparedEstimator& estimator) {
                     many_observations);
 }
 
-std::shared_ptr<Pool> pilot_pool(const PreparedEstimator& estimator, std::uint64_t seed) {
+/// Primaries that a test pays for each pool. No clock may decide what a pilot draws: with a budget
+/// in seconds it is the smallest that a pilot without a budget is.
+std::uint64_t paid_by(const Question& question, const Subject& side) {
+  const Budget budget = question.test->budget.value_or(Budget{});
+  std::uint64_t most = unlimited;
+  if (budget.seconds && !side.estimator->nature().averages)
+    most = few_observations * side.estimator->primaries.value_or(1);
+  if (!budget.primaries) return most;
+  return std::min(most, *budget.primaries / (parts_of_budget * question.subjects.size()));
+}
+
+/// Observations of a pool for so many primaries.
+std::uint64_t observations_for(std::uint64_t most, const Setup& setup, std::uint64_t primaries) {
+  return std::max<std::uint64_t>(most / primaries_of_observation(setup, primaries),
+                                 stats::least_replicates);
+}
+
+std::shared_ptr<Pool> pilot_pool(const PreparedEstimator& estimator, std::uint64_t seed,
+                                 std::uint64_t most) {
   const bool averages = estimator.nature().averages;
   const std::uint64_t primaries = averages ? 1 : estimator.primaries.value_or(1);
   auto pool =
       std::make_shared<Pool>(estimator.setup, key_of(estimator, seed, 0, "pilot"), primaries);
   std::uint64_t usual = averages ? many_observations : few_of(estimator);
-  if (const auto images = usual_images(*estimator.setup, primaries)) {
-    usual = *images;
+  if (const auto images = usual_images(*estimator.setup, primaries)) usual = *images;
+  usual = std::min(usual, observations_for(most, *estimator.setup, primaries));
+  if (estimator.setup->image()) {
     pool->keep_observations(usual);  // files keep theirs anyway
   }
   const std::uint64_t count = estimator.setup->observations().value_or(usual);
@@ -74,8 +98,9 @@ std::uint64_t averaged_primaries_of(const PreparedEstimator& estimator) {
 
 /// A pool that keeps all values of a pilot.
 std::shared_ptr<Pool> kept_pool(const std::shared_ptr<const Setup>& setup, StreamKey key,
-                                std::uint64_t primaries) {
-  const std::uint64_t count = many_observations / primaries;
+                                std::uint64_t primaries, std::uint64_t most) {
+  const std::uint64_t count =
+      std::min(many_observations / primaries, observations_for(most, *setup, primaries));
   auto pool = std::make_shared<Pool>(setup, key, primaries);
   for (ChannelPlan& channel : pool->plans()) channel.keep = count;
   pool->request(count);
@@ -130,6 +155,11 @@ std::set<std::string> costly(const std::vector<Question>& questions) {
   return names;
 }
 
+std::uint64_t most_of(const PilotRun& run, const PreparedEstimator& estimator) {
+  const auto found = run.most.find(estimator.listed);
+  return found == run.most.end() ? unlimited : found->second;
+}
+
 std::string pilot_name_of(const std::string& estimator, const std::string& purpose) {
   return estimator + (purpose.empty() ? "" : "." + purpose);
 }
@@ -147,6 +177,29 @@ const Pilot* averaged_pilot_of(const Subject& subject, const Pilots& pilots) {
 
 const Fault* Pilots::fault(const std::string& estimator, const std::string& purpose) const {
   return get<Fault>(pilot_name_of(estimator, purpose));
+}
+
+std::uint64_t primaries_of_pilots(const Question& question, const Pilots& pilots) {
+  std::map<const Pilot*, std::uint64_t> paid;
+  for (const Subject& side : question.subjects) {
+    const Setup& setup = *side.setup;
+    if (setup.observations() || as_recorded_run(setup) != nullptr) continue;
+    // A sweep's estimator has a pilot of its own beside those of the points.
+    const std::string& name = side.estimator->name;
+    const std::string& listed = side.estimator->listed;
+    for (const std::string& each : {name, pilot_name_of(name, averages_purpose), pilot_name(side),
+                                    listed, pilot_name_of(listed, averages_purpose)}) {
+      const Pilot* const pilot = pilots.find(each);
+      if (pilot == nullptr) continue;
+      // Another test may have paid for more.
+      const std::uint64_t most = observations_for(paid_by(question, side), setup, pilot->primaries);
+      paid[pilot] =
+          primaries_of_observation(setup, pilot->primaries) * std::min(pilot->sums->count, most);
+    }
+  }
+  std::uint64_t sum = 0;
+  for (const auto& [pilot, primaries] : paid) sum += primaries;
+  return sum;
 }
 
 std::string where_pilots_stopped(const Question& question, const Pilots& pilots) {
@@ -180,7 +233,7 @@ std::vector<std::pair<std::string, std::shared_ptr<Pool>>> pilot_pools(
     const std::vector<const PreparedEstimator*>& estimators, const PilotRun& run) {
   std::vector<std::pair<std::string, std::shared_ptr<Pool>>> pools;
   for (const PreparedEstimator* estimator : estimators) {
-    pools.emplace_back(estimator->name, pilot_pool(*estimator, run.seed));
+    pools.emplace_back(estimator->name, pilot_pool(*estimator, run.seed, most_of(run, *estimator)));
     if (run.with_cost.contains(estimator->name)) {
       for (ChannelPlan& channel : pools.back().second->plans()) channel.powers = Powers::with_costs;
     }
@@ -190,11 +243,12 @@ std::vector<std::pair<std::string, std::shared_ptr<Pool>>> pilot_pools(
     if (primaries == 1) continue;
     const StreamKey key = key_of(*estimator, run.seed, 0, averages_purpose + " pilot");
     pools.emplace_back(pilot_name_of(estimator->name, averages_purpose),
-                       kept_pool(estimator->setup, key, primaries));
+                       kept_pool(estimator->setup, key, primaries, most_of(run, *estimator)));
   }
   for (const Subject* subject : run.draws) {
     const StreamKey key = key_of(*subject->estimator, run.seed, 0, subject->purpose + " pilot");
-    pools.emplace_back(pilot_name(*subject), kept_pool(subject->setup, key, 1));
+    pools.emplace_back(pilot_name(*subject),
+                       kept_pool(subject->setup, key, 1, most_of(run, *subject->estimator)));
   }
   return pools;
 }
@@ -215,6 +269,10 @@ PilotRun pilot_run_of(const std::vector<Question>& questions, const std::vector<
                       std::uint64_t seed, std::shared_ptr<Executor> executor) {
   PilotRun run{.seed = seed, .executor = std::move(executor), .with_cost = costly(questions)};
   for (std::size_t i = 0; i < questions.size(); ++i) {
+    for (const Subject& side : questions[i].subjects) {
+      std::uint64_t& most = run.most[side.estimator->listed];
+      most = std::max(most, paid_by(questions[i], side));
+    }
     if (!chosen[i] || methods_for(questions[i]).front().keeps != Keeps::points) continue;
     for (const Subject& side : questions[i].subjects) {
       if (!side.purpose.empty()) run.draws.push_back(&side);

@@ -70,12 +70,16 @@ class Pilots {
 struct PilotRun {
   std::uint64_t seed;
   std::shared_ptr<Executor> executor = threads();
-  std::set<std::string> with_cost = {};    ///< estimators whose costs are needed
-  std::vector<const Subject*> draws = {};  ///< samplers whose draws are needed too
+  std::set<std::string> with_cost = {};            ///< estimators whose costs are needed
+  std::vector<const Subject*> draws = {};          ///< samplers whose draws are needed too
+  std::map<std::string, std::uint64_t> most = {};  ///< primaries of a pool, by listed name
 };
 
 /// The estimator's name. For a sampler's draws a dot and their purpose follow.
 std::string pilot_name(const Subject& subject);
+
+/// Primaries of the question's pilots that its budget, which is in primaries, has to pay.
+std::uint64_t primaries_of_pilots(const Question& question, const Pilots& pilots);
 
 /// Says which of the needed pilots stopped, where and why; "" if none did.
 std::string where_pilots_stopped(const Question& question, const Pilots& pilots);

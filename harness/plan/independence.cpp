@@ -190,15 +190,14 @@ Reason too_few_to_tell(TestOutcome& test, const Pilots& pilots, std::uint64_t co
     const std::uint64_t there = side.setup->observations().value_or(rows);
     const char* const key = test.question.test->budget ? "budget" : "secondaries";
     const bool limited = rows < there;
-    reason = {
-        fmt::format("`{}` has {} row{}{}, and it takes {} to see that they do not depend on "
-                    "each other: give {}{}",
-                    side.estimator->name, there, there == 1 ? "" : "s",
-                    limited ? fmt::format(", of which `{}` allows {}", key, rows) : "",
-                    fewest_in_order_to_tell, limited ? fmt::format("a larger `{}`", key) : "more",
-                    forced),
-        reports::Advice{.words = limited ? fmt::format("give a larger `{}`", key)
-                                         : fmt::format("give {} rows", fewest_in_order_to_tell)}};
+    const std::string mend = limited ? fmt::format("give a larger `{}`", key)
+                                     : fmt::format("give {} rows", fewest_in_order_to_tell);
+    reason = {fmt::format("`{}` has {} row{}{}, and it takes {} to see that they do not depend on "
+                          "each other: {}{}",
+                          side.estimator->name, there, there == 1 ? "" : "s",
+                          limited ? fmt::format(", of which `{}` allows {}", key, rows) : "",
+                          fewest_in_order_to_tell, mend, forced),
+              reports::Advice{.words = mend}};
   }
   return reason;
 }
@@ -218,8 +217,10 @@ void allow_for_dependence(const std::vector<Rows>& all, Plan& plan) {
   if (allowed.empty()) return;
   const std::size_t others = allowed.size() - 1;
   if (others > 1) allowed = {allowed[0], fmt::format("{} others", others)};
-  plan.caution = fmt::format("the interval is wider because successive {} may be correlated",
-                             fmt::join(allowed, " and "));
+  plan.caution = fmt::format(
+      "the interval is wider because successive {} look correlated, "
+      "which may be chance",
+      fmt::join(allowed, " and "));
 }
 
 }  // namespace
@@ -276,6 +277,7 @@ void judge_independence(TestOutcome& test, const Pilots& pilots, std::uint64_t c
     return;
   } else if (answered) {
     plan.method = find_method(question, "batch-means");
+    plan.caution = "successive rows are correlated: the interval is that of means of batches";
     // Batches answer what spoke against single rows; it still speaks against a drawn side.
     if (std::ranges::all_of(question.subjects, is_recorded)) {
       plan.invalid = {};

@@ -22,10 +22,11 @@ constexpr std::uint64_t most_postponed = 64;
 // Fewest secondaries that have a spread.
 constexpr std::uint64_t fewest_tested = 2;
 
-/// The look that a budget in primaries pays for. Throws InputError if it buys fewer than two
-/// secondaries of each subject.
-std::uint64_t paid_for(const TestOutcome& test, std::uint64_t budget) {
+/// The look that a budget in primaries pays for beside the pilots. Throws InputError if it buys
+/// fewer than two secondaries of each subject.
+std::uint64_t paid_for(const TestOutcome& test, std::uint64_t whole, std::uint64_t pilots) {
   const std::uint64_t each = primaries_of_each(test);
+  const std::uint64_t budget = whole - std::min(whole, pilots);
   std::uint64_t paid = budget / each;
   // Subjects without more secondaries leave their part to the others.
   while (paid >= fewest_tested) {
@@ -36,9 +37,10 @@ std::uint64_t paid_for(const TestOutcome& test, std::uint64_t budget) {
   }
   refuse(
       test.question.test->place_of("budget"),
-      "its budget (or its share of the suite's) of {} primaries does not pay for two observations, "
-      "the fewest that can be tested: these take {}; give a larger budget, or fewer `primaries`",
-      budget, fewest_tested * each);
+      "its budget (or its share of the suite's) of {} primaries does not pay for a pilot and two "
+      "observations, the fewest that can be tested: the two take {}; give a larger budget, or "
+      "fewer `primaries`",
+      whole, fewest_tested * each);
 }
 
 /// Throws InputError before hours are spent on what was hardly meant.
@@ -91,12 +93,13 @@ std::vector<std::uint64_t> sizes_up_to(std::uint64_t last, std::uint64_t first, 
 
 }  // namespace
 
-std::uint64_t most_available(const TestOutcome& test) {
+std::uint64_t most_available(const TestOutcome& test, const Pilots& pilots) {
   const std::uint64_t most =
       test.question.most_rows().value_or(std::numeric_limits<std::uint64_t>::max());
   const std::optional<Budget>& budget = test.question.test->budget;
   if (!budget || !budget->primaries) return most;
-  return std::min(most, paid_for(test, *budget->primaries));
+  return std::min(most,
+                  paid_for(test, *budget->primaries, primaries_of_pilots(test.question, pilots)));
 }
 
 stats::LookSchedule one_look(std::uint64_t secondaries, const ErrorShare& share) {
@@ -107,7 +110,7 @@ stats::LookSchedule plan_looks(const TestOutcome& test, const Pilots& pilots, st
   const Question& question = test.question;
   const TestEntry& entry = *question.test;
   const ErrorShare& whole = test.place.share;
-  const std::uint64_t most = most_available(test);
+  const std::uint64_t most = most_available(test, pilots);
   if (test.plan.method.keeps == Keeps::blocks) {
     if (entry.secondaries || entry.budget) {
       refuse(entry.place_of(entry.secondaries ? "secondaries" : "budget"),
@@ -153,12 +156,12 @@ stats::LookSchedule plan_looks(const TestOutcome& test, const Pilots& pilots, st
   return one_look(std::min(std::max(first, *alone), most), whole);
 }
 
-std::vector<std::uint64_t> postponed_looks(const TestOutcome& test) {
+std::vector<std::uint64_t> postponed_looks(const TestOutcome& test, const Pilots& pilots) {
   const Question& question = test.question;
   const Plan& plan = test.plan;
   const bool chosen = question.test->secondaries || has_rows(question);
   if (chosen || plan.method.is.over_looks != stats::LookLaw::independent_increments) return {};
-  const std::uint64_t most = most_available(test);
+  const std::uint64_t most = most_available(test, pilots);
   std::vector<std::uint64_t> sizes;
   std::uint64_t size = plan.most_secondaries();
   for (std::uint64_t times = 2; times <= most_postponed && size < most; times *= 2) {

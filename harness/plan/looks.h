@@ -16,15 +16,15 @@ stats::LookSchedule one_look(std::uint64_t secondaries, const ErrorShare& share)
 
 /// The only look of a plan may be put off to these sizes. Each is twice the one before, the last at
 /// most 64 times the look. Empty with several looks, or if somebody chose the size.
-std::vector<std::uint64_t> postponed_looks(const TestOutcome& test);
+std::vector<std::uint64_t> postponed_looks(const TestOutcome& test, const Pilots& pilots);
 
 /// The look of a test that is invalid beforehand. It decides nothing; it shows the estimators'
 /// data.
 stats::LookSchedule look_for_its_picture(const TestOutcome& test);
 
-/// The largest look: the rows of the longest file, also for a side drawn beside it, or what a
-/// budget in primaries pays for.
-std::uint64_t most_available(const TestOutcome& test);
+/// The largest look: the rows of the longest file, also for a side drawn beside it, or what the
+/// pilots leave of a budget in primaries.
+std::uint64_t most_available(const TestOutcome& test, const Pilots& pilots);
 
 /// Primaries of one secondary of each subject together; for an image, in all its elements.
 std::uint64_t primaries_of_each(const TestOutcome& test);

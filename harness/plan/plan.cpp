@@ -207,11 +207,11 @@ TestOutcome plan_test(const Question& question, const FamilyPlace& place, const 
   }
   try {
     question.theta->require_density(question);
-    const std::uint64_t least = choose_method(test, pilots, most_available(test));
+    const std::uint64_t least = choose_method(test, pilots, most_available(test, pilots));
     plan.looks = plan_looks(test, pilots, least);
     if (plan.invalid.empty()) plan.invalid = question.theta->too_few(test);
     if (plan.invalid.empty()) {
-      plan.postponed = postponed_looks(test);
+      plan.postponed = postponed_looks(test, pilots);
     } else {
       plan.looks = look_for_its_picture(test);
     }

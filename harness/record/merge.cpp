@@ -15,6 +15,7 @@
 #include "harness/base/numbers.h"
 #include "harness/base/record_file.h"
 #include "harness/run/evaluate.h"
+#include "reports/words/text.h"
 
 namespace assay::harness {
 namespace {
@@ -342,7 +343,7 @@ int merge_shards(const std::vector<std::string>& records, const Output& output) 
   RunReports(output).write_and_annotate(record);
   const std::string missing = missing_shards(shards);
   if (missing.empty()) return exit_code(record, output.inconclusive);
-  fmt::print(stderr, "assay: {}\n", missing);
+  fmt::print(stderr, "{}\n", fmt::join(reports::wrap("assay: " + missing, 80), "\n"));
   return 1;
 }
 

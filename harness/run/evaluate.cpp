@@ -239,7 +239,7 @@ void conclude(TestOutcome& outcome, const std::vector<ConstantVerdict>& constant
   settle(outcome, verdict_of_channels(outcome), {});
   if (outcome.verdict == Verdict::pass && !outcome.plan.regions[0].has_forbidden()) {
     if (const std::string what = cannot_fail(outcome); !what.empty()) {
-      settle(outcome, Verdict::inconclusive, excludes_no(what));
+      settle(outcome, Verdict::inconclusive, excludes_no(what, outcome));
     }
   }
   if (passes_without_fit(outcome)) settle(outcome, Verdict::invalid, red_gates(outcome.gates));

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "estimators/core/program_path.h"
+#include "estimators/core/waiting.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/refuse.h"
 #include "harness/plan/plan.h"
@@ -183,11 +184,25 @@ std::map<std::string, Fault> prepare_estimators(SuiteRun& run) {
   return faults;
 }
 
-/// Names the source that leaves a test without a question; "" if there is none.
-std::string unprepared(const TestEntry& test, const std::map<std::string, Fault>& faults) {
+std::vector<Source> sources_of(const TestEntry& test) {
   std::vector<Source> sources = sources_of(test.claim);
   if (test.reference) sources.push_back(*test.reference);
-  for (const Source& source : sources) {
+  return sources;
+}
+
+void note_unused(const Suite& suite) {
+  for (const EstimatorEntry& entry : suite.estimators) {
+    const auto names_it = [&](const TestEntry& test) {
+      return std::ranges::count(sources_of(test), entry.name, &Source::estimator) > 0;
+    };
+    if (std::ranges::none_of(suite.tests, names_it))
+      notice(fmt::format("no test of `{}` names its estimator `{}`", suite.name, entry.name));
+  }
+}
+
+/// Names the source that leaves a test without a question; "" if there is none.
+std::string unprepared(const TestEntry& test, const std::map<std::string, Fault>& faults) {
+  for (const Source& source : sources_of(test)) {
     const auto fault = faults.find(source.estimator);
     if (fault == faults.end()) continue;
     return fmt::format("`{}` cannot be prepared: {}", source.estimator, fault->second.words);
@@ -224,6 +239,7 @@ std::unique_ptr<SuiteRun> prepare_suite(const Suite& suite, const RunOptions& op
   }
   const std::map<std::string, Fault> faults = prepare_estimators(*run);
   for (TestEntry& test : run->suite.tests) ask_test(*run, test, faults);
+  note_unused(run->suite);
   coarsen(run->suite, options);
   const std::vector<bool> all(run->questions.size(), true);
   require_memory(run->estimators, streamed(run->questions, all), available_bytes());

@@ -29,7 +29,8 @@ std::string p_text(double log_p) {
 std::string finding(const reports::Effect& effect) {
   // An exponent of which only one point differs from zero.
   if (!effect.estimate) {
-    return fmt::format("{} is no finite number{}", reports::effect_name(effect),
+    return fmt::format("{} is {}{}", reports::effect_name(effect),
+                       effect.relative ? "infinite, as it is relative to 0" : "no finite number",
                        reports::named_range_text(effect));
   }
   return fmt::format("{} is {}", reports::effect_name(effect), reports::named_effect_text(effect));
@@ -99,9 +100,12 @@ std::string passed_by_empty_interval(const ChannelOutcome& channel) {
 std::string found_in_cell(const ChannelOutcome& channel) {
   if (!channel.image || !channel.image->detectable_in_cell) return "";
   return fmt::format(
-      "; in one typical square of {0} x {0} pixels alone, {1}{2} would have been found",
+      "; in one typical square of {0} x {0} pixels alone, {1}{2} would have been found{3}",
       stats::typical_side, reports::margin_text(*channel.image->detectable_in_cell, channel.effect),
-      channel.effect.relative ? " of the image's mean" : "");
+      channel.effect.relative ? " of the image's mean" : "",
+      channel.effect.relative && *channel.image->detectable_in_cell > 1
+          ? "; a few bright samples make most of the noise: test the `distribution` too (--law)"
+          : "");
 }
 
 std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& channel) {
@@ -115,7 +119,7 @@ std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& chann
           text, outcome.secondaries(), 1 - outcome.place.share.beta);
     }
     if (const std::string all = outcome.question.theta->not_excluded(channel); !all.empty()) {
-      return fmt::format("{}; but {}", text, excludes_no(all).text);
+      return fmt::format("{}; but {}", text, excludes_no(all, outcome).text);
     }
     if (channel.detectable) {
       const char* how = outcome.question.theta->detectable_text();
@@ -197,14 +201,6 @@ double reference_error(const TestOutcome& outcome, const ChannelOutcome& channel
   return reference.standard_error / unit_of_theta(question, channel.index, 0);
 }
 
-/// So many times the observations, and their primaries.
-std::string times_as_many(const TestOutcome& outcome, double factor) {
-  const std::string text = sizes_text(outcome, factor) + " observations";
-  if (primaries_of_each(outcome) == 1) return text;
-  const auto primaries = static_cast<double>(primaries_of_look(outcome, outcome.secondaries()));
-  return fmt::format("{} ({} primaries)", text, reports::human(factor * primaries, 2));
-}
-
 /// The setting for so many times the observations.
 reports::Advice setting(const TestOutcome& outcome, double factor) {
   const auto& budget = outcome.question.test->budget;
@@ -214,8 +210,10 @@ reports::Advice setting(const TestOutcome& outcome, double factor) {
   }
   const bool in_primaries = budget && budget->primaries;
   const std::uint64_t secondaries = outcome.secondaries();
-  const auto now =
-      static_cast<double>(in_primaries ? primaries_of_look(outcome, secondaries) : secondaries);
+  // Pilots take a quarter of a budget at most.
+  const double now = in_primaries
+                         ? 4 / 3.0 * static_cast<double>(primaries_of_look(outcome, secondaries))
+                         : static_cast<double>(secondaries);
   const double step = std::pow(10, std::max(0.0, std::floor(std::log10(factor * now)) - 1));
   return {.key = in_primaries ? "budget" : "secondaries",
           .value = fmt::format("{:.0f}", std::ceil(factor * now / step) * step)};
@@ -233,20 +231,26 @@ double interval_errors(const ChannelOutcome& channel, double tail) {
 /// So many times the observations would decide.
 Reason with_more(const TestOutcome& outcome, const ChannelOutcome& channel, double factor) {
   if (has_rows(outcome.question)) {
-    return Reason::advising("", fmt::format("give about {} {} {}", sizes_text(outcome, factor),
-                                            rows_noun(outcome.question),
-                                            outcome.question.of_two() ? "a side" : "in all"));
+    const std::string sizes = sizes_text(outcome, factor);
+    const bool differ = sizes.find(' ') != std::string::npos;  // N and M
+    return Reason::advising("",
+                            fmt::format("give about {} {}{}", sizes, rows_noun(outcome.question),
+                                        differ                      ? ""
+                                        : outcome.question.of_two() ? " a side"
+                                                                    : " in all"));
   }
   if (const auto& budget = outcome.question.test->budget; budget && budget->of_suite) {
-    return Reason::advising(times_as_many(outcome, factor) + " would decide; ",
-                            fmt::format("give the suite {} times its `budget`",
-                                        reports::human(std::ceil(10 * factor) / 10, 2)));
+    return Reason::advising("", fmt::format("give the suite {} times its `budget`",
+                                            reports::human(std::ceil(10 * factor) / 10, 2)));
   }
   const reports::Advice next = setting(outcome, factor);
-  return {fmt::format("about {} would decide{}; write {}", times_as_many(outcome, factor),
-                      channel.regions.proof() ? " if the estimate stays as it is" : "",
-                      written_key(*outcome.question.test, next.key, next.value)),
-          next};
+  const bool many = next.key == "secondaries" && primaries_of_each(outcome) > 1;
+  const auto primaries = static_cast<double>(primaries_of_look(outcome, outcome.secondaries()));
+  return {
+      fmt::format("{}{} would decide{}", written_key(*outcome.question.test, next.key, next.value),
+                  many ? fmt::format(" ({} primaries)", reports::human(factor * primaries, 2)) : "",
+                  channel.regions.proof() ? " if the estimate stays as it is" : ""),
+      next};
 }
 
 /// n grows with the square of the factor by which the interval must shrink.
@@ -301,9 +305,12 @@ Reason told(const TestOutcome& outcome) {
 
 }  // namespace
 
-Reason excludes_no(const std::string& what) {
-  return Reason::advising(fmt::format("these observations exclude no {} at all: ", what),
-                          "take more of them, or say with `detect` how far off it must not be");
+Reason excludes_no(const std::string& what, const TestOutcome& outcome) {
+  return Reason::advising(
+      fmt::format("these observations exclude no {} at all: ", what),
+      outcome.question.test->over
+          ? "sweep values where it is larger: what is 0 has no slope"
+          : "take more of them, or say with `detect` how far off it must not be");
 }
 
 Reason narrate(const TestOutcome& outcome) {

@@ -11,6 +11,6 @@ namespace assay::harness {
 Reason narrate(const TestOutcome& outcome);
 
 /// Says that these observations exclude no `what` ("exponent"), and what to do.
-Reason excludes_no(const std::string& what);
+Reason excludes_no(const std::string& what, const TestOutcome& outcome);
 
 }  // namespace assay::harness

@@ -115,7 +115,11 @@ test_mistakes_in_a_check_say_what_to_write() {
   expect 1 check 'mean(x) == 1' --estimator x=recorded,file=many.txt --budget 10
   contains out 'to decide: give a larger `budget`'
   expect 0 check --help
-  contains out 'the most it may cost: 1e7 are primaries, 30s are CPU time'
+  contains out 'the most it may cost: 1e7 are primaries, those of'
+  printf '%s\n' 'suite: idle' 'estimators: {a: {plugin: luminaire/area}, idle: {plugin: luminaire/area}}' \
+    'tests: [{claim: mean(a) == analytic, secondaries: 100}]' >idle.yaml
+  expect 0 run idle.yaml
+  contains err 'no test of `idle` names its estimator `idle`'
 }
 
 "$3"

@@ -25,9 +25,8 @@ TEST_F(Examination, WhoseObservationsAreNoFunctionOfKeyAndIndexIsRefused) {
   for (int worker = 0; worker < 2; ++worker) {
     EXPECT_THAT(
         trouble(*counting),
-        HasSubstr("counting.so` gave other numbers when it was asked for observation 31 of the "
-                  "same key again: an observation must be a function of key and index "
-                  "alone"));
+        HasSubstr("counting.so` gave other numbers when it was asked for observation 31 again: "
+                  "an observation must be a function of key and index alone"));
   }
   const std::string by_index =
       "AssayStream mine = assay_stream(5, call->random->counter[2]); "

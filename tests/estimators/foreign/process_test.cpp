@@ -245,7 +245,7 @@ while True:
 )";
   EXPECT_THAT(
       failure(*run({"/usr/bin/python3", write("coins.py", coins)}), 4, 4),
-      Says("gave other numbers when it was asked for observation", "of the same key again"));
+      Says("gave other numbers when it was asked for observation", " again: an observation"));
 }
 
 TEST_F(Process, IsExaminedForEachNumberOfPrimaries) {

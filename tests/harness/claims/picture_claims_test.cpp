@@ -67,6 +67,15 @@ TEST_F(PictureClaims, StacksOfOneLawPass) {
   EXPECT_FALSE(test.maps.empty());
 }
 
+TEST_F(PictureClaims, WhoseNoiseAFewBrightSamplesMakeSaySo) {
+  write_stack(place, "a", {.width = width, .height = height, .count = 24},
+              [](int, int, const std::string&, double noise) {
+                return noise > 3.6 ? 1e4F : static_cast<float>(1 + 0.1 * noise);
+              });
+  write(place, "b");
+  expect_said(tested(), Verdict::pass, {"; a few bright samples make most of the noise: test the"});
+}
+
 // Two stacks of 24 exclude about a hundredth of the mean: a hundredth of that takes 10^4 times as
 // many, and the estimate may lie on either side of it.
 TEST_F(PictureClaims, ThatAreUndecidedSayHowManyPicturesWouldDecide) {

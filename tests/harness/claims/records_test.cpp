@@ -59,8 +59,8 @@ TEST(BiasClaim, ShowsTheReferenceOfTheTest) {
   EXPECT_EQ(shown.reference, "6.36 +- 0.01");
 }
 
-TEST(Budget, MayPayForTwoObservations) {
-  const reports::Test least = tested("{claim: mean(uniform) == analytic, budget: 128}");
+TEST(Budget, PaysForAPilotAndTwoObservations) {
+  const reports::Test least = tested("{claim: mean(uniform) == analytic, budget: 279}");
   EXPECT_EQ(least.samples[0].secondaries, 2u);
 }
 

@@ -150,7 +150,7 @@ TEST_F(UnequalRows, SayHowManyOfEachWouldDecide) {
       judged(place, lehmer_rows(6, 400, 240), "  - {claim: mean(a) == mean(b), detect: 0.01}\n");
   EXPECT_EQ(suite.tests[0].verdict, Verdict::inconclusive);
   EXPECT_THAT(suite.tests[0].advice.value().words,
-              testing::MatchesRegex("give about [0-9.,k]+M? and [0-9.,k]+M? rows a side"));
+              testing::MatchesRegex("give about [0-9.,k]+M? and [0-9.,k]+M? rows"));
 }
 
 TEST_F(UnequalRows, AreReplayedWhileTheyAreAsManyAsTheyWere) {

@@ -78,9 +78,9 @@ TEST(Narrate, InconclusiveSaysHowManyPrimariesThatWouldBe) {
   expect_said(test, Verdict::inconclusive, {" primaries) would decide"});
   double secondaries = 0;
   double primaries = 0;
-  const std::size_t at = test.message.find("about ");
+  const std::size_t at = test.message.find("secondaries: ");
   ASSERT_NE(at, std::string::npos);
-  ASSERT_EQ(std::sscanf(test.message.c_str() + at, "about %lf observations (%lf primaries)",
+  ASSERT_EQ(std::sscanf(test.message.c_str() + at, "secondaries: %lf` (%lf primaries)",
                         &secondaries, &primaries),
             2);
   EXPECT_NEAR(primaries / secondaries, 16, 1) << "two digits of each are shown";
