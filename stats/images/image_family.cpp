@@ -125,20 +125,12 @@ WindowSums::WindowSums(const ImageExtent& extent)
 void WindowSums::load(std::span<const double> values) {
   const std::size_t stride = width_ + 1;
   const std::size_t height = values.size() / width_;
-  std::fill_n(alternating_, 3, 0.0);
   for (std::size_t y = 0; y < height; ++y) {
     double row = 0;
-    double odd = 0;
     for (std::size_t x = 0; x < width_; ++x) {
-      const double value = values[y * width_ + x];
-      row += value;
-      if (x % 2 != 0) odd += value;
+      row += values[y * width_ + x];
       table_[(y + 1) * stride + x + 1] = table_[y * stride + x + 1] + row;
     }
-    const double by_column = row - 2 * odd;
-    alternating_[0] += by_column;
-    alternating_[1] += y % 2 == 0 ? row : -row;
-    alternating_[2] += y % 2 == 0 ? by_column : -by_column;
   }
 }
 
@@ -147,10 +139,6 @@ double WindowSums::of(const Rectangle& window) const {
   const double* const top = table_.data() + window.y * stride + window.x;
   const double* const bottom = top + window.height * stride;
   return (bottom[window.width] - bottom[0]) - (top[window.width] - top[0]);
-}
-
-double WindowSums::of(const WindowGroup& group, std::size_t index) const {
-  return group.grid == Grid::alternating ? alternating_[index] : of(group.windows[index]);
 }
 
 double adjusted(double log_p, GroupSize group) {

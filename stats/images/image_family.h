@@ -51,16 +51,12 @@ class WindowSums {
   // Takes values[y * width + x] of one channel.
   void load(std::span<const double> values);
 
-  // The sum of window `index` of a group.
-  double of(const WindowGroup& group, std::size_t index) const;
+  double of(const Rectangle& window) const;
   double of_all() const { return table_.back(); }
 
  private:
-  double of(const Rectangle& window) const;
-
   std::size_t width_;
-  std::vector<double> table_;   // (width + 1) x (height + 1).
-  double alternating_[3] = {};  // By column, by row, checkerboard.
+  std::vector<double> table_;  // (width + 1) x (height + 1).
 };
 
 // Direction in which an alternating sum changes its sign.

@@ -48,12 +48,11 @@ class CoarseSums {
     sums_.load(values_);
   }
   double of(const WindowGroup& group, std::size_t index) const {
-    if (group.grid == Grid::alternating) return alternating_[index];
-    return sums_.of(group, index);
+    return group.grid == Grid::alternating ? alternating_[index] : sums_.of(group.windows[index]);
   }
   // Sum over all elements in the window, also for those that alternate.
   double total_of(const WindowGroup& group, std::size_t index) const {
-    return group.grid == Grid::alternating ? sums_.of_all() : sums_.of(group, index);
+    return group.grid == Grid::alternating ? sums_.of_all() : sums_.of(group.windows[index]);
   }
 
  private:
@@ -67,7 +66,7 @@ class CoarseSums {
 // Moments of one channel's windows, all groups in a row.
 WelchCells window_moments(const CoarseImages& coarse, const Groups& groups, std::size_t channel) {
   std::size_t count = 0;
-  for_each_window(groups, [&](auto...) { ++count; });
+  for (const WindowGroup& group : groups) count += group.windows.size();
   WelchCells moments;
   moments.start(count);
   CoarseSums sums(coarse.extent, channel);
