@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <map>
@@ -182,10 +183,8 @@ void ExrFile::read_rows(std::span<const std::string> names, std::span<float> tex
                          {whole.max.x, whole.min.y + static_cast<int>(last) - 1});
   const bool halves = std::ranges::all_of(
       names, [&](const std::string& name) { return channel(name).rounding == Rounding::half; });
-  std::vector<std::uint16_t> of_file(halves ? texels.size() : 0);
   const std::size_t size = halves ? sizeof(std::uint16_t) : sizeof(float);
-  char* const out =
-      halves ? reinterpret_cast<char*>(of_file.data()) : reinterpret_cast<char*>(texels.data());
+  char* const out = reinterpret_cast<char*>(texels.data());
   const std::size_t texel = names.size() * size;
   const std::size_t row = window(names).width * texel;
   std::map<int, Imf::FrameBuffer> buffers;
@@ -202,7 +201,12 @@ void ExrFile::read_rows(std::span<const std::string> names, std::span<float> tex
       input.readPixels(box.min.y, box.max.y);
     }
   });
-  std::ranges::transform(of_file, texels.begin(), imath_half_to_float);
+  // Halves widen where they are, from the last on.
+  for (std::size_t i = halves ? texels.size() : 0; i-- > 0;) {
+    std::uint16_t half = 0;
+    std::memcpy(&half, out + i * size, sizeof half);
+    texels[i] = imath_half_to_float(half);
+  }
 }
 
 }  // namespace

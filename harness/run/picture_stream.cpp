@@ -69,7 +69,6 @@ class Side {
         size_(rows_there(extent_, 2 * pictures_) * extent_.row()),
         texels_(pictures_ * size_),
         of_channels_(pictures_, stats::ChannelSums(extent_.channels)),
-        of_all_(pictures_, stats::ChannelSums(1)),
         extremes_(pictures_),
         seconds_(pictures_) {}
 
@@ -101,8 +100,10 @@ class Side {
   std::vector<double> channel_sums() const { return sums_of(of_channels_); }
   std::vector<double> averages() const {
     std::vector<double> averages;
-    for (const stats::ChannelSums& each : of_all_) {
-      averages.push_back(each.sums()[0] / static_cast<double>(extent_.elements()));
+    for (const stats::ChannelSums& each : of_channels_) {
+      double sum = 0;
+      for (const double of_channel : each.sums()) sum += of_channel;
+      averages.push_back(sum / static_cast<double>(extent_.elements()));
     }
     return averages;
   }
@@ -141,7 +142,6 @@ class Side {
     reader_->read(picture, read);
     extremes_[picture].add(read);
     of_channels_[picture].add(read);
-    of_all_[picture].add(read);
   }
 
   const Setup& setup_;
@@ -151,7 +151,6 @@ class Side {
   std::size_t size_;  // capacity in texels of a picture
   LargeVector<float> texels_;
   std::vector<stats::ChannelSums> of_channels_;  // of each picture
-  std::vector<stats::ChannelSums> of_all_;       // of each picture, of all its numbers
   std::vector<Extremes> extremes_;               // of each picture
   std::vector<double> seconds_;
   stats::RowRange there_;

@@ -71,7 +71,7 @@ ASSAY_VECTOR_COPIES void hash_columns(const TileRows& rows, std::span<std::uint6
 // Hashes of the image's tiles that begin in a row. Tiles of one hash are compared whole.
 std::vector<std::uint64_t> digests(const ImageStack& stack, std::size_t image, RowRange rows) {
   const std::size_t row = stack.extent.row();
-  const std::vector<float> none(row);
+  const std::vector<float> none(rows.first + tile_side > rows.last ? row : 0);
   TileRows numbers;
   for (std::size_t y = 0; y < tile_side; ++y) {
     numbers[y] = rows.first + y < rows.last ? stack.at(image, (rows.first + y) * row) : none.data();
