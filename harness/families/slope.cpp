@@ -334,6 +334,9 @@ class SlopeTheta : public Theta {
   std::string not_excluded(const ChannelOutcome& channel) const override {
     return !channel.effect.low && !channel.effect.high ? "exponent" : "";
   }
+  const char* how_to_exclude() const override {
+    return "sweep values where it is larger: what is 0 has no slope";
+  }
 };
 
 class VarianceSlopeTheta final : public SlopeTheta {

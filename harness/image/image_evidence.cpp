@@ -361,7 +361,7 @@ ChannelEvidence evidence_of_image_laws(const Seen& seen, const ImageTest& test) 
 std::string place_text(const stats::ImageFinding& finding, const ImageShape& shape) {
   const std::string component =
       shape.components.size() > 1 ? " of " + shape.components[finding.channel] : "";
-  // What never varies has no z.
+  // A constant difference has no z.
   const std::string z =
       std::isfinite(finding.z) ? fmt::format(", z = {:+.3g}", finding.z) : std::string();
   const stats::Rectangle& window = finding.window;

@@ -22,8 +22,8 @@ std::vector<std::uint64_t> postponed_looks(const TestOutcome& test, const Pilots
 /// data.
 stats::LookSchedule look_for_its_picture(const TestOutcome& test);
 
-/// The largest look: the rows of the longest file, also for a side drawn beside it, or what the
-/// pilots leave of a budget in primaries.
+/// The largest look. It has the rows of the longest file, also for a side drawn beside it. A budget
+/// in primaries pays for it after the pilots.
 std::uint64_t most_available(const TestOutcome& test, const Pilots& pilots);
 
 /// Primaries of one secondary of each subject together; for an image, in all its elements.

@@ -306,11 +306,8 @@ Reason told(const TestOutcome& outcome) {
 }  // namespace
 
 Reason excludes_no(const std::string& what, const TestOutcome& outcome) {
-  return Reason::advising(
-      fmt::format("these observations exclude no {} at all: ", what),
-      outcome.question.test->over
-          ? "sweep values where it is larger: what is 0 has no slope"
-          : "take more of them, or say with `detect` how far off it must not be");
+  return Reason::advising(fmt::format("these observations exclude no {} at all: ", what),
+                          outcome.question.theta->how_to_exclude());
 }
 
 Reason narrate(const TestOutcome& outcome) {

@@ -180,6 +180,10 @@ class Theta {
 
   /// The thing that the interval does not exclude although it speaks against the claim: "exponent".
   virtual std::string not_excluded(const ChannelOutcome&) const { return ""; }
+  /// The step that lets the interval exclude it.
+  virtual const char* how_to_exclude() const {
+    return "take more of them, or say with `detect` how far off it must not be";
+  }
   /// How far a detectable theta reaches.
   virtual const char* detectable_text() const { return " or more"; }
   /// The place where the data of a failed claim differ.

@@ -76,8 +76,8 @@ TEST_F(PictureClaims, WhoseNoiseAFewBrightSamplesMakeSaySo) {
   expect_said(tested(), Verdict::pass, {"; a few bright samples make most of the noise: test the"});
 }
 
-// Two stacks of 24 exclude about a hundredth of the mean: a hundredth of that takes 10^4 times as
-// many, and the estimate may lie on either side of it.
+// Two stacks of 24 exclude about a hundredth of the mean. A hundredth of that takes 10^4 times as
+// many. The estimate may lie on either side of it.
 TEST_F(PictureClaims, ThatAreUndecidedSayHowManyPicturesWouldDecide) {
   write(place, "a");
   write(place, "b");

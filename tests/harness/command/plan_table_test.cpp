@@ -152,8 +152,8 @@ TEST_F(PlanTable, OfAMarginForetellsTheOneThatABudgetShows) {
   EXPECT_FALSE(shown(2).has_value()) << "betting, of which no formula tells";
 }
 
-// Beside pilots of 144 primaries, three observations in [0, 4] find no difference that the range
-// allows: `detect` is no answer to what the last look finds.
+// Pilots take 144 primaries. Three more in [0, 4] find no difference that the range allows, so
+// `detect` does not answer what the last look finds.
 TEST_F(PlanTable, ShowsNoEffectThatTheBudgetDoesNotFind) {
   const std::string text = plan_text(
       planned("  - {claim: mean(darts) == analytic, test: betting, detect: 1%, budget: 147}\n"));
