@@ -193,7 +193,7 @@ TEST_F(Process, RefusesObservationsThatAreNoFunctionOfKeyAndIndex) {
            {"$((n = n + 1))", again + "31"},
            {"$((n = n + 1))", "a function of key and index"},
            // A rare value that does not come again.
-           {"$((i == 200 ? (n = n + 1) % 2 : 0))", again + "200 of the same key"},
+           {"$((i == 200 ? (n = n + 1) % 2 : 0))", again + "200 again"},
            {"$((i == 200))", nothing},
            {"$low",
             "ignores the index: observations 0 to 31 all have the same numbers; under another key "

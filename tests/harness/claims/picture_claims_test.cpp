@@ -68,11 +68,13 @@ TEST_F(PictureClaims, StacksOfOneLawPass) {
 }
 
 TEST_F(PictureClaims, WhoseNoiseAFewBrightSamplesMakeSaySo) {
-  write_stack(place, "a", {.width = width, .height = height, .count = 24},
-              [](int, int, const std::string&, double noise) {
-                return noise > 3.6 ? 1e4F : static_cast<float>(1 + 0.1 * noise);
-              });
-  write(place, "b");
+  for (const char* name : {"a", "b"}) {
+    write_stack(place, name, {.width = width, .height = height, .count = 24},
+                [&](int, int, const std::string&, double noise) {
+                  const bool bright = *name == 'a' && noise > 3;
+                  return bright ? 1e4F : static_cast<float>(1 + 0.1 * noise);
+                });
+  }
   expect_said(tested(), Verdict::pass, {"; a few bright samples make most of the noise: test the"});
 }
 

@@ -98,7 +98,8 @@ TEST_P(Deaths, AreErrorsOfTheirClaimAlone) {
   // Several looks, of which the first have not seen enough; else one of 1000 observations.
   if (phase == Phase::later) parts.emplace_back(detect(kind == Kind::primary ? "0.2%" : "4%"));
   const testing::AssertionResult result = claim_holds("mean(mine) == 0.5", parts);
-  const std::string said = result.message();
+  std::string said = result.message();
+  std::ranges::replace(said, '\n', ' ');
   ASSERT_TRUE(source.has_died()) << said;
   EXPECT_FALSE(result);
   EXPECT_THAT(said, testing::StartsWith("error: "));
