@@ -32,9 +32,9 @@ async function opened(name, { size = "wide", scheme = "light", hash = "", script
     dialog.dismiss();
   });
   page.on("request", (request) => page.asked.push(request.url()));
-  await page.goto(`file://${resolve(pages, name)}.html${hash}`);
   // A guard against hanging on a busy machine; the part `times` measures.
   page.setDefaultTimeout(60000);
+  await page.goto(`file://${resolve(pages, name)}.html${hash}`);
   if (scripts) await page.waitForFunction(() => document.documentElement.dataset.ready === "yes");
   return page;
 }
