@@ -155,7 +155,7 @@ bool print_observation(const Question& question, const Recorded& recorded, std::
       const bool has_range = sample != nullptr && index < sample->secondaries;
       const Comparison comparison = has_range ? compared(*sample, values[c]) : Comparison{};
       same &= comparison.same;
-      // Of an image those that the claim names, and those that are not as recorded.
+      // An image shows the numbers that the claim names, and those that are not as recorded.
       const bool is_one_of_many = side.setup->image() && (recorded.test.image || !has_range);
       if (comparison.same && is_one_of_many) continue;
       fmt::print("{}.{}  observation {}: {}\n{}", side.estimator->name, channels[c].name, index,

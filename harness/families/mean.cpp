@@ -331,12 +331,12 @@ std::vector<Constant> recorded_means(const Question& question, const Subject& re
 
 // ---- Sizes
 
-// Errors of .01 grow by n^-6.5 as the size falls.
+// Errors near .01 go like size^-6.5.
 constexpr double elasticity = 6.5;
 
 /// The variance for which a test is planned. The logarithm of a pilot's variance has the variance
-/// s^2 = (kurtosis - 1) / n. Errors a n^-e, averaged over such pilots, are the planned ones for
-/// e^(e s^2 / 2) times the pilot's variance.
+/// s^2 = (kurtosis - 1) / n. Errors that go like size^-k have the planned mean over such pilots if
+/// the pilot's variance is multiplied by exp(k s^2 / 2).
 double planned_variance(const Moments& pilot) {
   const double n = static_cast<double>(pilot.count);
   const double spread = std::max(0.0, pilot.kurtosis() - 1) / n;

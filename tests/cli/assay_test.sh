@@ -7,9 +7,10 @@ set -uo pipefail
 source "$(dirname "$0")/program.sh"
 
 write_suite() {
+  local hemisphere=()  # where a test names it
+  case "${*:2}" in *hemisphere*) hemisphere=('  hemisphere: {plugin: luminaire/hemisphere, scene: triangle}') ;; esac
   printf '%s\n' 'suite: small' 'estimators:' \
-    '  normal: {plugin: analytic/normal, mean: 2, primaries: 1}' \
-    '  hemisphere: {plugin: luminaire/hemisphere, scene: triangle}' 'tests:' "${@:2}" >"$1"
+    '  normal: {plugin: analytic/normal, mean: 2, primaries: 1}' "${hemisphere[@]}" 'tests:' "${@:2}" >"$1"
 }
 
 good='  - {name: good, claim: mean(normal) == 2, detect: 20%}'
@@ -381,7 +382,7 @@ test_explain_tells_of_the_last_run() {
   # A folder that cannot be made changes nothing.
   : >file
   XDG_CACHE_HOME=$work/file expect 1 run mixed.yaml
-  [ -z "$(grep -v 'no test of' err)" ] || fail 'a cache that cannot be kept is told of'
+  empty err
 }
 
 test_colours_are_as_asked() {
