@@ -25,6 +25,13 @@ inline std::string system_environment(const std::string& variable) {
 /// Columns of the terminal that the stream writes to. Else what COLUMNS says, else 80.
 int terminal_width(std::FILE* stream);
 
+/// The text after `lead`, in lines of 80 columns; further ones are indented as deep. Text in
+/// backticks stays unbroken, to be pasted.
+std::string wrapped_message(const std::string& text, const std::string& lead);
+
+/// A sentence so wrapped after `assay: `.
+std::string in_lines(const std::string& sentence);
+
 using Clock = std::function<std::chrono::steady_clock::time_point()>;
 
 /// A line on standard error that redraws itself, ten times a second at most. It never scrolls.

@@ -11,10 +11,6 @@ namespace assay::harness {
 /// `claim` is that of a claim from the command line.
 std::string failure_text(const InputError& error, const std::string& claim);
 
-/// A sentence after `assay: `, in lines of 80 columns. Text in backticks stays unbroken, to be
-/// pasted.
-std::string in_lines(const std::string& sentence);
-
 class Messages;
 
 /// The whole program, or rank 0 of several: parses, acts, and turns every exception into one clear

@@ -1,14 +1,14 @@
 #include "harness/googletest/claims.h"
 
-#include <fmt/ranges.h>
-
 #include <cstdlib>
 #include <map>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
 #include "estimators/estimator.h"
 #include "harness/base/refuse.h"
+#include "harness/base/terminal.h"
 #include "harness/command/options.h"
 #include "harness/pilot/pilot.h"
 #include "harness/plan/plan.h"
@@ -20,7 +20,6 @@
 #include "harness/theta/ask.h"
 #include "reports/words/describe.h"
 #include "reports/words/number.h"
-#include "reports/words/text.h"
 
 namespace assay::googletest {
 namespace {
@@ -168,8 +167,10 @@ testing::AssertionResult judged(const std::string& claim, const std::vector<Part
   const bool holds = test.verdict == reports::Verdict::pass;
   std::string whole = reports::plain_text(test);  // "message: …" and further facts
   whole.replace(0, whole.find(':'), reports::to_string(test.verdict));
-  return (holds ? testing::AssertionSuccess() : testing::AssertionFailure())
-         << fmt::format("{}", fmt::join(reports::wrap(whole, 80), "\n"));
+  std::string text;
+  std::istringstream lines(whole);
+  for (std::string line; std::getline(lines, line);) text += harness::wrapped_message(line, "");
+  return (holds ? testing::AssertionSuccess() : testing::AssertionFailure()) << text;
 }
 
 }  // namespace

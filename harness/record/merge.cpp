@@ -14,8 +14,8 @@
 #include "harness/base/identity.h"
 #include "harness/base/numbers.h"
 #include "harness/base/record_file.h"
+#include "harness/base/terminal.h"
 #include "harness/run/evaluate.h"
-#include "reports/words/text.h"
 
 namespace assay::harness {
 namespace {
@@ -343,7 +343,7 @@ int merge_shards(const std::vector<std::string>& records, const Output& output) 
   RunReports(output).write_and_annotate(record);
   const std::string missing = missing_shards(shards);
   if (missing.empty()) return exit_code(record, output.inconclusive);
-  fmt::print(stderr, "{}\n", fmt::join(reports::wrap("assay: " + missing, 80), "\n"));
+  fmt::print(stderr, "{}", in_lines(missing));
   return 1;
 }
 

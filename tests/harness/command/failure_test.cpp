@@ -1,4 +1,5 @@
 #include "estimators/core/line_error.h"
+#include "harness/base/terminal.h"
 #include "harness/command/program.h"
 #include "harness/suite/suite.h"
 #include "tests/prelude.h"
