@@ -28,10 +28,15 @@ bool is_missed(const Test& test) {
   return test.expected == Verdict::fail && test.verdict == Verdict::pass;
 }
 
-std::string bracket(const Effect& effect) {
+/// The interval, if it says more than the estimate.
+std::string wider_range(const Effect& effect) {
   const std::string text = range_text(effect);
-  const bool says_more = !text.empty() && text != theta_text(*effect.estimate, effect);
-  return says_more ? fmt::format(" ({})", text) : "";
+  return text == theta_text(*effect.estimate, effect) ? "" : text;
+}
+
+std::string bracket(const Effect& effect) {
+  const std::string text = wider_range(effect);
+  return text.empty() ? text : fmt::format(" ({})", text);
 }
 
 /// "mean(area) is 1.07 % above analytic (+0.06 % to +2.1 %)".
@@ -305,8 +310,7 @@ TestDisplay display(const Test& test) {
   words.sentence = sentence_of(test, effect, words.margin);
   if (shown.estimate) {
     words.effect = theta_text(*shown.estimate, shown);
-    words.interval = range_text(shown);
-    if (words.interval == words.effect) words.interval.clear();
+    words.interval = wider_range(shown);
   }
   if (is_evidence(test) && !is_proof(test)) words.chance = one_in(worst_channel(test).log10_p);
   return words;
