@@ -25,9 +25,8 @@ constexpr std::uint64_t primaries_of_few = std::uint64_t{1} << 14;
 // variance.
 constexpr std::uint64_t image_elements = std::uint64_t{1} << 20;
 constexpr std::uint64_t least_images = 2 * stats::least_replicates;
-// An estimator has at most three pools. Together they take a quarter of a budget, unless that is
-// less than least_replicates of each.
-constexpr std::uint64_t parts_of_budget = 12;
+// Pools that a pilot of an estimator has at most.
+constexpr std::uint64_t most_pools = 3;
 constexpr std::uint64_t unlimited = std::numeric_limits<std::uint64_t>::max();
 
 /// Separates the observations that show whether an estimator averages. No sampler has this name.
@@ -56,7 +55,9 @@ std::uint64_t paid_by(const Question& question, const Subject& side) {
   if (budget.seconds && !side.estimator->nature().averages)
     most = few_observations * side.estimator->primaries.value_or(1);
   if (!budget.primaries) return most;
-  return std::min(most, *budget.primaries / (parts_of_budget * question.subjects.size()));
+  const std::uint64_t pools = most_pools * question.subjects.size();
+  const double paid = pilots_part * static_cast<double>(*budget.primaries);
+  return std::min(most, static_cast<std::uint64_t>(paid) / pools);
 }
 
 /// Observations of a pool for so many primaries.

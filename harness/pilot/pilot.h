@@ -78,6 +78,9 @@ struct PilotRun {
 /// The estimator's name. For a sampler's draws a dot and their purpose follow.
 std::string pilot_name(const Subject& subject);
 
+/// Pilots take this part of a budget in primaries at most, but for a few observations of each.
+inline constexpr double pilots_part = 0.25;
+
 /// Primaries of the question's pilots that its budget, which is in primaries, has to pay.
 std::uint64_t primaries_of_pilots(const Question& question, const Pilots& pilots);
 

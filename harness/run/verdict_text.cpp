@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "harness/pilot/pilot.h"
 #include "harness/plan/gate_text.h"
 #include "harness/plan/looks.h"
 #include "harness/theta/ask.h"
@@ -104,7 +105,8 @@ std::string found_in_cell(const ChannelOutcome& channel) {
       stats::typical_side, reports::margin_text(*channel.image->detectable_in_cell, channel.effect),
       channel.effect.relative ? " of the image's mean" : "",
       channel.effect.relative && *channel.image->detectable_in_cell > 1
-          ? "; a few bright samples make most of the noise: test the `distribution` too (--law)"
+          ? "; so much noise may be that of a few bright samples: test the `distribution` too "
+            "(--law)"
           : "");
 }
 
@@ -210,10 +212,9 @@ reports::Advice setting(const TestOutcome& outcome, double factor) {
   }
   const bool in_primaries = budget && budget->primaries;
   const std::uint64_t secondaries = outcome.secondaries();
-  // Pilots take a quarter of a budget at most.
-  const double now = in_primaries
-                         ? 4 / 3.0 * static_cast<double>(primaries_of_look(outcome, secondaries))
-                         : static_cast<double>(secondaries);
+  const double now = in_primaries ? static_cast<double>(primaries_of_look(outcome, secondaries)) /
+                                        (1 - pilots_part)
+                                  : static_cast<double>(secondaries);
   const double step = std::pow(10, std::max(0.0, std::floor(std::log10(factor * now)) - 1));
   return {.key = in_primaries ? "budget" : "secondaries",
           .value = fmt::format("{:.0f}", std::ceil(factor * now / step) * step)};

@@ -75,7 +75,8 @@ TEST_F(PictureClaims, WhoseNoiseAFewBrightSamplesMakeSaySo) {
                   return bright ? 1e4F : static_cast<float>(1 + 0.1 * noise);
                 });
   }
-  expect_said(tested(), Verdict::pass, {"; a few bright samples make most of the noise: test the"});
+  expect_said(tested(), Verdict::pass,
+              {"; so much noise may be that of a few bright samples: test the"});
 }
 
 // Two stacks of 24 exclude about a hundredth of the mean. A hundredth of that takes 10^4 times as
