@@ -36,7 +36,7 @@ test_bad_suite_is_2_with_its_place() {
   write_suite bad.yaml '  - {claim: mean(normal) == 2, detct: 1%}'
   expect 2 run bad.yaml
   empty out
-  contains err 'bad.yaml:6:32: '
+  contains err 'bad.yaml:5:32: '
   contains err 'detect'
 }
 
@@ -526,7 +526,7 @@ test_github_is_told_what_is_not_ok() {
   printf 'earlier\n' >summary.md
   export GITHUB_ACTIONS=true GITHUB_STEP_SUMMARY=$work/summary.md
   expect 1 run mixed.yaml --quiet
-  contains err '::error file=mixed.yaml,line=7,title=fail%3A mixed/wrong::'
+  contains err '::error file=mixed.yaml,line=6,title=fail%3A mixed/wrong::'
   [ "$(grep -c '^::' err)" -eq 1 ] || fail 'more than one annotation'
   contains out '✗ 1 of 2 claims broken in'
   [ "$(head -n 1 summary.md)" = earlier ] || fail 'the summary was not appended to'
