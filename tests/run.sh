@@ -20,4 +20,5 @@ if [ reports/viewer/package-lock.json -nt reports/viewer/node_modules/.package-l
   npm --prefix reports/viewer ci --no-audit --no-fund --loglevel=error
 fi
 build_project build all -- -DASSAY_TESTS=ON ${CI:+-DASSAY_WERROR=ON}
-ctest --test-dir build --output-on-failure --no-tests=error -j "$(($(nproc) + 2))" "${which[@]}" "$@"
+# Programs of the distribution come first: the shim of a version manager starts much later.
+PATH=/usr/bin:/bin:$PATH ctest --test-dir build --output-on-failure --no-tests=error -j "$(($(nproc) + 2))" "${which[@]}" "$@"

@@ -16,6 +16,7 @@ library() {
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <threads.h>
 #define PI 3.14159265358979323846
 #define HEIGHT (1 / (PI * .16))
 typedef const void *Setup;
@@ -205,7 +206,7 @@ test_densities_that_break_are_errors_and_the_others_finish() {
   local at='if (p[2] < .3)'
   library sound
   library crashes '' "$at *(volatile int *)0 = 1;"
-  library hangs '' "$at for (volatile int i = 0;; ++i) {}"
+  library hangs '' "$at for (;;) thrd_sleep(&(struct timespec){3600, 0}, NULL);"
   library nothing '' "$at return NAN;"
   library prints '' "$at puts(\"grazing\");"
   library exits '' "$at _Exit(5);"
@@ -240,7 +241,7 @@ test_draws_that_break_are_errors_and_the_others_finish() {
   local at='if (index % 256 == 5)'
   library sound
   library crashes "$at *(volatile int *)0 = 1;"
-  library hangs "$at for (volatile int i = 0;; ++i) {}"
+  library hangs "$at for (;;) thrd_sleep(&(struct timespec){3600, 0}, NULL);"
   library nothing "$at return draw->density = NAN, 0;"
   library prints "$at puts(\"five\");"
   library reports "$at return 7;"

@@ -33,7 +33,7 @@ async function opened(name, { size = "wide", scheme = "light", hash = "", script
   });
   page.on("request", (request) => page.asked.push(request.url()));
   // A guard against hanging on a busy machine; the part `times` measures.
-  page.setDefaultTimeout(60000);
+  page.setDefaultTimeout(120000);
   await page.goto(`file://${resolve(pages, name)}.html${hash}`);
   if (scripts) await page.waitForFunction(() => document.documentElement.dataset.ready === "yes");
   return page;
