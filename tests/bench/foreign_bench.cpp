@@ -62,6 +62,7 @@ const AssayLibrary *assay_library(void) { return &table; }
 
 constexpr const char* program_source = R"(#include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 int main(void) {
   uint64_t question[4];
   setvbuf(stdout, NULL, _IOFBF, 1 << 20);
