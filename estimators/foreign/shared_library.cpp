@@ -395,8 +395,10 @@ std::vector<double> PreparedLibrary::observations(const Question& question) cons
 /// Draws from streams whose keys and observations are the items.
 std::vector<double> PreparedLibrary::draws(const AssaySampler& sampler,
                                            std::string_view items) const {
+  const auto streams = items_of<std::array<std::uint64_t, 2>>(items);
   std::vector<double> numbers;
-  for (const auto& [key, observation] : items_of<std::array<std::uint64_t, 2>>(items)) {
+  numbers.reserve(6 * streams.size());
+  for (const auto& [key, observation] : streams) {
     AssayStream random = assay_stream(key, observation);
     AssayDraw drawn{.size = sizeof drawn};
     const int status = sampler.sample(state_, &random, &drawn);
@@ -417,8 +419,10 @@ std::vector<double> PreparedLibrary::draws(const AssaySampler& sampler,
 std::vector<double> PreparedLibrary::at_points(const AssaySampler& sampler, Asked what,
                                                std::string_view items) const {
   const bool densities = what == Asked::densities;
+  const auto points = items_of<Point>(items);
   std::vector<double> numbers;
-  for (const Point& point : items_of<Point>(items)) {
+  numbers.reserve(points.size());
+  for (const Point& point : points) {
     const auto ask = densities ? sampler.density : sampler.evaluate;
     numbers.push_back(ask(state_, point.data()));
     if (std::isnan(numbers.back())) {
