@@ -163,7 +163,6 @@ void decide(ImageFamily& family) {
   family.winner = *std::ranges::min_element(family.groups, {}, &ImageFinding::adjusted_log_p);
   family.log_p = family.winner.adjusted_log_p;
   const ImageFinding likeliest = family.winner;
-  if (likeliest.alternation) return;
   const double least = likeliest.adjusted_log_p;
   const double unlikely =
       std::min(as_unlikely * least, std::max(least, std::log(1 - confidence_at_place)));
@@ -171,8 +170,8 @@ void decide(ImageFamily& family) {
   const auto add_those_there = [&](const std::vector<ImageFinding>& cells) {
     std::ranges::copy_if(cells, std::back_inserter(there), [&](const ImageFinding& cell) {
       return !cell.alternation && cell.effect.standard_error > 0 &&
-             overlap(cell.window, likeliest.window) && cell.z * likeliest.z > 0 &&
-             cell.adjusted_log_p <= unlikely;
+             overlap(cell.window, likeliest.window) && cell.adjusted_log_p <= unlikely &&
+             (likeliest.alternation || cell.z * likeliest.z > 0);
     });
   };
   add_those_there(family.groups);

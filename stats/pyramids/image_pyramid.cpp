@@ -17,36 +17,36 @@ LogTails tails_of(StudentValue value) {
                                    : student_t_tails(value.t, value.degrees);
 }
 
-// Turns a sum of weighted differences into their mean.
+// The least rectangle around the elements of a channel in the window of which this holds.
+template <class Holds>
+Rectangle around(const Rectangle& window, std::size_t channel, const ImageExtent& extent,
+                 const Holds& holds) {
+  std::uint32_t left = window.x + window.width, right = 0, top = window.y + window.height,
+                bottom = 0;
+  for (std::uint32_t y = window.y; y < window.y + window.height; ++y) {
+    for (std::uint32_t x = window.x; x < window.x + window.width; ++x) {
+      if (!holds((y * extent.width + x) * extent.channels + channel)) continue;
+      left = std::min(left, x);
+      right = std::max(right, x + 1);
+      top = std::min(top, y);
+      bottom = std::max(bottom, y + 1);
+    }
+  }
+  return right == 0 ? window : Rectangle{left, top, right - left, bottom - top};
+}
+
+// Turns a sum of weighted differences into their mean. Elements without weight tell nothing, so the
+// window shrinks around the others.
 void divide_by_weights(ImageFinding& finding, const std::vector<float>& weights,
                        const ImageExtent& extent) {
   double sum = 0;
-  const Rectangle& window = finding.window;
-  for (std::size_t y = window.y; y < window.y + window.height; ++y) {
-    for (std::size_t x = window.x; x < window.x + window.width; ++x) {
-      sum += weights[(y * extent.width + x) * extent.channels + finding.channel];
-    }
-  }
+  finding.window = around(finding.window, finding.channel, extent, [&](std::size_t element) {
+    sum += weights[element];
+    return weights[element] > 0;
+  });
   if (!(sum > 0)) return;
   finding.effect.estimate /= sum;
   finding.effect.standard_error /= sum;
-}
-
-// The rectangle of the elements that have the channel and the z of this one.
-Rectangle rectangle_like(std::size_t element, std::span<const double> z,
-                         const ImageExtent& extent) {
-  std::size_t left = extent.width, right = 0, top = extent.height, bottom = 0;
-  for (std::size_t i = element % extent.channels; i < z.size(); i += extent.channels) {
-    if (z[i] != z[element]) continue;
-    const std::size_t x = i / extent.channels % extent.width;
-    const std::size_t y = i / extent.channels / extent.width;
-    left = std::min(left, x);
-    right = std::max(right, x + 1);
-    top = std::min(top, y);
-    bottom = std::max(bottom, y + 1);
-  }
-  return {static_cast<std::uint32_t>(left), static_cast<std::uint32_t>(top),
-          static_cast<std::uint32_t>(right - left), static_cast<std::uint32_t>(bottom - top)};
 }
 
 }  // namespace
@@ -125,7 +125,12 @@ ImageFamily RowPyramid::family() {
                      .hidden_squares = found_.noise.hidden_squares()};
   if (counts.different_constants > 0) {
     family.groups.push_back(certain_finding(extent_, counts.first_different, counts.difference));
-    family.groups.back().window = rectangle_like(counts.first_different, found_.z, extent_);
+    ImageFinding& all = family.groups.back();
+    const Rectangle whole{0, 0, static_cast<std::uint32_t>(extent_.width),
+                          static_cast<std::uint32_t>(extent_.height)};
+    all.window = around(whole, all.channel, extent_, [&](std::size_t element) {
+      return found_.z[element] == found_.z[counts.first_different];
+    });
   } else {
     family.typical.noise = offer_cells();
     add_best(family);

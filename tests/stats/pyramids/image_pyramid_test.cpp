@@ -470,22 +470,43 @@ TEST(ImagePyramid, AUniformDifferenceIsOfTheWholeImage) {
   }
 }
 
-// Elements around it that never vary make coarser cells neither clearer nor less clear.
-TEST(ImagePyramid, AFindingIsTheFinestCellThatHoldsIt) {
-  Philox random(855);
+// Elements around it that never vary have no part in a finding, whatever its shape.
+TEST(ImagePyramid, AFindingIsThePlaceThatVaries) {
   const ImageExtent extent{64, 48, 1};
-  const auto stack_of = [&](double mean) {
-    return draw_stack(extent, 32, [&](std::size_t e) {
-      const bool varies = e % 64 / 8 == 2 && e / 64 / 8 == 1;
-      return varies ? mean + random.normal() : 1;
-    });
+  Philox random(855);
+  for (const Rectangle& place :
+       {Rectangle{16, 8, 8, 8}, Rectangle{7, 5, 1, 1}, Rectangle{3, 0, 1, 48},
+        Rectangle{18, 9, 5, 7}, Rectangle{0, 47, 64, 1}}) {
+    const auto stack_of = [&](double mean) {
+      return draw_stack(extent, 32, [&](std::size_t e) {
+        const bool varies = e % 64 - place.x < place.width && e / 64 - place.y < place.height;
+        return varies ? mean + random.normal() / 4 : 1;
+      });
+    };
+    const OwnedStack a = stack_of(1.5);
+    const OwnedStack b = stack_of(1);
+    const ImageFamily family = image_pyramid(a.view(), b.view());
+    EXPECT_LT(family.log_p, std::log(1e-6));
+    EXPECT_EQ(family.winner.window, place);
+    EXPECT_FALSE(family.winner.alternation);
+    EXPECT_EQ(family.winner.adjusted_log_p, family.log_p);
+  }
+}
+
+// A column that is too bright has the p-value of signs in turn, and a place.
+TEST(ImagePyramid, SignsInTurnWinOnlyWhereNoCellTells) {
+  const ImageExtent extent{32, 32, 1};
+  Philox random(856);
+  const auto stack_of = [&](auto&& mean) {
+    return draw_stack(extent, 64, [&](std::size_t e) { return mean(e) + random.normal(); });
   };
-  const OwnedStack a = stack_of(1.5);
-  const OwnedStack b = stack_of(1);
-  const ImageFamily family = image_pyramid(a.view(), b.view());
-  EXPECT_LT(family.log_p, std::log(1e-6));
-  EXPECT_EQ(family.winner.window, (Rectangle{16, 8, 8, 8}));
-  EXPECT_EQ(family.winner.adjusted_log_p, family.log_p);
+  const OwnedStack b = stack_of([](std::size_t) { return 0.0; });
+  const OwnedStack column = stack_of([](std::size_t e) { return e % 32 == 9 ? 1.5 : 0.0; });
+  const ImageFinding there = image_pyramid(column.view(), b.view()).winner;
+  EXPECT_FALSE(there.alternation);
+  EXPECT_TRUE(there.window.x <= 9 && 9 < there.window.x + there.window.width);
+  const OwnedStack turns = stack_of([](std::size_t e) { return e % 32 % 2 == 0 ? 0.1 : -0.1; });
+  EXPECT_EQ(image_pyramid(turns.view(), b.view()).winner.alternation, Alternation::columns);
 }
 
 TEST(ImagePyramid, EqualConstantsEverywhereAreNoEvidence) {
