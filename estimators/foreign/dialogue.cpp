@@ -87,9 +87,10 @@ void Dialogue::hear_hello() {
   hello_ = parse_hello(text);
 }
 
-void Dialogue::give_up(const std::string& why) {
+void Dialogue::give_up(const std::string& why, const std::string& came) {
   child_.kill();
-  throw NoAnswer("`" + terms_.name + "` " + why + ending_with(child_.last_errors()));
+  throw NoAnswer("`" + terms_.name + "` " + why + ending_with(child_.last_errors()) +
+                 (came.empty() ? "" : "; " + came));
 }
 
 std::vector<double> Respondent::ask(const Question& question, std::string_view items) {
@@ -128,8 +129,7 @@ std::vector<double> Dialogue::reply_to(const Question& question, std::string_vie
     while (true) {
       const std::size_t count = listen(reply.space(), end);
       if (count == 0) {
-        give_up(child_.ending() + " instead of answering for " + to_text(question) + "; " +
-                reply.so_far());
+        give_up(child_.ending() + " instead of answering for " + to_text(question), reply.so_far());
       }
       if (reply.take(count)) break;
       if (child_.has_output()) continue;
@@ -138,7 +138,9 @@ std::vector<double> Dialogue::reply_to(const Question& question, std::string_vie
   } catch (const TimeOut&) {
     if (!reads) give_up("closed its standard input instead of answering for " + to_text(question));
     give_up("did not answer for " + to_text(question) + " within " + seconds_text(terms_.timeout) +
-            " (parameter `timeout`; does it flush its output after each reply?); " +
+                (terms_.asked_whether_it_flushes
+                     ? " (parameter `timeout`; does it flush its output after each reply?)"
+                     : " (parameter `timeout`)"),
             reply.so_far());
   }
   return reply.numbers();

@@ -99,7 +99,7 @@ class Dialogue final : public Respondent {
   std::size_t listen(std::span<char> into, Deadline end);
   std::vector<double> hear(const Question& question, std::string_view items) override;
   std::vector<double> reply_to(const Question& question, std::string_view items);
-  [[noreturn]] void give_up(const std::string& why);
+  [[noreturn]] void give_up(const std::string& why, const std::string& came = "");
 
   const Terms& terms_;
   Child child_;

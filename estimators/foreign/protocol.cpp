@@ -520,7 +520,7 @@ std::string Reply::ends_early() const {
 }
 
 std::string Reply::so_far() const {
-  if (filled_ == 0) return "nothing of its reply came";
+  if (filled_ == 0) return "";
   std::size_t count = numbers_.size();
   if (kind_ == Numbers::binary) {
     const bool ended = std::string_view(bytes_.data(), filled_).ends_with(end_);

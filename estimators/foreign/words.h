@@ -45,19 +45,28 @@ inline std::string joined(const std::vector<std::string>& words) {
   return out;
 }
 
-/// The end of a sentence on a program: the last lines of its standard error, on one line; "" where
-/// there are none.
-inline std::string ending_with(const std::string& errors) {
+/// The last words of a text, on one line. Cut at a blank, if there is one.
+inline std::string last_words(std::string_view text) {
   constexpr std::size_t most = 300;
-  std::size_t begin = errors.size() > most ? errors.size() - most : 0;
-  // Not from the middle of a word, where words are words.
-  const std::size_t blank = errors.find_first_of(" \n", begin);
+  std::size_t begin = text.size() > most ? text.size() - most : 0;
+  const std::size_t blank = text.find_first_of(" \n", begin);
   if (begin > 0 && blank != std::string::npos) begin = blank;
-  const std::string legible = shown(std::string_view(errors).substr(begin), 2 * most);
+  const std::string legible = shown(text.substr(begin), 2 * most);
   std::string out;
   for (const std::string_view word : words_of(legible)) out += " " + std::string(word);
-  if (out.empty()) return "";
-  return "; its standard error ends with:" + std::string(begin > 0 ? " …" : "") + out;
+  return out.empty() ? "" : (begin > 0 ? " …" : "") + out;
+}
+
+/// The end of a sentence on a program: its standard error, "" where that is empty. The last line
+/// comes first, because it has the reason.
+inline std::string ending_with(std::string_view errors) {
+  const std::size_t end = errors.find_last_not_of(" \t\r\n");
+  if (end == std::string_view::npos) return "";
+  errors = errors.substr(0, end + 1);
+  const std::size_t line = errors.rfind('\n') + 1;
+  const std::string before = last_words(errors.substr(0, line));
+  return "; its standard error ends with:" + last_words(errors.substr(line)) +
+         (before.empty() ? "" : ", after:" + before);
 }
 
 }  // namespace assay::foreign
