@@ -700,6 +700,19 @@ class MeanTheta : public Theta {
                                            : Theta::power(sized, effect);
   }
 
+  std::string caveat(const TestOutcome& outcome) const override {
+    if (outcome.plan.method.is.exact) return "";
+    for (const Subject& subject : outcome.question.subjects) {
+      if (!is_recorded(subject)) continue;
+      const std::uint64_t rows = subject.setup->observations().value();
+      if (rows >= floor_of_evidence) continue;
+      return fmt::format(
+          "{} rows may lack values rarer than one in {}, and no test can know what those carry",
+          rows, std::max<std::uint64_t>(1, rows / 3));
+    }
+    return "";
+  }
+
   std::optional<ConstantVerdict> settled(const Seen& seen, const Regions& regions) const override {
     if (!all_constant(seen)) return std::nullopt;
     return judge_constant(seen, regions);

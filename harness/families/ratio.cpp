@@ -431,7 +431,8 @@ class VarianceTheta : public LogTheta {
     return secondaries_of_floor(test);
   }
 
-  std::string caveat(const Question& question) const override {
+  std::string caveat(const TestOutcome& outcome) const override {
+    const Question& question = outcome.question;
     return question.of_two() ? rows_beside_primaries(question) : "";
   }
 

@@ -312,11 +312,19 @@ bool is_put_off(const TestOutcome& outcome) {
          need_more(outcome.gates) && !red_gates(outcome.gates).empty();
 }
 
+/// True if the claim fails, or passes as an equality with an interval that excludes it.
+bool is_doubted(const TestOutcome& outcome) {
+  if (outcome.verdict != Verdict::pass) return outcome.verdict == Verdict::fail;
+  const reports::Effect& effect = outcome.channels[0].effect;
+  return outcome.question.test->claim.relation == Relation::equal &&
+         (effect.low > 0 || effect.high < 0);
+}
+
 void add_caveat(TestOutcome& outcome) {
-  const std::string caveat = outcome.question.theta->caveat(outcome.question);
+  const std::string caveat = outcome.question.theta->caveat(outcome);
   if (caveat.empty()) return;
   outcome.message += "; " + caveat;
-  outcome.advice = reports::Advice{.words = caveat};
+  if (outcome.verdict == Verdict::fail) outcome.advice = reports::Advice{.words = caveat};
 }
 
 void take_sound_look(TestWork& work, const DrawnTest& test, bool may_go_on) {
@@ -341,7 +349,7 @@ void take_sound_look(TestWork& work, const DrawnTest& test, bool may_go_on) {
       Reason reason = narrate(outcome);
       outcome.message = reason.text + outcome.question.theta->where_it_differs(test);
       outcome.advice = std::move(reason.advice);
-      if (outcome.verdict == Verdict::fail) add_caveat(outcome);
+      if (is_doubted(outcome)) add_caveat(outcome);
     }
   }
   require_activation(outcome, test);

@@ -25,9 +25,10 @@ std::string not_finite(const TestOutcome& outcome, const Subject& side, const Dr
   const ChannelSummary& summary = drawn.summary().channels[channel];
   const Pool& pool = drawn.pool();
   const auto at = side.image ? " at pixel " + element_name(*side.setup->image(), channel) : "";
-  const std::string text = fmt::format(
-      "{} of {} observations of `{}`{} are not finite, the first is observation {}",
-      summary.nonfinite, drawn.summary().count, side.estimator->name, at, summary.first_nonfinite);
+  const std::string text =
+      fmt::format("{} of {} observations of `{}`{} {} not finite, the first is observation {}",
+                  summary.nonfinite, drawn.summary().count, side.estimator->name, at,
+                  summary.nonfinite == 1 ? "is" : "are", summary.first_nonfinite);
   const auto place = side.setup->place_of(
       {.index = summary.first_nonfinite, .key = pool.key(), .primaries = pool.primaries()});
   if (!place.empty()) return text + ", `" + place + "`; mend or delete it";

@@ -188,8 +188,9 @@ class Theta {
   virtual const char* detectable_text() const { return " or more"; }
   /// The place where the data of a failed claim differ.
   virtual std::string where_it_differs(const DrawnTest&) const { return ""; }
-  /// A reason for a fail that the subjects show, in a clause.
-  virtual std::string caveat(const Question&) const { return ""; }
+  /// Another reason for what the data say, in a clause: of fails, and of passes whose interval
+  /// excludes the claim.
+  virtual std::string caveat(const TestOutcome&) const { return ""; }
 };
 
 }  // namespace assay::harness

@@ -141,7 +141,7 @@ TEST_F(PictureClaims, WithATexelThatIsNoNumberSayWhichAndWhere) {
   write_spoilt(place.file("b07.exr"), 1, 1, std::numeric_limits<float>::quiet_NaN());
   expect_said(
       tested(), Verdict::error,
-      {"of `b` at pixel x1y1.G", "are not finite, the first is observation 7, `", "b07.exr`"});
+      {"of `b` at pixel x1y1.G", "is not finite, the first is observation 7, `", "b07.exr`"});
 }
 
 // The second claim keeps values beside the pictures, the third costs.
@@ -267,6 +267,19 @@ TEST_F(PictureClaims, AReferenceIsHeldAgainstWithItsError) {
   const reports::Test test = against(", variance: Variance.*, samples: 1000");
   expect_said(test, Verdict::fail);
   EXPECT_THAT(test.message, Not(HasSubstr("taken as exact")));
+}
+
+// Noise of half a standard error of the stack in each pixel of the reference is no pixel's finding.
+// The interval of the root mean square excludes 0.
+TEST_F(PictureClaims, APassThatItsIntervalDoubtsSaysWhatTheReferenceHides) {
+  write(place, "a");
+  write_stack(place, "ref", {.width = width, .height = height, .count = 1},
+              [](int x, int, const std::string&, double noise) {
+                return static_cast<float>((1 + x / 16.0) * (1 + 0.01 * noise));
+              });
+  const reports::Test test = tested("mean(a) == mean(b)", "file: ref00.exr, exact: true");
+  expect_said(test, Verdict::pass, {"`b` is one picture, taken as exact"});
+  EXPECT_GT(test.channels[0].effect.low, 0);
 }
 
 TEST_F(PictureClaims, ADamagedFileIsAnErrorWithItsName) {
