@@ -133,7 +133,7 @@ void ProgressBar::end() {
 void say_beside_progress(const std::string& sentence, std::ostream& out) {
   const std::scoped_lock lock(terminal);
   wipe_bar();
-  out << "assay: " << sentence << std::endl;
+  out << in_lines(sentence) << std::flush;
 }
 
 void write_beside_progress(const std::string& text, std::FILE* stream) {

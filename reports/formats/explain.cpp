@@ -65,8 +65,8 @@ std::string explain(const Suite& suite, const Test& test, int width) {
   say(text);
   if (is_evidence(test) && test.verdict != Verdict::skipped && suite.alpha > 0) {
     say(false_alarms(suite.alpha) +
-        " They are counted over all claims of the suite. A mean of infinite "
-        "variance has more.");
+        " They are counted over all claims of the suite. Means of infinite "
+        "variance fail falsely more often.");
   }
   const std::vector<Step> next = steps(test);
   if (next.empty()) return out;
@@ -75,8 +75,11 @@ std::string explain(const Suite& suite, const Test& test, int width) {
     out += "  " + step.label + ":\n";
     const std::vector<std::string> lines = step.paste.empty()
                                                ? wrap(one_line(step.words), width - 4)
-                                               : wrap_command(one_line(step.paste), width - 4);
-    for (const std::string& part : lines) out += "    " + part + "\n";
+                                               : wrap_command(one_line(step.paste), width - 6);
+    for (std::string indent = "    "; const std::string& part : lines) {
+      out += indent + part + "\n";
+      if (!step.paste.empty()) indent = "      ";
+    }
   }
   return out;
 }
