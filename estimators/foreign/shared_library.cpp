@@ -397,7 +397,7 @@ std::vector<double> PreparedLibrary::draws(const AssaySampler& sampler,
                                            std::string_view items) const {
   const auto streams = items_of<std::array<std::uint64_t, 2>>(items);
   std::vector<double> numbers;
-  numbers.reserve(6 * streams.size());
+  numbers.reserve(numbers_of(Asked::draws) * streams.size());
   for (const auto& [key, observation] : streams) {
     AssayStream random = assay_stream(key, observation);
     AssayDraw drawn{.size = sizeof drawn};

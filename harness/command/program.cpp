@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <new>
 #include <stdexcept>
@@ -21,7 +20,6 @@
 #include "reports/words/text.h"
 
 namespace assay::harness {
-namespace {}  // namespace
 
 std::string failure_text(const InputError& error, const std::string& claim) {
   const Location& where = error.where();

@@ -703,12 +703,11 @@ class MeanTheta : public Theta {
   std::string caveat(const TestOutcome& outcome) const override {
     if (outcome.plan.method.is.exact) return "";
     for (const Subject& subject : outcome.question.subjects) {
-      if (!is_recorded(subject)) continue;
-      const std::uint64_t rows = subject.setup->observations().value();
-      if (rows >= floor_of_evidence) continue;
+      const std::optional<std::uint64_t> rows = subject.setup->observations();
+      if (!rows || *rows >= floor_of_evidence) continue;
       return fmt::format(
           "{} rows may lack values rarer than one in {}, and no test can know what those carry",
-          rows, std::max<std::uint64_t>(1, rows / 3));
+          *rows, std::max<std::uint64_t>(1, *rows / 3));
     }
     return "";
   }

@@ -45,8 +45,9 @@ std::string not_finite_in_pilot(const Question& question, const Pilots& pilots) 
       const ChannelSummary& seen = pilot->sums->channels[channel];
       if (seen.nonfinite == 0) continue;
       return fmt::format(
-          "{} of {} observations of `{}` in the pilot are not finite, the first is observation {}",
-          seen.nonfinite, pilot->sums->count, subject.estimator->name, seen.first_nonfinite);
+          "{} of {} observations of `{}` in the pilot {} not finite, the first is observation {}",
+          seen.nonfinite, pilot->sums->count, subject.estimator->name,
+          seen.nonfinite == 1 ? "is" : "are", seen.first_nonfinite);
     }
   }
   return "";

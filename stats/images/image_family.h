@@ -80,7 +80,7 @@ struct ImageFinding {
   std::optional<Alternation> alternation = {};  // None of a plain sum over the window.
   // Level: side of the cells. For alternating sums it is that of the image.
   std::uint32_t size = 1;
-  Rectangle window;
+  Rectangle window;  // Around the elements of the sum that have a weight.
   std::size_t channel = 0;
   double z = 0;               // Positive where the first image is brighter.
   double log_p = 0;           // Of this one sum, two-sided.

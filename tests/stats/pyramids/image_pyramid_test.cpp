@@ -470,17 +470,19 @@ TEST(ImagePyramid, AUniformDifferenceIsOfTheWholeImage) {
   }
 }
 
-// Elements around it that never vary have no part in a finding, whatever its shape.
+// Elements around it that never vary have no part in a finding, whatever its shape. The sum over
+// any place is as many standard errors off.
 TEST(ImagePyramid, AFindingIsThePlaceThatVaries) {
   const ImageExtent extent{64, 48, 1};
   Philox random(855);
   for (const Rectangle& place :
        {Rectangle{16, 8, 8, 8}, Rectangle{7, 5, 1, 1}, Rectangle{3, 0, 1, 48},
         Rectangle{18, 9, 5, 7}, Rectangle{0, 47, 64, 1}}) {
+    const double deviation = std::sqrt(place.width * place.height) / 8;
     const auto stack_of = [&](double mean) {
       return draw_stack(extent, 32, [&](std::size_t e) {
         const bool varies = e % 64 - place.x < place.width && e / 64 - place.y < place.height;
-        return varies ? mean + random.normal() / 4 : 1;
+        return varies ? mean + deviation * random.normal() : 1;
       });
     };
     const OwnedStack a = stack_of(1.5);
