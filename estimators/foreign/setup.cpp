@@ -39,7 +39,10 @@ std::vector<double> one_by_one(std::uint64_t count, const NoAnswer& failure, con
 class ForeignEstimator final : public Estimator {
  public:
   explicit ForeignEstimator(std::shared_ptr<Children> children)
-      : children_(std::move(children)), width_(children_->hello().width()) {}
+      : children_(std::move(children)),
+        width_(children_->hello().width()),
+        tells_rays_(children_->hello().rays),
+        samples_(children_->hello().image ? children_->hello().image->elements() : 1) {}
 
   ~ForeignEstimator() override {
     if (dialogue_) children_->give_back(std::move(dialogue_));
@@ -61,7 +64,8 @@ class ForeignEstimator final : public Estimator {
     if (!holds(wanted)) fetch(wanted);
     const double* const row = numbers_.data() + (wanted.first - held_.first) * width_;
     std::copy_n(row, out.size(), out.begin());
-    count_cost(row, wanted, cost);
+    cost.samples += primaries * samples_;
+    if (tells_rays_) count_rays(row, wanted, cost);
   }
 
  private:
@@ -70,10 +74,7 @@ class ForeignEstimator final : public Estimator {
            q.first - held_.first < held_.count && !numbers_.empty();
   }
 
-  void count_cost(const double* row, const Question& question, Cost& cost) const {
-    const std::optional<ImageShape>& image = children_->hello().image;
-    cost.samples += question.primaries * (image ? image->elements() : 1);
-    if (!children_->hello().rays) return;
+  void count_rays(const double* row, const Question& question, Cost& cost) const {
     const double rays = row[width_ - 1];
     constexpr double most = 0x1p53;
     if (!(rays >= 0 && rays <= most && rays == std::floor(rays))) {
@@ -167,6 +168,8 @@ class ForeignEstimator final : public Estimator {
 
   std::shared_ptr<Children> children_;
   std::size_t width_;
+  bool tells_rays_;
+  std::uint64_t samples_;  ///< that a primary takes
   std::unique_ptr<Respondent> dialogue_;
   double taken_at_ = 0;
   double seconds_ = 0;

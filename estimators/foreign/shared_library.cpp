@@ -349,25 +349,6 @@ void PreparedLibrary::prepare(const LibraryChoice& choice, AssayPreparation& pre
   state_ = preparation.setup;
 }
 
-std::uint64_t PreparedLibrary::observe(AssayStream& random, std::uint64_t primaries,
-                                       std::span<double> out) const {
-  Message message;
-  message[0] = '\0';
-  AssayCall call{.size = sizeof call,
-                 .setup = state_,
-                 .random = &random,
-                 .primaries = primaries,
-                 .out = out.data(),
-                 .out_count = out.size(),
-                 .message = message.data(),
-                 .message_size = message.size(),
-                 .rays = 0};
-  const int status = estimator_.secondary(&call);
-  if (status == 0) return call.rays;
-  throw LibraryError("`" + object_.file() + "`, estimator `" + estimator_.name + "`: " +
-                     text_of(message) + " (status " + std::to_string(status) + " of secondary())");
-}
-
 std::vector<double> PreparedLibrary::answer(const Question& question,
                                             std::string_view items) const {
   // Tables of densities are made without.
@@ -382,12 +363,27 @@ std::vector<double> PreparedLibrary::answer(const Question& question,
 std::vector<double> PreparedLibrary::observations(const Question& question) const {
   const std::size_t width = hello_.width();
   std::vector<double> numbers(static_cast<std::size_t>(question.count) * width);
+  Message message;
   for (std::uint64_t i = 0; i < question.count; ++i) {
-    const std::span<double> row = std::span(numbers).subspan(i * width, width);
+    double* const row = numbers.data() + i * width;
     AssayStream random = assay_stream(question.key, question.first + i);
-    const std::uint64_t rays =
-        observe(random, question.primaries, row.first(hello_.channels.size()));
-    if (hello_.rays) row.back() = static_cast<double>(rays);
+    message[0] = '\0';
+    AssayCall call{.size = sizeof call,
+                   .setup = state_,
+                   .random = &random,
+                   .primaries = question.primaries,
+                   .out = row,
+                   .out_count = hello_.channels.size(),
+                   .message = message.data(),
+                   .message_size = message.size(),
+                   .rays = 0};
+    const int status = estimator_.secondary(&call);
+    if (status != 0) {
+      throw LibraryError("`" + object_.file() + "`, estimator `" + estimator_.name +
+                         "`: " + text_of(message) + " (status " + std::to_string(status) +
+                         " of secondary())");
+    }
+    if (hello_.rays) row[width - 1] = static_cast<double>(call.rays);
   }
   return numbers;
 }

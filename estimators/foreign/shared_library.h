@@ -71,7 +71,6 @@ class PreparedLibrary {
  private:
   void prepare(const LibraryChoice& choice, AssayPreparation& preparation);
   std::vector<double> observations(const Question& question) const;
-  std::uint64_t observe(AssayStream& random, std::uint64_t primaries, std::span<double> out) const;
   std::vector<double> draws(const AssaySampler& sampler, std::string_view items) const;
   std::vector<double> at_points(const AssaySampler& sampler, Asked what,
                                 std::string_view items) const;
