@@ -224,6 +224,9 @@ TestOutcome plan_test(const Question& question, const FamilyPlace& place, const 
   } catch (const NoDensity& failure) {
     plan.looks = one_look(2, place.share);
     plan.error = lack_of_density(question, failure);
+  } catch (const InputError& mistake) {  // that the pilots show
+    plan.looks = one_look(2, place.share);
+    plan.error = mistake.what();
   }
   return test;
 }
