@@ -30,12 +30,15 @@ TestSize full_size(const TestOutcome& outcome) {
   return {.share = outcome.share_at(look), .secondaries = looks.sizes[look]};
 }
 
-/// Error of the interval whose ends decide: two tests at beta, or one or two tails at alpha.
+/// Error of the interval whose ends decide: two tests at beta, or one or two tails at alpha. Where
+/// neither has decided it is the smaller one.
 double deciding_error(const TestOutcome& outcome, const ChannelOutcome& channel,
                       const ErrorShare& share) {
-  if (outcome.verdict != Verdict::fail && channel.regions.has_forbidden()) return 2 * share.beta;
   const bool two_tails = channel.regions.two_sided() && !channel.evidence.distance;
-  return (two_tails ? 1 : 2) * share.alpha;
+  const double refuting = (two_tails ? 1 : 2) * share.alpha;
+  if (outcome.verdict == Verdict::fail || !channel.regions.has_forbidden()) return refuting;
+  const double excluding = 2 * share.beta;
+  return outcome.verdict == Verdict::pass ? excluding : std::min(refuting, excluding);
 }
 
 /// With a factor the effect is relative to factor * second.
@@ -51,8 +54,8 @@ std::string quantity_of(const Evidence& evidence, const Question& question) {
 /// The effect with the interval behind the verdict. Its ends are at this look's levels, so it holds
 /// theta with the confidence shown wherever sampling stops (repeated confidence interval). A fail
 /// shows the interval at alpha, which misses the claimed region. A pass that excludes the forbidden
-/// region shows the interval at 1 - 2 beta: one test at beta to each side. An undecided test shows
-/// that interval too.
+/// region shows the interval at 1 - 2 beta: one test at beta to each side. That of an undecided
+/// test is the wider one: it meets the claimed region and the forbidden one.
 reports::Effect effect_of(const TestOutcome& outcome, const ChannelOutcome& channel) {
   const Evidence& evidence = channel.evidence;
   // A smaller error is lost in 1 - error. A narrower interval shows the same verdict.

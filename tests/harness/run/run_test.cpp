@@ -163,6 +163,23 @@ TEST_F(Runs, SaysHowMuchADetectWouldTakeThatTakesDays) {
             reports::Verdict::pass);
 }
 
+// The mean is 2. Off by 2.45 standard errors, the interval at 1 - 2 beta often misses the claim.
+TEST_F(Runs, ShowsOfAnUndecidedClaimAnIntervalThatMeetsClaimAndMargin) {
+  int undecided = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const reports::Test test =
+        run_text(suite_of("  - {claim: mean(normal) == 1.9, detect: 0.15, secondaries: 600}\n"),
+                 {.seed = seed})
+            .suites[0]
+            .tests[0];
+    if (test.verdict != Verdict::inconclusive) continue;
+    ++undecided;
+    EXPECT_LE(*test.channels[0].effect.low, 0) << seed;
+    EXPECT_GE(*test.channels[0].effect.high, 0.15) << seed;
+  }
+  EXPECT_GE(undecided, 20);
+}
+
 // A quarter and three quarters of 40000 primaries, whichever tests run. The pilot may take a
 // twelfth of the larger share, of which the smaller share pays a twelfth of its own.
 TEST_F(Runs, SplitsTheSuitesBudgetByWeight) {
