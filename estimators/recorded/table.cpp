@@ -246,6 +246,7 @@ std::string no_text(std::string_view beginning, const std::string& file) {
          python_quoted(to_paste(file)) + "))`";
 }
 
+const std::string name_columns = "  if these are columns, name them in a first line";
 constexpr std::string_view stream_keyword = "stream:";
 constexpr std::size_t longest_line = std::size_t{64} << 20;
 
@@ -257,6 +258,17 @@ std::vector<std::string> default_names(std::size_t count) {
   std::vector<std::string> names;
   for (std::size_t i = 1; i <= count; ++i) names.push_back("value" + std::to_string(i));
   return names;
+}
+
+bool is_whole(std::string_view text) {
+  return text.find_first_not_of("0123456789", text.starts_with('-') ? 1 : 0) == text.npos;
+}
+
+/// `3,14`, which may be one number.
+bool may_be_a_decimal(const std::vector<Field>& fields, char separator) {
+  return separator == ',' && fields.size() == 2 && is_whole(fields[0].text) &&
+         is_whole(fields[1].text) && !fields[1].text.starts_with('-') &&
+         fields[1].column == fields[0].column + static_cast<int>(fields[0].text.size()) + 1;
 }
 
 class Reader {
@@ -276,6 +288,7 @@ class Reader {
     if (unnamed_rows_) fields.erase(fields.begin());
     if (table_.columns.empty()) table_.columns = default_names(fields.size());
     check_length(fields);
+    may_be_decimals_ = may_be_decimals_ && may_be_a_decimal(fields, separator_);
     if (table_.values.size() + fields.size() > most_) {
       throw InputError({.file = source_.name()}, "its numbers do not fit into memory");
     }
@@ -293,6 +306,10 @@ class Reader {
     }
     const bool alone = table_.rows() == 1 && columns > 1 && !names_line_;
     if (alone && expected_ == Rows::several) refuse_one_row(columns);
+    if (may_be_decimals_ && !names_line_) {
+      throw InputError({.file = source_.name(), .line = table_.lines.front(), .column = 1},
+                       "a comma may be a decimal point: write it as one;\n" + name_columns);
+    }
     return std::move(table_);
   }
 
@@ -398,8 +415,7 @@ class Reader {
                              '0' <= field.text[1] && field.text[1] <= '9';
     if (is_fraction && !names_line_) {
       refuse(field.column, in_message(field.text) +
-                               " follows a comma: write a decimal point for it;\n"
-                               "  if these are columns, name them in a first line");
+                               " follows a comma: write a decimal point for it;\n" + name_columns);
     }
     const Parsed parsed = parse(field.text, separator_ == ';');
     if (parsed.is_number) return parsed.value;
@@ -423,6 +439,7 @@ class Reader {
   int line_ = 0;
   std::string_view text_;
   bool unnamed_rows_ = false;
+  bool may_be_decimals_ = true;
   std::optional<int> names_line_;
   char separator_ = blank;  ///< of this line
   char first_separator_ = blank;

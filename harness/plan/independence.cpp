@@ -103,7 +103,7 @@ Reason dependent(const Question& question, const Rows& rows, bool at_a_lag) {
       fmt::format(
           "the {} are not independent: {} of them are worth about {:.0f} independent ones; ",
           rows.label, rows.values.size(), worth),
-      "give one row a chain, or " + enough_of_a_chain(question, time));
+      "give rows as they were drawn; of a chain one, or " + enough_of_a_chain(question, time));
 }
 
 /// A red gate on something that chance does not make.
