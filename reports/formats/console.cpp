@@ -100,11 +100,8 @@ class Screen {
     const std::string verdict = verdict_text(test) + ": ";
     const int used = head(fmt::format("{} {}{}", mark(how), verdict, test.id), place(test), how);
     const std::vector<Step> all = steps(test);
-    std::string told = trouble(test);
+    std::string told = without_advice(trouble(test), test);
     if (told.starts_with(verdict)) told.erase(0, verdict.size());
-    const std::string asked_for = all.empty() ? "" : all[0].words;
-    const std::size_t at = asked_for.empty() ? std::string::npos : told.rfind(asked_for);
-    if (at != std::string::npos && at > 1) told.erase(at - 2, asked_for.size() + 2);  // with "; "
     const std::vector<std::string> text = wrapped(told, options_.width - block_indent);
     std::vector<std::string> next;
     if (!all.empty()) next = step_lines(all[0]);

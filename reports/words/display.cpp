@@ -112,7 +112,7 @@ std::string exclusion_of_claim(const Test& test, const Effect& effect, const std
 
 std::string sentence_of(const Test& test, const Effect& effect, const std::string& margin) {
   if (test.verdict == Verdict::skipped) return "It was not run.";
-  if (!is_evidence(test)) return headline(test);
+  if (!is_evidence(test)) return without_advice(headline(test), test);
   const bool differs = test.image && test.verdict == Verdict::fail;
   std::string text = differs ? found_in_image(*test.image) : std::string();
   if (text.empty() && effect.estimate) text = found(test, effect);
@@ -365,6 +365,13 @@ std::string trouble(const Test& test) {
   if (test.verdict == Verdict::fail && test.expected == Verdict::pass)
     return display(test).sentence;
   return test.verdict == Verdict::skipped ? test.message : headline(test);
+}
+
+std::string without_advice(std::string words, const Test& test) {
+  const std::string advice = test.advice && test.advice->key.empty() ? test.advice->words : "";
+  const std::size_t at = advice.empty() ? std::string::npos : words.rfind(advice);
+  if (at == std::string::npos || at < 2) return words;
+  return words.erase(at - 2, advice.size() + 2);  // with "; " or ": "
 }
 
 std::vector<Step> steps(const Test& test) {

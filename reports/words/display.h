@@ -56,7 +56,7 @@ std::string meaning(const Test&);
 struct TestDisplay {
   std::string standing;
   std::string verdict;   ///< "pass", "fail (as expected)"
-  std::string sentence;  ///< what was found, without a p-value
+  std::string sentence;  ///< what was found, without a p-value; why there is no verdict
   std::string meaning;
   std::string effect;    ///< "+1.07 %"; empty where there is none
   std::string interval;  ///< "+0.06 % to +2.1 %"
@@ -121,6 +121,8 @@ RecordDisplay display(const Record&);
 
 /// The trouble with a claim, without a p-value where it can be said so.
 std::string trouble(const Test&);
+/// Words without the advice in them, which is a step of its own.
+std::string without_advice(std::string words, const Test&);
 
 /// The command that tells more of a test.
 Step explanation(const Test&);

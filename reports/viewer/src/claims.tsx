@@ -66,7 +66,7 @@ export function NoVerdict({ test }: { test: Test }) {
       </div>
       <div>
         <dt>Reason</dt>
-        <dd class="sentence">{test.message}</dd>
+        <dd class="sentence">{test.display.sentence}</dd>
       </div>
       {violated.length > 0 && (
         <div>
