@@ -179,6 +179,12 @@ bool takes_single_primaries(const Question& question, const Pilots& pilots) {
   return question.is().of_moments && !question.is().of_spread && bets_on_range(question, pilots);
 }
 
+/// The look of a test that nothing decides. Files are there whole.
+stats::LookSchedule unjudged_look(const TestOutcome& test) {
+  const bool files = std::ranges::all_of(test.question.subjects, is_recorded);
+  return one_look(files ? test.question.most_rows().value_or(2) : 2, test.place.share);
+}
+
 }  // namespace
 
 std::string lack_of_density(const Question& question, const NoDensity& why) {
@@ -203,7 +209,7 @@ TestOutcome plan_test(const Question& question, const FamilyPlace& place, const 
   plan.error = where_pilots_stopped(question, pilots);
   if (plan.error.empty()) plan.error = misdeclared(question, pilots);
   if (!plan.error.empty()) {
-    plan.looks = one_look(2, place.share);
+    plan.looks = unjudged_look(test);
     return test;
   }
   try {
@@ -219,13 +225,13 @@ TestOutcome plan_test(const Question& question, const FamilyPlace& place, const 
     const std::string slip = caution_of(question);
     plan.caution += (plan.caution.empty() || slip.empty() ? "" : "; ") + slip;
   } catch (const std::domain_error& error) {
-    plan.looks = one_look(2, place.share);
+    plan.looks = unjudged_look(test);
     plan.invalid = in_words(error);
   } catch (const NoDensity& failure) {
-    plan.looks = one_look(2, place.share);
+    plan.looks = unjudged_look(test);
     plan.error = lack_of_density(question, failure);
   } catch (const InputError& mistake) {  // that the pilots show
-    plan.looks = one_look(2, place.share);
+    plan.looks = unjudged_look(test);
     plan.error = mistake.what();
   }
   return test;

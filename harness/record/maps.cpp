@@ -223,6 +223,7 @@ void add_image(const DrawnTest& drawn, reports::Test& test) {
                         .high = number(effect->interval.high / unit),
                         .confidence = stats::confidence_at_place,
                         .relative = relative};
+    test.image->winner.others = effect->of_others;
   }
   add_maps(drawn, found, test);
 }

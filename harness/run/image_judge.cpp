@@ -9,6 +9,7 @@
 #include "harness/base/parallel.h"
 #include "harness/sampling/pool.h"
 #include "harness/theta/ask.h"
+#include "reports/words/number.h"
 #include "stats/images/image_dependence.h"
 #include "stats/images/image_family.h"
 #include "stats/tails/tails.h"
@@ -53,6 +54,25 @@ double other_mean(const DrawnTest& test, const std::vector<std::size_t>& element
   const Question& question = test.outcome.question;
   const double mean = mean_over(test, 1, elements, weights);
   return question.of_two() ? question.factor * mean + question.offset : mean;
+}
+
+std::string of_other_components(const DrawnTest& test, const stats::ImageFinding& winner,
+                                const ImageShape& shape, const std::vector<float>& weights) {
+  constexpr std::size_t most = 3;
+  std::vector<std::string> texts;
+  stats::ImageFinding other = winner;
+  for (other.channel = 0; other.channel < shape.components.size(); ++other.channel) {
+    if (other.channel == winner.channel || texts.size() == most) continue;
+    const std::vector<std::size_t> elements = elements_of(other, shape);
+    const double base = other_mean(test, elements, weights);
+    const double difference = mean_over(test, 0, elements, weights) - base;
+    if (!std::isfinite(difference) || difference == 0) continue;
+    const reports::Effect effect{.relative = base != 0};
+    const double unit = effect.relative ? std::abs(base) : 1;
+    texts.push_back(shape.components[other.channel] + " " +
+                    reports::theta_text(difference / unit, effect));
+  }
+  return fmt::format("{}", fmt::join(texts, ", "));
 }
 
 /// "`b.exr`", or "image 3 of `b`"; of a pair "`b.exr` less `a.exr`".
@@ -145,7 +165,8 @@ std::optional<PlaceEffect> effect_at_place(const DrawnTest& test) {
   const stats::ImageFamily& family = outcome.channels[0].image->family;
   const stats::ImageFinding& winner = family.winner;
   if (winner.alternation || winner.window.width == 0) return {};
-  std::vector<std::size_t> elements = elements_of(winner, *question.subjects[0].image);
+  const ImageShape& shape = *question.subjects[0].image;
+  std::vector<std::size_t> elements = elements_of(winner, shape);
   const stats::ImageEffect& effect = winner.effect;
   if (!(effect.standard_error > 0)) {
     const std::vector<double>& z = outcome.channels[0].image->z;
@@ -154,7 +175,10 @@ std::optional<PlaceEffect> effect_at_place(const DrawnTest& test) {
                   [&](std::size_t i) { return std::copysign(1.0, winner.z) * z[i] < least; });
     const double base = other_mean(test, elements, {});
     const double difference = mean_over(test, 0, elements, {}) - base;
-    return PlaceEffect{difference, {difference, difference, 1}, base};
+    return PlaceEffect{difference,
+                       {difference, difference, 1},
+                       base,
+                       of_other_components(test, winner, shape, {})};
   }
   const double log_level =
       stats::unadjusted(std::log(1 - stats::confidence_at_place), winner.group);
@@ -164,7 +188,8 @@ std::optional<PlaceEffect> effect_at_place(const DrawnTest& test) {
   return PlaceEffect{
       .estimate = effect.estimate,
       .interval = {effect.estimate - half, effect.estimate + half, stats::confidence_at_place},
-      .other = other_mean(test, elements, family.weights)};
+      .other = other_mean(test, elements, family.weights),
+      .of_others = of_other_components(test, winner, shape, family.weights)};
 }
 
 std::string means_where_it_differs(const DrawnTest& test) {

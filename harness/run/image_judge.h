@@ -21,6 +21,8 @@ struct PlaceEffect {
   double estimate = 0;
   stats::Interval interval = {};
   double other = 0;  ///< The mean that it is held against.
+  /// "G -5.1 %, B -4.9 %": what other components differ by there, three at most.
+  std::string of_others = {};
 };
 std::optional<PlaceEffect> effect_at_place(const DrawnTest& test);
 

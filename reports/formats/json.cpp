@@ -125,7 +125,8 @@ bool is_derived(std::string_view key) {
 /// True for a key that records of earlier versions need not have.
 template <class T>
 bool is_new(std::string_view key) {
-  if constexpr (std::same_as<T, Look> || std::same_as<T, ImageFinding>) return key == "effect";
+  if constexpr (std::same_as<T, Look>) return key == "effect";
+  if constexpr (std::same_as<T, ImageFinding>) return key == "effect" || key == "others";
   if constexpr (std::same_as<T, Test>) {
     return key == "paired" || key == "advice" || key == "no_replay";
   }

@@ -70,8 +70,9 @@ struct ImageFinding {
   Number log10_p;
   Number log10_p_adjusted;       ///< in the family of everything that was looked at in the image
   std::optional<Effect> effect;  ///< difference of the means over the rectangle, of the winner
+  std::string others;            ///< "G -5.1 %, B -4.9 %": of other components there, of the winner
   ASSAY_FIELDS(ImageFinding, statistic, place, x, y, width, height, component, z, log10_p,
-               log10_p_adjusted, effect)
+               log10_p_adjusted, effect, others)
 };
 
 /// A claim on all elements of an image together.
@@ -153,7 +154,7 @@ struct Ledger {
   ASSAY_FIELDS(Ledger, file, budget, series)
 };
 
-inline constexpr int schema_version = 5;
+inline constexpr int schema_version = 6;
 
 /// The verdict of a test. `skipped` was not run (another shard's).
 enum class Verdict { pass, fail, inconclusive, invalid, error, skipped };

@@ -216,6 +216,18 @@ test_reports_are_what_other_programs_read() {
     fail 'the record does not follow its schema'
 }
 
+test_a_record_of_laws_of_pictures_follows_its_schema() {
+  /usr/bin/python3 -c '
+import random, struct
+for side, mean in ("a", 1), ("b", 2):
+    for i in range(32):
+        numbers = [random.Random(f"{side}{i}{k}").gauss(mean, 1) for k in range(192)]
+        open(f"{side}{i}.pfm", "wb").write(b"PF\n8 8\n-1\n" + struct.pack("<192f", *numbers))'
+  expect 1 images --law --candidate 'a*.pfm' --reference 'b*.pfm' --report json=run.json
+  /usr/bin/python3 "$source_folder/tests/reports/check_schema.py" \
+    "$source_folder/reports/record/record.schema.json" run.json || fail 'not its schema'
+}
+
 test_sampled_file_is_checked_as_recorded() {
   expect 0 sample analytic/normal --secondaries 2000
   cp out data.txt
