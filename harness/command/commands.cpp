@@ -118,7 +118,7 @@ int explain(const ExplainArguments& arguments) {
   const std::string file = words.size() > 1 ? words.front() : last_run();
   const reports::Record record = read_record(file);
   const Recorded found = find_test(record, file, words.back());
-  if (words.size() < 2) fmt::print("The last run with tests began at {}.\n\n", record.started);
+  if (words.size() < 2) fmt::print("The last run from this folder began at {}.\n\n", record.started);
   fmt::print("{}",
              reports::explain(found.suite, found.test, std::min(terminal_width(stdout), 100)));
   return 0;

@@ -700,14 +700,23 @@ class MeanTheta : public Theta {
                                            : Theta::power(sized, effect);
   }
 
+  /// Rare values that were never drawn would move a mean towards an end of its range. Where that
+  /// has no bound, they may be all that is missing.
   std::string caveat(const TestOutcome& outcome) const override {
+    constexpr std::uint64_t many = 16 * floor_of_evidence;
+    const Question& question = outcome.question;
     if (outcome.plan.method.is.exact) return "";
-    for (const Subject& subject : outcome.question.subjects) {
-      const std::optional<std::uint64_t> rows = subject.setup->observations();
-      if (!rows || *rows >= floor_of_evidence) continue;
+    const bool below = outcome.channels[0].effect.estimate.value_or(0) < 0;
+    for (std::size_t side = 0; side < question.compared(); ++side) {
+      const stats::Range range = range_of(question, side, outcome.channels[0].index, {});
+      const bool upwards = below == (side == 0 || question.factor < 0);
+      const std::uint64_t seen = outcome.secondaries(side) * outcome.plan.primaries[side];
+      if (std::isfinite(upwards ? range.high : range.low) || seen >= many) continue;
+      const bool rows = is_recorded(question.subjects[side]);
       return fmt::format(
-          "{} rows may lack values rarer than one in {}, and no test can know what those carry",
-          *rows, std::max<std::uint64_t>(1, *rows / 3));
+          "{} {} may lack values rarer than one in {}, and no test can know what those carry{}",
+          seen, rows ? "rows" : "primaries", std::max<std::uint64_t>(1, seen / 3),
+          rows ? "" : "; a declared range bounds them");
     }
     return "";
   }

@@ -1,7 +1,12 @@
 #include "harness/googletest/claims.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <map>
+#include <span>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -107,6 +112,35 @@ Asked asked(const std::vector<Part>& parts, const std::string& stream) {
   return result;
 }
 
+/// Draws the first observations again. Names the source that gives others; "" if none does.
+std::string unrepeated(const TestWork& work) {
+  constexpr std::size_t most = 8;
+  for (std::size_t side = 0; side < work.pools.size(); ++side) {
+    const harness::Pool& pool = *work.pools[side];
+    const harness::Sample sample = work.sample(side);
+    if (sample.drawn() == nullptr) continue;
+    const std::span<const double> values = sample.drawn()->values(0);
+    const std::unique_ptr<Estimator> estimator = pool.setup()->make();
+    std::vector<double> again(pool.channels());
+    for (std::size_t i = 0; i < std::min(most, values.size()); ++i) {
+      try {
+        pool.draw_again(*estimator, i, again);
+      } catch (...) {
+        return fmt::format("`{}` cannot draw observation {} again: {}",
+                           work.outcome.question.subjects[side].estimator->name, i,
+                           harness::words_of(std::current_exception()));
+      }
+      if (again[0] == values[i] || std::isnan(again[0])) continue;
+      return fmt::format(
+          "`{}` gave {} for observation {}, and {} when it was drawn again: take all random "
+          "numbers from the stream that it is given",
+          work.outcome.question.subjects[side].estimator->name, reports::round_trip(values[i]), i,
+          reports::round_trip(again[0]));
+    }
+  }
+  return "";
+}
+
 /// Tests the claim alone at its share of the budget.
 reports::Test tested(const std::string& claim, const Asked& asked, const ClaimBudget& budget) {
   const std::uint64_t seed = seed_of(budget);
@@ -124,7 +158,14 @@ reports::Test tested(const std::string& claim, const Asked& asked, const ClaimBu
   work.pools = pools.for_question(question, work.outcome.plan, seed, pilots);
   harness::Silence silence;
   harness::sample_in_looks({&work}, pools.all(), {}, silence);
-  return harness::record_of_test(work, "", false);
+  reports::Test test = harness::record_of_test(work, "", false);
+  const bool drawn = test.verdict != reports::Verdict::error;
+  if (std::string why = drawn ? unrepeated(work) : ""; !why.empty()) {
+    test.verdict = reports::Verdict::error;
+    test.message = std::move(why);
+    test.advice.reset();
+  }
+  return test;
 }
 
 void record(const std::string& name, std::uint64_t claim, const std::string& value) {

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "harness/pilot/pilot.h"
+#include "harness/plan/looks.h"
 #include "harness/plan/sizes.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/methods.h"
@@ -32,17 +34,6 @@ std::string sentence(const Gate& gate) {
 /// A claim that does not rest on moments.
 std::string median_of(const Question& question) {
   return fmt::format("quantile({}, 0.5) == …", to_string(question.test->claim.left.source));
-}
-
-/// Advice to force a method that takes values for normal; "" if there is none.
-std::string or_if_normal(const TestOutcome& outcome) {
-  if (outcome.plan.method.is.of_normal_values) return "";
-  for (const Method& method : methods_for(outcome.question)) {
-    if (!method.is.of_normal_values) continue;
-    return fmt::format(" (if the values are near normal, write {})",
-                       written_key(*outcome.question.test, "test", method.name));
-  }
-  return "";
 }
 
 /// Factor on the observations that would turn the gate green, with room for what more of them show.
@@ -109,6 +100,22 @@ std::string sizes_text(const TestOutcome& outcome, double factor) {
   return fmt::format("{}", fmt::join(texts, " and "));
 }
 
+reports::Advice setting(const TestOutcome& outcome, double factor) {
+  const auto& budget = outcome.question.test->budget;
+  if (budget && budget->seconds) {
+    return {.key = "budget",
+            .value = fmt::format("{}s", std::ceil(10 * factor * *budget->seconds) / 10)};
+  }
+  const bool in_primaries = budget && budget->primaries;
+  const std::uint64_t secondaries = outcome.secondaries();
+  const double now = in_primaries ? static_cast<double>(primaries_of_look(outcome, secondaries)) /
+                                        (1 - pilots_part)
+                                  : static_cast<double>(secondaries);
+  const double step = std::pow(10, std::max(0.0, std::floor(std::log10(factor * now)) - 1));
+  return {.key = in_primaries ? "budget" : "secondaries",
+          .value = fmt::format("{:.0f}", std::ceil(factor * now / step) * step)};
+}
+
 Reason what_would_help(const TestOutcome& outcome) {
   bool says_it_all = true;
   bool heavy = false;
@@ -133,17 +140,22 @@ Reason what_would_help(const TestOutcome& outcome) {
         rows ? "" : "clamp the estimator or take another, declare its range, or ",
         median_of(outcome.question));
   }
-  const std::string more =
-      factor > 1 && std::isfinite(factor) ? "about " + sizes_text(outcome, factor) : "more";
+  const bool known = factor > 1 && std::isfinite(factor);
   if (rows) {
     return Reason::advising(": ",
-                            fmt::format("give {0} {1}, or {1} that each average several{2}", more,
-                                        rows_noun(outcome.question), or_if_normal(outcome)));
+                            fmt::format("give {0} {1}, or {1} that each average several",
+                                        known ? "about " + sizes_text(outcome, factor) : "more",
+                                        rows_noun(outcome.question)));
   }
-  return fmt::format(
-      "; {} `secondaries` may do{}. Without a declared range no test decides on fewer than {} "
-      "primaries: it knows nothing of a rare bright value that it never drew",
-      more, or_if_normal(outcome), floor_of_evidence);
+  const TestEntry& test = *outcome.question.test;
+  std::optional<reports::Advice> next;
+  if (known && !(test.budget && test.budget->of_suite)) next = setting(outcome, factor);
+  return {fmt::format(
+              "; {} may do. Without a declared range no test decides on fewer than {} primaries: "
+              "it knows nothing of a rare bright value that it never drew",
+              next ? written_key(test, next->key, next->value) : "more `secondaries`",
+              floor_of_evidence),
+          next};
 }
 
 }  // namespace assay::harness

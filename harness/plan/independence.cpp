@@ -98,12 +98,15 @@ Reason dependent(const Question& question, const Rows& rows, bool at_a_lag) {
             rows.label, any.lag, any.correlation),
         "give the mean of rows that were drawn together as one row");
   }
+  constexpr double fewest_of_a_chain = 10;
   const double worth = static_cast<double>(rows.values.size()) / time;
-  return Reason::advising(
-      fmt::format(
-          "the {} are not independent: {} of them are worth about {:.0f} independent ones; ",
-          rows.label, rows.values.size(), worth),
-      "give rows as they were drawn; of a chain one, or " + enough_of_a_chain(question, time));
+  const std::string why = fmt::format(
+      "the {} are not independent: {} of them are worth about {:.0f} independent ones; ",
+      rows.label, rows.values.size(), worth);
+  if (worth < fewest_of_a_chain) {
+    return Reason::advising(why, "give them in the order drawn: these are sorted, or drift");
+  }
+  return Reason::advising(why, "give one row a chain, or " + enough_of_a_chain(question, time));
 }
 
 /// A red gate on something that chance does not make.

@@ -232,7 +232,7 @@ TestOutcome plan_test(const Question& question, const FamilyPlace& place, const 
     plan.error = lack_of_density(question, failure);
   } catch (const InputError& mistake) {  // that the pilots show
     plan.looks = unjudged_look(test);
-    plan.error = mistake.what();
+    plan.error = mistake.message();
   }
   return test;
 }

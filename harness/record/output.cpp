@@ -71,12 +71,15 @@ std::string append_summary(const reports::Record& record, const std::string& fil
   return stream ? "" : "the step's summary cannot be written";
 }
 
-/// The last run's file; "" if there is no folder for it.
+/// The file of the last run from this folder; "" if there is no place for it.
 std::string last_run_file() {
   std::string folder = system_environment("XDG_CACHE_HOME");
   const std::string home = system_environment("HOME");
   if (folder.empty() && !home.empty()) folder = home + "/.cache";
-  return folder.empty() ? "" : folder + "/assay/last_run.json";
+  const std::string here = std::filesystem::current_path().string();
+  return folder.empty()
+             ? ""
+             : fmt::format("{}/assay/last_run/{:x}.json", folder, std::hash<std::string>()(here));
 }
 
 }  // namespace
@@ -184,7 +187,8 @@ std::string last_run() {
   const std::string file = last_run_file();
   if (std::filesystem::exists(file)) return file;
   refuse({},
-         "there is no last run; `assay run SUITE` makes one, or give a saved run before the test");
+         "there is no last run from this folder; `assay run SUITE` makes one, or give a saved run "
+         "before the test");
 }
 
 void keep_last_run(reports::Record record, bool says_failure) {

@@ -76,8 +76,8 @@ int exit_code(const reports::Record&, InconclusivePolicy);
 /// cannot be written becomes a warning among the annotations, not a failure.
 std::string tell_github(const reports::Record& record, const Environment& environment);
 
-/// The last run of the user: a file in $XDG_CACHE_HOME/assay, else in ~/.cache/assay. InputError if
-/// there is none.
+/// The last run from the current folder: a file in $XDG_CACHE_HOME/assay, else in ~/.cache/assay.
+/// InputError if there is none.
 std::string last_run();
 
 /// Writes the record without its maps, whole or not at all. Nobody needs it to go on: a failure is

@@ -185,10 +185,11 @@ std::optional<PlaceEffect> effect_at_place(const DrawnTest& test) {
   const double half = effect.standard_error *
                       stats::student_t_quantile({stats::Tail::upper, log_level - std::numbers::ln2},
                                                 effect.degrees);
+  const double base = other_mean(test, elements, family.weights);
   return PlaceEffect{
-      .estimate = effect.estimate,
+      .estimate = mean_over(test, 0, elements, family.weights) - base,
       .interval = {effect.estimate - half, effect.estimate + half, stats::confidence_at_place},
-      .other = other_mean(test, elements, family.weights),
+      .other = base,
       .of_others = of_other_components(test, winner, shape, family.weights)};
 }
 

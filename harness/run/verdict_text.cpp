@@ -203,23 +203,6 @@ double reference_error(const TestOutcome& outcome, const ChannelOutcome& channel
   return reference.standard_error / unit_of_theta(question, channel.index, 0);
 }
 
-/// The setting for so many times the observations.
-reports::Advice setting(const TestOutcome& outcome, double factor) {
-  const auto& budget = outcome.question.test->budget;
-  if (budget && budget->seconds) {
-    return {.key = "budget",
-            .value = fmt::format("{}s", std::ceil(10 * factor * *budget->seconds) / 10)};
-  }
-  const bool in_primaries = budget && budget->primaries;
-  const std::uint64_t secondaries = outcome.secondaries();
-  const double now = in_primaries ? static_cast<double>(primaries_of_look(outcome, secondaries)) /
-                                        (1 - pilots_part)
-                                  : static_cast<double>(secondaries);
-  const double step = std::pow(10, std::max(0.0, std::floor(std::log10(factor * now)) - 1));
-  return {.key = in_primaries ? "budget" : "secondaries",
-          .value = fmt::format("{:.0f}", std::ceil(factor * now / step) * step)};
-}
-
 /// Half the interval in standard errors if each end errs with `tail`. With few observations t is
 /// far wider than the normal law of a larger sample.
 double interval_errors(const ChannelOutcome& channel, double tail) {

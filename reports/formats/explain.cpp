@@ -30,8 +30,9 @@ std::string how_sure(const Test& test, const TestDisplay& words, const std::stri
   if (test.verdict == Verdict::fail && !words.chance.empty())
     text += fmt::format("The chance of such data, if nothing is wrong, is {}. ", words.chance);
   if (test.verdict == Verdict::pass && test.detectable && !test.detect && !is_proof(test))
-    text += fmt::format("An error of {} would have been noticed. ",
-                        margin_text(*test.detectable, deciding_channel(test).effect));
+    text += fmt::format("An error of {}{} would have been noticed. ",
+                        margin_text(*test.detectable, deciding_channel(test).effect),
+                        test.image ? " all over the image" : "");
   return text;
 }
 

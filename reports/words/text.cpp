@@ -87,12 +87,13 @@ std::size_t joint(std::string_view text, std::size_t end) {
 std::string take_line(std::string_view& rest, int width) {
   std::size_t end = fitting(rest, width);
   std::size_t next = end;
-  if (end < rest.size() && rest[end] != ' ') {
-    const std::size_t space = rest.substr(0, end).rfind(' ');
-    if (space != std::string_view::npos && space > 0)
-      end = next = space;
-    else
-      end = next = joint(rest, end);
+  const auto breaks = [&](std::size_t at) {
+    return rest[at] == ' ' && !rest.substr(at).starts_with(" %");
+  };
+  if (end < rest.size() && !breaks(end)) {
+    std::size_t space = end;
+    while (space > 0 && !breaks(space)) --space;
+    end = next = space > 0 ? space : joint(rest, end);
   }
   while (next < rest.size() && rest[next] == ' ') ++next;
   std::string line(rest.substr(0, end));

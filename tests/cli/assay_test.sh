@@ -383,7 +383,7 @@ test_explain_tells_of_the_last_run() {
   expect 1 run mixed.yaml --report json=run.json
   expect 0 explain open
   contains out 'The observations do not suffice'
-  contains out 'The last run with tests began'
+  contains out 'The last run from this folder began'
   contains out 'secondaries: '
   expect 0 explain run.json mixed/wrong
   contains out 'The claim is wrong.'
@@ -391,6 +391,11 @@ test_explain_tells_of_the_last_run() {
   contains err '3 tests have `mixed/` in their id'
   expect 2 explain mixed/wrnog
   contains err 'mixed/wrong'
+  mkdir elsewhere
+  cd elsewhere || exit 1
+  expect 2 explain open
+  contains err 'there is no last run from this folder'
+  cd ..
   # A folder that cannot be made changes nothing.
   : >file
   XDG_CACHE_HOME=$work/file expect 1 run mixed.yaml

@@ -247,7 +247,11 @@ def test_an_exception_ends_the_program_with_its_last_line(program, body, line):
 @pytest.mark.parametrize("arguments, answer", [
     ("", "`mine` takes no argument: write `def mine(rng):` and draw from `rng`"),
     ("rng, primaries, scale",
-     "`mine` has the parameter `scale` without a value: give it a default value, or write `*` before it")])
+     "`mine` has the parameter `scale` without a value: give it a default value, or write `*` before it; "
+     "only `primaries` is given"),
+    ("rng, sigma",
+     "`mine` has the parameter `sigma` without a value: give it a default value, or write `*` before it; "
+     "only `primaries` is given")])
 def test_a_function_of_other_arguments_refuses(program, arguments, answer):
     mine = program(f"def mine({arguments}):\n  return 1\nassay.serve(mine)")
     assert mine.hello() == ["assay 1 binary", f"error TypeError: {answer}"]

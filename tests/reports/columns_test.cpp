@@ -30,6 +30,12 @@ RC_GTEST_PROP(Columns, WrappedLinesFit, ()) {
   RC_ASSERT(columns(shorten(one_line(text), width)) <= width);
 }
 
+TEST(Columns, ALineEndsNotBetweenANumberAndItsPerCent) {
+  EXPECT_EQ(wrap("about 1.5 % off", 9), (std::vector<std::string>{"about", "1.5 % off"}));
+  EXPECT_EQ(wrap("about 1.5 % off", 10), (std::vector<std::string>{"about", "1.5 % off"}));
+  EXPECT_EQ(wrap("about 1.5 % off", 11), (std::vector<std::string>{"about 1.5 %", "off"}));
+}
+
 RC_GTEST_PROP(Columns, WrappedCommandsAreWholeAndTheirLinesFit, ()) {
   const int width = *rc::gen::inRange(4, 40);
   const auto words = *rc::gen::container<std::vector<std::string>>(

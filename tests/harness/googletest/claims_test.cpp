@@ -2,6 +2,8 @@
 
 #include <gtest/gtest-spi.h>
 
+#include <mutex>
+
 #include "harness/googletest/matchers.h"
 #include "tests/prelude.h"
 
@@ -79,6 +81,17 @@ TEST(Claims, SayTheKeyThatWouldDecide) {
 TEST(Claims, OfACallableThatThrowsAreFailures) {
   const auto broken = [](Stream&) -> double { throw std::runtime_error("no light"); };
   EXPECT_THAT(message("mean(mine) == 0.25", {primary("mine", broken)}), HasSubstr("no light"));
+}
+
+TEST(Claims, OfACallableThatIgnoresItsStreamAreErrors) {
+  Stream own({7}, 0);
+  std::mutex alone;
+  const auto stray = [&](Stream&) {
+    const std::scoped_lock lock(alone);
+    return own.uniform();
+  };
+  EXPECT_THAT(message("mean(mine) == 0.5", {primary("mine", stray)}),
+              AllOf(HasSubstr("error: `mine` gave "), HasSubstr("when it was drawn again")));
 }
 
 TEST(Claims, HaveMatchers) {

@@ -35,7 +35,7 @@ TEST(GateText, OfSkewnessSaysHowManyObservationsWouldHelp) {
   const std::string help = help_for(red("level factor by skewness"));
   EXPECT_THAT(
       help,
-      HasSubstr("about 39000 `secondaries` may do. Without a declared range no test decides"));
+      HasSubstr("`secondaries: 39000` may do. Without a declared range no test decides"));
   EXPECT_THAT(help, Not(HasSubstr("heavy-tailed")));
 }
 
@@ -43,9 +43,9 @@ TEST(GateText, OfSkewnessSaysHowManyObservationsWouldHelp) {
 // grow like the root of all, and twice the limit is wanted: (64 / 16)^2 times 1000.
 TEST(GateText, OfOneObservationSaysHowManyOthersWouldDo) {
   EXPECT_THAT(help_for(red("share of one observation", 0.5, 0.5)),
-              HasSubstr("about 9000 `secondaries` may do"));
+              HasSubstr("`secondaries: 9000` may do"));
   EXPECT_THAT(help_for(red("effective observations", 16, 32)),
-              HasSubstr("about 16000 `secondaries` may do"));
+              HasSubstr("`secondaries: 16000` may do"));
 }
 
 TEST(GateText, NamesFewOfManyRedGates) {

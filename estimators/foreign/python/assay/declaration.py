@@ -170,9 +170,10 @@ def takes_primaries(function: Callable[..., typing.Any]) -> bool:
     if not positional:
         raise TypeError(f"`{name}` takes no argument: write `def {name}(rng):` and draw from `rng`")
     others = [p.name for p in positional if p.default is p.empty and p.kind is not p.VAR_POSITIONAL][1:]
-    if len(others) > 1:
-        raise TypeError(f"`{name}` has the parameter `{others[1]}` without a value: "
-                        "give it a default value, or write `*` before it")
+    unknown = [other for other in others if other != "primaries"]
+    if unknown:
+        raise TypeError(f"`{name}` has the parameter `{unknown[0]}` without a value: "
+                        "give it a default value, or write `*` before it; only `primaries` is given")
     return bool(others)
 
 
