@@ -228,11 +228,7 @@ TEST_F(PictureClaims, ADefectIsFoundWhereItIs) {
   // Means of 24 x 64 values: five standard errors of theirs.
   const std::string words = "; there it is ";
   expect_said(test, Verdict::fail, {"columns 4-11, rows 4-11", words});
-  double part = 0;
-  double low = 0;
-  double high = 0;
-  double mean = 0;
-  double other = 0;
+  double part = 0, low = 0, high = 0, mean = 0, other = 0;
   const std::string found = test.message.substr(test.message.find(words) + words.size());
   ASSERT_EQ(std::sscanf(found.c_str(), "%lf %% too bright (%lf to %lf %%): %lf against %lf", &part,
                         &low, &high, &mean, &other),
@@ -246,8 +242,7 @@ TEST_F(PictureClaims, ADefectIsFoundWhereItIs) {
   EXPECT_GT(high, part);
   EXPECT_NEAR(part, 10, 4);
   // Every component is brighter there.
-  double green = 0;
-  double blue = 0;
+  double green = 0, blue = 0;
   const std::string& others = test.image->winner.others;
   ASSERT_EQ(std::sscanf(others.c_str(), "G %lf\u00a0%%, B %lf", &green, &blue), 2) << others;
   EXPECT_NEAR(green, 10, 4);

@@ -167,11 +167,10 @@ TEST_F(Runs, SaysHowMuchADetectWouldTakeThatTakesDays) {
 TEST_F(Runs, ShowsOfAnUndecidedClaimAnIntervalThatMeetsClaimAndMargin) {
   int undecided = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
-    const reports::Test test =
+    const reports::Record record =
         run_text(suite_of("  - {claim: mean(normal) == 1.9, detect: 0.15, secondaries: 600}\n"),
-                 {.seed = seed})
-            .suites[0]
-            .tests[0];
+                 {.seed = seed});
+    const reports::Test& test = record.suites[0].tests[0];
     if (test.verdict != Verdict::inconclusive) continue;
     ++undecided;
     EXPECT_LE(*test.channels[0].effect.low, 0) << seed;
