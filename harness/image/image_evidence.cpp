@@ -291,9 +291,11 @@ std::string seen_text(const stats::ImageLawFinding& most, const std::string& sid
     case stats::ImageScore::rank:
       return text("values are mostly");
     case stats::ImageScore::spread:
+      return text("spread of the values is");
+    case stats::ImageScore::largest:
       break;
   }
-  return text("spread of the values is");
+  return text("brightest value is mostly");
 }
 
 std::size_t permutations_at(double alpha) {

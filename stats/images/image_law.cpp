@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "stats/basics/scores.h"
@@ -13,7 +14,8 @@
 namespace assay::stats {
 namespace {
 
-constexpr std::size_t scores = 3;
+constexpr std::size_t scores = 4;
+constexpr std::size_t element_scores = 3;  // the others are of whole images
 // Side of the tiles that threads take.
 constexpr std::size_t tile_side = 32;
 // Results of so many tiles are kept apart before they are merged.
@@ -162,7 +164,7 @@ class Element {
  private:
   std::vector<double> values_;
   std::vector<Placed<double>> order_;
-  std::array<std::vector<double>, scores> scores_;
+  std::array<std::vector<double>, element_scores> scores_;
 };
 
 struct Place {
@@ -190,9 +192,20 @@ class Pooled {
             tile % extent_.channels};
   }
 
+  // Of each image.
+  std::vector<double> largest(std::size_t channel) const {
+    std::vector<double> all(images_.size(), -std::numeric_limits<double>::infinity());
+    for (std::size_t r = 0; r < all.size(); ++r) {
+      for (std::size_t i = channel; i < images_[r].size(); i += extent_.channels) {
+        all[r] = std::max(all[r], static_cast<double>(images_[r][i]));
+      }
+    }
+    return all;
+  }
+
   // Scores of a tile's elements.
-  std::array<Cells, scores> scored(const Place& at) const {
-    std::array<Cells, scores> all;
+  std::array<Cells, element_scores> scored(const Place& at) const {
+    std::array<Cells, element_scores> all;
     for (Cells& cells : all) {
       cells = {.width = std::min(tile_side, extent_.width - at.x),
                .height = std::min(tile_side, extent_.height - at.y),
@@ -207,7 +220,7 @@ class Pooled {
       const std::size_t index = (y * extent_.width + x) * extent_.channels + at.channel;
       for (std::size_t r = 0; r < images_.size(); ++r) element.values()[r] = images_[r][index];
       element.score();
-      for (std::size_t s = 0; s < scores; ++s) {
+      for (std::size_t s = 0; s < element_scores; ++s) {
         const std::span<const double> scored = element.by(s);
         for (std::size_t r = 0; r < scored.size(); ++r) {
           all[s].images[r][i] = static_cast<float>(scored[r]);
@@ -249,18 +262,34 @@ void note_elements(const Cells& values, const Place& at, const ImageExtent& exte
   }
 }
 
+Group look_at_largest(const Pooled& pooled, const Labels& labels) {
+  Group group;
+  for (std::size_t channel = 0; channel < pooled.extent().channels; ++channel) {
+    Cells whole{.width = 1, .height = 1};
+    std::vector<double> ranks;
+    std::vector<Placed<double>> order;
+    midranks(std::span<const double>(pooled.largest(channel)), order, ranks);
+    standardise(ranks);
+    for (const double rank : ranks) whole.images.push_back({static_cast<float>(rank)});
+    look_at(whole, labels, channel, group);
+  }
+  group.most.window = {0, 0, static_cast<std::uint32_t>(pooled.extent().width),
+                       static_cast<std::uint32_t>(pooled.extent().height)};
+  return group;
+}
+
 Groups groups_of(const Pooled& pooled, const Labels& labels, const ForEach& for_each,
                  std::span<double> z) {
   Groups all;
   // By tile, score and image.
-  std::vector<std::array<std::vector<float>, scores>> sums(pooled.tiles());
+  std::vector<std::array<std::vector<float>, element_scores>> sums(pooled.tiles());
   for (std::size_t first = 0; first < sums.size(); first += tiles_at_a_time) {
     std::vector<Groups> found(std::min(tiles_at_a_time, sums.size() - first));
     for_each(found.size(), [&](std::size_t i) {
       const Place at = pooled.place(first + i);
-      std::array<Cells, scores> scored = pooled.scored(at);
+      std::array<Cells, element_scores> scored = pooled.scored(at);
       if (!z.empty()) note_elements(scored[0], at, pooled.extent(), labels[0], z);
-      for (std::size_t s = 0; s < scores; ++s) {
+      for (std::size_t s = 0; s < element_scores; ++s) {
         Cells cells =
             look_upward(std::move(scored[s]), tile_side / 2, labels, at.channel, found[i][s]);
         while (cells.count() > 1) cells = doubled(cells);
@@ -276,7 +305,7 @@ Groups groups_of(const Pooled& pooled, const Labels& labels, const ForEach& for_
   }
   // Tiles are the cells of larger sizes.
   const ImageExtent& extent = pooled.extent();
-  for (std::size_t s = 0; s < scores; ++s) {
+  for (std::size_t s = 0; s < element_scores; ++s) {
     for (std::size_t c = 0; c < extent.channels; ++c) {
       Cells tiles{.width = pooled.tiles_across(),
                   .height = pooled.tiles() / pooled.tiles_across() / extent.channels,
@@ -291,6 +320,7 @@ Groups groups_of(const Pooled& pooled, const Labels& labels, const ForEach& for_
                   all[s]);
     }
   }
+  all[static_cast<std::size_t>(ImageScore::largest)] = {look_at_largest(pooled, labels)};
   return all;
 }
 

@@ -12,10 +12,11 @@ namespace assay::stats {
 
 // The score that is added up over a cell, in units of its standard deviation over all images.
 enum class ImageScore {
-  value,   // The element's value.
-  rank,    // Its midrank among all images: fireflies weigh no more than others.
-  spread,  // The squared distance of its midrank from the middle (Mood 1954, Ann. Math. Stat. 25,
-           // 514).
+  value,    // The element's value.
+  rank,     // Its midrank among all images: fireflies weigh no more than others.
+  spread,   // The squared distance of its midrank from the middle (Mood 1954, Ann. Math. Stat. 25,
+            // 514).
+  largest,  // The midrank of the image's largest value, for the whole image alone: a clamp.
 };
 
 // The sum that differs most between the sides.
@@ -56,8 +57,9 @@ struct ImageLawOptions {
 // & Clifford 1991, Biometrika 78, 301). Then p is ten over the number drawn. Else it is (1 + as
 // small) / (1 + drawn).
 //
-// It finds differences of means, of typical values and of spreads. Other differences of laws it may
-// miss. Throws std::domain_error for unequal extents and fewer than least_replicates images.
+// It finds differences of means, of typical values, of spreads and of the brightest value. Other
+// differences of laws it may miss. Throws std::domain_error for unequal extents and fewer than
+// least_replicates images.
 ImageLawTest image_law_test(const ImageStack& a, const ImageStack& b,
                             const ImageLawOptions& options);
 

@@ -53,8 +53,7 @@ class Phases final : public harness::Progress {
   void end() override { inside += clock_.lap(); }
   double after() { return clock_.lap(); }
 
-  double before = 0;
-  double inside = 0;
+  double before = 0, inside = 0;
 
  private:
   Clock clock_;
@@ -73,8 +72,7 @@ void make_tables(const std::vector<harness::TestWork*>& tests) {
 }
 
 struct Rounds {
-  double draws = 0;
-  double looks = 0;
+  double draws = 0, looks = 0;
 };
 
 Rounds sample(std::vector<harness::TestWork*> open,

@@ -130,10 +130,10 @@ test_programs_that_fail_are_errors_and_the_others_finish() {
 }
 
 test_seeds_that_do_nothing_are_errors_under_every_seed() {
-  local served='assay.serve(area,' seed estimator mean='sum(area(rng) for _ in range(n)) / n'
+  local served='assay.serve(area,' seed estimator mean='sum(area(rng) for _ in range(primaries)) / primaries'
   grep -qF "$served" "$examples/darts.py" || fail 'the example has changed'
   for seed in '' rng.index; do
-    sed "s|$served|assay.serve(lambda rng, n: (rng.seed($seed), $mean)[1], averages=True,|" \
+    sed "s|$served|assay.serve(lambda rng, primaries: (rng.seed($seed), $mean)[1], averages=True,|" \
       "$examples/darts.py" >"${seed:+index}.py"
   done
   mv .py unseeded.py

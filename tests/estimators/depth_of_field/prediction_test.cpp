@@ -56,8 +56,7 @@ TEST(LensPrediction, OfAnEdgeIsTheVarianceOfWhatIsHidden) {
 TEST(LensPrediction, EqualisesTheNoiseOfAnEdge) {
   const Grid grid{120, 1, 2.32};
   const auto counts = lens_counts(predicted("edge", grid).variance, {64});
-  double most = 0;
-  double least = 1;
+  double most = 0, least = 1;
   for (std::size_t i = 0; i < grid.pixels(); ++i) {
     const double c = half_plane_coverage(-grid.pixel(i).x / .2);
     if (c <= 0 || c >= 1) continue;
@@ -131,8 +130,7 @@ TEST(LensPrediction, WavesBehindAnEdgeTravelToItAndAddTheirFrequency) {
   const Grid grid{200, 1, 2};
   for (const double depth : {1.5, 2., 4., 7.}) {
     const Prediction found = predicted(edge_before_wave(std::to_string(depth)), grid);
-    double least = 0;
-    double most = 0;
+    double least = 0, most = 0;
     for (const double k_back : {wave_behind, -wave_behind}) {
       const double bound =
           first_zero_of_disc_response / .2 - k_back * (1 - depth / 2);  // of k_front / 2

@@ -84,14 +84,6 @@ TEST_F(UnequalRows, OfVariancesAreEachWeighedByTheirNumber) {
   EXPECT_NEAR(*suite.tests[0].channels.at(0).statistic, expected.statistic, 1e-9);
 }
 
-TEST_F(UnequalRows, OfDependentChainsAreAllAveragedInBatches) {
-  const reports::Suite suite = judged(place, {chain(0.9, 9000, 5), chain(0.9, 6000, 6)},
-                                      "  - {claim: mean(a) == mean(b)}\n");
-  EXPECT_EQ(suite.tests[0].method, "batch-means");
-  EXPECT_EQ(suite.tests[0].verdict, Verdict::pass) << suite.tests[0].message;
-  EXPECT_EQ(sizes_of(suite.tests[0]), (Sizes{9000, 6000}));
-}
-
 TEST_F(UnequalRows, AreCappedByNumberAndBudget) {
   const Rows rows = lehmer_rows(4, 400, 250);
   const reports::Suite suite =
@@ -125,14 +117,6 @@ TEST_F(UnequalRows, FindAsMuchWhicheverSideIsLonger) {
     EXPECT_NEAR(*one.tests[i].power, *other.tests[i].power, 1e-9) << i;
     EXPECT_GT(*one.tests[i].power, *shorter.tests[i].power) << i;
   }
-}
-
-TEST_F(UnequalRows, SayHowManyOfEachWouldDecide) {
-  const reports::Suite suite =
-      judged(place, lehmer_rows(6, 400, 240), "  - {claim: mean(a) == mean(b), detect: 0.01}\n");
-  EXPECT_EQ(suite.tests[0].verdict, Verdict::inconclusive);
-  EXPECT_THAT(suite.tests[0].advice.value().words,
-              testing::MatchesRegex("give about [0-9.,k]+M? and [0-9.,k]+M? rows"));
 }
 
 TEST_F(UnequalRows, AreReplayedWhileTheyAreAsManyAsTheyWere) {

@@ -100,9 +100,7 @@ TEST(ChiSquareFit, ErrorsOfTheProbabilitiesAreAllowedForBothWays) {
   for (std::size_t i = 0; i < cells; ++i) off[i] = 1.0 / cells + (i % 2 == 0 ? error : -error);
   const std::vector<double> truth(cells, 1.0 / cells);
   tests::Philox random(1254);
-  int refuted = 0;
-  int excluded = 0;
-  int by_exact = 0;
+  int refuted = 0, excluded = 0, by_exact = 0;
   for (int run = 0; run < 400; ++run) {
     CellCounts counts{.observed = tests::multinomial(random, n, truth), .probability = off};
     by_exact += chi_square_fit(counts).test.log_p_upper < std::log(.01);

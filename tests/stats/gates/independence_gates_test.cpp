@@ -183,8 +183,7 @@ Moments allowed(std::span<const double> x) {
 /// Number of pairs of samples of 100 that no gate turns away and that Welch's test finds to differ
 /// at .01.
 struct Differing {
-  int allowing = 0;
-  int plainly = 0;
+  int allowing = 0, plainly = 0;
 };
 
 Differing differing(int pairs, const std::function<std::vector<double>()>& draw) {

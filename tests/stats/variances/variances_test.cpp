@@ -36,9 +36,7 @@ Moments gamma_moments(int shape, std::size_t count, Philox& random) {
 TEST(Variances, TheUpperLimitOfAKurtosisHoldsIt) {
   constexpr double runs = 2000;
   Philox random(1811);
-  double normal_missed = 0;
-  double gamma_missed = 0;
-  double beyond = 0;
+  double normal_missed = 0, gamma_missed = 0, beyond = 0;
   for (int run = 0; run < runs; ++run) {
     const auto normal = draw_moments(512, [&] { return random.normal(); });
     normal_missed += kurtosis_upper_limit(normal) <= 0;
