@@ -338,7 +338,7 @@ function Viewer({ painter, name }: { painter: Painter; name: string }) {
         )}
         <p class="quiet">
           {legends[mode]}
-          {scales[mode] && painter.finding.component && ` Component ${painter.finding.component}.`}
+          {scales[mode] && painter.z.about.components.length > 1 && ` Component ${painter.finding.component}.`}
           {reduced > 1 && ` Each pixel here is the mean of ${reduced} by ${reduced}. An EXR file beside the record of --report json=FILE has them all.`}
         </p>
         <p class="code">{pixel}</p>
