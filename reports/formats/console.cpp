@@ -22,6 +22,7 @@ constexpr int least_width = 40;
 constexpr int label_width = 17;
 constexpr std::size_t most_channels = 24;
 constexpr int block_lines = 5;  // of a claim that is not as it should be
+constexpr int error_lines = 8;  // of one whose source has words of its own
 constexpr int block_indent = 4;
 constexpr int unlimited = std::numeric_limits<int>::max();
 
@@ -105,10 +106,10 @@ class Screen {
     const std::vector<std::string> text = wrapped(told, options_.width - block_indent);
     std::vector<std::string> next;
     if (!all.empty()) next = step_lines(all[0]);
-    const auto room = [&] {
-      return place(test).empty() ? unlimited
-                                 : std::max(1, block_lines - used - static_cast<int>(next.size()));
-    };
+    const int most = place(test).empty()              ? unlimited
+                     : test.verdict == Verdict::error ? error_lines
+                                                      : block_lines;
+    const auto room = [&] { return std::max(1, most - used - static_cast<int>(next.size())); };
     // What a user is asked for is a step of its own.
     const bool asked =
         !all.empty() && all[0].paste != test.replay && all[0].words != test.no_replay;
