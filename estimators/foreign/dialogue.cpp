@@ -138,9 +138,9 @@ std::vector<double> Dialogue::reply_to(const Question& question, std::string_vie
   } catch (const TimeOut&) {
     if (!reads) give_up("closed its standard input instead of answering for " + to_text(question));
     give_up("did not answer for " + to_text(question) + " within " + seconds_text(terms_.timeout) +
-                (terms_.asked_whether_it_flushes
-                     ? " (parameter `timeout`; does it flush its output, or never end?)"
-                     : " (parameter `timeout`)"),
+                (terms_.asked_whether_it_flushes ? " (parameter `timeout`; does it flush its "
+                                                   "output after each reply, or run for ever?)"
+                                                 : " (parameter `timeout`)"),
             reply.so_far());
   }
   return reply.numbers();

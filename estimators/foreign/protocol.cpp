@@ -83,7 +83,8 @@ class Reader {
  private:
   void greet(std::string_view text, const Words& words) {
     if (words[0] != "assay" || words.size() != 3) {
-      wrong(text, "the first is `assay 1 text` or `assay 1 binary`; print to standard error");
+      wrong(text,
+            "the first is `assay 1 text` or `assay 1 binary`; print all else to standard error");
     }
     if (whole_of(words[1]) != protocol_version) {
       wrong(text, "it speaks version " + std::string(words[1]) +

@@ -306,7 +306,7 @@ class Reader {
     }
     const bool alone = table_.rows() == 1 && columns > 1 && !names_line_;
     if (alone && expected_ == Rows::several) refuse_one_row(columns);
-    if (may_be_decimals_ && !names_line_) {
+    if (may_be_decimals_ && !names_line_ && expected_ == Rows::several) {
       throw InputError({.file = source_.name(), .line = table_.lines.front(), .column = 1},
                        "a comma may be a decimal point: write it as one;\n" + name_columns);
     }

@@ -415,32 +415,23 @@ void run_once(const CalibrationBench& bench, const std::vector<CalibratedClaim*>
   }
   const Pilots pilots = pilots_of(questions, seed, threads(1));
   Pools pools;
-  std::vector<std::optional<TestWork>> works(claims.size());
-  std::vector<TestWork*> open;
+  std::vector<TestWork> works;
   for (std::size_t i = 0; i < claims.size(); ++i) {
-    try {
-      works[i] = TestWork{.outcome = plan_alone(*claims[i]->suite, questions[i], pilots),
-                          .verdict_only = true};
-    } catch (const InputError&) {
-      continue;  // a run would stop before sampling
-    }
-    TestOutcome& outcome = works[i]->outcome;
-    works[i]->pools = pools.for_question(outcome.question, outcome.plan, seed, pilots);
-    open.push_back(&*works[i]);
+    works.push_back(
+        {.outcome = plan_alone(*claims[i]->suite, questions[i], pilots), .verdict_only = true});
+    const TestOutcome& outcome = works[i].outcome;
+    works[i].pools = pools.for_question(outcome.question, outcome.plan, seed, pilots);
   }
+  std::vector<TestWork*> open;
+  for (TestWork& work : works) open.push_back(&work);
   leave_out_pictures(pools);
   Silence silence;
   sample_in_looks(open, pools.all(), {.executor = threads(1)}, silence);
   if (interrupted()) return;
   const std::lock_guard lock(counting);
   for (std::size_t i = 0; i < claims.size(); ++i) {
-    VerdictCounts& counts = claims[i]->counts;
-    ++counts.runs;
-    if (works[i]) {
-      tally(works[i]->outcome, counts);
-    } else {
-      ++counts.verdicts[Verdict::invalid];
-    }
+    ++claims[i]->counts.runs;
+    tally(works[i].outcome, claims[i]->counts);
   }
 }
 

@@ -207,7 +207,7 @@ std::string worst_of(const stats::ChiSquareFit& fit, const DrawCells& cells) {
   const auto worst = std::ranges::max_element(fit.cells, {}, part);
   const auto describe = [&](std::size_t cell) { return cells.describe(cell); };
   std::string text;
-  if (fit.impossible > 0) text = fmt::format("{} in cells of density 0; ", fit.impossible);
+  if (fit.impossible > 0) text = fmt::format("{} draws in cells of density 0; ", fit.impossible);
   return text + fmt::format("farthest off in {}, {} draws where {:.4g} are expected",
                             pool_text(worst->members, describe), worst->observed, worst->expected);
 }

@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <map>
-#include <span>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -19,6 +17,7 @@
 #include "harness/plan/plan.h"
 #include "harness/record/record_of.h"
 #include "harness/run/looks.h"
+#include "harness/run/observation_faults.h"
 #include "harness/run/pools.h"
 #include "harness/sampling/prepare.h"
 #include "harness/suite/yaml.h"
@@ -119,10 +118,9 @@ std::string unrepeated(const TestWork& work) {
     const harness::Pool& pool = *work.pools[side];
     const harness::Sample sample = work.sample(side);
     if (sample.drawn() == nullptr) continue;
-    const std::span<const double> values = sample.drawn()->values(0);
     const std::unique_ptr<Estimator> estimator = pool.setup()->make();
     std::vector<double> again(pool.channels());
-    for (std::size_t i = 0; i < std::min(most, values.size()); ++i) {
+    for (std::size_t i = 0; i < std::min(most, sample.drawn()->values(0).size()); ++i) {
       try {
         pool.draw_again(*estimator, i, again);
       } catch (...) {
@@ -130,12 +128,15 @@ std::string unrepeated(const TestWork& work) {
                            work.outcome.question.subjects[side].estimator->name, i,
                            harness::words_of(std::current_exception()));
       }
-      if (again[0] == values[i] || std::isnan(again[0])) continue;
-      return fmt::format(
-          "`{}` gave {} for observation {}, and {} when it was drawn again: take all random "
-          "numbers from the stream that it is given",
-          work.outcome.question.subjects[side].estimator->name, reports::round_trip(values[i]), i,
-          reports::round_trip(again[0]));
+      for (std::size_t channel = 0; channel < again.size(); ++channel) {
+        const double before = sample.drawn()->values(channel)[i];
+        if (harness::same_number(before, again[channel])) continue;
+        return fmt::format(
+            "`{}` gave {} for observation {}, and {} when it was drawn again: take all random "
+            "numbers from the stream that it is given",
+            work.outcome.question.subjects[side].estimator->name, reports::round_trip(before), i,
+            reports::round_trip(again[channel]));
+      }
     }
   }
   return "";

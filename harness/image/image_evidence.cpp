@@ -295,7 +295,7 @@ std::string seen_text(const stats::ImageLawFinding& most, const std::string& sid
     case stats::ImageScore::largest:
       break;
   }
-  return text("brightest value is mostly");
+  return text("brightest values are mostly");
 }
 
 std::size_t permutations_at(double alpha) {

@@ -10,7 +10,6 @@
 #include "harness/plan/looks.h"
 #include "harness/plan/sizes.h"
 #include "harness/theta/ask.h"
-#include "harness/theta/methods.h"
 #include "reports/words/number.h"
 
 namespace assay::harness {
@@ -100,6 +99,9 @@ std::string sizes_text(const TestOutcome& outcome, double factor) {
   return fmt::format("{}", fmt::join(texts, " and "));
 }
 
+namespace {
+
+/// The setting for so many times the observations.
 reports::Advice setting(const TestOutcome& outcome, double factor) {
   const auto& budget = outcome.question.test->budget;
   if (budget && budget->seconds) {
@@ -114,6 +116,23 @@ reports::Advice setting(const TestOutcome& outcome, double factor) {
   const double step = std::pow(10, std::max(0.0, std::floor(std::log10(factor * now)) - 1));
   return {.key = in_primaries ? "budget" : "secondaries",
           .value = fmt::format("{:.0f}", std::ceil(factor * now / step) * step)};
+}
+
+}  // namespace
+
+Reason more_drawn(const TestOutcome& outcome, double factor, const std::string& does) {
+  if (const auto& budget = outcome.question.test->budget; budget && budget->of_suite) {
+    return Reason::advising("", fmt::format("give the suite {} times its `budget`",
+                                            reports::human(std::ceil(10 * factor) / 10, 2)));
+  }
+  const reports::Advice next = setting(outcome, factor);
+  const bool many = next.key == "secondaries" && primaries_of_each(outcome) > 1;
+  const auto primaries = static_cast<double>(primaries_of_look(outcome, outcome.secondaries()));
+  return {
+      fmt::format("{}{} {}", written_key(*outcome.question.test, next.key, next.value),
+                  many ? fmt::format(" ({} primaries)", reports::human(factor * primaries, 2)) : "",
+                  does),
+      next};
 }
 
 Reason what_would_help(const TestOutcome& outcome) {
@@ -147,15 +166,12 @@ Reason what_would_help(const TestOutcome& outcome) {
                                         known ? "about " + sizes_text(outcome, factor) : "more",
                                         rows_noun(outcome.question)));
   }
-  const TestEntry& test = *outcome.question.test;
-  std::optional<reports::Advice> next;
-  if (known && !(test.budget && test.budget->of_suite)) next = setting(outcome, factor);
-  return {fmt::format(
-              "; {} may do. Without a declared range no test decides on fewer than {} primaries: "
-              "it knows nothing of a rare bright value that it never drew",
-              next ? written_key(test, next->key, next->value) : "more `secondaries`",
-              floor_of_evidence),
-          next};
+  Reason help = known ? more_drawn(outcome, factor, "may do") : Reason("more observations may do");
+  help.text = fmt::format(
+      "; {}. Without a declared range no test decides on fewer than {} primaries: it knows nothing "
+      "of a rare bright value that it never drew",
+      help.text, floor_of_evidence);
+  return help;
 }
 
 }  // namespace assay::harness

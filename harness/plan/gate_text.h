@@ -22,8 +22,8 @@ const char* rows_noun(const Question&);
 /// The look's size times `factor`: "1200", or "1200 and 750" if the subjects' sizes differ.
 std::string sizes_text(const TestOutcome& outcome, double factor);
 
-/// The setting for so many times the observations.
-reports::Advice setting(const TestOutcome& outcome, double factor);
+/// So many times the observations that are drawn, as a setting that `does` something.
+Reason more_drawn(const TestOutcome& outcome, double factor, const std::string& does);
 
 /// Advice that would turn red gates green: more rows, or more primaries and secondaries. For heavy
 /// tails it is a claim that needs no moments, or tails that end. Empty if the gates say it

@@ -104,7 +104,8 @@ Reason dependent(const Question& question, const Rows& rows, bool at_a_lag) {
       "the {} are not independent: {} of them are worth about {:.0f} independent ones; ",
       rows.label, rows.values.size(), worth);
   if (worth < fewest_of_a_chain) {
-    return Reason::advising(why, "give them in the order drawn: these are sorted, or drift");
+    return Reason::advising(
+        why, "give sorted ones in the order drawn; of a slow chain they are too few");
   }
   return Reason::advising(why, "give one row a chain, or " + enough_of_a_chain(question, time));
 }

@@ -22,7 +22,8 @@ using Primaries = std::map<std::string, std::uint64_t>;
 Primaries choose_primaries(const std::vector<Question>& questions,
                            const std::vector<FamilyPlace>& places, const Pilots& pilots);
 
-/// One test with its plan. Throws InputError at the test's place if its margin is beyond reach.
+/// One test with its plan. Where the pilots show a mistake, as a margin beyond reach, it is an
+/// error.
 TestOutcome plan_test(const Question& question, const FamilyPlace& place, const Pilots& pilots,
                       const Primaries& primaries);
 /// The same as a suite of its own, drawn by itself.

@@ -223,7 +223,9 @@ void add_image(const DrawnTest& drawn, reports::Test& test) {
                         .high = number(effect->interval.high / unit),
                         .confidence = stats::confidence_at_place,
                         .relative = relative};
-    test.image->winner.others = effect->of_others;
+    if (outcome.verdict == reports::Verdict::fail) {
+      test.image->winner.others = others_at(drawn, *effect);
+    }
   }
   add_maps(drawn, found, test);
 }

@@ -76,7 +76,8 @@ std::string last_run_file() {
   std::string folder = system_environment("XDG_CACHE_HOME");
   const std::string home = system_environment("HOME");
   if (folder.empty() && !home.empty()) folder = home + "/.cache";
-  const std::string here = std::filesystem::current_path().string();
+  std::error_code gone;
+  const std::string here = std::filesystem::current_path(gone).string();
   return folder.empty()
              ? ""
              : fmt::format("{}/assay/last_run/{:x}.json", folder, std::hash<std::string>()(here));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "harness/base/parallel.h"
 #include "harness/sampling/pool.h"
@@ -54,25 +55,6 @@ double other_mean(const DrawnTest& test, const std::vector<std::size_t>& element
   const Question& question = test.outcome.question;
   const double mean = mean_over(test, 1, elements, weights);
   return question.of_two() ? question.factor * mean + question.offset : mean;
-}
-
-std::string of_other_components(const DrawnTest& test, const stats::ImageFinding& winner,
-                                const ImageShape& shape, const std::vector<float>& weights) {
-  constexpr std::size_t most = 3;
-  std::vector<std::string> texts;
-  stats::ImageFinding other = winner;
-  for (other.channel = 0; other.channel < shape.components.size(); ++other.channel) {
-    if (other.channel == winner.channel || texts.size() == most) continue;
-    const std::vector<std::size_t> elements = elements_of(other, shape);
-    const double base = other_mean(test, elements, weights);
-    const double difference = mean_over(test, 0, elements, weights) - base;
-    if (!std::isfinite(difference) || difference == 0) continue;
-    const reports::Effect effect{.relative = base != 0};
-    const double unit = effect.relative ? std::abs(base) : 1;
-    texts.push_back(shape.components[other.channel] + " " +
-                    reports::theta_text(difference / unit, effect));
-  }
-  return fmt::format("{}", fmt::join(texts, ", "));
 }
 
 /// "`b.exr`", or "image 3 of `b`"; of a pair "`b.exr` less `a.exr`".
@@ -165,8 +147,7 @@ std::optional<PlaceEffect> effect_at_place(const DrawnTest& test) {
   const stats::ImageFamily& family = outcome.channels[0].image->family;
   const stats::ImageFinding& winner = family.winner;
   if (winner.alternation || winner.window.width == 0) return {};
-  const ImageShape& shape = *question.subjects[0].image;
-  std::vector<std::size_t> elements = elements_of(winner, shape);
+  std::vector<std::size_t> elements = elements_of(winner, *question.subjects[0].image);
   const stats::ImageEffect& effect = winner.effect;
   if (!(effect.standard_error > 0)) {
     const std::vector<double>& z = outcome.channels[0].image->z;
@@ -175,10 +156,7 @@ std::optional<PlaceEffect> effect_at_place(const DrawnTest& test) {
                   [&](std::size_t i) { return std::copysign(1.0, winner.z) * z[i] < least; });
     const double base = other_mean(test, elements, {});
     const double difference = mean_over(test, 0, elements, {}) - base;
-    return PlaceEffect{difference,
-                       {difference, difference, 1},
-                       base,
-                       of_other_components(test, winner, shape, {})};
+    return PlaceEffect{difference, {difference, difference, 1}, base, std::move(elements)};
   }
   const double log_level =
       stats::unadjusted(std::log(1 - stats::confidence_at_place), winner.group);
@@ -190,7 +168,31 @@ std::optional<PlaceEffect> effect_at_place(const DrawnTest& test) {
       .estimate = mean_over(test, 0, elements, family.weights) - base,
       .interval = {effect.estimate - half, effect.estimate + half, stats::confidence_at_place},
       .other = base,
-      .of_others = of_other_components(test, winner, shape, family.weights)};
+      .elements = std::move(elements),
+      .weights = family.weights};
+}
+
+std::string others_at(const DrawnTest& test, const PlaceEffect& place) {
+  constexpr std::size_t most = 3;
+  constexpr double clear = 3;
+  const std::vector<std::string>& names = test.outcome.question.subjects[0].image->components;
+  const std::vector<double>& z = test.outcome.channels[0].image->z;
+  const std::size_t mine = place.elements[0] % names.size();
+  std::vector<std::string> texts;
+  for (std::size_t c = 0; c < names.size() && texts.size() < most; ++c) {
+    if (c == mine) continue;
+    std::vector<std::size_t> elements = place.elements;
+    double sum = 0;
+    for (std::size_t& i : elements) sum += z[i = i - mine + c];
+    // As many standard errors of independent pixels.
+    if (!(std::abs(sum) > clear * std::sqrt(static_cast<double>(elements.size())))) continue;
+    const double base = other_mean(test, elements, place.weights);
+    const double difference = mean_over(test, 0, elements, place.weights) - base;
+    const reports::Effect effect{.relative = base != 0};
+    const double unit = effect.relative ? std::abs(base) : 1;
+    texts.push_back(names[c] + " by " + reports::theta_text(difference / unit, effect));
+  }
+  return fmt::format("{}", fmt::join(texts, ", "));
 }
 
 std::string means_where_it_differs(const DrawnTest& test) {

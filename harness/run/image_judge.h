@@ -20,11 +20,14 @@ ImageViews images_of(const DrawnTest& test, std::size_t subject);
 struct PlaceEffect {
   double estimate = 0;
   stats::Interval interval = {};
-  double other = 0;  ///< The mean that it is held against.
-  /// "G -5.1 %, B -4.9 %": what other components differ by there, three at most.
-  std::string of_others = {};
+  double other = 0;                        ///< The mean that it is held against.
+  std::vector<std::size_t> elements = {};  ///< In the question.
+  std::vector<float> weights = {};         ///< By element; empty if they are alike.
 };
 std::optional<PlaceEffect> effect_at_place(const DrawnTest& test);
+
+/// "G by -5.1 %, B by -4.9 %": what other components clearly differ by there, three at most.
+std::string others_at(const DrawnTest& test, const PlaceEffect& place);
 
 /// "; there it is 3 % too bright (2 to 4 %): 1.03 against 1", if one cell decided a failed claim on
 /// images. Else "".

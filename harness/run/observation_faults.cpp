@@ -11,6 +11,10 @@
 #include "harness/draws/sampler_setup.h"
 
 namespace assay::harness {
+
+bool same_number(double one, double other) {
+  return one == other || (std::isnan(one) && std::isnan(other));
+}
 namespace {
 
 /// The command that repeats one observation; "" of a claim in a test binary.
@@ -41,10 +45,6 @@ std::shared_ptr<const Sampler> sampler_of(const Setup& setup, const std::string&
   const auto named = std::ranges::find(all, name, &NamedSampler::name);
   if (named != all.end()) return named->sampler;
   return all.size() == 1 ? all[0].sampler : nullptr;
-}
-
-bool same_number(double one, double other) {
-  return one == other || (std::isnan(one) && std::isnan(other));
 }
 
 /// True if two samplers declare the same at one point.

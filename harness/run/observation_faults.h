@@ -9,6 +9,9 @@
 
 namespace assay::harness {
 
+/// True of equal numbers, and of two that are none.
+bool same_number(double one, double other);
+
 /// Says which source of a test stopped, where and why; "" if none did.
 std::string where_it_stopped(const TestWork& work);
 

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "harness/pilot/pilot.h"
 #include "harness/plan/gate_text.h"
 #include "harness/plan/looks.h"
 #include "harness/theta/ask.h"
@@ -223,18 +222,9 @@ Reason with_more(const TestOutcome& outcome, const ChannelOutcome& channel, doub
                                         : outcome.question.of_two() ? " a side"
                                                                     : " in all"));
   }
-  if (const auto& budget = outcome.question.test->budget; budget && budget->of_suite) {
-    return Reason::advising("", fmt::format("give the suite {} times its `budget`",
-                                            reports::human(std::ceil(10 * factor) / 10, 2)));
-  }
-  const reports::Advice next = setting(outcome, factor);
-  const bool many = next.key == "secondaries" && primaries_of_each(outcome) > 1;
-  const auto primaries = static_cast<double>(primaries_of_look(outcome, outcome.secondaries()));
-  return {
-      fmt::format("{}{} would decide{}", written_key(*outcome.question.test, next.key, next.value),
-                  many ? fmt::format(" ({} primaries)", reports::human(factor * primaries, 2)) : "",
-                  channel.regions.proof() ? " if the estimate stays as it is" : ""),
-      next};
+  return more_drawn(
+      outcome, factor,
+      channel.regions.proof() ? "would decide if the estimate stays as it is" : "would decide");
 }
 
 /// n grows with the square of the factor by which the interval must shrink.

@@ -70,7 +70,7 @@ struct ImageFinding {
   Number log10_p;
   Number log10_p_adjusted;       ///< in the family of everything that was looked at in the image
   std::optional<Effect> effect;  ///< difference of the means over the rectangle, of the winner
-  std::string others;            ///< "G -5.1 %, B -4.9 %": of other components there, of the winner
+  std::string others;  ///< "G by -5.1 %, B by -4.9 %": other components there, of the winner
   ASSAY_FIELDS(ImageFinding, statistic, place, x, y, width, height, component, z, log10_p,
                log10_p_adjusted, effect, others)
 };

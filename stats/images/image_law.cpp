@@ -192,13 +192,25 @@ class Pooled {
             tile % extent_.channels};
   }
 
-  // Of each image.
-  std::vector<double> largest(std::size_t channel) const {
-    std::vector<double> all(images_.size(), -std::numeric_limits<double>::infinity());
-    for (std::size_t r = 0; r < all.size(); ++r) {
-      for (std::size_t i = channel; i < images_[r].size(); i += extent_.channels) {
-        all[r] = std::max(all[r], static_cast<double>(images_[r][i]));
+  // The scores of each image's largest value, for every channel.
+  std::vector<Cells> brightest(const ForEach& for_each) const {
+    std::vector<std::vector<double>> largest(
+        extent_.channels,
+        std::vector<double>(images_.size(), -std::numeric_limits<double>::infinity()));
+    for_each(images_.size(), [&](std::size_t r) {
+      for (std::size_t i = 0; i < images_[r].size(); ++i) {
+        double& most = largest[i % extent_.channels][r];
+        most = std::max(most, static_cast<double>(images_[r][i]));
       }
+    });
+    std::vector<Cells> all;
+    for (const std::vector<double>& values : largest) {
+      std::vector<Placed<double>> order;
+      std::vector<double> ranks;
+      midranks(std::span<const double>(values), order, ranks);
+      standardise(ranks);
+      Cells& whole = all.emplace_back(Cells{.width = 1, .height = 1});
+      for (const double rank : ranks) whole.images.push_back({static_cast<float>(rank)});
     }
     return all;
   }
@@ -262,24 +274,8 @@ void note_elements(const Cells& values, const Place& at, const ImageExtent& exte
   }
 }
 
-Group look_at_largest(const Pooled& pooled, const Labels& labels) {
-  Group group;
-  for (std::size_t channel = 0; channel < pooled.extent().channels; ++channel) {
-    Cells whole{.width = 1, .height = 1};
-    std::vector<double> ranks;
-    std::vector<Placed<double>> order;
-    midranks(std::span<const double>(pooled.largest(channel)), order, ranks);
-    standardise(ranks);
-    for (const double rank : ranks) whole.images.push_back({static_cast<float>(rank)});
-    look_at(whole, labels, channel, group);
-  }
-  group.most.window = {0, 0, static_cast<std::uint32_t>(pooled.extent().width),
-                       static_cast<std::uint32_t>(pooled.extent().height)};
-  return group;
-}
-
-Groups groups_of(const Pooled& pooled, const Labels& labels, const ForEach& for_each,
-                 std::span<double> z) {
+Groups groups_of(const Pooled& pooled, const std::vector<Cells>& brightest, const Labels& labels,
+                 const ForEach& for_each, std::span<double> z) {
   Groups all;
   // By tile, score and image.
   std::vector<std::array<std::vector<float>, element_scores>> sums(pooled.tiles());
@@ -320,7 +316,10 @@ Groups groups_of(const Pooled& pooled, const Labels& labels, const ForEach& for_
                   all[s]);
     }
   }
-  all[static_cast<std::size_t>(ImageScore::largest)] = {look_at_largest(pooled, labels)};
+  Group& largest = all[static_cast<std::size_t>(ImageScore::largest)].emplace_back();
+  for (std::size_t c = 0; c < extent.channels; ++c) look_at(brightest[c], labels, c, largest);
+  largest.most.window = {0, 0, static_cast<std::uint32_t>(extent.width),
+                         static_cast<std::uint32_t>(extent.height)};
   return all;
 }
 
@@ -371,6 +370,7 @@ ImageLawTest image_law_test(const ImageStack& a, const ImageStack& b,
                             const ImageLawOptions& options) {
   check::image_pair("image_law_test", pair_of(a, b));
   const Pooled pooled(a, b);
+  const std::vector<Cells> brightest = pooled.brightest(options.for_each);
   const std::size_t first = a.images.size();
   const std::size_t all = first + b.images.size();
   ImageLawTest test{.z = std::vector<double>(a.extent.elements())};
@@ -387,7 +387,7 @@ ImageLawTest image_law_test(const ImageStack& a, const ImageStack& b,
     for (std::size_t i = 0; i < size; ++i) {
       labels.push_back(options.draw(test.permutations + i, all, first));
     }
-    const Groups groups = groups_of(pooled, labels, options.for_each,
+    const Groups groups = groups_of(pooled, brightest, labels, options.for_each,
                                     first_batch ? std::span(test.z) : std::span<double>());
     const std::vector<double> statistics = statistics_of(groups, labels.size());
     if (first_batch) {

@@ -37,7 +37,7 @@ try:
     scene.set_up(scene.read_settings(sys.argv[sys.argv.index("--") + 1:]))
     with tempfile.TemporaryDirectory() as folder:
         assay.serve(
-            lambda rng, samples: picture(f"{folder}/picture.exr", rng.render_seed, samples),
+            lambda rng, primaries: picture(f"{folder}/picture.exr", rng.render_seed, primaries),
             image=assay.Image(scene.WIDTH, scene.HEIGHT),
             channels=[assay.Channel("average", diagnostic=True)], arguments=[], output=3)
 except Exception as error:  # Blender itself would end with status 0

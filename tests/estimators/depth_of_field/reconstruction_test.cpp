@@ -32,8 +32,7 @@ TEST(Reconstruction, ItsBiasIsThatOfAnIndependentInterpolation) {
     const auto channels = prepare("depth_of_field/reconstruction", parameters).setup->channels();
     EXPECT_NEAR(*channels.back().mean, std::stod(row[5]), 1e-10);
     const std::vector<double> bias = plan.bias();
-    double off = 0;
-    double all = 0;
+    double off = 0, all = 0;
     for (std::size_t i = 0; i < bias.size(); ++i) {
       off += bias[i] * bias[i];
       all += plan.exact[i].mean * plan.exact[i].mean;

@@ -173,8 +173,7 @@ TEST(LazyCoordinates, OneStepFromTheStationaryLawIsInDetailedBalance) {
         ++flow[cell(u)][cell(v)];
       }
     }
-    double statistic = 0;
-    double freedom = 0;
+    double statistic = 0, freedom = 0;
     for (std::size_t a = 0; a < 24; ++a) {
       for (std::size_t b = 0; b < a; ++b) {
         const double sum = flow[a][b] + flow[b][a];

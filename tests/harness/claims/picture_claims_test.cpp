@@ -244,7 +244,7 @@ TEST_F(PictureClaims, ADefectIsFoundWhereItIs) {
   // Every component is brighter there.
   double green = 0, blue = 0;
   const std::string& others = test.image->winner.others;
-  ASSERT_EQ(std::sscanf(others.c_str(), "G %lf\u00a0%%, B %lf", &green, &blue), 2) << others;
+  ASSERT_EQ(std::sscanf(others.c_str(), "G by %lf\u00a0%%, B by %lf", &green, &blue), 2) << others;
   EXPECT_NEAR(green, 10, 4);
   EXPECT_NEAR(blue, 10, 4);
 }

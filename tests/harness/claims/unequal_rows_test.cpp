@@ -119,6 +119,14 @@ TEST_F(UnequalRows, FindAsMuchWhicheverSideIsLonger) {
   }
 }
 
+TEST_F(UnequalRows, SayHowManyOfEachWouldDecide) {
+  const reports::Suite suite =
+      judged(place, lehmer_rows(6, 400, 240), "  - {claim: mean(a) == mean(b), detect: 0.01}\n");
+  EXPECT_EQ(suite.tests[0].verdict, Verdict::inconclusive);
+  EXPECT_THAT(suite.tests[0].advice.value().words,
+              testing::MatchesRegex("give about [0-9.,k]+M? and [0-9.,k]+M? rows"));
+}
+
 TEST_F(UnequalRows, AreReplayedWhileTheyAreAsManyAsTheyWere) {
   const Rows rows = lehmer_rows(2, 400, 250);
   judged(place, rows, "  - {name: two, claim: mean(a) == mean(b)}\n");

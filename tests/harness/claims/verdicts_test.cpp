@@ -44,6 +44,12 @@ TEST_P(Verdicts, AreThoseOfTheTable) {
       EXPECT_EQ(test.method, expected.method) << row.text;
     }
     for (const std::string& words : row.words) {
+      if (words.starts_with("rows: ")) {
+        std::vector<std::uint64_t> sizes;
+        for (const reports::Sample& sample : test.samples) sizes.push_back(sample.secondaries);
+        EXPECT_EQ(fmt::format("rows: {}", fmt::join(sizes, ", ")), words) << row.text;
+        continue;
+      }
       const bool present = !words.starts_with("! ");
       EXPECT_EQ(said.find(present ? words : words.substr(2)) != said.npos, present)
           << row.text << ": " << said << "\n  " << words;

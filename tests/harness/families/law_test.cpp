@@ -119,8 +119,7 @@ TEST(LawEvidence, IntervalHoldsTheLargerOfBothDistances) {
 TEST(LawEvidence, KeepsItsLevel) {
   tests::Philox random(1);
   constexpr int runs = 10000;
-  int one = 0;
-  int two = 0;
+  int one = 0, two = 0;
   for (int run = 0; run < runs; ++run) {
     const auto draw = [&] {
       std::uint64_t missing = 0;

@@ -59,8 +59,7 @@ TEST(CellRecord, HasAzimuthsFromLeftToRight) {
   const auto setup = setup_of("{plugin: brdf/ward}", "direction");
   const Sampler& ward = setup->sampler();
   const std::vector<double>& borders = setup->density_cells().cells.grid().y_borders;
-  double least = 1;
-  double most = 0;
+  double least = 1, most = 0;
   for (std::size_t column = 0; column < 32; ++column) {
     double share = 0;
     const double width = borders[column + 1] - borders[column];
@@ -71,8 +70,7 @@ TEST(CellRecord, HasAzimuthsFromLeftToRight) {
     }
     least = std::min(least, share / width);
     most = std::max(most, share / width);
-    double drawn = 0;
-    double expected = 0;
+    double drawn = 0, expected = 0;
     for (std::size_t row = 0; row < 16; ++row) {
       drawn += test.maps[0].texels.values[row * 32 + column];
       expected += test.maps[1].texels.values[row * 32 + column];
@@ -110,8 +108,7 @@ TEST(CellRecord, ShowsThePartOfAHalvedCellThatIsFarthestOff) {
   const reports::Test test = tested("distribution(narrow.direction) == density");
   ASSERT_EQ(test.maps.size(), 3u) << test.message;
   EXPECT_THAT(test.maps[2].source, testing::HasSubstr("farthest off"));
-  double of_sums = 0;
-  double shown = 0;
+  double of_sums = 0, shown = 0;
   for (std::size_t i = 0; i < 512; ++i) {
     const double expected = test.maps[1].texels.values[i];
     if (expected < 20) continue;

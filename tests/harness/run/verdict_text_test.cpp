@@ -76,8 +76,7 @@ TEST(Narrate, APassWhoseIntervalLeavesTheClaimOutSaysThatEvidenceIsTooLittle) {
 TEST(Narrate, InconclusiveSaysHowManyPrimariesThatWouldBe) {
   const reports::Test test = told("claim: mean(averaged) == 2, detect: 0.5%, secondaries: 1000");
   expect_said(test, Verdict::inconclusive, {" primaries) would decide"});
-  double secondaries = 0;
-  double primaries = 0;
+  double secondaries = 0, primaries = 0;
   const std::size_t at = test.message.find("secondaries: ");
   ASSERT_NE(at, std::string::npos);
   ASSERT_EQ(std::sscanf(test.message.c_str() + at, "secondaries: %lf` (%lf primaries)",

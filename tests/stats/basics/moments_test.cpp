@@ -118,8 +118,7 @@ TEST(MeanRounding, IsAsMeasured) {
   tests::Philox random(1717);
   for (const Blocks& blocks : {Blocks{1e8, 256, 1}, Blocks{1e10, 256, 16}, Blocks{1e12, 1024, 1},
                                Blocks{1e13, 64, 64}, Blocks{1e14, 1024, 32}}) {
-    double squares = 0;
-    double expected = 0;
+    double squares = 0, expected = 0;
     for (int run = 0; run < 200; ++run) {
       const Rounded rounded = sample(blocks, random);
       squares += rounded.off * rounded.off / 200;

@@ -48,8 +48,7 @@ TEST(AssumptionGates, TheSkewnessOfAContrastIsThatOfItsInfluences) {
   const std::vector<double> x = skewed_values(400, 4);
   const std::vector<double> y = skewed_values(150, 5);
   for (const double scale : {.05, .3, -.3, 1.0, -2.0}) {
-    double squares = 0;
-    double cubes = 0;
+    double squares = 0, cubes = 0;
     for (const auto& psi : {influences(x, 1), influences(y, -scale)}) {
       for (const double each : psi) squares += each * each, cubes += each * each * each;
     }
@@ -202,8 +201,7 @@ TEST(AssumptionGates, GrossViolationsAreRed) {
 
 // Squared deviations over n^2, summed as they stand.
 TEST(AssumptionGates, EffectiveObservationsWeighSquaresByTheirShare) {
-  double sum = 0;
-  double squares = 0;
+  double sum = 0, squares = 0;
   const auto take = [&](const std::vector<double>& values, const Moments& moments) {
     for (const double value : values) {
       const double weight =

@@ -79,8 +79,7 @@ TEST(BettingMean, MergedCellsLoseLittleAndGainNothing) {
 
 TEST(BettingMean, PFallsAsTheNullMovesAway) {
   const ValueCells x(fractions(3, 5000));
-  double above = 0;
-  double below = 0;
+  double above = 0, below = 0;
   for (int step = 1; step < 200; ++step) {
     const double reach = step / 200.0;
     const double higher = betting_mean(x, unit, x.mean() + (1 - x.mean()) * reach).log_p_lower;
@@ -236,9 +235,7 @@ CAUGHT(BettingMean, ARangeOfHalfTheTrueOneIsNoticed, 321, 1000, Shape::at_most_u
 
 // Each bet is the best of the values so far, with the one that it is placed on.
 CAUGHT(BettingMean, ABetThatKnowsTheMeanOfTheDataIsNoticed, 322, 4000, Shape::at_most_uniform) {
-  double excess = 0;
-  double squares = 0;
-  double log_wealth = 0;
+  double excess = 0, squares = 0, log_wealth = 0;
   for (int i = 0; i < 100; ++i) {
     const double gain = random.uniform() / laws::uniform.mean - 1;
     excess += gain;

@@ -103,8 +103,7 @@ TEST(EvidenceLedger, AHugeReferenceErrorMakesEveryNightWorthless) {
 // Nights in units of a night's standard error. `reference` is the error of the common reference.
 struct Series {
   int nights = 100;
-  double bias = 0;
-  double reference = 0;
+  double bias = 0, reference = 0;
   int first_biased = 0;
 };
 
@@ -247,8 +246,7 @@ TEST(EvidenceLedger, ABiasOfOneStandardErrorANightIsFoundWithinThirtyNights) {
 
 // Z is 11 over 55 nights, by estimates or by two-sided p-values, after so many quiet nights.
 struct Found {
-  double estimates = 0;
-  double p_values = 0;
+  double estimates = 0, p_values = 0;
 };
 Found eleven_standard_errors(std::uint32_t test_case, int quiet) {
   const Series series{.nights = quiet + 55, .bias = 11 / std::sqrt(55), .first_biased = quiet};

@@ -39,8 +39,7 @@ TEST(PooledNoise, HasTheMomentsOfTheValuesCutOff) {
   for (const double unit : {1.0, 1e-9, 1e9}) {
     const PooledNoise noise = pooled(values, unit);
     for (int octave = noise.top(); octave > noise.top() - 4; --octave) {
-      double squares = 0;
-      double cubes = 0;
+      double squares = 0, cubes = 0;
       for (const double value : values) {
         const double c = std::ldexp(1, octave);
         const double x = std::clamp(unit * value, -c, c);

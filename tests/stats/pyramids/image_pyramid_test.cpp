@@ -359,8 +359,7 @@ double log_p_of_the_true_effect(Philox& random, bool adjust) {
   const ImageFamily family = image_pyramid(a.view(), normal_stack(random, 16).view());
   const ImageFinding& found = family.winner;
   if (found.alternation) return 0;
-  double sum = 0;
-  double weight = 0;
+  double sum = 0, weight = 0;
   for (std::size_t y = found.window.y; y < found.window.y + found.window.height; ++y) {
     for (std::size_t x = found.window.x; x < found.window.x + found.window.width; ++x) {
       const double w = static_cast<double>(family.weights[y * small.width + x]);
