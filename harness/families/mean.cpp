@@ -705,7 +705,7 @@ class MeanTheta : public Theta {
   std::string caveat(const TestOutcome& outcome) const override {
     constexpr std::uint64_t many = 16 * floor_of_evidence;
     const Question& question = outcome.question;
-    if (outcome.plan.method.is.exact || outcome.channels.empty()) return "";
+    if (outcome.plan.method.is.exact || outcome.verdict != reports::Verdict::fail) return "";
     const bool below = outcome.channels[0].effect.estimate.value_or(0) < 0;
     for (std::size_t side = 0; side < question.compared(); ++side) {
       const stats::Range range = range_of(question, side, outcome.channels[0].index, {});
