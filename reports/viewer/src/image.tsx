@@ -157,8 +157,8 @@ class Painter {
 }
 
 const legends: { [mode in Mode]: string } = {
-  where: "Orange: new is brighter. Blue: darker. In standard errors, averaged over the size of the finding.",
-  much: "Orange: new is brighter. Blue: darker. Averaged over the size of the finding.",
+  where: "Orange: new is brighter. Blue: darker. In standard errors.",
+  much: "Orange: new is brighter. Blue: darker.",
   new: "The new picture.",
   old: "What it is compared with, at the same exposure.",
   wipe: "Left: old. Right: new. Move to shift the edge.",
@@ -338,6 +338,7 @@ function Viewer({ painter, name }: { painter: Painter; name: string }) {
         )}
         <p class="quiet">
           {legends[mode]}
+          {scales[mode] && painter.window.width * painter.window.height > 1 && " Averaged over the size of the finding."}
           {scales[mode] && painter.z.about.components.length > 1 && ` Component ${painter.finding.component}.`}
           {reduced > 1 && ` Each pixel here is the mean of ${reduced} by ${reduced}. An EXR file beside the record of --report json=FILE has them all.`}
         </p>
