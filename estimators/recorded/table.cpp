@@ -246,7 +246,7 @@ std::string no_text(std::string_view beginning, const std::string& file) {
          python_quoted(to_paste(file)) + "))`";
 }
 
-const std::string name_columns = "  if these are columns, name them in a first line";
+constexpr const char* name_columns = "  if these are columns, name them in a first line";
 constexpr std::string_view stream_keyword = "stream:";
 constexpr std::size_t longest_line = std::size_t{64} << 20;
 
@@ -307,8 +307,9 @@ class Reader {
     const bool alone = table_.rows() == 1 && columns > 1 && !names_line_;
     if (alone && expected_ == Rows::several) refuse_one_row(columns);
     if (may_be_decimals_ && !names_line_ && expected_ == Rows::several) {
-      throw InputError({.file = source_.name(), .line = table_.lines.front(), .column = 1},
-                       "a comma may be a decimal point: write it as one;\n" + name_columns);
+      throw InputError(
+          {.file = source_.name(), .line = table_.lines.front(), .column = 1},
+          std::string("a comma may be a decimal point: write it as one;\n") + name_columns);
     }
     return std::move(table_);
   }

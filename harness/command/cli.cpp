@@ -432,7 +432,7 @@ void read_words(Texts words, ReplayArguments& given) {
 void define_replay(Options& options, ReplayArguments& given) {
   options.about(
       R"(Draws the numbers of a recorded test again, or one observation of it alone.
-Without a saved run it is that of the last run.
+Without a saved run it is that of the last run from this folder.
 
 Examples:
   assay replay 'luminaire/mean(triangle_area) == analytic'
@@ -452,7 +452,7 @@ Examples:
 void define_explain(Options& options, ExplainArguments& given) {
   options.about(
       R"(Explains a test in a few sentences, and says what to do next. Without a saved
-run it is that of the last run.
+run it is that of the last run from this folder.
 
 Examples:
   assay explain 'luminaire/mean(triangle_area) == analytic'

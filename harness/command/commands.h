@@ -32,7 +32,7 @@ int explain(const ExplainArguments&);
 
 /// A recorded test to draw again.
 struct ReplayArguments {
-  std::string record = "";                        ///< RUN.json; "": the last run
+  std::string record = "";                        ///< RUN.json; "": the last run from this folder
   std::string test;                               ///< id or name
   std::optional<std::uint64_t> observation = {};  ///< none: the whole test
 };

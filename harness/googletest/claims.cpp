@@ -118,14 +118,14 @@ std::string unrepeated(const TestWork& work) {
     const harness::Pool& pool = *work.pools[side];
     const harness::Sample sample = work.sample(side);
     if (sample.drawn() == nullptr) continue;
+    const std::string& name = work.outcome.question.subjects[side].estimator->name;
     const std::unique_ptr<Estimator> estimator = pool.setup()->make();
     std::vector<double> again(pool.channels());
     for (std::size_t i = 0; i < std::min(most, sample.drawn()->values(0).size()); ++i) {
       try {
         pool.draw_again(*estimator, i, again);
       } catch (...) {
-        return fmt::format("`{}` cannot draw observation {} again: {}",
-                           work.outcome.question.subjects[side].estimator->name, i,
+        return fmt::format("`{}` cannot draw observation {} again: {}", name, i,
                            harness::words_of(std::current_exception()));
       }
       for (std::size_t channel = 0; channel < again.size(); ++channel) {
@@ -134,8 +134,7 @@ std::string unrepeated(const TestWork& work) {
         return fmt::format(
             "`{}` gave {} for observation {}, and {} when it was drawn again: take all random "
             "numbers from the stream that it is given",
-            work.outcome.question.subjects[side].estimator->name, reports::round_trip(before), i,
-            reports::round_trip(again[channel]));
+            name, reports::round_trip(before), i, reports::round_trip(again[channel]));
       }
     }
   }

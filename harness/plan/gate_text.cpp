@@ -56,6 +56,23 @@ double wanted(const Gate& gate) {
   return 1;
 }
 
+/// The setting for so many times the observations.
+reports::Advice setting(const TestOutcome& outcome, double factor) {
+  const auto& budget = outcome.question.test->budget;
+  if (budget && budget->seconds) {
+    return {.key = "budget",
+            .value = fmt::format("{}s", std::ceil(10 * factor * *budget->seconds) / 10)};
+  }
+  const bool in_primaries = budget && budget->primaries;
+  const std::uint64_t secondaries = outcome.secondaries();
+  const double now = in_primaries ? static_cast<double>(primaries_of_look(outcome, secondaries)) /
+                                        (1 - pilots_part)
+                                  : static_cast<double>(secondaries);
+  const double step = std::pow(10, std::max(0.0, std::floor(std::log10(factor * now)) - 1));
+  return {.key = in_primaries ? "budget" : "secondaries",
+          .value = fmt::format("{:.0f}", std::ceil(factor * now / step) * step)};
+}
+
 }  // namespace
 
 std::string red_gates(const std::vector<Gate>& gates) {
@@ -98,27 +115,6 @@ std::string sizes_text(const TestOutcome& outcome, double factor) {
   }
   return fmt::format("{}", fmt::join(texts, " and "));
 }
-
-namespace {
-
-/// The setting for so many times the observations.
-reports::Advice setting(const TestOutcome& outcome, double factor) {
-  const auto& budget = outcome.question.test->budget;
-  if (budget && budget->seconds) {
-    return {.key = "budget",
-            .value = fmt::format("{}s", std::ceil(10 * factor * *budget->seconds) / 10)};
-  }
-  const bool in_primaries = budget && budget->primaries;
-  const std::uint64_t secondaries = outcome.secondaries();
-  const double now = in_primaries ? static_cast<double>(primaries_of_look(outcome, secondaries)) /
-                                        (1 - pilots_part)
-                                  : static_cast<double>(secondaries);
-  const double step = std::pow(10, std::max(0.0, std::floor(std::log10(factor * now)) - 1));
-  return {.key = in_primaries ? "budget" : "secondaries",
-          .value = fmt::format("{:.0f}", std::ceil(factor * now / step) * step)};
-}
-
-}  // namespace
 
 Reason more_drawn(const TestOutcome& outcome, double factor, const std::string& does) {
   if (const auto& budget = outcome.question.test->budget; budget && budget->of_suite) {

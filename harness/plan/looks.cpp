@@ -106,17 +106,20 @@ stats::LookSchedule one_look(std::uint64_t secondaries, const ErrorShare& share)
   return {.sizes = {secondaries}, .alpha = {share.alpha}, .beta = {share.beta}};
 }
 
+void require_free_size(const TestOutcome& test) {
+  const TestEntry& entry = *test.question.test;
+  if (test.plan.method.keeps != Keeps::blocks || (!entry.secondaries && !entry.budget)) return;
+  refuse(entry.place_of(entry.secondaries ? "secondaries" : "budget"),
+         "a claim in seconds is timed on whole replicates: `secondaries` and `budget` cannot be "
+         "chosen; leave them out");
+}
+
 stats::LookSchedule plan_looks(const TestOutcome& test, const Pilots& pilots, std::uint64_t first) {
   const Question& question = test.question;
   const TestEntry& entry = *question.test;
   const ErrorShare& whole = test.place.share;
   const std::uint64_t most = most_available(test, pilots);
   if (test.plan.method.keeps == Keeps::blocks) {
-    if (entry.secondaries || entry.budget) {
-      refuse(entry.place_of(entry.secondaries ? "secondaries" : "budget"),
-             "a claim in seconds is timed on whole replicates: `secondaries` and `budget` cannot "
-             "be chosen; leave them out");
-    }
     const auto planned = question.theta->secondaries(test, whole, pilots);
     if (planned) require_possible(test, *planned);
     return timed_look(test, std::max(first, planned.value_or(usual_secondaries)));

@@ -7,6 +7,9 @@
 
 namespace assay::harness {
 
+/// Throws InputError if somebody chose the size of a claim in seconds.
+void require_free_size(const TestOutcome& test);
+
 /// Looks that grow from the fewest meaningful up to what `detect` needs at the last look's levels.
 /// One look if nothing asks for a number or it is given: rows of a file, `secondaries`, the
 /// classical 1000.

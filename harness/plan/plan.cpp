@@ -212,6 +212,7 @@ TestOutcome plan_test(const Question& question, const FamilyPlace& place, const 
     plan.looks = unjudged_look(test);
     return test;
   }
+  require_free_size(test);
   try {
     question.theta->require_density(question);
     const std::uint64_t least = choose_method(test, pilots, most_available(test, pilots));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <utility>
 
 #include "harness/base/parallel.h"
@@ -32,7 +33,7 @@ std::vector<std::size_t> elements_of(const stats::ImageFinding& finding, const I
 
 /// The mean of a subject over elements, by their weights or plain.
 double mean_over(const DrawnTest& test, std::size_t subject,
-                 const std::vector<std::size_t>& elements, const std::vector<float>& weights) {
+                 const std::vector<std::size_t>& elements, std::span<const float> weights) {
   const Question& question = test.outcome.question;
   const bool numbers = subject >= question.subjects.size();
   double sum = 0;
@@ -51,7 +52,7 @@ double mean_over(const DrawnTest& test, std::size_t subject,
 
 /// The mean of what the first image is held against.
 double other_mean(const DrawnTest& test, const std::vector<std::size_t>& elements,
-                  const std::vector<float>& weights) {
+                  std::span<const float> weights) {
   const Question& question = test.outcome.question;
   const double mean = mean_over(test, 1, elements, weights);
   return question.of_two() ? question.factor * mean + question.offset : mean;
@@ -183,7 +184,10 @@ std::string others_at(const DrawnTest& test, const PlaceEffect& place) {
     if (c == mine) continue;
     std::vector<std::size_t> elements = place.elements;
     double sum = 0;
-    for (std::size_t& i : elements) sum += z[i = i - mine + c];
+    for (std::size_t& i : elements) {
+      i = i - mine + c;
+      sum += z[i];
+    }
     // As many standard errors of independent pixels.
     if (!(std::abs(sum) > clear * std::sqrt(static_cast<double>(elements.size())))) continue;
     const double base = other_mean(test, elements, place.weights);

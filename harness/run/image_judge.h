@@ -1,7 +1,10 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "harness/plan/sizes.h"
 #include "harness/run/evaluate.h"
@@ -22,7 +25,7 @@ struct PlaceEffect {
   stats::Interval interval = {};
   double other = 0;                        ///< The mean that it is held against.
   std::vector<std::size_t> elements = {};  ///< In the question.
-  std::vector<float> weights = {};         ///< By element; empty if they are alike.
+  std::span<const float> weights = {};     ///< The test's, by element; empty if they are alike.
 };
 std::optional<PlaceEffect> effect_at_place(const DrawnTest& test);
 

@@ -101,7 +101,7 @@ class Screen {
     const std::string verdict = verdict_text(test) + ": ";
     const int used = head(fmt::format("{} {}{}", mark(how), verdict, test.id), place(test), how);
     const std::vector<Step> all = steps(test);
-    std::string told = without_advice(trouble(test), test);
+    std::string told = trouble(test);
     if (told.starts_with(verdict)) told.erase(0, verdict.size());
     const std::vector<std::string> text = wrapped(told, options_.width - block_indent);
     std::vector<std::string> next;

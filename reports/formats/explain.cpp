@@ -56,7 +56,7 @@ std::string explain(const Suite& suite, const Test& test, int width) {
   out += "\n";
   std::string text = fmt::format("The claim is `{}`. ", one_line(test.claim));
   const bool passed = test.verdict == Verdict::pass && test.expected == Verdict::pass;
-  const std::string found = passed ? words.sentence : without_advice(trouble(test), test);
+  const std::string found = passed ? words.sentence : trouble(test);
   for (const std::string& part : {words.meaning, sentence(found)}) {
     if (!part.empty()) text += part + " ";
   }

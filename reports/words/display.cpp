@@ -111,6 +111,14 @@ std::string exclusion_of_claim(const Test& test, const Effect& effect, const std
   return " Its range leaves the claim out, which at this test's level is no rejection.";
 }
 
+/// Words without the advice in them, which is a step of its own.
+std::string without_advice(std::string words, const Test& test) {
+  const std::string advice = test.advice && test.advice->key.empty() ? test.advice->words : "";
+  const std::size_t at = advice.empty() ? std::string::npos : words.rfind(advice);
+  if (at == std::string::npos || at < 2) return words;
+  return words.erase(at - 2, advice.size() + 2);  // with "; " or ": "
+}
+
 std::string sentence_of(const Test& test, const Effect& effect, const std::string& margin) {
   if (test.verdict == Verdict::skipped) return "It was not run.";
   if (!is_evidence(test)) return without_advice(headline(test), test);
@@ -365,14 +373,7 @@ std::string trouble(const Test& test) {
   if (is_missed(test)) return "The planted bug was not caught. " + display(test).sentence;
   if (test.verdict == Verdict::fail && test.expected == Verdict::pass)
     return display(test).sentence;
-  return test.verdict == Verdict::skipped ? test.message : headline(test);
-}
-
-std::string without_advice(std::string words, const Test& test) {
-  const std::string advice = test.advice && test.advice->key.empty() ? test.advice->words : "";
-  const std::size_t at = advice.empty() ? std::string::npos : words.rfind(advice);
-  if (at == std::string::npos || at < 2) return words;
-  return words.erase(at - 2, advice.size() + 2);  // with "; " or ": "
+  return test.verdict == Verdict::skipped ? test.message : without_advice(headline(test), test);
 }
 
 std::vector<Step> steps(const Test& test) {

@@ -119,10 +119,8 @@ struct RecordDisplay {
 };
 RecordDisplay display(const Record&);
 
-/// The trouble with a claim, without a p-value where it can be said so.
+/// The trouble with a claim, without a p-value where it can be said so, and without its advice.
 std::string trouble(const Test&);
-/// Words without the advice in them, which is a step of its own.
-std::string without_advice(std::string words, const Test&);
 
 /// The command that tells more of a test.
 Step explanation(const Test&);
