@@ -686,7 +686,15 @@ class MeanTheta : public Theta {
   }
 
   std::optional<double> detectable(const Sized& sized) const override {
-    return sized.test.plan.method.is.exact ? exact_detectable(sized) : Theta::detectable(sized);
+    if (!sized.test.plan.method.is.exact) return Theta::detectable(sized);
+    if (!is_quoted(sized)) return std::nullopt;
+    double most = 0;
+    for (const int side : sides_of(sized.channel.regions)) {
+      const auto found = exact_effect(sized, side);
+      if (!found) return std::nullopt;
+      most = std::max(most, *found);
+    }
+    return most / sized.channel.unit;
   }
 
   bool finds_nothing(const Sized& sized) const override {
@@ -696,8 +704,16 @@ class MeanTheta : public Theta {
   }
 
   std::optional<double> power(const Sized& sized, double effect) const override {
-    return sized.test.plan.method.is.exact ? exact_power(sized, effect)
-                                           : Theta::power(sized, effect);
+    if (!sized.test.plan.method.is.exact) return Theta::power(sized, effect);
+    if (!is_quoted(sized) || effect == 0) return std::nullopt;
+    const stats::ExactMeanPlan exact = plan_of(sized.channel, sized.rates());
+    const stats::ExactPlanning& plans = *sized.test.plan.method.is.plans;
+    double least = 1;
+    for (const int side : sides_of(sized.channel.regions)) {
+      const double theta = side * effect * sized.channel.unit;
+      least = std::min(least, plans.power(exact, sized.size.secondaries, theta));
+    }
+    return least;
   }
 
   /// Rare values that were never drawn would move a mean towards an end of its range. Where that
@@ -817,29 +833,6 @@ class MeanTheta : public Theta {
     return stats::exact_detectable(*sized.test.plan.method.is.plans,
                                    plan_of(sized.channel, sized.rates()), sized.size.secondaries,
                                    side);
-  }
-
-  static std::optional<double> exact_detectable(const Sized& sized) {
-    if (!is_quoted(sized)) return std::nullopt;
-    double most = 0;
-    for (const int side : sides_of(sized.channel.regions)) {
-      const auto found = exact_effect(sized, side);
-      if (!found) return std::nullopt;
-      most = std::max(most, *found);
-    }
-    return most / sized.channel.unit;
-  }
-
-  static std::optional<double> exact_power(const Sized& sized, double effect) {
-    if (!is_quoted(sized) || effect == 0) return std::nullopt;
-    const stats::ExactMeanPlan exact = plan_of(sized.channel, sized.rates());
-    const stats::ExactPlanning& plans = *sized.test.plan.method.is.plans;
-    double least = 1;
-    for (const int side : sides_of(sized.channel.regions)) {
-      const double theta = side * effect * sized.channel.unit;
-      least = std::min(least, plans.power(exact, sized.size.secondaries, theta));
-    }
-    return least;
   }
 };
 
