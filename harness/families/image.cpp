@@ -20,9 +20,7 @@ namespace {
 
 // ---- Binding
 
-[[noreturn]] void refuse(const Question& question, const std::string& why) {
-  throw InputError(question.test->claim.left.where, why);
-}
+const Location& place_of(const Question& question) { return question.test->claim.left.where; }
 
 std::string size_text(const Subject& subject) {
   if (!subject.image) return fmt::format("`{}` is no image", subject.estimator->name);
@@ -37,20 +35,21 @@ void require_one_size(const Question& question) {
                       first.image->height == other.image->height &&
                       first.image->components.size() == other.image->components.size();
     if (same) continue;
-    refuse(question, fmt::format("{}, and {}: only images of one size and as many channels can be "
-                                 "compared, element by element",
-                                 size_text(first), size_text(other)));
+    refuse(place_of(question),
+           "{}, and {}: only images of one size and as many channels can be compared, element by "
+           "element",
+           size_text(first), size_text(other));
   }
 }
 
 void require_tested_relation(const Question& question) {
   const Relation relation = question.test->claim.relation;
   if (relation == Relation::equal || relation == Relation::within) return;
-  refuse(question,
-         fmt::format("images are claimed to be equal (`==`) or `within` a margin of each other; "
-                     "for `{}` name one pixel, as in `{}.{}`",
-                     to_string(relation), question.subjects[0].estimator->name,
-                     element_name(*question.subjects[0].image, 0)));
+  refuse(place_of(question),
+         "images are claimed to be equal (`==`) or `within` a margin of each other; for `{}` name "
+         "one pixel, as in `{}.{}`",
+         to_string(relation), question.subjects[0].estimator->name,
+         element_name(*question.subjects[0].image, 0));
 }
 
 /// A number's error is common to all pixels, but the methods need independent ones.
@@ -58,7 +57,7 @@ void require_exact_number(const Question& question) {
   const auto* number = std::get_if<Constant>(&question.test->claim.right);
   if ((number != nullptr && number->standard_error > 0) ||
       (question.test->reference_number && question.test->reference_number->standard_error > 0)) {
-    refuse(question,
+    refuse(place_of(question),
            "the error of one number is common to all pixels: `+-` has no method for images");
   }
 }
@@ -70,9 +69,9 @@ void require_something(const Question& question) {
   if (!dark) return;
   const TestEntry& test = *question.test;
   if (has_margin(test, true)) {
-    throw InputError(test.where,
-                     "a margin in per cent has no meaning here: the reference is zero in every "
-                     "pixel; give an absolute number");
+    refuse(test.where,
+           "a margin in per cent has no meaning here: the reference is zero in every pixel; give "
+           "an absolute number");
   }
 }
 
@@ -86,10 +85,10 @@ void require_equal_primaries(const Question& question) {
     words.push_back(given || one ? fmt::format("{}", given.value_or(1)) : "auto");
   }
   if (words[0] == words[1]) return;
-  refuse(question, fmt::format("`{}` has `primaries: {}` and `{}` has `primaries: {}`; give both "
-                               "as many",
-                               question.subjects[0].estimator->name, words[0],
-                               question.subjects[1].estimator->name, words[1]));
+  refuse(place_of(question),
+         "`{}` has `primaries: {}` and `{}` has `primaries: {}`; give both as many",
+         question.subjects[0].estimator->name, words[0], question.subjects[1].estimator->name,
+         words[1]);
 }
 
 // ---- Pairs
@@ -159,11 +158,10 @@ void require_partners(const Question& question) {
   const std::vector<std::string> others = keys_of(second);
   for (std::uint64_t i = 0; i < keys.size(); ++i) {
     if (keys[i] == others[i] && std::ranges::count(keys, keys[i]) == 1) continue;
-    refuse(question,
-           fmt::format("`{}` and `{}` are no pair of one seed: their names say `{}` and `{}`; name "
-                       "both pictures of a seed alike, and those of two seeds differently",
-                       first.place_of({.index = i}), second.place_of({.index = i}), keys[i],
-                       others[i]));
+    refuse(place_of(question),
+           "`{}` and `{}` are no pair of one seed: their names say `{}` and `{}`; name both "
+           "pictures of a seed alike, and those of two seeds differently",
+           first.place_of({.index = i}), second.place_of({.index = i}), keys[i], others[i]);
   }
 }
 
@@ -364,14 +362,12 @@ class ImageTheta : public Theta {
     const std::string mend =
         question.test->budget
             ? "give a larger `budget`, of which every pixel and component takes its `primaries`, "
-              "or "
-              "fewer of these"
+              "or fewer of these"
             : fmt::format("take {} `secondaries` or more, with fewer `primaries` if need be",
                           stats::least_replicates);
     return fmt::format(
         "{} images are too few: each pixel's variance comes from them alone, and it takes {} of "
-        "them "
-        "to tell any pixel among {} from its reference; {}",
+        "them to tell any pixel among {} from its reference; {}",
         fewest, stats::least_replicates, question.subjects[0].channels.size(), mend);
   }
 
@@ -422,14 +418,15 @@ class PairedImageTheta final : public ImageTheta {
     ImageTheta::check(question);
     const Setup& first = *question.subjects[0].setup;
     const Setup& second = *question.subjects[1].setup;
-    if (first.observations() != second.observations()) refuse(question, counts_text(question));
+    if (first.observations() != second.observations())
+      refuse(place_of(question), counts_text(question));
     if (first.observations()) require_partners(question);
     require_equal_primaries(question);
     if (question.subjects[0].estimator == question.subjects[1].estimator) {
-      refuse(question,
-             fmt::format("both sides of the pairs are `{}`, which equals itself; name another "
-                         "estimator, or leave `paired` out",
-                         question.subjects[0].estimator->name));
+      refuse(place_of(question),
+             "both sides of the pairs are `{}`, which equals itself; name another estimator, or "
+             "leave `paired` out",
+             question.subjects[0].estimator->name);
     }
   }
 };
@@ -451,9 +448,9 @@ class ImageLawTheta final : public ImageTheta {
   const Theta* of_pairs() const override { return nullptr; }
   void check(const Question& question) const override {
     if (!question.of_two()) {
-      refuse(question,
-             "the law of an image is compared with that of another image, as in "
-             "`distribution(new) == distribution(old)`");
+      refuse(place_of(question),
+             "the law of an image is compared with that of another image, as in `distribution(new) "
+             "== distribution(old)`");
     }
     ImageTheta::check(question);
     require_equal_primaries(question);
@@ -470,9 +467,8 @@ class ImageLawTheta final : public ImageTheta {
     return ImageTheta::choose(test, pilots, most);
   }
   void check_margin(const Question&, const Margin& margin) const override {
-    throw InputError(margin.where,
-                     "laws of images are the same or not: no margin has a meaning here; leave it "
-                     "out");
+    refuse(margin.where,
+           "laws of images are the same or not: no margin has a meaning here; leave it out");
   }
   ChannelEvidence evidence(const DrawnTest& test, const Seen& seen) const override {
     return evidence_of_image_laws(seen, image_test(test));
