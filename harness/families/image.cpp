@@ -357,7 +357,8 @@ class ImageTheta : public Theta {
   std::uint64_t usual_size() const override { return classical_replicates; }
   std::string too_few(const TestOutcome& test) const override {
     const Question& question = test.question;
-    const std::uint64_t fewest = fewest_secondaries(question, test.plan.most_secondaries());
+    std::uint64_t fewest = test.plan.most_secondaries();
+    for (const Subject& side : question.subjects) fewest = side.secondaries(fewest);
     if (fewest >= stats::least_replicates) return "";
     const std::string mend =
         question.test->budget

@@ -68,19 +68,6 @@ std::uint64_t secondaries_by_t(const Method& method, const stats::ErrorRates& ra
       .value_or(impossible_secondaries);
 }
 
-std::uint64_t fewest_secondaries(const Question& question, std::uint64_t look) {
-  std::uint64_t fewest = look;
-  for (const Subject& side : question.subjects) fewest = std::min(fewest, side.secondaries(look));
-  return fewest;
-}
-
-stats::SampleSizes sizes_of(const Question& question, std::uint64_t look) {
-  const auto taken = [&](std::size_t subject) {
-    return static_cast<double>(question.subjects[subject].secondaries(look));
-  };
-  return {.x = taken(0), .y = taken(question.of_two() ? 1 : 0)};
-}
-
 std::uint64_t secondaries_of_floor(const TestOutcome& test) {
   std::uint64_t floor = least_secondaries;
   for (std::size_t i = 0; i < test.question.subjects.size(); ++i) {
@@ -107,7 +94,12 @@ double distance_of(const Regions& regions) {
 
 stats::ErrorRates Sized::rates() const { return planned_rates(size.share, channel.regions); }
 
-stats::SampleSizes Sized::sizes() const { return sizes_of(test.question, size.secondaries); }
+stats::SampleSizes Sized::sizes() const {
+  const auto taken = [&](std::size_t subject) {
+    return static_cast<double>(test.question.subjects[subject].secondaries(size.secondaries));
+  };
+  return {.x = taken(0), .y = taken(test.question.of_two() ? 1 : 0)};
+}
 
 std::optional<double> detectable_effect(const Sized& sized) {
   const std::optional<double> found = sized.test.question.theta->detectable(sized);

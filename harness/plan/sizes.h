@@ -62,12 +62,6 @@ stats::MeanPlan mean_plan(const Sized& sized);
 std::uint64_t secondaries_by_t(const Method& method, const stats::ErrorRates& rates,
                                const PlannedChannel& channel);
 
-/// Secondaries of the subject with fewest in a look of this size.
-std::uint64_t fewest_secondaries(const Question& question, std::uint64_t look);
-
-/// Sizes of the two subjects; a single one is both.
-stats::SampleSizes sizes_of(const Question& question, std::uint64_t look);
-
 /// Secondaries that the floor of evidence asks for, at least `least_secondaries`. Rows
 /// of a file, pictures and files that a program writes are as many as somebody paid for: they have
 /// no floor.

@@ -55,7 +55,7 @@ struct Sized {
   TestSize size;
   const PlannedChannel& channel;
 
-  /// The errors that the size is planned for, and the sizes of the two subjects.
+  /// The errors that the size is planned for, and the sizes of the two subjects; one is both.
   stats::ErrorRates rates() const;
   stats::SampleSizes sizes() const;
 };
