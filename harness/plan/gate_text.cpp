@@ -122,7 +122,7 @@ Reason more_drawn(const TestOutcome& outcome, double factor, const std::string& 
                                             reports::human(std::ceil(10 * factor) / 10, 2)));
   }
   const reports::Advice next = setting(outcome, factor);
-  const bool many = next.key == "secondaries" && primaries_of_each(outcome) > 1;
+  const bool many = next.key == "secondaries" && primaries_of_look(outcome, 1) > 1;
   const auto primaries = static_cast<double>(primaries_of_look(outcome, outcome.secondaries()));
   return {
       fmt::format("{}{} {}", written_key(*outcome.question.test, next.key, next.value),

@@ -25,7 +25,7 @@ constexpr std::uint64_t fewest_tested = 2;
 /// The look that a budget in primaries pays for beside the pilots. Throws InputError if it buys
 /// fewer than two secondaries of each subject.
 std::uint64_t paid_for(const TestOutcome& test, std::uint64_t whole, std::uint64_t pilots) {
-  const std::uint64_t each = primaries_of_each(test);
+  const std::uint64_t each = primaries_of_look(test, 1);
   const std::uint64_t budget = whole - std::min(whole, pilots);
   std::uint64_t paid = budget / each;
   // Subjects without more secondaries leave their part to the others.
@@ -51,7 +51,7 @@ void require_possible(const TestOutcome& test, std::uint64_t secondaries) {
     refuse(where, question.theta->why_impossible(question));
   }
   const double total =
-      static_cast<double>(secondaries) * static_cast<double>(primaries_of_each(test));
+      static_cast<double>(secondaries) * static_cast<double>(primaries_of_look(test, 1));
   if (total <= most_planned_primaries) return;
   refuse(where,
          "this claim would take about {:.1e} primaries; give a larger margin, or a `budget` to "
@@ -179,8 +179,6 @@ stats::LookSchedule look_for_its_picture(const TestOutcome& test) {
   if (given || test.plan.method.keeps == Keeps::blocks) return test.plan.looks;
   return one_look(std::min(test.plan.looks.sizes.front(), usual_secondaries), test.place.share);
 }
-
-std::uint64_t primaries_of_each(const TestOutcome& test) { return primaries_of_look(test, 1); }
 
 std::uint64_t primaries_of_look(const TestOutcome& test, std::uint64_t look) {
   std::uint64_t sum = 0;

@@ -29,10 +29,7 @@ stats::LookSchedule look_for_its_picture(const TestOutcome& test);
 /// in primaries pays for it after the pilots.
 std::uint64_t most_available(const TestOutcome& test, const Pilots& pilots);
 
-/// Primaries of one secondary of each subject together; for an image, in all its elements.
-std::uint64_t primaries_of_each(const TestOutcome& test);
-
-/// Primaries of a look of this size, all subjects together.
+/// Primaries of a look of this size, all subjects together; of an image, in all its elements.
 std::uint64_t primaries_of_look(const TestOutcome& test, std::uint64_t look);
 
 }  // namespace assay::harness

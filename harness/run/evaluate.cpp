@@ -440,8 +440,6 @@ void take_look(TestWork& work, bool may_go_on) {
   settle(outcome, Verdict::error, *std::move(why));
 }
 
-using reports::Verdict;
-
 void adjust_family(const std::vector<FamilyMember>& family) {
   std::vector<stats::WeightedLogP> entries;
   for (const FamilyMember& member : family) {
