@@ -129,17 +129,12 @@ Reason repeated(const Rows& rows, const stats::RepeatedRun& again) {
       "give each run of the program that writes them a seed of its own");
 }
 
-/// Two samples that are held against each other.
-struct Pair {
-  const Subject& first;
-  const Subject& second;
-};
-
-[[noreturn]] void refuse_pair(const Question& question, const Pair& pair, const std::string& why) {
+[[noreturn]] void refuse_pair(const Question& question, const Subject& first,
+                              const Subject& second, const std::string& why) {
   refuse(question.test->claim.left.where,
          "`{}` and `{}` are no independent samples: {}, bit for bit; give the two sides seeds of "
          "their own, none of them twice{}",
-         pair.first.estimator->name, pair.second.estimator->name, why,
+         first.estimator->name, second.estimator->name, why,
          question.theta->of_pairs() == nullptr ? ""
                                                : ", or compare pairs of one seed with " +
                                                      written_key(*question.test, "paired", "true"));
@@ -152,7 +147,7 @@ void refuse_shared_pictures(const Question& question, std::uint64_t count) {
       const recorded::Pictures* const two = second.setup->pictures();
       if (!one || !two) continue;
       if (const auto files = one->shared_with(*two, count)) {
-        refuse_pair(question, {first, second},
+        refuse_pair(question, first, second,
                     fmt::format("`{}` and `{}` are the same picture", files->first, files->second));
       }
     }
@@ -163,7 +158,7 @@ void refuse_shared_rows(const Question& question, const Rows& one, const Rows& t
   const Subject& first = question.subjects[one.subject];
   const Subject& second = question.subjects[two.subject];
   if (const auto run = stats::common_run(one.values, two.values)) {
-    refuse_pair(question, {first, second},
+    refuse_pair(question, first, second,
                 fmt::format("rows {} of `{}` are rows {} of `{}`", from_to(run->first, run->length),
                             first.setup->data_file(), from_to(run->second, run->length),
                             second.setup->data_file()));
