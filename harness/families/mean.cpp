@@ -738,7 +738,6 @@ class MeanTheta : public Theta {
   }
 
   std::optional<ConstantVerdict> settled(const Seen& seen, const Regions& regions) const override {
-    if (!all_constant(seen)) return std::nullopt;
     return judge_constant(seen, regions);
   }
 

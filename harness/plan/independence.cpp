@@ -129,8 +129,8 @@ Reason repeated(const Rows& rows, const stats::RepeatedRun& again) {
       "give each run of the program that writes them a seed of its own");
 }
 
-[[noreturn]] void refuse_pair(const Question& question, const Subject& first,
-                              const Subject& second, const std::string& why) {
+[[noreturn]] void refuse_pair(const Question& question, const Subject& first, const Subject& second,
+                              const std::string& why) {
   refuse(question.test->claim.left.where,
          "`{}` and `{}` are no independent samples: {}, bit for bit; give the two sides seeds of "
          "their own, none of them twice{}",

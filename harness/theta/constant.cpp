@@ -88,26 +88,24 @@ std::string range_advice(const Question& question) {
          "declare the range of its channel, `low` to `high`";
 }
 
-bool all_constant(const Seen& seen) {
+std::optional<ConstantVerdict> judge_constant(const Seen& seen, const Regions& regions) {
   for (std::size_t subject = 0; subject < seen.data.size(); ++subject) {
-    if (!is_constant(seen, subject)) return false;
+    if (!is_constant(seen, subject)) return {};
   }
-  return true;
-}
-
-ConstantVerdict judge_constant(const Seen& seen, const Regions& regions) {
   const Difference difference = difference_of(seen);
   if (meets_claimed(theta_of(difference), regions)) {
     if (!regions.has_forbidden()) {
-      return {Verdict::pass,
-              "every observation is the same and as claimed; values never seen are not ruled out"};
+      return ConstantVerdict{
+          Verdict::pass,
+          "every observation is the same and as claimed; values never seen are not ruled out"};
     }
-    return {Verdict::inconclusive,
-            "every observation is the same and as claimed, but what values never seen could add is "
-            "bounded by no number of observations; " +
-                range_advice(seen.question)};
+    return ConstantVerdict{
+        Verdict::inconclusive,
+        "every observation is the same and as claimed, but what values never seen could add is "
+        "bounded by no number of observations; " +
+            range_advice(seen.question)};
   }
-  return {
+  return ConstantVerdict{
       Verdict::invalid,
       fmt::format("every observation is {:.10g}, off by {:.3g}: rare other values may be unseen, "
                   "and could make up for it; {}{}",

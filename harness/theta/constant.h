@@ -18,18 +18,15 @@ inline bool is_constant(const Seen& seen, std::size_t subject) {
   return is_constant(seen.question, subject, seen.channel, seen.moments(subject));
 }
 
-/// True if each subject's observations of a channel are constant up to rounding.
-bool all_constant(const Seen& seen);
-
 struct ConstantVerdict {
   reports::Verdict verdict;
   std::string message;
 };
 
 /// Verdict on a mean claim whose samples are all constant, where no declared range bounds what was
-/// never seen. A constant as claimed passes if there is no forbidden region; else it is
-/// inconclusive. Any other constant is invalid.
-ConstantVerdict judge_constant(const Seen& seen, const Regions& regions);
+/// never seen; nullopt if one varies. A constant as claimed passes if there is no forbidden region;
+/// else it is inconclusive. Any other constant is invalid.
+std::optional<ConstantVerdict> judge_constant(const Seen& seen, const Regions& regions);
 
 /// Passes a constant sample if the claim bounds its variance from above and forbids no region, as
 /// each channel of `worst_variance`. Returns nullopt for other claims, for samples that vary, or if

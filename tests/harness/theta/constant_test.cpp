@@ -46,7 +46,7 @@ ConstantVerdict judge(const ConstantCase& of) {
   for (std::size_t i = 0; i < of.seen.size(); ++i) {
     for (std::uint64_t k = 0; k < of.count; ++k) data[i].moments.add(of.seen[i]);
   }
-  return judge_constant({question, 0, data}, regions_of(*question.test));
+  return judge_constant({question, 0, data}, regions_of(*question.test)).value();
 }
 
 /// The same by bets on the declared range, at alpha = beta = .01.
