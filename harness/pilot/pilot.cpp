@@ -176,10 +176,6 @@ const Pilot* averaged_pilot_of(const Subject& subject, const Pilots& pilots) {
   return pilots.find(pilot_name_of(subject.estimator->name, averages_purpose));
 }
 
-const Fault* Pilots::fault(const std::string& estimator, const std::string& purpose) const {
-  return get<Fault>(pilot_name_of(estimator, purpose));
-}
-
 std::uint64_t primaries_of_pilots(const Question& question, const Pilots& pilots) {
   std::map<const Pilot*, std::uint64_t> paid;
   for (const Subject& side : question.subjects) {
@@ -205,9 +201,9 @@ std::uint64_t primaries_of_pilots(const Question& question, const Pilots& pilots
 
 std::string where_pilots_stopped(const Question& question, const Pilots& pilots) {
   for (const Subject& subject : question.subjects) {
-    const Fault* fault = pilots.fault(subject.estimator->name, subject.purpose);
+    const Fault* fault = pilots.fault(pilot_name(subject));
     if (fault == nullptr && subject.purpose.empty()) {
-      fault = pilots.fault(subject.estimator->name, averages_purpose);
+      fault = pilots.fault(pilot_name_of(subject.estimator->name, averages_purpose));
     }
     if (fault == nullptr) continue;
     return sentence_of(*fault, subject.estimator->name, " in the pilot");

@@ -49,8 +49,8 @@ class Pilots {
  public:
   /// Null if there is none, or a fault.
   const Pilot* find(const std::string& name) const { return get<Pilot>(name); }
-  /// The fault of an estimator's pilot, or of its sampler's draws for `purpose`; null if none.
-  const Fault* fault(const std::string& estimator, const std::string& purpose) const;
+  /// Null if there is none, or no fault.
+  const Fault* fault(const std::string& name) const { return get<Fault>(name); }
   bool empty() const { return all_.empty(); }
   void add(const std::string& name, std::variant<Pilot, Fault> pilot) {
     all_.emplace(name, std::move(pilot));

@@ -116,7 +116,7 @@ std::shared_ptr<Pool> Pools::find_or_make(const Subject& side, std::uint64_t pri
     pool->take_known(pilot->kept);
   }
   // Asking again may take another time-out.
-  if (const Fault* fault = pilots.fault(name, side.purpose)) pool->fail(*fault);
+  if (const Fault* fault = pilots.fault(pilot_name(side))) pool->fail(*fault);
   const auto* draws = dynamic_cast<const SamplerSetup*>(side.setup.get());
   pool->plan(draws != nullptr ? sampler_plan(*draws)
                               : estimator_plan(*pool, *side.estimator, pilots));
