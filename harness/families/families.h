@@ -46,10 +46,10 @@ inline bool any_question(const Question&) { return true; }
 inline bool of_two(const Question& question) { return question.of_two(); }
 inline bool of_one(const Question& question) { return !question.of_two(); }
 
-/// The only object of a family.
-template <class Family>
+/// The only object of a family with these arguments.
+template <class Family, auto... arguments>
 const Theta& one() {
-  static const Family theta;
+  static const Family theta{arguments...};
   return theta;
 }
 

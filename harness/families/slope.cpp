@@ -273,10 +273,10 @@ double largest_level(const ErrorShare& share, const Regions& regions) {
 }
 
 /// theta = s - the claimed exponent, where the quantity goes like (swept parameter)^s.
-class SlopeTheta : public Theta {
+class SlopeTheta final : public Theta {
  public:
-  explicit SlopeTheta(const ThetaTraits& traits = {.fit_decides = true, .may_be_unbounded = true})
-      : Theta(traits,
+  explicit SlopeTheta(bool of_spread)
+      : Theta({.of_spread = of_spread, .fit_decides = true, .may_be_unbounded = true},
               {{"slope", "weighted fit of a power law: costs over a parameter", of_costs,
                 Keeps::costs, slope},
                {"slope", "weighted fit of a power law: variances over a parameter",
@@ -337,12 +337,6 @@ class SlopeTheta : public Theta {
   const char* how_to_exclude() const override {
     return "sweep values where it is larger: what is 0 has no slope";
   }
-};
-
-class VarianceSlopeTheta final : public SlopeTheta {
- public:
-  VarianceSlopeTheta()
-      : SlopeTheta({.of_spread = true, .fit_decides = true, .may_be_unbounded = true}) {}
 };
 
 // ---- Binding
@@ -408,7 +402,7 @@ Question SlopeTheta::bind(const TestEntry& test, const Estimators& estimators) c
   return question;
 }
 
-const Theta& theta_of_slopes() { return one<SlopeTheta>(); }
-const Theta& theta_of_variance_slopes() { return one<VarianceSlopeTheta>(); }
+const Theta& theta_of_slopes() { return one<SlopeTheta, false>(); }
+const Theta& theta_of_variance_slopes() { return one<SlopeTheta, true>(); }
 
 }  // namespace assay::harness
