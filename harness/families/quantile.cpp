@@ -36,17 +36,14 @@ Evidence against_number(const Seen& seen, std::vector<double> values) {
   const double null = seen.reference().value;
   const bool relative = seen.relative();
   const double unit = relative ? std::abs(null) : 1;
-  const double estimate = middle(values, probability);
-  const auto at = [values, probability, null, unit](double theta) {
+  const auto at = [=](double theta) {
     return stats::quantile_test(stats::count_around(values, null + theta * unit), probability);
   };
-  const auto interval = [values, probability, null, unit](double confidence) {
-    stats::Interval found = stats::quantile_interval(values, probability, confidence);
-    found.low = (found.low - null) / unit;
-    found.high = (found.high - null) / unit;
-    return found;
+  const auto interval = [=](double confidence) {
+    return map_ends(stats::quantile_interval(values, probability, confidence),
+                    [=](double value) { return (value - null) / unit; });
   };
-  return {.estimate = (estimate - null) / unit,
+  return {.estimate = (middle(values, probability) - null) / unit,
           .at = at,
           .interval = interval,
           .quantity = relative ? "relative difference of the quantile from the reference"
@@ -230,14 +227,12 @@ class QuantileTheta final : public Theta {
   }
 
   std::string not_excluded(const ChannelOutcome& channel) const override {
-    const bool no_low = !channel.effect.low;
-    const bool no_high = !channel.effect.high;
     // A lower limit alone refutes a claim `<=`.
-    const bool low_counts = channel.regions.relation != Relation::at_least;
-    const bool high_counts = channel.regions.relation != Relation::at_most;
-    if (low_counts && no_low && high_counts && no_high) return "quantile";
-    if (low_counts && no_low) return "smaller quantile";
-    return high_counts && no_high ? "larger quantile" : "";
+    const bool no_low = channel.regions.bounds_above() && !channel.effect.low;
+    const bool no_high = channel.regions.bounds_below() && !channel.effect.high;
+    if (no_low && no_high) return "quantile";
+    if (no_low) return "smaller quantile";
+    return no_high ? "larger quantile" : "";
   }
 };
 
