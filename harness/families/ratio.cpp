@@ -398,25 +398,19 @@ std::string rows_beside_primaries(const Question& question) {
   return "";
 }
 
+constexpr MethodTraits for_normal_values{.of_normal_values = true,
+                                         .over_looks = stats::LookLaw::independent_increments};
+
 /// theta = ln(Var x / v0), or ln(Var x / (c Var y)), each of one primary if the estimator averages.
 class VarianceTheta : public LogTheta {
  public:
   VarianceTheta()
-      : LogTheta(
-            {.of_moments = true, .of_spread = true}, {"variance", "variances"},
-            {{"F",
-              "F: two variances of near-normal values",
-              of_two,
-              Keeps::moments,
-              of_normal_values,
-              {.of_normal_values = true, .over_looks = stats::LookLaw::independent_increments}},
-             {"chi-square",
-              "chi-square: a variance of near-normal values",
-              of_one,
-              Keeps::moments,
-              of_normal_values,
-              {.of_normal_values = true, .over_looks = stats::LookLaw::independent_increments}},
-             influence_row(any_question, Keeps::powers)}) {}
+      : LogTheta({.of_moments = true, .of_spread = true}, {"variance", "variances"},
+                 {{"F", "F: two variances of near-normal values", of_two, Keeps::moments,
+                   of_normal_values, for_normal_values},
+                  {"chi-square", "chi-square: a variance of near-normal values", of_one,
+                   Keeps::moments, of_normal_values, for_normal_values},
+                  influence_row(any_question, Keeps::powers)}) {}
 
   std::uint64_t choose(TestOutcome& test, const Pilots& pilots, std::uint64_t most) const override {
     const Question& question = test.question;
