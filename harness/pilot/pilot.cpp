@@ -40,11 +40,13 @@ std::optional<std::uint64_t> usual_images(const Setup& setup, std::uint64_t prim
                     few_observations);
 }
 
-/// A program that renders each observation is dear.
-std::uint64_t few_of(const PreparedEstimator& estimator) {
+/// Observations of this size in a pilot that a budget does not bound.
+std::uint64_t usual_observations(const PreparedEstimator& estimator, std::uint64_t primaries) {
+  if (const auto images = usual_images(*estimator.setup, primaries)) return *images;
+  if (estimator.nature().averages) return many_observations;
+  // A program that renders each observation is dear.
   if (estimator.setup->keeps_files()) return few_observations;
-  return std::clamp(primaries_of_few / estimator.primaries.value_or(1), few_observations,
-                    many_observations);
+  return std::clamp(primaries_of_few / primaries, few_observations, many_observations);
 }
 
 /// Primaries that a test pays for each pool. No clock may decide what a pilot draws: with a budget
@@ -66,19 +68,13 @@ std::uint64_t observations_for(std::uint64_t most, const Setup& setup, std::uint
                                  stats::least_replicates);
 }
 
-std::shared_ptr<Pool> pilot_pool(const PreparedEstimator& estimator, std::uint64_t seed,
-                                 std::uint64_t most) {
-  const bool averages = estimator.nature().averages;
-  const std::uint64_t primaries = averages ? 1 : estimator.primaries.value_or(1);
-  auto pool =
-      std::make_shared<Pool>(estimator.setup, key_of(estimator, seed, 0, "pilot"), primaries);
-  std::uint64_t usual = averages ? many_observations : few_of(estimator);
-  if (const auto images = usual_images(*estimator.setup, primaries)) usual = *images;
-  usual = std::min(usual, observations_for(most, *estimator.setup, primaries));
-  if (estimator.setup->image()) {
-    pool->keep_observations(usual);  // files keep theirs anyway
-  }
-  const std::uint64_t count = estimator.setup->observations().value_or(usual);
+/// A pool of all rows, or of the usual observations as far as `most` primaries reach.
+std::shared_ptr<Pool> pilot_pool(const std::shared_ptr<const Setup>& setup, StreamKey key,
+                                 std::uint64_t primaries, std::uint64_t usual, std::uint64_t most) {
+  auto pool = std::make_shared<Pool>(setup, key, primaries);
+  usual = std::min(usual, observations_for(most, *setup, primaries));
+  if (setup->image()) pool->keep_observations(usual);  // files keep theirs anyway
+  const std::uint64_t count = setup->observations().value_or(usual);
   if (pool->channels() <= most_kept_channels) {
     for (ChannelPlan& channel : pool->plans()) channel.keep = count;
   }
@@ -95,17 +91,6 @@ std::uint64_t averaged_primaries_of(const PreparedEstimator& estimator) {
     return 1;
   }
   return std::min(averaged_primaries, estimator.primaries.value_or(averaged_primaries));
-}
-
-/// A pool that keeps all values of a pilot.
-std::shared_ptr<Pool> kept_pool(const std::shared_ptr<const Setup>& setup, StreamKey key,
-                                std::uint64_t primaries, std::uint64_t most) {
-  const std::uint64_t count =
-      std::min(many_observations / primaries, observations_for(most, *setup, primaries));
-  auto pool = std::make_shared<Pool>(setup, key, primaries);
-  for (ChannelPlan& channel : pool->plans()) channel.keep = count;
-  pool->request(count);
-  return pool;
 }
 
 /// Moments of single primaries from moments of means of `primaries`. The kurtosis is at least 1 and
@@ -230,7 +215,12 @@ std::vector<std::pair<std::string, std::shared_ptr<Pool>>> pilot_pools(
     const std::vector<const PreparedEstimator*>& estimators, const PilotRun& run) {
   std::vector<std::pair<std::string, std::shared_ptr<Pool>>> pools;
   for (const PreparedEstimator* estimator : estimators) {
-    pools.emplace_back(estimator->name, pilot_pool(*estimator, run.seed, most_of(run, *estimator)));
+    const bool averages = estimator->nature().averages;
+    const std::uint64_t primaries = averages ? 1 : estimator->primaries.value_or(1);
+    pools.emplace_back(
+        estimator->name,
+        pilot_pool(estimator->setup, key_of(*estimator, run.seed, 0, "pilot"), primaries,
+                   usual_observations(*estimator, primaries), most_of(run, *estimator)));
     if (run.with_cost.contains(estimator->name)) {
       for (ChannelPlan& channel : pools.back().second->plans()) channel.powers = Powers::with_costs;
     }
@@ -240,12 +230,13 @@ std::vector<std::pair<std::string, std::shared_ptr<Pool>>> pilot_pools(
     if (primaries == 1) continue;
     const StreamKey key = key_of(*estimator, run.seed, 0, averages_purpose + " pilot");
     pools.emplace_back(pilot_name_of(estimator->name, averages_purpose),
-                       kept_pool(estimator->setup, key, primaries, most_of(run, *estimator)));
+                       pilot_pool(estimator->setup, key, primaries, many_observations / primaries,
+                                  most_of(run, *estimator)));
   }
   for (const Subject* subject : run.draws) {
     const StreamKey key = key_of(*subject->estimator, run.seed, 0, subject->purpose + " pilot");
-    pools.emplace_back(pilot_name(*subject),
-                       kept_pool(subject->setup, key, 1, most_of(run, *subject->estimator)));
+    pools.emplace_back(pilot_name(*subject), pilot_pool(subject->setup, key, 1, many_observations,
+                                                        most_of(run, *subject->estimator)));
   }
   return pools;
 }
