@@ -140,25 +140,22 @@ std::vector<ConstantVerdict> evaluate_channels(TestOutcome& outcome, const Drawn
   const double part = outcome.place.share.alpha / static_cast<double>(outcome.plan.looks.count());
   const double critical = critical_value(std::max(outcome.share().alpha, part),
                                          is_two_sided(question.test->claim.relation));
-  const auto add = [&](std::size_t channel, ConstantVerdict constant) {
-    if (question.channel_count() > 1) {
-      constant.message = question.channel_name(channel) + ": " + constant.message;
-    }
-    constants.push_back(std::move(constant));
-  };
   for (std::size_t channel = 0; channel < question.channel_count(); ++channel) {
     const std::vector<ChannelData> data = data_of(test, channel);
     const Seen seen{question, channel, data};
-    const bool in_range = outcome.plan.method.is.in_range;  // which tests constants too
-    auto settled =
-        in_range ? std::nullopt : question.theta->settled(seen, outcome.plan.regions[channel]);
-    if (settled) {
-      add(channel, *std::move(settled));
-      continue;
+    std::optional<ConstantVerdict> constant;
+    if (!outcome.plan.method.is.in_range) {  // which tests constants too
+      constant = question.theta->settled(seen, outcome.plan.regions[channel]);
     }
-    std::string reason = question.theta->lack_of_numbers(outcome, seen);
-    if (!reason.empty()) {
-      add(channel, {Verdict::invalid, std::move(reason)});
+    if (!constant) {
+      const std::string reason = question.theta->lack_of_numbers(outcome, seen);
+      if (!reason.empty()) constant = {Verdict::invalid, reason};
+    }
+    if (constant) {
+      if (question.channel_count() > 1) {
+        constant->message = question.channel_name(channel) + ": " + constant->message;
+      }
+      constants.push_back(*std::move(constant));
       continue;
     }
     for (Gate& gate : question.theta->gates(outcome, seen, critical)) {
