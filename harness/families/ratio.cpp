@@ -711,8 +711,7 @@ Question EfficiencyTheta::bind(const TestEntry& test, const Estimators& estimato
     if (!asked && !is_biased(subject)) continue;
     require_primaries(subject);
     any = true;
-    question.truths[i] = test.reference ? std::vector<Constant>(subject.channels.size())
-                                        : truths_of(test, subject, sources[i]);
+    question.truths[i] = truths_of(test, subject, sources[i]);
   }
   if (any && test.cost == CostKind::seconds) {
     refuse(test.where, "a mean squared error per second has no method; count `rays` or `samples`");

@@ -388,8 +388,7 @@ Question SlopeTheta::bind(const TestEntry& test, const Estimators& estimators) c
         std::make_shared<const PreparedEstimator>(swept(estimator, test.over->parameter, value));
     Subject subject = estimates(claim.left.source, *point);
     if (claim.left.row->relative_to_0) {
-      question.truths.push_back(test.reference ? std::vector<Constant>(subject.channels.size())
-                                               : truths_of(test, subject, claim.left.source));
+      question.truths.push_back(truths_of(test, subject, claim.left.source));
     }
     if (claim.left.row->counts_cost) subject.channels = std::vector{subject.channels[0]};
     subject.own = std::move(point);

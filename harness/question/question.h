@@ -144,7 +144,8 @@ void require_moments_suffice(const Question& question);
 /// The quantity on the right; null if there is another side.
 const ScaledQuantity* other_side(const Claim& claim);
 
-/// The true mean of each channel: the number of `reference:`, else the plugin's.
+/// The true mean of each channel: the number of `reference:`, else the plugin's; zeros if it is
+/// drawn.
 std::vector<Constant> truths_of(const TestEntry& test, const Subject& subject,
                                 const Source& source);
 
