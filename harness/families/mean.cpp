@@ -282,7 +282,7 @@ std::string lost_to_rounding(const Seen& seen) {
   for (std::size_t subject = 0; subject < seen.data.size(); ++subject) {
     const Moments& moments = seen.moments(subject);
     if (moments.count < 2) continue;
-    const double factor = subject == 0 ? 1 : std::abs(seen.question.factor);
+    const double factor = seen.question.factor_of(subject);
     const double own = factor * stats::rounding_of_mean(moments);
     if (own > most) worst = subject;
     most = std::max(most, own);
@@ -355,7 +355,7 @@ std::shared_ptr<const stats::ValueCells> planned_law(const PlannedChannel& plann
                                                      const PilotChannel& pilot,
                                                      std::span<const double> secondaries) {
   const double mean = pilot.moments.mean;
-  const double deviation = planned.standard_deviation;
+  const double deviation = planned.deviations[0];
   std::vector<double> values(secondaries.begin(), secondaries.end());
   // The plan reports values that are not finite.
   std::erase_if(values, [](double value) { return !std::isfinite(value); });
@@ -475,11 +475,10 @@ std::string unseen_could_decide(const TestOutcome& outcome, const Seen& seen) {
   const Question& question = outcome.question;
   for (std::size_t subject = 0; subject < seen.data.size() && question.of_two(); ++subject) {
     if (!is_constant(seen, subject)) continue;
-    // The second mean enters times the factor.
-    const double factor = std::abs(question.factor);
     const double shift =
-        (subject == 1 ? factor : 1) * unseen_shift(seen, subject, outcome.share().alpha);
-    const double error = (subject == 0 ? factor : 1) * seen.moments(1 - subject).standard_error();
+        question.factor_of(subject) * unseen_shift(seen, subject, outcome.share().alpha);
+    const double error =
+        question.factor_of(1 - subject) * seen.moments(1 - subject).standard_error();
     if (shift <= tolerated_shift * error) continue;
     return fmt::format(
         "every observation of `{}` is {:.10g}, and {}", question.subjects[subject].estimator->name,
@@ -587,8 +586,7 @@ class MeanTheta : public Theta {
     double squares = 0;  // of the observations' parts of the variance
     for (std::size_t i = 0; i < seen.data.size(); ++i) {
       const Moments& x = seen.moments(i);
-      const double factor = i == 0 ? 1 : std::abs(question.factor);
-      const double own = factor * x.standard_error() / unit;
+      const double own = question.factor_of(i) * x.standard_error() / unit;
       if (question.subjects[i].setup->observations()) {
         error.fixed = std::hypot(error.fixed, own);
       } else {
@@ -662,12 +660,10 @@ class MeanTheta : public Theta {
   PlannedChannel observed(const Seen& seen, const Regions& regions) const override {
     const Question& question = seen.question;
     PlannedChannel observed{.regions = regions};
-    observed.standard_deviation = seen.moments(0).standard_deviation();
-    if (question.of_two()) {
-      observed.other_deviation = std::abs(question.factor) * seen.moments(1).standard_deviation();
-    } else {
-      observed.reference_error = seen.reference().standard_error;
+    for (std::size_t i = 0; i < seen.data.size(); ++i) {
+      observed.deviations[i] = question.factor_of(i) * seen.moments(i).standard_deviation();
     }
+    if (!question.of_two()) observed.reference_error = seen.reference().standard_error;
     note_range(question, seen.channel, seen.moments(0), observed);
     if (!question.of_two() && !seen.data[0].values.empty()) {
       observed.law = std::make_shared<const stats::ValueCells>(seen.data[0].values);
@@ -777,30 +773,24 @@ class MeanTheta : public Theta {
                                                    const Pilots& pilots) {
     const Question& question = test.question;
     const Plan& plan = test.plan;
-    const Moments& first = pilot_channel(question, 0, channel, pilots).moments;
     PlannedChannel planned{.regions = plan.regions[channel]};
-    const bool constant = is_constant(question, 0, channel, first);
-    note_range(question, channel, first, planned);
+    bool constant = true;
+    double other_mean = 0;
+    for (std::size_t i = 0; i < question.subjects.size(); ++i) {
+      const Moments moments = pilot_channel(question, i, channel, pilots).moments;
+      if (i == 0) note_range(question, channel, moments, planned);
+      if (i == 1) other_mean = moments.mean;
+      if (is_constant(question, i, channel, moments)) continue;
+      constant = false;
+      const double averaged = question.subjects[i].averaged(plan.primaries[i]);
+      planned.deviations[i] =
+          question.factor_of(i) * std::sqrt(planned_variance(moments) / averaged);
+    }
     const bool bets = plan.method.is.in_range && !question.of_two();
     planned.unseen = constant && bets;
     // A mean without spread may be compared with one that has some; nothing else can be planned.
-    if (constant && !bets && !question.of_two()) return std::nullopt;
-    if (!constant) {
-      planned.standard_deviation =
-          std::sqrt(planned_variance(first) / question.subjects[0].averaged(plan.primaries[0]));
-    }
-    double other_mean = 0;
-    if (question.of_two()) {
-      const Moments& second = pilot_channel(question, 1, channel, pilots).moments;
-      other_mean = second.mean;
-      if (is_constant(question, 1, channel, second)) {
-        if (constant) return std::nullopt;
-      } else {
-        planned.other_deviation =
-            std::abs(question.factor) *
-            std::sqrt(planned_variance(second) / question.subjects[1].averaged(plan.primaries[1]));
-      }
-    } else if (!question.references.empty()) {
+    if (constant && !bets) return std::nullopt;
+    if (!question.references.empty()) {
       planned.reference_error = question.references[channel].standard_error;
     }
     planned.unit = unit_of_theta(question, channel, other_mean);

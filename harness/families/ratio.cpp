@@ -170,8 +170,7 @@ class LogTheta : public Theta {
   PlannedChannel observed(const Seen& seen, const Regions& regions) const override {
     PlannedChannel observed{.regions = regions};
     for (std::size_t i = 0; i < seen.question.compared(); ++i) {
-      double& deviation = i == 0 ? observed.standard_deviation : observed.other_deviation;
-      deviation = std::sqrt(spread(seen, i).value_or(0) + spread_of_truth(seen, i));
+      observed.deviations[i] = std::sqrt(spread(seen, i).value_or(0) + spread_of_truth(seen, i));
     }
     return observed;
   }
@@ -279,7 +278,7 @@ class LogTheta : public Theta {
     for (std::size_t i = 0; i < test.question.compared(); ++i) {
       const std::optional<double> spread = pilot_spread(test, i, channel, pilots);
       if (!spread) return std::nullopt;
-      (i == 0 ? planned.standard_deviation : planned.other_deviation) = std::sqrt(*spread);
+      planned.deviations[i] = std::sqrt(*spread);
     }
     if (!planned.varies()) return std::nullopt;
     return planned;

@@ -48,8 +48,8 @@ stats::ErrorRates planned_rates(const ErrorShare& share, const Regions& regions)
 
 stats::MeanPlan mean_plan(const Method& method, const stats::ErrorRates& rates,
                           const PlannedChannel& channel) {
-  return {.standard_deviation = deviation_for(method, channel.standard_deviation),
-          .other_standard_deviation = deviation_for(method, channel.other_deviation),
+  return {.standard_deviation = deviation_for(method, channel.deviations[0]),
+          .other_standard_deviation = deviation_for(method, channel.deviations[1]),
           .allow = channel.regions.allow * channel.unit,
           .reference_standard_error = channel.reference_error,
           .rates = rates};

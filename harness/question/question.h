@@ -4,6 +4,7 @@
 // with.
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -98,6 +99,8 @@ struct Question {
   /// The most ready-made observations of a subject; nullopt if all subjects are drawn.
   std::optional<std::uint64_t> most_rows() const;
   bool of_two() const { return sizes.empty() && compared() == 2; }
+  /// Factor on a subject's standard deviation in the comparison.
+  double factor_of(std::size_t subject) const { return subject == 0 ? 1 : std::abs(factor); }
 };
 
 /// True if any subject's observations are ready-made.

@@ -83,13 +83,11 @@ void note_sizes(TestOutcome& outcome, const DrawnTest& test) {
         theta.observed({outcome.question, channel.index, data}, channel.regions);
     if (outcome.plan.method.is.of_batches) {
       // The deviations of independent values whose means are as uncertain.
-      const auto deviation = [&](std::size_t subject) {
-        return std::sqrt(static_cast<double>(outcome.secondaries(subject))) *
-               data[subject].moments.standard_error();
-      };
-      observed.standard_deviation = deviation(0);
-      if (outcome.question.of_two()) {
-        observed.other_deviation = std::abs(outcome.question.factor) * deviation(1);
+      for (std::size_t subject = 0; subject < data.size(); ++subject) {
+        observed.deviations[subject] =
+            outcome.question.factor_of(subject) *
+            (std::sqrt(static_cast<double>(outcome.secondaries(subject))) *
+             data[subject].moments.standard_error());
       }
     }
     const Sized sized{outcome, full_size(outcome), observed};

@@ -4,6 +4,7 @@
 // claims derives from Theta and answers all that others ask of it. families/ holds one file a
 // family.
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -27,20 +28,19 @@ struct ChannelOutcome;
 struct DrawnTest;
 struct TestOutcome;
 
-/// A channel's law as planning takes it: a secondary's standard deviation, at the pilot's upper
+/// A channel's law as planning takes it: a secondary's standard deviations, at the pilot's upper
 /// limit, and the unit of margins. A ratio has the deviations of relative influence values.
 struct PlannedChannel {
   Regions regions = {};
-  double standard_deviation = 0;
-  double other_deviation = 0;  ///< The second subject's, times the factor.
-  double unit = 1;             ///< Theta times this is in the estimator's unit.
+  std::array<double, 2> deviations = {};  ///< Of the subjects, times their factors.
+  double unit = 1;                        ///< Theta times this is in the estimator's unit.
   double reference_error = 0;
   bool unseen = false;      ///< The deviation is what a constant pilot may have missed.
   stats::Range range = {};  ///< Declared range of one mean's values.
   double null_value = 0;    ///< The value of one mean where theta is 0.
   std::shared_ptr<const stats::ValueCells> law = {};  ///< Values of a secondary, for bets.
 
-  bool varies() const { return standard_deviation > 0 || other_deviation > 0; }
+  bool varies() const { return deviations[0] > 0 || deviations[1] > 0; }
 };
 
 /// A look's levels, and its secondaries of each subject, or all that it has.
