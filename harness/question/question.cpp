@@ -48,20 +48,15 @@ void require_no_sampler(const Source& source, const PreparedEstimator& estimator
          parts_of(estimator));
 }
 
-std::vector<std::size_t> tested_channels(const std::vector<Channel>& channels) {
-  std::vector<std::size_t> tested;
-  for (std::size_t i = 0; i < channels.size(); ++i) {
-    if (!channels[i].diagnostic) tested.push_back(i);
-  }
-  return tested;
-}
-
+/// The channel of that name, or all tested ones without a name.
 std::vector<std::size_t> channels_named(const std::vector<Channel>& channels,
                                         const std::string& name) {
+  std::vector<std::size_t> tested;
   for (std::size_t i = 0; i < channels.size(); ++i) {
-    if (channels[i].name == name) return {i};
+    if (!name.empty() && channels[i].name == name) return {i};
+    if (name.empty() && !channels[i].diagnostic) tested.push_back(i);
   }
-  return {};
+  return tested;
 }
 
 /// The elements of an image: all, or those of the component that the part names; none for another
@@ -112,9 +107,7 @@ Subject estimates(const Source& source, const PreparedEstimator& estimator) {
     if (!subject.channels.empty()) subject.image = std::move(image);
   }
   if (subject.channels.empty()) {
-    const std::vector<Channel> channels = estimator.setup->channels();
-    subject.channels =
-        source.part.empty() ? tested_channels(channels) : channels_named(channels, source.part);
+    subject.channels = channels_named(estimator.setup->channels(), source.part);
   }
   if (subject.channels.empty()) {
     require_no_sampler(source, estimator);
@@ -145,17 +138,10 @@ Subject draws(const Source& source, const Estimators& estimators, Draws what) {
     subject.setup = consistency_setup(*named, source.where);
     subject.purpose = consistency_purpose(named->name);
   }
-  const std::vector<Channel> channels = subject.setup->channels();
-  if (what == Draws::consistency && rest.empty()) {
-    subject.channels = channels_named(channels, inconsistent_channel);
-  } else if (!rest.empty() && what != Draws::consistency) {
-    subject.channels = channels_named(channels, rest);
-    if (rest == cell_channel) subject.channels = {};
-  } else if (what == Draws::cells) {
-    subject.channels = channels_named(channels, cell_channel);
-  } else {
-    subject.channels = tested_channels(channels);
-  }
+  if (rest == cell_channel) no_such_part(source, estimator);
+  if (what == Draws::cells && rest.empty()) rest = cell_channel;
+  if (what == Draws::consistency) rest = inconsistent_channel;
+  subject.channels = channels_named(subject.setup->channels(), rest);
   if (subject.channels.empty()) no_such_part(source, estimator);
   return subject;
 }
