@@ -71,18 +71,6 @@ stats::LookSchedule timed_look(const TestOutcome& test, std::uint64_t secondarie
                   test.place.share);
 }
 
-/// How looks grow, and how many there are at most.
-struct Growth {
-  double factor;
-  std::size_t most;
-};
-
-/// Each look pays for itself in a union bound, and costs next to nothing otherwise.
-Growth growth_of(stats::LookLaw law) {
-  if (law == stats::LookLaw::unknown) return {.factor = 2, .most = 10};
-  return {.factor = std::numbers::sqrt2, .most = most_looks};
-}
-
 /// Sizes up to `last` in at most `count` looks.
 std::vector<std::uint64_t> sizes_up_to(std::uint64_t last, std::uint64_t first, double growth,
                                        std::size_t count) {
@@ -139,14 +127,16 @@ stats::LookSchedule plan_looks(const TestOutcome& test, const Pilots& pilots, st
   const std::uint64_t least = may_wait ? waiting_looks * first : first;
   const std::uint64_t needed = std::max(*alone, least);
   if (needed <= first) return one_look(std::min(first, most), whole);
-  const Growth growth = growth_of(law);
+  // Each look pays for itself in a union bound, and costs next to nothing otherwise.
+  const bool unknown = law == stats::LookLaw::unknown;
+  const double growth = unknown ? 2 : std::numbers::sqrt2;
+  const std::size_t most_of_them = unknown ? 10 : most_looks;
   const stats::ErrorRates errors{
       .alpha = whole.alpha, .beta = whole.beta, .two_sided = is_two_sided(entry.claim.relation)};
-  const std::size_t sizes =
-      stats::geometric_sizes({.first = first, .last = needed}, growth.factor).size();
-  for (std::size_t count = std::min(growth.most, sizes); count > 1; --count) {
+  const std::size_t sizes = stats::geometric_sizes({.first = first, .last = needed}, growth).size();
+  for (std::size_t count = std::min(most_of_them, sizes); count > 1; --count) {
     const stats::LookSchedule trial =
-        stats::schedule_looks(sizes_up_to(needed, first, growth.factor, count), law, errors);
+        stats::schedule_looks(sizes_up_to(needed, first, growth, count), law, errors);
     const ErrorShare share{.alpha = trial.alpha.back(), .beta = trial.beta.back()};
     const std::uint64_t last =
         std::min(most, std::max(least, question.theta->secondaries(test, share, pilots)
@@ -154,7 +144,7 @@ stats::LookSchedule plan_looks(const TestOutcome& test, const Pilots& pilots, st
     // A reference's error may put smaller levels beyond any number: try fewer looks.
     if (last > dearest_looks * needed) continue;
     if (last <= first) return one_look(last, whole);
-    return stats::schedule_looks(sizes_up_to(last, first, growth.factor, count), law, errors);
+    return stats::schedule_looks(sizes_up_to(last, first, growth, count), law, errors);
   }
   return one_look(std::min(std::max(first, *alone), most), whole);
 }
