@@ -52,19 +52,6 @@ std::vector<stats::PlanePoint> pilot_points(const TestOutcome& test, const Pilot
 // So few values beyond half the way to an end may be none in the test.
 constexpr std::ptrdiff_t few_values = 32;
 
-/// Ends of a mean's range that its decisions need: to reject "too much" the low one.
-struct NeededEnds {
-  bool low;
-  bool high;
-};
-
-NeededEnds needed_ends(const TestEntry& test) {
-  const Regions regions{.relation = test.claim.relation};
-  const bool both = regions.two_sided() || (!regions.proof() && test.detect);
-  const bool high = regions.bounds_above() == regions.proof();
-  return {.low = both || !high, .high = both || high};
-}
-
 }  // namespace
 
 std::string unusable_pilot(const Question& question, const Pilots& pilots) {
@@ -146,7 +133,12 @@ bool hides(std::span<const double> values, double mean, double end) {
 
 bool bets_on_range(const Question& question, const Pilots& pilots) {
   if (question.test->method) return find_method(question, *question.test->method).is.in_range;
-  const NeededEnds ends = question.of_two() ? NeededEnds{true, true} : needed_ends(*question.test);
+  // To reject "too much" takes the low end.
+  const Regions regions{.relation = question.test->claim.relation};
+  const bool both =
+      question.of_two() || regions.two_sided() || (!regions.proof() && question.test->detect);
+  const bool needs_high = both || regions.bounds_above() == regions.proof();
+  const bool needs_low = both || !needs_high;
   bool hidden = false;
   for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
     const Subject& side = question.subjects[subject];
@@ -155,16 +147,16 @@ bool bets_on_range(const Question& question, const Pilots& pilots) {
     for (std::size_t channel = 0; channel < side.channels.size(); ++channel) {
       const PilotChannel seen = pilot_channel(question, subject, channel, pilots);
       const stats::Range range = range_of(question, subject, channel, seen.moments);
-      const bool low = ends.low && !std::isfinite(range.low);
-      const bool high = ends.high && !std::isfinite(range.high);
+      const bool low = needs_low && !std::isfinite(range.low);
+      const bool high = needs_high && !std::isfinite(range.high);
       const bool constant = is_constant(question, subject, channel, seen.moments);
       if (low || high || !(range.low < range.high)) return false;
       // A pilot without finite values shows no mean.
       if (seen.moments.count == 0 || (seen.values.empty() && !constant)) return false;
       if (question.of_two() && !constant) return false;
       const double mean = seen.moments.mean;
-      hidden = hidden || constant || (ends.low && hides(seen.values, mean, range.low)) ||
-               (ends.high && hides(seen.values, mean, range.high));
+      hidden = hidden || constant || (needs_low && hides(seen.values, mean, range.low)) ||
+               (needs_high && hides(seen.values, mean, range.high));
     }
   }
   return hidden;
