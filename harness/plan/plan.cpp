@@ -205,13 +205,11 @@ TestOutcome plan_test(const Question& question, const FamilyPlace& place, const 
     const bool chosen = !single || subject.estimator->primaries;
     plan.primaries.push_back(chosen ? primaries_of(subject, primaries) : 1);
   }
+  plan.looks = unjudged_look(test);
   plan.pilot_error = not_finite_in_pilot(question, pilots);
   plan.error = where_pilots_stopped(question, pilots);
   if (plan.error.empty()) plan.error = misdeclared(question, pilots);
-  if (!plan.error.empty()) {
-    plan.looks = unjudged_look(test);
-    return test;
-  }
+  if (!plan.error.empty()) return test;
   require_free_size(test);
   try {
     question.theta->require_density(question);
@@ -226,13 +224,10 @@ TestOutcome plan_test(const Question& question, const FamilyPlace& place, const 
     const std::string slip = caution_of(question);
     plan.caution += (plan.caution.empty() || slip.empty() ? "" : "; ") + slip;
   } catch (const std::domain_error& error) {
-    plan.looks = unjudged_look(test);
     plan.invalid = in_words(error);
   } catch (const NoDensity& failure) {
-    plan.looks = unjudged_look(test);
     plan.error = lack_of_density(question, failure);
   } catch (const InputError& mistake) {  // that the pilots show
-    plan.looks = unjudged_look(test);
     plan.error = mistake.message();
   }
   return test;
