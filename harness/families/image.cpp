@@ -62,14 +62,16 @@ void require_exact_number(const Question& question) {
   }
 }
 
+/// True if the image is compared with numbers that are all zero.
+bool is_against_darkness(const Question& question) {
+  return !question.of_two() &&
+         std::ranges::all_of(question.references,
+                             [](const Constant& reference) { return reference.value == 0; });
+}
+
 void require_something(const Question& question) {
-  if (question.of_two()) return;
-  const bool dark = std::all_of(question.references.begin(), question.references.end(),
-                                [](const Constant& reference) { return reference.value == 0; });
-  if (!dark) return;
-  const TestEntry& test = *question.test;
-  if (has_margin(test, true)) {
-    refuse(test.where,
+  if (is_against_darkness(question) && has_margin(*question.test, true)) {
+    refuse(question.test->where,
            "a margin in per cent has no meaning here: the reference is zero in every pixel; give "
            "an absolute number");
   }
@@ -271,11 +273,11 @@ double squared_unit(const Question& question, const PlannedImage& last) {
 /// numbers (image_evidence.h).
 class ImageTheta : public Theta {
  public:
-  ImageTheta() : ImageTheta({.joins_channels = true, .of_images = true}) {}
-  explicit ImageTheta(const ThetaTraits& traits)
-      : ImageTheta(traits, {"image", "cells of every size, and alternating sums: images",
-                            any_question, Keeps::images, nullptr}) {}
-  ImageTheta(const ThetaTraits& traits, const MethodRow& row) : Theta(traits, {row}) {}
+  explicit ImageTheta(const ThetaTraits& traits = {.joins_channels = true, .of_images = true},
+                      const MethodRow& row = {"image",
+                                              "cells of every size, and alternating sums: images",
+                                              any_question, Keeps::images, nullptr})
+      : Theta(traits, {row}) {}
 
   const Theta* of_images() const override { return this; }
   const Theta* of_pairs() const override;
@@ -301,10 +303,7 @@ class ImageTheta : public Theta {
   std::string circumstances(const Question&) const override { return " in every pixel"; }
 
   bool is_relative(const Question& question, std::size_t) const override {
-    const TestEntry& test = *question.test;
-    const auto lit = [](const Constant& reference) { return reference.value != 0; };
-    return !has_margin(test, false) &&
-           (question.of_two() || std::ranges::any_of(question.references, lit));
+    return !has_margin(*question.test, false) && !is_against_darkness(question);
   }
 
   std::uint64_t choose(TestOutcome& test, const Pilots& pilots, std::uint64_t most) const override {
