@@ -61,26 +61,21 @@ void coarsen(Suite& suite, const RunOptions& options) {
   }
 }
 
-bool is_about(const Question& question, const std::string& estimator) {
-  return std::any_of(question.subjects.begin(), question.subjects.end(),
-                     [&](const Subject& s) { return s.estimator->listed == estimator; });
-}
-
 using Used = std::vector<const PreparedEstimator*>;
 
 /// Estimators of the chosen tests, in the suite's order. A reference has nothing to draw.
 Used used_by(const SuiteRun& run, const std::vector<bool>& chosen) {
+  std::set<std::string> wanted;
+  for (std::size_t i = 0; i < run.questions.size(); ++i) {
+    for (const Subject& subject : run.questions[i].subjects) {
+      if (chosen[i]) wanted.insert(subject.estimator->listed);
+    }
+  }
   Used used;
   for (const EstimatorEntry& entry : run.suite.estimators) {
     const auto prepared = run.estimators.find(entry.name);
-    if (prepared == run.estimators.end() || prepared->second.setup->is_reference()) {
-      continue;
-    }
-    bool wanted = false;
-    for (std::size_t i = 0; i < run.questions.size(); ++i) {
-      wanted = wanted || (chosen[i] && is_about(run.questions[i], entry.name));
-    }
-    if (wanted) used.push_back(&prepared->second);
+    if (prepared == run.estimators.end() || prepared->second.setup->is_reference()) continue;
+    if (wanted.contains(entry.name)) used.push_back(&prepared->second);
   }
   return used;
 }
@@ -113,8 +108,7 @@ Pilots piloted(const SuiteRun& run, const std::vector<bool>& chosen, const RunOp
     if (taken.pilots.empty()) {
       require_memory(run.estimators, {}, available_bytes(), taken.fault);
     } else {
-      std::erase_if(
-          used, [&](const PreparedEstimator* each) { return is_about(*question, each->listed); });
+      for (const Subject& side : question->subjects) std::erase(used, side.estimator);
     }
     pilots.merge(std::move(taken.pilots));
   }
