@@ -31,9 +31,6 @@ using stats::Interval;
 using stats::TestResult;
 
 constexpr const char* distance_of_laws = "largest distance of distribution functions";
-constexpr const char* masses_without_a_point = "the masses without a point";
-constexpr const char* distance_of_parts =
-    "largest distance of distribution functions, or of the masses without a point";
 
 /// Says which part p belongs to: the estimate may be another's.
 std::string p_is_of(const std::string& part, double difference) {
@@ -118,15 +115,10 @@ bool may_end_beyond(double theta, const Evidence& evidence, double confidence) {
   return evidence.at(theta).log_p_lower >= std::log((1 - confidence) / 2) - rounding_of_log_p;
 }
 
-struct Part {
-  Evidence evidence;
-  std::string name;
-};
-
-/// theta = the larger distance. Bonferroni rejects "at most" if either part does at half the level.
-/// Intersection of unions rejects "at least" if both do.
-Evidence larger_of(const Evidence& points, const Part& masses) {
-  const Evidence& missing = masses.evidence;
+/// theta = the larger distance, of points or of the masses without one. Bonferroni rejects "at
+/// most" if either part does at half the level. Intersection of unions rejects "at least" if both
+/// do.
+Evidence larger_of(const Evidence& points, const Evidence& missing) {
   const auto at = [points, missing](double theta) {
     const TestResult one = points.at(theta);
     const TestResult other = missing.at(theta);
@@ -146,17 +138,18 @@ Evidence larger_of(const Evidence& points, const Part& masses) {
     }
     return both;
   };
-  return {.estimate = std::max(points.estimate, missing.estimate),
-          .at = at,
-          .interval = interval,
-          .most_against = [points, masses](double theta) -> std::string {
-            const double of_masses = masses.evidence.at(theta).log_p_upper;
-            return of_masses < points.at(theta).log_p_upper
-                       ? p_is_of(masses.name, masses.evidence.estimate)
-                       : "";
-          },
-          .quantity = distance_of_parts,
-          .distance = true};
+  return {
+      .estimate = std::max(points.estimate, missing.estimate),
+      .at = at,
+      .interval = interval,
+      .most_against = [points, missing](double theta) -> std::string {
+        const double of_masses = missing.at(theta).log_p_upper;
+        return of_masses < points.at(theta).log_p_upper
+                   ? p_is_of("the masses without a point", missing.estimate)
+                   : "";
+      },
+      .quantity = "largest distance of distribution functions, or of the masses without a point",
+      .distance = true};
 }
 
 void require_points(const Points& points) {
@@ -254,7 +247,7 @@ Evidence points_against_law(const Points& points, const DeclaredLaw& declared) {
   if (declared.missing == 0 && points.missing() == 0) return rest;
   const stats::Successes missing{.successes = points.missing(), .trials = points.draws};
   const Evidence excess = from_probability(missing, -declared.missing, declared.missing_error);
-  return larger_of(rest, {absolute(excess), masses_without_a_point});
+  return larger_of(rest, absolute(excess));
 }
 
 Evidence points_against_points(const Points& x, const Points& y) {
@@ -262,7 +255,7 @@ Evidence points_against_points(const Points& x, const Points& y) {
   require_points(y);
   const Evidence rest = from_distance(x.sorted, y.sorted);
   if (!x.of_a_sampler && !y.of_a_sampler) return rest;
-  return larger_of(rest, {absolute(from_probabilities(x, y)), masses_without_a_point});
+  return larger_of(rest, absolute(from_probabilities(x, y)));
 }
 
 std::vector<std::uint64_t> counts_in(const stats::SampledCells& cells, const Seen& seen,
@@ -396,9 +389,7 @@ std::optional<std::uint64_t> fit_secondaries(const TestOutcome& test, const Erro
   return enough;
 }
 
-/// Observations of each side worth one of a single sample, by m n / (m + n).
-std::uint64_t sides(const Question& question) { return question.of_two() ? 2 : 1; }
-
+/// Observations of a single sample that are worth as much: m n / (m + n) of two.
 double worth(const Sized& sized) {
   const stats::SampleSizes sizes = sized.sizes();
   return sized.test.question.of_two() ? sizes.x / (1 + sizes.x / sizes.y) : sizes.x;
@@ -458,7 +449,8 @@ class LawTheta : public Theta {
     if (!regions.detect) return std::nullopt;
     if (in_cells(test.plan)) {
       const auto alone = fit_secondaries(test, share);
-      return alone ? sides(test.question) * *alone : impossible_secondaries;
+      if (!alone) return impossible_secondaries;
+      return test.question.of_two() ? 2 * *alone : *alone;
     }
     return stats::ks_sample_size(distance_plan(test, share), *regions.detect);
   }
