@@ -56,12 +56,6 @@ struct RatioWords {
   const char* many;
 };
 
-/// A pilot of single primaries.
-struct PilotMoments {
-  const Moments& values;
-  std::vector<JointMoments> joint;
-};
-
 // ---- Evidence
 
 /// Theta is ln(first / second / null), or ln(first / null), or minus that.
@@ -218,11 +212,11 @@ class LogTheta : public Theta {
   virtual bool is_inverse() const { return false; }
 
   /// The variance of an observation's influence values over the quantity's square, for observations
-  /// of `averaged` of the pilot's primaries; by default that of a variance.
-  virtual std::optional<double> predicted_spread(const Question&, const PilotMoments& pilot,
+  /// of `averaged` of the pilot's single primaries; by default that of a variance.
+  virtual std::optional<double> predicted_spread(const Question&, const ChannelData& pilot,
                                                  double averaged) const {
-    if (!(pilot.values.m2 > 0)) return std::nullopt;
-    return averaged_spread(pilot.values.kurtosis() - 1, averaged);
+    if (!(pilot.moments.m2 > 0)) return std::nullopt;
+    return averaged_spread(pilot.moments.kurtosis() - 1, averaged);
   }
 
   /// The same from the test's own data.
@@ -261,8 +255,8 @@ class LogTheta : public Theta {
     for (std::size_t i = 0; i < side.channels.size(); ++i) {
       if (channel && !is.joins_channels && i != *channel) continue;
       const std::size_t index = side.channels[i];
-      const Moments values = pilot.moments(index);
-      const PilotMoments seen{.values = values, .joint = joint_moments(pilot.sums->details(index))};
+      const ChannelData seen{.moments = pilot.moments(index),
+                             .joint = joint_moments(pilot.sums->details(index))};
       const auto spread = predicted_spread(test.question, seen, averaged);
       if (spread) most = std::max(most.value_or(0), *spread);
     }
@@ -584,7 +578,7 @@ class CostTheta final : public RatioTheta {
   RatioSide side(const Seen& seen, std::size_t subject) const override {
     return without_truth(cost_of(seen, subject));
   }
-  std::optional<double> predicted_spread(const Question& question, const PilotMoments& pilot,
+  std::optional<double> predicted_spread(const Question& question, const ChannelData& pilot,
                                          double averaged) const override {
     if (in_seconds(question)) return RatioTheta::predicted_spread(question, pilot, averaged);
     if (pilot.joint.empty()) return std::nullopt;
@@ -617,7 +611,7 @@ class EfficiencyTheta final : public RatioTheta {
     const auto truth = truth_beside(seen, subject);
     return truth ? harness::spread_of_truth(seen.moments(subject), *truth) : 0;
   }
-  std::optional<double> predicted_spread(const Question& question, const PilotMoments& pilot,
+  std::optional<double> predicted_spread(const Question& question, const ChannelData& pilot,
                                          double averaged) const override {
     if (in_seconds(question)) return RatioTheta::predicted_spread(question, pilot, averaged);
     if (pilot.joint.empty()) return std::nullopt;

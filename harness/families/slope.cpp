@@ -85,20 +85,16 @@ bool is_exact(const SlopeData& data) {
                              [](const SlopePoint& point) { return point.standard_error == 0; });
 }
 
-/// Least and largest slope between neighbours, without error.
-struct Slopes {
-  double least = std::numeric_limits<double>::infinity();
-  double most = -std::numeric_limits<double>::infinity();
-};
-
-Slopes exact_slopes(const SlopeData& data) {
-  Slopes slopes;
+/// The range of slopes between neighbours, without error.
+stats::Range exact_slopes(const SlopeData& data) {
+  stats::Range slopes{.low = std::numeric_limits<double>::infinity(),
+                      .high = -std::numeric_limits<double>::infinity()};
   for (std::size_t i = 1; i < data.points.size(); ++i) {
     const SlopePoint& a = data.points[i - 1];
     const SlopePoint& b = data.points[i];
     const double slope = (b.estimate - a.estimate) / std::log(b.size / a.size);
-    slopes.least = std::min(slopes.least, slope);
-    slopes.most = std::max(slopes.most, slope);
+    slopes.low = std::min(slopes.low, slope);
+    slopes.high = std::max(slopes.high, slope);
   }
   return slopes;
 }
@@ -114,20 +110,20 @@ double beyond(double slope, double null) {
 
 /// Costs that never vary have exact slopes.
 Evidence exact_evidence(const SlopeData& data, double null) {
-  const Slopes slopes = exact_slopes(data);
+  const stats::Range slopes = exact_slopes(data);
   constexpr double impossible = std::numeric_limits<double>::lowest();
   const auto at = [=](double theta) {
     const double slope = null + theta;
-    stats::TestResult result{.statistic = (slopes.least + slopes.most) / 2 - slope,
+    stats::TestResult result{.statistic = (slopes.low + slopes.high) / 2 - slope,
                              .distribution = {"bound", {}}};
-    if (slopes.most > slope + exact_tolerance) result.log_p_upper = impossible;
-    if (slopes.least < slope - exact_tolerance) result.log_p_lower = impossible;
+    if (slopes.high > slope + exact_tolerance) result.log_p_upper = impossible;
+    if (slopes.low < slope - exact_tolerance) result.log_p_lower = impossible;
     return result;
   };
   const auto interval = [=](double confidence) {
-    return stats::Interval{beyond(slopes.least, null), beyond(slopes.most, null), confidence};
+    return stats::Interval{beyond(slopes.low, null), beyond(slopes.high, null), confidence};
   };
-  return {.estimate = beyond((slopes.least + slopes.most) / 2, null),
+  return {.estimate = beyond((slopes.low + slopes.high) / 2, null),
           .at = at,
           .interval = interval,
           .quantity = "difference from the claimed slope"};
@@ -176,8 +172,8 @@ Gate power_law_gate(const Seen& seen, double level) {
   const SlopeData points = points_of(seen);
   double log_p = 0;
   if (is_exact(points)) {
-    const Slopes slopes = exact_slopes(points);
-    if (slopes.most - slopes.least > 2 * exact_tolerance) log_p = std::log(0.0);
+    const stats::Range slopes = exact_slopes(points);
+    if (slopes.high - slopes.low > 2 * exact_tolerance) log_p = std::log(0.0);
   } else {
     log_p = stats::slope_estimate(points).log_p_best;
   }
@@ -217,13 +213,8 @@ double point_variance(const TestOutcome& test, std::size_t i, std::size_t channe
 }
 
 /// Least-squares C of C M^s at the claimed exponent s, with its standard error.
-struct Fit {
-  double constant;
-  double standard_error;
-};
-
-Fit fit_constant(const Question& question, std::size_t channel, const Pilots& pilots,
-                 double exponent) {
+Constant fit_constant(const Question& question, std::size_t channel, const Pilots& pilots,
+                      double exponent) {
   double weight = 0;
   double sum = 0;
   for (std::size_t i = 0; i < question.compared(); ++i) {
@@ -239,7 +230,7 @@ Fit fit_constant(const Question& question, std::size_t channel, const Pilots& pi
     weight += shape * shape / error / error;
     sum += shape * (pilot.mean - truth) / error / error;
   }
-  return {.constant = sum / weight, .standard_error = 1 / std::sqrt(weight)};
+  return {sum / weight, 1 / std::sqrt(weight)};
 }
 
 /// Points of one observation each, expected if the claim held with this exponent.
@@ -248,21 +239,21 @@ std::optional<SlopeData> expected_points(const TestOutcome& test, std::size_t ch
   const Question& question = test.question;
   const bool logarithms = question.is().of_spread;
   SlopeData data{.scale = logarithms ? stats::SlopeScale::logarithms : stats::SlopeScale::values};
-  Fit fit{.constant = 1, .standard_error = 0};
+  Constant fit;
   if (!logarithms) {
     fit = fit_constant(question, channel, pilots, question.references[channel].value);
     // NaN, from a point without spread, counts as unseen.
-    const bool seen = std::abs(fit.constant) >= least_visibility * fit.standard_error;
+    const bool seen = std::abs(fit.value) >= least_visibility * fit.standard_error;
     if (!seen) return std::nullopt;
   }
   for (std::size_t i = 0; i < question.compared(); ++i) {
     const double size = question.sizes[i];
     const double variance = point_variance(test, i, channel, pilots);
     if (!(variance > 0)) return std::nullopt;
-    data.points.push_back({.size = size,
-                           .estimate = logarithms ? exponent * std::log(size)
-                                                  : fit.constant * std::pow(size, exponent),
-                           .standard_error = std::sqrt(variance)});
+    data.points.push_back(
+        {.size = size,
+         .estimate = logarithms ? exponent * std::log(size) : fit.value * std::pow(size, exponent),
+         .standard_error = std::sqrt(variance)});
   }
   return data;
 }
