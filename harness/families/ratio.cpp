@@ -477,17 +477,6 @@ const JointMoments& by_its_cost(const Question& question, std::span<const JointM
   return joint[question.test->cost == CostKind::samples ? samples_cost : rays_cost];
 }
 
-/// Count times the variance of ln(mean squared error) that the truth's own error makes, to first
-/// and second order. More observations do not reduce it.
-double spread_of_truth(const Moments& x, const Constant& truth) {
-  const double n = static_cast<double>(x.count);
-  const double error = truth.standard_error;
-  const double bias = x.mean_less(truth.value);
-  const double squared = x.m2 / n + bias * bias;
-  const double of_truth = error * std::sqrt(4 * bias * bias + 2 * error * error) / squared;
-  return n * of_truth * of_truth;
-}
-
 /// The truth about which a subject's mean squared error stands for the variance; nullopt if none
 /// does.
 std::optional<Constant> truth_beside(const Seen& seen, std::size_t subject) {
@@ -607,9 +596,17 @@ class EfficiencyTheta final : public RatioTheta {
         .truth = {.known = {truth->value, truth->standard_error}, .turn = sample.x().mean}};
   }
   bool is_inverse() const override { return true; }
+  /// Of ln(mean squared error), to first and second order. More observations do not reduce it.
   double spread_of_truth(const Seen& seen, std::size_t subject) const override {
     const auto truth = truth_beside(seen, subject);
-    return truth ? harness::spread_of_truth(seen.moments(subject), *truth) : 0;
+    if (!truth) return 0;
+    const Moments& x = seen.moments(subject);
+    const double n = static_cast<double>(x.count);
+    const double error = truth->standard_error;
+    const double bias = x.mean_less(truth->value);
+    const double squared = x.m2 / n + bias * bias;
+    const double of_truth = error * std::sqrt(4 * bias * bias + 2 * error * error) / squared;
+    return n * of_truth * of_truth;
   }
   std::optional<double> predicted_spread(const Question& question, const ChannelData& pilot,
                                          double averaged) const override {
