@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 
 #include "estimators/core/thread_seconds.h"
@@ -101,9 +102,9 @@ class Side {
   std::vector<double> averages() const {
     std::vector<double> averages;
     for (const stats::ChannelSums& each : of_channels_) {
-      double sum = 0;
-      for (const double of_channel : each.sums()) sum += of_channel;
-      averages.push_back(sum / static_cast<double>(extent_.elements()));
+      const std::vector<double> sums = each.sums();
+      averages.push_back(std::accumulate(sums.begin(), sums.end(), 0.0) /
+                         static_cast<double>(extent_.elements()));
     }
     return averages;
   }
@@ -112,11 +113,7 @@ class Side {
     for (const Extremes& each : extremes_) all.merge(each);
     return all;
   }
-  double seconds() const {
-    double sum = 0;
-    for (const double seconds : seconds_) sum += seconds;
-    return sum;
-  }
+  double seconds() const { return std::accumulate(seconds_.begin(), seconds_.end(), 0.0); }
 
   /// Names a non-finite number in the current rows; "" if all are finite.
   std::string not_finite() const {
