@@ -14,34 +14,6 @@ namespace {
 
 using reports::Verdict;
 
-/// The constants' difference on theta's scale, but for rounding.
-struct Difference {
-  double value = 0;
-  double rounding = 0;
-  double scale = 1;  ///< Theta's unit: 1 or |reference|.
-};
-
-Difference difference_of(const Seen& seen) {
-  const Question& question = seen.question;
-  Difference difference{.rounding = rounding_of(question, 0, seen.channel)};
-  double reference = 0;
-  if (question.of_two()) {
-    reference = question.factor * seen.moments(1).mean;
-    difference.rounding += std::abs(question.factor) * rounding_of(question, 1, seen.channel);
-  } else {
-    reference = seen.reference().value;
-  }
-  difference.value = seen.moments(0).mean - question.offset - reference;
-  if (seen.relative() && reference != 0) difference.scale = std::abs(reference);
-  return difference;
-}
-
-/// All values that theta may have.
-stats::Range theta_of(const Difference& difference) {
-  return {.low = (difference.value - difference.rounding) / difference.scale,
-          .high = (difference.value + difference.rounding) / difference.scale};
-}
-
 bool meets_claimed(const stats::Range& theta, const Regions& regions) {
   const stats::Range claimed = regions.claimed();
   return regions.proof() ? theta.low < claimed.high && theta.high > claimed.low
@@ -89,11 +61,19 @@ std::string range_advice(const Question& question) {
 }
 
 std::optional<ConstantVerdict> judge_constant(const Seen& seen, const Regions& regions) {
+  const Question& question = seen.question;
+  double rounding = 0;
   for (std::size_t subject = 0; subject < seen.data.size(); ++subject) {
     if (!is_constant(seen, subject)) return {};
+    rounding += question.factor_of(subject) * rounding_of(question, subject, seen.channel);
   }
-  const Difference difference = difference_of(seen);
-  if (meets_claimed(theta_of(difference), regions)) {
+  const double reference =
+      question.of_two() ? question.factor * seen.moments(1).mean : seen.reference().value;
+  const double difference = seen.moments(0).mean - question.offset - reference;
+  const double unit = seen.relative() && reference != 0 ? std::abs(reference) : 1;
+  const stats::Range theta{.low = (difference - rounding) / unit,
+                           .high = (difference + rounding) / unit};
+  if (meets_claimed(theta, regions)) {
     if (!regions.has_forbidden()) {
       return ConstantVerdict{
           Verdict::pass,
@@ -109,7 +89,7 @@ std::optional<ConstantVerdict> judge_constant(const Seen& seen, const Regions& r
       Verdict::invalid,
       fmt::format("every observation is {:.10g}, off by {:.3g}: rare other values may be unseen, "
                   "and could make up for it; {}{}",
-                  seen.moments(0).mean, difference.value, range_advice(seen.question),
+                  seen.moments(0).mean, difference, range_advice(seen.question),
                   seeds(seen.question))};
 }
 
