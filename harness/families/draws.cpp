@@ -66,7 +66,6 @@ Evidence inconsistency(const Method&, const Seen& seen) {
 
 // ---- Theta
 
-/// The probability that the claim counts, and its error.
 struct CountedProbability {
   double value = 0;
   double error = 0;

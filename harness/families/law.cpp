@@ -274,7 +274,6 @@ std::vector<std::uint64_t> counts_in(const stats::SampledCells& cells, const See
 
 namespace {
 
-/// A sampler's draws against its declared density.
 Evidence cells_against_density(const Method&, const Seen& seen) {
   const DensityCells& density = density_of(seen.question);
   stats::CellCounts counts{.observed = density.in_cells(seen.data[0].cells),

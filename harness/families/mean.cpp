@@ -43,7 +43,6 @@ using OneMeanTest = std::function<TestResult(const stats::Reference&)>;
 /// Tests "E x - scale E y = offset".
 using ContrastTest = std::function<TestResult(const stats::Contrast&)>;
 
-/// One subject's data of a channel, with its declared range and rounding.
 struct Side {
   const ChannelData& data;
   stats::Range range;
@@ -262,7 +261,6 @@ Evidence mean_against_number(const MeanTest& mean, const Seen& seen) {
           .relative = relative};
 }
 
-/// Theta's evidence by this test, with x and y the sides of the claim.
 template <const MeanTest& mean>
 Evidence evidence_of_means(const Method&, const Seen& seen) {
   if (!seen.question.of_two()) return mean_against_number(mean, seen);
@@ -307,7 +305,6 @@ std::string size_of(const Subject& subject) {
   return fmt::format("{} channels", subject.channels.size());
 }
 
-/// References from recorded means and their errors, channel by channel.
 std::vector<Constant> recorded_means(const Question& question, const Subject& reference) {
   const Subject& subject = question.subjects[0];
   const bool one_size = subject.channels.size() == reference.channels.size() &&

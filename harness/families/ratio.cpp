@@ -38,14 +38,12 @@ using stats::JointMoments;
 using stats::Moments;
 using stats::TestResult;
 
-/// One side of a ratio.
 struct RatioSide {
   std::function<Influence(double truth)> influence;
   /// The truth of a mean squared error; other quantities have none.
   stats::UncertainReference truth = {};
 };
 
-/// A side that no truth enters.
 RatioSide without_truth(const Influence& influence) {
   return {.influence = [influence](double) { return influence; }};
 }
@@ -208,7 +206,6 @@ class LogTheta : public Theta {
     return std::log(question.of_two() ? question.factor : seen.reference().value);
   }
 
-  /// True if sides are inverses of the quantities.
   virtual bool is_inverse() const { return false; }
 
   /// The variance of an observation's influence values over the quantity's square, for observations
@@ -334,7 +331,6 @@ double null_of(const Seen& seen) {
   return question.factor * question.subjects[1].averaged(seen.data[1].primaries) / x;
 }
 
-/// By chi-square or F, for normal values.
 Evidence of_normal_values(const Method&, const Seen& seen) {
   const bool two = seen.question.of_two();
   const Moments x = seen.moments(0);

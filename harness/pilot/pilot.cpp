@@ -131,7 +131,6 @@ std::variant<Pilot, Fault> read(const std::shared_ptr<const Pool>& pool) {
                .images = drawn.images(images)};
 }
 
-/// Estimators whose costs some claim is about.
 std::set<std::string> costly(const std::vector<Question>& questions) {
   std::set<std::string> names;
   for (const Question& question : questions) {

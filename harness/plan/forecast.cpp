@@ -111,7 +111,6 @@ Outlook outlook_at(const StoppingLooks& looks, double theta,
   return outlook;
 }
 
-/// All channels' outlook from those of each.
 Outlook together(const std::vector<Outlook>& channels) {
   Outlook all{.drawn = 0};
   for (const Outlook& each : channels) {

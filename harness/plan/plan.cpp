@@ -147,7 +147,6 @@ bool chooses_primaries(const Subject& subject) {
   return subject.averages && subject.purpose.empty() && !subject.estimator->primaries;
 }
 
-/// Primaries that one question wants of one estimator.
 std::uint64_t wanted_primaries(const Question& question, const FamilyPlace& place,
                                std::size_t subject, const Pilots& pilots) {
   std::uint64_t wanted = least_primaries;

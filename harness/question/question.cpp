@@ -32,7 +32,6 @@ std::string parts_of(const PreparedEstimator& estimator) {
   return text;
 }
 
-/// Refuses a sampler's name for claims that take channels.
 void require_no_sampler(const Source& source, const PreparedEstimator& estimator) {
   const std::string name = source.part.substr(0, source.part.find('.'));
   const std::vector<NamedSampler> samplers = estimator.setup->samplers();

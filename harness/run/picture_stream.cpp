@@ -153,7 +153,6 @@ class Side {
   stats::RowRange there_;
 };
 
-/// Results of rows that are collected row by row.
 class Looking {
  public:
   explicit Looking(const Question& question)
@@ -334,7 +333,6 @@ bool is_streamed(const Question& question) {
          is_streamed(question.subjects[1], question.subjects[0]);
 }
 
-/// Bytes of one side's pictures at a time.
 double streamed_bytes(const Subject& side) {
   const stats::ImageExtent extent = extent_of(*side.image);
   const std::size_t pictures = pictures_of(side);
@@ -364,7 +362,6 @@ double bytes_of(const PreparedEstimator& estimator, const StreamedClaims& stream
   return numbers * (bytes_of_number + bytes_of_block) + elements * bytes_of_element;
 }
 
-/// The number in a file that holds one.
 double number_in(const char* file) {
   double value = unknown;
   std::ifstream stream(file);

@@ -126,7 +126,6 @@ std::vector<bool> chosen_of(const SuiteRun& run, const RunOptions& options) {
   return chosen;
 }
 
-/// Draws the pilots of the selected tests and plans them.
 void plan_tests(SuiteRun& run, const RunOptions& options, Progress& progress) {
   std::erase_if(run.untested,
                 [&](const Untested& each) { return !selects(options.selection, *each.test); });
@@ -145,7 +144,6 @@ void plan_tests(SuiteRun& run, const RunOptions& options, Progress& progress) {
   }
 }
 
-/// Plans what is drawn for the tests.
 void plan_pools(SuiteRun& run, Pools& pools) {
   for (TestWork& work : run.tests) {
     work.pools = pools.for_question(work.outcome.question, work.outcome.plan, run.seed, run.pilots);

@@ -166,7 +166,6 @@ Reason failed(const TestOutcome& outcome, const ChannelOutcome& channel) {
   return place.empty() ? Reason(text) : Reason::advising(text + "; ", place);
 }
 
-/// Levels of the last look.
 ErrorShare last_levels(const TestOutcome& outcome) {
   return outcome.share_at(outcome.plan.looks.count() - 1);
 }

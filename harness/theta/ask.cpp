@@ -68,7 +68,6 @@ void separate_streams(Question& question, const Claim& claim, std::uint64_t seed
   }
 }
 
-/// Gives samplers cells of the suite's seed.
 void seed_cells(Question& question, const Claim& claim, std::uint64_t seed) {
   for (Subject& side : question.subjects) {
     const auto* draws = dynamic_cast<const SamplerSetup*>(side.setup.get());

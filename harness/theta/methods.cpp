@@ -28,7 +28,6 @@ std::string relation_text(const TestEntry& test) {
   refuse(where, "`test: {}` {}", method, why);
 }
 
-/// Throws InputError if the data do not suit the method.
 void require_data(const Method& method, const Question& question) {
   for (const Subject& subject : question.subjects) {
     if (method.is.of_observations && as_recorded_run(*subject.setup) != nullptr) {
