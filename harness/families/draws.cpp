@@ -19,7 +19,6 @@ namespace {
 
 // ---- Evidence
 
-using stats::Interval;
 std::uint64_t sum(std::span<const std::uint64_t> counts) {
   return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
 }

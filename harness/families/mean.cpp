@@ -32,7 +32,6 @@ namespace assay::harness {
 namespace {
 
 using stats::GateState;
-using stats::Interval;
 using stats::Moments;
 using stats::TestResult;
 
