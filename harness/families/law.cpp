@@ -180,10 +180,6 @@ std::string describe(const stats::SampledCells& cells, const Subject& side, std:
                     cell - cells.before[band]);
 }
 
-const stats::PooledPair& farthest(const stats::ChiSquareTwoSample& fit) {
-  return *std::ranges::max_element(fit.cells, {}, [](const auto& cell) { return cell.part; });
-}
-
 /// Name of a tested cell, or of sparse cells that were pooled.
 std::string pool_text(const std::vector<std::size_t>& members,
                       const std::function<std::string(std::size_t)>& describe) {
@@ -310,7 +306,8 @@ Evidence cells_against_cells(const Method& method, const Seen& seen) {
   const auto interval = [fit](double confidence) {
     return stats::chi_square_effect_interval(fit.statistic, confidence);
   };
-  const stats::PooledPair& worst = farthest(fit);
+  const stats::PooledPair& worst =
+      *std::ranges::max_element(fit.cells, {}, &stats::PooledPair::part);
   const Subject& first = seen.question.subjects[0];
   const auto place = [&](std::size_t cell) { return describe(cells, first, cell); };
   return {.estimate = fit.statistic.effect(),

@@ -258,11 +258,6 @@ std::optional<SlopeData> expected_points(const TestOutcome& test, std::size_t ch
   return data;
 }
 
-/// The level at which the verdict rejects theta: a pass beyond its margin, a fail elsewhere.
-double largest_level(const ErrorShare& share, const Regions& regions) {
-  return regions.has_forbidden() ? std::max(share.alpha, share.beta) : share.alpha;
-}
-
 /// theta = s - the claimed exponent, where the quantity goes like (swept parameter)^s.
 class SlopeTheta final : public Theta {
  public:
@@ -317,8 +312,10 @@ class SlopeTheta final : public Theta {
 
   std::vector<Gate> gates(const TestOutcome& outcome, const Seen& seen, double x) const override {
     std::vector<Gate> gates = skewness_gates(seen, x);
-    const Regions& regions = outcome.plan.regions[seen.channel];
-    gates.push_back(power_law_gate(seen, largest_level(outcome.share(), regions)));
+    // A pass rejects theta beyond its margin, a fail elsewhere.
+    const auto [alpha, beta] = outcome.share();
+    const bool may_exclude = outcome.plan.regions[seen.channel].has_forbidden();
+    gates.push_back(power_law_gate(seen, may_exclude ? std::max(alpha, beta) : alpha));
     return gates;
   }
 
@@ -350,11 +347,6 @@ PreparedEstimator swept(const PreparedEstimator& estimator, const std::string& p
   return point;
 }
 
-void require_counted(const TestEntry& test) {
-  if (test.cost != CostKind::seconds) return;
-  refuse(test.where, "a slope of seconds has no method; count `rays` or `samples`");
-}
-
 /// Variance and cost of an averaging estimator are those of one primary and do not depend on
 /// `primaries`.
 void require_slope_of_something(const TestEntry& test, const Subject& subject) {
@@ -371,7 +363,9 @@ void require_slope_of_something(const TestEntry& test, const Subject& subject) {
 
 Question SlopeTheta::bind(const TestEntry& test, const Estimators& estimators) const {
   const Claim& claim = test.claim;
-  require_counted(test);
+  if (test.cost == CostKind::seconds) {
+    refuse(test.where, "a slope of seconds has no method; count `rays` or `samples`");
+  }
   Question question{.test = &test, .theta = this};
   const PreparedEstimator& estimator = estimator_of(claim.left.source, estimators);
   for (const Value& value : test.over->values) {

@@ -30,11 +30,6 @@ std::string sentence(const Gate& gate) {
          (gate.name.size() > row.name.size() ? " (" + gate.name + ")" : "");
 }
 
-/// A claim that does not rest on moments.
-std::string median_of(const Question& question) {
-  return fmt::format("quantile({}, 0.5) == …", to_string(question.test->claim.left.source));
-}
-
 /// Factor on the observations that would turn the gate green, with room for what more of them show.
 double wanted(const Gate& gate) {
   if (!gate.is_red() || !gate.value) return 1;
@@ -151,9 +146,9 @@ Reason what_would_help(const TestOutcome& outcome) {
   if (heavy) {
     return fmt::format(
         "; the values are heavy-tailed, and more of them may only show more of the tail: {}claim a "
-        "quantile, as `{}`",
+        "quantile, as `quantile({}, 0.5) == …`",
         rows ? "" : "clamp the estimator or take another, declare its range, or ",
-        median_of(outcome.question));
+        to_string(outcome.question.test->claim.left.source));
   }
   const bool known = factor > 1 && std::isfinite(factor);
   if (rows) {

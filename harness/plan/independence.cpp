@@ -59,10 +59,6 @@ std::vector<Rows> rows_of(const Question& question, const Pilots& pilots, std::u
   return all;
 }
 
-bool enough_batches(std::span<const double> values) {
-  return values.size() / stats::sufficient_batch(values) >= fewest_batches;
-}
-
 /// Advice on the rows that suffice of a chain with this autocorrelation time.
 std::string enough_of_a_chain(const Question& question, double time) {
   const auto apart = static_cast<std::size_t>(std::ceil(10 * time));
@@ -108,12 +104,6 @@ Reason dependent(const Question& question, const Rows& rows, bool at_a_lag) {
         why, "give sorted ones in the order drawn; of a slow chain they are too few");
   }
   return Reason::advising(why, "give one row a chain, or " + enough_of_a_chain(question, time));
-}
-
-/// A red gate on something that chance does not make.
-Gate red_gate(const char* name, std::size_t value, std::size_t limit, const Rows& rows) {
-  return gate_of(name, static_cast<double>(value), static_cast<double>(limit), "red",
-                 ", " + rows.label);
 }
 
 std::string from_to(std::size_t first, std::size_t length) {
@@ -248,11 +238,14 @@ void judge_independence(TestOutcome& test, const Pilots& pilots, std::uint64_t c
   const bool batches =
       question.is().batches_serve && (!forced || plan.method.is.of_batches) &&
       question.test->claim.relation != Relation::within &&
-      std::ranges::all_of(all, [](const Rows& each) { return enough_batches(each.values); });
+      std::ranges::all_of(all, [](const Rows& each) {
+        return each.values.size() / stats::sufficient_batch(each.values) >= fewest_batches;
+      });
   bool answered = false;
   for (const Rows& rows : all) {
     if (const auto again = stats::repeated_run(rows.values)) {
-      plan.gates.push_back(red_gate("longest repetition", again->length, 0, rows));
+      plan.gates.push_back(gate_of("longest repetition", static_cast<double>(again->length), 0,
+                                   "red", ", " + rows.label));
       if (reason.empty()) reason = repeated(rows, *again);
     }
     std::vector<stats::Gate> gates{stats::lag_one_gate(rows.values),

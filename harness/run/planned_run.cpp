@@ -35,13 +35,6 @@ void share_budget(Suite& suite) {
   }
 }
 
-/// The suite with this run's options, before `--coarsen`.
-Suite adjusted(Suite suite, const RunOptions& options) {
-  if (options.alpha) suite.alpha = *options.alpha;
-  share_budget(suite);
-  return suite;
-}
-
 // Half of the way to laws that share no value still makes a quick test.
 constexpr double coarsest_probability = 0.5;
 
@@ -221,7 +214,9 @@ void ask_test(SuiteRun& run, TestEntry& test, const std::map<std::string, Fault>
 /// Finds all mistakes of the user before anything is sampled. Prepares nothing of a skipped suite.
 std::unique_ptr<SuiteRun> prepare_suite(const Suite& suite, const RunOptions& options) {
   auto run = std::make_unique<SuiteRun>();
-  run->suite = adjusted(suite, options);
+  run->suite = suite;
+  if (options.alpha) run->suite.alpha = *options.alpha;
+  share_budget(run->suite);
   run->seed = options.seed.value_or(suite.seed.value_or(1));
   if (const std::string lack = lack_of(suite); !lack.empty()) {
     for (const TestEntry& test : run->suite.tests) {
