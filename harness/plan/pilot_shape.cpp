@@ -16,16 +16,12 @@ namespace {
 constexpr stats::CellNumbers plane_cells{.bands = 16, .cuts = 16};
 constexpr stats::CellNumbers line_cells{.bands = 64, .cuts = 1};
 
-/// True if this side's pilot may choose. Rows may only if no side has a pilot of its own.
-bool may_choose(const Question& question, std::size_t subject) {
-  return !is_recorded(question.subjects[subject]) ||
-         std::ranges::all_of(question.subjects, is_recorded);
-}
-
 std::vector<double> pilot_values(const TestOutcome& test, std::size_t subject, std::size_t channel,
                                  const Pilots& pilots) {
   const Subject& side = test.question.subjects[subject];
-  if (pilot_of(side, pilots) == nullptr || !may_choose(test.question, subject)) return {};
+  if (pilot_of(side, pilots) == nullptr) return {};
+  // Rows choose only if no side has a pilot of its own.
+  if (is_recorded(side) && !std::ranges::all_of(test.question.subjects, is_recorded)) return {};
   return as_secondaries(side, pilot_channel(test.question, subject, channel, pilots).values,
                         test.plan.primaries[subject]);
 }

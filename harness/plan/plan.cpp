@@ -98,13 +98,6 @@ std::string misdeclared(const Question& question, const Pilots& pilots) {
   return "";
 }
 
-/// Possible slip of the user: a `detect` by default.
-std::string caution_of(const Question& question) {
-  if (!question.test->detect_by_default) return "";
-  return fmt::format("`detect` is {}, the default of claims about laws",
-                     question.test->detect->value);
-}
-
 /// A margin larger than the other side, which `ask_as_written` cannot know; "" if there is none.
 std::string larger_than_other_side(const Question& question, const Pilots& pilots) {
   if (question.written.empty() || !has_margin(*question.test, false)) return "";
@@ -220,8 +213,10 @@ TestOutcome plan_test(const Question& question, const FamilyPlace& place, const 
     } else {
       plan.looks = look_for_its_picture(test);
     }
-    const std::string slip = caution_of(question);
-    plan.caution += (plan.caution.empty() || slip.empty() ? "" : "; ") + slip;
+    if (question.test->detect_by_default) {  // a possible slip of the user
+      plan.caution += fmt::format("{}`detect` is {}, the default of claims about laws",
+                                  plan.caution.empty() ? "" : "; ", question.test->detect->value);
+    }
   } catch (const std::domain_error& error) {
     plan.invalid = in_words(error);
   } catch (const NoDensity& failure) {
