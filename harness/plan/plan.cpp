@@ -171,12 +171,6 @@ bool takes_single_primaries(const Question& question, const Pilots& pilots) {
   return question.is().of_moments && !question.is().of_spread && bets_on_range(question, pilots);
 }
 
-/// The look of a test that nothing decides. Files are there whole.
-stats::LookSchedule unjudged_look(const TestOutcome& test) {
-  const bool files = std::ranges::all_of(test.question.subjects, is_recorded);
-  return one_look(files ? test.question.most_rows().value_or(2) : 2, test.place.share);
-}
-
 }  // namespace
 
 std::string lack_of_density(const Question& question, const NoDensity& why) {
@@ -197,7 +191,9 @@ TestOutcome plan_test(const Question& question, const FamilyPlace& place, const 
     const bool chosen = !single || subject.estimator->primaries;
     plan.primaries.push_back(chosen ? primaries_of(subject, primaries) : 1);
   }
-  plan.looks = unjudged_look(test);
+  // The look of a test that nothing decides. Files are there whole.
+  const bool files = std::ranges::all_of(question.subjects, is_recorded);
+  plan.looks = one_look(files ? question.most_rows().value_or(2) : 2, place.share);
   plan.pilot_error = not_finite_in_pilot(question, pilots);
   plan.error = where_pilots_stopped(question, pilots);
   if (plan.error.empty()) plan.error = misdeclared(question, pilots);
