@@ -79,7 +79,7 @@ class DrawsTheta : public Theta {
     require_absolute(margin, "this is a probability");
     Theta::check_margin(question, margin);
   }
-  std::optional<double> known_size(const Question&) const override { return std::nullopt; }
+  double known_size(const Question&) const override { return 0; }
 
   /// Draws that show a probability off by `detect`. Exact binomial tests are planned as normal
   /// ones, plus z^2 / room for discreteness.

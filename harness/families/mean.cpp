@@ -557,8 +557,8 @@ class MeanTheta : public Theta {
   Question bind(const TestEntry& test, const Estimators& estimators) const override;
   const Theta* of_images() const override { return &theta_of_images(); }
 
-  std::optional<double> known_size(const Question& question) const override {
-    double largest = Theta::known_size(question).value_or(0);
+  double known_size(const Question& question) const override {
+    double largest = Theta::known_size(question);
     if (question.of_two()) {
       const std::vector<Channel> others = question.subjects[1].setup->channels();
       for (const std::size_t channel : question.subjects[1].channels.all()) {
@@ -567,7 +567,7 @@ class MeanTheta : public Theta {
         if (exceeds_its_error(mean, error)) largest = std::max(largest, std::abs(mean));
       }
     }
-    return largest > 0 ? std::optional(largest) : std::nullopt;
+    return largest;
   }
 
   bool is_relative(const Question& question, std::size_t channel) const override {

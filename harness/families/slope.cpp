@@ -275,7 +275,7 @@ class SlopeTheta final : public Theta {
   void check_margin(const Question&, const Margin& margin) const override {
     require_absolute(margin, "a slope is an exponent");
   }
-  std::optional<double> known_size(const Question&) const override { return std::nullopt; }
+  double known_size(const Question&) const override { return 0; }
 
   std::uint64_t choose(TestOutcome& test, const Pilots&, std::uint64_t) const override {
     const std::uint64_t floor = secondaries_of_floor(test);

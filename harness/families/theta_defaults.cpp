@@ -52,9 +52,9 @@ void Theta::check_margin(const Question& question, const Margin& margin) const {
   }
 }
 
-std::optional<double> Theta::known_size(const Question& question) const {
+double Theta::known_size(const Question& question) const {
   double largest = 0;
-  if (question.references.empty()) return std::nullopt;
+  if (question.references.empty()) return 0;
   const ChannelList& first = question.subjects[0].channels;
   const std::vector<Channel> channels = question.subjects[0].setup->channels();
   for (std::size_t i = 0; i < question.references.size(); ++i) {
@@ -64,7 +64,7 @@ std::optional<double> Theta::known_size(const Question& question) const {
       largest = std::max(largest, std::abs(reference.value));
     }
   }
-  return largest > 0 ? std::optional(largest) : std::nullopt;
+  return largest;
 }
 
 std::uint64_t Theta::choose(TestOutcome&, const Pilots&, std::uint64_t) const {

@@ -79,7 +79,7 @@ void seed_cells(Question& question, const Claim& claim, std::uint64_t seed) {
 
 void refuse_missing_per_cent(const Question& question) {
   const QuantityRow& quantity = *question.test->claim.left.row;
-  const double size = question.theta->known_size(question).value_or(0);
+  const double size = question.theta->known_size(question);
   for (const Margin& margin : margins_of(*question.test)) {
     if (quantity.is_a_probability() && margin.value >= 1) {
       refuse(margin.where,

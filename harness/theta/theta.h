@@ -107,8 +107,8 @@ class Theta {
   virtual void check(const Question&) const {}
   /// Throws InputError if the margin has no meaning here.
   virtual void check_margin(const Question&, const Margin&) const;
-  /// The largest size that margins may be relative to and that is known before drawing.
-  virtual std::optional<double> known_size(const Question&) const;
+  /// The largest size known before drawing that margins may be relative to; 0 if nothing tells.
+  virtual double known_size(const Question&) const;
 
   // ---- The scale
 
