@@ -414,19 +414,15 @@ void add_cells(const DrawnTest& drawn, reports::Test& test) {
   if (drawn.outcome.channels.empty()) return;
   const Cells cells = cells_of(drawn);
   if (cells.observed.empty()) return;
-  const auto add = [&](const char* name, const std::string& axes, std::size_t width,
-                       std::span<const double> values) {
-    reports::Map map{.name = name,
-                     .source = axes,
-                     .width = width,
-                     .height = values.size() / width,
-                     .components = {"draws"}};
-    for (const double value : values) map.texels.values.push_back(static_cast<float>(value));
-    test.maps.push_back(std::move(map));
+  const ImageShape shape{.width = cells.width, .height = cells.height, .components = {"draws"}};
+  const auto add = [&](const char* name, const std::string& axes,
+                       const std::vector<double>& values) {
+    test.maps.push_back(map_of(name, shape, [&](std::size_t i) { return values[i]; }));
+    test.maps.back().source = axes;
   };
-  add("cells_observed", cells.axes, cells.width, cells.observed);
-  add("cells_expected", cells.axes, cells.width, cells.expected);
-  add("cells_z", cells.axes + cells.of_z, cells.width, cells.z);
+  add("cells_observed", cells.axes, cells.observed);
+  add("cells_expected", cells.axes, cells.expected);
+  add("cells_z", cells.axes + cells.of_z, cells.z);
 }
 
 std::vector<reports::EmpiricalLaw> empirical_laws(const DrawnTest& test, std::size_t channel) {
