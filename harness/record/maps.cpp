@@ -230,8 +230,8 @@ void add_image(const DrawnTest& drawn, reports::Test& test) {
   add_maps(drawn, found, test);
 }
 
-reports::EstimatorChannel image_channel(const Setup& setup, const Summary& summary,
-                                        ImagePicture picture) {
+reports::EstimatorChannel image_channel(const Setup& setup, const Summary& summary, double averaged,
+                                        double confidence) {
   const ImageShape shape = *setup.image();
   const bool unknown = setup.pictures() != nullptr;
   const std::vector<Channel> channels = unknown ? std::vector<Channel>() : setup.channels();
@@ -243,12 +243,12 @@ reports::EstimatorChannel image_channel(const Setup& setup, const Summary& summa
   for (std::size_t i = 0; i < shape.elements(); ++i) {
     const stats::Moments moments = summary.moments(i);
     mean += moments.mean / elements;
-    if (moments.count > 1) variance += picture.averaged * moments.variance() / elements;
+    if (moments.count > 1) variance += averaged * moments.variance() / elements;
     known = known && channels[i].mean.has_value();
     if (known) reference += *channels[i].mean / elements;
   }
   reports::EstimatorChannel row{.name = image_name(shape),
-                                .mean = image_mean(shape, summary, mean, picture.confidence),
+                                .mean = image_mean(shape, summary, mean, confidence),
                                 .variance = {number(variance), {}, {}}};
   if (known) row.reference = number(reference);
   return row;

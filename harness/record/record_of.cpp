@@ -379,8 +379,7 @@ reports::EstimatorSummary summarise(const PreparedEstimator& estimator, const Su
   row.cost = cost_of(summary);
   const double averaged = nature.averages ? static_cast<double>(row.primaries) : 1;
   if (estimator.setup->image()) {
-    row.channels.push_back(
-        image_channel(*estimator.setup, summary, {.averaged = averaged, .confidence = confidence}));
+    row.channels.push_back(image_channel(*estimator.setup, summary, averaged, confidence));
     return row;
   }
   const std::vector<Channel> channels = estimator.setup->channels();
