@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <ranges>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -218,10 +219,8 @@ struct Property {
 
 /// Joins what is told of each item by blanks.
 template <class List, class Tell>
-std::string all_of(const List& list, const Tell& tell) {
-  std::vector<std::string> texts;
-  for (const auto& each : list) texts.push_back(tell(each));
-  return fmt::format("{}", fmt::join(texts, " "));
+std::string all_of(const List& list, Tell tell) {
+  return fmt::format("{}", fmt::join(list | std::views::transform(tell), " "));
 }
 
 const Property properties[] = {
@@ -233,10 +232,7 @@ const Property properties[] = {
      "run all shards by one version of assay"},
     {"the options", [](const reports::Record& r) { return r.shard->options; },
      "run all shards by one command, but for --shard and --report"},
-    {"the seed",
-     [](const reports::Record& r) {
-       return all_of(r.suites, [](const auto& suite) { return fmt::format("{}", suite.seed); });
-     },
+    {"the seed", [](const reports::Record& r) { return all_of(r.suites, &reports::Suite::seed); },
      "give all shards one --seed"},
     {"alpha and beta",
      [](const reports::Record& r) {
@@ -246,9 +242,7 @@ const Property properties[] = {
      },
      "run all shards with one --alpha"},
     {"the digest of the suites and the data they name",
-     [](const reports::Record& r) {
-       return all_of(r.shard->suites, [](const auto& suite) { return suite.digest; });
-     },
+     [](const reports::Record& r) { return all_of(r.shard->suites, &reports::ShardSuite::digest); },
      "run all shards on the same files"},
     {"the compiler", [](const reports::Record& r) { return r.environment.compiler; },
      "run all shards by one build"},
