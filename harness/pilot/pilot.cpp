@@ -110,7 +110,7 @@ stats::Moments of_primaries(stats::Moments means, std::uint64_t primaries) {
 /// A pilot's sums, converted to single primaries if a recorded run has means of several.
 std::shared_ptr<const Summary> sums_of(const Drawn& drawn) {
   const RecordedRun* run = as_recorded_run(*drawn.pool().setup());
-  if (run == nullptr || !run->entry().information.averages) return drawn.shared_summary();
+  if (run == nullptr || !run->averages()) return drawn.shared_summary();
   auto sums = std::make_shared<Summary>(drawn.summary());
   for (ChannelSummary& channel : sums->channels) {
     channel.moments = of_primaries(channel.moments, run->primaries());

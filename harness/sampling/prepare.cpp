@@ -46,7 +46,6 @@ void use_recorded_run(const RecordedRun& run, PreparedEstimator& prepared) {
            prepared.name, run.primaries());
   }
   prepared.primaries = run.primaries();
-  prepared.entry = &run.entry();
 }
 
 }  // namespace

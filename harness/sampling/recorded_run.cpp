@@ -138,11 +138,6 @@ reports::Record read(Parameters& parameters) {
 
 }  // namespace
 
-RecordedRun::RecordedRun(Contents contents)
-    : contents_(std::move(contents)), entry_(find_plugin("recorded", {})) {
-  entry_.information.averages = contents_.averages;
-}
-
 std::vector<Channel> RecordedRun::channels() const {
   std::vector<Channel> channels;
   for (const std::string& name : contents_.channels) channels.push_back({.name = name});

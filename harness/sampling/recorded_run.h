@@ -27,24 +27,23 @@ class RecordedRun final : public Setup {
     /// By CountedCost: true if the joint moments of value and cost are known.
     std::array<bool, counted_costs> knows_cost = {};
   };
-  explicit RecordedRun(Contents contents);
+  explicit RecordedRun(Contents contents) : contents_(std::move(contents)) {}
 
   std::vector<Channel> channels() const override;
   /// Throws std::logic_error: there are no observations.
   std::unique_ptr<Estimator> make() const override;
   std::optional<std::uint64_t> observations() const override { return contents_.summary.count; }
+  std::optional<Nature> nature() const override { return Nature{.averages = averages()}; }
   std::string data_file() const override { return contents_.file; }
   std::optional<StreamKey> data_stream() const override { return contents_.stream; }
 
   const Summary& summary() const { return contents_.summary; }
   std::uint64_t primaries() const { return contents_.primaries; }
+  bool averages() const { return contents_.averages; }
   bool knows_cost(CostKind kind) const;
-  /// The entry of `recorded`, with what is known of averaging.
-  const Entry& entry() const { return entry_; }
 
  private:
   Contents contents_;
-  Entry entry_;
 };
 
 /// The set-up as moments of an earlier run, or null.
