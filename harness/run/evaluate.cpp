@@ -289,11 +289,11 @@ std::vector<Replicate> replicates_of(const DrawnTest& test, std::size_t subject,
                                      std::size_t channel) {
   const std::uint64_t size = test.outcome.secondaries(subject) / replicate_count;
   std::vector<Replicate> replicates(1);
-  for (const BlockSums& block : test.samples[subject].blocks()) {
+  for (const Summary& block : test.samples[subject].blocks()) {
     if (replicates.back().count >= size) replicates.emplace_back();
     if (replicates.size() > replicate_count) break;
     replicates.back().count += block.count;
-    replicates.back().moments.merge(block.channels[channel]);
+    replicates.back().moments.merge(block.moments(channel));
     replicates.back().seconds += block.seconds;
   }
   replicates.resize(replicate_count);

@@ -27,12 +27,6 @@ constexpr std::uint64_t least_block = 8;
 constexpr std::uint64_t most_block = 4096;
 constexpr std::uint64_t most_observations = std::numeric_limits<std::uint64_t>::max();
 
-std::vector<stats::Moments> moments_of(std::span<const ChannelSummary> channels) {
-  std::vector<stats::Moments> moments;
-  for (const ChannelSummary& channel : channels) moments.push_back(channel.moments);
-  return moments;
-}
-
 std::size_t elements_of(const Setup& setup) {
   const std::optional<ImageShape> image = setup.image();
   return image ? image->elements() : 0;
@@ -409,14 +403,12 @@ Pool::Block Pool::drawn_block() const {
   return block;
 }
 
-void Pool::keep_block(const Summary& block, std::uint64_t first) {
-  const auto channels = [&] {
-    return sums_later() ? moments_of(all_kept().sums_of(first, first + block.count))
-                        : moments_of(block.channels);
-  };
-  blocks_.push_back({.count = block.count,
-                     .channels = block.count == 0 ? std::vector<stats::Moments>() : channels(),
-                     .seconds = block.seconds});
+void Pool::keep_block(Summary block, std::uint64_t first) {
+  block.detailed.clear();
+  if (sums_later() && block.count > 0) {
+    block.channels = all_kept().sums_of(first, first + block.count);
+  }
+  blocks_.push_back(std::move(block));
 }
 
 void Pool::fold(Block&& block) {
@@ -436,7 +428,7 @@ void Pool::fold(Block&& block) {
     values_[c].insert(values_[c].end(), block.values[c].begin(), block.values[c].end());
   }
   kept_->append(std::move(*block.observations));
-  if (keeps_blocks_) keep_block(block.whole, before);
+  if (keeps_blocks_) keep_block(std::move(block.whole), before);
   fault_ = std::move(block.fault);
 }
 

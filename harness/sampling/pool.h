@@ -41,12 +41,6 @@ std::string sentence_of(const Fault& fault, const std::string& estimator,
 /// The words of an exception, never empty. An InputError's place stands before them.
 std::string words_of(const std::exception_ptr& thrown);
 
-struct BlockSums {
-  std::uint64_t count = 0;
-  std::vector<stats::Moments> channels = {};
-  double seconds = 0;
-};
-
 struct KeptObservations {
   std::vector<std::vector<float>> texels = {};      ///< of images, a block each
   std::vector<std::span<const float>> images = {};  ///< of the texels; empty if there is no image
@@ -207,7 +201,7 @@ class Pool {
   std::span<float> room_for_image(Block& block) const;
   void read_picture(std::uint64_t index, Block& block) const;
   void draw_one(Estimator& estimator, std::uint64_t index, std::span<double> out, Cost& cost) const;
-  void keep_block(const Summary& block, std::uint64_t first);
+  void keep_block(Summary block, std::uint64_t first);
 
   std::map<std::uint64_t, std::shared_ptr<const Summary>> prefixes_;
   std::uint64_t requested_ = 0;
@@ -219,7 +213,7 @@ class Pool {
   std::shared_ptr<const KeptObservations> known_;
   std::uint64_t values_taken_ = 0;  ///< kept observations copied to `values_`
   bool keeps_blocks_ = false;
-  std::vector<BlockSums> blocks_;
+  std::vector<Summary> blocks_;
   std::optional<Fault> fault_;
 };
 
@@ -237,7 +231,7 @@ class Drawn {
   /// The first kept images, at most `most`.
   Images images(std::uint64_t most = std::numeric_limits<std::uint64_t>::max()) const;
   /// All blocks drawn so far, also of later observations, if the pool keeps them.
-  std::span<const BlockSums> blocks() const { return pool_->blocks_; }
+  std::span<const Summary> blocks() const { return pool_->blocks_; }
 
  private:
   friend class Pool;
