@@ -61,8 +61,8 @@ class ConsistencyEstimator final : public Estimator {
 
 }  // namespace
 
-ConsistencySetup::ConsistencySetup(NamedSampler named)
-    : SamplerSetup(std::move(named)), cells_(sampler()) {}
+ConsistencySetup::ConsistencySetup(const NamedSampler& named, const Location& where)
+    : SamplerSetup(named, where), cells_(sampler()) {}
 
 std::vector<Channel> ConsistencySetup::channels() const {
   return {{.name = inconsistent_channel}, {.name = "difference", .diagnostic = true}};
@@ -85,11 +85,5 @@ std::optional<std::uint64_t> first_inconsistent(const Pool& pool, std::uint64_t 
 }
 
 std::string consistency_purpose(const std::string& sampler) { return sampler + " consistency"; }
-
-std::shared_ptr<const SamplerSetup> consistency_setup(const NamedSampler& named,
-                                                      const Location& where) {
-  require_sound(named, where);
-  return std::make_shared<const ConsistencySetup>(named);
-}
 
 }  // namespace assay::harness

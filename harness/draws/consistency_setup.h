@@ -14,7 +14,7 @@ namespace assay::harness {
 /// rounding(), else 1 + the number of the draw's cell.
 class ConsistencySetup final : public SamplerSetup {
  public:
-  explicit ConsistencySetup(NamedSampler named);
+  explicit ConsistencySetup(const NamedSampler& named, const Location& where = {});
 
   /// Cells of equal measure; they do not depend on the density.
   const DrawCells& cells() const { return cells_; }
@@ -36,8 +36,5 @@ std::optional<std::uint64_t> first_inconsistent(const Pool& pool, std::uint64_t 
 
 /// Keeps a sampler's consistency and its draws on different streams.
 std::string consistency_purpose(const std::string& sampler);
-
-std::shared_ptr<const SamplerSetup> consistency_setup(const NamedSampler& named,
-                                                      const Location& where);
 
 }  // namespace assay::harness

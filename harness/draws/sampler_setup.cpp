@@ -126,20 +126,17 @@ std::vector<AskedDraw> asked_draws(const NamedSampler& named, std::span<const St
   return all;
 }
 
-void require_sound(const NamedSampler& named, const Location& where) {
-  const Sampler& sampler = *named.sampler;
-  const auto [low, high] = sampler.bounds();
-  if (on_interval(sampler) && !(std::isfinite(low) && std::isfinite(high) && low < high)) {
-    refuse(where, "sampler `{}` draws on [{}, {}]: no interval to divide into cells", named.name,
-           low, high);
-  }
-  if (sampler.lobes() < 1) refuse(where, "sampler `{}` has no lobe to draw from", named.name);
-}
-
 double no_point(const Marginal& marginal) { return marginal.low - 1; }
 
-SamplerSetup::SamplerSetup(NamedSampler named, StreamKey key)
-    : named_(std::move(named)), key_(key) {}
+SamplerSetup::SamplerSetup(NamedSampler named, const Location& where, StreamKey key)
+    : named_(std::move(named)), key_(key) {
+  const auto [low, high] = sampler().bounds();
+  if (on_interval(sampler()) && !(std::isfinite(low) && std::isfinite(high) && low < high)) {
+    refuse(where, "sampler `{}` draws on [{}, {}]: no interval to divide into cells", name(), low,
+           high);
+  }
+  if (sampler().lobes() < 1) refuse(where, "sampler `{}` has no lobe to draw from", name());
+}
 
 std::vector<Marginal> SamplerSetup::marginals() const { return marginals_of(sampler()); }
 
@@ -221,14 +218,13 @@ const stats::TabulatedLaw& SamplerSetup::marginal_law(const std::string& margina
 
 std::shared_ptr<const SamplerSetup> sampler_setup(const NamedSampler& named, const Location& where,
                                                   StreamKey key) {
-  require_sound(named, where);
   static std::mutex once;
   static std::map<std::pair<const Sampler*, std::uint64_t>, std::weak_ptr<const SamplerSetup>>
       known;
   const std::scoped_lock lock(once);
   std::weak_ptr<const SamplerSetup>& place = known[{named.sampler.get(), key.bits}];
   if (const auto setup = place.lock()) return setup;
-  const auto setup = std::make_shared<const SamplerSetup>(named, key);
+  const auto setup = std::make_shared<const SamplerSetup>(named, where, key);
   place = setup;
   return setup;
 }

@@ -56,7 +56,9 @@ std::vector<AskedDraw> asked_draws(const NamedSampler& named, std::span<const St
 class SamplerSetup : public Setup {
  public:
   /// The key is that of the cells' borders and of the draws that show peaks of the density.
-  explicit SamplerSetup(NamedSampler named, StreamKey key = {});
+  /// InputError at `where` for a sampler without lobes, or an interval whose bounds are not finite
+  /// and ascending.
+  explicit SamplerSetup(NamedSampler named, const Location& where = {}, StreamKey key = {});
 
   std::vector<Channel> channels() const override;
   std::unique_ptr<Estimator> make() const override;
@@ -91,12 +93,8 @@ class SamplerSetup : public Setup {
   mutable std::string no_density_;
 };
 
-/// InputError at `where` for a sampler without lobes, or an interval whose bounds are not finite
-/// and ascending.
-void require_sound(const NamedSampler& named, const Location& where);
-
 /// The set-up of a sampler with this key, shared by all callers so that tables are made once.
-/// Throws as require_sound.
+/// Throws as its constructor.
 std::shared_ptr<const SamplerSetup> sampler_setup(const NamedSampler& named, const Location& where,
                                                   StreamKey key = {});
 

@@ -134,7 +134,7 @@ Subject draws(const Source& source, const Estimators& estimators, Draws what) {
                   .purpose = named->name,
                   .averages = false};
   if (what == Draws::consistency) {
-    subject.setup = consistency_setup(*named, source.where);
+    subject.setup = std::make_shared<const ConsistencySetup>(*named, source.where);
     subject.purpose = consistency_purpose(named->name);
   }
   if (rest == cell_channel) no_such_part(source, estimator);
