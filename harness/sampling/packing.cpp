@@ -150,7 +150,7 @@ void parts(Archive& a, T& summary) {
   for (auto& [channel, details] : summary.detailed) a(details);
 }
 
-void parts(Packer& a, const KeptObservations& kept) { a(kept.images, kept.values, kept.costs); }
+void parts(Packer& a, const KeptObservations& kept) { a(kept.texels, kept.values, kept.costs); }
 void parts(Unpacker& a, KeptObservations& kept) {
   a(kept.texels, kept.values, kept.costs);
   for (const std::vector<float>& image : kept.texels) kept.images.emplace_back(image);

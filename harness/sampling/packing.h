@@ -10,7 +10,6 @@
 #include <cstring>
 #include <memory>
 #include <optional>
-#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -67,10 +66,6 @@ class Packer {
   void put(const std::string& text) { put(std::string_view(text)); }
   template <class T>
   void put(const std::vector<T>& list) {
-    fixed(list);
-  }
-  template <PlainNumber T>
-  void put(std::span<const T> list) {
     fixed(list);
   }
   template <class T>

@@ -217,11 +217,8 @@ std::uint64_t Pool::block_end(std::uint64_t first) const {
 
 std::span<float> Pool::room_for_image(Block& block) const {
   KeptObservations& kept = *block.observations;
-  if (kept.texels.empty()) kept.texels.emplace_back(block.size * elements_);
-  const std::span<float> room =
-      std::span(kept.texels[0]).subspan(kept.images.size() * elements_, elements_);
-  kept.images.emplace_back(room);
-  return room;
+  kept.images.emplace_back(kept.texels.emplace_back(elements_));
+  return kept.texels.back();
 }
 
 /// Reads a picture to where it is kept. Its average follows it.
@@ -274,8 +271,7 @@ Pool::Block Pool::draw(const std::function<Estimator&()>& estimator, std::uint64
   const bool later = sums_later();
   const std::uint64_t values_kept = later ? 0 : most_kept(recipe_.plan);
   Block block{.whole = no_sums(),
-              .values = std::vector<std::vector<double>>(values_kept > 0 ? channels_ : 0),
-              .size = last - first};
+              .values = std::vector<std::vector<double>>(values_kept > 0 ? channels_ : 0)};
   std::vector<double> unsummed(later && !setup_->pictures() ? channels_ : 0);
   Intake intake(block.whole);
   auto mark = prefixes_.upper_bound(first);

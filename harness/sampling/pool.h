@@ -42,8 +42,8 @@ std::string sentence_of(const Fault& fault, const std::string& estimator,
 std::string words_of(const std::exception_ptr& thrown);
 
 struct KeptObservations {
-  std::vector<std::vector<float>> texels = {};      ///< of images, a block each
-  std::vector<std::span<const float>> images = {};  ///< of the texels; empty if there is no image
+  std::vector<std::vector<float>> texels = {};      ///< of each image, if there is one
+  std::vector<std::span<const float>> images = {};  ///< of the texels
   std::vector<std::vector<double>> values = {};     ///< of the channels that follow the image
   std::vector<Cost> costs = {};
   /// Moments of the first observations, by their number.
@@ -159,7 +159,6 @@ class Pool {
     std::shared_ptr<KeptObservations> observations = std::make_shared<KeptObservations>();
     std::vector<std::pair<std::uint64_t, std::shared_ptr<const Summary>>> partial = {};
     std::optional<Fault> fault = {};
-    std::uint64_t size = 0;  ///< observations when complete
   };
   /// Draws one observation again.
   void draw_again(Estimator& estimator, std::uint64_t index, std::span<double> out) const;
