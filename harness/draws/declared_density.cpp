@@ -32,10 +32,7 @@ Densities checked(const NamedSampler& named, Densities densities) {
 class OnChart {
  public:
   OnChart(const DomainChart& chart, Densities densities)
-      : chart_(chart),
-        densities_(std::move(densities)),
-        firsts_(chart.coordinate),
-        seconds_(chart.coordinate) {}
+      : chart_(chart), densities_(std::move(densities)), firsts_(chart), seconds_(chart) {}
 
   void operator()(std::span<const double> x, std::span<const double> y, std::span<double> values) {
     points_.clear();

@@ -13,94 +13,11 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-Coordinate number(double value) { return {.value = value}; }
-
-Coordinate angle(double value) {
-  return {.value = value, .cosine = std::cos(value), .sine = std::sin(value)};
-}
-
-Point direction(const Coordinate& theta, const Coordinate& phi) {
-  return {theta.sine * phi.cosine, theta.sine * phi.sine, theta.cosine};
-}
-
-template <Domain D>
-std::array<double, 2> angles(const Point& p) {
-  static const std::vector<Marginal> both = marginals(D);
-  return {both[0].coordinate(p), both[1].coordinate(p)};
-}
-
-template <Domain D>
-DomainChart of_directions(double highest_theta) {
-  return {.first = {0, highest_theta},
-          .second = {0, 2 * pi},
-          .coordinate = angle,
-          .point = direction,
-          .jacobian = [](const Coordinate& theta, const Coordinate&) { return theta.sine; },
-          .coordinates = angles<D>};
-}
-
-DomainChart of_square() {
-  return {.first = {0, 1},
-          .second = {0, 1},
-          .coordinate = number,
-          .point =
-              [](const Coordinate& u, const Coordinate& v) {
-                return Point{u.value, v.value, 0};
-              },
-          .jacobian = [](const Coordinate&, const Coordinate&) { return 1.0; },
-          .coordinates =
-              [](const Point& p) {
-                return std::array{p[0], p[1]};
-              }};
-}
-
 // v / (1 - u); 1 if rounding led to u + v > 1.
 double share_of_rest(double v, double u) {
   const double rest = 1 - u;
   if (v > rest) return 1;
   return rest > 0 ? v / rest : 0;
-}
-
-DomainChart of_triangle() {
-  return {.first = {0, 1},
-          .second = {0, 1},
-          .coordinate = number,
-          .point =
-              [](const Coordinate& u, const Coordinate& share) {
-                return Point{u.value, share.value * (1 - u.value), 0};
-              },
-          .jacobian = [](const Coordinate& u, const Coordinate&) { return 1 - u.value; },
-          .coordinates =
-              [](const Point& p) {
-                return std::array{p[0], share_of_rest(p[1], p[0])};
-              }};
-}
-
-DomainChart turned(DomainChart chart, Domain domain) {
-  std::swap(chart.first, chart.second);
-  if (domain == Domain::triangle) {
-    chart.point = [](const Coordinate& v, const Coordinate& share) {
-      return Point{share.value * (1 - v.value), v.value, 0};
-    };
-    chart.coordinates = [](const Point& p) { return std::array{p[1], share_of_rest(p[0], p[1])}; };
-    return chart;  // area element as for the first: 1 - v
-  }
-  if (domain == Domain::square) {
-    chart.point = [](const Coordinate& v, const Coordinate& u) {
-      return Point{u.value, v.value, 0};
-    };
-    chart.coordinates = [](const Point& p) { return std::array{p[1], p[0]}; };
-    return chart;
-  }
-  chart.point = [](const Coordinate& phi, const Coordinate& theta) {
-    return direction(theta, phi);
-  };
-  chart.jacobian = [](const Coordinate&, const Coordinate& theta) { return theta.sine; };
-  chart.coordinates = [](const Point& p) {
-    const auto [theta, phi] = angles<Domain::sphere>(p);
-    return std::array{phi, theta};
-  };
-  return chart;
 }
 
 // The first coordinate below which this share of the domain's measure lies.
@@ -136,23 +53,45 @@ std::string range_text(const std::string& name, stats::Span span) {
 
 }  // namespace
 
+Coordinate DomainChart::coordinate(double value) const {
+  if (!has_directions(domain)) return {.value = value};
+  return {.value = value, .cosine = std::cos(value), .sine = std::sin(value)};
+}
+
+Point DomainChart::point(const Coordinate& a, const Coordinate& b) const {
+  if (has_directions(domain)) {
+    const Coordinate& theta = turned ? b : a;
+    const Coordinate& phi = turned ? a : b;
+    return {theta.sine * phi.cosine, theta.sine * phi.sine, theta.cosine};
+  }
+  const double other = domain == Domain::triangle ? b.value * (1 - a.value) : b.value;
+  return turned ? Point{other, a.value, 0} : Point{a.value, other, 0};
+}
+
+double DomainChart::jacobian(const Coordinate& a, const Coordinate& b) const {
+  if (has_directions(domain)) return turned ? b.sine : a.sine;
+  return domain == Domain::triangle ? 1 - a.value : 1;
+}
+
+std::array<double, 2> DomainChart::coordinates(const Point& p) const {
+  static const std::vector<Marginal> angles = marginals(Domain::sphere);
+  const bool directions = has_directions(domain);
+  std::array<double, 2> both{directions ? angles[0].coordinate(p) : p[0],
+                             directions ? angles[1].coordinate(p) : p[1]};
+  if (turned) std::swap(both[0], both[1]);
+  if (domain == Domain::triangle) both[1] = share_of_rest(both[1], both[0]);
+  return both;
+}
+
 DomainChart chart_by(Domain domain, std::size_t marginal) {
-  const auto straight = [&] {
-    switch (domain) {
-      case Domain::hemisphere:
-        return of_directions<Domain::hemisphere>(pi / 2);
-      case Domain::sphere:
-        return of_directions<Domain::sphere>(pi);
-      case Domain::square:
-        return of_square();
-      case Domain::triangle:
-        return of_triangle();
-      case Domain::interval:
-        break;
-    }
-    throw std::logic_error("an interval has one coordinate");
-  };
-  return marginal == 0 ? straight() : turned(straight(), domain);
+  if (domain == Domain::interval) throw std::logic_error("an interval has one coordinate");
+  DomainChart chart{.domain = domain, .turned = marginal == 1, .first = {0, 1}, .second = {0, 1}};
+  if (has_directions(domain)) {
+    chart.first = {0, domain == Domain::hemisphere ? pi / 2 : pi};
+    chart.second = {0, 2 * pi};
+  }
+  if (chart.turned) std::swap(chart.first, chart.second);
+  return chart;
 }
 
 namespace {

@@ -27,23 +27,26 @@ struct Coordinate {
 /// Hemisphere and sphere: theta and phi, density per solid angle times sin theta. Square: u and v.
 /// Triangle: u and v / (1 - u), times 1 - u; by its second marginal v and u / (1 - v).
 struct DomainChart {
+  Domain domain;
+  bool turned;  ///< True if its first coordinate is the second marginal.
   stats::Span first;
   stats::Span second;
-  Coordinate (*coordinate)(double value);
-  Point (*point)(const Coordinate& first, const Coordinate& second);
-  double (*jacobian)(const Coordinate& first, const Coordinate& second);
-  std::array<double, 2> (*coordinates)(const Point&);
+
+  Coordinate coordinate(double value) const;
+  Point point(const Coordinate& a, const Coordinate& b) const;
+  double jacobian(const Coordinate& a, const Coordinate& b) const;
+  std::array<double, 2> coordinates(const Point& p) const;
 };
 
 /// A cache of coordinates: quadrature meets the same values in every row of cells, and sine and
 /// cosine cost more than most densities. Each slot remembers the latest value.
 class RememberedCoordinates {
  public:
-  explicit RememberedCoordinates(Coordinate (*coordinate)(double)) : coordinate_(coordinate) {}
+  explicit RememberedCoordinates(const DomainChart& chart) : chart_(chart) {}
 
   const Coordinate& operator()(double value) {
     Coordinate& known = table_[place_of(value)];
-    if (known.value != value) known = coordinate_(value);
+    if (known.value != value) known = chart_.coordinate(value);
     return known;
   }
 
@@ -55,7 +58,7 @@ class RememberedCoordinates {
     return (std::bit_cast<std::uint64_t>(value) * 0x9E3779B97F4A7C15) >> (64 - bits);
   }
 
-  Coordinate (*coordinate_)(double);
+  DomainChart chart_;
   std::vector<Coordinate> table_ = std::vector<Coordinate>(
       std::size_t{1} << bits, {.value = std::numeric_limits<double>::quiet_NaN()});
 };

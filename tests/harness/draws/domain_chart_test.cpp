@@ -6,7 +6,7 @@ namespace {
 
 // More values than the table has places, each asked for again after all others.
 TEST(RememberedCoordinates, AreTheValuesOwnWhateverWasAskedBefore) {
-  RememberedCoordinates remembered(chart_by(Domain::sphere, 0).coordinate);
+  RememberedCoordinates remembered(chart_by(Domain::sphere, 0));
   constexpr int values = 20000;
   for (int again = 0; again < 2; ++again) {
     for (int i = 0; i < values; ++i) {
