@@ -1,21 +1,10 @@
 #include "harness/sampling/image_views.h"
 
 namespace assay::harness {
-namespace {
-
-bool side_by_side(const ChannelList& channels) {
-  for (std::size_t i = 1; i < channels.size(); ++i) {
-    if (channels[i] != channels[0] + i) return false;
-  }
-  return !channels.empty();
-}
-
-}  // namespace
 
 ImageViews::ImageViews(Images images, const ChannelList& channels) {
-  const bool whole = side_by_side(channels);
   for (const std::span<const float> image : images) {
-    if (whole) {
+    if (channels.side_by_side()) {
       images_.push_back(image.subspan(channels[0], channels.size()));
       continue;
     }

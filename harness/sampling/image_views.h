@@ -21,6 +21,7 @@ class ChannelList {
 
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
+  bool side_by_side() const { return places_.empty() && step_ == 1; }
   std::size_t operator[](std::size_t i) const {
     return places_.empty() ? first_ + i * step_ : places_[i];
   }
