@@ -141,17 +141,6 @@ std::string file_name(const std::string& id) {
   return fmt::format("{}-{:08x}.exr", name, text_hash(id) & 0xffffffff);
 }
 
-Extremes extremes_of(const Summary& summary, const ChannelList& channels) {
-  if (summary.elements) return summary.elements->extremes;
-  Extremes extremes;
-  for (const std::size_t channel : channels.all()) {
-    const ChannelSummary& kept = summary.channels[channel];
-    extremes.nonzero += kept.moments.nonzero;
-    if (kept.moments.count >= 2) extremes.merge({kept.moments.minimum, kept.moments.maximum, 0});
-  }
-  return extremes;
-}
-
 /// The mean over an image whose pixels are independent. A pixel's components may depend on each
 /// other: the standard deviation of their sum is at most the sum of theirs. The interval can thus
 /// be too wide, not too narrow. Degrees of freedom by Satterthwaite (1946).
@@ -188,17 +177,21 @@ reports::Estimate image_mean(const ImageShape& shape, const Summary& summary, do
 }  // namespace
 
 void add_elements(const Subject& side, const Summary& summary, reports::Sample& sample) {
-  const Extremes extremes = extremes_of(summary, side.channels);
-  sample.nonzero = extremes.nonzero;
+  Extremes extremes = summary.elements ? summary.elements->extremes : Extremes();
   stats::Moments means;
   double variance = 0;
   for (const std::size_t channel : side.channels.all()) {
-    if (!summary.elements) sample.nonfinite += summary.channels[channel].nonfinite;
     const stats::Moments moments = summary.moments(channel);
+    if (!summary.elements) {
+      sample.nonfinite += summary.channels[channel].nonfinite;
+      extremes.nonzero += moments.nonzero;
+    }
     if (moments.count < 2) continue;
+    extremes.merge({moments.minimum, moments.maximum, 0});
     means.add(moments.mean);
     variance += moments.variance();
   }
+  sample.nonzero = extremes.nonzero;
   if (means.count > 0) {
     sample.mean = number(means.mean);
     sample.variance = number(variance / static_cast<double>(means.count));
