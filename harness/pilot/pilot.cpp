@@ -245,7 +245,7 @@ Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators, const
   const auto named = pilot_pools(estimators, run);
   std::vector<std::shared_ptr<Pool>> pools;
   for (const auto& [name, pool] : named) pools.push_back(pool);
-  draw_all(pools, {.executor = run.executor, .phase = "pilot"}, progress);
+  draw_all(pools, *run.executor, "pilot", progress);
   Pilots pilots;
   if (interrupted()) return pilots;
   for (const auto& [name, pool] : named) pilots.add(name, read(pool));

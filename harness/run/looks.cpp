@@ -120,7 +120,7 @@ void sample_in_looks(const std::vector<TestWork*>& tests,
         work->pools[i]->request(work->outcome.secondaries(i));
       }
     }
-    draw_all(pools, {.executor = rounds.executor}, claims);
+    draw_all(pools, *rounds.executor, "sampling", claims);
     if (interrupted()) return;
     const Clocks clocks = read_clocks(tests);
     for (TestWork* work : next) {

@@ -145,10 +145,11 @@ std::shared_ptr<Executor> executor_of(const RunOptions& options) {
   return options.executor ? options.executor : threads(options.threads);
 }
 
-void draw_all(const SomePools& pools, const Drawing& drawing, Progress& progress) {
-  drawing.executor->recall(pools);
-  Round round(pools, progress, drawing.phase);
-  drawing.executor->draw(round);
+void draw_all(const SomePools& pools, Executor& executor, const std::string& phase,
+              Progress& progress) {
+  executor.recall(pools);
+  Round round(pools, progress, phase);
+  executor.draw(round);
 }
 
 }  // namespace assay::harness

@@ -92,12 +92,8 @@ std::shared_ptr<Executor> threads(unsigned count = 0);
 /// Who draws in a run with these options.
 std::shared_ptr<Executor> executor_of(const RunOptions& options);
 
-struct Drawing {
-  std::shared_ptr<Executor> executor = threads();
-  std::string phase = "sampling";
-};
-
 /// Draws every pool up to its request.
-void draw_all(const SomePools& pools, const Drawing& drawing, Progress& progress);
+void draw_all(const SomePools& pools, Executor& executor, const std::string& phase,
+              Progress& progress);
 
 }  // namespace assay::harness

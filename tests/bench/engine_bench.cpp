@@ -44,7 +44,7 @@ double by_harness(const std::shared_ptr<const Setup>& setup, std::uint64_t total
   }
   pool->request(total / primaries);
   harness::Silence silence;
-  harness::draw_all({pool}, {.executor = harness::threads(threads)}, silence);
+  harness::draw_all({pool}, *harness::threads(threads), "sampling", silence);
   return pool->sample(total / primaries).drawn()->summary().channels[0].moments.mean;
 }
 

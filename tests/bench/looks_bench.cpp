@@ -84,7 +84,7 @@ Rounds sample(std::vector<harness::TestWork*> open,
     for (harness::TestWork* work : open) {
       for (const auto& pool : work->pools) pool->request(work->outcome.secondaries());
     }
-    harness::draw_all(pools, {.executor = harness::threads(1)}, silence);
+    harness::draw_all(pools, *harness::threads(1), "sampling", silence);
     seconds.draws += clock.lap();
     std::erase_if(open, [](harness::TestWork* work) {
       harness::take_look(*work, true);

@@ -76,7 +76,7 @@ std::shared_ptr<Pool> fresh(const Recipe& recipe, const OddSetup& setup) {
 void draw_all_of(const std::shared_ptr<Pool>& pool) {
   Silence silence;
   pool->request(200);
-  draw_all({pool}, {.executor = threads(1)}, silence);
+  draw_all({pool}, *threads(1), "sampling", silence);
 }
 
 /// All that is drawn, without the seconds.

@@ -66,7 +66,7 @@ std::shared_ptr<Pool> drawn(const Wanted& wanted) {
   pool->plan({{.histogram_low = 0, .histogram_high = 1, .keep = 700}, {.keep = 20}});
   for (const std::uint64_t count : wanted.prefixes) pool->request(count);
   Silence silence;
-  draw_all({pool}, {.executor = threads(wanted.threads)}, silence);
+  draw_all({pool}, *threads(wanted.threads), "sampling", silence);
   return pool;
 }
 
@@ -126,7 +126,7 @@ TEST(Pool, OfWhichSecondsAreComparedAreDrawnSideBySide) {
     pools.back()->request(name == 'a' ? 200000 : 50000);
   }
   Silence silence;
-  draw_all(pools, {.executor = threads(1)}, silence);
+  draw_all(pools, *threads(1), "sampling", silence);
   ASSERT_EQ(order.size(), 250000U);
   double drawn_a = 0;
   double drawn_b = 0;
@@ -165,7 +165,7 @@ std::shared_ptr<Pool> marked(std::uint64_t count) {
 void draw_up_to(std::uint64_t count, const std::shared_ptr<Pool>& pool, unsigned threads) {
   Silence silence;
   pool->request(count);
-  draw_all({pool}, {.executor = harness::threads(threads)}, silence);
+  draw_all({pool}, *harness::threads(threads), "sampling", silence);
 }
 
 // Blocks hold 2048 observations of 5 primaries: prefixes inside, at and beyond their ends.
