@@ -208,12 +208,11 @@ void add_night(LedgerBook& book, const LedgerRun& ledger, const Entry& entry,
         entry.run.seed);
     return;
   }
-  const LedgerSeries* open = book.open_series(series);
-  if (open != nullptr && open->has_estimates() != series.has_estimates()) {
+  const std::optional<std::size_t> open = book.open_series(series);
+  if (open && book.series()[*open].has_estimates() != series.has_estimates()) {
     result.note = "nothing added: its method this time gives evidence of another kind";
     return;
   }
-  const bool begins = open == nullptr;
   const std::size_t index = book.open(series);
   book.add({.date = ledger.date,
             .seed = entry.run.seed,
@@ -221,7 +220,7 @@ void add_night(LedgerBook& book, const LedgerRun& ledger, const Entry& entry,
             .series = index,
             .value = value});
   result.added = true;
-  if (!begins || book.generation(index) == 1) return;
+  if (open || book.generation(index) == 1) return;
   result.note = "the claim, its margins or parameters are new, or it was begun anew: a new series";
 }
 
@@ -307,9 +306,7 @@ reports::LedgerSeries keep(LedgerBook& book, const LedgerRun& ledger, const Entr
     }
     add_night(book, ledger, entry, series, evidence.value, result);
   }
-  if (const LedgerSeries* open = book.open_series(series)) {
-    read_nights(result, book, static_cast<std::size_t>(open - book.series().data()), entry);
-  }
+  if (const auto open = book.open_series(series)) read_nights(result, book, *open, entry);
   return result;
 }
 

@@ -108,12 +108,12 @@ std::vector<LedgerNight> LedgerBook::nights_of(std::size_t series) const {
   return mine;
 }
 
-const LedgerSeries* LedgerBook::open_series(const LedgerSeries& wanted) const {
+std::optional<std::size_t> LedgerBook::open_series(const LedgerSeries& wanted) const {
   for (std::size_t i = 0; i < series_.size(); ++i) {
     const bool same = series_[i].hash == wanted.hash && same_place(series_[i], wanted);
-    if (same && !closed_[i]) return &series_[i];
+    if (same && !closed_[i]) return i;
   }
-  return nullptr;
+  return std::nullopt;
 }
 
 int LedgerBook::generation(std::size_t series) const {
@@ -129,9 +129,7 @@ bool LedgerBook::has_seed(const LedgerSeries& of, std::uint64_t seed) const {
 }
 
 std::size_t LedgerBook::open(const LedgerSeries& wanted) {
-  if (const LedgerSeries* found = open_series(wanted)) {
-    return static_cast<std::size_t>(found - series_.data());
-  }
+  if (const auto found = open_series(wanted)) return *found;
   series_.push_back(wanted);
   closed_.push_back(false);
   keep_checked(line_of(wanted));
@@ -275,12 +273,13 @@ class LedgerReader {
     of.channel = unquoted(fields);
     const auto possible = [](const auto& value) { return is_possible(value); };
     if (!std::visit(possible, night.value)) changed();
-    const LedgerSeries* series = book_.open_series(of);
-    if (series == nullptr) refuse("no open series above has this night's hash and test" + mend());
-    if (series->has_estimates() != std::holds_alternative<stats::NightEstimate>(night.value)) {
+    const auto series = book_.open_series(of);
+    if (!series) refuse("no open series above has this night's hash and test" + mend());
+    night.series = *series;
+    if (book_.series_[night.series].has_estimates() !=
+        std::holds_alternative<stats::NightEstimate>(night.value)) {
       changed();
     }
-    night.series = static_cast<std::size_t>(series - book_.series_.data());
     book_.add(night);
   }
 

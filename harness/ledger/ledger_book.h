@@ -68,8 +68,8 @@ class LedgerBook {
   const std::vector<LedgerNight>& nights() const { return nights_; }
   std::vector<LedgerNight> nights_of(std::size_t series) const;
 
-  /// The open series of its test's channel and hash; null if there is none.
-  const LedgerSeries* open_series(const LedgerSeries& wanted) const;
+  /// The index of the open series of its test's channel and hash, if there is one.
+  std::optional<std::size_t> open_series(const LedgerSeries& wanted) const;
   /// The number of the series among those of its test's channel, from 1.
   int generation(std::size_t series) const;
   /// True if this seed has added to any series of the test's channel.

@@ -81,8 +81,8 @@ TEST(LedgerBook, ABeginLineWrittenByHandStartsANewSeries) {
   std::vector<std::string> lines = lines_in(example().text());
   lines.push_back("begin " + in_quotes(score.test) + " ");
   LedgerBook book = LedgerBook::parse(joined(lines), "n.ledger");
-  EXPECT_EQ(book.open_series(score), nullptr);
-  EXPECT_NE(book.open_series(distance), nullptr);
+  EXPECT_EQ(book.open_series(score), std::nullopt);
+  EXPECT_NE(book.open_series(distance), std::nullopt);
   EXPECT_TRUE(book.has_seed(score, 7));
   const std::size_t fresh = book.open(score);
   EXPECT_EQ(fresh, 2U);
