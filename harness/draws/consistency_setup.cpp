@@ -8,7 +8,6 @@
 
 #include "estimators/core/flush_denormals.h"
 #include "harness/draws/sound_draw.h"
-#include "harness/sampling/fetched_ahead.h"
 
 namespace assay::harness {
 namespace {
@@ -38,13 +37,12 @@ class ConsistencyEstimator final : public Estimator {
   explicit ConsistencyEstimator(const ConsistencySetup& setup)
       : setup_(setup), rounding_(setup.sampler().rounding()) {}
 
-  void announce(const Announcement& next) override { ahead_.announce(next); }
+  void announce(const Announcement& next) override { draws_.announce(next); }
   double seconds_elsewhere() const override { return setup_.sampler().seconds_elsewhere(); }
 
   void secondary(Stream& random, std::uint64_t, std::span<double> out, Cost& cost) override {
     const NamedSampler& named = setup_.named();
-    const AskedDraw& asked =
-        ahead_.of(random, [&](auto streams) { return asked_draws(named, streams, true); });
+    const AskedDraw& asked = draws_.of(random);
     if (asked.density.value_or(0) < 0) sound_density(named, asked.draw.point, *asked.density);
     out[1] = difference_of(asked);
     const bool consistent = out[1] <= rounding_;
@@ -56,7 +54,7 @@ class ConsistencyEstimator final : public Estimator {
  private:
   const ConsistencySetup& setup_;
   double rounding_;
-  FetchedAhead<AskedDraw> ahead_;
+  AskedDraws draws_{setup_.named(), PointNumbers::densities_and_evaluations};
 };
 
 }  // namespace

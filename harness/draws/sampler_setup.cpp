@@ -8,7 +8,6 @@
 
 #include "estimators/core/flush_denormals.h"
 #include "harness/draws/sound_draw.h"
-#include "harness/sampling/fetched_ahead.h"
 #include "harness/sampling/pool.h"
 
 namespace assay::harness {
@@ -16,6 +15,7 @@ namespace {
 
 constexpr stats::QuadratureLimits table_limits{.tolerance = 1e-7};
 constexpr std::size_t least_parts = 32;
+constexpr std::uint64_t most_fetched = 4096;
 
 bool on_interval(const Sampler& sampler) { return sampler.domain() == Domain::interval; }
 
@@ -49,11 +49,11 @@ class SamplerEstimator final : public Estimator {
   explicit SamplerEstimator(const SamplerSetup& setup)
       : setup_(setup), marginals_(setup.marginals()), density_cells_(setup.cells_asked_for()) {}
 
-  void announce(const Announcement& next) override { ahead_.announce(next); }
+  void announce(const Announcement& next) override { draws_.announce(next); }
   double seconds_elsewhere() const override { return setup_.sampler().seconds_elsewhere(); }
 
   void secondary(Stream& random, std::uint64_t, std::span<double> out, Cost& cost) override {
-    const AskedDraw& asked = next(random);
+    const AskedDraw& asked = draws_.of(random);
     const SamplerDraw draw = sound(setup_.named(), asked.draw);
     const bool point = has_density(setup_.sampler(), draw);
     for (std::size_t i = 0; i < marginals_.size(); ++i) {
@@ -64,16 +64,6 @@ class SamplerEstimator final : public Estimator {
   }
 
  private:
-  /// Only a claim that counts in cells asks for the density at each draw.
-  const AskedDraw& next(Stream& random) {
-    return ahead_.of(random, [&](auto streams) {
-      if (density_cells_) return asked_draws(setup_.named(), streams, false);
-      std::vector<AskedDraw> all;
-      for (const SamplerDraw& draw : draws_of(setup_.sampler(), streams)) all.push_back({draw});
-      return all;
-    });
-  }
-
   double number_of(const AskedDraw& asked, const SamplerDraw& draw) const {
     const DrawCells& cells = density_cells_->cells;
     const Point& point = asked.draw.point;
@@ -86,7 +76,8 @@ class SamplerEstimator final : public Estimator {
   const SamplerSetup& setup_;
   std::vector<Marginal> marginals_;
   std::shared_ptr<const DensityCells> density_cells_;
-  FetchedAhead<AskedDraw> ahead_;
+  /// Only a claim that counts in cells asks for the density at each draw.
+  AskedDraws draws_{setup_.named(), density_cells_ ? PointNumbers::densities : PointNumbers::none};
 };
 
 }  // namespace
@@ -101,19 +92,40 @@ bool has_density(const Sampler& sampler, const SamplerDraw& draw) {
   return draw.valid && sampler.point_mass(draw.lobe) == 0;
 }
 
-std::vector<AskedDraw> asked_draws(const NamedSampler& named, std::span<const Stream> streams,
-                                   bool evaluations) {
-  const Sampler& sampler = *named.sampler;
+const AskedDraw& AskedDraws::of(const Stream& random) {
+  const std::uint64_t index = random.observation();
+  if (random.key() != key_ || index < first_ || index - first_ >= fetched_.size()) {
+    fetched_.clear();
+    std::vector<Stream> streams;
+    const std::uint64_t end = announced_.end_from(random.key(), index);
+    for (std::uint64_t i = index; i < std::min(end, index + most_fetched); ++i) {
+      streams.emplace_back(random.key(), i);
+    }
+    try {
+      fetched_ = fetched(streams);
+    } catch (const std::exception&) {
+      if (streams.size() == 1) throw;
+      announced_ = {};
+      fetched_ = fetched(std::span(streams).first(1));
+    }
+    key_ = random.key();
+    first_ = index;
+  }
+  return fetched_[index - first_];
+}
+
+std::vector<AskedDraw> AskedDraws::fetched(std::span<const Stream> streams) const {
+  const Sampler& sampler = *named_.sampler;
   std::vector<AskedDraw> all;
+  for (const SamplerDraw& draw : draws_of(sampler, streams)) all.push_back({draw});
+  if (asked_ == PointNumbers::none) return all;
   std::vector<std::size_t> places;
   std::vector<Point> points;
-  for (const SamplerDraw& draw : draws_of(sampler, streams)) {
-    sound(named, draw);
-    if (has_density(sampler, draw)) {
-      places.push_back(all.size());
-      points.push_back(draw.point);
-    }
-    all.push_back({draw});
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    sound(named_, all[i].draw);
+    if (!has_density(sampler, all[i].draw)) continue;
+    places.push_back(i);
+    points.push_back(all[i].draw.point);
   }
   std::vector<double> numbers(points.size());
   const auto ask = [&](const Densities& of_points, auto number) {
@@ -121,7 +133,7 @@ std::vector<AskedDraw> asked_draws(const NamedSampler& named, std::span<const St
     for (std::size_t i = 0; i < numbers.size(); ++i) all[places[i]].*number = numbers[i];
   };
   ask([&](auto some, auto out) { return sampler.densities(some, out); }, &AskedDraw::density);
-  if (!evaluations) return all;
+  if (asked_ == PointNumbers::densities) return all;
   ask([&](auto some, auto out) { return sampler.evaluations(some, out); }, &AskedDraw::evaluation);
   return all;
 }

@@ -48,10 +48,32 @@ struct AskedDraw {
   std::optional<double> density = {};  ///< None if no density is about the draw.
   double evaluation = 0;
 };
-/// Draws of the first few streams, with the densities at their points and perhaps the evaluations.
-/// Throws if one of them has none, or is unsound.
-std::vector<AskedDraw> asked_draws(const NamedSampler& named, std::span<const Stream> streams,
-                                   bool evaluations);
+
+/// The numbers of its draws' points that a sampler is asked for.
+enum class PointNumbers { none, densities, densities_and_evaluations };
+
+/// Draws of announced observations, fetched many at a time: a sampler in another program takes
+/// longer to be asked than to answer.
+class AskedDraws {
+ public:
+  AskedDraws(const NamedSampler& named, PointNumbers asked) : named_(named), asked_(asked) {}
+
+  void announce(const Announcement& next) { announced_ = next; }
+
+  /// The draw of an observation. Throws if a density is asked for and there is none, or the draw is
+  /// unsound. If several cannot be fetched, each is fetched alone, and the one at fault throws.
+  const AskedDraw& of(const Stream& random);
+
+ private:
+  std::vector<AskedDraw> fetched(std::span<const Stream> streams) const;
+
+  const NamedSampler& named_;
+  PointNumbers asked_;
+  Announcement announced_{};
+  StreamKey key_{};
+  std::uint64_t first_ = 0;
+  std::vector<AskedDraw> fetched_;
+};
 
 class SamplerSetup : public Setup {
  public:
