@@ -17,20 +17,19 @@ namespace assay::harness {
 namespace {
 
 // Writing may take so small a part of the time.
-constexpr double pauses_a_write = 20;
+constexpr int pauses_a_write = 20;
 
 }  // namespace
 
 Checkpoint::Checkpoint(std::string file, std::chrono::duration<double> pause, Identity identity,
                        std::shared_ptr<Executor> inner)
     : file_(std::move(file)),
-      pause_(pause),
+      pause_(std::chrono::duration_cast<std::chrono::steady_clock::duration>(pause)),
       identity_(std::move(identity)),
       inner_(std::move(inner)) {
   if (std::filesystem::exists(file_)) read();
   write();
-  due_ = std::chrono::steady_clock::now() +
-         std::chrono::duration_cast<std::chrono::steady_clock::duration>(pause_);
+  due_ = std::chrono::steady_clock::now() + pause_;
 }
 
 void Checkpoint::read() {
@@ -69,8 +68,7 @@ void Checkpoint::write_if_due() {
     say_beside_progress(error.what());
   }
   const auto end = std::chrono::steady_clock::now();
-  due_ = end + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-                   std::max<std::chrono::duration<double>>(pause_, pauses_a_write * (end - start)));
+  due_ = end + std::max(pause_, pauses_a_write * (end - start));
 }
 
 void Checkpoint::introduce(const NamedSetups& setups) {

@@ -36,7 +36,7 @@ class Checkpoint final : public Executor {
   void write_if_due();
 
   std::string file_;
-  std::chrono::duration<double> pause_;
+  std::chrono::steady_clock::duration pause_;
   Identity identity_;
   std::shared_ptr<Executor> inner_;
   std::map<const Setup*, std::string> names_;
