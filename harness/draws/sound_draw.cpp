@@ -66,28 +66,8 @@ bool settle(Point& p, const Sampler& sampler) {
   return settle(p[0], {0, 1}, slack) && settle(p[1], {0, 1}, slack);
 }
 
-void require_lobe(const NamedSampler& named, int lobe) {
-  const int lobes = named.sampler->lobes();
-  if (lobe >= 0 && lobe < lobes) return;
-  throw std::runtime_error(
-      fmt::format("sampler `{}` drew from lobe {}, and declares {}", named.name, lobe, lobes));
-}
-
-void require_unit(const NamedSampler& named, const Point& point) {
-  if (!has_directions(named.sampler->domain())) return;
-  const double length = length_of(point);
-  if (std::abs(length - 1) <= least_length_slack) return;
-  if (std::abs(length - 1) <= named.sampler->rounding()) return;
-  throw std::runtime_error(
-      fmt::format("sampler `{}` drew {}, whose length is {:.6g}: a direction must have length 1",
-                  named.name, in_words(*named.sampler, point), length));
-}
-
-void require_density(const NamedSampler& named, const SamplerDraw& draw) {
-  if (!(draw.density < 0) || named.sampler->point_mass(draw.lobe) > 0) return;
-  throw std::runtime_error(
-      fmt::format("sampler `{}` drew {} with density {}: a density must be >= 0", named.name,
-                  in_words(*named.sampler, draw.point), reports::human(draw.density, 3)));
+[[noreturn]] void refuse_draw(const NamedSampler& named, const std::string& words) {
+  throw std::runtime_error(fmt::format("sampler `{}` drew {}", named.name, words));
 }
 
 /// True for nearly all draws. The closer look asks the sampler questions that may cost more than
@@ -106,17 +86,27 @@ bool is_plainly_sound(Domain domain, const SamplerDraw& draw) {
 }  // namespace
 
 SamplerDraw sound(const NamedSampler& named, SamplerDraw draw) {
-  if (is_plainly_sound(named.sampler->domain(), draw)) return draw;
-  require_lobe(named, draw.lobe);
+  const Sampler& sampler = *named.sampler;
+  if (is_plainly_sound(sampler.domain(), draw)) return draw;
+  const int lobes = sampler.lobes();
+  if (draw.lobe < 0 || draw.lobe >= lobes) {
+    refuse_draw(named, fmt::format("from lobe {}, and declares {}", draw.lobe, lobes));
+  }
   if (!draw.valid) return draw;
   const Point drawn = draw.point;
-  require_unit(named, drawn);
-  if (!settle(draw.point, *named.sampler)) {
-    throw std::runtime_error(fmt::format("sampler `{}` drew {}, outside its {}", named.name,
-                                         in_words(*named.sampler, drawn),
-                                         domain_in_words(*named.sampler)));
+  const double length = has_directions(sampler.domain()) ? length_of(drawn) : 1;
+  if (!(std::abs(length - 1) <= std::max(least_length_slack, sampler.rounding()))) {
+    refuse_draw(named, fmt::format("{}, whose length is {:.6g}: a direction must have length 1",
+                                   in_words(sampler, drawn), length));
   }
-  require_density(named, draw);
+  if (!settle(draw.point, sampler)) {
+    refuse_draw(named, fmt::format("{}, outside its {}", in_words(sampler, drawn),
+                                   domain_in_words(sampler)));
+  }
+  if (draw.density < 0 && !(sampler.point_mass(draw.lobe) > 0)) {
+    refuse_draw(named, fmt::format("{} with density {}: a density must be >= 0",
+                                   in_words(sampler, draw.point), reports::human(draw.density, 3)));
+  }
   return draw;
 }
 
