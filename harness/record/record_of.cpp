@@ -137,21 +137,14 @@ std::vector<reports::Sample> samples_of(const TestWork& work) {
   const TestOutcome& outcome = work.outcome;
   const std::vector<Subject>& subjects = outcome.question.subjects;
   const std::vector<Sample> all = work.samples();
-  if (has_image(outcome.question)) {
+  // All channels, even if they make one number. An image is one row.
+  const std::size_t rows = has_image(outcome.question) ? 1 : subjects[0].channels.size();
+  for (std::size_t row = 0; row < rows; ++row) {
     for (std::size_t subject = 0; subject < all.size(); ++subject) {
       const Drawn* const drawn = all[subject].drawn();
-      if (drawn == nullptr) continue;
+      if (drawn == nullptr || row >= subjects[subject].channels.size()) continue;
       samples.push_back(subjects[subject].image ? image_sample(outcome, subject, *drawn)
-                                                : sample_of(outcome, subject, *drawn, 0));
-    }
-    return samples;
-  }
-  // All channels, even if they make one number.
-  for (std::size_t channel = 0; channel < subjects[0].channels.size(); ++channel) {
-    for (std::size_t subject = 0; subject < all.size(); ++subject) {
-      if (channel >= subjects[subject].channels.size()) continue;
-      const Drawn* const drawn = all[subject].drawn();
-      if (drawn != nullptr) samples.push_back(sample_of(outcome, subject, *drawn, channel));
+                                                : sample_of(outcome, subject, *drawn, row));
     }
   }
   return samples;
