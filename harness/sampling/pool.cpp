@@ -100,12 +100,6 @@ class Intake {
   std::vector<Waiting> waiting_;
 };
 
-/// True if a channel's sums need the cost of each observation.
-bool counts_costs(std::span<const ChannelPlan> plan) {
-  return std::ranges::any_of(
-      plan, [](const ChannelPlan& each) { return each.powers == Powers::with_costs; });
-}
-
 }  // namespace
 
 std::string sentence_of(const Fault& fault, const std::string& estimator, const std::string& when) {
@@ -282,7 +276,8 @@ Pool::Block Pool::draw(const std::function<Estimator&()>& estimator, std::uint64
   double start = seconds();
   std::uint64_t index = first;
   GroupVariance groups(later ? std::vector<std::size_t>() : recipe_.grouped_channels);
-  const bool with_costs = !later && counts_costs(recipe_.plan);
+  const bool with_costs =
+      !later && std::ranges::count(recipe_.plan, Powers::with_costs, &ChannelPlan::powers) > 0;
   ObservationCost cost{};
   const FlushDenormals flush;
   try {
