@@ -39,15 +39,6 @@ Value only(const Value& given, const std::vector<std::string>& names) {
   return Value::map(std::move(kept), given.where());
 }
 
-/// Sets the primaries to those of the recorded run.
-void use_recorded_run(const RecordedRun& run, PreparedEstimator& prepared) {
-  if (prepared.primaries.value_or(run.primaries()) != run.primaries()) {
-    refuse(prepared.where, "the moments of `{}` are of {} primaries each: leave `primaries` out",
-           prepared.name, run.primaries());
-  }
-  prepared.primaries = run.primaries();
-}
-
 }  // namespace
 
 Nature PreparedEstimator::nature() const {
@@ -72,7 +63,11 @@ PreparedEstimator prepare(const EstimatorEntry& entry, const std::string& folder
       .where = entry.where,
       .given = entry.parameters};
   if (const RecordedRun* run = as_recorded_run(*prepared.setup)) {
-    use_recorded_run(*run, prepared);
+    if (entry.primaries.value_or(run->primaries()) != run->primaries()) {
+      refuse(entry.where, "the moments of `{}` are of {} primaries each: leave `primaries` out",
+             entry.name, run->primaries());
+    }
+    prepared.primaries = run->primaries();
   } else if (prepared.setup->observations() && entry.primaries.value_or(1) != 1) {
     refuse(entry.where, "`{}` has its observations ready made: leave `primaries` out",
            entry.plugin);
