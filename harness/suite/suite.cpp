@@ -301,6 +301,21 @@ Budget read_budget(const Document& document, const Value& value) {
   return budget;
 }
 
+/// `primaries` and the plugin's parameters.
+std::vector<std::string> settable_names(const Entry& plugin) {
+  std::vector<std::string> names{"primaries"};
+  for (const ParameterInformation& p : plugin.information.parameters) names.push_back(p.name);
+  return names;
+}
+
+/// `who` has the parameter in messages.
+void require_parameter(const std::string& who, const EstimatorEntry& estimator,
+                       const std::string& key, const Location& where) {
+  const auto names = settable_names(find_plugin(estimator.plugin, where));
+  if (std::ranges::find(names, key) != names.end()) return;
+  refuse(where, "{} has no parameter `{}`{}", who, key, suggestion(key, names));
+}
+
 }  // namespace
 
 void require_estimator_name(const std::string& name, const Location& where) {
@@ -320,20 +335,19 @@ Value with_member(const Value& map, const std::string& key, const Value& value) 
   return Value::map(std::move(members), map.where());
 }
 
-const Value& scene_or(const Value& value, const Value& scenes) {
-  const Value* scene = value.kind() == Value::Kind::scalar ? scenes.find(value.text()) : nullptr;
-  return scene ? *scene : value;
-}
-
-std::optional<std::uint64_t> read_primaries(const Value& value, std::string_view what) {
-  if (value.kind() == Value::Kind::scalar && value.text() == "auto") return {};
-  return count_from(value, what, 1);
-}
-
-std::vector<std::string> settable_names(const Entry& plugin) {
-  std::vector<std::string> names{"primaries"};
-  for (const ParameterInformation& p : plugin.information.parameters) names.push_back(p.name);
-  return names;
+void set_parameter(EstimatorEntry& estimator, const std::string& key, const Value& value,
+                   const Value& scenes) {
+  require_parameter(estimator.plugin, estimator, key, value.where());
+  const bool is_text = value.kind() == Value::Kind::scalar;
+  if (key == "primaries") {
+    estimator.primaries.reset();
+    if (!is_text || value.text() != "auto") {
+      estimator.primaries = count_from(value, "`primaries`", 1);
+    }
+    return;
+  }
+  const Value* scene = key == "scene" && is_text ? scenes.find(value.text()) : nullptr;
+  estimator.parameters = with_member(estimator.parameters, key, scene ? *scene : value);
 }
 
 void read_test_keys(const Document& document, const Value& map, TestEntry& test) {
@@ -387,16 +401,13 @@ EstimatorEntry read_estimator(const Document& document, const std::string& name,
   std::vector<std::string> known = settable_names(entry);
   known.insert(known.begin(), "plugin");
   const Keys keys(document, value, fmt::format("`{}` ({})", name, plugin->text()), known);
-  EstimatorEntry estimator{.name = name, .plugin = plugin->text(), .where = document.key(value)};
-  if (const Value* v = keys.find("primaries")) {
-    estimator.primaries = read_primaries(*v, "`primaries`");
-  }
-  std::vector<Value::Member> parameters;
+  EstimatorEntry estimator{.name = name,
+                           .plugin = plugin->text(),
+                           .parameters = Value::map({}, value.where()),
+                           .where = document.key(value)};
   for (const auto& [key, given] : value.members()) {
-    if (key == "plugin" || key == "primaries") continue;
-    parameters.emplace_back(key, key == "scene" ? scene_or(given, scenes) : given);
+    if (key != "plugin") set_parameter(estimator, key, given, scenes);
   }
-  estimator.parameters = Value::map(std::move(parameters), value.where());
   return estimator;
 }
 
@@ -514,10 +525,8 @@ void check_sweep(const Suite& suite, const TestEntry& test) {
   if (!test.over || test.over->parameter == "primaries") return;
   const EstimatorEntry& estimator =
       *std::ranges::find(suite.estimators, test.claim.left.source.estimator, &EstimatorEntry::name);
-  const auto names = settable_names(find_plugin(estimator.plugin, estimator.where));
-  if (std::ranges::find(names, test.over->parameter) != names.end()) return;
-  refuse(test.over->values[0].where(), "`{}` ({}) has no parameter `{}`{}", estimator.name,
-         estimator.plugin, test.over->parameter, suggestion(test.over->parameter, names));
+  require_parameter(fmt::format("`{}` ({})", estimator.name, estimator.plugin), estimator,
+                    test.over->parameter, test.over->values[0].where());
 }
 
 void read_tests(const Document& document, const Value& list, Suite& suite) {

@@ -162,17 +162,15 @@ void refuse_overwriting(const std::string& report, const std::vector<std::string
 /// offending key.
 void read_test_keys(const Document& document, const Value& map, TestEntry& test);
 
-/// `primaries` and the plugin's parameters, which a sweep or `--set` can change.
-std::vector<std::string> settable_names(const Entry& plugin);
-
-/// `primaries:` of an estimator: a count from 1, or auto (nullopt).
-std::optional<std::uint64_t> read_primaries(const Value& value, std::string_view what);
+/// Sets `primaries` or a parameter of the plugin; the text of a `scene` may be one of `scenes`.
+/// InputError if the plugin has no such parameter.
+void set_parameter(EstimatorEntry& estimator, const std::string& key, const Value& value,
+                   const Value& scenes);
 
 /// InputError at the place of a name that no claim can use.
 void require_estimator_name(const std::string& name, const Location& where);
 /// The map with this value of the key.
 Value with_member(const Value& map, const std::string& key, const Value& value);
-const Value& scene_or(const Value& value, const Value& scenes);
 
 // `assay images`: compares two sets of rendered pictures without a suite file.
 

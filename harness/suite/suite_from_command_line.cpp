@@ -21,21 +21,6 @@ std::optional<std::pair<std::string, std::string>> cut(const std::string& text, 
   return std::pair{text.substr(0, at), text.substr(at + 1)};
 }
 
-void require_parameter(const std::string& plugin, const std::string& key, const Location& where) {
-  const std::vector<std::string> names = settable_names(find_plugin(plugin, where));
-  if (std::ranges::find(names, key) != names.end()) return;
-  refuse(where, "{} has no parameter `{}`{}", plugin, key, suggestion(key, names));
-}
-
-void assign(EstimatorEntry& estimator, const std::string& key, const Value& value) {
-  require_parameter(estimator.plugin, key, value.where());
-  if (key == "primaries") {
-    estimator.primaries = read_primaries(value, "`primaries`");
-  } else {
-    estimator.parameters = with_member(estimator.parameters, key, value);
-  }
-}
-
 struct Assignment {
   std::string estimator;
   std::string key;
@@ -60,9 +45,7 @@ void assign_everywhere(std::vector<Suite>& suites, const Assignment& assignment)
       names.push_back(estimator.name);
       if (estimator.name != assignment.estimator) continue;
       found = true;
-      const bool scene = assignment.key == "scene";
-      assign(estimator, assignment.key,
-             scene ? scene_or(assignment.value, suite.scenes) : assignment.value);
+      set_parameter(estimator, assignment.key, assignment.value, suite.scenes);
     }
   }
   if (found) return;
@@ -162,7 +145,7 @@ EstimatorEntry parse_estimator_option(const std::string& text) {
       refuse(where, "`{}` is given twice", sides->first);
     }
     seen.push_back(sides->first);
-    assign(entry, sides->first, read_flow(sides->second, where));
+    set_parameter(entry, sides->first, read_flow(sides->second, where), {});
   }
   return entry;
 }
