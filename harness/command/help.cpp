@@ -49,7 +49,7 @@ std::string usage(const CommandText& command) {
     if (!option.is_argument()) continue;
     std::string word = option.value;
     if (word.empty()) word = option.name + (option.repeats ? "..." : "");
-    text += option.needed ? " " + word : " [" + word + "]";
+    text += option.needed.empty() ? " [" + word + "]" : " " + word;
   }
   return text;
 }

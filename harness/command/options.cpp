@@ -169,21 +169,24 @@ void Options::about(const std::string& text) { about_ = text; }
 
 Texts Options::Row::given() const {
   Texts texts = option->results();
-  if (!repeats) std::erase(texts, "");
+  if (!text.repeats) std::erase(texts, "");
   return texts;
 }
 
-void Options::add_row(const OptionName& name, const std::string& about, bool repeats,
+void Options::add_row(OptionText text, const std::string& about, bool repeats,
                       std::function<void(const std::string&)> take) {
-  CLI::Option* option = app_.add_option(name.name, CLI::callback_t{})->type_name(name.value);
+  CLI::Option* option = app_.add_option(text.name, CLI::callback_t{})->type_name(text.value);
   if (repeats) option->expected(CLI::detail::expected_max_vector_size);
   if (repeats && !option->get_positional()) option->allow_extra_args(false)->take_all();
-  rows_.push_back({option, name, about, repeats, std::move(take)});
+  text.about = about;
+  text.repeats = repeats;
+  rows_.push_back({option, std::move(text), std::move(take)});
 }
 
 void Options::flag(const std::string& name, const std::string& about, bool& target) {
   const auto set = [&target](const std::string& text) { target = !text.empty(); };
-  rows_.push_back({app_.add_flag(name), {name, "", Replay::nowhere}, about, false, set});
+  rows_.push_back(
+      {app_.add_flag(name), {.name = name, .replay = Replay::nowhere, .about = about}, set});
 }
 
 void Options::add_choice(const std::string& name, const std::string& about,
@@ -191,7 +194,7 @@ void Options::add_choice(const std::string& name, const std::string& about,
   CLI::Option* const option = app_.add_flag(name);
   for (CLI::Option* const other : choices_) option->excludes(other);
   choices_.push_back(option);
-  rows_.push_back({option, {name}, about, false, [take](const std::string&) { take(); }});
+  rows_.push_back({option, {.name = name, .about = about}, [take](const std::string&) { take(); }});
 }
 
 void Options::count(const std::string& name, const std::string& about, int& times) {
@@ -199,14 +202,14 @@ void Options::count(const std::string& name, const std::string& about, int& time
   const auto read = [&times, option](const std::string&) {
     times = static_cast<int>(option->count());
   };
-  rows_.push_back({option, {name, "", Replay::nowhere}, about, false, read});
+  rows_.push_back({option, {.name = name, .replay = Replay::nowhere, .about = about}, read});
 }
 
 void Options::read_values() const {
   const std::string command = app_.get_name();
   for (const Row& row : rows_) {
     const Texts texts = row.given();
-    const std::string& needed = row.name.needed;
+    const std::string& needed = row.text.needed;
     if (!needed.empty() && (texts.empty() || texts.front().empty())) {
       refuse({}, "`assay {0}` needs {1}; see `assay {0} --help`", command, needed);
     }
@@ -218,22 +221,18 @@ void Options::read_values() const {
   for (const Replay place : {Replay::first, Replay::middle, Replay::last}) {
     for (const Row& row : rows_) {
       const bool argument = row.option->get_positional();
-      const bool first = argument && row.name.replay != Replay::nowhere;
-      if ((first ? Replay::first : row.name.replay) != place) continue;
+      const bool first = argument && row.text.replay != Replay::nowhere;
+      if ((first ? Replay::first : row.text.replay) != place) continue;
       const bool flag = row.option->get_expected_max() == 0;
-      if (flag && row.option->count() > 0) *replay_line_ += " " + row.name.name;
-      if (!flag) *replay_line_ += option_words(argument ? "" : row.name.name, row.given());
+      if (flag && row.option->count() > 0) *replay_line_ += " " + row.text.name;
+      if (!flag) *replay_line_ += option_words(argument ? "" : row.text.name, row.given());
     }
   }
 }
 
 CommandText Options::text(const std::string& summary) const {
   CommandText text{app_.get_name(), summary, about_, {}};
-  for (const Row& row : rows_) {
-    const OptionName& name = row.name;
-    text.options.push_back(
-        {name.name, name.value, row.about, name.words, !name.needed.empty(), row.repeats});
-  }
+  for (const Row& row : rows_) text.options.push_back(row.text);
   return text;
 }
 

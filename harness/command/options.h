@@ -24,19 +24,6 @@ namespace assay::harness {
 
 using Texts = std::vector<std::string>;
 
-/// The place of an option in the line that repeats a test. What changes no number is `nowhere`. So
-/// are suites, seed and selection, since the record adds each test's own.
-enum class Replay { first, middle, last, nowhere };
-
-/// How an option or an argument is called.
-struct OptionName {
-  std::string name;                ///< "--seed"; an argument's is without dashes.
-  std::string value = "";          ///< What stands for the value in `--help`.
-  Replay replay = Replay::middle;  ///< An argument stands first, or nowhere.
-  std::string needed = "";         ///< What a message says is needed; "" if it may be left out.
-  Texts words = {};                ///< Completion offers them; one with a `*` stands for files.
-};
-
 /// The options and arguments of one command.
 class Options {
  public:
@@ -48,7 +35,7 @@ class Options {
   /// An option or an argument, which repeats if the target is a list. `read` takes the text and the
   /// option's name. An empty text counts as none if the option does not repeat.
   template <class Target, class Read>
-  void add(OptionName name, Target& target, Read read, const std::string& about) {
+  void add(OptionText name, Target& target, Read read, const std::string& about) {
     constexpr bool repeats = requires { target.emplace_back(); };
     if constexpr (requires { read.words(); }) name.words = read.words();
     add_row(name, about, repeats, [&target, read, option = name.name](const std::string& text) {
@@ -60,12 +47,12 @@ class Options {
     });
   }
   template <class Target>
-  void add(const OptionName& name, Target& target, const std::string& about) {
+  void add(const OptionText& name, Target& target, const std::string& about) {
     const auto as_typed = [](const std::string& text, const std::string&) { return text; };
     add(name, target, as_typed, about);
   }
   /// An option whose text goes to `keys`, under its name.
-  void add_key(const OptionName& name, TestKeys& keys, const std::string& about) {
+  void add_key(const OptionText& name, TestKeys& keys, const std::string& about) {
     add_row(name, about, false,
             [&keys, key = name.name.substr(2)](const std::string& text) { keys[key] = text; });
   }
@@ -89,15 +76,13 @@ class Options {
  private:
   struct Row {
     CLI::Option* option;
-    OptionName name;
-    std::string about;
-    bool repeats;
+    OptionText text;
     std::function<void(const std::string& text)> take;
 
     Texts given() const;
   };
   void add_choice(const std::string& name, const std::string& about, std::function<void()> take);
-  void add_row(const OptionName& name, const std::string& about, bool repeats,
+  void add_row(OptionText text, const std::string& about, bool repeats,
                std::function<void(const std::string&)> take);
 
   CLI::App& app_;
