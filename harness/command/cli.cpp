@@ -63,10 +63,10 @@ void add_output(Options& options, Output& output) {
       OneOf<Colour>{
           {{"auto", Colour::automatic}, {"always", Colour::always}, {"never", Colour::never}}},
       "auto, always or never; default auto: on a terminal, as NO_COLOR and FORCE_COLOR say");
-  options.count("-v",
-                "a line a test on the console; -vv, or -v of a single test, all numbers of those "
-                "that need a look; default a line a suite",
-                output.detail);
+  options.flag({"-v", "", Replay::nowhere},
+               "a line a test on the console; -vv, or -v of a single test, all numbers of those "
+               "that need a look; default a line a suite",
+               [&output] { ++output.detail; });
   options.add({"--durations", "N", Replay::nowhere}, output.slowest, at_least(1),
               "name the N slowest tests at the end; default none");
 }
@@ -88,7 +88,8 @@ void add_threads(Options& options, unsigned& threads) {
 }
 
 void add_quiet(Options& options, Output& output) {
-  options.flag("--quiet", "no progress on standard error; default shown", output.quiet);
+  options.flag({"--quiet", "", Replay::nowhere}, "no progress on standard error; default shown",
+               [&output] { output.quiet = true; });
 }
 
 /// Texts that differ between the commands that sample and judge.
@@ -163,9 +164,9 @@ Examples:
   options.add({"--shard", "I/N", Replay::nowhere}, command.options.shard, read_shard,
               "only the I-th of N parts of the tests, each on its fixed share of alpha, for `assay "
               "merge`; default all, or what GTEST_TOTAL_SHARDS or TEST_TOTAL_SHARDS says");
-  options.flag("--fail-fast",
+  options.flag({"--fail-fast", "", Replay::nowhere},
                "draw no more once a claim is broken, the others are not run; default all are",
-               command.options.fail_fast);
+               [&command] { command.options.fail_fast = true; });
   options.add({"--checkpoint", "FILE", Replay::nowhere, "", {"*"}}, command.options.checkpoint,
               "keep what was drawn in a file, from which the same command goes on after a kill or "
               "Ctrl-C; removed at the end; default none");
@@ -188,10 +189,10 @@ Examples:
   assay plan suites/cycles.yaml --list-renders    for other machines
 )");
   add_suites(options, command);
-  options.flag("--list-renders",
+  options.flag({"--list-renders", "", Replay::nowhere},
                "print the renders that are missing instead, one a line: command, seed and file "
                "with tabs between; the pilots' first, then the tests'; default the plan",
-               command.list_renders);
+               [&command] { command.list_renders = true; });
   add_sampling(options, command, of_suites);
 }
 
@@ -224,9 +225,10 @@ Examples:
                   "of a bias or an efficiency: the truth, as 6.36, '6.36 +- 0.01' or an estimator; "
                   "default what the plugin knows");
   options.add_key({"--cost", "KIND"}, given.keys, "rays, samples or seconds; default rays");
-  options.choice("--paired", given.paired, true,
+  options.choice("--paired",
                  "of the means of two images: both draw the same random numbers, and their "
-                 "differences are tested; default their own");
+                 "differences are tested; default their own",
+                 [&given] { given.paired = true; });
   options.add_key({"--budget", "B"}, given.keys,
                   "the most it may cost: 1e7 are primaries, those of the pilot too; 30s are CPU "
                   "time of the test, which a program that waits does not spend; default none");
@@ -289,14 +291,17 @@ Examples:
   options.add({"--samples", "N"}, given.samples,
               "of how many samples the means of one picture with its variance are, or the channel "
               "that counts them; default its own word");
-  options.choice("--means", given.question, ImageQuestion::means,
-                 "are the means equal? the default");
-  options.choice("--paired", given.question, ImageQuestion::paired,
+  const auto ask = [&given](ImageQuestion question) {
+    return [&given, question] { given.question = question; };
+  };
+  options.choice("--means", "are the means equal? the default", ask(ImageQuestion::means));
+  options.choice("--paired",
                  "are the means of differences 0? finds much less; two pictures have one seed if "
-                 "their names say the same where the names of a side differ");
+                 "their names say the same where the names of a side differ",
+                 ask(ImageQuestion::paired));
   options.choice(
-      "--law", given.question, ImageQuestion::law,
-      "do pictures have one law, as of one renderer with other seeds? exact for any noise");
+      "--law", "do pictures have one law, as of one renderer with other seeds? exact for any noise",
+      ask(ImageQuestion::law));
   options.add_key(
       {"--detect", "X"}, given.keys,
       "the difference over the whole picture that must not pass, as 0.5% or 0.002; default none");

@@ -183,26 +183,16 @@ void Options::add_row(OptionText text, const std::string& about, bool repeats,
   rows_.push_back({option, std::move(text), std::move(take)});
 }
 
-void Options::flag(const std::string& name, const std::string& about, bool& target) {
-  const auto set = [&target](const std::string& text) { target = !text.empty(); };
-  rows_.push_back(
-      {app_.add_flag(name), {.name = name, .replay = Replay::nowhere, .about = about}, set});
+void Options::flag(const OptionText& name, const std::string& about, std::function<void()> act) {
+  rows_.push_back({app_.add_flag(name.name), name, [act](const std::string&) { act(); }});
+  rows_.back().text.about = about;
 }
 
-void Options::add_choice(const std::string& name, const std::string& about,
-                         std::function<void()> take) {
-  CLI::Option* const option = app_.add_flag(name);
+void Options::choice(const std::string& name, const std::string& about, std::function<void()> act) {
+  flag({name}, about, std::move(act));
+  CLI::Option* const option = rows_.back().option;
   for (CLI::Option* const other : choices_) option->excludes(other);
   choices_.push_back(option);
-  rows_.push_back({option, {.name = name, .about = about}, [take](const std::string&) { take(); }});
-}
-
-void Options::count(const std::string& name, const std::string& about, int& times) {
-  CLI::Option* const option = app_.add_flag(name);
-  const auto read = [&times, option](const std::string&) {
-    times = static_cast<int>(option->count());
-  };
-  rows_.push_back({option, {.name = name, .replay = Replay::nowhere, .about = about}, read});
 }
 
 void Options::read_values() const {

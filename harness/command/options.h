@@ -56,14 +56,10 @@ class Options {
     add_row(name, about, false,
             [&keys, key = name.name.substr(2)](const std::string& text) { keys[key] = text; });
   }
-  void flag(const std::string& name, const std::string& about, bool& target);
+  /// `act` is called each time that the flag is given.
+  void flag(const OptionText& name, const std::string& about, std::function<void()> act);
   /// A flag that chooses one answer to a question of the tests; another answer's flag refuses it.
-  template <class Target>
-  void choice(const std::string& name, Target& target, Target answer, const std::string& about) {
-    add_choice(name, about, [&target, answer] { target = answer; });
-  }
-  /// A flag that counts.
-  void count(const std::string& name, const std::string& about, int& times);
+  void choice(const std::string& name, const std::string& about, std::function<void()> act);
 
   /// The line that repeats a test goes there.
   void repeat_by(std::string& line) { replay_line_ = &line; }
@@ -81,7 +77,6 @@ class Options {
 
     Texts given() const;
   };
-  void add_choice(const std::string& name, const std::string& about, std::function<void()> take);
   void add_row(OptionText text, const std::string& about, bool repeats,
                std::function<void(const std::string&)> take);
 
