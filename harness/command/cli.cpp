@@ -228,7 +228,7 @@ Examples:
   options.choice("--paired",
                  "of the means of two images: both draw the same random numbers, and their "
                  "differences are tested; default their own",
-                 [&given] { given.paired = true; });
+                 [&given] { given.keys["paired"] = "true"; });
   options.add_key({"--budget", "B"}, given.keys,
                   "the most it may cost: 1e7 are primaries, those of the pilot too; 30s are CPU "
                   "time of the test, which a program that waits does not spend; default none");

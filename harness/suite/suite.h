@@ -121,8 +121,7 @@ struct CheckArguments {
   std::string claim;
   std::vector<std::string> estimators = {};
   std::optional<std::uint64_t> primaries = {};
-  bool paired = false;
-  TestKeys keys = {};  ///< The others.
+  TestKeys keys = {};
 };
 Suite suite_of_claim(const CheckArguments&);
 

@@ -179,9 +179,7 @@ TestEntry test_of(const std::string& command, const std::string& claim, const Te
 }
 
 Suite suite_of_claim(const CheckArguments& arguments) {
-  TestKeys keys = arguments.keys;
-  if (arguments.paired) keys["paired"] = "true";
-  TestEntry test = test_of("check", arguments.claim, keys);
+  TestEntry test = test_of("check", arguments.claim, arguments.keys);
   Suite suite{.name = "check", .stem = "check", .folder = "."};
   std::vector<Source> sources = sources_of(test.claim);
   if (test.reference) sources.push_back(*test.reference);
