@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <memory>
+#include <set>
 #include <span>
 
 #include "estimators/pictures.h"
@@ -19,17 +20,26 @@ Location place(const std::string& option, const std::string& text) {
   return {fmt::format("{} {}", option, text), 0, 0};
 }
 
-std::vector<std::string> files_given(const char* option, const std::string& pattern) {
+/// The pictures of one side, of which the first stands for the rest.
+struct Pictures {
+  Location where;
+  std::vector<std::string> files;
+  std::unique_ptr<const PictureFile> first = {};
+};
+
+Pictures pictures_of(const std::string& option, const std::string& pattern) {
+  const Location where = place(option, pattern);
   try {
-    return recorded::files_of(pattern);
+    return {where, recorded::files_of(pattern)};
   } catch (const InputError& error) {
-    refuse(place(option, pattern), error.message());
+    refuse(where, error.message());
   }
 }
 
-void require_enough(const char* option, const std::string& pattern, std::size_t count) {
+void require_enough(const Pictures& side) {
+  const std::size_t count = side.files.size();
   if (count >= stats::least_replicates) return;
-  refuse(place(option, pattern),
+  refuse(side.where,
          "{} {}, and the test takes {} or more: how much a pixel varies is known from them alone; "
          "render more, each with a seed of its own",
          count, count == 1 ? "picture matches" : "pictures match", stats::least_replicates);
@@ -38,12 +48,6 @@ void require_enough(const char* option, const std::string& pattern, std::size_t 
 Value::Member member(const char* key, const std::string& text, const Location& where) {
   return {key, Value::scalar(text, where)};
 }
-
-/// The first picture of each side, which stands for the rest.
-struct FirstPictures {
-  std::unique_ptr<const PictureFile> candidate;
-  std::unique_ptr<const PictureFile> reference;
-};
 
 /// A layer that has a claim of its own.
 struct Layer {
@@ -62,26 +66,24 @@ bool is_one(const PictureFile& file, const std::string& name) {
 }
 
 /// The patterns of the usual channels, with alpha if it tells anything: if it is not 1 throughout.
-std::string usual_with_alpha(const ImagesArguments& arguments, const FirstPictures& first) {
-  const recorded::PictureChannels usual = recorded::choose_channels(*first.candidate, "usual");
-  if (recorded::choose_channels(*first.reference, "usual").names != usual.names) return "usual";
+std::string usual_with_alpha(const Pictures& candidate, const Pictures& reference) {
+  const recorded::PictureChannels usual = recorded::choose_channels(*candidate.first, "usual");
+  if (recorded::choose_channels(*reference.first, "usual").names != usual.names) return "usual";
   const std::string layer = recorded::layer_of(usual.names[0]);
   const std::string alpha = layer.empty() ? "A" : layer + ".A";
   const auto tells = [&](const PictureFile& file) {
     return file.has({alpha}) && !is_one(file, alpha);
   };
-  if (!tells(*first.candidate) && !tells(*first.reference)) return "usual";
-  if (recorded::usual_moments(*first.reference, usual).any()) return "usual";
+  if (!tells(*candidate.first) && !tells(*reference.first)) return "usual";
+  if (recorded::usual_moments(*reference.first, usual).any()) return "usual";
   const std::string names = fmt::format("{}", fmt::join(usual.names, ","));
-  const auto require_alpha = [&](const PictureFile& file, const Location& where) {
-    if (file.has({alpha})) return;
+  for (const Pictures* side : {&candidate, &reference}) {
+    if (side->first->has({alpha})) continue;
     refuse(
-        where,
+        side->where,
         "its pictures have no alpha, and that of the other side is not 1 everywhere; --channels '" +
             names + "' compares without it");
-  };
-  require_alpha(*first.candidate, place("--candidate", arguments.candidate));
-  require_alpha(*first.reference, place("--reference", arguments.reference));
+  }
   return names + "," + alpha;
 }
 
@@ -93,15 +95,15 @@ std::string as_name(const std::string& layer) {
   return name;
 }
 
-std::vector<Layer> layers_of(const ImagesArguments& arguments, const FirstPictures& first) {
+std::vector<Layer> layers_of(const std::string& patterns, const Pictures& candidate,
+                             const Pictures& reference) {
   const auto layer = [&](const std::string& suffix, const std::string& channels) {
-    return Layer{suffix, channels, recorded::choose_channels(*first.candidate, channels),
-                 recorded::choose_channels(*first.reference, channels)};
+    return Layer{suffix, channels, recorded::choose_channels(*candidate.first, channels),
+                 recorded::choose_channels(*reference.first, channels)};
   };
-  if (arguments.channels == "usual") return {layer("", usual_with_alpha(arguments, first))};
+  if (patterns == "usual") return {layer("", usual_with_alpha(candidate, reference))};
   std::vector<std::pair<std::string, std::string>> found;  // layers and their channels
-  for (const std::string& name :
-       recorded::choose_channels(*first.candidate, arguments.channels).names) {
+  for (const std::string& name : recorded::choose_channels(*candidate.first, patterns).names) {
     const std::string of = recorded::layer_of(name);
     if (found.empty() || found.back().first != of) {
       found.emplace_back(of, name);
@@ -109,17 +111,17 @@ std::vector<Layer> layers_of(const ImagesArguments& arguments, const FirstPictur
       found.back().second += "," + name;
     }
   }
-  if (found.size() == 1) return {layer("", arguments.channels)};
+  if (found.size() == 1) return {layer("", patterns)};
   std::vector<Layer> layers;
   for (const auto& [of, channels] : found) layers.push_back(layer(as_name(of), channels));
   return layers;
 }
 
 /// The window that both sides have on one canvas. nullopt if their windows are equal.
-std::optional<PictureWindow> common_window(const ImagesArguments& arguments,
-                                           const FirstPictures& first, const Layer& layer) {
-  const PictureWindow a = first.candidate->window(layer.of_candidate.names);
-  const PictureWindow b = first.reference->window(layer.of_reference.names);
+std::optional<PictureWindow> common_window(const Pictures& candidate, const Pictures& reference,
+                                           const Layer& layer) {
+  const PictureWindow a = candidate.first->window(layer.of_candidate.names);
+  const PictureWindow b = reference.first->window(layer.of_reference.names);
   if (a == b) return {};
   const auto end = [](std::int64_t begin, std::size_t size) {
     return begin + static_cast<std::int64_t>(size);
@@ -128,42 +130,39 @@ std::optional<PictureWindow> common_window(const ImagesArguments& arguments,
   const std::int64_t top = std::max(a.top, b.top);
   const std::int64_t right = std::min(end(a.left, a.width), end(b.left, b.width));
   const std::int64_t bottom = std::min(end(a.top, a.height), end(b.top, b.height));
-  if (first.candidate->canvas() == first.reference->canvas() && left < right && top < bottom) {
+  if (candidate.first->canvas() == reference.first->canvas() && left < right && top < bottom) {
     return PictureWindow{left, top, static_cast<std::size_t>(right - left),
                          static_cast<std::size_t>(bottom - top)};
   }
-  refuse(place("--reference", arguments.reference),
+  refuse(reference.where,
          "its pictures have {} x {} pixels at x {}, y {}, those of --candidate {} x {} at x {}, y "
          "{}; render the same part on both, at one size",
          b.width, b.height, b.left, b.top, a.width, a.height, a.left, a.top);
 }
 
-const char* rounding_of(const FirstPictures& first, const Layer& layer) {
-  Rounding coarsest = Rounding::none;
-  bool differ = false;
-  for (const auto& [file, channels] : {std::pair(&first.candidate, &layer.of_candidate),
-                                       std::pair(&first.reference, &layer.of_reference)}) {
+const char* rounding_of(const Pictures& candidate, const Pictures& reference, const Layer& layer) {
+  std::set<Rounding> all;
+  for (const auto& [side, channels] :
+       {std::pair(&candidate, &layer.of_candidate), std::pair(&reference, &layer.of_reference)}) {
     for (const std::string& name : channels->names) {
-      const Rounding rounding = (*file)->channel(name).rounding;
-      differ = differ || rounding != first.candidate->channel(layer.of_candidate.names[0]).rounding;
-      coarsest = std::max(coarsest, rounding);
+      all.insert(side->first->channel(name).rounding);
     }
   }
-  if (!differ) return "none";
+  if (all.size() == 1) return "none";
   constexpr const char* words[] = {"none", "half", "png16", "png8"};
-  return words[static_cast<std::size_t>(coarsest)];
+  return words[static_cast<std::size_t>(*all.rbegin())];
 }
 
 /// The parameters of either side's estimator.
-std::vector<Value::Member> members_of(const ImagesArguments& arguments, const FirstPictures& first,
-                                      const Layer& layer, const std::string& file,
-                                      const Location& where) {
+std::vector<Value::Member> members_of(const ImagesArguments& arguments, const Pictures& candidate,
+                                      const Pictures& reference, const Layer& layer,
+                                      const std::string& file, const Location& where) {
   std::vector<Value::Member> members{member("file", file, where),
                                      member("channels", layer.channels, where)};
-  if (const std::string rounding = rounding_of(first, layer); rounding != "none") {
+  if (const std::string rounding = rounding_of(candidate, reference, layer); rounding != "none") {
     members.push_back(member("rounded", rounding, where));
   }
-  if (const auto crop = common_window(arguments, first, layer)) {
+  if (const auto crop = common_window(candidate, reference, layer)) {
     members.push_back(
         member("crop", fmt::format("{} {} {} {}", crop->left, crop->top, crop->width, crop->height),
                where));
@@ -228,58 +227,52 @@ TestEntry test_of(const ImagesArguments& arguments, const std::string& suffix) {
   return test;
 }
 
-FirstPictures first_pictures(const ImagesArguments& arguments, const std::string& candidate,
-                             const std::string& reference) {
-  const auto open = [](const char* option, const std::string& pattern, const std::string& file) {
-    try {
-      return open_picture(file);
-    } catch (const InputError& error) {
-      refuse(place(option, pattern), "`" + file + "`: " + error.message());
-    }
-  };
-  if (arguments.mask) open("--mask", *arguments.mask, *arguments.mask);
-  return {open("--candidate", arguments.candidate, candidate),
-          open("--reference", arguments.reference, reference)};
+std::unique_ptr<const PictureFile> opened(const std::string& file, const Location& where) {
+  try {
+    return open_picture(file);
+  } catch (const InputError& error) {
+    refuse(where, "`" + file + "`: " + error.message());
+  }
 }
 
 }  // namespace
 
 Suite suite_of_images(const ImagesArguments& arguments) {
   test_of(arguments, "");
-  const Location of_candidate = place("--candidate", arguments.candidate);
-  const Location of_reference = place("--reference", arguments.reference);
-  const std::vector<std::string> candidates = files_given("--candidate", arguments.candidate);
-  require_enough("--candidate", arguments.candidate, candidates.size());
-  const std::vector<std::string> references = files_given("--reference", arguments.reference);
-  const bool one = references.size() == 1;
+  Pictures candidate = pictures_of("--candidate", arguments.candidate);
+  require_enough(candidate);
+  Pictures reference = pictures_of("--reference", arguments.reference);
+  const bool one = reference.files.size() == 1;
   if (!one && arguments.samples) {
     refuse(place("--samples", *arguments.samples),
            "is of a reference that is one picture with its variance; several tell it themselves");
   }
-  if (!one) require_enough("--reference", arguments.reference, references.size());
+  if (!one) require_enough(reference);
   if (one && arguments.question != ImageQuestion::means) {
-    refuse(of_reference,
+    refuse(reference.where,
            "one picture is a mean: its pairs and its law are unknown; give as many as of the "
            "candidate");
   }
-  const FirstPictures first = first_pictures(arguments, candidates[0], references[0]);
+  if (arguments.mask) opened(*arguments.mask, place("--mask", *arguments.mask));
+  for (Pictures* side : {&candidate, &reference}) side->first = opened(side->files[0], side->where);
   Suite suite{.name = "images", .stem = "images", .folder = "."};
-  for (const Layer& layer : layers_of(arguments, first)) {
-    const auto add = [&](const char* side, const std::string& file, const Location& where,
+  for (const Layer& layer : layers_of(arguments.channels, candidate, reference)) {
+    const auto add = [&](const char* name, const std::string& file, const Location& where,
                          bool is_mean) {
-      std::vector<Value::Member> members = members_of(arguments, first, layer, file, where);
+      std::vector<Value::Member> members =
+          members_of(arguments, candidate, reference, layer, file, where);
       if (is_mean) {
-        add_error(members, arguments, *first.reference, layer.of_reference, where);
+        add_error(members, arguments, *reference.first, layer.of_reference, where);
       } else if (arguments.independent_pixels) {
         members.push_back(member("pixels", "independent", where));
       }
-      suite.estimators.push_back({.name = side + layer.suffix,
+      suite.estimators.push_back({.name = name + layer.suffix,
                                   .plugin = "recorded",
                                   .parameters = Value::map(std::move(members), where),
                                   .where = where});
     };
-    add("candidate", arguments.candidate, of_candidate, false);
-    add("reference", one ? references[0] : arguments.reference, of_reference, one);
+    add("candidate", arguments.candidate, candidate.where, false);
+    add("reference", one ? reference.files[0] : arguments.reference, reference.where, one);
     suite.tests.push_back(test_of(arguments, layer.suffix));
   }
   return suite;
