@@ -248,11 +248,7 @@ struct CalibratedClaim {
 /// A method on a question about a law at one alpha. The limits of its rates need the total number
 /// of cells.
 struct CalibrationCase {
-  std::string law;
-  std::string method;
-  std::string question;  ///< "mean == number"
-  bool proof = false;    ///< True if a pass is the mistake.
-  double alpha = 0;
+  reports::CalibrationCell cell = {};  ///< The rates come last.
   /// Theta is 0. Missing if another method is the question's default.
   CalibratedClaim holds = {};
   /// Theta is at `detect`, for a proof at the border of the forbidden region. Missing if another
@@ -275,14 +271,15 @@ Suite suite_of(const std::string& claim, const TestKeys& keys) {
 
 CalibrationCase case_of(const Draft& draft, const Facts& facts,
                         std::optional<std::uint64_t> samples) {
-  CalibrationCase made{.law = facts.law, .method = draft.method, .question = draft.question};
-  made.proof = parse_claim(draft.holds, {}).relation == Relation::within;
+  CalibrationCase made{
+      .cell = {.method = draft.method, .question = draft.question, .law = facts.law}};
+  made.cell.proof = parse_claim(draft.holds, {}).relation == Relation::within;
   TestKeys keys = draft.keys;
   if (samples) keys["secondaries"] = fmt::format("{}", *samples);
   TestKeys forced = keys;
   forced["test"] = draft.method;
   forced.emplace("secondaries", fmt::format("{}", draft.alone));
-  made.alone.suite = suite_of(made.proof ? draft.off : draft.holds, forced);
+  made.alone.suite = suite_of(made.cell.proof ? draft.off : draft.holds, forced);
   if (!draft.is_default) return made;
   if (!draft.detect.empty()) keys["detect"] = draft.detect;
   made.holds.suite = suite_of(draft.holds, keys);
@@ -377,8 +374,8 @@ std::vector<CalibratedClaim*> claims_of(std::vector<CalibrationCase>& all) {
   for (CalibrationCase& each : all) {
     for (CalibratedClaim* const claim : each.claims()) {
       if (!claim->suite) continue;
-      claim->suite->alpha = each.alpha;
-      if (each.proof) claim->suite->beta = each.alpha;
+      claim->suite->alpha = each.cell.alpha;
+      if (each.cell.proof) claim->suite->beta = each.cell.alpha;
       claims.push_back(claim);
     }
   }
@@ -441,7 +438,7 @@ std::vector<CalibrationCase> measure(const CalibrationBench& bench,
                                      const std::function<void(std::uint64_t)>& done) {
   std::vector<CalibrationCase> all;
   for (const double alpha : arguments.alphas) {
-    for (const CalibrationCase& each : bench.cases) all.emplace_back(each).alpha = alpha;
+    for (const CalibrationCase& each : bench.cases) all.emplace_back(each).cell.alpha = alpha;
   }
   const std::vector<CalibratedClaim*> claims = claims_of(all);
   std::atomic<std::uint64_t> next{0};
@@ -499,24 +496,23 @@ VerdictRates rates_of(VerdictCounts counts, double error) {
 
 CalibrationCell cell_of(const CalibrationCase& measured, double error) {
   const VerdictCounts& alone = measured.alone.counts;
-  return {.method = measured.method,
-          .question = measured.question,
-          .law = measured.law,
-          .alpha = measured.alpha,
-          .proof = measured.proof,
-          .holds = rates_of(measured.holds.counts, error),
-          .off = rates_of(measured.off.counts, error),
-          .alone = rates_of(alone, error),
-          .alone_not_red = rate_of(alone.mistaken_not_red, alone.runs, error)};
+  CalibrationCell cell = measured.cell;
+  cell.holds = rates_of(measured.holds.counts, error);
+  cell.off = rates_of(measured.off.counts, error);
+  cell.alone = rates_of(alone, error);
+  cell.alone_not_red = rate_of(alone.mistaken_not_red, alone.runs, error);
+  return cell;
 }
 
 /// Groups cells by alpha, then method and question. Alphas, questions and laws keep their order.
 void group(std::vector<CalibrationCase>& all, const std::vector<double>& alphas) {
-  const auto question = [](const CalibrationCase& each) { return each.method + each.question; };
+  const auto question = [](const CalibrationCase& each) {
+    return each.cell.method + each.cell.question;
+  };
   std::map<std::string, std::size_t> questions;
   for (const CalibrationCase& each : all) questions.try_emplace(question(each), questions.size());
   std::ranges::stable_sort(all, {}, [&](const CalibrationCase& each) {
-    return std::pair(std::ranges::find(alphas, each.alpha), questions.at(question(each)));
+    return std::pair(std::ranges::find(alphas, each.cell.alpha), questions.at(question(each)));
   });
 }
 
