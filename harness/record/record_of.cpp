@@ -229,18 +229,10 @@ std::vector<reports::Statement> statements_of(const Suite& suite,
   const auto has_run = [&](const std::string& name) {
     return std::ranges::any_of(ran, [&](const reports::Test& test) { return test.name == name; });
   };
-  std::vector<reports::Statement> statements;
-  for (const StatementEntry& entry : suite.statements) {
-    if (!std::ranges::any_of(entry.holds, has_run) && !std::ranges::any_of(entry.fails, has_run)) {
-      continue;
-    }
-    statements.push_back({.text = entry.text,
-                          .source = entry.source,
-                          .condition = entry.condition,
-                          .holds = entry.holds,
-                          .fails = entry.fails,
-                          .line = entry.where.line});
-  }
+  std::vector<reports::Statement> statements = suite.statements;
+  std::erase_if(statements, [&](const reports::Statement& each) {
+    return std::ranges::none_of(each.holds, has_run) && std::ranges::none_of(each.fails, has_run);
+  });
   return statements;
 }
 

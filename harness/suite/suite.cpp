@@ -246,26 +246,27 @@ std::vector<std::string> read_names(const Keys& keys, const char* key, const Tes
   return names;
 }
 
-void check(const StatementEntry& statement) {
+void check(const reports::Statement& statement, const Location& where) {
   const bool both = !statement.holds.empty() && !statement.fails.empty();
   if (statement.holds.empty() && statement.fails.empty()) {
-    refuse(statement.where, "a statement needs tests that answer it: `holds`, `fails`, or both");
+    refuse(where, "a statement needs tests that answer it: `holds`, `fails`, or both");
   }
   for (const std::string& name : statement.fails) {
     if (!is_in(statement.holds, name)) continue;
-    refuse(statement.where, "`{}` cannot stand under `holds` and under `fails`", name);
+    refuse(where, "`{}` cannot stand under `holds` and under `fails`", name);
   }
   if (both && statement.condition.empty()) {
-    refuse(statement.where,
+    refuse(where,
            "a statement with `holds` and `fails` needs a `condition` that tells the one from the "
            "other");
   }
   if (!both && !statement.condition.empty()) {
-    refuse(statement.where, "a `condition` needs tests on both of its sides: `holds` and `fails`");
+    refuse(where, "a `condition` needs tests on both of its sides: `holds` and `fails`");
   }
 }
 
-StatementEntry read_statement(const Document& document, const Value& value, const Tests& tests) {
+reports::Statement read_statement(const Document& document, const Value& value,
+                                  const Tests& tests) {
   if (value.kind() != Value::Kind::map) {
     refuse(value.where(),
            "a statement is a map of keys and values, as in `{text: they agree, source: a talk, "
@@ -273,14 +274,14 @@ StatementEntry read_statement(const Document& document, const Value& value, cons
   }
   const Keys keys(document, value, "a statement",
                   {"text", "source", "holds", "fails", "condition"});
-  StatementEntry statement{
+  reports::Statement statement{
       .text = one_line(keys.require("text", "text: the variance is reduced"), "`text`"),
       .source = one_line(keys.require("source", "source: a talk"), "`source`"),
-      .where = value.where()};
+      .line = value.where().line};
   if (const Value* v = keys.find("condition")) statement.condition = one_line(*v, "`condition`");
   statement.holds = read_names(keys, "holds", tests);
   statement.fails = read_names(keys, "fails", tests);
-  check(statement);
+  check(statement, value.where());
   return statement;
 }
 
@@ -434,12 +435,12 @@ TestEntry read_test(const Document& document, const Value& value) {
 /// replace; no test stands twice. InputError at its place for a name that no test has, and for a
 /// test that expects invalid or error, which shows nothing. InputError also for a test in both
 /// lists, a condition without both lists, and both lists without a condition.
-std::vector<StatementEntry> read_statements(const Document& document, const Value& list,
-                                            const Tests& tests) {
+std::vector<reports::Statement> read_statements(const Document& document, const Value& list,
+                                                const Tests& tests) {
   const auto& items = items_of(list,
                                "`statements` must be a list of at least one, as in `- {text: they "
                                "agree, source: a talk, holds: [a test]}`");
-  std::vector<StatementEntry> statements;
+  std::vector<reports::Statement> statements;
   for (const Value& item : items) statements.push_back(read_statement(document, item, tests));
   return statements;
 }

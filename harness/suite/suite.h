@@ -75,16 +75,6 @@ struct TestEntry {
   }
 };
 
-/// An entry of `statements:`: what somebody claims, and the tests that answer it.
-struct StatementEntry {
-  std::string text = {};
-  std::string source = {};
-  std::string condition = {};           ///< Completes "only if"; with both lists.
-  std::vector<std::string> holds = {};  ///< Tests whose expected verdicts show it true.
-  std::vector<std::string> fails = {};  ///< Tests that show it false, or its limits.
-  Location where = {};
-};
-
 struct Suite {
   std::string name = {};
   std::string about = {};
@@ -103,7 +93,7 @@ struct Suite {
       {};  ///< map of `scenes:`, for --set; their names are already replaced in `estimators`
   std::vector<EstimatorEntry> estimators = {};
   std::vector<TestEntry> tests = {};
-  std::vector<StatementEntry> statements = {};
+  std::vector<reports::Statement> statements = {};
 };
 
 /// Reads a suite. InputError (file:line:column, the mend) for anything that is not exactly a suite.

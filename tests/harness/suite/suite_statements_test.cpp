@@ -38,7 +38,7 @@ TEST(SuiteStatements, NamesTestsByNameClaimOrGlob) {
   EXPECT_EQ(suite.statements[2].condition, "it is written like that");
   EXPECT_EQ(suite.statements[2].holds, Names{"mean(ramp) == analytic"});
   EXPECT_EQ(suite.statements[2].fails, Names{"variance(darts) < 0.5 * variance(darts)"});
-  EXPECT_EQ(suite.statements[2].where.line, 13);
+  EXPECT_EQ(suite.statements[2].line, 13);
 }
 
 // Seed 1. The doubled mean and the halved variance are off by 60 standard errors and more. A right
