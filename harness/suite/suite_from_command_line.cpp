@@ -21,36 +21,25 @@ std::optional<std::pair<std::string, std::string>> cut(const std::string& text, 
   return std::pair{text.substr(0, at), text.substr(at + 1)};
 }
 
-struct Assignment {
-  std::string estimator;
-  std::string key;
-  Value value;
-};
-
-Assignment parse_assignment(const std::string& piece) {
-  const Location where{"--set " + piece, 0, 0};
-  const auto sides = cut(piece, '=');
+/// Does one `estimator.key=value`.
+void assign(std::vector<Suite>& suites, const std::string& assignment) {
+  const Location where{"--set " + assignment, 0, 0};
+  const auto sides = cut(assignment, '=');
   const auto path = sides ? cut(sides->first, '.') : std::nullopt;
   if (!path || path->first.empty() || path->second.empty()) {
     refuse(where, "expected estimator.key=value; a value with commas stands in brackets or quotes");
   }
-  return {path->first, path->second, read_flow(sides->second, where)};
-}
-
-void assign_everywhere(std::vector<Suite>& suites, const Assignment& assignment) {
+  const auto& [name, key] = *path;
+  const Value value = read_flow(sides->second, where);
   std::vector<std::string> names;
-  bool found = false;
   for (Suite& suite : suites) {
     for (EstimatorEntry& estimator : suite.estimators) {
       names.push_back(estimator.name);
-      if (estimator.name != assignment.estimator) continue;
-      found = true;
-      set_parameter(estimator, assignment.key, assignment.value, suite.scenes);
+      if (estimator.name == name) set_parameter(estimator, key, value, suite.scenes);
     }
   }
-  if (found) return;
-  refuse(assignment.value.where(), "no suite has an estimator `{}`{}", assignment.estimator,
-         suggestion(assignment.estimator, names));
+  if (std::ranges::count(names, name) > 0) return;
+  refuse(where, "no suite has an estimator `{}`{}", name, suggestion(name, names));
 }
 
 /// Null if no entry has the name.
@@ -110,9 +99,7 @@ void refuse_unused(const std::vector<EstimatorEntry>& given,
 }  // namespace
 
 void set_parameter(std::vector<Suite>& suites, const std::string& assignment) {
-  for (const std::string& piece : split_outside_brackets(assignment)) {
-    assign_everywhere(suites, parse_assignment(piece));
-  }
+  for (const std::string& piece : split_outside_brackets(assignment)) assign(suites, piece);
 }
 
 EstimatorEntry parse_estimator_option(const std::string& text) {
