@@ -2,39 +2,32 @@
 
 #include <algorithm>
 #include <map>
+#include <span>
 #include <tuple>
 
 namespace assay::reports {
 namespace {
 
 /// Draws that samples share are counted once, as far as the longest reaches.
-class Draws {
- public:
-  void add(const Sample& source) {
-    Longest& longest =
-        longest_[{source.plugin, source.parameters, source.stream, source.primaries}];
-    if (source.secondaries >= longest.secondaries) longest = {source.secondaries, source.cost};
-  }
-
-  Cost total() const {
-    Cost sum;
-    for (const auto& [draws, longest] : longest_) {
-      sum.camera_rays += longest.cost.camera_rays;
-      sum.closest_hit_rays += longest.cost.closest_hit_rays;
-      sum.shadow_rays += longest.cost.shadow_rays;
-      sum.samples += longest.cost.samples;
-      sum.seconds += longest.cost.seconds;
+Cost cost_of(std::span<const Test> tests) {
+  using Draws = std::tuple<std::string, std::string, std::string, std::uint64_t>;
+  std::map<Draws, const Sample*> longest;
+  for (const Test& test : tests) {
+    for (const Sample& each : test.samples) {
+      const Sample*& known = longest[{each.plugin, each.parameters, each.stream, each.primaries}];
+      if (known == nullptr || each.secondaries >= known->secondaries) known = &each;
     }
-    return sum;
   }
-
- private:
-  struct Longest {
-    std::uint64_t secondaries = 0;
-    Cost cost;
-  };
-  std::map<std::tuple<std::string, std::string, std::string, std::uint64_t>, Longest> longest_;
-};
+  Cost sum;
+  for (const auto& [draws, sample] : longest) {
+    sum.camera_rays += sample->cost.camera_rays;
+    sum.closest_hit_rays += sample->cost.closest_hit_rays;
+    sum.shadow_rays += sample->cost.shadow_rays;
+    sum.samples += sample->cost.samples;
+    sum.seconds += sample->cost.seconds;
+  }
+  return sum;
+}
 
 }  // namespace
 
@@ -61,18 +54,8 @@ int alarms(const Ledger& ledger) {
   return static_cast<int>(std::ranges::count(ledger.series, true, &LedgerSeries::alarm));
 }
 
-Cost total_cost(const Test& test) {
-  Draws draws;
-  for (const Sample& sample : test.samples) draws.add(sample);
-  return draws.total();
-}
+Cost total_cost(const Test& test) { return cost_of(std::span(&test, 1)); }
 
-Cost total_cost(const Suite& suite) {
-  Draws draws;
-  for (const Test& test : suite.tests) {
-    for (const Sample& sample : test.samples) draws.add(sample);
-  }
-  return draws.total();
-}
+Cost total_cost(const Suite& suite) { return cost_of(suite.tests); }
 
 }  // namespace assay::reports
