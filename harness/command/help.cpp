@@ -39,8 +39,8 @@ std::string entry(const CommandText& command) {
 
 /// "--filter GLOB ..."
 std::string called(const OptionText& option) {
-  const bool has_value = !option.is_argument() && !option.value.empty();
-  return option.name + (has_value ? " " + option.value : "") + (option.repeats ? " ..." : "");
+  const std::string value = option.takes_value() ? " " + option.value : "";
+  return option.name + value + (option.repeats ? " ..." : "");
 }
 
 std::string usage(const CommandText& command) {
@@ -50,14 +50,6 @@ std::string usage(const CommandText& command) {
     std::string word = option.value;
     if (word.empty()) word = option.name + (option.repeats ? "..." : "");
     text += option.needed.empty() ? " [" + word + "]" : " " + word;
-  }
-  return text;
-}
-
-std::string exit_code_lines() {
-  std::string text;
-  for (const auto& [code, meaning] : exit_codes) {
-    text += beside(fmt::format("  {}", code), meaning, 7);
   }
   return text;
 }
@@ -104,28 +96,23 @@ std::string roff_section(const CommandText& command) {
 
 using Offers = std::vector<std::pair<std::string, std::string>>;
 
-void offer_words(const OptionText& option, Offers& offers) {
-  for (const std::string& word : option.words) offers.emplace_back(word, "");
-}
-
-bool takes_value(const OptionText& option, const std::string& word) {
-  return !option.is_argument() && !option.value.empty() && option.name == word;
-}
-
 Offers offers_of(const CommandText& command, const std::vector<std::string>& words) {
   Offers offers;
+  const auto offer_words = [&](const OptionText& option) {
+    for (const std::string& word : option.words) offers.emplace_back(word, "");
+  };
   std::size_t place = 0;  // of the last word among the arguments
   const OptionText* open = nullptr;
   for (std::size_t i = 1; i + 1 < words.size(); ++i) {
     const OptionText* before = std::exchange(open, nullptr);
     if (before != nullptr) continue;
     for (const OptionText& option : command.options) {
-      if (takes_value(option, words[i])) open = &option;
+      if (option.takes_value() && option.name == words[i]) open = &option;
     }
     if (!words[i].starts_with('-')) ++place;
   }
   if (open != nullptr) {
-    offer_words(*open, offers);
+    offer_words(*open);
   } else if (words.back().starts_with('-')) {
     for (const OptionText& option : command.options) {
       if (!option.is_argument())
@@ -135,7 +122,7 @@ Offers offers_of(const CommandText& command, const std::vector<std::string>& wor
   } else {
     for (const OptionText& option : command.options) {
       if (!option.is_argument()) continue;
-      if (place == 0 || option.repeats) offer_words(option, offers);
+      if (place == 0 || option.repeats) offer_words(option);
       if (place-- == 0 || option.repeats) break;
     }
   }
@@ -185,7 +172,11 @@ std::string help_of_all(const std::vector<CommandText>& commands) {
   std::string text = "Commands (each has its own --help, with examples and defaults):\n";
   for (const CommandText& command : commands) text += entry(command);
   text += beside("  help", "the first page, or that of a command: `assay help run`", list_column);
-  return text + "\nExit codes:\n" + exit_code_lines();
+  text += "\nExit codes:\n";
+  for (const auto& [code, meaning] : exit_codes) {
+    text += beside(fmt::format("  {}", code), meaning, 7);
+  }
+  return text;
 }
 
 std::string help_of(const CommandText& command) {

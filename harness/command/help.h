@@ -22,6 +22,7 @@ struct OptionText {
   bool repeats = false;
 
   bool is_argument() const { return !name.starts_with('-'); }
+  bool takes_value() const { return !is_argument() && !value.empty(); }
 };
 
 struct CommandText {
