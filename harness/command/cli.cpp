@@ -15,10 +15,6 @@ namespace assay::harness {
 
 namespace {
 
-Texts rows_of(const std::string& plural) {
-  return names_of(std::ranges::find(tables(), plural, &Table::plural)->rows, &TableRow::name);
-}
-
 Texts plugin_names() {
   return names_of(catalogue(), [](const Entry& entry) { return entry.information.name; });
 }
@@ -46,7 +42,7 @@ auto report_beside(const std::vector<ReportRequest>& others) {
 // Rows of several commands.
 
 void add_report(Options& options, Output& output, const std::string& kinds) {
-  Texts words = rows_of("reports");
+  Texts words = names_of(reports::report_formats(), &reports::ReportFormat::kind);
   for (std::string& word : words) word += '=';
   options.add(
       {"--report", "KIND=PATH", Replay::nowhere, "", words}, output.reports,

@@ -48,13 +48,12 @@ int run_suites(const std::vector<Suite>& suites, const RunOptions& options, cons
   std::string ledger_fault;
   RunReports console(output);
   RunOptions drawn = options;
-  std::shared_ptr<const Ranks> ranks;
+  std::shared_ptr<Ranks> ranks;
   if (options.ranks != nullptr) {
     drawn.threads = threads_of_rank(options);
-    const auto all = std::make_shared<Ranks>(*options.ranks, options.seed,
-                                             identity_of(suites, options), drawn.threads);
-    drawn.executor = all;
-    ranks = all;
+    ranks = std::make_shared<Ranks>(*options.ranks, options.seed, identity_of(suites, options),
+                                    drawn.threads);
+    drawn.executor = ranks;
   }
   std::shared_ptr<Checkpoint> checkpoint;
   if (!options.checkpoint.empty()) {
@@ -118,7 +117,8 @@ int explain(const ExplainArguments& arguments) {
   const std::string file = words.size() > 1 ? words.front() : last_run();
   const reports::Record record = read_record(file);
   const Recorded found = find_test(record, file, words.back());
-  if (words.size() < 2) fmt::print("The last run from this folder began at {}.\n\n", record.started);
+  if (words.size() < 2)
+    fmt::print("The last run from this folder began at {}.\n\n", record.started);
   fmt::print("{}",
              reports::explain(found.suite, found.test, std::min(terminal_width(stdout), 100)));
   return 0;

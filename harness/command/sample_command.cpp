@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/replace.hpp>
 
 #include "estimators/core/flush_denormals.h"
 #include "harness/base/interrupt.h"
@@ -20,9 +21,7 @@ constexpr std::uint64_t usual = 10;
 /// A name as the plugin `recorded` reads it.
 std::string in_header(const std::string& name) {
   if (name.find_first_of(" \t,;#\"") == std::string::npos) return name;
-  std::string quoted = "\"";
-  for (const char c : name) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
+  return fmt::format("\"{}\"", boost::replace_all_copy(name, "\"", "\"\""));
 }
 
 /// The draws of a sampler by the numbers of their cells, which are computed here.
