@@ -64,26 +64,21 @@ struct Tested {
   bool kills() const { return test->verdict == Verdict::fail || test->verdict == Verdict::error; }
 };
 
-/// The order in which verdicts tell of a method: a kill first, what is undecided last.
-int rank(const Tested& one) {
+/// Less of a result that says more of the method: a kill by few samples first, what is undecided
+/// last.
+std::pair<int, double> order(const Tested& one) {
+  constexpr double none = std::numeric_limits<double>::infinity();
+  const auto samples = static_cast<double>(one.samples);
   switch (one.test->verdict) {
     case Verdict::fail:
-      return 0;
+      return {0, samples};
     case Verdict::error:
-      return 1;
+      return {1, samples};
     case Verdict::pass:
-      return 2;
+      return {2, found_from(*one.test).value_or(none)};
     default:
-      return 3;
+      return {3, samples};
   }
-}
-
-/// True if the first says more of the method than the second.
-bool better(const Tested& one, const Tested& other) {
-  if (rank(one) != rank(other)) return rank(one) < rank(other);
-  if (one.test->verdict != Verdict::pass) return one.samples < other.samples;
-  constexpr double none = std::numeric_limits<double>::infinity();
-  return found_from(*one.test).value_or(none) < found_from(*other.test).value_or(none);
 }
 
 KillCell cell_of(const Tested& one) {
@@ -136,7 +131,7 @@ KillMatrix kill_matrix(const Suite& suite) {
     const std::string method = method_of(test);
     const Tested one{&test, mutant->sample->primaries * mutant->sample->secondaries};
     const auto [best, is_first] = mutants[mutant->place].emplace(method, one);
-    if (!is_first && better(one, best->second)) best->second = one;
+    if (!is_first && order(one) < order(best->second)) best->second = one;
     if (std::ranges::find(matrix.methods, method) == matrix.methods.end())
       matrix.methods.push_back(method);
   }
