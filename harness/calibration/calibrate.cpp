@@ -97,8 +97,7 @@ double distance_at(const std::function<double(double)>& cdf, const Facts& facts,
 }
 
 double shift_at_law_effect(const Facts& facts) {
-  const Source place{};
-  const Claim claim = parse_claim("distribution(x) == " + facts.law, place.where);
+  const Claim claim = parse_claim("distribution(x) == " + facts.law, {});
   const std::function<double(double)> cdf = law_cdf(std::get<Law>(claim.right));
   double low = 0;
   double high = facts.deviation;
@@ -123,9 +122,6 @@ Facts facts_of(const std::string& law) {
           .has_density = !x.setup->samplers().empty()};
 }
 
-bool any_law(const Facts&) { return true; }
-bool has_density(const Facts& facts) { return facts.has_density; }
-
 /// A case as text, with numbers of the law by their names.
 struct Draft {
   std::string method;
@@ -134,9 +130,9 @@ struct Draft {
   std::string off = "";
   std::string detect = "";
   bool is_default = true;
-  bool (*suits)(const Facts&) = any_law;
-  std::uint64_t alone = classical_samples;  ///< Observations of a method alone.
-  TestKeys keys = {};                       ///< Other keys of its tests.
+  std::function<bool(const Facts&)> suits = {};  ///< Null: any law.
+  std::uint64_t alone = classical_samples;       ///< Observations of a method alone.
+  TestKeys keys = {};                            ///< Other keys of its tests.
 };
 
 const std::vector<Draft>& all_drafts() {
@@ -150,10 +146,8 @@ const std::vector<Draft>& all_drafts() {
       {"tost", "mean within x of number", "mean(x) within {shift} of {mean}",
        "mean(x) within {shift} of {less}"},
       {"skewness-corrected-t", "mean == number", "mean(x) == {mean}", "", "", false},
-      {"binomial", "mean == number", "mean(x) == {mean}", "", "", false,
-       [](const Facts& f) { return f.two_valued(); }},
-      {"betting", "mean == number", "mean(x) == {mean}", "", "", false,
-       [](const Facts& f) { return f.bounded(); }},
+      {"binomial", "mean == number", "mean(x) == {mean}", "", "", false, &Facts::two_valued},
+      {"betting", "mean == number", "mean(x) == {mean}", "", "", false, &Facts::bounded},
       {"betting", "mean <= number", "mean(x) <= {mean}", "", "", false,
        [](const Facts& f) { return std::isfinite(f.low) && !f.bounded(); }},
       {"chi-square", "variance == number", "variance(x) == {variance}", "variance(x) == {smaller}",
@@ -167,7 +161,7 @@ const std::vector<Draft>& all_drafts() {
       {"influence-t", "total variance == number", "total_variance(x) == {variance}",
        "total_variance(x) == {smaller}", "{variance_effect}%"},
       {"influence-t", "efficiency == efficiency", "efficiency(x) == efficiency(y)",
-       "efficiency(y) == efficiency(scaled)", "{variance_effect}%", true, any_law,
+       "efficiency(y) == efficiency(scaled)", "{variance_effect}%", true, nullptr,
        classical_samples, in_samples},
       {"influence-t", "efficiencies at random costs",
        "efficiency(costly) == efficiency(other_costly)", "", "{variance_effect}%"},
@@ -176,26 +170,26 @@ const std::vector<Draft>& all_drafts() {
       {"influence-t", "cost <= cost", "cost(costly) <= cost(other_costly)",
        "cost(costly) <= {inverse} * cost(other_costly)", "{variance_effect}%"},
       {"slope", "slope of variance", "slope(variance(x)) == 2", "slope(variance(x)) == {slope}",
-       "{slope_effect}", true, any_law, classical_samples, over_scales},
+       "{slope_effect}", true, nullptr, classical_samples, over_scales},
       {"ks", "law == law given", "distribution(x) == {law}", "distribution(moved) == {law}",
-       "{law_effect}", true, has_density},
+       "{law_effect}", true, &Facts::has_density},
       {"ks", "law == law", "distribution(x) == distribution(y)",
-       "distribution(moved) == distribution(y)", "{law_effect}", true, has_density},
+       "distribution(moved) == distribution(y)", "{law_effect}", true, &Facts::has_density},
       {"chi-square-two-sample", "draws == draws", "distribution(x.x) == distribution(y.x)", "", "",
-       false, has_density},
+       false, &Facts::has_density},
       {"chi-square-fit", "draws == density", "distribution(x.x) == density", "", "{cell_effect}",
-       true, has_density},
+       true, &Facts::has_density},
       {"quantile", "median == median", "quantile(x, 0.5) == quantile(y, 0.5)",
-       "quantile(shifted, 0.5) == quantile(y, 0.5)", "{shift}", true, has_density},
+       "quantile(shifted, 0.5) == quantile(y, 0.5)", "{shift}", true, &Facts::has_density},
       {"ks", "law == law", "distribution(x) == distribution(y)", "", "{law_effect}", true,
        [](const Facts& f) { return !f.has_density; }},
       {"image", "image == analytic", "mean(picture) == analytic", "bias(picture) == {bias}",
-       "{bias}", true, any_law, classical_replicates},
+       "{bias}", true, nullptr, classical_replicates},
       {"image", "image == image", "mean(picture) == mean(other_picture)",
-       "mean(picture) == {brighter} * mean(other_picture)", "{image_part}%", true, any_law,
+       "mean(picture) == {brighter} * mean(other_picture)", "{image_part}%", true, nullptr,
        classical_replicates},
       {"image", "image within x of analytic", "mean(picture) within {bias} of analytic",
-       "bias(picture) within {bias} of {bias}", "", true, any_law, classical_replicates}};
+       "bias(picture) within {bias} of {bias}", "", true, nullptr, classical_replicates}};
   return drafts;
 }
 
@@ -217,7 +211,7 @@ std::vector<Draft> drafts_of(const Facts& facts) {
   };
   std::vector<Draft> drafts;
   for (const Draft& draft : all_drafts()) {
-    if (!draft.suits(facts)) continue;
+    if (draft.suits && !draft.suits(facts)) continue;
     drafts.push_back(draft);
     for (auto text : {&Draft::holds, &Draft::off, &Draft::detect}) {
       drafts.back().*text = written(draft.*text);
