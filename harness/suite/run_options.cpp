@@ -20,17 +20,14 @@ bool has_tag(const TestEntry& test, const std::vector<std::string>& tags) {
 }
 
 bool passes(const std::vector<std::string>& filters, const std::string& id) {
-  bool any_includes = false;
-  bool included = false;
-  for (const std::string& filter : filters) {
-    if (excludes(filter)) {
-      if (matches(std::string_view(filter).substr(1), id)) return false;
-    } else {
-      any_includes = true;
-      included = included || matches(filter, id);
-    }
-  }
-  return included || !any_includes;
+  const auto includes_it = [&](const std::string& filter) {
+    return !excludes(filter) && matches(filter, id);
+  };
+  const auto excludes_it = [&](const std::string& filter) {
+    return excludes(filter) && matches(std::string_view(filter).substr(1), id);
+  };
+  return std::ranges::none_of(filters, excludes_it) &&
+         (std::ranges::all_of(filters, excludes) || std::ranges::any_of(filters, includes_it));
 }
 
 std::vector<const TestEntry*> selected(const std::vector<Suite>& suites,
