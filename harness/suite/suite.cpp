@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <boost/algorithm/string.hpp>
 #include <cmath>
 #include <filesystem>
 
@@ -113,9 +114,7 @@ void read_reference(const Value& value, TestEntry& test) {
   }
   const std::size_t error = text.find("+-");
   const auto number = [&](const std::string& part) {
-    const std::size_t end = part.find_last_not_of(' ');
-    const std::size_t begin = part.find_first_not_of(' ');
-    const std::string bare = begin == std::string::npos ? "" : part.substr(begin, end - begin + 1);
+    const std::string bare = boost::trim_copy_if(part, boost::is_any_of(" "));
     return Value::scalar(bare, value.where()).number("a number of `reference`");
   };
   Constant reference{.value = number(text.substr(0, error))};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -35,9 +36,7 @@ Json leaf(const Number& value) { return value ? leaf(*value) : Json(nullptr); }
 Json leaf(const std::string& value) { return clean(value); }
 Json leaf(const Texels& value) { return base64(bytes_of(value.values)); }
 Json leaf(Verdict value) { return to_string(value); }
-Json leaf(bool value) { return value; }
-Json leaf(int value) { return value; }
-Json leaf(std::uint64_t value) { return value; }
+Json leaf(std::integral auto value) { return value; }
 
 template <class T>
 Json leaf(const std::optional<T>& value) {
