@@ -53,10 +53,8 @@ class ReadError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The record that json() wrote; `file_name` is for messages only. Throws ReadError that names the
-/// file and the place inside it. It refuses other text than JSON, text that was cut short, and
-/// another schema version. It also refuses a missing, unknown or repeated key, and a value of the
-/// wrong type.
+/// The record that json() wrote, now or with an earlier schema version. For any other text it
+/// throws ReadError, which names the file and the place inside it.
 Record read_json(std::string_view text, std::string_view file_name);
 
 /// The record as JUnit XML, in the subset that GitLab, Jenkins, GitHub's actions and junitparser
@@ -84,16 +82,12 @@ inline constexpr std::size_t most_annotations = 10;
 std::string annotations(const Record&);
 
 /// The record's numbers as OpenMetrics 1.0 text, for GitLab's `artifacts:reports:metrics` and
-/// Prometheus. A test has the gauges `assay_ok` (1 or 0), `assay_effect`, `assay_effect_lower`,
-/// `assay_effect_upper` and `assay_detectable`. An estimator's channel has `assay_mean` and
-/// `assay_variance`. Numbers have six significant digits, so that unchanged ones are equal as text.
-/// There are no times, and a number that does not exist has no line.
+/// Prometheus. Numbers have six significant digits, so that unchanged ones are equal as text. There
+/// are no times, and a number that does not exist has no line.
 std::string metrics(const Record&);
 
-/// The record as one page without network or fonts. The page is the viewer's bundle and the record
-/// with its pictures, packed (viewer/page.h), compressed and in base64. A reader without scripts
-/// sees the Markdown tables. The Content-Security-Policy lets the bundle's own script and style
-/// run, no others.
+/// The record as one page without network or fonts: the viewer's bundle and the packed record
+/// (viewer/page.h), compressed and in base64. A reader without scripts sees the Markdown tables.
 std::string html(const Record&);
 
 /// Tells what happened to a test, in sentences for a reader without a course in statistics, and

@@ -8,9 +8,8 @@
 
 namespace assay::harness {
 
-/// Tables of at most 80 columns without colours. A test's row has its method, primaries of a
-/// secondary, looks, secondaries of the last look, its cost, and the effect that it finds. Notes
-/// with the forecast and the pilot's gates follow. Totals end the page.
+/// Tables of at most 80 columns without colours: a row a test, with notes on the forecast and the
+/// pilot's gates below it. Totals end the page.
 std::string plan_text(const PlannedRun& planned);
 
 /// Returns 1 if a selected test cannot come out as expected: no method is valid, or a source

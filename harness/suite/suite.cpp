@@ -430,10 +430,7 @@ TestEntry read_test(const Document& document, const Value& value) {
   return test;
 }
 
-/// Reads `statements:`. A member of `holds` or `fails` is a test's name, or a glob that its matches
-/// replace; no test stands twice. InputError at its place for a name that no test has, and for a
-/// test that expects invalid or error, which shows nothing. InputError also for a test in both
-/// lists, a condition without both lists, and both lists without a condition.
+/// Reads `statements:`. A glob in `holds` or `fails` is replaced by the tests that it matches.
 std::vector<reports::Statement> read_statements(const Document& document, const Value& list,
                                                 const Tests& tests) {
   const auto& items = items_of(list,

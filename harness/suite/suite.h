@@ -97,9 +97,7 @@ struct Suite {
 };
 
 /// Reads a suite. InputError (file:line:column, the mend) for anything that is not exactly a suite.
-/// It refuses a syntax error, a merge key, a wrong type, and a key that is unknown or repeated. It
-/// also refuses unknown estimators and plugins, a duplicate test name, `detect` not above `allow`,
-/// … Named scenes replace their names. Parameters of plugins are checked when they are prepared.
+/// Named scenes replace their names. Parameters of plugins are checked when they are prepared.
 Suite load_suite(const std::string& file);
 
 /// The keys of a test as text, each from the option of its name.
@@ -182,11 +180,9 @@ struct ImagesArguments {
 
 /// The suite of the claim `mean(candidate) == mean(reference)`, or `within` a margin of it. Several
 /// layers have a claim each, on `candidate_LAYER` and `reference_LAYER`. The usual channels include
-/// alpha unless it is 1, or missing, throughout the first picture of each side. Files of unequal
-/// windows on one canvas are compared where both have pixels. Both sides are rounded as the coarser
-/// one is. A single reference file is a mean whose error its channels tell (pbrt's `Variance.*`,
-/// Mitsuba's `m2_*`), else exact. InputError if a pattern matches no file, there are too few
-/// pictures for a pixel's variance, or options contradict each other.
+/// alpha unless it is 1, or missing, throughout the first picture of each side. A single reference
+/// file is a mean whose error its channels tell (pbrt's `Variance.*`, Mitsuba's `m2_*`), else
+/// exact. InputError for pictures that cannot be compared, and options that contradict each other.
 Suite suite_of_images(const ImagesArguments&);
 
 }  // namespace assay::harness

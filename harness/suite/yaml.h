@@ -22,10 +22,8 @@ class Document {
  public:
   /// No text: keys have the places of their values.
   Document() = default;
-  /// Reads one YAML document. InputError at its place in `file` for any of these. Text not UTF-8.
-  /// Syntax error, no document or several, tab in indentation, nesting deeper than 64. Key that is
-  /// repeated, empty or not text. Merge key `<<`, anchor, alias or tag. Key or list item without a
-  /// value. Every node has `only_place` if it is given.
+  /// Reads one YAML document. InputError at its place in `file` for anything else, and for merge
+  /// keys, anchors, tags and missing values. Every node has `only_place` if it is given.
   Document(std::string file, std::string_view text, std::optional<Location> only_place = {});
 
   const Value& root() const { return root_; }

@@ -71,9 +71,7 @@ std::size_t fitting(std::string_view text, int width) {
   return position;
 }
 
-// The last place up to `end` where a long word, such as a claim, may be parted. It may be parted
-// behind an opening bracket, comma, slash, or a dot that is not a decimal point. Returns `end` if
-// there is no such place.
+// The last place up to `end` where a long word, such as a claim, may be parted; else `end`.
 std::size_t joint(std::string_view text, std::size_t end) {
   for (std::size_t i = end; i > end / 2; --i) {
     const char last = text[i - 1];
