@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "harness/command/describe.h"
 #include "harness/plan/forecast.h"
 #include "harness/theta/theta.h"
 #include "reports/words/number.h"
@@ -14,7 +15,6 @@
 namespace assay::harness {
 namespace {
 
-constexpr int table_width = 80;
 constexpr std::size_t most_gates = 3;
 constexpr const char* unknown = "-";
 
@@ -164,25 +164,9 @@ Row row_of(const TestOutcome& test, const Pilots& pilots) {
   return row;
 }
 
-class Page {
- public:
-  void line(const std::string& text) {
-    std::string whole = reports::plain_spaces(text);
-    whole.erase(whole.find_last_not_of(' ') + 1);
-    out_ += whole + "\n";
-  }
-  void paragraph(const std::string& text, const std::string& indent = "") {
-    for (const std::string& part :
-         reports::wrap(reports::one_line(text), table_width - static_cast<int>(indent.size()))) {
-      line(indent + part);
-    }
-  }
-  void blank() { out_ += "\n"; }
-  std::string take() { return std::move(out_); }
-
- private:
-  std::string out_;
-};
+std::string on_page(const std::string& text, std::size_t indent = 0) {
+  return reports::plain_spaces(wrapped(reports::one_line(text), page_width, indent));
+}
 
 std::array<int, column_count> widths_of(const std::vector<Row>& rows) {
   std::array<int, column_count> widths{};
@@ -196,13 +180,13 @@ std::array<int, column_count> widths_of(const std::vector<Row>& rows) {
 std::string line_of(const Cells& cells, const std::array<int, column_count>& widths) {
   int wide = 4;
   for (const int width : widths) wide += width + 2;
-  const std::string gap = wide - 2 <= table_width ? "  " : " ";
+  const std::string gap = wide - 2 <= static_cast<int>(page_width) ? "  " : " ";
   std::string line = "    " + reports::pad_right(cells[0], widths[0]);
   for (std::size_t c = 1; c < column_count; ++c) {
     const auto blanks = static_cast<std::size_t>(widths[c] - reports::columns(cells[c]));
     line += gap + std::string(blanks, ' ') + cells[c];
   }
-  return line;
+  return line + "\n";
 }
 
 /// True if a program that the suite needs is missing.
@@ -210,42 +194,42 @@ bool is_skipped(const SuiteRun& run) {
   return !run.untested.empty() && run.untested.front().verdict == reports::Verdict::skipped;
 }
 
-void write(Page& page, const SuiteRun& run) {
+void write(std::string& page, const SuiteRun& run) {
   const Suite& suite = run.suite;
-  page.paragraph(suite.name + (suite.file.empty() ? "" : " (" + suite.file + ")"));
-  page.paragraph(fmt::format("alpha {}, beta {}, seed {}", suite.alpha, suite.beta, run.seed));
-  page.blank();
+  page += on_page(suite.name + (suite.file.empty() ? "" : " (" + suite.file + ")"));
+  page += on_page(fmt::format("alpha {}, beta {}, seed {}", suite.alpha, suite.beta, run.seed));
+  page += "\n";
   for (const Untested& each : run.untested) {
     if (is_skipped(run)) break;
-    page.paragraph(each.test->name, "  ");
-    page.paragraph("error: " + each.message, "      ");
+    page += on_page(each.test->name, 2);
+    page += on_page("error: " + each.message, 6);
   }
   if (run.tests.empty()) {
-    if (run.untested.empty()) page.paragraph("No test of this suite is selected.");
+    if (run.untested.empty()) page += on_page("No test of this suite is selected.");
     if (is_skipped(run)) {
-      page.paragraph("Its tests will be skipped: " + run.untested.front().message + ".");
+      page += on_page("Its tests will be skipped: " + run.untested.front().message + ".");
     }
-    page.blank();
+    page += "\n";
     return;
   }
   std::vector<Row> rows;
   for (const TestWork& work : run.tests) rows.push_back(row_of(work.outcome, run.pilots));
   const auto widths = widths_of(rows);
-  page.line(line_of(headings, widths));
+  page += line_of(headings, widths);
   for (const Row& row : rows) {
-    page.paragraph(row.name, "  ");
-    page.line(line_of(row.cells, widths));
-    for (const std::string& note : row.notes) page.paragraph(note, "      ");
+    page += on_page(row.name, 2);
+    page += line_of(row.cells, widths);
+    for (const std::string& note : row.notes) page += on_page(note, 6);
   }
   double not_ok = 0;
   for (const Row& row : rows) not_ok += row.not_ok;
-  page.blank();
-  page.paragraph(fmt::format(
+  page += "\n";
+  page += on_page(fmt::format(
       "The run ends with a fail or an undecided claim with probability about {} if every claim "
       "holds exactly and every planted bug is as large as its effect. A test without a forecast "
       "counts with its alpha and beta.",
       per_cent(std::min(1.0, not_ok))));
-  page.blank();
+  page += "\n";
 }
 
 /// The cost of all tests, each stream drawn to the largest of its tests' sizes.
@@ -279,25 +263,25 @@ std::string total_text(const Total& total) {
                      count_of(total.rays), reports::plain_spaces(reports::duration(total.seconds)));
 }
 
-void write_totals(Page& page, const PlannedRun& planned) {
+void write_totals(std::string& page, const PlannedRun& planned) {
   std::size_t tests = 0;
   Total separate;
   for (const auto& run : planned.suites) {
     tests += run->tests.size();
     for (const TestWork& work : run->tests) add_last_look(work.outcome, run->pilots, separate);
   }
-  page.paragraph(fmt::format("{} test{}, each by itself to its last look: {}.", tests,
-                             tests == 1 ? "" : "s", total_text(separate)));
+  page += on_page(fmt::format("{} test{}, each by itself to its last look: {}.", tests,
+                              tests == 1 ? "" : "s", total_text(separate)));
   const auto most = [](const TestOutcome& test, const Pilots& /*pilots*/) {
     const std::vector<std::uint64_t>& postponed = test.plan.postponed;
     return postponed.empty() ? test.plan.most_secondaries() : postponed.back();
   };
-  page.paragraph(fmt::format(
+  page += on_page(fmt::format(
       "Tests of one estimator share observations, and most end at an earlier look: about {} if "
       "every claim holds exactly (tests whose mean is not known counted in full). Looks that the "
       "run plans only when it knows the spread may raise this to {}.",
       total_text(total_of(planned, expected_secondaries)), total_text(total_of(planned, most))));
-  page.paragraph(
+  page += on_page(
       "primaries: of one secondary estimate. last: secondaries of each source at the last look, of "
       "a file all its rows where these are fewer. in all, rays, CPU time: primaries of all sources "
       "up to the last look, of images those of every pixel and component, and what they cost by "
@@ -310,10 +294,10 @@ void write_totals(Page& page, const PlannedRun& planned) {
 }  // namespace
 
 std::string plan_text(const PlannedRun& planned) {
-  Page page;
+  std::string page;
   for (const auto& run : planned.suites) write(page, *run);
   write_totals(page, planned);
-  return page.take();
+  return page;
 }
 
 int plan_exit_code(const PlannedRun& planned) {
