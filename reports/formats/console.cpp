@@ -78,10 +78,8 @@ class Screen {
       suites(record);
     }
     blank();
-    for (const Suite& suite : record.suites) {
-      for (const Test& test : suite.tests) {
-        if (is_trouble(standing(test)) && !told.contains(test.id) && !in_full()) block(test);
-      }
+    for (const Test* test : tests_of(record)) {
+      if (is_trouble(standing(*test)) && !told.contains(test->id) && !in_full()) block(*test);
     }
     left_out(record);
     std::uint64_t retries = 0;
