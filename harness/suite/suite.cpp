@@ -45,11 +45,6 @@ Margin read_margin(const Value& value, std::string_view what) {
   return parse_margin(value.string(what), value.where(), what);
 }
 
-double read_seconds(std::string_view text, const Value& value) {
-  return positive_number(Value::scalar(std::string(text), value.where()),
-                         "the seconds of `budget`");
-}
-
 void require_increasing(const Sweep& sweep) {
   double last = 0;
   for (const Value& value : sweep.values) {
@@ -75,10 +70,11 @@ std::vector<std::string> read_tags(const Value& value) {
 }
 
 Budget read_short_budget(const Value& value) {
-  const std::string_view text = value.text();
+  const std::string& text = value.text();
   try {
-    if (text.ends_with('s')) return {{}, read_seconds(text.substr(0, text.size() - 1), value)};
-    return {count_from(value, "`budget`", 1), {}};
+    if (!text.ends_with('s')) return {count_from(value, "`budget`", 1), {}};
+    const Value seconds = Value::scalar(text.substr(0, text.size() - 1), value.where());
+    return {{}, positive_number(seconds, "the seconds of `budget`")};
   } catch (const InputError&) {
     refuse(value.where(),
            "`budget` must be a number of primaries (1e7), of seconds (ten minutes are 600s), or a "
@@ -441,9 +437,6 @@ std::vector<reports::Statement> read_statements(const Document& document, const 
   return statements;
 }
 
-constexpr const char* estimators_example = "estimators: {area: {plugin: luminaire/area}}";
-constexpr const char* tests_example = "tests: [claim: mean(area) == analytic]";
-
 /// A suite's seed is fixed; only the command line can ask for a fresh one.
 std::uint64_t seed_of(const Value& value) {
   if (value.kind() == Value::Kind::scalar && value.text() == "random") {
@@ -452,11 +445,6 @@ std::uint64_t seed_of(const Value& value) {
            "fresh one");
   }
   return value.count("`seed`");
-}
-
-std::string folder_of(const std::string& file) {
-  const std::filesystem::path folder = std::filesystem::path(file).parent_path();
-  return folder.empty() ? "." : folder.string();
 }
 
 std::vector<std::string> read_needs(const Value& value) {
@@ -566,12 +554,14 @@ Suite load_suite(const std::string& file) {
   Suite suite;
   suite.file = file;
   suite.text = text;
-  suite.stem = std::filesystem::path(file).stem().string();
-  suite.folder = folder_of(file);
+  const std::filesystem::path path(file);
+  suite.stem = path.stem().string();
+  suite.folder = path.has_parent_path() ? path.parent_path().string() : ".";
   read_head(document, keys, suite);
   suite.scenes = read_scenes(keys);
-  read_estimators(document, keys.require("estimators", estimators_example), suite);
-  read_tests(document, keys.require("tests", tests_example), suite);
+  read_estimators(
+      document, keys.require("estimators", "estimators: {area: {plugin: luminaire/area}}"), suite);
+  read_tests(document, keys.require("tests", "tests: [claim: mean(area) == analytic]"), suite);
   if (const Value* v = keys.find("statements")) {
     suite.statements = read_statements(document, *v, suite.tests);
   }
