@@ -88,21 +88,18 @@ std::string effect_text(const TestOutcome& test, const Forecast& forecast) {
                 .relative = test.question.theta->is_relative(test.question, 0)}));
 }
 
-std::string gate_text(const Gate& gate) {
-  return fmt::format("{}: {} {}, limit {}", gate.state, gate.name, reports::human(gate.value),
-                     reports::human(gate.limit));
-}
-
 /// The gates that are not green.
 std::vector<std::string> gate_notes(const std::vector<Gate>& gates) {
   std::vector<std::string> notes;
   std::size_t more = 0;
   for (const Gate& gate : gates) {
     if (gate.state == "green") continue;
-    if (notes.size() < most_gates)
-      notes.push_back(gate_text(gate));
-    else
+    if (notes.size() == most_gates) {
       ++more;
+      continue;
+    }
+    notes.push_back(fmt::format("{}: {} {}, limit {}", gate.state, gate.name,
+                                reports::human(gate.value), reports::human(gate.limit)));
   }
   if (more > 0) notes.push_back(fmt::format("{} more gates that are not green", more));
   return notes;

@@ -25,10 +25,6 @@
 namespace assay::harness {
 namespace {
 
-std::uint64_t most_recorded(const reports::Test& test) {
-  return std::ranges::max(test.samples, {}, &reports::Sample::secondaries).secondaries;
-}
-
 /// The record's sample of a subject's channel, or null.
 const reports::Sample* recorded_of(const reports::Test& test, const Question& question,
                                    std::size_t subject, std::size_t channel) {
@@ -124,7 +120,8 @@ double mean_at(const reports::ImageFinding& found, const ImageShape& shape,
 
 /// True if the record does not contradict the observation.
 bool print_observation(const Question& question, const Recorded& recorded, std::uint64_t index) {
-  const std::uint64_t drawn = most_recorded(recorded.test);
+  const std::uint64_t drawn =
+      std::ranges::max(recorded.test.samples, {}, &reports::Sample::secondaries).secondaries;
   if (index >= drawn) {
     refuse({}, "observation {} was not drawn: the test used 0 to {}", index, drawn - 1);
   }

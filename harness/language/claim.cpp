@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/algorithm/string/trim.hpp>
 #include <charconv>
 #include <cmath>
 
@@ -517,17 +518,11 @@ void check_claim(const Claim& claim) {
   std::visit([&](const auto& side) { check_side(claim, side); }, claim.right);
 }
 
-std::string trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t\r\n");
-  if (first == std::string_view::npos) return "";
-  return std::string(text.substr(first, text.find_last_not_of(" \t\r\n") + 1 - first));
-}
-
 }  // namespace
 
 Claim parse_claim(std::string_view text, const Location& where) {
   Claim claim = Parser(text, where).claim();
-  claim.text = trimmed(text);
+  claim.text = boost::trim_copy_if(std::string(text), is_blank);
   check_claim(claim);
   return claim;
 }

@@ -14,11 +14,6 @@ namespace {
 
 bool excludes(const std::string& filter) { return filter.starts_with("-"); }
 
-bool has_tag(const TestEntry& test, const std::vector<std::string>& tags) {
-  return std::ranges::any_of(
-      tags, [&](const std::string& tag) { return std::ranges::count(test.tags, tag) > 0; });
-}
-
 bool passes(const std::vector<std::string>& filters, const std::string& id) {
   const auto includes_it = [&](const std::string& filter) {
     return !excludes(filter) && matches(filter, id);
@@ -83,8 +78,9 @@ std::string unmatched_filter(const std::vector<Suite>& suites, const std::string
 }  // namespace
 
 bool selects(const Selection& selection, const TestEntry& test) {
-  return (selection.tags.empty() || has_tag(test, selection.tags)) &&
-         passes(selection.filters, test.id);
+  const bool tagged = selection.tags.empty() ||
+                      std::ranges::find_first_of(test.tags, selection.tags) != test.tags.end();
+  return tagged && passes(selection.filters, test.id);
 }
 
 std::string option_words(const std::string& option, const std::vector<std::string>& values) {

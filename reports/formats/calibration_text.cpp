@@ -52,12 +52,6 @@ const char* mark_of(const Calibration& calibration, const CalibrationCell& cell)
   return unflagged(calibration, cell) ? "!  " : "   ";
 }
 
-std::string console_rows(const Calibration& calibration, const CalibrationCell& cell) {
-  std::string out = mark_of(calibration, cell) + cell.law + "\n";
-  for (const ClaimLine& line : lines_of(cell)) out += row_of(line);
-  return out;
-}
-
 constexpr const char* legend =
     R"(holds   the claim holds exactly        off  the claim is off by `detect`
 alone   this method forced, in one look, its warnings (gates) ignored
@@ -80,9 +74,10 @@ bool unflagged(const Calibration& calibration, const CalibrationCell& cell) {
 }
 
 std::size_t defects(const Calibration& calibration) {
-  return static_cast<std::size_t>(std::count_if(
-      calibration.cells.begin(), calibration.cells.end(),
-      [&](const auto& cell) { return above(calibration, cell) || unflagged(calibration, cell); }));
+  const auto errs = [&](const CalibrationCell& cell) {
+    return above(calibration, cell) || unflagged(calibration, cell);
+  };
+  return static_cast<std::size_t>(std::ranges::count_if(calibration.cells, errs));
 }
 
 std::string verdict_sentence(const Calibration& calibration) {
@@ -108,7 +103,8 @@ std::string console(const Calibration& calibration) {
       group = cell.method + cell.question;
       out += fmt::format("{}: {}\n", cell.method, cell.question);
     }
-    out += console_rows(calibration, cell);
+    out += mark_of(calibration, cell) + cell.law + "\n";
+    for (const ClaimLine& line : lines_of(cell)) out += row_of(line);
   }
   return fmt::format("{}\n{}{}\n\n{}\n", out, legend,
                      fmt::join(wrap("detect    " + calibration.detect, 80), "\n"),
