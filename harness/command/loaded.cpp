@@ -34,17 +34,6 @@ std::vector<Suite> load_suites(const std::vector<std::string>& files,
 
 namespace {
 
-Loaded run_of(const RunCommand& command) {
-  Loaded all{load_suites(command.suites, command.assignments), command.options};
-  all.options.assigns = !command.assignments.empty();
-  take_shard_from(system_environment, all.options);
-  return all;
-}
-
-Loaded run_of(const CheckCommand& command) {
-  return {{suite_of_claim(command.arguments)}, command.options};
-}
-
 /// Keeps freed memory in the process. Pictures allocate and free tens of megabytes, and new pages
 /// from the system would cost more than the work on them.
 void keep_freed_memory() {
@@ -52,17 +41,22 @@ void keep_freed_memory() {
   mallopt(M_TRIM_THRESHOLD, -1);
 }
 
-Loaded run_of(const ImagesCommand& command) {
-  keep_freed_memory();
-  return {{suite_of_images(command.arguments)}, command.options};
-}
-
 }  // namespace
 
 Loaded loaded(const Command& command) {
-  if (const auto* run = std::get_if<RunCommand>(&command)) return run_of(*run);
-  if (const auto* check = std::get_if<CheckCommand>(&command)) return run_of(*check);
-  if (const auto* images = std::get_if<ImagesCommand>(&command)) return run_of(*images);
+  if (const auto* run = std::get_if<RunCommand>(&command)) {
+    Loaded all{load_suites(run->suites, run->assignments), run->options};
+    all.options.assigns = !run->assignments.empty();
+    take_shard_from(system_environment, all.options);
+    return all;
+  }
+  if (const auto* check = std::get_if<CheckCommand>(&command)) {
+    return {{suite_of_claim(check->arguments)}, check->options};
+  }
+  if (const auto* images = std::get_if<ImagesCommand>(&command)) {
+    keep_freed_memory();
+    return {{suite_of_images(images->arguments)}, images->options};
+  }
   refuse({}, "this command runs no test");
 }
 
