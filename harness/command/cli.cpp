@@ -532,7 +532,7 @@ Examples:
               OneOf<std::string>{shells}, "bash, fish or zsh");
 }
 
-std::vector<CommandText> all_commands();
+const std::vector<CommandRow>& command_rows();
 
 void define_man(Options& options, TextCommand& command) {
   options.about(R"(Prints the manual page, which lists all commands and options.
@@ -540,7 +540,7 @@ void define_man(Options& options, TextCommand& command) {
 Examples:
   assay man > assay.1 && man -l assay.1
 )");
-  options.afterwards([&command] { command.text = man_page(all_commands()); });
+  options.afterwards([&command] { command.text = man_page(texts_of(command_rows())); });
 }
 
 template <class Kind>
@@ -578,16 +578,15 @@ const std::vector<CommandRow>& command_rows() {
   return rows;
 }
 
-std::vector<CommandText> all_commands() { return texts_of(command_rows()); }
-
 }  // namespace
 
 Command parse_command_line(const std::vector<std::string>& arguments) {
   // The scripts of `assay completion` ask with this word.
   if (!arguments.empty() && arguments.front() == "__complete") {
-    return TextCommand{completions(all_commands(), {arguments.begin() + 1, arguments.end()})};
+    return TextCommand{
+        completions(texts_of(command_rows()), {arguments.begin() + 1, arguments.end()})};
   }
-  if (arguments == Texts{"help", "all"}) return TextCommand{help_of_all(all_commands())};
+  if (arguments == Texts{"help", "all"}) return TextCommand{help_of_all(texts_of(command_rows()))};
   return parsed(arguments, command_rows());
 }
 
