@@ -22,12 +22,9 @@ double order(const Channel& channel) {
 }
 
 const Channel* least_excluded(const Test& test) {
-  const Channel* least = nullptr;
-  for (const Channel& channel : test.channels) {
-    if (!channel.p_pass && !channel.log10_p_pass) return nullptr;
-    if (least == nullptr || order(channel) > order(*least)) least = &channel;
-  }
-  return least;
+  const auto has_p = [](const Channel& each) { return each.p_pass || each.log10_p_pass; };
+  if (test.channels.empty() || !std::ranges::all_of(test.channels, has_p)) return nullptr;
+  return &*std::ranges::max_element(test.channels, {}, order);
 }
 
 NamedP p_of_claim(const Test& test) {

@@ -66,7 +66,7 @@ struct Tested {
 
 /// Less of a result that says more of the method: a kill by few samples first, what is undecided
 /// last.
-std::pair<int, double> order(const Tested& one) {
+std::pair<int, double> rank(const Tested& one) {
   constexpr double none = std::numeric_limits<double>::infinity();
   const auto samples = static_cast<double>(one.samples);
   switch (one.test->verdict) {
@@ -131,7 +131,7 @@ KillMatrix kill_matrix(const Suite& suite) {
     const std::string method = method_of(test);
     const Tested one{&test, mutant->sample->primaries * mutant->sample->secondaries};
     const auto [best, is_first] = mutants[mutant->place].emplace(method, one);
-    if (!is_first && order(one) < order(best->second)) best->second = one;
+    if (!is_first && rank(one) < rank(best->second)) best->second = one;
     if (std::ranges::find(matrix.methods, method) == matrix.methods.end())
       matrix.methods.push_back(method);
   }
