@@ -61,14 +61,6 @@ std::vector<EstimatorEntry> parse_options(const std::vector<std::string>& option
   return entries;
 }
 
-EstimatorEntry plugin_itself(const Source& source) {
-  const Entry& plugin = find_plugin(source.estimator, source.where);
-  return {.name = source.estimator,
-          .plugin = plugin.information.name,
-          .parameters = Value::map({}, source.where),
-          .where = source.where};
-}
-
 EstimatorEntry entry_for(const Source& source, const std::vector<EstimatorEntry>& given) {
   if (const auto* entry = entry_named(given, source.estimator)) return *entry;
   const std::string near = nearest(source.estimator, names_of(given, &EstimatorEntry::name));
@@ -76,11 +68,13 @@ EstimatorEntry entry_for(const Source& source, const std::vector<EstimatorEntry>
     refuse(source.where, "no --estimator is named `{}`; did you mean `{}`?", source.estimator,
            near);
   }
-  if (given.empty() || source.estimator.find('/') != std::string::npos)
-    return plugin_itself(source);
   try {
-    return plugin_itself(source);
+    return {.name = source.estimator,
+            .plugin = find_plugin(source.estimator, source.where).information.name,
+            .parameters = Value::map({}, source.where),
+            .where = source.where};
   } catch (const InputError& error) {
+    if (given.empty() || source.estimator.find('/') != std::string::npos) throw;
     refuse(error.where(), "{}; --estimator names {}", error.message(),
            quoted(names_of(given, &EstimatorEntry::name)));
   }
