@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -251,8 +250,6 @@ struct CalibrationCase {
   /// The claim on which a verdict against the level is possible, with this method forced and all
   /// observations in one look. Gates are shown but have no effect.
   CalibratedClaim alone = {};
-
-  std::array<CalibratedClaim*, 3> claims() { return {&holds, &off, &alone}; }
 };
 
 constexpr double usual_beta = 0.01;
@@ -280,17 +277,6 @@ CalibrationCase case_of(const Draft& draft, const Facts& facts,
   if (!draft.off.empty()) made.off.suite = suite_of(draft.off, keys);
   return made;
 }
-
-}  // namespace
-
-const std::vector<std::string>& calibration_laws() {
-  static const std::vector<std::string> laws{
-      "normal(0, 1)",    "exponential(1)", "lognormal(0, 0.5)", "lognormal(0, 1)",
-      "bernoulli(0.01)", "student_t(5)",   "uniform(0, 1)",     "zero_inflated(0.1)"};
-  return laws;
-}
-
-namespace {
 
 /// The cases of one law with their estimators; empty if no question suits the method and the law.
 /// Questions point into it, so it cannot move.
@@ -366,7 +352,7 @@ using reports::VerdictRates;
 std::vector<CalibratedClaim*> claims_of(std::vector<CalibrationCase>& all) {
   std::vector<CalibratedClaim*> claims;
   for (CalibrationCase& each : all) {
-    for (CalibratedClaim* const claim : each.claims()) {
+    for (CalibratedClaim* const claim : {&each.holds, &each.off, &each.alone}) {
       if (!claim->suite) continue;
       claim->suite->alpha = each.cell.alpha;
       if (each.cell.proof) claim->suite->beta = each.cell.alpha;
@@ -520,6 +506,13 @@ void refuse_twice(const char* option, const std::vector<T>& values) {
 }
 
 }  // namespace
+
+const std::vector<std::string>& calibration_laws() {
+  static const std::vector<std::string> laws{
+      "normal(0, 1)",    "exponential(1)", "lognormal(0, 0.5)", "lognormal(0, 1)",
+      "bernoulli(0.01)", "student_t(5)",   "uniform(0, 1)",     "zero_inflated(0.1)"};
+  return laws;
+}
 
 reports::Calibration calibration(const CalibrateArguments& arguments, Progress& progress) {
   const auto start = std::chrono::steady_clock::now();

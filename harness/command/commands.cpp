@@ -30,6 +30,16 @@ bool selects_nothing(const std::vector<Suite>& suites, const Selection& selectio
   return !why.empty();
 }
 
+std::string digest_of(const std::string& file) {
+  std::string text(std::size_t{1} << 20, '\0');
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  std::error_code ignored;
+  return fmt::format("{:x} of {} bytes", text_hash(text),
+                     std::filesystem::file_size(file, ignored));
+}
+
 }  // namespace
 
 unsigned threads_of_rank(const RunOptions& options) { return std::max(1U, options.threads); }
@@ -130,20 +140,6 @@ int report_saved_run(const std::string& file, const Output& output) {
   RunReports(output).write(record);
   return 0;
 }
-
-namespace {
-
-std::string digest_of(const std::string& file) {
-  std::string text(std::size_t{1} << 20, '\0');
-  std::ifstream stream(file, std::ios::binary);
-  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(stream.gcount()));
-  std::error_code ignored;
-  return fmt::format("{:x} of {} bytes", text_hash(text),
-                     std::filesystem::file_size(file, ignored));
-}
-
-}  // namespace
 
 Identity identity_of(const std::vector<Suite>& suites, const RunOptions& options) {
   const reports::Tool tool = this_tool();
