@@ -16,6 +16,8 @@
 namespace assay::harness {
 namespace {
 
+namespace fs = std::filesystem;
+
 /// True if the file has the text unbroken at the value's place.
 bool stands_in_one_piece(const Document& document, const Value& value, const std::string& text) {
   const std::string_view line = document.line(value.where().line);
@@ -312,71 +314,6 @@ void require_parameter(const std::string& who, const EstimatorEntry& estimator,
   refuse(where, "{} has no parameter `{}`{}", who, key, suggestion(key, names));
 }
 
-}  // namespace
-
-void require_estimator_name(const std::string& name, const Location& where) {
-  if (is_estimator_name(name)) return;
-  refuse(where, "`{}` cannot name an estimator: a letter, then letters, digits, `_`, `-` and `/`",
-         name);
-}
-
-Value with_member(const Value& map, const std::string& key, const Value& value) {
-  std::vector<Value::Member> members = map.members();
-  const auto found = std::ranges::find(members, key, &Value::Member::first);
-  if (found == members.end()) {
-    members.emplace_back(key, value);
-  } else {
-    found->second = value;
-  }
-  return Value::map(std::move(members), map.where());
-}
-
-void set_parameter(EstimatorEntry& estimator, const std::string& key, const Value& value,
-                   const Value& scenes) {
-  require_parameter(estimator.plugin, estimator, key, value.where());
-  const bool is_text = value.kind() == Value::Kind::scalar;
-  if (key == "primaries") {
-    estimator.primaries.reset();
-    if (!is_text || value.text() != "auto") {
-      estimator.primaries = count_from(value, "`primaries`", 1);
-    }
-    return;
-  }
-  const Value* scene = key == "scene" && is_text ? scenes.find(value.text()) : nullptr;
-  estimator.parameters = with_member(estimator.parameters, key, scene ? *scene : value);
-}
-
-void read_test_keys(const Document& document, const Value& map, TestEntry& test) {
-  for (const auto& [key, given] : map.members()) test.keys[key] = document.key(given);
-  if (const Value* v = map.find("detect")) test.detect = read_margin(*v, "`detect`");
-  if (const Value* v = map.find("allow")) test.allow = read_margin(*v, "`allow`");
-  if (const Value* v = map.find("weight")) test.weight = positive_number(*v, "`weight`");
-  if (const Value* v = map.find("expect")) {
-    using enum reports::Verdict;
-    constexpr reports::Verdict verdicts[] = {pass, fail, invalid, error};
-    test.expect = verdicts[choice(*v, "`expect`", {"pass", "fail", "invalid", "error"})];
-  }
-  if (const Value* v = map.find("tags")) test.tags = read_tags(*v);
-  if (const Value* v = map.find("test")) {
-    test.method = method_names()[choice(*v, "`test`", method_names())];
-  }
-  if (const Value* v = map.find("secondaries")) {
-    test.secondaries = count_from(*v, "`secondaries`", 2);
-  }
-  if (const Value* v = map.find("budget")) test.budget = read_budget(document, *v);
-  if (const Value* v = map.find("over")) test.over = read_sweep(*v);
-  if (const Value* v = map.find("reference")) read_reference(*v, test);
-  if (const Value* v = map.find("cost")) {
-    test.cost = static_cast<CostKind>(choice(*v, "`cost`", {cost_words.begin(), cost_words.end()}));
-  }
-  if (const Value* v = map.find("paired")) {
-    test.paired = choice(*v, "`paired`", {"false", "true"}) == 1;
-  }
-  check_test(test);
-}
-
-namespace {
-
 /// Reads an entry of `estimators:`. `scenes` is the suite's map `scenes:`.
 EstimatorEntry read_estimator(const Document& document, const std::string& name, const Value& value,
                               const Value& scenes) {
@@ -535,63 +472,6 @@ void read_tests(const Document& document, const Value& list, Suite& suite) {
   }
 }
 
-}  // namespace
-
-std::vector<Source> sources_of(const Claim& claim) {
-  std::vector<Source> sources{claim.left.source};
-  if (const auto* right = std::get_if<ScaledQuantity>(&claim.right)) {
-    sources.push_back(right->quantity.source);
-  }
-  return sources;
-}
-
-Suite load_suite(const std::string& file) {
-  const std::string text = read_text_file(file);
-  const Document document(file, text);
-  const Keys keys(document, document.root(), "a suite",
-                  {"suite", "about", "alpha", "beta", "seed", "needs", "budget", "scenes",
-                   "estimators", "tests", "statements"});
-  Suite suite;
-  suite.file = file;
-  suite.text = text;
-  const std::filesystem::path path(file);
-  suite.stem = path.stem().string();
-  suite.folder = path.has_parent_path() ? path.parent_path().string() : ".";
-  read_head(document, keys, suite);
-  suite.scenes = read_scenes(keys);
-  read_estimators(
-      document, keys.require("estimators", "estimators: {area: {plugin: luminaire/area}}"), suite);
-  read_tests(document, keys.require("tests", "tests: [claim: mean(area) == analytic]"), suite);
-  if (const Value* v = keys.find("statements")) {
-    suite.statements = read_statements(document, *v, suite.tests);
-  }
-  return suite;
-}
-
-std::string excerpt(const Location& where) {
-  // Reading a pipe would block.
-  std::error_code ignored;
-  if (where.line < 1 || !std::filesystem::is_regular_file(where.file, ignored)) return "";
-  try {
-    const std::string text = read_text_file(where.file);
-    if (text.find_first_not_of(" \t\r\n") == std::string::npos) return "";  // nothing to point at
-    const std::vector<std::string_view> lines = lines_of(text);
-    const auto index = static_cast<std::size_t>(where.line) - 1;
-    // An error at the end of the file is shown at the line after its last.
-    const bool exists = index < lines.size();
-    if (!exists && index > lines.size()) return "";
-    std::string_view line = exists ? lines[index] : std::string_view{};
-    if (index == 0 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
-    return caret_below(line, where.column);
-  } catch (const InputError&) {
-    return "";
-  }
-}
-
-namespace {
-
-namespace fs = std::filesystem;
-
 /// Compares files that exist, or one that the command is about to make.
 bool is_same_file(const std::string& one, const std::string& other) {
   std::error_code failure;
@@ -615,6 +495,118 @@ void add_named_files(const Value& value, const fs::path& folder, std::vector<std
 }
 
 }  // namespace
+
+void require_estimator_name(const std::string& name, const Location& where) {
+  if (is_estimator_name(name)) return;
+  refuse(where, "`{}` cannot name an estimator: a letter, then letters, digits, `_`, `-` and `/`",
+         name);
+}
+
+Value with_member(const Value& map, const std::string& key, const Value& value) {
+  std::vector<Value::Member> members = map.members();
+  const auto found = std::ranges::find(members, key, &Value::Member::first);
+  if (found == members.end()) {
+    members.emplace_back(key, value);
+  } else {
+    found->second = value;
+  }
+  return Value::map(std::move(members), map.where());
+}
+
+void set_parameter(EstimatorEntry& estimator, const std::string& key, const Value& value,
+                   const Value& scenes) {
+  require_parameter(estimator.plugin, estimator, key, value.where());
+  const bool is_text = value.kind() == Value::Kind::scalar;
+  if (key == "primaries") {
+    estimator.primaries.reset();
+    if (!is_text || value.text() != "auto") {
+      estimator.primaries = count_from(value, "`primaries`", 1);
+    }
+    return;
+  }
+  const Value* scene = key == "scene" && is_text ? scenes.find(value.text()) : nullptr;
+  estimator.parameters = with_member(estimator.parameters, key, scene ? *scene : value);
+}
+
+void read_test_keys(const Document& document, const Value& map, TestEntry& test) {
+  for (const auto& [key, given] : map.members()) test.keys[key] = document.key(given);
+  if (const Value* v = map.find("detect")) test.detect = read_margin(*v, "`detect`");
+  if (const Value* v = map.find("allow")) test.allow = read_margin(*v, "`allow`");
+  if (const Value* v = map.find("weight")) test.weight = positive_number(*v, "`weight`");
+  if (const Value* v = map.find("expect")) {
+    using enum reports::Verdict;
+    constexpr reports::Verdict verdicts[] = {pass, fail, invalid, error};
+    test.expect = verdicts[choice(*v, "`expect`", {"pass", "fail", "invalid", "error"})];
+  }
+  if (const Value* v = map.find("tags")) test.tags = read_tags(*v);
+  if (const Value* v = map.find("test")) {
+    test.method = method_names()[choice(*v, "`test`", method_names())];
+  }
+  if (const Value* v = map.find("secondaries")) {
+    test.secondaries = count_from(*v, "`secondaries`", 2);
+  }
+  if (const Value* v = map.find("budget")) test.budget = read_budget(document, *v);
+  if (const Value* v = map.find("over")) test.over = read_sweep(*v);
+  if (const Value* v = map.find("reference")) read_reference(*v, test);
+  if (const Value* v = map.find("cost")) {
+    test.cost = static_cast<CostKind>(choice(*v, "`cost`", {cost_words.begin(), cost_words.end()}));
+  }
+  if (const Value* v = map.find("paired")) {
+    test.paired = choice(*v, "`paired`", {"false", "true"}) == 1;
+  }
+  check_test(test);
+}
+
+std::vector<Source> sources_of(const Claim& claim) {
+  std::vector<Source> sources{claim.left.source};
+  if (const auto* right = std::get_if<ScaledQuantity>(&claim.right)) {
+    sources.push_back(right->quantity.source);
+  }
+  return sources;
+}
+
+Suite load_suite(const std::string& file) {
+  const std::string text = read_text_file(file);
+  const Document document(file, text);
+  const Keys keys(document, document.root(), "a suite",
+                  {"suite", "about", "alpha", "beta", "seed", "needs", "budget", "scenes",
+                   "estimators", "tests", "statements"});
+  Suite suite;
+  suite.file = file;
+  suite.text = text;
+  const fs::path path(file);
+  suite.stem = path.stem().string();
+  suite.folder = path.has_parent_path() ? path.parent_path().string() : ".";
+  read_head(document, keys, suite);
+  suite.scenes = read_scenes(keys);
+  read_estimators(
+      document, keys.require("estimators", "estimators: {area: {plugin: luminaire/area}}"), suite);
+  read_tests(document, keys.require("tests", "tests: [claim: mean(area) == analytic]"), suite);
+  if (const Value* v = keys.find("statements")) {
+    suite.statements = read_statements(document, *v, suite.tests);
+  }
+  return suite;
+}
+
+std::string excerpt(const Location& where) {
+  // Reading a pipe would block.
+  std::error_code ignored;
+  if (where.line < 1 || !fs::is_regular_file(where.file, ignored)) return "";
+  try {
+    const std::string text = read_text_file(where.file);
+    if (text.find_first_not_of(" \t\r\n") == std::string::npos) return "";  // nothing to point at
+    const std::vector<std::string_view> lines = lines_of(text);
+    const auto index = static_cast<std::size_t>(where.line) - 1;
+    // An error at the end of the file is shown at the line after its last.
+    const bool exists = index < lines.size();
+    if (!exists && index > lines.size()) return "";
+    std::string_view line = exists ? lines[index] : std::string_view{};
+    if (index == 0 && line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
+    return caret_below(line, where.column);
+  } catch (const InputError&) {
+    return "";
+  }
+}
 
 std::vector<std::string> files_read(const std::vector<Suite>& suites) {
   std::vector<std::string> files;
