@@ -153,38 +153,6 @@ std::string mutants_text(const Information& information, const std::vector<Entry
   return out.empty() ? "" : "\nmutants of it\n" + out;
 }
 
-}  // namespace
-
-std::string wrapped(const std::string& text, std::size_t width, std::size_t indent) {
-  std::string out;
-  const std::string all = text.substr(0, text.find_last_not_of('\n') + 1);
-  for (const std::string& line : reports::wrap(all, static_cast<int>(width - indent))) {
-    out += (line.empty() ? "" : std::string(indent, ' ')) + line + "\n";
-  }
-  return out;
-}
-
-std::string beside(const std::string& left, const std::string& right, std::size_t column) {
-  const std::string lines = wrapped(right, page_width, column);
-  if (left.size() >= column) return left + "\n" + lines;
-  return left + lines.substr(left.size());
-}
-
-std::string manual(const Entry& plugin, const std::vector<Entry>& entries) {
-  const Information& information = plugin.information;
-  std::string out = information.name + "\n" + wrapped(information.summary, page_width, 2);
-  if (!information.description.empty()) {
-    out += "\n" + wrapped(information.description, page_width, 0);
-  }
-  out += "\n" + field("bias", bias_text(information));
-  out += field("primaries", primaries_text(information));
-  out += field("mutant of", information.original) + field("defect", information.defect);
-  return out + parameters_text(information) + prepared_text(plugin) +
-         mutants_text(information, entries);
-}
-
-namespace {
-
 /// A sentence for each property that a user may have to know.
 std::string page_of(const MethodRow& row) {
   std::string page;
@@ -247,6 +215,34 @@ Table table_of(const char* plural, const char* singular, const Rows& rows) {
 }
 
 }  // namespace
+
+std::string wrapped(const std::string& text, std::size_t width, std::size_t indent) {
+  std::string out;
+  const std::string all = text.substr(0, text.find_last_not_of('\n') + 1);
+  for (const std::string& line : reports::wrap(all, static_cast<int>(width - indent))) {
+    out += (line.empty() ? "" : std::string(indent, ' ')) + line + "\n";
+  }
+  return out;
+}
+
+std::string beside(const std::string& left, const std::string& right, std::size_t column) {
+  const std::string lines = wrapped(right, page_width, column);
+  if (left.size() >= column) return left + "\n" + lines;
+  return left + lines.substr(left.size());
+}
+
+std::string manual(const Entry& plugin, const std::vector<Entry>& entries) {
+  const Information& information = plugin.information;
+  std::string out = information.name + "\n" + wrapped(information.summary, page_width, 2);
+  if (!information.description.empty()) {
+    out += "\n" + wrapped(information.description, page_width, 0);
+  }
+  out += "\n" + field("bias", bias_text(information));
+  out += field("primaries", primaries_text(information));
+  out += field("mutant of", information.original) + field("defect", information.defect);
+  return out + parameters_text(information) + prepared_text(plugin) +
+         mutants_text(information, entries);
+}
 
 const std::vector<Table>& tables() {
   static const std::vector<Table> all{table_of("methods", "a method", method_table()),

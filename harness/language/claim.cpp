@@ -518,6 +518,26 @@ void check_claim(const Claim& claim) {
   std::visit([&](const auto& side) { check_side(claim, side); }, claim.right);
 }
 
+/// The shortest decimal whose hundredth, correctly rounded, is `value`.
+std::string percent_text(double value) {
+  for (int digits = 1; digits <= 17; ++digits) {
+    const std::string text =
+        fmt::format("{}", std::stod(fmt::format("{:.{}g}", 100 * value, digits)));
+    if (parse_margin(text + "%", {}, "").value == value) return text;
+  }
+  // 100 * value would be rounded: move the point in the text instead.
+  const std::string text = fmt::format("{:.16e}", value);
+  const std::size_t e = text.find('e');
+  return fmt::format("{}e{}", text.substr(0, e), std::stoi(text.substr(e + 1)) + 2);
+}
+
+std::string to_string(const ScaledQuantity& side) {
+  const std::string quantity = to_string(side.quantity);
+  return side.factor == 1 ? quantity : fmt::format("{} * {}", side.factor, quantity);
+}
+
+std::string to_string(const Analytic&) { return "analytic"; }
+
 }  // namespace
 
 Claim parse_claim(std::string_view text, const Location& where) {
@@ -556,30 +576,6 @@ const char* to_string(Relation relation) {
   constexpr const char* names[] = {"==", "<=", ">=", "<", ">", "within"};
   return names[static_cast<int>(relation)];
 }
-
-namespace {
-
-/// The shortest decimal whose hundredth, correctly rounded, is `value`.
-std::string percent_text(double value) {
-  for (int digits = 1; digits <= 17; ++digits) {
-    const std::string text =
-        fmt::format("{}", std::stod(fmt::format("{:.{}g}", 100 * value, digits)));
-    if (parse_margin(text + "%", {}, "").value == value) return text;
-  }
-  // 100 * value would be rounded: move the point in the text instead.
-  const std::string text = fmt::format("{:.16e}", value);
-  const std::size_t e = text.find('e');
-  return fmt::format("{}e{}", text.substr(0, e), std::stoi(text.substr(e + 1)) + 2);
-}
-
-std::string to_string(const ScaledQuantity& side) {
-  const std::string quantity = to_string(side.quantity);
-  return side.factor == 1 ? quantity : fmt::format("{} * {}", side.factor, quantity);
-}
-
-std::string to_string(const Analytic&) { return "analytic"; }
-
-}  // namespace
 
 std::string to_string(const Constant& number) {
   if (number.standard_error == 0) return fmt::format("{}", number.value);
