@@ -89,9 +89,8 @@ std::string usual_with_alpha(const Pictures& candidate, const Pictures& referenc
 
 std::string as_name(const std::string& layer) {
   std::string name = "_" + (layer.empty() ? "picture" : layer);
-  for (char& c : name) {
-    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
-  }
+  const auto is_other = [](unsigned char c) { return std::isalnum(c) == 0; };
+  std::ranges::replace_if(name, is_other, '_');
   return name;
 }
 

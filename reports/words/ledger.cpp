@@ -11,8 +11,6 @@
 namespace assay::reports {
 namespace {
 
-std::string day(const std::string& date) { return date.substr(0, date.find('T')); }
-
 /// "2026-11-18 02:00 UTC" of ISO 8601.
 std::string minute(std::string date) {
   constexpr std::size_t length = 16;
@@ -59,9 +57,10 @@ std::string e_text(const Number& log_e) {
 
 std::string series_sentence(const LedgerSeries& series) {
   if (series.nights.empty()) return "no night yet";
+  const std::string& first = series.nights.front().date;
   return fmt::format("{} since {}: {}e-value E = {}, alarm at {}",
                      counted(series.nights.size(), "night", "nights"),
-                     day(series.nights.front().date), theta_sentence(series),
+                     first.substr(0, first.find('T')), theta_sentence(series),
                      e_text(series.log_e()), e_text(series.limit));
 }
 

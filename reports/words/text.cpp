@@ -55,9 +55,6 @@ bool within(std::span<const Range> ranges, char32_t c) {
   return std::ranges::any_of(ranges, [c](Range r) { return c >= r.first && c <= r.last; });
 }
 
-// The marks of the verdicts lie in a range that is otherwise wide.
-bool narrow_mark(char32_t c) { return c == 0x2713 || c == 0x2717; }
-
 // The longest start of the text that fits, and its columns.
 std::size_t fitting(std::string_view text, int width) {
   int used = 0;
@@ -189,8 +186,9 @@ std::string cap(std::string text, std::size_t bytes) {
 
 int columns(char32_t c) {
   if (within(combining, c)) return 0;
-  if (narrow_mark(c)) return 1;
-  return within(wide, c) ? 2 : 1;
+  // The marks of the verdicts lie in a range that is otherwise wide.
+  const bool is_mark = c == 0x2713 || c == 0x2717;
+  return within(wide, c) && !is_mark ? 2 : 1;
 }
 
 int columns(std::string_view text) {
