@@ -18,7 +18,7 @@ SceneDescription without_occluders(SceneDescription description) {
 
 Colour colour_of(const Setting& setting, const Setting& open) {
   const auto control = luminaire::exact_integrals(open);
-  if (!control) throw std::invalid_argument("AreaPairs: the luminaire must be a planar polygon");
+  if (!control) throw std::invalid_argument("area_pairs: the luminaire must be a planar polygon");
   const double l = setting.radiance();
   Colour colour{.name = "irradiance", .control_integral = l * control->irradiance};
   const auto full = luminaire::exact_integrals(setting);
@@ -31,40 +31,27 @@ Colour colour_of(const Setting& setting, const Setting& open) {
   return colour;
 }
 
-class AreaPairs final : public PairSource {
- public:
-  AreaPairs(const SceneDescription& description, const Location& where)
-      : setting_(std::make_shared<const Setting>(description, where)),
-        primary_(setting_),
-        colours_{colour_of(*setting_, Setting(without_occluders(description), where))} {}
+}  // namespace
 
-  const std::vector<Colour>& colours() const override { return colours_; }
-  void draw(Stream& random, std::span<Pair> out, Cost& cost) const override {
+SharedPairs area_pairs(const SceneDescription& description, const Location& where) {
+  const auto setting = std::make_shared<const Setting>(description, where);
+  const auto draw = [primary = luminaire::AreaPrimary<>(setting)](Stream& random,
+                                                                  std::span<Pair> out, Cost& cost) {
     // Points first, rays after: see AveragingEstimator.
     std::array<luminaire::LightSample, 32> points;
     for (std::size_t done = 0; done < out.size(); done += points.size()) {
       const std::size_t size = std::min(points.size(), out.size() - done);
-      for (std::size_t i = 0; i < size; ++i) points[i] = primary_.draw(random);
+      for (std::size_t i = 0; i < size; ++i) points[i] = primary.draw(random);
       for (std::size_t i = 0; i < size; ++i) {
         out[done + i].control[0] = points[i].value;
-        out[done + i].full[0] = primary_.value(points[i], cost);
+        out[done + i].full[0] = primary.value(points[i], cost);
       }
     }
-  }
-  std::vector<NamedSampler> samplers() const override {
-    return luminaire::point_samplers<>(setting_);
-  }
-
- private:
-  luminaire::SharedSetting setting_;
-  luminaire::AreaPrimary<> primary_;
-  std::vector<Colour> colours_;
-};
-
-}  // namespace
-
-SharedPairs area_pairs(const SceneDescription& description, const Location& where) {
-  return std::make_shared<const AreaPairs>(description, where);
+  };
+  return std::make_shared<const PairSource>(
+      PairSource{.colours = {colour_of(*setting, Setting(without_occluders(description), where))},
+                 .draw = draw,
+                 .samplers = luminaire::point_samplers<>(setting)});
 }
 
 SharedPairs read_area_pairs(Parameters& given) {

@@ -49,7 +49,7 @@ Channel channel_of(const Colour& colour, double lambda) {
 }
 
 ColourSums draw_sums(const PairSource& source, std::uint64_t count, Stream& random, Cost& cost) {
-  const auto& colours = source.colours();
+  const auto& colours = source.colours;
   ColourSums sums;
   for_each_pair(source, count, random, cost, [&](const Pair& pair) {
     for (std::size_t c = 0; c < colours.size(); ++c) {
@@ -78,7 +78,7 @@ LambdaRule clamped_lambda(Centre centre) {
 }
 
 std::vector<Channel> channels_with_lambda(const PairSource& source) {
-  const auto& colours = source.colours();
+  const auto& colours = source.colours;
   std::vector<Channel> channels;
   for (const Colour& colour : colours) {
     channels.push_back(irradiance(colour));
@@ -94,10 +94,10 @@ std::vector<Channel> channels_with_lambda(const PairSource& source) {
 
 std::shared_ptr<const Setup> fixed(SharedPairs source, double lambda) {
   std::vector<Channel> channels;
-  for (const Colour& colour : source->colours()) channels.push_back(channel_of(colour, lambda));
+  for (const Colour& colour : source->colours) channels.push_back(channel_of(colour, lambda));
   const auto estimate = [source, lambda](Stream& random, std::uint64_t primaries,
                                          std::span<double> out, Cost& cost) {
-    const auto& colours = source->colours();
+    const auto& colours = source->colours;
     Rgb sum;
     for_each_pair(*source, primaries, random, cost, [&](const Pair& pair) {
       for (std::size_t c = 0; c < colours.size(); ++c) {
@@ -108,13 +108,13 @@ std::shared_ptr<const Setup> fixed(SharedPairs source, double lambda) {
       out[c] = sum[c] / static_cast<double>(primaries);
     }
   };
-  return setup_of({std::move(channels), estimating(estimate), source->samplers()});
+  return setup_of({std::move(channels), estimating(estimate), source->samplers});
 }
 
 std::shared_ptr<const Setup> same_samples(SharedPairs source, LambdaRule rule) {
   const auto estimate = [source, rule](Stream& random, std::uint64_t primaries,
                                        std::span<double> out, Cost& cost) {
-    const auto& colours = source->colours();
+    const auto& colours = source->colours;
     const ColourSums sums = draw_sums(*source, primaries, random, cost);
     for (std::size_t c = 0; c < colours.size(); ++c) {
       const double lambda = rule(sums[c], colours[c].control_integral);
@@ -122,7 +122,7 @@ std::shared_ptr<const Setup> same_samples(SharedPairs source, LambdaRule rule) {
       out[colours.size() + c] = lambda;
     }
   };
-  return setup_of({channels_with_lambda(*source), estimating(estimate), source->samplers()});
+  return setup_of({channels_with_lambda(*source), estimating(estimate), source->samplers});
 }
 
 std::shared_ptr<const Setup> cross_fitted(SharedPairs source, LambdaRule rule) {
@@ -131,7 +131,7 @@ std::shared_ptr<const Setup> cross_fitted(SharedPairs source, LambdaRule rule) {
     const auto lambda = [&](const Sums& sums, double integral) {
       return sums.count < 2 ? 0 : rule(sums, integral);
     };
-    const auto& colours = source->colours();
+    const auto& colours = source->colours;
     const std::uint64_t half = primaries / 2;
     const ColourSums first = draw_sums(*source, half, random, cost);
     const ColourSums second = draw_sums(*source, primaries - half, random, cost);
@@ -144,15 +144,15 @@ std::shared_ptr<const Setup> cross_fitted(SharedPairs source, LambdaRule rule) {
       out[colours.size() + c] = (of_first + of_second) / 2;
     }
   };
-  return setup_of({channels_with_lambda(*source), estimating(estimate), source->samplers()});
+  return setup_of({channels_with_lambda(*source), estimating(estimate), source->samplers});
 }
 
 std::shared_ptr<const Setup> ratio(SharedPairs source) {
   std::vector<Channel> channels;
-  for (const Colour& colour : source->colours()) channels.push_back(irradiance(colour));
+  for (const Colour& colour : source->colours) channels.push_back(irradiance(colour));
   const auto estimate = [source](Stream& random, std::uint64_t primaries, std::span<double> out,
                                  Cost& cost) {
-    const auto& colours = source->colours();
+    const auto& colours = source->colours;
     Rgb full, control;
     for_each_pair(*source, primaries, random, cost, [&](const Pair& pair) {
       full += pair.full;
@@ -162,7 +162,7 @@ std::shared_ptr<const Setup> ratio(SharedPairs source) {
       out[c] = control[c] == 0 ? 0 : colours[c].control_integral * full[c] / control[c];
     }
   };
-  return setup_of({std::move(channels), estimating(estimate), source->samplers()});
+  return setup_of({std::move(channels), estimating(estimate), source->samplers});
 }
 
 namespace {

@@ -46,13 +46,11 @@ struct Colour {
   std::optional<Moments> moments = {};  ///< where they are exact
 };
 
-/// Draws pairs. Immutable, shared by all workers.
-class PairSource {
- public:
-  virtual ~PairSource() = default;
-  virtual const std::vector<Colour>& colours() const = 0;
-  virtual void draw(Stream& random, std::span<Pair> out, Cost& cost) const = 0;
-  virtual std::vector<NamedSampler> samplers() const { return {}; }
+/// Draws pairs. Shared by all workers.
+struct PairSource {
+  std::vector<Colour> colours;
+  std::function<void(Stream& random, std::span<Pair> out, Cost& cost)> draw;
+  std::vector<NamedSampler> samplers;
 };
 
 using SharedPairs = std::shared_ptr<const PairSource>;

@@ -28,42 +28,6 @@ sky::SharedDirections directions_of(Parameters& given, const sky::Setting& setti
   return std::make_shared<const steerable::SteeredDirections<>>(tree, lobe, setting.frame());
 }
 
-class SkyPairs final : public PairSource {
- public:
-  SkyPairs(sky::SharedSetting setting, sky::SharedDirections directions)
-      : setting_(std::move(setting)),
-        directions_(std::move(directions)),
-        mean_(setting_->radiance().mean()) {
-    for (const Channel& channel : sky::irradiance_channels(*setting_)) {
-      colours_.push_back({.name = channel.name,
-                          .control_integral = std::numbers::pi * mean_[colours_.size()],
-                          .integral = channel.mean,
-                          .integral_error = channel.mean_error});
-    }
-  }
-
-  const std::vector<Colour>& colours() const override { return colours_; }
-  void draw(Stream& random, std::span<Pair> out, Cost& cost) const override {
-    for (Pair& pair : out) {
-      const double u = random.uniform();
-      const sky::Direction direction = directions_->draw(u, random.uniform());
-      pair = {};
-      if (direction.w.z <= 0) continue;
-      pair.full = setting_->received(direction.w, cost) / direction.density;
-      pair.control = direction.w.z * mean_ / direction.density;
-    }
-  }
-  std::vector<NamedSampler> samplers() const override {
-    return {{"direction", std::make_shared<sky::DirectionSampler>(setting_, directions_)}};
-  }
-
- private:
-  sky::SharedSetting setting_;
-  sky::SharedDirections directions_;
-  Rgb mean_;
-  std::vector<Colour> colours_;
-};
-
 }  // namespace
 
 std::vector<ParameterInformation> sky_pair_parameters() {
@@ -74,7 +38,29 @@ std::vector<ParameterInformation> sky_pair_parameters() {
 
 SharedPairs read_sky_pairs(Parameters& given) {
   const sky::SharedSetting setting = sky::read_setting(given);
-  return std::make_shared<const SkyPairs>(setting, directions_of(given, *setting));
+  const sky::SharedDirections directions = directions_of(given, *setting);
+  const Rgb mean = setting->radiance().mean();
+  PairSource pairs{
+      .colours = {},
+      .draw =
+          [setting, directions, mean](Stream& random, std::span<Pair> out, Cost& cost) {
+            for (Pair& pair : out) {
+              const double u = random.uniform();
+              const sky::Direction direction = directions->draw(u, random.uniform());
+              pair = {};
+              if (direction.w.z <= 0) continue;
+              pair.full = setting->received(direction.w, cost) / direction.density;
+              pair.control = direction.w.z * mean / direction.density;
+            }
+          },
+      .samplers = {{"direction", std::make_shared<sky::DirectionSampler>(setting, directions)}}};
+  for (const Channel& channel : sky::irradiance_channels(*setting)) {
+    pairs.colours.push_back({.name = channel.name,
+                             .control_integral = std::numbers::pi * mean[pairs.colours.size()],
+                             .integral = channel.mean,
+                             .integral_error = channel.mean_error});
+  }
+  return std::make_shared<const PairSource>(std::move(pairs));
 }
 
 }  // namespace assay::correlated

@@ -19,42 +19,34 @@ using namespace correlated;
 /// Changes pairs that have just been drawn of a source.
 using ChangePairs = std::function<void(const PairSource&, Stream&, std::span<Pair>)>;
 
-/// Another source's pairs with its colours or pairs changed.
-class AlteredPairs final : public PairSource {
- public:
-  AlteredPairs(SharedPairs source, std::vector<Colour> colours, ChangePairs change)
-      : source_(std::move(source)), colours_(std::move(colours)), change_(std::move(change)) {}
-
-  const std::vector<Colour>& colours() const override { return colours_; }
-  void draw(Stream& random, std::span<Pair> out, Cost& cost) const override {
-    source_->draw(random, out, cost);
-    if (change_) change_(*source_, random, out);
-  }
-  std::vector<NamedSampler> samplers() const override { return source_->samplers(); }
-
- private:
-  SharedPairs source_;
-  std::vector<Colour> colours_;
-  ChangePairs change_;
-};
+SharedPairs with_other_pairs(const SharedPairs& source, ChangePairs change) {
+  PairSource altered = *source;
+  altered.draw = [source, change = std::move(change)](Stream& random, std::span<Pair> out,
+                                                      Cost& cost) {
+    source->draw(random, out, cost);
+    change(*source, random, out);
+  };
+  return std::make_shared<const PairSource>(std::move(altered));
+}
 
 // The reference stays the original's; its variance is the original's alone.
+SharedPairs without_variance(const SharedPairs& source) {
+  PairSource altered = *source;
+  for (Colour& colour : altered.colours) colour.moments.reset();
+  return std::make_shared<const PairSource>(std::move(altered));
+}
+
 SharedPairs changed(const SharedPairs& source, ChangePairs change) {
-  std::vector<Colour> colours = source->colours();
-  for (Colour& colour : colours) colour.moments.reset();
-  return std::make_shared<AlteredPairs>(source, std::move(colours), std::move(change));
+  return with_other_pairs(without_variance(source), std::move(change));
 }
 
 SharedPairs with_integral(const SharedPairs& source, double integral) {
-  std::vector<Colour> colours = source->colours();
-  for (Colour& colour : colours) {
-    colour.control_integral = integral;
-    colour.moments.reset();
-  }
-  return std::make_shared<AlteredPairs>(source, std::move(colours), nullptr);
+  PairSource altered = *without_variance(source);
+  for (Colour& colour : altered.colours) colour.control_integral = integral;
+  return std::make_shared<const PairSource>(std::move(altered));
 }
 
-double integral_of(const SharedPairs& pairs) { return pairs->colours()[0].control_integral; }
+double integral_of(const SharedPairs& pairs) { return pairs->colours[0].control_integral; }
 
 SharedPairs added_twice(Parameters& given) {
   return changed(read_area_pairs(given), [](const PairSource&, Stream&, std::span<Pair> out) {
@@ -77,7 +69,7 @@ SharedPairs other_points(Parameters& given) {
     source.draw(random, others, uncounted);
     for (std::size_t i = 0; i < out.size(); ++i) out[i].control = others[i].control;
   };
-  return std::make_shared<AlteredPairs>(sound, sound->colours(), exchange);
+  return with_other_pairs(sound, exchange);
 }
 
 SharedPairs without_pi(Parameters& given) {
@@ -101,8 +93,8 @@ SharedPairs without_radiance(Parameters& given) {
 SharedPairs grey_integral(Parameters& given) {
   const SharedPairs pairs = read_sky_pairs(given);
   double sum = 0;
-  for (const Colour& colour : pairs->colours()) sum += colour.control_integral;
-  return with_integral(pairs, sum / static_cast<double>(pairs->colours().size()));
+  for (const Colour& colour : pairs->colours) sum += colour.control_integral;
+  return with_integral(pairs, sum / static_cast<double>(pairs->colours.size()));
 }
 
 /// A mutant of the estimator with a given lambda, by other pairs.
@@ -126,7 +118,7 @@ void only_published_rule(Parameters& given) {
 }
 
 Sums sums_of(const PairSource& pixel, std::uint64_t count, Stream& random, Cost& cost) {
-  const double integral = pixel.colours()[0].control_integral;
+  const double integral = pixel.colours[0].control_integral;
   Sums all;
   for_each_pair(pixel, count, random, cost,
                 [&](const Pair& pair) { all.add(pair.full[0], integral - pair.control[0]); });
@@ -162,7 +154,7 @@ std::shared_ptr<const Setup> pooled_lambda(Parameters& given) {
     out[0] = first.estimate(lambda);
     out[1] = lambda;
   };
-  return setup_of({channels_with_lambda(*own), estimating(estimate), own->samplers()});
+  return setup_of({channels_with_lambda(*own), estimating(estimate), own->samplers});
 }
 
 }  // namespace
