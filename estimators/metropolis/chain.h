@@ -82,44 +82,22 @@ struct Walker {
   Contribution propose(bool large);
 };
 
-/// Finds the first state.
-class Start {
- public:
-  virtual ~Start() = default;
-  /// Puts the walker at its first state and returns b, the mean of I over independent points.
-  virtual double operator()(Walker& walker) const = 0;
-};
+/// Puts the walker at its first state and returns b, the mean of I over `count` independent points.
+using Start = double (*)(Walker& walker, std::uint64_t count);
 
-/// The first state is one of `count` independent points, drawn in proportion to I. The normaliser b
-/// is the mean of I over the same points. So E[b h(first)] is the integral of h I for every h.
-class ResampledStart : public Start {
- public:
-  explicit ResampledStart(std::uint64_t count) : count_(count) {}
-  double operator()(Walker& walker) const override;
-
- protected:
-  std::uint64_t count() const { return count_; }
-
- private:
-  std::uint64_t count_;
-};
-
-/// The first state is a uniform point; b is the mean of I over `count` others.
-class UniformStart final : public Start {
- public:
-  explicit UniformStart(std::uint64_t count) : count_(count) {}
-  double operator()(Walker& walker) const override;
-
- private:
-  std::uint64_t count_;
-};
+/// The first state is one of the points, drawn in proportion to I. So E[b h(first)] is the integral
+/// of h I for every h.
+double start_in_proportion(Walker& walker, std::uint64_t count);
+/// The first state is another uniform point.
+double start_anywhere(Walker& walker, std::uint64_t count);
 
 struct Recipe {
   SharedTarget target;
   double p_large;  ///< probability of a large step, in (0, 1]
   std::shared_ptr<const SmallStep> step;
   std::shared_ptr<const Rules> rules;
-  std::shared_ptr<const Start> start;
+  std::uint64_t bootstrap;  ///< number of points that the start takes b from
+  Start start = start_in_proportion;
   /// The coordinates of a worker's chains.
   std::function<std::unique_ptr<LazyCoordinates>(std::shared_ptr<const SmallStep>)> coordinates;
 };

@@ -83,7 +83,7 @@ class ChainEstimator final : public Estimator {
     tally_.pixels.assign(shape_.pixels(), {});
     tally_.steps = tally_.acceptance = 0;
     Walker walker{*recipe_->target, *coordinates_, random, cost};
-    const double normaliser = (*recipe_->start)(walker);
+    const double normaliser = recipe_->start(walker, recipe_->bootstrap);
     // If all points of the start are black, b = 0 and the estimate is 0.
     if (normaliser > 0) {
       for (std::uint64_t i = 0; i < primaries; ++i) step(walker, normaliser);
@@ -234,9 +234,9 @@ Contribution Walker::propose(bool large) {
 }
 
 // A reservoir of one: the state is replaced with probability I / (sum of I so far).
-double ResampledStart::operator()(Walker& walker) const {
+double start_in_proportion(Walker& walker, std::uint64_t count) {
   double sum = 0;
-  for (std::uint64_t i = 0; i < count_; ++i) {
+  for (std::uint64_t i = 0; i < count; ++i) {
     const Contribution candidate = walker.propose(true);
     sum += candidate.importance;
     if (walker.random.uniform() * sum < candidate.importance) {
@@ -246,17 +246,17 @@ double ResampledStart::operator()(Walker& walker) const {
       walker.coordinates.reject();
     }
   }
-  return sum / static_cast<double>(count_);
+  return sum / static_cast<double>(count);
 }
 
-double UniformStart::operator()(Walker& walker) const {
+double start_anywhere(Walker& walker, std::uint64_t count) {
   double sum = 0;
-  for (std::uint64_t i = 0; i <= count_; ++i) {
+  for (std::uint64_t i = 0; i <= count; ++i) {
     walker.current = walker.propose(true);
     walker.coordinates.accept();
-    if (i < count_) sum += walker.current.importance;
+    if (i < count) sum += walker.current.importance;
   }
-  return sum / static_cast<double>(count_);
+  return sum / static_cast<double>(count);
 }
 
 std::shared_ptr<const Setup> chain(Recipe recipe) {
@@ -285,7 +285,7 @@ Recipe recipe(const Ingredients& ingredients, bool combined) {
           .p_large = ingredients.p_large,
           .step = std::make_shared<SmallStep>(ingredients.boundary),
           .rules = std::move(rules),
-          .start = std::make_shared<ResampledStart>(ingredients.bootstrap),
+          .bootstrap = ingredients.bootstrap,
           .coordinates = [](std::shared_ptr<const SmallStep> step) {
             return std::make_unique<LazyCoordinates>(std::move(step));
           }};
@@ -366,7 +366,7 @@ Entry uniform_start() {
           [](Parameters& given) {
             const Ingredients parts = read_ingredients(given);
             Recipe list = recipe(parts, given.string("weights") != "mean_value");
-            list.start = std::make_shared<UniformStart>(parts.bootstrap);
+            list.start = start_anywhere;
             return chain(std::move(list));
           }};
 }

@@ -80,22 +80,16 @@ struct LargeFixed final : MultipleImportanceRules {
   }
 };
 
-struct ScaledNormaliser final : ResampledStart {
-  using ResampledStart::ResampledStart;
-  double operator()(Walker& walker) const override {
-    return 1.05 * ResampledStart::operator()(walker);
-  }
-};
+double scaled_normaliser(Walker& walker, std::uint64_t count) {
+  return 1.05 * start_in_proportion(walker, count);
+}
 
 /// b from other points than those that the first state is drawn from.
-struct OtherNormaliser final : ResampledStart {
-  using ResampledStart::ResampledStart;
-  double operator()(Walker& walker) const override {
-    const double other = UniformStart(count())(walker);
-    walker.current = {};
-    return ResampledStart::operator()(walker) > 0 ? other : 0;
-  }
-};
+double other_normaliser(Walker& walker, std::uint64_t count) {
+  const double other = start_anywhere(walker, count);
+  walker.current = {};
+  return start_in_proportion(walker, count) > 0 ? other : 0;
+}
 
 struct FirstRestored final : LazyCoordinates {
   using LazyCoordinates::LazyCoordinates;
@@ -156,11 +150,8 @@ Defect rules() {
   };
 }
 
-template <class Mutant>
-Defect start() {
-  return [](Recipe& recipe, const Ingredients& parts) {
-    recipe.start = std::make_shared<Mutant>(parts.bootstrap);
-  };
+Defect start(Start mutant) {
+  return [mutant](Recipe& recipe, const Ingredients&) { recipe.start = mutant; };
 }
 
 template <class Mutant>
@@ -221,13 +212,13 @@ std::vector<Entry> mutants_metropolis() {
             "takes every step's weight for that of a large one: +46 %, +15 %.",
             rules<LargeFixed<true>>()),
       entry(mean_value, "normaliser_scaled", "takes 1.05 b for b: +5 % everywhere.",
-            start<ScaledNormaliser>()),
+            start(scaled_normaliser)),
       entry(multiple, "normaliser_scaled_multiple", "takes 1.05 b for b: +5 %, +1 %.",
-            start<ScaledNormaliser>()),
+            start(scaled_normaliser)),
       entry(mean_value, "other_normaliser",
             "estimates b from other points than those that it starts from: -27 %, +8.5 % with 16 "
             "points and 100 steps; like 1 / bootstrap.",
-            start<OtherNormaliser>()),
+            start(other_normaliser)),
       entry(mean_value, "first_restored",
             "puts only the first coordinate back when a proposal is rejected: -18 %, +9 %.",
             bookkeeping<FirstRestored>()),
