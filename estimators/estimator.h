@@ -290,30 +290,6 @@ enum class ImageStreams {
   shared  ///< one for all of them: each element's primary gets the same numbers
 };
 
-/// A secondary estimate is an image at `primaries` samples an element. `Primary` is as for
-/// AveragingEstimator; there is one for each element.
-template <class Primary>
-class ImagingEstimator final : public Estimator {
- public:
-  ImagingEstimator(const std::vector<Primary>& primaries, ImageStreams streams)
-      : streams_(streams) {
-    for (const Primary& primary : primaries) elements_.emplace_back(primary);
-  }
-
-  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
-                 Cost& cost) override {
-    for (std::size_t i = 0; i < elements_.size(); ++i) {
-      const std::size_t substream = streams_ == ImageStreams::own ? i : 0;
-      Stream mine = random.substream(static_cast<std::uint32_t>(substream));
-      elements_[i].secondary(mine, primaries, out.subspan(i, 1), cost);
-    }
-  }
-
- private:
-  std::vector<AveragingEstimator<Primary>> elements_;
-  ImageStreams streams_;
-};
-
 /// The parts of an image: a channel and a primary for each element, in the shape's order. The
 /// channels' names are those of element_name().
 template <class Primary>
@@ -324,19 +300,28 @@ struct ImageParts {
   ImageStreams streams = ImageStreams::own;
 };
 
-/// The set-up of an image whose elements are averages. `parts.channels` and `parts.primaries` have
-/// parts.shape.elements() entries.
+/// The set-up of an image whose elements are averages. A secondary estimate is an image at
+/// `primaries` samples an element. `Primary` is as for AveragingEstimator. `parts.channels` and
+/// `parts.primaries` have parts.shape.elements() entries.
 template <class Primary>
 std::shared_ptr<const Setup> imaging(ImageParts<Primary> parts) {
   parts.shape.independent = parts.streams == ImageStreams::own;
   for (std::size_t i = 0; i < parts.channels.size(); ++i) {
     parts.channels[i].name = element_name(parts.shape, i);
   }
-  const auto make = [primaries = std::move(parts.primaries), streams = parts.streams] {
-    return std::make_unique<ImagingEstimator<Primary>>(primaries, streams);
+  std::vector<AveragingEstimator<Primary>> averages;
+  for (Primary& primary : parts.primaries) averages.emplace_back(std::move(primary));
+  const auto estimate = [averages = std::move(averages), own = parts.streams == ImageStreams::own](
+                            Stream& random, std::uint64_t primaries, std::span<double> out,
+                            Cost& cost) mutable {
+    for (std::size_t i = 0; i < averages.size(); ++i) {
+      Stream mine = random.substream(static_cast<std::uint32_t>(own ? i : 0));
+      averages[i].secondary(mine, primaries, out.subspan(i, 1), cost);
+    }
   };
-  return setup_of(
-      {.channels = std::move(parts.channels), .make = make, .image = std::move(parts.shape)});
+  return setup_of({.channels = std::move(parts.channels),
+                   .make = estimating(estimate),
+                   .image = std::move(parts.shape)});
 }
 
 }  // namespace assay
