@@ -4,8 +4,9 @@
 
 namespace assay {
 
-/// The instruction set that rays are traced with ("avx2"); the bits of hits depend on it, so
-/// records of runs name it.
+/// The instruction set that rays are traced with: "avx2", "sse4.2" on older x86 processors, or
+/// "sse2" on others, where Embree translates it. Hits at edges may differ in the last bit between
+/// them, so a record of a run names it.
 std::string ray_instruction_set();
 
 }  // namespace assay

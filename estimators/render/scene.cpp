@@ -12,6 +12,8 @@
 #include <string>
 #include <utility>
 
+#include "estimators/instruction_set.h"
+
 namespace assay::render {
 
 namespace {
@@ -176,6 +178,10 @@ bool Scene::occluded(const RoundedRay& ray) const {
   return query.tfar < 0;
 }
 
-std::string isa() { return Device::shared()->isa(); }
-
 }  // namespace assay::render
+
+namespace assay {
+
+std::string ray_instruction_set() { return render::Device::shared()->isa(); }
+
+}  // namespace assay

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <string>
 #include <variant>
 #include <vector>
 
@@ -87,10 +86,5 @@ class Scene {
  private:
   std::shared_ptr<RTCSceneTy> scene_;
 };
-
-/// The instruction set that all scenes use: "avx2", "sse4.2" on older x86 processors, or "sse2" on
-/// others, where Embree translates it. Hits at edges may differ in the last bit between them, so a
-/// record of a run names it.
-std::string isa();
 
 }  // namespace assay::render

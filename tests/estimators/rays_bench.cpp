@@ -21,6 +21,7 @@
 
 #include "estimators/catalogue.h"
 #include "estimators/core/flow.h"
+#include "estimators/instruction_set.h"
 #include "paths/worlds.h"
 #include "render/hemisphere.h"
 #include "render/scene.h"
@@ -108,7 +109,7 @@ Observed observed(const char* plugin, const Value& scene, std::uint64_t observat
 class Bare {
  public:
   explicit Bare(const std::vector<render::TriangleMesh>& meshes)
-      : device_(rtcNewDevice(("isa=" + render::isa() + ",threads=1").c_str())),
+      : device_(rtcNewDevice(("isa=" + ray_instruction_set() + ",threads=1").c_str())),
         scene_(rtcNewScene(device_)) {
     rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_HIGH);
@@ -265,7 +266,7 @@ int main() {
   const render::TriangleMesh occluder = render::read_obj(sphere);
   const render::TriangleMesh light =
       render::fan({{-.8, -.6, 1}, {.9, -.6, 1}, {.9, .8, 1}, {-.8, .8, 1}});
-  std::printf("isa %s, %zu occluding triangles\n", render::isa().c_str(),
+  std::printf("isa %s, %zu occluding triangles\n", ray_instruction_set().c_str(),
               occluder.triangles.size());
 
   const auto to_light = rays_by([](double u, double v) {
