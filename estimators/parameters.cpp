@@ -23,20 +23,22 @@ std::string suggestion(std::string_view name, const std::vector<std::string>& kn
 }
 
 std::string range_text(const ParameterInformation& p) {
+  const auto& [low, high, low_excluded, high_excluded] = p.range;
   std::string out;
-  if (std::isfinite(p.low))
-    out += std::string(p.low_excluded ? "above " : "at least ") + shortest_text(p.low);
-  if (std::isfinite(p.high)) {
-    out += (out.empty() ? "" : " and ") + std::string(p.high_excluded ? "below " : "at most ") +
-           shortest_text(p.high);
+  if (std::isfinite(low)) {
+    out += std::string(low_excluded ? "above " : "at least ") + shortest_text(low);
+  }
+  if (std::isfinite(high)) {
+    out += (out.empty() ? "" : " and ") + std::string(high_excluded ? "below " : "at most ") +
+           shortest_text(high);
   }
   if (!out.empty() && !p.unit.empty()) out += " " + p.unit;
   return out.empty() ? "finite" : out;
 }
 
-bool within(const ParameterInformation& p, double value) {
-  const bool above = p.low_excluded ? value > p.low : value >= p.low;
-  const bool below = p.high_excluded ? value < p.high : value <= p.high;
+bool within(const NumberRange& range, double value) {
+  const bool above = range.low_excluded ? value > range.low : value >= range.low;
+  const bool below = range.high_excluded ? value < range.high : value <= range.high;
   return std::isfinite(value) && above && below;
 }
 
@@ -70,10 +72,7 @@ ParameterInformation number_parameter(std::string name, std::string summary, std
           .summary = std::move(summary),
           .unit = std::move(unit),
           .fallback = std::move(fallback),
-          .low = range.low,
-          .high = range.high,
-          .low_excluded = range.low_excluded,
-          .high_excluded = range.high_excluded};
+          .range = range};
 }
 
 ParameterInformation count_parameter(std::string name, std::string summary, std::string fallback,
@@ -177,13 +176,11 @@ void Parameters::check(const ParameterInformation& parameter, const Value& value
   }
 }
 
-double Parameters::in_range(const ParameterInformation& parameter, double number) const {
-  if (!within(parameter, number)) {
-    refuse(parameter.name, "must be " + range_text(parameter) + ", but it is " +
-                               shortest_text(number) +
-                               (parameter.reason.empty() ? "" : ": " + parameter.reason));
-  }
-  return number;
+void Parameters::in_range(const ParameterInformation& parameter, double number) const {
+  if (within(parameter.range, number)) return;
+  refuse(parameter.name, "must be " + range_text(parameter) + ", but it is " +
+                             shortest_text(number) +
+                             (parameter.reason.empty() ? "" : ": " + parameter.reason));
 }
 
 void Parameters::one_of(const ParameterInformation& parameter, const std::string& text) const {

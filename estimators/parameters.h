@@ -17,6 +17,14 @@ namespace assay {
 /// `texts` is a list of texts that are taken as they are written: the words of a command.
 enum class ParameterType { number, count, boolean, string, texts, structure };
 
+/// The numbers that a parameter may have.
+struct NumberRange {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool low_excluded = false;
+  bool high_excluded = false;
+};
+
 /// One parameter as the plugin declares it. `fallback` is YAML-like text; empty means required.
 struct ParameterInformation {
   std::string name;
@@ -24,22 +32,11 @@ struct ParameterInformation {
   std::string summary;
   std::string unit = "";
   std::string fallback = "";
-  double low = -std::numeric_limits<double>::infinity();  ///< least value allowed
-  double high = std::numeric_limits<double>::infinity();  ///< largest value allowed
-  bool low_excluded = false;
-  bool high_excluded = false;
+  NumberRange range = {};
   std::vector<std::string> choices = {};  ///< The only texts allowed of a string.
   std::string reason = "";                ///< Reason for the range, if that is not plain.
   /// False if no draw depends on it (a time-out): it is no part of the stream's key.
   bool shapes_draws = true;
-};
-
-/// The numbers that a parameter may have.
-struct NumberRange {
-  double low = -std::numeric_limits<double>::infinity();
-  double high = std::numeric_limits<double>::infinity();
-  bool low_excluded = false;
-  bool high_excluded = false;
 };
 
 /// The usual declarations, in one line each. `low` of above() is excluded.
@@ -106,7 +103,7 @@ class Parameters {
   const Value& value(std::string_view name);
   void complete(const ParameterInformation&);
   void check(const ParameterInformation&, const Value&) const;
-  double in_range(const ParameterInformation&, double) const;
+  void in_range(const ParameterInformation&, double) const;
   void one_of(const ParameterInformation&, const std::string&) const;
 
   std::string plugin_;

@@ -26,10 +26,7 @@ ParameterInformation probability_parameter() {
   return {.name = "light_probability",
           .summary = "probability that the light is sampled, not the BRDF",
           .fallback = "0.5",
-          .low = 0,
-          .high = 1,
-          .low_excluded = true,
-          .high_excluded = true,
+          .range = {.low = 0, .high = 1, .low_excluded = true, .high_excluded = true},
           .reason = "a technique that is never chosen leaves nothing to combine"};
 }
 

@@ -132,8 +132,8 @@ std::vector<ParameterInformation> declared(const AssayEstimator& estimator,
                                    .type = type_of(p, library),
                                    .summary = or_empty(p.summary),
                                    .fallback = or_empty(p.fallback)};
-    if (has(p.flags, ASSAY_LOW)) parameter.low = p.low;
-    if (has(p.flags, ASSAY_HIGH)) parameter.high = p.high;
+    if (has(p.flags, ASSAY_LOW)) parameter.range.low = p.low;
+    if (has(p.flags, ASSAY_HIGH)) parameter.range.high = p.high;
     all.push_back(std::move(parameter));
   }
   return all;

@@ -179,9 +179,7 @@ std::vector<ParameterInformation> chain_parameters() {
                   .summary = "probability of a large step, in which every coordinate is drawn "
                              "afresh; the others move each by 1/1024 to 1/64",
                   .fallback = "0.5",
-                  .low = 0,
-                  .high = 1,
-                  .low_excluded = true,
+                  .range = {.low = 0, .high = 1, .low_excluded = true},
                   .reason = "without large steps a chain never leaves the region that it began in, "
                             "and what it brings is not the integral"});
   list.push_back(
@@ -191,8 +189,7 @@ std::vector<ParameterInformation> chain_parameters() {
            "number of independent points before the chain, whose mean importance normalises it",
        .unit = "path evaluations",
        .fallback = "256",
-       .low = 1,
-       .high = 4294967295.0,
+       .range = {.low = 1, .high = 4294967295.0},
        .reason = "without any there is no normaliser b and no first state"});
   list.push_back(text_parameter("boundary",
                                 "what becomes of a coordinate that steps out of [0, 1): it comes "

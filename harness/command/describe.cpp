@@ -58,10 +58,11 @@ const char* domain_name(Domain domain) {
 /// "(0, 1]", "[1, inf)", "a, b or c"; "" if anything is allowed.
 std::string range_text(const ParameterInformation& p) {
   if (!p.choices.empty()) return fmt::format("{}", fmt::join(p.choices, " | "));
-  if (std::isinf(p.low) && std::isinf(p.high)) return "";
-  const double low = p.type == ParameterType::count ? std::max(p.low, 0.0) : p.low;
-  return fmt::format("{}{}, {}{}", p.low_excluded || std::isinf(low) ? "(" : "[", low, p.high,
-                     p.high_excluded || std::isinf(p.high) ? ")" : "]");
+  const NumberRange& range = p.range;
+  if (std::isinf(range.low) && std::isinf(range.high)) return "";
+  const double low = p.type == ParameterType::count ? std::max(range.low, 0.0) : range.low;
+  return fmt::format("{}{}, {}{}", range.low_excluded || std::isinf(low) ? "(" : "[", low,
+                     range.high, range.high_excluded || std::isinf(range.high) ? ")" : "]");
 }
 
 std::string field(const char* name, const std::string& text) {

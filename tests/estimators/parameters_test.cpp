@@ -6,12 +6,14 @@ namespace assay {
 namespace {
 
 const std::vector<ParameterInformation> known_parameters = {
-    {.name = "radius", .summary = "of the disc", .low = 0, .high = 10, .low_excluded = true},
+    {.name = "radius",
+     .summary = "of the disc",
+     .range = {.low = 0, .high = 10, .low_excluded = true}},
     {.name = "steps",
      .type = ParameterType::count,
      .summary = "how many",
      .fallback = "16",
-     .low = 1},
+     .range = {.low = 1}},
     {.name = "exact", .type = ParameterType::boolean, .summary = "", .fallback = "true"},
     {.name = "mode",
      .type = ParameterType::string,

@@ -89,14 +89,12 @@ TEST(Describe, OffersThePartsThatClaimsCanName) {
 }
 
 TEST(Describe, SaysWhyChannelsAreNotKnownYet) {
-  Entry entry{.information = {.name = "a/b",
-                              .summary = "Needs a number.",
-                              .parameters = {{.name = "n",
-                                              .summary = "how many",
-                                              .unit = "m",
-                                              .low = 0,
-                                              .low_excluded = true}}},
-              .prepare = [](Parameters&) { return std::shared_ptr<const assay::Setup>{}; }};
+  Entry entry{
+      .information =
+          {.name = "a/b",
+           .summary = "Needs a number.",
+           .parameters = {{.name = "n", .summary = "how many", .unit = "m", .range = above(0)}}},
+      .prepare = [](Parameters&) { return std::shared_ptr<const assay::Setup>{}; }};
   const std::string text = manual(entry, {});
   EXPECT_THAT(text, HasSubstr("n: number, (0, inf), m, required"));
   EXPECT_THAT(text, HasSubstr("channels: known once its parameters are given"));
