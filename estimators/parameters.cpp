@@ -204,6 +204,11 @@ const Value& Parameters::value(std::string_view name) {
   return values_.find(name)->second;
 }
 
+std::size_t Parameters::place_among_choices(std::string_view name) {
+  const std::vector<std::string>& choices = declared(name).choices;
+  return static_cast<std::size_t>(std::ranges::find(choices, string(name)) - choices.begin());
+}
+
 double Parameters::number(std::string_view name) { return value(name).number(name); }
 std::uint64_t Parameters::count(std::string_view name) { return value(name).count(name); }
 bool Parameters::boolean(std::string_view name) { return value(name).boolean(name); }

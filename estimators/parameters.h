@@ -74,6 +74,11 @@ class Parameters {
   std::uint64_t count(std::string_view name);
   bool boolean(std::string_view name);
   std::string string(std::string_view name);
+  /// A string with choices, as an enumeration that lists them in the same order.
+  template <class Enumeration>
+  Enumeration choice(std::string_view name) {
+    return static_cast<Enumeration>(place_among_choices(name));
+  }
   std::vector<std::string> texts(std::string_view name);
   /// A string that names a file, resolved against the folder of the suite.
   std::string file(std::string_view name);
@@ -101,6 +106,7 @@ class Parameters {
  private:
   const ParameterInformation& declared(std::string_view name) const;
   const Value& value(std::string_view name);
+  std::size_t place_among_choices(std::string_view name);
   void complete(const ParameterInformation&);
   void check(const ParameterInformation&, const Value&) const;
   void in_range(const ParameterInformation&, double) const;

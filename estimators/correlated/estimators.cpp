@@ -246,7 +246,7 @@ Entry ratio_entry(const Family& family) {
 }  // namespace
 
 LambdaRule read_rule(Parameters& given) {
-  const Centre centre = given.string("centre") == "mean" ? Centre::mean : Centre::integral;
+  const auto centre = given.choice<Centre>("centre");
   return given.boolean("clamped") ? clamped_lambda(centre) : estimated_lambda(centre);
 }
 

@@ -1,6 +1,7 @@
 #include "depth_of_field/image.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -51,11 +52,8 @@ std::vector<double> exact_variances(const std::vector<Moments>& moments) {
   return out;
 }
 
-double exponent(const std::string& allocation) {
-  if (allocation == "variance") return 1;
-  if (allocation == "two_thirds") return 2.0 / 3;
-  return allocation == "deviation" ? 0.5 : 0;
-}
+// Of the choices of `allocation`.
+constexpr std::array exponents = {0.0, 1.0, 2.0 / 3, 0.5};
 
 }  // namespace
 
@@ -76,7 +74,7 @@ ImagePlan read_image_plan(Parameters& given, const PredictionRules* rules) {
     plan.exact.push_back(exact_moments(plan.setting->scene(), plan.grid.pixel(i)));
   }
   const Allocation allocation{static_cast<double>(given.count("samples")),
-                              exponent(given.string("allocation"))};
+                              exponents[given.choice<std::size_t>("allocation")]};
   const std::string source = given.string("prediction");
   std::vector<double> variances = exact_variances(plan.exact);
   if (rules || (allocation.exponent > 0 && source != "exact")) {

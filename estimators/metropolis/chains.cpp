@@ -147,11 +147,6 @@ ImageShape dependent(ImageShape shape) {
   return shape;
 }
 
-Boundary boundary_of(const std::string& name) {
-  if (name == "wrap") return Boundary::wrap;
-  return name == "reflect" ? Boundary::reflect : Boundary::reject;
-}
-
 /// A secondary estimate is the image of `primaries` independent points: what chains are held
 /// against. Channels: the image's elements and `image_mean`.
 std::shared_ptr<const Setup> independent(SharedTarget target) {
@@ -272,7 +267,7 @@ Ingredients read_ingredients(Parameters& given) {
   return {.target = read_target(given),
           .p_large = given.number("p_large"),
           .bootstrap = given.count("bootstrap"),
-          .boundary = boundary_of(given.string("boundary"))};
+          .boundary = given.choice<Boundary>("boundary")};
 }
 
 Recipe recipe(const Ingredients& ingredients, bool combined) {

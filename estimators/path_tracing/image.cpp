@@ -92,11 +92,6 @@ bool in_tile(const Picture& picture, std::size_t x, std::size_t y) {
 
 }  // namespace
 
-Integrator integrator_of(const std::string& name) {
-  if (name == "light") return Integrator::light;
-  return name == "bsdf" ? Integrator::bsdf : Integrator::multiple;
-}
-
 Rgb radiance(const Scene& scene, Integrator integrator, const Defects& defects, Ray ray,
              Stream& random, Cost& cost) {
   // Mirrors and glass could go on for ever.
@@ -205,7 +200,7 @@ void render(const Picture& picture, Stream& random, std::uint64_t primaries, std
 
 Picture read_picture(Parameters& given) {
   return {.scene = scene_of(given.string("scene")),
-          .integrator = integrator_of(given.string("integrator")),
+          .integrator = given.choice<Integrator>("integrator"),
           .width = given.count("width"),
           .height = given.count("height")};
 }

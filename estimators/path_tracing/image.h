@@ -18,7 +18,6 @@ enum class Integrator {
   bsdf,     ///< by emitters that the path hits
   multiple  ///< by both, with the balance heuristic (Veach & Guibas 1995)
 };
-Integrator integrator_of(const std::string& name);
 
 /// The errors of a mutant; by default all is right.
 struct Defects {

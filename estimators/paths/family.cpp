@@ -163,18 +163,14 @@ ParameterInformation direct_parameter() {
 }
 
 Direct read_direct(Parameters& parameters, const Scene& scene) {
-  const std::string name = parameters.string("direct");
-  if (name == "hit") return Direct::hit;
-  if (name == "exact") {
-    if (!scene.law) {
-      parameters.refuse("direct", "exact direct light is known in spheres and furnaces only");
-    }
-    return Direct::exact;
+  const auto direct = parameters.choice<Direct>("direct");
+  if (direct == Direct::exact && !scene.law) {
+    parameters.refuse("direct", "exact direct light is known in spheres and furnaces only");
   }
-  if (largest(scene.global.all) == 0) {
+  if (direct == Direct::sampled && largest(scene.global.all) == 0) {
     parameters.refuse("direct", "there is no light to sample: no surface emits");
   }
-  return Direct::sampled;
+  return direct;
 }
 
 NamedSampler direction_sampler() {

@@ -63,14 +63,6 @@ ParameterInformation rule_parameter() {
       "max_albedo", {"max_albedo", "mean_albedo", "luminance", "throughput", "radiance"});
 }
 
-Rule read_rule(Parameters& parameters) {
-  const std::string name = parameters.string("rule");
-  if (name == "max_albedo") return Rule::max_albedo;
-  if (name == "mean_albedo") return Rule::mean_albedo;
-  if (name == "luminance") return Rule::luminance;
-  return name == "throughput" ? Rule::throughput : Rule::radiance;
-}
-
 /// The terminal value e of a surface: scale x albedo x arriving radiance. If direct light is found
 /// separately, its part of the diffuse reflection is left out.
 Rgb terminal_value(const Surface& surface, const Incoming& incoming, Direct direct, double scale) {
@@ -90,7 +82,7 @@ std::vector<Rgb> global_terminal(const Scene& scene, const Incoming& incoming, D
 }
 
 RoulettePlan read_classical(Parameters& parameters, const Scene& scene) {
-  return {.rule = read_rule(parameters), .direct = read_direct(parameters, scene)};
+  return {.rule = parameters.choice<Rule>("rule"), .direct = read_direct(parameters, scene)};
 }
 
 RoulettePlan read_improved(Parameters& parameters, const Scene& scene) {

@@ -164,13 +164,9 @@ std::optional<PictureWindow> crop_of(Parameters& parameters) {
 }
 
 recorded::PictureTreatment treatment_of(Parameters& parameters) {
-  const std::map<std::string, Rounding> roundings{{"none", Rounding::none},
-                                                  {"half", Rounding::half},
-                                                  {"png16", Rounding::png16},
-                                                  {"png8", Rounding::png8}};
   const std::string finite = parameters.string("finite");
   const std::string mask = parameters.string("mask");
-  return {.rounding = roundings.at(parameters.string("rounded")),
+  return {.rounding = parameters.choice<Rounding>("rounded"),
           .crop = crop_of(parameters),
           .mask = parameters.given("mask") ? parameters.file("mask") : "",
           .finite = parameters.given("finite") ? finite : ""};

@@ -90,9 +90,8 @@ Scene read_room(Parameters& parameters) {
 }
 
 Weighted read_weighted(Parameters& parameters, SharedRoom room) {
-  const bool marginal = parameters.string("weighting") == "marginal";
-  const Weighting weighting = marginal ? Weighting::marginal : Weighting::conditional;
-  if (marginal && !room->why_no_marginal().empty()) {
+  const auto weighting = parameters.choice<Weighting>("weighting");
+  if (weighting == Weighting::marginal && !room->why_no_marginal().empty()) {
     parameters.refuse("weighting", "the marginal density is " + room->why_no_marginal());
   }
   const double integral = given_target_integral(parameters, *room, weighting);

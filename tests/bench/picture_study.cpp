@@ -101,9 +101,14 @@ Found look(const Stack& a, const Stack& b) {
   return found;
 }
 
+path_tracing::Integrator integrator_of(const std::string& name) {
+  if (name == "light") return path_tracing::Integrator::light;
+  return name == "bsdf" ? path_tracing::Integrator::bsdf : path_tracing::Integrator::multiple;
+}
+
 Picture picture_of(const std::string& scene, const std::string& integrator) {
   return {.scene = path_tracing::scene_of(scene),
-          .integrator = path_tracing::integrator_of(integrator),
+          .integrator = integrator_of(integrator),
           .width = width,
           .height = height};
 }

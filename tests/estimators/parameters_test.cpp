@@ -42,6 +42,7 @@ TEST(Parameters, GivenValuesAndFallbacksAreRead) {
   EXPECT_EQ(p.count("steps"), 16u);
   EXPECT_TRUE(p.boolean("exact"));
   EXPECT_EQ(p.string("mode"), "slow");
+  EXPECT_EQ(p.choice<std::size_t>("mode"), 1u);
   EXPECT_EQ(p.structure("shape").items().size(), 2u);
   EXPECT_TRUE(p.given("radius"));
   EXPECT_FALSE(p.given("steps"));
