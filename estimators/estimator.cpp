@@ -12,6 +12,7 @@ class SetupOfParts final : public Setup {
   std::unique_ptr<Estimator> make() const override { return parts_.make(); }
   std::vector<NamedSampler> samplers() const override { return parts_.samplers; }
   std::optional<ImageShape> image() const override { return parts_.image; }
+  std::optional<Nature> nature() const override { return parts_.nature; }
   Cost cost() const override { return parts_.cost; }
 
  private:

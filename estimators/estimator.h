@@ -160,6 +160,7 @@ struct SetupParts {
   std::function<std::unique_ptr<Estimator>()> make;
   std::vector<NamedSampler> samplers = {};
   std::optional<ImageShape> image = {};
+  std::optional<Nature> nature = {};
   Cost cost = {};
 };
 std::shared_ptr<const Setup> setup_of(SetupParts parts);

@@ -423,24 +423,6 @@ class ForeignSampler final : public Sampler {
   mutable std::set<Asked> asked_alone_;
 };
 
-class ForeignSetup final : public Setup {
- public:
-  ForeignSetup(std::shared_ptr<Children> children, std::vector<NamedSampler> samplers)
-      : children_(std::move(children)), samplers_(std::move(samplers)) {}
-
-  std::vector<Channel> channels() const override { return children_->hello().channels; }
-  std::unique_ptr<Estimator> make() const override {
-    return std::make_unique<ForeignEstimator>(children_);
-  }
-  std::optional<ImageShape> image() const override { return children_->hello().image; }
-  std::optional<Nature> nature() const override { return children_->hello().nature; }
-  std::vector<NamedSampler> samplers() const override { return samplers_; }
-
- private:
-  std::shared_ptr<Children> children_;
-  std::vector<NamedSampler> samplers_;
-};
-
 }  // namespace
 
 std::shared_ptr<const Setup> setup_of(std::shared_ptr<Children> children) {
@@ -448,7 +430,13 @@ std::shared_ptr<const Setup> setup_of(std::shared_ptr<Children> children) {
   for (const SamplerNote& note : children->hello().samplers) {
     samplers.push_back({note.name, std::make_shared<ForeignSampler>(children, samplers.size())});
   }
-  return std::make_shared<ForeignSetup>(std::move(children), std::move(samplers));
+  const Hello& hello = children->hello();
+  return assay::setup_of(
+      {.channels = hello.channels,
+       .make = [children] { return std::make_unique<ForeignEstimator>(children); },
+       .samplers = std::move(samplers),
+       .image = hello.image,
+       .nature = hello.nature});
 }
 
 std::string mend_of_program(const std::string& program) {
