@@ -97,18 +97,17 @@ std::shared_ptr<const Setup> prepare(Parameters& parameters) {
 }
 
 std::vector<ParameterInformation> parameters() {
-  std::vector<ParameterInformation> all = {
-      {.name = "file",
-       .type = ParameterType::string,
-       .summary = "the library, relative to the suite"},
-      text_parameter("estimator", "which of its estimators; where it has one, that", "only"),
-      structure_parameter("parameters", "what the library declares, `{rate: 2}`", "{}"),
-      beside_draws(boolean_parameter(
-          "isolated",
-          "run in a process of its own; if false a crash of the library ends the whole run",
-          true))};
-  for (const ParameterInformation& term : foreign::terms_parameters()) all.push_back(term);
-  return all;
+  return joined(
+      {{.name = "file",
+        .type = ParameterType::string,
+        .summary = "the library, relative to the suite"},
+       text_parameter("estimator", "which of its estimators; where it has one, that", "only"),
+       structure_parameter("parameters", "what the library declares, `{rate: 2}`", "{}"),
+       beside_draws(boolean_parameter(
+           "isolated",
+           "run in a process of its own; if false a crash of the library ends the whole run",
+           true))},
+      foreign::terms_parameters());
 }
 
 }  // namespace

@@ -21,13 +21,11 @@ std::shared_ptr<const Setup> prepare(Parameters& parameters) {
 }
 
 std::vector<ParameterInformation> parameters() {
-  std::vector<ParameterInformation> all = foreign::terms_parameters();
-  all.insert(all.begin(),
-             {.name = "command",
-              .type = ParameterType::texts,
-              .summary = "the program and its arguments, `[python3, mine.py]`; it runs in "
-                         "the folder of the suite"});
-  return all;
+  return joined({{.name = "command",
+                  .type = ParameterType::texts,
+                  .summary = "the program and its arguments, `[python3, mine.py]`; it runs in "
+                             "the folder of the suite"}},
+                foreign::terms_parameters());
 }
 
 }  // namespace
