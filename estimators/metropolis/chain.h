@@ -63,9 +63,6 @@ class MultipleImportanceRules : public Rules {
   explicit MultipleImportanceRules(double p_large) : p_large_(p_large) {}
   Weights weights(const Step& step) const override;
 
- protected:
-  double p_large() const { return p_large_; }
-
  private:
   double p_large_;
 };

@@ -62,7 +62,7 @@ std::vector<std::vector<std::uint32_t>> seen_patches(const MeshWorld& world, std
 }  // namespace
 
 Zones::Zones(const SphereScene& scene, const Camera& camera)
-    : camera_(camera), seen_(exit_of_sphere(camera.position, camera.direction, false)) {
+    : seen_(exit_of_sphere(camera.position, camera.direction, false)) {
   double below = -1;
   for (const SphereScene::Zone& zone : scene.zones) {
     tops_.push_back(zone.top);

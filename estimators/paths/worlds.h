@@ -31,13 +31,11 @@ class Zones {
     const std::uint32_t index = at(position.z);
     return {position, -position, {}, &law_.zones[index].surface, index};
   }
-  const Camera& camera() const { return camera_; }
   const render::Vector3& seen() const { return seen_; }
 
  private:
   std::vector<double> tops_;
   ZonedScene law_;
-  Camera camera_;
   render::Vector3 seen_;
 };
 
@@ -67,8 +65,7 @@ class SphereWorld {
 
   Vertex camera(Cost& cost) const {
     ++cost.camera_rays;
-    const Camera& camera = zones_.camera();
-    return zones_.vertex(exit_of_sphere(camera.position, camera.direction, false));
+    return zones_.vertex(zones_.seen());
   }
   /// `Random` gives uniform numbers: a stream, or the coordinates of a Markov chain.
   template <class Random>
@@ -109,7 +106,6 @@ class RayFreeWorld {
  public:
   RayFreeWorld(const SphereScene& scene, const Camera& camera) : zones_(scene, camera) {}
 
-  const Zones& zones() const { return zones_; }
   Vertex camera(Cost&) const { return zones_.vertex(zones_.seen()); }
   Vertex reflected(const Vertex&, Stream& random, Cost&) const {
     return zones_.vertex({0, 0, 2 * random.uniform() - 1});

@@ -53,7 +53,6 @@ class SkyTree {
   const sky::Octahedron& sphere() const { return sphere_; }
   /// Triangles; a power of two.
   std::size_t count() const { return sphere_.triangles().size(); }
-  std::size_t coefficients() const { return coefficients_; }
   /// The least luminance, floor included, at a vertex.
   double least() const { return least_; }
 
