@@ -78,6 +78,7 @@ std::size_t Sampler::densities(std::span<const Point> points, std::span<double> 
 
 std::size_t Sampler::lobe_densities(int lobe, std::span<const Point> points,
                                     std::span<double> out) const {
+  if (lobes() == 1) return densities(points, out);
   return each(points, out, [&](const Point& point) { return lobe_density(lobe, point); });
 }
 

@@ -102,8 +102,7 @@ class Sampler {
   /// stay as they are: who asks again gets the draws of a single question.
   virtual std::size_t samples(std::span<const Stream> random, std::span<SamplerDraw> draws) const;
   virtual std::size_t densities(std::span<const Point> points, std::span<double> out) const;
-  virtual std::size_t lobe_densities(int lobe, std::span<const Point> points,
-                                     std::span<double> out) const;
+  std::size_t lobe_densities(int lobe, std::span<const Point> points, std::span<double> out) const;
   virtual std::size_t evaluations(std::span<const Point> points, std::span<double> out) const;
   /// CPU seconds that other processes have spent so far on what the calling thread asked.
   virtual double seconds_elsewhere() const { return 0; }

@@ -169,7 +169,7 @@ void Children::examine_unusual(Respondent& dialogue, const Question& question,
   one.count = 1;
   const std::size_t width = usual->size();
   const std::span<const double> unusual = std::span(numbers).subspan(*found * width, width);
-  const bool same = same_bits(dialogue.ask(one), {unusual.begin(), unusual.end()});
+  const bool same = same_bits(dialogue.ask(one), unusual);
   refuse_unless_empty(same ? "" : other_numbers(name_, one));
   const std::scoped_lock lock(mutex_);
   known_.at(question.primaries).usual.reset();

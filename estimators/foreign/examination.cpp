@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <string_view>
 
@@ -189,8 +188,7 @@ std::string why_unfit(const Asking& ask, const FirstObservations& first, const s
 std::optional<std::size_t> first_unusual(std::span<const double> numbers,
                                          std::span<const double> usual) {
   for (std::size_t i = 0; i * usual.size() < numbers.size(); ++i) {
-    const auto row = numbers.subspan(i * usual.size(), usual.size());
-    if (std::memcmp(row.data(), usual.data(), usual.size_bytes()) != 0) return i;
+    if (!same_bits(numbers.subspan(i * usual.size(), usual.size()), usual)) return i;
   }
   return {};
 }

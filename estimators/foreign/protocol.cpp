@@ -418,8 +418,8 @@ std::string to_text(const Question& q) {
   return "observations " + std::to_string(q.first) + " to " + std::to_string(q.first + q.count - 1);
 }
 
-bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+bool same_bits(std::span<const double> a, std::span<const double> b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
 }
 
 Reply::Reply(const Question& question, std::size_t width, Numbers numbers)

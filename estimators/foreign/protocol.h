@@ -108,7 +108,7 @@ std::string to_bytes(const Question& question, Numbers numbers);
 std::string to_text(const Question& question);
 
 /// True if two replies have the same bits, NaN included.
-bool same_bits(const std::vector<double>& a, const std::vector<double>& b);
+bool same_bits(std::span<const double> a, std::span<const double> b);
 
 /// A reply as it comes in, in pieces of any size.
 class Reply {

@@ -298,10 +298,6 @@ class ForeignSampler final : public Sampler {
   std::size_t densities(std::span<const Point> points, std::span<double> out) const override {
     return at_points(Asked::densities, points, out);
   }
-  std::size_t lobe_densities(int /*lobe*/, std::span<const Point> points,
-                             std::span<double> out) const override {
-    return densities(points, out);
-  }
   std::size_t evaluations(std::span<const Point> points, std::span<double> out) const override {
     return at_points(Asked::evaluations, points, out);
   }
@@ -348,8 +344,7 @@ class ForeignSampler final : public Sampler {
     last.count = 1;
     const Items item = items.range(items.size() - 1, 1);
     const std::vector<double> alone = dialogue.ask(last, item.bytes);
-    const std::span<const double> among = numbers.last(alone.size());
-    if (same_bits(alone, {among.begin(), among.end()})) {
+    if (same_bits(alone, numbers.last(alone.size()))) {
       const std::scoped_lock lock(mutex_);
       asked_alone_.insert(items.what);
       return;
