@@ -13,9 +13,6 @@ namespace {
 
 using namespace analytic;
 
-// The integral of e^(3x) over [0, 1] at uniform points: X = e^(3u).
-// E[X] = (e^3 - 1) / 3, Var X = (e^6 - 1) / 6 - E[X]^2.
-
 std::shared_ptr<const Setup> uniform(Parameters&) {
   const double mean = integral();
   return averaging(Channel{.mean = mean,
@@ -25,9 +22,7 @@ std::shared_ptr<const Setup> uniform(Parameters&) {
                    [](Stream& random) { return integrand(random.uniform()); });
 }
 
-// The integral of f(x) = e^(3x) over [0, 1] by antithetic pairs: X = (f(u) + f(1 - u)) / 2.
-// E[X] = (e^3 - 1) / 3; f(u) f(1 - u) = e^3, so E[X^2] = ((e^6 - 1) / 6 + e^3) / 2. One primary
-// costs two samples.
+// f(u) f(1 - u) = e^3, so E[X^2] = ((e^6 - 1) / 6 + e^3) / 2.
 
 double antithetic_pair(Stream& random, Cost& cost) {
   const double x = random.uniform();
@@ -46,12 +41,9 @@ std::shared_ptr<const Setup> antithetic(Parameters&) {
                    antithetic_pair);
 }
 
-// The integral of f(x) = e^(3x) over [0, 1] with a control variate. It is f's Taylor polynomial
-// g(x) = 1 + 3x + 9x^2 / 2, of integral 4.
-//   X = f(u) - c (g(u) - 4). E[X] = (e^3 - 1) / 3 for any c.
+// The control is f's Taylor polynomial g(x) = 1 + 3x + 9x^2 / 2, of integral 4.
 //   Var X = Var f - 2 c Cov(f, g) + c^2 Var g.
-// The integral of f g is (11 e^3 - 2) / 6, that of g^2 is 104 / 5. The best c is Cov / Var g =
-// 2.3006.
+// The integral of f g is (11 e^3 - 2) / 6, that of g^2 is 104 / 5.
 
 double control(double x) { return 1 + x * (3 + 4.5 * x); }
 constexpr double control_integral = 4;
@@ -77,9 +69,7 @@ std::shared_ptr<const Setup> control_variate(Parameters& parameters) {
                    });
 }
 
-// The integral of e^(3x) over [0, 1] by importance sampling from q(x) = 5 (1 + x)^4 / 31.
-//
-// X = e^(3x) / q(x) at x = (1 + 31 u)^(1/5) - 1. E[X] = (e^3 - 1) / 3. By parts, from t = 1 to 2,
+// X = e^(3x) / q(x) at x = (1 + 31 u)^(1/5) - 1. By parts, from t = 1 to 2,
 //   E[X^2] = (31 / 5) e^-6 [-e^(6t) (1 / 3t^3 + 1 / t^2 + 6 / t) + 36 Ei(6t)].
 
 double near_point(Stream& random) {
@@ -113,9 +103,7 @@ std::shared_ptr<const Setup> importance(Parameters&) {
                    {{"x", near_density_sampler()}});
 }
 
-// The integral of f(x) = e^(3x) over [0, 1] with k strata, one point in each:
-// X = (1/k) sum_j f((j + u_j) / k). E[X] = (e^3 - 1) / 3, Var X = (1/k^2) sum_j Var_j, Var_j that
-// of f at a uniform point of stratum j. One primary costs k samples.
+// Var X = (1/k^2) sum_j Var_j, Var_j that of f at a uniform point of stratum j.
 
 // Var f(x), x uniform in [a, b].
 double variance_between(double a, double b) {
@@ -153,10 +141,7 @@ std::shared_ptr<const Setup> stratified(Parameters& parameters) {
       [strata](Stream& random, Cost& cost) { return stratified_mean(strata, random, cost); });
 }
 
-// The integral of f(x) = e^(3x) over [0, 1] by importance sampling from f / I itself: X = f(x) /
-// (f(x) / I) = I at x = ln(1 + u (e^3 - 1)) / 3, whatever is drawn. The variance is zero but for
-// rounding, which a t test mistakes for a scale.
-
+// The variance is zero but for rounding, which a t test mistakes for a scale.
 double by_perfect_density(Stream& random) {
   const double x = std::log1p(random.uniform() * std::expm1(3)) / 3;
   const double density = integrand(x) / integral();
@@ -175,12 +160,7 @@ std::shared_ptr<const Setup> zero_variance(Parameters&) {
                    by_perfect_density);
 }
 
-// The integral of f(x) = e^(3x) over [0, 1] by weighted importance sampling.
-//
-// I^ = sum f(x_i) / sum g(x_i), x uniform and g(x) = 5 (1 + x)^4 / 31, whose integral is 1. It is a
-// ratio of means: biased and consistent. The reference is I = (e^3 - 1) / 3.
-//   n (E[I^] - I) -> I Var g - Cov(f, g) = -0.50012,  n Var I^ -> Var(f - I g).
-// Jackknifed, the bias falls like 1 / n^2.
+// n (E[I^] - I) -> I Var g - Cov(f, g) = -0.50012,  n Var I^ -> Var(f - I g).
 
 std::shared_ptr<const Setup> ratio(Parameters&) {
   // A ratio of sums lies between the extremes of f / g, at x = 1/3 and x = 1.

@@ -8,10 +8,6 @@ namespace assay::plugins {
 
 namespace {
 
-// A Pareto variable X = u^(-1/a) of tail index a: P(X > x) = x^-a for x >= 1. An estimator with a
-// bad density looks like it. E[X] = a / (a - 1). Var X = a / ((a - 1)^2 (a - 2)) if a > 2, else it
-// is infinite. The k-th moment exists for k < a only.
-//
 // u is the middle of one of 2^52 equal cells, never below 2^-53. The share of the k-th moment from
 // below is 2^(-53 (1 - k/a)). It is less than 1e-4 for the mean if a >= 1.34, and for the variance
 // if a >= 2.67. Nothing is declared below.
@@ -29,10 +25,6 @@ std::shared_ptr<const Setup> heavy_tail(Parameters& parameters) {
   return averaging(Channel{.mean = a / (a - 1), .variance = variance(a), .low = 1},
                    [a](Stream& random) { return std::pow(random.uniform_open(), -1 / a); });
 }
-
-// A constant with a rare spike and a little noise: X = 1/2 + h [u < p] + w V, V uniform on (-1, 1).
-// E[X] = 1/2 + p h, Var X = p (1 - p) h^2 + w^2 / 3. In N primaries the spike stays unseen with
-// probability (1 - p)^N, and nothing in the sample then tells of it.
 
 std::shared_ptr<const Setup> rare_spike(Parameters& parameters) {
   const double p = parameters.number("probability");

@@ -124,11 +124,7 @@ std::vector<Channel> image_channels(const ImagePlan& plan) {
 
 namespace assay::plugins {
 
-// An image behind a thin lens.
-//
-// Each pixel is the mean of N lens samples (pixel.cpp). N is fixed beforehand: the same for all, or
-// in proportion to a power of the variance. The variance comes from a prediction or the closed
-// form. N depends on no sample that is averaged, so E of every pixel is its lens average.
+// N depends on no sample that is averaged, so E of every pixel is its lens average.
 std::vector<Entry> depth_of_field_image() {
   using namespace depth_of_field;
   return {

@@ -53,16 +53,6 @@ StageRule read_stage_rule(Parameters& given) {
 
 namespace assay::plugins {
 
-// The radiance that a thin lens gathers at one pixel.
-//
-// X = L(u, P) is the radiance along a ray. It goes from a lens point u, uniform on the disc,
-// through the pixel's point P of the focal plane. E[X] is the average of L over the lens. Both E[X]
-// and Var X are known in closed form or by quadrature (exact.h).
-//
-// Lens integration in two stages: a pilot decides how many lens samples follow, and is thrown away.
-//
-// X is the mean of N fresh lens samples, N a function of the pilot alone: E[X | N] is the average
-// over the lens, whatever N.
 std::vector<Entry> depth_of_field_pixel() {
   using namespace depth_of_field;
   return {

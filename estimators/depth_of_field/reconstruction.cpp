@@ -188,11 +188,7 @@ std::shared_ptr<const Setup> prepare_reconstruction(Parameters& given,
 
 namespace assay::plugins {
 
-// An image behind a thin lens from samples as dense as its predicted detail asks for.
-//
-// Each image sample is the mean of N lens samples at a pixel's middle, N in proportion to the
-// predicted variance. Each pixel is a weighted mean of the image samples near it. The lens averages
-// are unbiased. E of a pixel is the interpolant of the exact means.
+// The lens averages are unbiased: E of a pixel is the interpolant of the exact means.
 std::vector<Entry> depth_of_field_reconstruction() {
   using namespace depth_of_field;
   return {

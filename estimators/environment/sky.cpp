@@ -77,8 +77,7 @@ std::vector<Channel> irradiance_channels(const Sky& sky, const Primaries& primar
   return channels;
 }
 
-// Irradiance from a sky by directions with density cos / pi about the receiver's normal:
-// X = pi L(w) V(w). E[X] = E, E[X^2] = pi times the integral of L^2 cos+ under the open sky.
+// E[X^2] = pi times the integral of L^2 cos+ under the open sky.
 
 std::shared_ptr<const Setup> prepare_cosine(Parameters& given) {
   const Sky sky = read_sky(given);
@@ -91,8 +90,6 @@ std::shared_ptr<const Setup> prepare_cosine(Parameters& given) {
                         std::make_shared<sky::DirectionSampler>(sky.setting, directions), false);
 }
 
-// Irradiance from a sky by directions drawn where it is bright.
-//
 // A texel t has probability s_t O_t / S, and the direction is uniform in it. Its radiance is s = r
 // + g + b, its solid angle O, and S = sum s O. The density is p = s / S per solid angle.
 //   X_c = (L_c / s) S cos+ V. E[X_c] = E_c, since s > 0 wherever any L_c > 0.

@@ -1,6 +1,3 @@
-// A renderer run once an observation: a command with places for the seed, the number of samples and
-// the file to write. Nothing is known of its mean.
-
 #include <algorithm>
 #include <filesystem>
 #include <memory>

@@ -1,6 +1,3 @@
-// Observations of an estimator in a shared library (plugin_abi.h): in a process of its own unless
-// asked otherwise.
-
 #include <filesystem>
 #include <memory>
 

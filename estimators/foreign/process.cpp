@@ -1,6 +1,3 @@
-// Observations that another program draws: a renderer, a script, anything that reads its standard
-// input and writes its standard output. Nothing is known of their mean but what the program says.
-
 #include <atomic>
 #include <memory>
 

@@ -1,8 +1,3 @@
-// Irradiance from a luminaire by points uniform on its area.
-//
-// X = A L cos+ light_cosine+ / r^2 [visible], density 1 / A per unit area. The light's cosine over
-// r^2 turns solid angle into area, so E[X] is the irradiance.
-
 #include "luminaire/area.h"
 
 namespace assay::luminaire {

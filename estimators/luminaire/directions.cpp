@@ -3,8 +3,6 @@
 #include "luminaire/solid_angle.h"
 #include "render/hemisphere.h"
 
-// X = weight(w) L [the ray along w hits the luminaire], w of a density about the receiver's normal.
-
 namespace assay::plugins {
 
 namespace {
@@ -14,16 +12,13 @@ using namespace luminaire;
 constexpr double pi = std::numbers::pi;
 constexpr double two_pi = 2 * pi;
 
-/// Uniform in the projected hemisphere: the cosines cancel. X is pi L times a Bernoulli variable of
-/// mean E / (pi L), so its variance is E (pi L - E).
+/// Uniform in the projected hemisphere: the cosines cancel.
 struct CosineDirections : render::CosineHemisphere {
   static constexpr double most = pi;
   static double value(double radiance, const render::Vector3&) { return pi * radiance; }
   static double second_moment(const ExactIntegrals& exact) { return pi * exact.irradiance; }
 };
 
-/// Uniform in the hemisphere: E[X] is the integral of L cos+ over it, E[X^2] = 2 pi L^2 times the
-/// integral of cos+^2 over what is seen.
 struct UniformDirections : render::UniformHemisphere {
   static constexpr double most = two_pi;
   static double value(double radiance, const render::Vector3& w) { return two_pi * radiance * w.z; }

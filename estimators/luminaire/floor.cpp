@@ -68,12 +68,6 @@ std::vector<Channel> floor_channels(const Floor& floor) {
 
 namespace assay::plugins {
 
-// The irradiance of a plane under a luminaire, as an image.
-//
-// Pixel (x, y) is the receiver at the middle of its square. At points uniform on the luminaire it
-// has X = A L cos+ light_cosine+ / r^2 [visible]. E[X] is that receiver's irradiance, known by
-// Lambert's formula.
-
 namespace {
 
 using namespace luminaire;

@@ -1,8 +1,5 @@
-// Irradiance from a luminaire by directions uniform in its solid angle (Arvo 1995).
-//
-// X = Omega L cos+ [visible], density 1 / Omega. A polygon is a fan of spherical triangles, one of
-// which is picked with probability Omega_k / Omega. Nothing is clipped at the horizon: directions
-// below it contribute zero, as the clamped cosine says.
+// A polygon is a fan of spherical triangles, one of which is picked with probability Omega_k /
+// Omega. Nothing is clipped at the horizon: directions below it contribute zero.
 
 #include "luminaire/solid_angle.h"
 

@@ -1,9 +1,3 @@
-// Pictures of a scene by path tracing.
-//
-// A pixel is the mean of paths through uniform points of it. A path's expectation is the integral
-// of L over the pixel, with at most so many bounces as the scene allows. Light sampling, bsdf
-// sampling and both together have this one expectation.
-
 #include "path_tracing/image.h"
 
 #include <algorithm>

@@ -1,9 +1,5 @@
-// The trusted reference: a path tracer as simple as it can be.
-//
-// A path goes on with the same probability q wherever it is, and picks up what is emitted where it
-// arrives: X = sum of T_k Le_k, T_0 = 1, T_k+1 = T_k a_k / q. Each bounce's expectation is its part
-// of the Neumann series of the rendering equation (Kajiya 1986), so X is unbiased. It shares the
-// scene with the other estimators and nothing of their roulette, direct light or splitting.
+// The trusted reference shares the scene with the other estimators and nothing of their roulette,
+// direct light or splitting.
 
 #include "paths/family.h"
 #include "paths/path.h"

@@ -1,11 +1,3 @@
-// Paths that end by Russian roulette, classical and with terminal values (Szecsi, Szirmay-Kalos and
-// Kelemen 2003).
-//
-// At a vertex of throughput T and albedo a path goes on with probability s: T becomes T a / s. With
-// a terminal value e a path that ends adds T e. One that goes on adds T e (s - 1) / s. The two
-// cancel on average for every e. The classical roulette with s = a has the variance Le^2 a / (1 -
-// a)^2 in a furnace. A terminal value e = kappa a L multiplies it by (1 - kappa)^2.
-
 #include <numbers>
 
 #include "paths/family.h"

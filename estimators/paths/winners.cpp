@@ -1,9 +1,4 @@
-// Go with the winners: paths that split where a large error is anticipated and end elsewhere
-// (Szirmay-Kalos, Antal and Sbert 2005).
-//
-// At a vertex of weight W a number n of children is fixed before any is seen. The vertex draws
-// floor(n + u) of them, each of weight W a / n. They are n on average, so the expectation is that
-// of one child of weight W a.
+// Go with the winners: paths that split where a large error is anticipated and end elsewhere.
 
 #include "paths/family.h"
 #include "paths/path.h"

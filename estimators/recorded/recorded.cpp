@@ -1,8 +1,3 @@
-// Observations that another program made, or Assay itself earlier. Observation i is row i of a text
-// or an array (recorded/table.h), or picture i of several (estimators/pictures.h). Their mean is
-// unknown, unless a picture carries its own error and is a reference. The number of primaries is 1:
-// how an observation was made is the other program's affair.
-
 #include <sys/stat.h>
 
 #include <algorithm>

@@ -1,6 +1,3 @@
-// Irradiance from a sky by directions uniform over the hemisphere about the normal, and by
-// cosine-distributed ones: X = 2 pi L cos V and X = pi L V.
-
 #include "estimators/parameters.h"
 #include "sky/directions.h"
 

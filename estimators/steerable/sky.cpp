@@ -1,6 +1,3 @@
-// Irradiance from a sky by steerable importance sampling: X = L cos+ V / p(w), p in proportion to
-// the sky times the clamped cosine, both approximately; E[X] = E as p > 0 wherever L cos+ > 0.
-
 #include <algorithm>
 #include <cmath>
 #include <limits>

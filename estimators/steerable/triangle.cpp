@@ -1,6 +1,3 @@
-// The sub-sampler of steerable sampling by itself: points of a triangle with linear density. Their
-// mean barycentric coordinates are (W + w_i) / (4 W) with W = w_a + w_b + w_c.
-
 #include "steerable/triangle.h"
 
 #include <cmath>

@@ -133,14 +133,6 @@ std::vector<ParameterInformation> room_parameters() {
                            "0", {0, 1e6})};
 }
 
-// Classic: light is shot from a point y0 of an emitter, in proportion to its radiance, along a
-// cosine-distributed direction to y1. That is a virtual light (Keller 1997, "Instant radiosity"):
-//   X = Phi (a1 / pi) (a / pi) cos cos' V / r^2, Phi the power of a path.
-// X is unbiased, but 1 / r^2 makes spikes near the virtual light.
-//
-// Gathering: a ray from the receiver to y1 and one from there to y0, X = a a1 Le. It shares the
-// scene with the others and nothing of their shooting: the trusted reference.
-
 std::shared_ptr<const Setup> classic(Parameters& parameters) {
   const Scene scene = read_room(parameters);
   return setup(scene, recipe(Classic{scene.room}));
@@ -175,17 +167,8 @@ std::shared_ptr<const Setup> gather(Parameters& parameters) {
   return setup(scene, {sums, [](const Sums& all, double n) { return 1 / n * all.full; }});
 }
 
-// Virtual lights by weighted importance sampling: I^ = G sum (f / p) / sum (g / p).
-//
-// The target g is the density by area with which the receiver's reflection would choose the virtual
-// light. For a diffuse receiver it is cos cos' V / (pi r^2); a glossy one multiplies it by its
-// lobe. It has the spikes of f, so that the ratio has none. The shooting density of y1, given y0 or
-// marginal, is p. (Balazs, Szirmay-Kalos and Antal 2003, "Weighted importance sampling in shooting
-// algorithms".)
-//
-// G is the integral of g over the points that are shot at. It is less than 1 if virtual lights
-// cannot be everywhere, as on the lamp's own plane. If g/p has a variance, the bias to first order
-// is (I Var(g/p) / G^2 - Cov(f/p, g/p) / G) / M.
+// The target g has the spikes of f, so that the ratio has none. If g/p has a variance, the bias to
+// first order is (I Var(g/p) / G^2 - Cov(f/p, g/p) / G) / M.
 
 std::shared_ptr<const Setup> weighted(Parameters& parameters) {
   const Scene scene = read_room(parameters);
