@@ -83,8 +83,7 @@ double log_far_lower(double shape, double x) {
   return special::log_gamma_prefix(shape, x, sum / shape);
 }
 
-// ln Q(a, x) by Legendre's continued fraction, DLMF 8.9.2. The recurrence of its convergents
-// divides only where they are compared. All is divided by b_0, which may be huge.
+// ln Q(a, x) by Legendre's continued fraction, DLMF 8.9.2. All is divided by b_0, which may be huge.
 double log_far_upper(double shape, double x) {
   const double per_first = 1 / (x + 1 - shape);
   Convergents fraction{.inverse_now = per_first};
@@ -125,8 +124,7 @@ double log_lower(double shape, double x) {
 constexpr double most_for_fraction = 1e4;
 
 // The fraction 1 / (b0 + a1 / (b1 + a2 / (b2 + …))) of Didonato & Morris (1992), equation 9. It
-// takes two steps of DLMF 8.17.22 in one. Its convergents divide only where they are compared.
-//   A_n = b_n A_(n-1) + a_n A_(n-2), B_n likewise.
+// takes two steps of DLMF 8.17.22 in one.
 double beta_fraction(BetaPoint point, BetaShape shape) {
   const auto [a, b] = shape;
   const auto [x, y] = point;
