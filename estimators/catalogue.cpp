@@ -37,9 +37,10 @@ bool well_formed(std::string_view name) {
   return !word_begins;
 }
 
+const std::string& name_of(const Entry& entry) { return entry.information.name; }
+
 const Entry* lookup(const std::vector<Entry>& entries, std::string_view name) {
-  const auto found = std::ranges::find(
-      entries, name, [](const Entry& e) -> std::string_view { return e.information.name; });
+  const auto found = std::ranges::find(entries, name, name_of);
   return found == entries.end() ? nullptr : &*found;
 }
 
@@ -89,15 +90,14 @@ std::string suggested(std::string_view name, const std::vector<std::string>& nam
 }  // namespace
 
 std::vector<Entry> checked(std::vector<Entry> entries) {
-  std::ranges::sort(entries, {}, [](const Entry& e) { return e.information.name; });
+  std::ranges::sort(entries, {}, name_of);
   for (const Entry& entry : entries) check(entry, entries);
   for (Entry& entry : entries) {
     const Information& mutant = entry.information;
     if (!mutant.original.empty())
       inherit(entry.information, lookup(entries, mutant.original)->information);
   }
-  const auto twice =
-      std::ranges::adjacent_find(entries, {}, [](const Entry& e) { return e.information.name; });
+  const auto twice = std::ranges::adjacent_find(entries, {}, name_of);
   if (twice != entries.end()) malformed(*twice, "is registered twice");
   return entries;
 }

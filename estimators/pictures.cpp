@@ -372,8 +372,7 @@ void apply_finite(const std::string& patterns, const std::string& chosen, Pictur
   }
 }
 
-}  // namespace
-
+/// The view of files like this one.
 PictureView view_of(const PictureFile& file, const std::string& patterns,
                     const PictureTreatment& treatment) {
   PictureView view{.channels = choose_channels(file, patterns), .rounding = treatment.rounding};
@@ -390,6 +389,8 @@ PictureView view_of(const PictureFile& file, const std::string& patterns,
   }
   return view;
 }
+
+}  // namespace
 
 std::unique_ptr<const PictureFile> PictureStack::open(std::size_t index) const {
   auto file = open_picture(files[index]);

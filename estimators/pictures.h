@@ -64,10 +64,6 @@ struct PictureView {
   void read(const PictureFile& file, std::span<float> texels, std::size_t first = 0) const;
 };
 
-/// The view of files like this one. InputError at a file that cannot be used.
-PictureView view_of(const PictureFile& file, const std::string& patterns,
-                    const PictureTreatment& treatment);
-
 /// Pictures of one size and kind, one file each.
 struct PictureStack {
   std::vector<std::string> files;

@@ -1,5 +1,4 @@
-// A path of one branching: X = D(u) + (W(u) / s) (Z_1 + ... + Z_N). N = floor(s + v) children:
-// roulette for s < 1, splitting for s > 1. D = 1 + u, W = 4 u^2, and Z is exponential of mean 1.
+// X = D(u) + (W(u) / s) (Z_1 + ... + Z_N) with D = 1 + u, W = 4 u^2.
 //
 // E[X] = 3/2 + 4/3 = 17/6 for any s. Given u, E = 1 + u + 4 u^2 and Var = W^2 (E[N] + Var N) / s^2.
 // With r the fraction of s,

@@ -1,14 +1,8 @@
 // The radiance that a thin lens gathers of a wave that it sees in a curved, rough mirror.
 //
-// X = 1/2 + 1/2 cos(k x + phase). The ray from a point of the lens ends at x on the board. The
-// reflection changes the ray's slope by a normal number of standard deviation `roughness`. E[X] and
-// Var X follow from the wave's frequency (spectrum.h), if x is linear in the lens point, the pixel
-// and that number:
-//   (k, 0) -> travel(beyond) -> reflect(roughness), curve(2 curvature) -> travel(distance).
-// The wave has the frequency W across the lens, and its amplitude times exp(-(roughness k beyond)^2
-// / 2). The lens leaves j(radius W) of that, with j the transform of its disc. With `rays: exact`
-// light reflects at the parabola, whose rays are linear only in the limit of a small lens. Nothing
-// is stated of it.
+// E[X] and Var X follow from the wave's frequency (spectrum.h), if the place on the board is linear
+// in the lens point, the pixel and the change of slope. Rays of the parabola are linear only in the
+// limit of a small lens.
 
 #include <numbers>
 

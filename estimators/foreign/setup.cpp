@@ -435,10 +435,10 @@ std::shared_ptr<const Setup> setup_of(std::shared_ptr<Children> children) {
 }
 
 std::string mend_of_program(const std::string& program) {
-  std::string list;
   const std::vector<std::string_view> words = words_of(program);
-  for (const std::string_view word : words) list += (list.empty() ? "" : ", ") + std::string(word);
-  if (words.size() > 1) return "; put commas between the words: `[" + list + "]`";
+  if (words.size() > 1) {
+    return "; put commas between the words: `[" + listed({words.begin(), words.end()}) + "]`";
+  }
   return program.find('/') == std::string::npos
              ? "; a program in the suite's folder is written `./" + program + "`"
              : "; it is sought from the suite's folder";

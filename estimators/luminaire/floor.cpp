@@ -27,15 +27,6 @@ double highest(const Setting& setting) {
 
 }  // namespace
 
-std::vector<ParameterInformation> floor_parameters() {
-  return {
-      scene_parameter(), count_parameter("width", "columns of receivers", "32", {2, 1024}),
-      count_parameter("height", "rows of receivers", "32", {2, 1024}),
-      number_parameter("size", "length of the plane's rectangle along the width", "4", above(0)),
-      boolean_parameter("shared", "whether all receivers look at the same points of the luminaire",
-                        false)};
-}
-
 Floor read_floor(Parameters& parameters) {
   SceneDescription scene = read_scene(parameters.structure("scene"), parameters.folder());
   Floor floor{.shape = {.width = parameters.count("width"),
@@ -71,6 +62,15 @@ namespace assay::plugins {
 namespace {
 
 using namespace luminaire;
+
+std::vector<ParameterInformation> floor_parameters() {
+  return {
+      scene_parameter(), count_parameter("width", "columns of receivers", "32", {2, 1024}),
+      count_parameter("height", "rows of receivers", "32", {2, 1024}),
+      number_parameter("size", "length of the plane's rectangle along the width", "4", above(0)),
+      boolean_parameter("shared", "whether all receivers look at the same points of the luminaire",
+                        false)};
+}
 
 std::shared_ptr<const Setup> prepare(Parameters& parameters) {
   const Floor floor = read_floor(parameters);

@@ -16,8 +16,7 @@ struct Floor {
   ImageStreams streams = ImageStreams::own;
 };
 
-/// The parameters scene, width, height, size, shared.
-std::vector<ParameterInformation> floor_parameters();
+/// Reads scene, width, height, size, shared.
 Floor read_floor(Parameters& parameters);
 
 /// Channels with Lambert's mean, between 0 and the most that any point can bring.

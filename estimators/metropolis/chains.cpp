@@ -1,15 +1,8 @@
-// Metropolis light transport in primary sample space (Kelemen, Szirmay-Kalos, Antal and Csonka
-// 2002).
+// Metropolis light transport in primary sample space.
 //
-// A state is a point u of [0, 1)^infinity, the random numbers of a path. F(u) is the light that the
-// path brings to pixel p(u), I(u) its luminance. Each step proposes a new point y: all coordinates
-// fresh with probability p_large, else each moved a little. It goes there with a = min(1, I(y) /
-// I(x)), so the stationary density is I / integral of I.
-//
-// The chain starts from one of N independent points drawn in proportion to I. b is the mean of I
-// over the same points. Then E[b h(x_k)] = integral of h I for every k (Veach 1997, section
-// 11.3.1), by induction: a step leaves this measure as it is. So the mean-value form is unbiased at
-// every length.
+// The stationary density is I / integral of I. With the chain's start and b from the same points
+// E[b h(x_k)] = integral of h I for every k (Veach 1997, section 11.3.1), by induction: a step
+// leaves this measure as it is. So the mean-value form is unbiased at every length.
 
 #include <algorithm>
 #include <cmath>
