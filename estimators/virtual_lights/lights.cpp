@@ -20,8 +20,8 @@ std::vector<Channel> channels(const Scene& scene, const Recipe& recipe) {
     }
     all.push_back(channel);
   }
-  if (recipe.has_target) {
-    all.push_back({.name = "target", .mean = recipe.target.value, .low = 0, .diagnostic = true});
+  if (recipe.target) {
+    all.push_back({.name = "target", .mean = recipe.target->value, .low = 0, .diagnostic = true});
   }
   return all;
 }
@@ -108,7 +108,7 @@ std::shared_ptr<const Setup> setup(const Scene& scene, Recipe recipe) {
     const Rgb value = recipe.result(sums, count);
     std::size_t at = 0;
     for (std::size_t c = 0; c < (grey ? 1 : 3); ++c) out[at++] = value[c];
-    if (recipe.has_target) out[at] = sums.target / count;
+    if (recipe.target) out[at] = sums.target / count;
   };
   return setup_of({.channels = std::move(its),
                    .make = estimating(estimate),

@@ -91,8 +91,7 @@ using Result = std::function<Rgb(const Sums&, double primaries)>;
 struct Recipe {
   Observe sums;
   Result result;
-  bool has_target = false;
-  Known target = {};
+  std::optional<Known> target = {};
 };
 
 std::shared_ptr<const Setup> setup(const Scene&, Recipe);
@@ -109,7 +108,6 @@ Recipe recipe(const Kernel& kernel) {
 template <class Kernel>
 Recipe weighted_recipe(const Kernel& kernel) {
   Recipe made = recipe(kernel);
-  made.has_target = true;
   made.target = target_integral(*kernel.room, kernel.weighting);
   return made;
 }
