@@ -32,7 +32,6 @@ std::shared_ptr<const Setup> rare_nan(Parameters& parameters) {
 
 // Replacements for parts of the ratio estimators.
 
-// The target at a point of its own.
 RatioPair other_point(Stream& random) {
   const RatioPair own = same_point(random);
   return {own.full, same_point(random).target};

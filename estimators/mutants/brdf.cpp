@@ -85,7 +85,6 @@ class Misreported : public Sampler {
   std::shared_ptr<const Sampler> original_;
 };
 
-// Draws until a direction is above the horizon and declares the density as if it had not.
 struct Redrawn final : Misreported {
   using Misreported::Misreported;
   SamplerDraw sample(Stream& random) const override {

@@ -60,7 +60,6 @@ SharedPairs visible_control(Parameters& given) {
   });
 }
 
-// Each f with the g of a point of its own: means stay, what the control was for is lost.
 SharedPairs other_points(Parameters& given) {
   const SharedPairs sound = read_area_pairs(given);
   const auto exchange = [](const PairSource& source, Stream& random, std::span<Pair> out) {
@@ -89,7 +88,6 @@ SharedPairs without_radiance(Parameters& given) {
   return with_integral(pairs, integral_of(pairs) / radiance);
 }
 
-// One integral, the mean of the colours', for all of them.
 SharedPairs grey_integral(Parameters& given) {
   const SharedPairs pairs = read_sky_pairs(given);
   double sum = 0;
@@ -105,7 +103,6 @@ Entry entry(const char* name, const char* original, const char* defect,
   });
 }
 
-// Sum f g, not about the means, over the spread of g about its mean.
 double uncentred(const Sums& sums, double integral) {
   const double spread = sums.lack_squared - sums.lack * sums.lack / sums.count;
   return spread > 0 ? (integral * sums.full - sums.product) / spread : 0;

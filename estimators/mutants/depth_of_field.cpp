@@ -14,7 +14,6 @@ namespace {
 
 using namespace depth_of_field;
 
-// The radius of a lens point in proportion to its number: too many points near the middle.
 struct CrowdedDisc {
   PlanePoint operator()(double s, double t) const { return UniformDisc{}(s * s, t); }
 };
@@ -47,7 +46,6 @@ std::shared_ptr<const Setup> blur_by_depth(Parameters& given) {
   return averaging(std::move(channel), BlurByDepth{setting, pixel, factor});
 }
 
-// The pilot's samples are averaged with those that it asks for.
 struct PilotReused {
   template <class Draw>
   double operator()(const StageRule& rule, const Draw& draw) const {
@@ -58,7 +56,6 @@ struct PilotReused {
   }
 };
 
-// Samples are drawn until their own estimate of the error is small enough.
 struct StoppedByItsError {
   template <class Draw>
   double operator()(const StageRule& rule, const Draw& draw) const {
@@ -69,7 +66,6 @@ struct StoppedByItsError {
   }
 };
 
-// Every pixel is divided by the mean number of lens samples.
 struct DividedByTheMean : SoundShading {
   double mean;
   double divisor(const ImagePlan&, std::size_t) const { return mean; }
@@ -84,7 +80,6 @@ std::shared_ptr<const Setup> divided_by_the_mean(Parameters& given) {
   return image_setup(std::move(plan), shading);
 }
 
-// Pixels whose ray of the prediction hits nothing are taken by a pinhole.
 struct SharpBackground : SoundShading {
   double sample(const ImagePlan& plan, std::size_t pixel, Stream& random, Cost& cost) const {
     if (!plan.background[pixel]) return SoundShading::sample(plan, pixel, random, cost);

@@ -52,7 +52,6 @@ double two_sided_light(const Connection& c) {
 
 double one_percent_more(const Connection& c) { return 1.01 * GeometryTerm{}(c); }
 
-// The points are uniform in area, but what they are divided by is the density 1 / Omega.
 struct SolidAngleDensity {
   double omega_over_area;
   double operator()(const Connection& c) const {
@@ -70,7 +69,6 @@ struct UnitSquare {
   Barycentric operator()(double x, double y) const { return {x, y}; }
 };
 
-/// Points of the unit square outside the triangle count as zero, without doubling the others.
 class HalfDropped {
  public:
   explicit HalfDropped(SharedSetting setting) : area_(std::move(setting)) {}
@@ -157,10 +155,7 @@ std::shared_ptr<const Setup> unclipped_reference(SharedSetting setting) {
   return averaging(channel, AreaPrimary<>(setting), point_samplers<>(setting));
 }
 
-// Mutants of luminaire/floor: one property of the image is broken, in some pixels or in all.
-//
-// Each scales what some receivers get, as a wrong weight would; which receivers, and by how much,
-// is the defect.
+// Mutants of luminaire/floor scale what some receivers get, as a wrong weight would.
 
 struct Pixel {
   std::size_t x;
@@ -188,7 +183,6 @@ double hot_pixels(const Pixel& p, const ImageShape& shape) {
   return row && column ? 1.3 : 1;
 }
 
-/// The tile of a quarter of the width and height to the right of and below the middle.
 double tile(const Pixel& p, const ImageShape& shape) {
   const bool column = p.x >= shape.width / 2 && p.x < shape.width / 2 + shape.width / 4;
   const bool row = p.y >= shape.height / 2 && p.y < shape.height / 2 + shape.height / 4;

@@ -57,7 +57,6 @@ struct CurrentDropped final : MeanValueRules {
   }
 };
 
-/// Both ends into the pixel of the current state.
 template <class Sound>
 struct CurrentPixel final : Sound {
   using Sound::Sound;
@@ -84,7 +83,6 @@ double scaled_normaliser(Walker& walker, std::uint64_t count) {
   return 1.05 * start_in_proportion(walker, count);
 }
 
-/// b from other points than those that the first state is drawn from.
 double other_normaliser(Walker& walker, std::uint64_t count) {
   const double other = start_anywhere(walker, count);
   walker.current = {};

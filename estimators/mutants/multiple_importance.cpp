@@ -93,7 +93,6 @@ struct BackSideSeen final : Techniques {
   }
 };
 
-/// The samples of the BRDF are averaged over those that hit the light.
 struct MissesNotCounted {
   SharedTechniques techniques;
   Counts counts;

@@ -18,7 +18,6 @@ struct TerminalNotSubtracted : Roulette {
   Rgb on_going_on(const Rgb&, double, const Surface&, const Vertex&) const { return {}; }
 };
 
-// The terminal value is raised to what the path finds when it goes on, before that is taken off.
 struct TerminalFromHindsight : Roulette {
   Rgb on_going_on(const Rgb& terminal, double survival, const Surface& from,
                   const Vertex& next) const {

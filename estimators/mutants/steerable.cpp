@@ -27,7 +27,6 @@ struct NoMeasure {
   double operator()(const Vector3&, double) const { return 1; }
 };
 
-// T lacks one of its two terms s b.
 struct Transcribed {
   TrianglePoint operator()(const VertexWeights& w, double x, double y) const {
     const double s = linear_distance(w, x);
@@ -43,7 +42,6 @@ struct Transcribed {
 
 double positive(double x) { return std::max(0.0, x); }
 
-/// Vertex weights below zero are taken as zero, but the normaliser stays the sum of signed weights.
 class ClampedDirections final : public Directions {
  public:
   ClampedDirections(std::shared_ptr<const SkyTree> tree, const Lobe& lobe, render::Frame frame)
