@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <numbers>
+#include <type_traits>
 #include <utility>
 
 #include "brdf/albedo.h"
@@ -149,38 +150,35 @@ Entry entry(const char* original, const Defect& defect,
   return mutant({defect.name, original, defect.what, {sampler}}, std::move(prepare));
 }
 
-// The reflectances, and how each is read.
-struct OfWard {
-  using Sound = Ward;
-  static constexpr const char* name = "brdf/ward";
-  template <class Brdf>
-  static auto read(Parameters& given) {
-    return brdf::ward<Brdf>(given);
-  }
-};
+// Of a mutant too.
+template <class Brdf>
+constexpr bool is_ward = std::is_base_of_v<Ward, Brdf>;
 
-struct OfAshikhminShirley {
-  using Sound = AshikhminShirley;
-  static constexpr const char* name = "brdf/ashikhmin_shirley";
-  template <class Brdf>
-  static auto read(Parameters& given) {
+template <class Brdf>
+constexpr const char* original_of = is_ward<Brdf> ? "brdf/ward" : "brdf/ashikhmin_shirley";
+
+template <class Brdf>
+auto read_brdf(Parameters& given) {
+  if constexpr (is_ward<Brdf>) {
+    return brdf::ward<Brdf>(given);
+  } else {
     return brdf::ashikhmin_shirley<Brdf>(given);
   }
-};
+}
 
-template <class Of, class Mutant>
+template <class Mutant>
 Entry exchanged(const Defect& defect) {
-  return entry(Of::name, defect, [](Parameters& given) {
-    const auto mutant = Of::template read<Mutant>(given);
-    return mutated(given, *Of::template read<typename Of::Sound>(given),
-                   brdf::published_sampler(mutant));
+  using Sound = std::conditional_t<is_ward<Mutant>, Ward, AshikhminShirley>;
+  return entry(original_of<Sound>, defect, [](Parameters& given) {
+    const auto mutant = read_brdf<Mutant>(given);
+    return mutated(given, *read_brdf<Sound>(given), brdf::published_sampler(mutant));
   });
 }
 
-template <class Of, class Wrapper>
+template <class Sound, class Wrapper>
 Entry wrapped(const Defect& defect) {
-  return entry(Of::name, defect, [](Parameters& given) {
-    const auto original = Of::template read<typename Of::Sound>(given);
+  return entry(original_of<Sound>, defect, [](Parameters& given) {
+    const auto original = read_brdf<Sound>(given);
     return mutated(given, *original, std::make_shared<Wrapper>(brdf::published_sampler(original)));
   });
 }
@@ -194,37 +192,34 @@ std::vector<Entry> mutants_brdf() {
   const auto* const redrawn =
       "draws directions below the horizon again and does not renormalise the density.";
   return {
-      exchanged<OfWard, SingleQuadrant<Ward>>({"ward_single_quadrant", quadrant}),
-      exchanged<OfWard, UniformAzimuth<Ward>>({"ward_uniform_azimuth", uniform}),
-      exchanged<OfWard, NoJacobian<Ward>>({"ward_no_jacobian", jacobian}),
-      exchanged<OfWard, NoArctangent>(
+      exchanged<SingleQuadrant<Ward>>({"ward_single_quadrant", quadrant}),
+      exchanged<UniformAzimuth<Ward>>({"ward_uniform_azimuth", uniform}),
+      exchanged<NoJacobian<Ward>>({"ward_no_jacobian", jacobian}),
+      exchanged<NoArctangent>(
           {"ward_no_arctangent",
            "takes the azimuth (ay / ax) tan 2 pi u without the arctangent, as printed in the paper "
            "of 1992."}),
-      exchanged<OfWard, NoSineOfAzimuth>(
+      exchanged<NoSineOfAzimuth>(
           {"ward_no_sine", "leaves the factor sin phi out of the y component of h."}),
-      wrapped<OfWard, Redrawn>({"ward_redrawn", redrawn}),
-      wrapped<OfWard, WeightWithoutCosine>(
+      wrapped<Ward, Redrawn>({"ward_redrawn", redrawn}),
+      wrapped<Ward, WeightWithoutCosine>(
           {"ward_weight_without_cosine", "weights by f / p, without the cosine."}),
-      wrapped<OfWard, DensityOffInASector>({"ward_density_sector",
-                                            "declares the density at a point .1 % too large in a "
-                                            "hundredth of the azimuth, that from "
-                                            "pi + 0.05 on."}),
-      wrapped<OfWard, MirroredWeight>(
+      wrapped<Ward, DensityOffInASector>({"ward_density_sector",
+                                          "declares the density at a point .1 % too large in a "
+                                          "hundredth of the azimuth, that from "
+                                          "pi + 0.05 on."}),
+      wrapped<Ward, MirroredWeight>(
           {"ward_weight_mirrored",
            "takes the BRDF in the weight of the direction with its x and y exchanged."}),
-      exchanged<OfAshikhminShirley, SingleQuadrant<AshikhminShirley>>(
-          {"ashikhmin_shirley_single_quadrant", quadrant}),
-      exchanged<OfAshikhminShirley, UniformAzimuth<AshikhminShirley>>(
-          {"ashikhmin_shirley_uniform_azimuth", uniform}),
-      exchanged<OfAshikhminShirley, UnmirroredQuadrants>(
+      exchanged<SingleQuadrant<AshikhminShirley>>({"ashikhmin_shirley_single_quadrant", quadrant}),
+      exchanged<UniformAzimuth<AshikhminShirley>>({"ashikhmin_shirley_uniform_azimuth", uniform}),
+      exchanged<UnmirroredQuadrants>(
           {"ashikhmin_shirley_unmirrored",
            "turns the first quadrant into the second and fourth instead of mirroring it."}),
-      exchanged<OfAshikhminShirley, ExponentWithoutOne>(
+      exchanged<ExponentWithoutOne>(
           {"ashikhmin_shirley_exponent", "takes cos d = v^(1/e) instead of v^(1/(e+1))."}),
-      exchanged<OfAshikhminShirley, NoJacobian<AshikhminShirley>>(
-          {"ashikhmin_shirley_no_jacobian", jacobian}),
-      wrapped<OfAshikhminShirley, Redrawn>({"ashikhmin_shirley_redrawn", redrawn}),
+      exchanged<NoJacobian<AshikhminShirley>>({"ashikhmin_shirley_no_jacobian", jacobian}),
+      wrapped<AshikhminShirley, Redrawn>({"ashikhmin_shirley_redrawn", redrawn}),
   };
 }
 
