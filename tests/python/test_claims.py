@@ -102,6 +102,33 @@ def more(rng):
     assert "has no function `cubes`; did you mean `cube`?" in " ".join(result.stdout.str().split())
 
 
+def test_a_mistake_that_planning_or_serving_meets_fails_its_claim_alone(pytester):
+    pytester.makepyfile(test_three="""
+import assay
+
+@assay.claim("mean(it) == 0.5", detect="5%")
+def sound(rng):
+    return rng.random()
+
+@assay.claim("mean(it) == 0.5", allow="2%", detect="1%")
+def narrow(rng):
+    return rng.random()
+
+@assay.claim("mean(it) == 0.5")
+def scaled(rng, scale):
+    return scale * rng.random()
+
+@assay.claim("mean(it) == 1")
+def lone():
+    return 1
+""")
+    result = run(pytester)
+    result.assert_outcomes(passed=1, failed=3)
+    result.stdout.fnmatch_lines(["@assay.claim('mean(it) == 0.5', allow='2%', detect='1%'): *`detect`*",
+                                 "@assay.claim('mean(it) == 0.5'): *`scaled` has the parameter `scale` without a value:*",
+                                 "@assay.claim('mean(it) == 1'): *`lone` takes no argument:*"])
+
+
 def test_a_decorator_without_a_claim_is_refused(folder):
     folder.makepyfile(test_bare="import assay\n@assay.claim\ndef area(rng):\n    return rng.random()\n")
     result = run(folder, "test_bare.py")

@@ -157,9 +157,12 @@ class _Run:
     def _start(self, ids: list[str]) -> None:
         self._record.parent.mkdir(parents=True, exist_ok=True)
         self._record.unlink(missing_ok=True)
-        if self._write:
-            self._write(self._claims, self.suite)
-        self._test(ids, len(self._claims), self.suite)
+        try:
+            if self._write:
+                self._write(self._claims, self.suite)
+            self._test(ids, len(self._claims), self.suite)
+        except TypeError as error:  # a function that no suite can serve
+            self._trouble = str(error)
         if self._write and not self._record.exists():
             self._faults = {id: fault for id in self._claims if (fault := self._fault(id))}
             sound = [id for id in self._claims if id not in self._faults]
@@ -175,13 +178,16 @@ class _Run:
     def _fault(self, id: str) -> str:
         """Why no suite can hold this claim; "" if one can."""
         suite = self.suite.with_suffix(f".{os.getpid()}.yaml")
-        self._write([id], suite)  # type: ignore[misc]
-        listed = self._settings.run("list", "tests", str(suite))
+        try:
+            self._write([id], suite)  # type: ignore[misc]
+        except TypeError as error:
+            return f"{self._claims[id]}: {error}"
+        planned = self._settings.run("plan", str(suite))
         for file in (suite, suite.with_suffix(".sh")):
             file.unlink()
         # The place in a file that the user did not write says nothing, nor does its line.
-        said = re.sub(r"(?s:\Aassay: .*?:\d+:\d+:\s)|\n.*\n *\^\s*\Z", "", listed.stderr)
-        return f"{self._claims[id]}: {' '.join(said.split())}" if listed.returncode else ""
+        said = re.sub(r"(?s:\Aassay: .*?:\d+:\d+:\s)|\n.*\n *\^\s*\Z", "", planned.stderr)
+        return f"{self._claims[id]}: {' '.join(said.split())}" if planned.returncode else ""
 
     def _test(self, ids: list[str], claims: int, suite: Path) -> None:
         words = ["run", str(suite), "--report", f"json={self._record}", "--report", "console=/dev/null",
