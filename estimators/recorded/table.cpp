@@ -309,7 +309,9 @@ class Reader {
     if (may_be_decimals_ && !names_line_ && expected_ == Rows::several) {
       throw InputError(
           {.file = source_.name(), .line = table_.lines.front(), .column = 1},
-          std::string("a comma may be a decimal point: write it as one;\n") + name_columns);
+          std::string("a comma may be a decimal point: write it as one, and leave out those\n  "
+                      "between thousands; ") +
+              name_columns);
     }
     return std::move(table_);
   }
@@ -416,7 +418,9 @@ class Reader {
                              '0' <= field.text[1] && field.text[1] <= '9';
     if (is_fraction && !names_line_) {
       refuse(field.column, in_message(field.text) +
-                               " follows a comma: write a decimal point for it;\n" + name_columns);
+                               " follows a comma: write a decimal point for it,\n  or nothing "
+                               "between thousands; " +
+                               name_columns);
     }
     const Parsed parsed = parse(field.text, separator_ == ';');
     if (parsed.is_number) return parsed.value;
