@@ -51,9 +51,15 @@ double wanted(const Gate& gate) {
   return 1;
 }
 
+/// The budget that more observations need; none if the test's own number of them is the limit.
+std::optional<Budget> budget_of(const TestOutcome& outcome) {
+  const TestEntry& test = *outcome.question.test;
+  return outcome.secondaries() == test.secondaries ? std::nullopt : test.budget;
+}
+
 /// The setting for so many times the observations.
 reports::Advice setting(const TestOutcome& outcome, double factor) {
-  const auto& budget = outcome.question.test->budget;
+  const std::optional<Budget> budget = budget_of(outcome);
   if (budget && budget->seconds) {
     return {.key = "budget",
             .value = fmt::format("{}s", std::ceil(10 * factor * *budget->seconds) / 10)};
@@ -112,7 +118,7 @@ std::string sizes_text(const TestOutcome& outcome, double factor) {
 }
 
 Reason more_drawn(const TestOutcome& outcome, double factor, const std::string& does) {
-  if (const auto& budget = outcome.question.test->budget; budget && budget->of_suite) {
+  if (const auto budget = budget_of(outcome); budget && budget->of_suite) {
     return Reason::advising("", fmt::format("give the suite {} times its `budget`",
                                             reports::human(std::ceil(10 * factor) / 10, 2)));
   }
