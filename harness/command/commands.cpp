@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "estimators/catalogue.h"
+#include "harness/base/interrupt.h"
 #include "harness/base/record_file.h"
 #include "harness/base/terminal.h"
 #include "harness/command/describe.h"
@@ -78,7 +79,7 @@ int run_suites(const std::vector<Suite>& suites, const RunOptions& options, cons
   console.write_and_annotate(record);
   if (output.kept) keep_last_run(record, output.detail > 0);
   if (ranks && output.detail > 1) say_beside_progress(ranks->window_text());
-  if (checkpoint) checkpoint->remove();
+  if (checkpoint && !interrupted()) checkpoint->remove();
   if (!ledger_fault.empty()) throw std::runtime_error(ledger_fault);
   const int code = exit_code(record, output.inconclusive);
   return code == nothing_ran && options.shard_of_runner ? 0 : code;

@@ -110,6 +110,7 @@ reports::Record run_in_arena(const std::vector<Suite>& suites, const RunOptions&
     refuse({}, "--fail-fast ends a run early: leave --ledger and --shard out");
   }
   const PlannedRun planned = plan_run(suites, options, progress);
+  stop_if_interrupted();
   std::vector<TestWork*> tests;
   for (auto& run : planned.suites) {
     for (TestWork& work : run->tests) tests.push_back(&work);
@@ -122,10 +123,14 @@ reports::Record run_in_arena(const std::vector<Suite>& suites, const RunOptions&
                      .decided = [&](const TestWork& work) { return listener.hear(work); }},
                     progress);
   }
-  stop_if_interrupted();
+  const bool none =
+      std::ranges::none_of(tests, [](const TestWork* x) { return x->outcome.decided; });
+  if (none || !options.ledger.empty()) stop_if_interrupted();
   for (auto& run : planned.suites) {
     adjust_if_whole(*run, options);
-    if (!listener.may_go_on())
+    if (interrupted())
+      leave_out(*run, "the run was interrupted before its verdict");
+    else if (!listener.may_go_on())
       leave_out(*run, fmt::format("the run ended early: `{}` is broken", listener.first()));
   }
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;

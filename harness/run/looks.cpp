@@ -80,6 +80,15 @@ bool is_spent(const TestWork& work, const Clocks& clocks) {
   return growth * seconds > *budget->seconds;
 }
 
+/// False where an interruption left observations out. It is the fault of a program that waited.
+bool is_drawn(const TestWork& work) {
+  for (std::size_t i = 0; i < work.pools.size(); ++i) {
+    const Pool& pool = *work.pools[i];
+    if (pool.fault() ? interrupted() : pool.drawn() < work.outcome.secondaries(i)) return false;
+  }
+  return true;
+}
+
 bool take_next(TestWork& work, const Clocks& clocks) {
   TestOutcome& outcome = work.outcome;
   const bool spent = is_spent(work, clocks);
@@ -109,7 +118,7 @@ void sample_in_looks(const std::vector<TestWork*>& tests,
   Claims claims(progress, tests.size());
   std::vector<TestWork*> open = tests;
   bool go_on = true;
-  while (go_on && !open.empty()) {
+  while (go_on && !open.empty() && !interrupted()) {
     std::vector<TestWork*> next = open;
     if (rounds.cheapest_first) {
       next = {*std::ranges::min_element(open, {},
@@ -121,7 +130,7 @@ void sample_in_looks(const std::vector<TestWork*>& tests,
       }
     }
     draw_all(pools, *rounds.executor, "sampling", claims);
-    if (interrupted()) return;
+    std::erase_if(next, [](const TestWork* work) { return !is_drawn(*work); });
     const Clocks clocks = read_clocks(tests);
     for (TestWork* work : next) {
       if (take_next(*work, clocks)) continue;

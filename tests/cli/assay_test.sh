@@ -153,7 +153,7 @@ test_wrong_value_of_any_option_is_2() {
   done
 }
 
-test_interrupted_is_130_and_leaves_no_report() {
+test_interrupted_before_any_verdict_is_130_and_leaves_no_report() {
   write_suite long.yaml "$long"
   local code=0
   timeout --foreground --preserve-status --signal=INT 2 \

@@ -241,6 +241,43 @@ interrupt_by() {
   none_left
 }
 
+test_an_interrupted_run_reports_the_verdicts_there_are() {
+  # It answers the pilot's stream, the first, and the first looks of another.
+  cat >stuck.py <<'END'
+import os, random, sys, time
+print("assay 1 text\nchannel x\nready", flush=True)
+for line in sys.stdin:
+    high, low, first, count, primaries = line.split()
+    stream = f"{high}-{low}"
+    try:
+        os.symlink(stream, "pilot")
+    except FileExistsError:
+        pass
+    if os.readlink("pilot") != stream and int(first) >= 10000:
+        open("waits", "w").close()
+        time.sleep(765433)
+    for i in range(int(first), int(first) + int(count)):
+        print(random.Random(f"{stream}-{i}").random())
+    print(line, end="", flush=True)
+END
+  suite stuck.yaml 'stuck: {plugin: process, command: [python3, stuck.py]}'
+  sed -i 's/== 3.*/== 0.5, detect: 0.3%, secondaries: 20000}/' stuck.yaml
+  "$assay" run stuck.yaml --report json=run.json --report console=- >out 2>err &
+  until [ -e waits ]; do kill -0 $! || fail "it ended"; sleep .05; done
+  sleep .5
+  kill -TERM $!
+  wait $!
+  [ $? -eq 130 ] || fail 'not interrupted'
+  contains out 'the run was interrupted before its verdict'
+  /usr/bin/python3 - run.json <<'END' || fail 'the record is another'
+import json, sys
+tests = json.load(open(sys.argv[1]))["suites"][0]["tests"]
+assert [(each["name"], each["verdict"]) for each in tests] == [
+    ("sound", "pass"), ("stuck", "skipped")], tests
+END
+  none_left
+}
+
 test_a_value_outside_of_its_declared_range_is_an_error() {
   # Every hundredth observation lies beyond the range.
   cat >beyond.sh <<'END'
