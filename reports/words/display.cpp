@@ -370,10 +370,7 @@ RecordDisplay display(const Record& record) {
 }
 
 std::string trouble(const Test& test) {
-  if (is_missed(test)) {
-    return "The planted bug was not caught; if there is none, leave `expect` out. " +
-           display(test).sentence;
-  }
+  if (is_missed(test)) return "The planted bug was not caught. " + display(test).sentence;
   if (test.verdict == Verdict::fail && test.expected == Verdict::pass)
     return display(test).sentence;
   return test.verdict == Verdict::skipped ? test.message : without_advice(headline(test), test);
@@ -396,8 +393,11 @@ std::vector<Step> steps(const Test& test) {
         {.label = test.verdict == Verdict::fail ? "mind" : "to decide", .words = advice->words});
   else if (advice)
     set(advice->key, advice->value);
-  if (is_missed(test) && test.detect && deciding_channel(test).effect.relative)
-    set("detect", fmt::format("{:.2g}%", 50 * *test.detect));
+  const Effect effect = deciding_channel(test).effect;
+  if (is_missed(test)) {
+    if (test.detect && effect.relative) set("detect", fmt::format("{:.2g}%", 50 * *test.detect));
+    all.push_back({.label = "or", .words = "leave `expect` out, if there is no bug"});
+  }
   if (!test.no_replay.empty()) all.push_back({.label = "again", .words = test.no_replay});
   if (test.replay.empty()) return all;
   add(test.verdict == Verdict::skipped ? "then" : "again", test.replay);
