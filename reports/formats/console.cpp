@@ -113,12 +113,12 @@ class Screen {
         !all.empty() && all[0].paste != test.replay && all[0].words != test.no_replay;
     if (room() < static_cast<int>(text.size()) && test.verdict != Verdict::fail && !asked)
       next = step_lines(explanation(test));
-    const auto repeats = std::ranges::find(all, test.replay, &Step::paste);
-    const bool comes_later = repeats != all.begin() && repeats != all.end();
-    if (test.verdict == Verdict::fail && !test.replay.empty() && comes_later) {
-      const std::vector<std::string> again = step_lines(*repeats);
-      if (room() >= static_cast<int>(text.size() + again.size()))
-        next.insert(next.end(), again.begin(), again.end());
+    for (std::size_t i = 1; i < all.size(); ++i) {
+      const bool again = test.verdict == Verdict::fail && all[i].paste == test.replay;
+      const std::vector<std::string> more = step_lines(all[i]);
+      if ((all[i].label == "or" || (again && !test.replay.empty())) &&
+          room() >= static_cast<int>(text.size() + more.size()))
+        next.insert(next.end(), more.begin(), more.end());
     }
     indented(text, room());
     put(next);
