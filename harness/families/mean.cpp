@@ -80,13 +80,8 @@ ContrastTest corrected_of_two(const Side& x, const Side& y) {
 /// An exact test of "E x = value" where the value is known up to an error.
 OneMeanTest over_reference(std::function<TestResult(double)> at) {
   return [at = std::move(at)](const stats::Reference& null) {
-    TestResult result = at(null.value);
     const std::array<stats::UncertainReference, 1> references{{{null, null.value}}};
-    result.log_p_lower = stats::log_p_over_references(
-        [&](auto values) { return at(values[0]).log_p_lower; }, references);
-    result.log_p_upper = stats::log_p_over_references(
-        [&](auto values) { return at(values[0]).log_p_upper; }, references);
-    return result;
+    return stats::test_over_references([&](auto values) { return at(values[0]); }, references);
   };
 }
 

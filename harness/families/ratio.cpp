@@ -62,10 +62,6 @@ struct LogRatio {
   double log_null = 0;
   double sign = 1;  ///< -1 if the sides are inverses of the quantities.
 
-  bool uncertain() const {
-    return std::ranges::any_of(
-        sides, [](const RatioSide& side) { return side.truth.known.standard_error > 0; });
-  }
   /// True if one truth, with one error, serves both sides.
   bool shares_truth() const {
     const auto known = [&](std::size_t i) {
@@ -85,7 +81,7 @@ TestResult test(const LogRatio& ratio, std::span<const Influence> sides, double 
   return result;
 }
 
-TestResult over_truths(const LogRatio& ratio, TestResult as_known, double theta) {
+TestResult over_truths(const LogRatio& ratio, double theta) {
   std::vector<stats::UncertainReference> references;
   for (const RatioSide& side : ratio.sides) references.push_back(side.truth);
   const bool shared = ratio.shares_truth();
@@ -97,11 +93,7 @@ TestResult over_truths(const LogRatio& ratio, TestResult as_known, double theta)
     }
     return test(ratio, sides, theta);
   };
-  as_known.log_p_lower = stats::log_p_over_references(
-      [&](std::span<const double> truths) { return at(truths).log_p_lower; }, references);
-  as_known.log_p_upper = stats::log_p_over_references(
-      [&](std::span<const double> truths) { return at(truths).log_p_upper; }, references);
-  return as_known;
+  return stats::test_over_references(at, references);
 }
 
 // ---- Plans
@@ -295,10 +287,7 @@ Evidence by_influence(const Method&, const Seen& seen) {
   }
   const double second = known.size() == 1 ? 0 : known[1].log_value;
   const double estimate = ratio.sign * (known[0].log_value - second) - ratio.log_null;
-  const auto at = [=](double theta) {
-    const TestResult as_known = test(ratio, known, theta);
-    return ratio.uncertain() ? over_truths(ratio, as_known, theta) : as_known;
-  };
+  const auto at = [=](double theta) { return over_truths(ratio, theta); };
   const double error = std::sqrt(variance);
   const auto interval = [=](double confidence) {
     if (error == 0) return Interval{estimate, estimate, confidence};

@@ -84,4 +84,16 @@ double log_p_over_references(const LogP& log_p, std::span<const UncertainReferen
   return rejected;
 }
 
+TestResult test_over_references(const std::function<TestResult(std::span<const double>)>& at,
+                                std::span<const UncertainReference> references) {
+  std::vector<double> known;
+  for (const UncertainReference& reference : references) known.push_back(reference.known.value);
+  TestResult result = at(known);
+  result.log_p_lower = log_p_over_references(
+      [&](std::span<const double> values) { return at(values).log_p_lower; }, references);
+  result.log_p_upper = log_p_over_references(
+      [&](std::span<const double> values) { return at(values).log_p_upper; }, references);
+  return result;
+}
+
 }  // namespace assay::stats

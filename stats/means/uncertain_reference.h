@@ -27,4 +27,8 @@ struct UncertainReference {
 double log_p_over_references(const std::function<double(std::span<const double>)>& log_p,
                              std::span<const UncertainReference> references);
 
+// The test with the known numbers in the places of the references. Its p-values are those above.
+TestResult test_over_references(const std::function<TestResult(std::span<const double>)>& at,
+                                std::span<const UncertainReference> references);
+
 }  // namespace assay::stats
