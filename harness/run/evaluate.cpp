@@ -14,6 +14,7 @@
 #include "harness/run/observation_faults.h"
 #include "harness/run/verdict_text.h"
 #include "harness/theta/theta.h"
+#include "reports/words/number.h"
 #include "stats/planning/holm.h"
 
 namespace assay::harness {
@@ -315,7 +316,7 @@ bool is_doubted(const TestOutcome& outcome) {
   if (outcome.verdict != Verdict::pass) return outcome.verdict == Verdict::fail;
   const reports::Effect& effect = outcome.channels[0].effect;
   return outcome.question.test->claim.relation == Relation::equal &&
-         (effect.low > 0 || effect.high < 0);
+         (lies_above(effect, 0) || lies_below(effect, 0));
 }
 
 void add_caveat(TestOutcome& outcome) {

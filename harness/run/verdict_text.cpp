@@ -78,9 +78,8 @@ bool holds_no_effect(const ChannelOutcome& channel) {
 /// leave out the claimed value.
 std::string evidence_against(const TestOutcome& outcome, const ChannelOutcome& channel) {
   const double edge = channel.regions.claimed_edge();
-  const bool above = channel.regions.bounds_above() && channel.effect.low > edge;
-  const bool below =
-      channel.regions.bounds_below() && channel.effect.high && *channel.effect.high < -edge;
+  const bool above = channel.regions.bounds_above() && lies_above(channel.effect, edge);
+  const bool below = channel.regions.bounds_below() && lies_below(channel.effect, -edge);
   // An image's interval is that of the difference's size, and does not decide.
   if (channel.image || (!above && !below)) return "no evidence against the claim";
   return fmt::format("not enough evidence against the claim, {} where its share of alpha is {:.2g}",

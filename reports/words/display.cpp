@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <boost/algorithm/string/replace.hpp>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <set>
 
@@ -100,13 +99,10 @@ std::string found_in_image(const Image& image) {
 /// A pass whose interval leaves out all that is claimed or allowed says so.
 std::string exclusion_of_claim(const Test& test, const Effect& effect, const std::string& margin) {
   const double allow = test.allow.value_or(0), detect = test.detect.value_or(0);
-  const double infinity = std::numeric_limits<double>::infinity();
-  const double low = is_finite(effect.low) ? *effect.low : -infinity;
-  const double high = is_finite(effect.high) ? *effect.high : infinity;
   if (test.verdict != Verdict::pass || sides_of(test.claim).relation != "==" ||
-      !(low > allow || high < -allow))
+      !(lies_above(effect, allow) || lies_below(effect, -allow)))
     return "";
-  if (low > -detect && high < detect)
+  if (lies_above(effect, -detect) && lies_below(effect, detect))
     return fmt::format(" It is off, but by less than {}.", margin);
   return " Its range leaves the claim out, which at this test's level is no rejection.";
 }

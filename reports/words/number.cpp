@@ -158,6 +158,15 @@ std::string theta_text(double theta, const Effect& effect) {
   return is_factor(effect) ? "×" + factor_text(theta) : with_sign(std::expm1(theta), true);
 }
 
+// A missing end lies at infinity.
+bool lies_above(const Effect& effect, double theta) {
+  return is_finite(effect.low) && *effect.low > theta;
+}
+
+bool lies_below(const Effect& effect, double theta) {
+  return is_finite(effect.high) && *effect.high < theta;
+}
+
 std::string range_text(const Effect& effect) {
   const auto end = [&](const Number& value) { return theta_text(*value, effect); };
   if (is_finite(effect.low) && is_finite(effect.high)) {

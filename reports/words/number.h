@@ -70,6 +70,10 @@ std::string effect_name(const Effect&);
 /// one, else "×0.0717".
 std::string theta_text(double theta, const Effect&);
 
+/// True if the whole interval lies above this theta.
+bool lies_above(const Effect&, double theta);
+bool lies_below(const Effect&, double theta);
+
 /// "-0.094 % to +0.156 %", "at least +0.12 %"; empty where there is none.
 std::string range_text(const Effect&);
 

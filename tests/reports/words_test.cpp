@@ -68,6 +68,8 @@ const std::map<std::string, std::string (*)(const Arguments&)> functions{
     {"named effect", [](auto& a) { return named_effect_text(effect_of(a)); }},
     {"effect name", [](auto& a) { return effect_name({.quantity = a[0]}); }},
     {"interval", [](auto& a) { return range_text(effect_of(a)); }},
+    {"lies above 0", [](auto& a) { return yes_if(lies_above(effect_of(a), 0)); }},
+    {"lies below 0", [](auto& a) { return yes_if(lies_below(effect_of(a), 0)); }},
     {"size of low end", [](auto& a) { return size_text(*effect_of(a).low, effect_of(a)); }},
     {"size of high end", [](auto& a) { return size_text(*effect_of(a).high, effect_of(a)); }},
     {"margin", [](auto& a) { return margin_text(*number(a[0]), effect_of(a, 1)); }},
