@@ -104,8 +104,8 @@ double averaged_spread(double of_one, double averaged) { return 2 + (of_one - 2)
 
 class LogTheta : public Theta {
  public:
-  LogTheta(ThetaTraits traits, RatioWords named, std::vector<MethodRow> rows)
-      : Theta(with_logarithm(traits), std::move(rows)), words(named) {}
+  LogTheta(const ThetaTraits& traits, RatioWords named, std::vector<MethodRow> rows)
+      : Theta(traits, std::move(rows)), words(named) {}
 
   void check_margin(const Question& question, const Margin& margin) const override {
     Theta::check_margin(question, margin);
@@ -222,11 +222,6 @@ class LogTheta : public Theta {
   const RatioWords words;
 
  private:
-  static ThetaTraits with_logarithm(ThetaTraits traits) {
-    traits.logarithm = true;
-    return traits;
-  }
-
   /// A subject's influence values, with the truth as known; nullopt if the data do not tell.
   std::optional<Influence> influence(const Seen& seen, std::size_t subject) const {
     if (!tells(seen.data[subject])) return std::nullopt;
@@ -383,7 +378,8 @@ constexpr MethodTraits for_normal_values{.of_normal_values = true,
 class VarianceTheta : public LogTheta {
  public:
   VarianceTheta()
-      : LogTheta({.of_moments = true, .of_spread = true}, {"variance", "variances"},
+      : LogTheta({.logarithm = true, .of_moments = true, .of_spread = true},
+                 {"variance", "variances"},
                  {{"F", "F: two variances of near-normal values", of_two, Keeps::moments,
                    of_normal_values, for_normal_values},
                   {"chi-square", "chi-square: a variance of near-normal values", of_one,
@@ -537,7 +533,7 @@ class RatioTheta : public LogTheta {
 class CostTheta final : public RatioTheta {
  public:
   CostTheta()
-      : RatioTheta({.joins_channels = true}, {"cost", "costs"},
+      : RatioTheta({.joins_channels = true, .logarithm = true}, {"cost", "costs"},
                    rows("t of replicates: costs in seconds")) {}
 
   Question bind(const TestEntry& test, const Estimators& estimators) const override {
@@ -565,7 +561,7 @@ class CostTheta final : public RatioTheta {
 class EfficiencyTheta final : public RatioTheta {
  public:
   EfficiencyTheta()
-      : RatioTheta({.of_spread = true}, {"efficiency", "efficiencies"},
+      : RatioTheta({.logarithm = true, .of_spread = true}, {"efficiency", "efficiencies"},
                    rows("t of replicates: efficiencies in seconds")) {}
 
   Question bind(const TestEntry& test, const Estimators& estimators) const override;
@@ -608,7 +604,8 @@ class EfficiencyTheta final : public RatioTheta {
 class TotalVarianceTheta final : public LogTheta {
  public:
   TotalVarianceTheta()
-      : LogTheta({.joins_channels = true, .of_spread = true}, {"total variance", "total variances"},
+      : LogTheta({.joins_channels = true, .logarithm = true, .of_spread = true},
+                 {"total variance", "total variances"},
                  {influence_row(any_question, Keeps::group_variances)}) {}
 
   const Theta* of_images() const override { return this; }
