@@ -306,13 +306,14 @@ class ImageTheta : public Theta {
     return !has_margin(*question.test, false) && !is_against_darkness(question);
   }
 
-  std::uint64_t choose(TestOutcome& test, const Pilots& pilots, std::uint64_t most) const override {
+  std::uint64_t choose(TestOutcome& test, const Pilots& pilots) const override {
     const Question& question = test.question;
     const bool in_looks = has_planned_size(question) && !question.test->secondaries;
-    if (!in_looks || !all_pictured(question, pilots)) return stats::least_replicates;
     // Rows have one look, whose size nothing plans.
-    if (!has_rows(question)) test.plan.image = planned_image(test, pilots);
-    return std::min<std::uint64_t>(stats::least_replicates, most);
+    if (in_looks && all_pictured(question, pilots) && !has_rows(question)) {
+      test.plan.image = planned_image(test, pilots);
+    }
+    return stats::least_replicates;
   }
   /// Replicates that exclude `detect` or prove `within` if the images are equal.
   std::optional<std::uint64_t> secondaries(const TestOutcome& test, const ErrorShare& share,
@@ -455,7 +456,7 @@ class ImageLawTheta final : public ImageTheta {
     ImageTheta::check(question);
     require_equal_primaries(question);
   }
-  std::uint64_t choose(TestOutcome& test, const Pilots& pilots, std::uint64_t most) const override {
+  std::uint64_t choose(TestOutcome& test, const Pilots& pilots) const override {
     const double alpha = test.place.share.alpha;
     if (alpha < least_alpha && test.plan.invalid.empty()) {
       test.plan.invalid = fmt::format(
@@ -464,7 +465,7 @@ class ImageLawTheta final : public ImageTheta {
           "`alpha`",
           alpha, least_alpha);
     }
-    return ImageTheta::choose(test, pilots, most);
+    return ImageTheta::choose(test, pilots);
   }
   void check_margin(const Question&, const Margin& margin) const override {
     refuse(margin.where,

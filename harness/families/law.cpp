@@ -433,7 +433,7 @@ class LawTheta : public Theta {
     Theta::check_margin(question, margin);
   }
 
-  std::uint64_t choose(TestOutcome& test, const Pilots& pilots, std::uint64_t) const override {
+  std::uint64_t choose(TestOutcome& test, const Pilots& pilots) const override {
     freeze(test, pilots);
     return least_secondaries;
   }

@@ -596,7 +596,7 @@ class MeanTheta : public Theta {
     return error;
   }
 
-  std::uint64_t choose(TestOutcome& test, const Pilots& pilots, std::uint64_t) const override {
+  std::uint64_t choose(TestOutcome& test, const Pilots& pilots) const override {
     const Question& question = test.question;
     Plan& plan = test.plan;
     const std::vector<Known> channels = known_channels(test, pilots);

@@ -132,7 +132,7 @@ class LogTheta : public Theta {
     return error;
   }
 
-  std::uint64_t choose(TestOutcome& test, const Pilots&, std::uint64_t) const override {
+  std::uint64_t choose(TestOutcome& test, const Pilots&) const override {
     return std::max(usual_secondaries, secondaries_of_floor(test));
   }
 
@@ -386,7 +386,7 @@ class VarianceTheta : public LogTheta {
                    Keeps::moments, of_normal_values, for_normal_values},
                   influence_row(any_question, Keeps::powers)}) {}
 
-  std::uint64_t choose(TestOutcome& test, const Pilots& pilots, std::uint64_t most) const override {
+  std::uint64_t choose(TestOutcome& test, const Pilots& pilots) const override {
     const Question& question = test.question;
     const auto channels = known_channels(test, pilots);
     const double x = critical_value(smallest_level(question, test.place),
@@ -394,7 +394,7 @@ class VarianceTheta : public LogTheta {
     std::vector<stats::Gate> gates;
     const bool normal = are_near_normal(question, channels, x, gates);
     if (!question.test->method && !normal) test.plan.method = find_method(question, "influence-t");
-    if (!test.plan.method.is.of_normal_values) return LogTheta::choose(test, pilots, most);
+    if (!test.plan.method.is.of_normal_values) return LogTheta::choose(test, pilots);
     for (std::size_t i = 0; i < channels.size(); ++i) note(test.plan, channels[i], gates[i]);
     return secondaries_of_floor(test);
   }

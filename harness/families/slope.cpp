@@ -277,7 +277,7 @@ class SlopeTheta final : public Theta {
   }
   double known_size(const Question&) const override { return 0; }
 
-  std::uint64_t choose(TestOutcome& test, const Pilots&, std::uint64_t) const override {
+  std::uint64_t choose(TestOutcome& test, const Pilots&) const override {
     const std::uint64_t floor = secondaries_of_floor(test);
     return of_logarithms(test.question) ? std::max(usual_secondaries, floor) : floor;
   }

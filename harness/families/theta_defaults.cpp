@@ -67,9 +67,7 @@ double Theta::known_size(const Question& question) const {
   return largest;
 }
 
-std::uint64_t Theta::choose(TestOutcome&, const Pilots&, std::uint64_t) const {
-  return least_secondaries;
-}
+std::uint64_t Theta::choose(TestOutcome&, const Pilots&) const { return least_secondaries; }
 
 std::optional<std::uint64_t> Theta::secondaries(const TestOutcome& test, const ErrorShare& share,
                                                 const Pilots& pilots) const {

@@ -102,11 +102,12 @@ void require_free_size(const TestOutcome& test) {
          "chosen; leave them out");
 }
 
-stats::LookSchedule plan_looks(const TestOutcome& test, const Pilots& pilots, std::uint64_t first) {
+stats::LookSchedule plan_looks(const TestOutcome& test, const Pilots& pilots,
+                               const stats::LookRange& range) {
+  const auto [first, most] = range;
   const Question& question = test.question;
   const TestEntry& entry = *question.test;
   const ErrorShare& whole = test.place.share;
-  const std::uint64_t most = most_available(test, pilots);
   if (test.plan.method.keeps == Keeps::blocks) {
     const auto planned = question.theta->secondaries(test, whole, pilots);
     if (planned) require_possible(test, *planned);
@@ -149,12 +150,11 @@ stats::LookSchedule plan_looks(const TestOutcome& test, const Pilots& pilots, st
   return one_look(std::min(std::max(first, *alone), most), whole);
 }
 
-std::vector<std::uint64_t> postponed_looks(const TestOutcome& test, const Pilots& pilots) {
+std::vector<std::uint64_t> postponed_looks(const TestOutcome& test, std::uint64_t most) {
   const Question& question = test.question;
   const Plan& plan = test.plan;
   const bool chosen = question.test->secondaries || has_rows(question);
   if (chosen || plan.method.is.over_looks != stats::LookLaw::independent_increments) return {};
-  const std::uint64_t most = most_available(test, pilots);
   std::vector<std::uint64_t> sizes;
   std::uint64_t size = plan.most_secondaries();
   for (std::uint64_t times = 2; times <= most_postponed && size < most; times *= 2) {

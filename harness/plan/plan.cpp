@@ -121,7 +121,7 @@ std::uint64_t choose_method(TestOutcome& test, const Pilots& pilots, std::uint64
     test.plan.invalid = std::move(reason);
     return least_secondaries;
   }
-  const std::uint64_t least = question.theta->choose(test, pilots, most);
+  const std::uint64_t least = question.theta->choose(test, pilots);
   if (has_rows(question)) judge_independence(test, pilots, used);
   for (const Subject& side : question.subjects) {
     const Pilot* const pilot = pilot_of(side, pilots);
@@ -201,11 +201,12 @@ TestOutcome plan_test(const Question& question, const FamilyPlace& place, const 
   require_free_size(test);
   try {
     question.theta->require_density(question);
-    const std::uint64_t least = choose_method(test, pilots, most_available(test, pilots));
-    plan.looks = plan_looks(test, pilots, least);
+    const std::uint64_t most = most_available(test, pilots);
+    const std::uint64_t least = choose_method(test, pilots, most);
+    plan.looks = plan_looks(test, pilots, {.first = least, .last = most});
     if (plan.invalid.empty()) plan.invalid = question.theta->too_few(test);
     if (plan.invalid.empty()) {
-      plan.postponed = postponed_looks(test, pilots);
+      plan.postponed = postponed_looks(test, most);
     } else {
       plan.looks = look_for_its_picture(test);
     }

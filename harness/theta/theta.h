@@ -122,7 +122,7 @@ class Theta {
   virtual void require_density(const Question&) const {}
   /// Chooses among the methods by the pilots, and notes their gates. Returns the fewest secondaries
   /// that the method takes.
-  virtual std::uint64_t choose(TestOutcome&, const Pilots&, std::uint64_t most) const;
+  virtual std::uint64_t choose(TestOutcome&, const Pilots&) const;
   /// Secondaries of each subject that find `detect`, or prove `within`, with this share of errors
   /// in every channel. `impossible_secondaries` if no number does. By default the most that a
   /// channel needs, if all subjects have pilots.
