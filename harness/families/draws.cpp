@@ -73,8 +73,25 @@ struct CountedProbability {
 /// A probability of a sampler's draws, less the claimed one. It is tested exactly.
 class DrawsTheta : public Theta {
  public:
-  explicit DrawsTheta(const MethodRow& row) : Theta({.of_single_values = true}, {row}) {}
+  /// `tests` counts the sampler's `draws`.
+  DrawsTheta(Draws draws, const char* summary, Evidence (*tests)(const Method&, const Seen&))
+      : Theta({.of_single_values = true},
+              {{"binomial", summary, any_question, Keeps::cells, tests, {.exact = true}}}),
+        draws_(draws) {}
 
+  Question bind(const TestEntry& test, const Estimators& estimators) const override {
+    const Source& source = test.claim.left.source;
+    const Subject whole = draws(source, estimators, Draws::cells);
+    const std::vector<Channel> channels = whole.setup->channels();
+    if (channels[whole.channels[0]].name != cell_channel) {
+      refuse(source.where, "`integral` and `inconsistency` are about a whole sampler: name `{}.{}`",
+             source.estimator, whole.purpose);
+    }
+    return {.test = &test,
+            .theta = this,
+            .subjects = {draws(source, estimators, draws_)},
+            .references = {std::get<Constant>(test.claim.right)}};
+  }
   void check_margin(const Question& question, const Margin& margin) const override {
     require_absolute(margin, "this is a probability");
     Theta::check_margin(question, margin);
@@ -101,35 +118,17 @@ class DrawsTheta : public Theta {
   }
 
  protected:
-  Question bind_draws(const TestEntry& test, const Estimators& estimators, Draws what) const {
-    const Source& source = test.claim.left.source;
-    const Subject whole = draws(source, estimators, Draws::cells);
-    const std::vector<Channel> channels = whole.setup->channels();
-    if (channels[whole.channels[0]].name != cell_channel) {
-      refuse(source.where, "`integral` and `inconsistency` are about a whole sampler: name `{}.{}`",
-             source.estimator, whole.purpose);
-    }
-    return {.test = &test,
-            .theta = this,
-            .subjects = {draws(source, estimators, what)},
-            .references = {std::get<Constant>(test.claim.right)}};
-  }
   virtual CountedProbability counted(const Question&) const = 0;
+
+ private:
+  const Draws draws_;
 };
 
 class IntegralTheta final : public DrawsTheta {
  public:
   IntegralTheta()
-      : DrawsTheta({"binomial",
-                    "exact: what a sampler's density integrates to",
-                    any_question,
-                    Keeps::cells,
-                    integral,
-                    {.exact = true}}) {}
+      : DrawsTheta(Draws::cells, "exact: what a sampler's density integrates to", integral) {}
 
-  Question bind(const TestEntry& test, const Estimators& estimators) const override {
-    return bind_draws(test, estimators, Draws::cells);
-  }
   void require_density(const Question& question) const override { density_of(question); }
   std::string why_impossible(const Question& question) const override {
     return fmt::format(
@@ -149,16 +148,9 @@ class IntegralTheta final : public DrawsTheta {
 class InconsistencyTheta final : public DrawsTheta {
  public:
   InconsistencyTheta()
-      : DrawsTheta({"binomial",
-                    "exact: how often a draw contradicts its sampler",
-                    any_question,
-                    Keeps::cells,
-                    inconsistency,
-                    {.exact = true}}) {}
+      : DrawsTheta(Draws::consistency, "exact: how often a draw contradicts its sampler",
+                   inconsistency) {}
 
-  Question bind(const TestEntry& test, const Estimators& estimators) const override {
-    return bind_draws(test, estimators, Draws::consistency);
-  }
   std::string where_it_differs(const DrawnTest& test) const override {
     return first_contradiction(test);
   }
