@@ -82,8 +82,7 @@ class DrawsTheta : public Theta {
   Question bind(const TestEntry& test, const Estimators& estimators) const override {
     const Source& source = test.claim.left.source;
     const Subject whole = draws(source, estimators, Draws::cells);
-    const std::vector<Channel> channels = whole.setup->channels();
-    if (channels[whole.channels[0]].name != cell_channel) {
+    if (whole.declared(0).name != cell_channel) {
       refuse(source.where, "`integral` and `inconsistency` are about a whole sampler: name `{}.{}`",
              source.estimator, whole.purpose);
     }

@@ -170,14 +170,13 @@ std::string range_text(const std::string& name, const std::vector<double>& borde
 
 std::string describe(const stats::SampledCells& cells, const Subject& side, std::size_t cell) {
   if (cell == cells.size()) return "the draws without a point";
-  const std::vector<Channel> channels = side.setup->channels();
+  const std::vector<Channel> channels = side.declared();
   const auto after = std::ranges::upper_bound(cells.before, cell);
   const auto band = static_cast<std::size_t>(after - cells.before.begin()) - 1;
-  const std::string first = range_text(channels[side.channels[0]].name, cells.band_borders, band);
+  const std::string first = range_text(channels[0].name, cells.band_borders, band);
   if (side.channels.size() == 1) return first;
   return first + ", " +
-         range_text(channels[side.channels[1]].name, cells.cut_borders[band],
-                    cell - cells.before[band]);
+         range_text(channels[1].name, cells.cut_borders[band], cell - cells.before[band]);
 }
 
 /// Name of a tested cell, or of sparse cells that were pooled.
@@ -329,8 +328,7 @@ Evidence values_against_law(const Method&, const Seen& seen) {
 
 /// True if a sampler's draws are tested against its density in cells of all coordinates.
 bool of_whole_draws(const Question& question) {
-  const Subject& draws = question.subjects[0];
-  return draws.setup->channels()[draws.channels[0]].name == cell_channel;
+  return question.subjects[0].declared(0).name == cell_channel;
 }
 
 // ---- Sizes
@@ -543,10 +541,7 @@ void require_plane(const Question& question) {
 
 /// The compared marginals, as "u, v".
 std::string channel_names(const Subject& side) {
-  const std::vector<Channel> channels = side.setup->channels();
-  std::vector<std::string> names;
-  for (const std::size_t channel : side.channels.all()) names.push_back(channels[channel].name);
-  return fmt::format("{}", fmt::join(names, ", "));
+  return fmt::format("{}", fmt::join(names_of(side.declared(), &Channel::name), ", "));
 }
 
 /// Two samplers are compared marginal by marginal, so both need the same ones.

@@ -312,10 +312,9 @@ std::vector<Constant> recorded_means(const Question& question, const Subject& re
         subject.estimator->name, size_of(subject), reference.estimator->name, size_of(reference));
   }
   std::vector<Constant> means;
-  const std::vector<Channel> channels = reference.setup->channels();
-  for (const std::size_t i : reference.channels.all()) {
-    means.push_back({question.factor * channels[i].mean.value_or(0),
-                     std::abs(question.factor) * channels[i].mean_error});
+  for (const Channel& channel : reference.declared()) {
+    means.push_back({question.factor * channel.mean.value_or(0),
+                     std::abs(question.factor) * channel.mean_error});
   }
   return means;
 }
@@ -555,10 +554,9 @@ class MeanTheta : public Theta {
   double known_size(const Question& question) const override {
     double largest = Theta::known_size(question);
     if (question.of_two()) {
-      const std::vector<Channel> others = question.subjects[1].setup->channels();
-      for (const std::size_t channel : question.subjects[1].channels.all()) {
-        const double mean = question.factor * others[channel].mean.value_or(0);
-        const double error = std::abs(question.factor) * others[channel].rounding;
+      for (const Channel& channel : question.subjects[1].declared()) {
+        const double mean = question.factor * channel.mean.value_or(0);
+        const double error = std::abs(question.factor) * channel.rounding;
         if (exceeds_its_error(mean, error)) largest = std::max(largest, std::abs(mean));
       }
     }

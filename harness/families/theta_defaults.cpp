@@ -33,8 +33,7 @@ Question Theta::bind(const TestEntry& test, const Estimators& estimators) const 
 }
 
 std::string Theta::channel_name(const Question& question, std::size_t channel) const {
-  const Subject& first = question.subjects[0];
-  return first.setup->channels()[first.channels[channel]].name;
+  return question.subjects[0].declared(channel).name;
 }
 
 std::string Theta::claimed_value(const Question& question, std::size_t channel) const {
@@ -55,11 +54,10 @@ void Theta::check_margin(const Question& question, const Margin& margin) const {
 double Theta::known_size(const Question& question) const {
   double largest = 0;
   if (question.references.empty()) return 0;
-  const ChannelList& first = question.subjects[0].channels;
-  const std::vector<Channel> channels = question.subjects[0].setup->channels();
+  const std::vector<Channel> channels = question.subjects[0].declared();
   for (std::size_t i = 0; i < question.references.size(); ++i) {
     const Constant& reference = question.references[i];
-    const double rounding = channels[first[is.joins_channels ? 0 : i]].rounding;
+    const double rounding = channels[is.joins_channels ? 0 : i].rounding;
     if (exceeds_its_error(reference.value, std::max(reference.standard_error, rounding))) {
       largest = std::max(largest, std::abs(reference.value));
     }

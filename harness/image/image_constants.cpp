@@ -57,11 +57,10 @@ class DeclaredElements {
  public:
   explicit DeclaredElements(const Subject& subject) {
     if (subject.setup->pictures()) return;
-    const std::vector<Channel> all = subject.setup->channels();
     const double precision = relative_rounding(*subject.setup);
     each_.reserve(subject.channels.size());
-    for (const std::size_t channel : subject.channels.all()) {
-      each_.push_back({all[channel].low, all[channel].high, all[channel].rounding, precision});
+    for (const Channel& channel : subject.declared()) {
+      each_.push_back({channel.low, channel.high, channel.rounding, precision});
     }
   }
   const Declared& operator[](std::size_t element) const {

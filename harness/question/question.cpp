@@ -85,6 +85,14 @@ const NamedSampler* sampler_named(const std::vector<NamedSampler>& samplers,
 
 }  // namespace
 
+std::vector<Channel> Subject::declared() const {
+  std::vector<Channel> all = setup->channels();
+  std::vector<Channel> tested;
+  tested.reserve(channels.size());
+  for (const std::size_t channel : channels.all()) tested.push_back(std::move(all[channel]));
+  return tested;
+}
+
 std::optional<std::uint64_t> Question::most_rows() const {
   std::optional<std::uint64_t> most;
   for (const Subject& subject : subjects) most = std::max(most, subject.setup->observations());
@@ -171,11 +179,10 @@ Constant analytic_variance(const Channel& channel, const Source& source) {
 
 std::vector<Constant> references_of(const Claim& claim, const Subject& subject) {
   std::vector<Constant> numbers;
-  const std::vector<Channel> channels = subject.setup->channels();
-  for (const std::size_t i : subject.channels.all()) {
+  for (const Channel& channel : subject.declared()) {
     const auto* const number = std::get_if<Constant>(&claim.right);
     numbers.push_back(number != nullptr ? *number
-                                        : claim.left.row->analytic(channels[i], claim.left.source));
+                                        : claim.left.row->analytic(channel, claim.left.source));
   }
   return numbers;
 }
@@ -232,16 +239,15 @@ std::vector<Constant> truths_of(const TestEntry& test, const Subject& subject,
                                 const Source& source) {
   if (test.reference) return std::vector<Constant>(subject.channels.size());
   std::vector<Constant> truths;
-  const std::vector<Channel> channels = subject.setup->channels();
-  for (const std::size_t i : subject.channels.all()) {
-    if (!test.reference_number && !channels[i].mean) {
+  for (const Channel& channel : subject.declared()) {
+    if (!test.reference_number && !channel.mean) {
       refuse(source.where,
              "the true mean of `{}` is not known to its plugin; give the test a `reference:`, a "
              "number or an estimator",
              to_string(source));
     }
     truths.push_back(test.reference_number ? *test.reference_number
-                                           : analytic_mean(channels[i], source));
+                                           : analytic_mean(channel, source));
   }
   return truths;
 }
@@ -306,7 +312,7 @@ stats::Range range_of(const Question& question, std::size_t subject, std::size_t
                       const stats::Moments& moments) {
   const Subject& side = question.subjects[subject];
   if (is_recorded(side)) return {moments.minimum, moments.maximum};
-  const Channel declared = side.setup->channels()[side.channels[channel]];
+  const Channel declared = side.declared(channel);
   return {declared.low, declared.high};
 }
 
@@ -314,7 +320,7 @@ double rounding_of(const Question& question, std::size_t subject, std::size_t ch
   const Subject& side = question.subjects[subject];
   // Pictures declare nothing. Their millions of channel names are not made for one of them.
   if (side.setup->pictures()) return 0;
-  const Channel declared = side.setup->channels()[side.channels[channel]];
+  const Channel declared = side.declared(channel);
   return declared.rounding + relative_rounding(*side.setup) * std::abs(declared.mean.value_or(0));
 }
 

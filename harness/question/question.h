@@ -38,10 +38,14 @@ struct Subject {
     return std::min(look, setup->observations().value_or(look));
   }
 
+  /// What the set-up declares of a channel that the claim is about. It makes the names of all.
+  Channel declared(std::size_t channel) const { return setup->channels()[channels[channel]]; }
+  /// The same of all these channels.
+  std::vector<Channel> declared() const;
+
   /// The estimator's name, with the channel's if there are several: "area.red".
   std::string name_of(std::size_t channel) const {
-    return estimator->name +
-           (channels.size() > 1 ? "." + setup->channels()[channels[channel]].name : "");
+    return estimator->name + (channels.size() > 1 ? "." + declared(channel).name : "");
   }
 
   /// The number of primaries that an observation averages. Its variance and cost times this are

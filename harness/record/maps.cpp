@@ -337,15 +337,14 @@ bool are_a_rectangle(const stats::SampledCells& cells) {
 /// The first sample, against its part of both together.
 Cells of_two(const Seen& seen, const stats::SampledCells& sampled) {
   const Subject& first = seen.question.subjects[0];
-  const std::vector<Channel> channels = first.setup->channels();
+  const std::vector<Channel> channels = first.declared();
   const std::vector<std::uint64_t> x = counts_in(sampled, seen, 0);
   const std::vector<std::uint64_t> y = counts_in(sampled, seen, 1);
   const auto n = static_cast<double>(seen.data[0].all_values[0].size());
   const auto m = static_cast<double>(seen.data[1].all_values[0].size());
   Cells cells{.axes = fmt::format("of {}, parts of equal probability: of {} from top to bottom, of "
                                   "{} within each from left to right; expected as of both samples",
-                                  first.estimator->listed, channels[first.channels[0]].name,
-                                  channels[first.channels[1]].name),
+                                  first.estimator->listed, channels[0].name, channels[1].name),
               .width = sampled.cut_borders.front().size() + 1,
               .height = sampled.cut_borders.size()};
   for (std::size_t i = 0; i < sampled.size(); ++i) {

@@ -97,7 +97,7 @@ reports::Sample sample_of(const TestOutcome& outcome, std::size_t subject, const
   const stats::Moments& moments = kept.moments;
   const ChannelDetails& details = drawn.summary().details(index);
   const bool spread = moments.count > 1 && moments.m2 > 0;
-  reports::Sample sample = sample_of(outcome, subject, drawn, side.setup->channels()[index].name);
+  reports::Sample sample = sample_of(outcome, subject, drawn, side.declared(channel).name);
   sample.nonzero = moments.nonzero;
   sample.nonfinite = kept.nonfinite;
   // A record must not show what another test on the same observations kept.
