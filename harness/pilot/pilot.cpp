@@ -252,16 +252,16 @@ Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators, const
   return pilots;
 }
 
-PilotRun pilot_run_of(const std::vector<Question>& questions, const std::vector<bool>& chosen,
-                      std::uint64_t seed, std::shared_ptr<Executor> executor) {
+PilotRun pilot_run_of(const std::vector<Question>& questions, std::uint64_t seed,
+                      std::shared_ptr<Executor> executor) {
   PilotRun run{.seed = seed, .executor = std::move(executor), .with_cost = costly(questions)};
-  for (std::size_t i = 0; i < questions.size(); ++i) {
-    for (const Subject& side : questions[i].subjects) {
+  for (const Question& question : questions) {
+    for (const Subject& side : question.subjects) {
       std::uint64_t& most = run.most[side.estimator->listed];
-      most = std::max(most, paid_by(questions[i], side));
+      most = std::max(most, paid_by(question, side));
     }
-    if (!chosen[i] || methods_for(questions[i]).front().keeps != Keeps::points) continue;
-    for (const Subject& side : questions[i].subjects) {
+    if (!question.chosen || methods_for(question).front().keeps != Keeps::points) continue;
+    for (const Subject& side : question.subjects) {
       if (!side.purpose.empty()) run.draws.push_back(&side);
     }
   }
@@ -279,8 +279,7 @@ Pilots pilots_of(const std::vector<Question>& questions, std::uint64_t seed,
   std::vector<const PreparedEstimator*> estimators;
   for (const auto& [name, estimator] : used) estimators.push_back(estimator);
   Silence silence;
-  const std::vector<bool> all(questions.size(), true);
-  return run_pilots(estimators, pilot_run_of(questions, all, seed, std::move(executor)), silence);
+  return run_pilots(estimators, pilot_run_of(questions, seed, std::move(executor)), silence);
 }
 
 }  // namespace assay::harness

@@ -116,8 +116,8 @@ Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators, const
 
 /// The pilots of a suite's questions. All questions decide what a pilot keeps, so a selection does
 /// not change it. The chosen ones decide whether a sampler's draws are piloted.
-PilotRun pilot_run_of(const std::vector<Question>& questions, const std::vector<bool>& chosen,
-                      std::uint64_t seed, std::shared_ptr<Executor> executor);
+PilotRun pilot_run_of(const std::vector<Question>& questions, std::uint64_t seed,
+                      std::shared_ptr<Executor> executor);
 
 /// The pilots of these questions alone, drawn in silence.
 Pilots pilots_of(const std::vector<Question>& questions, std::uint64_t seed,

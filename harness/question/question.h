@@ -92,6 +92,7 @@ struct Question {
   std::vector<std::vector<Constant>> truths = {};
   std::vector<double> sizes = {};    ///< For a slope: the values of the swept parameter.
   std::vector<Margin> written = {};  ///< The user's margins, before `--coarsen`.
+  bool chosen = true;                ///< The run selects the test.
 
   const ThetaTraits& is() const;
   std::size_t channel_count() const {

@@ -385,15 +385,15 @@ double of_control_group() {
 
 }  // namespace
 
-StreamedClaims streamed(const std::vector<Question>& questions, const std::vector<bool>& chosen) {
+StreamedClaims streamed(const std::vector<Question>& questions) {
   StreamedClaims found;
-  for (std::size_t i = 0; i < questions.size(); ++i) {
-    if (!chosen[i] || !is_streamed(questions[i])) continue;
+  for (const Question& question : questions) {
+    if (!is_streamed(question)) continue;
     const bool alone = std::ranges::all_of(questions, [&](const Question& other) {
-      return &other == &questions[i] || (!is_about(other, questions[i].subjects[0]) &&
-                                         !is_about(other, questions[i].subjects[1]));
+      return &other == &question ||
+             (!is_about(other, question.subjects[0]) && !is_about(other, question.subjects[1]));
     });
-    if (alone) found.push_back(&questions[i]);
+    if (alone) found.push_back(&question);
   }
   return found;
 }

@@ -18,7 +18,7 @@ namespace assay::harness {
 /// Claims that can be answered row by row. Each must be its estimators' only one, and ask whether
 /// equally many pictures, all of each side, are equal.
 using StreamedClaims = std::vector<const Question*>;
-StreamedClaims streamed(const std::vector<Question>& questions, const std::vector<bool>& chosen);
+StreamedClaims streamed(const std::vector<Question>& questions);
 
 struct StreamedPictures {
   /// The pilots with the look at their pictures, or the fault of an unreadable source, or none.

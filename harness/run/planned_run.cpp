@@ -57,11 +57,11 @@ void coarsen(Suite& suite, const RunOptions& options) {
 using Used = std::vector<const PreparedEstimator*>;
 
 /// Estimators of the chosen tests, in the suite's order. A reference has nothing to draw.
-Used used_by(const SuiteRun& run, const std::vector<bool>& chosen) {
+Used used_by(const SuiteRun& run) {
   std::set<std::string> wanted;
-  for (std::size_t i = 0; i < run.questions.size(); ++i) {
-    for (const Subject& subject : run.questions[i].subjects) {
-      if (chosen[i]) wanted.insert(subject.estimator->listed);
+  for (const Question& question : run.questions) {
+    for (const Subject& subject : question.subjects) {
+      if (question.chosen) wanted.insert(subject.estimator->listed);
     }
   }
   Used used;
@@ -74,28 +74,27 @@ Used used_by(const SuiteRun& run, const std::vector<bool>& chosen) {
 }
 
 /// The estimators, and those at the points of the chosen tests' sweeps.
-Used with_sweeps(Used estimators, const SuiteRun& run, const std::vector<bool>& chosen) {
+Used with_sweeps(Used estimators, const SuiteRun& run) {
   std::set<std::string> known;
-  for (std::size_t i = 0; i < run.questions.size(); ++i) {
-    for (const Subject& subject : run.questions[i].subjects) {
-      if (!chosen[i] || !subject.own || !known.insert(subject.own->name).second) continue;
+  for (const Question& question : run.questions) {
+    for (const Subject& subject : question.subjects) {
+      if (!question.chosen || !subject.own || !known.insert(subject.own->name).second) continue;
       estimators.push_back(subject.own.get());
     }
   }
   return estimators;
 }
 
-PilotRun pilot_run(const SuiteRun& run, const std::vector<bool>& chosen,
-                   const RunOptions& options) {
-  return pilot_run_of(run.questions, chosen, run.seed, executor_of(options));
+PilotRun pilot_run(const SuiteRun& run, const RunOptions& options) {
+  return pilot_run_of(run.questions, run.seed, executor_of(options));
 }
 
 /// The pilots of a suite's estimators: first of pictures that are read row by row, then the others.
-Pilots piloted(const SuiteRun& run, const std::vector<bool>& chosen, const RunOptions& options,
-               Progress& progress) {
+Pilots piloted(const SuiteRun& run, const RunOptions& options, Progress& progress) {
   Used used = run.used;
   Pilots pilots;
-  for (const Question* const question : streamed(run.questions, chosen)) {
+  for (const Question* const question : streamed(run.questions)) {
+    if (!question->chosen) continue;
     StreamedPictures taken = stream_pictures(*question, progress);
     stop_if_interrupted();
     if (taken.pilots.empty()) {
@@ -106,32 +105,22 @@ Pilots piloted(const SuiteRun& run, const std::vector<bool>& chosen, const RunOp
     pilots.merge(std::move(taken.pilots));
   }
   if (used.empty()) return pilots;
-  pilots.merge(run_pilots(with_sweeps(std::move(used), run, chosen),
-                          pilot_run(run, chosen, options), progress));
+  pilots.merge(run_pilots(with_sweeps(std::move(used), run), pilot_run(run, options), progress));
   return pilots;
-}
-
-std::vector<bool> chosen_of(const SuiteRun& run, const RunOptions& options) {
-  std::vector<bool> chosen;
-  for (const Question& each : run.questions) {
-    chosen.push_back(selects(options.selection, *each.test));
-  }
-  return chosen;
 }
 
 void plan_tests(SuiteRun& run, const RunOptions& options, Progress& progress) {
   std::erase_if(run.untested,
                 [&](const Untested& each) { return !selects(options.selection, *each.test); });
   const std::vector<Question>& questions = run.questions;
-  const std::vector<bool> chosen = chosen_of(run, options);
-  if (std::ranges::count(chosen, true) == 0) return;
-  run.used = used_by(run, chosen);
+  if (std::ranges::none_of(questions, &Question::chosen)) return;
+  run.used = used_by(run);
   const std::vector<FamilyPlace> place = places(run.suite, questions);
-  run.pilots = piloted(run, chosen, options, progress);
+  run.pilots = piloted(run, options, progress);
   stop_if_interrupted();
   const Primaries primaries = choose_primaries(questions, place, run.pilots);
   for (std::size_t i = 0; i < questions.size(); ++i) {
-    if (!chosen[i]) continue;
+    if (!questions[i].chosen) continue;
     run.tests.push_back({.suite_budget = run.suite.budget ? &*run.suite.budget : nullptr,
                          .outcome = plan_test(questions[i], place[i], run.pilots, primaries)});
   }
@@ -226,10 +215,10 @@ std::unique_ptr<SuiteRun> prepare_suite(const Suite& suite, const RunOptions& op
   }
   const std::map<std::string, Fault> faults = prepare_estimators(*run);
   for (TestEntry& test : run->suite.tests) ask_test(*run, test, faults);
+  for (Question& each : run->questions) each.chosen = selects(options.selection, *each.test);
   note_unused(run->suite);
   coarsen(run->suite, options);
-  const std::vector<bool> all(run->questions.size(), true);
-  require_memory(run->estimators, streamed(run->questions, all), available_bytes());
+  require_memory(run->estimators, streamed(run->questions), available_bytes());
   return run;
 }
 
@@ -245,10 +234,9 @@ void add_missing(const Pool& pool, std::uint64_t count, Missing& missing) {
 }
 
 Missing missing_in_pilots(const SuiteRun& run, const RunOptions& options) {
-  const std::vector<bool> chosen = chosen_of(run, options);
-  const Used used = with_sweeps(used_by(run, chosen), run, chosen);
+  const Used used = with_sweeps(used_by(run), run);
   Missing missing;
-  for (const auto& [name, pool] : pilot_pools(used, pilot_run(run, chosen, options))) {
+  for (const auto& [name, pool] : pilot_pools(used, pilot_run(run, options))) {
     add_missing(*pool, pool->requested(), missing);
   }
   return missing;
