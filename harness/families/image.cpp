@@ -44,7 +44,7 @@ void require_one_size(const Question& question) {
 
 void require_tested_relation(const Question& question) {
   const Relation relation = question.test->claim.relation;
-  if (relation == Relation::equal || relation == Relation::within) return;
+  if (is_two_sided(relation)) return;
   refuse(place_of(question),
          "images are claimed to be equal (`==`) or `within` a margin of each other; for `{}` name "
          "one pixel, as in `{}.{}`",

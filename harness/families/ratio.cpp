@@ -335,11 +335,10 @@ Evidence of_normal_values(const Method&, const Seen& seen) {
           .quantity = quantity_of(seen.question)};
 }
 
-/// True if the pilot leaves no doubt that F and chi-square keep their level. Adds a gate for each
-/// channel.
-bool are_near_normal(const Question& question, const std::vector<Known>& channels, double critical,
+/// True if the pilot leaves no doubt that F and chi-square keep their level: no excess kurtosis
+/// above the limit. Adds a gate for each channel.
+bool are_near_normal(const Question& question, const std::vector<Known>& channels, double limit,
                      std::vector<stats::Gate>& gates) {
-  const double limit = kurtosis_limit(critical);
   bool normal = channels.size() == question.subjects.size() * question.channel_count();
   for (const Known& known : channels) {
     constexpr std::uint64_t fewest_with_kurtosis = 4;
@@ -389,10 +388,9 @@ class VarianceTheta : public LogTheta {
   std::uint64_t choose(TestOutcome& test, const Pilots& pilots) const override {
     const Question& question = test.question;
     const auto channels = known_channels(test, pilots);
-    const double x = critical_value(smallest_level(question, test.place),
-                                    is_two_sided(question.test->claim.relation));
+    const double limit = kurtosis_limit(question, test.place);
     std::vector<stats::Gate> gates;
-    const bool normal = are_near_normal(question, channels, x, gates);
+    const bool normal = are_near_normal(question, channels, limit, gates);
     if (!question.test->method && !normal) test.plan.method = find_method(question, "influence-t");
     if (!test.plan.method.is.of_normal_values) return LogTheta::choose(test, pilots);
     for (std::size_t i = 0; i < channels.size(); ++i) note(test.plan, channels[i], gates[i]);

@@ -144,14 +144,12 @@ std::uint64_t wanted_primaries(const Question& question, const FamilyPlace& plac
                                std::size_t subject, const Pilots& pilots) {
   std::uint64_t wanted = least_primaries;
   if (!question.is().of_spread) return wanted;
-  const double x =
-      critical_value(smallest_level(question, place), is_two_sided(question.test->claim.relation));
+  const double limit = kurtosis_limit(question, place);
   for (std::size_t channel = 0; channel < question.subjects[subject].channels.size(); ++channel) {
     const stats::Moments& pilot = pilot_channel(question, subject, channel, pilots).moments;
     if (is_constant(question, subject, channel, pilot)) continue;
     if (!beyond_doubles(pilot, "").empty()) continue;  // the plan says so
-    wanted =
-        std::max(wanted, stats::primaries_for_variance(pilot.kurtosis() - 3, kurtosis_limit(x)));
+    wanted = std::max(wanted, stats::primaries_for_variance(pilot.kurtosis() - 3, limit));
   }
   return wanted;
 }

@@ -25,12 +25,11 @@ double critical_value(double alpha, bool two_sided) {
   return stats::upper_normal_quantile(two_sided ? alpha / 2 : alpha);
 }
 
-double smallest_level(const Question& question, const FamilyPlace& place) {
+double kurtosis_limit(const Question& question, const FamilyPlace& place) {
   const bool planned = has_planned_size(question) && !question.test->secondaries;
-  return planned ? place.share.alpha / static_cast<double>(most_looks) : place.share.alpha;
-}
-
-double kurtosis_limit(double critical) {
+  const double looks = planned ? static_cast<double>(most_looks) : 1;
+  const double critical =
+      critical_value(place.share.alpha / looks, is_two_sided(question.test->claim.relation));
   const double log_tail = stats::normal_tails(critical).upper;
   const double nearer =
       stats::normal_quantile({stats::Tail::upper, log_tail + std::log(level_factor)});

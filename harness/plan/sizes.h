@@ -39,14 +39,11 @@ inline constexpr std::size_t most_looks = 16;
 /// True if `detect` or `within` determines the size.
 bool has_planned_size(const Question& question);
 
-/// The level up to which a method of this test must keep its own: an even part of its share for
-/// each look. A look with a smaller level need not keep it better.
-double smallest_level(const Question& question, const FamilyPlace& place);
-
-/// The excess kurtosis up to which F and chi-square serve at this critical value x. At it (.2 at
-/// most) chi-square and F have 1.25 times their nominal level. There x is divided by sqrt(1 +
-/// excess / 2).
-double kurtosis_limit(double critical);
+/// The excess kurtosis up to which F and chi-square serve this test, 0.2 at most. At it they have
+/// 1.25 times the nominal level at the test's critical value x. There x is divided by sqrt(1 +
+/// excess / 2). The level is an even part of the test's share for each look. A look with a smaller
+/// level need not keep it better.
+double kurtosis_limit(const Question& question, const FamilyPlace& place);
 
 /// An alarm rejects the claimed region at alpha and misses with beta. A proof rejects the forbidden
 /// region at beta. For `within` both sides are rejected, and each misses with beta / 2.
