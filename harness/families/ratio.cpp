@@ -525,6 +525,15 @@ class RatioTheta : public LogTheta {
         static_cast<double>(mine.moments.count) / static_cast<double>(mine.replicates.size());
     return per_count * logarithms(seen, subject).variance();
   }
+  std::optional<double> predicted_spread(const Question& question, const ChannelData& pilot,
+                                         double averaged) const final {
+    if (in_seconds(question)) return LogTheta::predicted_spread(question, pilot, averaged);
+    if (pilot.joint.empty()) return std::nullopt;
+    return counted_spread(by_its_cost(question, pilot.joint), averaged);
+  }
+  /// The same of a claim in counts, from single primaries with their cost.
+  virtual std::optional<double> counted_spread(const JointMoments& pilot,
+                                               double averaged) const = 0;
   bool tells(const ChannelData& data) const override { return !data.joint.empty(); }
 };
 
@@ -546,11 +555,8 @@ class CostTheta final : public RatioTheta {
   RatioSide side(const Seen& seen, std::size_t subject) const override {
     return without_truth(cost_of(seen, subject));
   }
-  std::optional<double> predicted_spread(const Question& question, const ChannelData& pilot,
-                                         double averaged) const override {
-    if (in_seconds(question)) return RatioTheta::predicted_spread(question, pilot, averaged);
-    if (pilot.joint.empty()) return std::nullopt;
-    const Moments cost = by_its_cost(question, pilot.joint).cost();
+  std::optional<double> counted_spread(const JointMoments& pilot, double averaged) const override {
+    const Moments cost = pilot.cost();
     if (!(cost.mean > 0)) return std::nullopt;
     return stats::influence_of_mean(cost).relative.variance() / averaged;
   }
@@ -587,14 +593,10 @@ class EfficiencyTheta final : public RatioTheta {
     const double of_truth = error * std::sqrt(4 * bias * bias + 2 * error * error) / squared;
     return n * of_truth * of_truth;
   }
-  std::optional<double> predicted_spread(const Question& question, const ChannelData& pilot,
-                                         double averaged) const override {
-    if (in_seconds(question)) return RatioTheta::predicted_spread(question, pilot, averaged);
-    if (pilot.joint.empty()) return std::nullopt;
-    const JointMoments& sample = by_its_cost(question, pilot.joint);
-    if (!(sample.of_cost.mean > 0) || !(sample.sum(2, 0) > 0)) return std::nullopt;
+  std::optional<double> counted_spread(const JointMoments& pilot, double averaged) const override {
+    if (!(pilot.of_cost.mean > 0) || !(pilot.sum(2, 0) > 0)) return std::nullopt;
     // The error's spread about the truth is at most that about the mean, unless bias dominates.
-    return averaged_spread(stats::influence_of_variance_and_cost(sample).relative.variance(),
+    return averaged_spread(stats::influence_of_variance_and_cost(pilot).relative.variance(),
                            averaged);
   }
 };
