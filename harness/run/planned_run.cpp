@@ -158,12 +158,6 @@ std::map<std::string, Fault> prepare_estimators(SuiteRun& run) {
   return faults;
 }
 
-std::vector<Source> sources_of(const TestEntry& test) {
-  std::vector<Source> sources = sources_of(test.claim);
-  if (test.reference) sources.push_back(*test.reference);
-  return sources;
-}
-
 void note_unused(const Suite& suite) {
   for (const EstimatorEntry& entry : suite.estimators) {
     const auto names_it = [&](const TestEntry& test) {

@@ -459,8 +459,7 @@ void read_tests(const Document& document, const Value& list, Suite& suite) {
                 "analytic`")) {
     TestEntry test = read_test(document, item);
     test.id = suite.stem + "/" + test.name;
-    for (const Source& source : sources_of(test.claim)) require_estimator(suite, source);
-    if (test.reference) require_estimator(suite, *test.reference);
+    for (const Source& source : sources_of(test)) require_estimator(suite, source);
     check_sweep(suite, test);
     const auto [first, is_new] = names.emplace(test.name, test.where);
     if (!is_new) {
@@ -562,6 +561,12 @@ std::vector<Source> sources_of(const Claim& claim) {
   if (const auto* right = std::get_if<ScaledQuantity>(&claim.right)) {
     sources.push_back(right->quantity.source);
   }
+  return sources;
+}
+
+std::vector<Source> sources_of(const TestEntry& test) {
+  std::vector<Source> sources = sources_of(test.claim);
+  if (test.reference) sources.push_back(*test.reference);
   return sources;
 }
 

@@ -131,6 +131,8 @@ std::vector<EstimatorEntry> estimators_of(const std::vector<Source>& sources,
 
 /// The sources that the claim names, left to right.
 std::vector<Source> sources_of(const Claim& claim);
+/// The same, then the estimator of `reference:`.
+std::vector<Source> sources_of(const TestEntry& test);
 
 /// The line of the file with a caret under the column; "" if the file cannot be read.
 std::string excerpt(const Location&);

@@ -162,9 +162,7 @@ TestEntry test_of(const std::string& command, const std::string& claim, const Te
 Suite suite_of_claim(const CheckArguments& arguments) {
   TestEntry test = test_of("check", arguments.claim, arguments.keys);
   Suite suite{.name = "check", .stem = "check", .folder = "."};
-  std::vector<Source> sources = sources_of(test.claim);
-  if (test.reference) sources.push_back(*test.reference);
-  suite.estimators = estimators_of(sources, arguments.estimators, arguments.primaries);
+  suite.estimators = estimators_of(sources_of(test), arguments.estimators, arguments.primaries);
   suite.tests.push_back(std::move(test));
   return suite;
 }
