@@ -62,38 +62,32 @@ struct LogRatio {
   double log_null = 0;
   double sign = 1;  ///< -1 if the sides are inverses of the quantities.
 
-  /// True if one truth, with one error, serves both sides.
-  bool shares_truth() const {
-    const auto known = [&](std::size_t i) {
-      return std::pair(sides[i].truth.known.value, sides[i].truth.known.standard_error);
-    };
-    return sides.size() == 2 && known(0) == known(1);
+  /// The truth of each side, or the one that serves both with one error.
+  std::vector<stats::UncertainReference> truths() const {
+    std::vector<stats::UncertainReference> truths;
+    for (const RatioSide& side : sides) {
+      const auto [value, error] = side.truth.known;
+      const bool shared = !truths.empty() && truths[0].known.value == value &&
+                          truths[0].known.standard_error == error;
+      if (!shared) truths.push_back(side.truth);
+    }
+    return truths;
   }
 };
 
-TestResult test(const LogRatio& ratio, std::span<const Influence> sides, double theta) {
+/// The test of theta with these truths.
+TestResult test(const LogRatio& ratio, std::span<const double> truths, double theta) {
+  const auto influence = [&](std::size_t i) {
+    return ratio.sides[i].influence(truths.size() > i ? truths[i] : truths[0]);
+  };
   const double log_ratio = ratio.sign * (theta + ratio.log_null);
-  TestResult result = sides.size() == 1 ? stats::influence_t(sides[0], log_ratio)
-                                        : stats::influence_t(sides[0], sides[1], log_ratio);
+  const Influence first = influence(0);
+  TestResult result = ratio.sides.size() == 1 ? stats::influence_t(first, log_ratio)
+                                              : stats::influence_t(first, influence(1), log_ratio);
   if (ratio.sign > 0) return result;
   result.statistic = -result.statistic;
   std::swap(result.log_p_lower, result.log_p_upper);
   return result;
-}
-
-TestResult over_truths(const LogRatio& ratio, double theta) {
-  std::vector<stats::UncertainReference> references;
-  for (const RatioSide& side : ratio.sides) references.push_back(side.truth);
-  const bool shared = ratio.shares_truth();
-  if (shared) references.resize(1);
-  const auto at = [&](std::span<const double> truths) {
-    std::vector<Influence> sides;
-    for (std::size_t i = 0; i < ratio.sides.size(); ++i) {
-      sides.push_back(ratio.sides[i].influence(truths[shared ? 0 : i]));
-    }
-    return test(ratio, sides, theta);
-  };
-  return stats::test_over_references(at, references);
 }
 
 // ---- Plans
@@ -282,7 +276,10 @@ Evidence by_influence(const Method&, const Seen& seen) {
   }
   const double second = known.size() == 1 ? 0 : known[1].log_value;
   const double estimate = ratio.sign * (known[0].log_value - second) - ratio.log_null;
-  const auto at = [=](double theta) { return over_truths(ratio, theta); };
+  const auto at = [ratio, truths = ratio.truths()](double theta) {
+    return stats::test_over_references(
+        [&](std::span<const double> each) { return test(ratio, each, theta); }, truths);
+  };
   const double error = std::sqrt(variance);
   const auto interval = [=](double confidence) {
     if (error == 0) return Interval{estimate, estimate, confidence};
