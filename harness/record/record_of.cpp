@@ -9,11 +9,11 @@
 #include <fstream>
 #include <limits>
 #include <map>
-#include <thread>
 
 #include "estimators/instruction_set.h"
 #include "estimators/rendered.h"
 #include "harness/base/numbers.h"
+#include "harness/base/parallel.h"
 #include "harness/base/version.h"
 #include "harness/plan/independence.h"
 #include "harness/question/question.h"
@@ -386,11 +386,10 @@ reports::EstimatorSummary summarise(const PreparedEstimator& estimator, const Su
 reports::Tool this_tool() { return {.name = "assay", .version = version(), .commit = commit()}; }
 
 reports::Environment this_environment(unsigned threads) {
-  return {
-      .compiler = fmt::format("g++ {}.{}.{}", __GNUC__, __GNUC_MINOR__, __GNUC_PATCHLEVEL__),
-      .cpu = processor_name(),
-      .isa = ray_instruction_set(),
-      .threads = static_cast<int>(threads != 0 ? threads : std::thread::hardware_concurrency())};
+  return {.compiler = fmt::format("g++ {}.{}.{}", __GNUC__, __GNUC_MINOR__, __GNUC_PATCHLEVEL__),
+          .cpu = processor_name(),
+          .isa = ray_instruction_set(),
+          .threads = static_cast<int>(threads_of(threads))};
 }
 
 std::string utc_now() {
