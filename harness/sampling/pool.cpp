@@ -395,10 +395,9 @@ Pool::Block Pool::drawn_block() const {
 }
 
 void Pool::keep_block(Summary block, std::uint64_t first) {
+  if (block.count == 0) return;  // its first observation failed
   block.detailed.clear();
-  if (sums_later() && block.count > 0) {
-    block.channels = all_kept().sums_of(first, first + block.count);
-  }
+  if (sums_later()) block.channels = all_kept().sums_of(first, first + block.count);
   blocks_.push_back(std::move(block));
 }
 

@@ -346,6 +346,20 @@ TEST(Pool, KeptImagesHaveTheSumsOfOneByOne) {
   for (std::size_t i = 0; i < 20; ++i) EXPECT_EQ(some[i][0], of_one_by_one[i][0]);
 }
 
+// Readers of blocks ask each for the moments of a channel.
+TEST(Pool, KeepsNoBlockWhoseFirstObservationFailed) {
+  const auto pool = pool_of({.throws = 1024, .image = true});
+  ASSERT_EQ(pool->block_size(), 1024);
+  pool->keep_observations(3000);
+  pool->keep_blocks();
+  pool->mark(1024);
+  draw_up_to(3000, pool, 1);
+  ASSERT_TRUE(pool->fault());
+  const std::span<const Summary> blocks = sample_of(*pool, 1024).blocks();
+  ASSERT_EQ(blocks.size(), 1U);
+  EXPECT_EQ(blocks[0].moments(1).count, 1024);
+}
+
 // A sampler's tests do not read its estimator: the estimator's death is none of theirs.
 TEST(Pilots, FaultOfAnEstimatorIsNotItsSamplers) {
   Pilots pilots;
