@@ -63,16 +63,13 @@ stats::ImageDistance relative_to(const stats::ImageDistance& distance,
   const std::vector<double> zeros(other.extent.elements());
   return stats::relative_to(
       distance,
-      stats::image_distance(other, stats::ImageReference{other.extent, zeros}, on_all_threads));
+      stats::image_distance({other, stats::ImageReference{other.extent, zeros}}, on_all_threads));
 }
 
 stats::ImageDistance distance_of(const ImagePair& pair, stats::ElementErrors errors) {
-  const stats::ImageDistance distance = pair.with([](const auto& first, const auto& second) {
-    return stats::image_distance(first, second, on_all_threads);
-  });
+  const stats::ImageDistance distance = stats::image_distance(pair.pair(), on_all_threads);
   if (pair.subtracted) return relative_to(distance, *pair.subtracted);
-  if (pair.second) return distance;
-  return stats::with_reference_error(distance, pair.first, pair.reference(), errors);
+  return stats::with_reference_error(distance, pair.pair(), errors);
 }
 
 /// Standard errors of what this look finds.
@@ -219,9 +216,7 @@ bool varies(const stats::ImageStack& stack) {
 
 void require_independent(const ImageTest& test, const ImagePair& pair) {
   if (!test.require_independent) return;
-  test.require_independent(pair.with([](const auto& first, const auto& second) {
-    return stats::image_dependence(stats::pair_of(first, second), on_all_threads);
-  }));
+  test.require_independent(stats::image_dependence(pair.pair(), on_all_threads));
 }
 
 /// The look of kept pictures.
@@ -239,8 +234,7 @@ PictureLook look_at(const Question& question, const ImageTest& test, const Image
   const stats::PyramidOptions options{.z = look.z,
                                       .for_each = on_all_threads,
                                       .constants_decide = pair.second || question.is().of_pairs};
-  look.family = varying.with(
-      [&](const auto& a, const auto& b) { return stats::image_pyramid(a, b, options); });
+  look.family = stats::image_pyramid(varying.pair(), options);
   unseen = varying.unseen();
   for (const UnseenElement& element : unseen) look.z[element.element] = z_of(element);
   look.means = {channel_means(pair.first), means_held_against(pair)};

@@ -23,13 +23,11 @@ struct ComparedImages {
   std::vector<double> error = {};  ///< Empty if no number has one.
 
   stats::ImageReference reference() const { return {first.extent, value, error}; }
+  stats::ImagePair pair() const {
+    return second ? stats::ImagePair(first, *second) : stats::ImagePair(first, reference());
+  }
   void drop_zero_errors() {
     if (std::ranges::all_of(error, [](double each) { return each == 0; })) error.clear();
-  }
-  /// Calls `use` with the first stack and its comparison, and returns the result.
-  template <class Use>
-  auto with(const Use& use) const {
-    return second ? use(first, *second) : use(first, reference());
   }
 };
 

@@ -251,10 +251,10 @@ class Looking {
       on_all_threads(pictures_, [&](std::size_t i) {
         of_differences_[i].add({differences.at(i, range.first), range.size()});
       });
-      take(stats::pair_of(differences, zero), rows);
-      norm_.take(stats::pair_of(stacks[1], zero), rows, on_all_threads);
+      take({differences, zero}, rows);
+      norm_.take({stacks[1], zero}, rows, on_all_threads);
     } else {
-      take(stats::pair_of(stacks[0], stacks[1]), rows,
+      take({stacks[0], stacks[1]}, rows,
            {sums_[0].room_for(stacks[0], rows), sums_[1].room_for(stacks[1], rows)});
     }
   }

@@ -74,8 +74,8 @@ void image_pair(const char* function, const ImagePair& pair) {
     image_stack(function, *pair.b);
     same_extent(function, pair.a.extent, pair.b->extent);
   } else {
-    image_reference(function, *pair.reference);
-    same_extent(function, pair.a.extent, pair.reference->extent);
+    image_reference(function, pair.reference);
+    same_extent(function, pair.a.extent, pair.reference.extent);
   }
 }
 

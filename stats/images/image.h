@@ -55,16 +55,15 @@ struct ImageReference {
   std::span<const double> standard_error = {};
 };
 
-// A stack, and a second stack or a reference to hold it against. Exactly one of the two is not
-// null.
+// A stack, and a second stack or a reference to hold it against. The stacks must outlive it.
 struct ImagePair {
-  const ImageStack& a;
-  const ImageStack* b = nullptr;
-  const ImageReference* reference = nullptr;
-};
+  ImagePair(const ImageStack& first, const ImageStack& second) : a(first), b(&second) {}
+  ImagePair(const ImageStack& first, const ImageReference& second) : a(first), reference(second) {}
 
-inline ImagePair pair_of(const ImageStack& a, const ImageStack& b) { return {a, &b, nullptr}; }
-inline ImagePair pair_of(const ImageStack& a, const ImageReference& b) { return {a, nullptr, &b}; }
+  const ImageStack& a;
+  const ImageStack* b = nullptr;  // Null if it is held against the reference.
+  ImageReference reference = {};
+};
 
 // The sum of products of two images' elements.
 inline double dot(std::span<const float> a, std::span<const float> b) {

@@ -32,7 +32,7 @@ struct Estimates {
 };
 
 // One side: a stack or a reference. A stack's moments go to `moments` too, if it has room.
-void load(const ImageStack* stack, const ImageReference* reference, ElementRange range,
+void load(const ImageStack* stack, const ImageReference& reference, ElementRange range,
           Estimates& out, MomentArrays moments) {
   out = {};
   if (stack != nullptr) {
@@ -48,8 +48,8 @@ void load(const ImageStack* stack, const ImageReference* reference, ElementRange
     return;
   }
   for (std::size_t i = 0; i < range.size(); ++i) {
-    const double error = check::reference_error(function_name, *reference, range.first + i);
-    out.mean[i] = reference->value[range.first + i];
+    const double error = check::reference_error(function_name, reference, range.first + i);
+    out.mean[i] = reference.value[range.first + i];
     out.squared_error[i] = error * error;
   }
 }
@@ -119,7 +119,7 @@ void add_row(DistanceSums& sums, const ImagePair& pair, ElementRange range,
     const auto of_block = [&](std::size_t side) {
       return moments[side].part(first - range.first, block.size());
     };
-    load(&pair.a, nullptr, block, *a, of_block(0));
+    load(&pair.a, {}, block, *a, of_block(0));
     load(pair.b, pair.reference, block, *b, of_block(1));
     for (std::size_t i = 0; i < block_size; ++i) {
       const double difference = a->mean[i] - b->mean[i];
@@ -225,6 +225,12 @@ ImageDistance RowDistance::distance() const {
           .degrees = static_cast<double>(fewest - 1)};
 }
 
+ImageDistance image_distance(const ImagePair& pair, const ForEach& for_each) {
+  RowDistance rows;
+  rows.take(pair, {0, pair.a.extent.height}, for_each);
+  return rows.distance();
+}
+
 ImageDistance with_norm(ImageDistance distance, double squared_norm) {
   check::positive({"with_norm", "squared norm"}, squared_norm);
   return relative_to(distance, {.squared_bias = squared_norm});
@@ -237,10 +243,12 @@ ImageDistance relative_to(ImageDistance distance, const ImageDistance& norm) {
   return distance;
 }
 
-ImageDistance with_reference_error(ImageDistance distance, const ImageStack& a,
-                                   const ImageReference& b, ElementErrors errors) {
+ImageDistance with_reference_error(ImageDistance distance, const ImagePair& pair,
+                                   ElementErrors errors) {
   constexpr const char* function = "with_reference_error";
-  check::image_pair(function, pair_of(a, b));
+  check::image_pair(function, pair);
+  const ImageStack& a = pair.a;
+  const ImageReference& b = pair.reference;
   if (b.standard_error.empty()) return distance;
   std::vector<double> mean(a.extent.elements());
   std::vector<double> m2(mean.size());

@@ -55,13 +55,7 @@ class RowDistance {
 };
 
 // The same of whole images. Throws as above.
-template <class Second>
-ImageDistance image_distance(const ImageStack& a, const Second& b,
-                             const ForEach& for_each = one_by_one) {
-  RowDistance rows;
-  rows.take(pair_of(a, b), {0, a.extent.height}, for_each);
-  return rows.distance();
-}
+ImageDistance image_distance(const ImagePair& pair, const ForEach& for_each = one_by_one);
 
 // The same with an exact norm: a margin in units of its root.
 ImageDistance with_norm(ImageDistance distance, double squared_norm);
@@ -81,9 +75,9 @@ enum class ElementErrors { independent, unknown };
 // This holds for normal errors, with unbiased squares of the means. Independent errors add up. For
 // unknown ones the squares of the sums of the roots are added, and the largest covariance. There
 // |d| plus two standard errors replaces the root of max(0, ...) in the first. An exact reference
-// adds nothing. Throws std::domain_error as image_distance does.
-ImageDistance with_reference_error(ImageDistance distance, const ImageStack& a,
-                                   const ImageReference& b, ElementErrors errors);
+// and a second stack add nothing. Throws std::domain_error as image_distance does.
+ImageDistance with_reference_error(ImageDistance distance, const ImagePair& pair,
+                                   ElementErrors errors);
 
 // Null hypothesis: ||E a - E b||^2 >= squared_margin N. Statistic: (U - squared_margin N) / its
 // jackknife standard error; Student's t. log_p_lower is the p-value, small when the images are

@@ -82,7 +82,7 @@ void take(const ImagePair& pair, std::size_t which, ElementRange range, Half& ha
   for (std::size_t i = 0; i < size; ++i) {
     difference[i] =
         half.mean[0][here + i] -
-        (pair.b != nullptr ? half.mean[1][here + i] : pair.reference->value[range.first + i]);
+        (pair.b != nullptr ? half.mean[1][here + i] : pair.reference.value[range.first + i]);
     half.varied[here + i] = variance[i] > 0;
   }
 }
@@ -122,8 +122,8 @@ std::array<Half, halves> halves_of(const ImagePair& pair, RowRange rows, const F
   const RowRange wider{rows.first - std::min(rows.first, rows_beside),
                        std::min(rows.last + rows_beside, pair.a.extent.height)};
   const ElementRange range = wider.elements(pair.a.extent);
-  for (std::size_t e = range.first; pair.reference != nullptr && e < range.last; ++e) {
-    check::reference_error("image_pyramid", *pair.reference, e);
+  for (std::size_t e = range.first; pair.b == nullptr && e < range.last; ++e) {
+    check::reference_error("image_pyramid", pair.reference, e);
   }
   for_each(halves, [&](std::size_t half) { advance(pair, half, range, before[half], for_each); });
   return before;

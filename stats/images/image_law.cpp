@@ -368,7 +368,7 @@ ImageLawFinding most_of(const Groups& groups, const ImageExtent& extent) {
 
 ImageLawTest image_law_test(const ImageStack& a, const ImageStack& b,
                             const ImageLawOptions& options) {
-  check::image_pair("image_law_test", pair_of(a, b));
+  check::image_pair("image_law_test", {a, b});
   const Pooled pooled(a, b);
   const std::vector<Cells> brightest = pooled.brightest(options.for_each);
   const std::size_t first = a.images.size();

@@ -404,7 +404,7 @@ class FineTiles {
   }
 
   double mean_of(std::size_t side, std::size_t element) const {
-    if (side == 1 && cells_.pair.b == nullptr) return cells_.pair.reference->value[element];
+    if (side == 1 && cells_.pair.b == nullptr) return cells_.pair.reference.value[element];
     const std::size_t here = element - cells_.half[0].first;
     return std::midpoint(cells_.half[0].mean[side][here], cells_.half[1].mean[side][here]);
   }
@@ -482,7 +482,7 @@ class FineTiles {
   // A reference's squared error, weighted as the element is.
   double error_of(std::size_t element) const {
     if (coarse_.squared_error.blocks.empty()) return 0;
-    const double error = weight_of(element) * cells_.pair.reference->standard_error[element];
+    const double error = weight_of(element) * cells_.pair.reference.standard_error[element];
     return error * error;
   }
 
@@ -663,9 +663,7 @@ CoarseImages empty_blocks(const ImagePair& pair) {
     coarse.effect[h] = none;
     coarse.varied[h] = none;
   }
-  if (pair.reference != nullptr && !pair.reference->standard_error.empty()) {
-    coarse.squared_error = none;
-  }
+  if (!pair.reference.standard_error.empty()) coarse.squared_error = none;
   return coarse;
 }
 

@@ -140,4 +140,15 @@ ImageFamily RowPyramid::family() {
   return family;
 }
 
+ImageFamily image_pyramid(const ImagePair& pair, const PyramidOptions& options) {
+  // Intermediate data is not kept for all elements of a large image.
+  constexpr std::size_t rows_at_a_time = 512;
+  const std::size_t height = pair.a.extent.height;
+  RowPyramid pyramid(pair, options);
+  for (std::size_t row = 0; row < height; row += rows_at_a_time) {
+    pyramid.take(pair, {row, std::min(row + rows_at_a_time, height)});
+  }
+  return pyramid.family();
+}
+
 }  // namespace assay::stats

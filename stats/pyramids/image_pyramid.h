@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <span>
@@ -76,17 +75,6 @@ class RowPyramid {
   std::vector<BestCell> best_;  // One per group.
 };
 
-template <class Second>
-ImageFamily image_pyramid(const ImageStack& a, const Second& b,
-                          const PyramidOptions& options = {}) {
-  // Intermediate data is not kept for all elements of a large image.
-  constexpr std::size_t rows_at_a_time = 512;
-  const ImagePair pair = pair_of(a, b);
-  RowPyramid pyramid(pair, options);
-  for (std::size_t row = 0; row < a.extent.height; row += rows_at_a_time) {
-    pyramid.take(pair, {row, std::min(row + rows_at_a_time, a.extent.height)});
-  }
-  return pyramid.family();
-}
+ImageFamily image_pyramid(const ImagePair& pair, const PyramidOptions& options = {});
 
 }  // namespace assay::stats

@@ -110,8 +110,9 @@ int main(int argc, char** argv) {
         for (std::size_t i = next++; i < count; i = next++) work(i);
       });
     };
-    const Times family =
-        median_times([&] { stats::image_pyramid(a.view, b.view, {.z = z, .for_each = for_each}); });
+    const Times family = median_times([&] {
+      stats::image_pyramid({a.view, b.view}, {.z = z, .for_each = for_each});
+    });
     std::atomic<std::uint64_t> sink = 0;
     const Times read = median_times([&] {
       on_threads(threads, extent.elements(), [&](std::size_t first, std::size_t size) {

@@ -77,7 +77,7 @@ Found look(const Stack& a, const Stack& b) {
     for (const auto& image : stack) all.add(number(image));
     return all;
   };
-  const stats::ImageFamily family = stats::image_pyramid(view(a), view(b));
+  const stats::ImageFamily family = stats::image_pyramid({view(a), view(b)});
   Found found{.size = family.groups.empty() ? 0 : family.winner.size};
   auto& [assay, welch, part, whole] = found.by;
   assay = family.log_p <= std::log(alpha);

@@ -23,7 +23,7 @@ OwnedStack independent(Philox& random, double (*law)(Philox&), std::size_t repli
 ImageDependence found(const OwnedStack& a, const OwnedStack& b) {
   const ImageStack first = a.view();
   const ImageStack second = b.view();
-  return image_dependence(pair_of(first, second));
+  return image_dependence({first, second});
 }
 
 void copy_tile(const std::vector<float>& from, std::vector<float>& to) {
@@ -156,7 +156,7 @@ TEST(ImageDependence, IsTheSameRowByRow) {
     const ImageStack second = other->view();
     RowDependence rows;
     for (std::size_t y = 0; y < extent.height; y += 8) {
-      rows.take(pair_of(first, second), {y, y + 8});
+      rows.take({first, second}, {y, y + 8});
     }
     const ImageDependence by_rows = rows.found();
     const ImageDependence whole = found(sound, *other);

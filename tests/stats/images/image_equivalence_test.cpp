@@ -20,7 +20,7 @@ OwnedStack image(Philox& random, double bias, double sd = 1) {
 // The test of ||E a - E b|| >= margin ||E b||.
 template <class Second>
 TestResult within(const OwnedStack& a, const Second& b) {
-  return squared_margin_test(image_distance(a.view(), b), margin * margin);
+  return squared_margin_test(image_distance({a.view(), b}), margin * margin);
 }
 
 TEST(ImageEquivalence, AtTheMarginBothSidesKeepTheirLevel) {
@@ -37,7 +37,7 @@ CAUGHT(ImageEquivalence, ASquaredDifferenceThatKeepsTheNoiseIsCaught, 861, 2000,
        Shape::at_most_uniform) {
   const OwnedStack a = image(random, margin, 8);
   const OwnedStack b = image(random, 0, 8);
-  const ImageDistance distance = image_distance(a.view(), b.view());
+  const ImageDistance distance = image_distance({a.view(), b.view()});
   const double noise = 2 * 64.0 / 32 * static_cast<double>(extent.elements());
   const double norm = 100 * static_cast<double>(extent.elements());
   const double t =
@@ -58,7 +58,7 @@ TEST(ImageEquivalence, TheSquaredBiasIsUnbiased) {
     Moments squared;
     for (int i = 0; i < 400; ++i) {
       const OwnedStack a = image(random, bias, 4);
-      squared.add(image_distance(a.view(), image(random, 0, 2).view()).squared_bias);
+      squared.add(image_distance({a.view(), image(random, 0, 2).view()}).squared_bias);
     }
     const double truth = 100 * bias * bias * static_cast<double>(extent.elements());
     // False alarm below 1e-5.
@@ -76,7 +76,7 @@ TEST(ImageEquivalence, EqualImagesAreEquivalentAndADifferentOneIsNot) {
   const std::vector<double> truth(extent.elements(), 10);
   const ImageReference reference{extent, truth};
   EXPECT_LT(within(a, reference).log_p_lower, std::log(1e-6));
-  EXPECT_NEAR(image_distance(c.view(), reference).squared_bias, 4 * 144, 30);
+  EXPECT_NEAR(image_distance({c.view(), reference}).squared_bias, 4 * 144, 30);
 }
 
 // More elements than are taken at a time.
@@ -88,8 +88,8 @@ TEST(ImageEquivalence, TheDistanceIsTheSameInAnyOrderAndOfAllElements) {
   };
   const OwnedStack a = draw(1.05);
   const OwnedStack b = draw(1);
-  const ImageDistance distance = image_distance(a.view(), b.view());
-  const ImageDistance other = image_distance(a.view(), b.view(), tests::last_first);
+  const ImageDistance distance = image_distance({a.view(), b.view()});
+  const ImageDistance other = image_distance({a.view(), b.view()}, tests::last_first);
   EXPECT_EQ(distance.squared_bias, other.squared_bias);
   EXPECT_EQ(distance.bias_variance, other.bias_variance);
   EXPECT_EQ(distance.covariance, other.covariance);
@@ -105,7 +105,7 @@ TEST(ImageEquivalence, ANormWithoutErrorLeavesTheBiasAlone) {
   Philox random(871);
   const OwnedStack a = image(random, 0.05, 1);
   const OwnedStack b = image(random, 0, 1);
-  const ImageDistance plain = with_norm(image_distance(a.view(), b.view()), 144);
+  const ImageDistance plain = with_norm(image_distance({a.view(), b.view()}), 144);
   EXPECT_EQ(plain.norm_variance, 0);
   const TestResult at = squared_margin_test(plain, plain.squared_bias / 144);
   EXPECT_NEAR(at.statistic, 0, 1e-9);
@@ -134,8 +134,8 @@ TestResult at_margin(Philox& random, const Case& given) {
   const std::vector<double> errors(extent.elements(), error);
   const ImageReference reference{extent, value, errors};
   const ImageStack a = stack.view();
-  ImageDistance distance = image_distance(a, reference);
-  if (given.taken) distance = with_reference_error(distance, a, reference, *given.taken);
+  ImageDistance distance = image_distance({a, reference});
+  if (given.taken) distance = with_reference_error(distance, {a, reference}, *given.taken);
   return below_half(squared_margin_test(distance, margin * margin));
 }
 
@@ -169,8 +169,9 @@ TEST(ImageReferenceError, OfAnExactReferenceIsNothing) {
   const OwnedStack a = draw_stack(extent, images, [&](std::size_t) { return random.normal(); });
   const std::vector<double> value(extent.elements(), 1);
   const ImageReference exact{extent, value, {}};
-  const ImageDistance before = image_distance(a.view(), exact);
-  const ImageDistance after = with_reference_error(before, a.view(), exact, ElementErrors::unknown);
+  const ImageDistance before = image_distance({a.view(), exact});
+  const ImageDistance after =
+      with_reference_error(before, {a.view(), exact}, ElementErrors::unknown);
   EXPECT_EQ(after.bias_variance, before.bias_variance);
   EXPECT_EQ(after.norm_variance, before.norm_variance);
   EXPECT_EQ(after.covariance, before.covariance);

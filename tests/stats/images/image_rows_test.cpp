@@ -58,7 +58,7 @@ void for_each_window(const OwnedStack& a, const OwnedStack& b, std::size_t ahead
     const RowRange there{row, std::min(rows.last + ahead, extent.height)};
     const Window first(a, there);
     const Window second(b, there);
-    take(pair_of(first.stack(), second.stack()), rows);
+    take(ImagePair(first.stack(), second.stack()), rows);
   }
 }
 
@@ -85,11 +85,11 @@ TEST_F(ImageRows, MakeTheFamilyOfTheWhole) {
   using Pyramid = RowPyramid;
   std::vector<double> z(extent.elements());
   std::vector<double> z_of_whole(extent.elements());
-  Pyramid pyramid(pair_of(a_.view(), b_.view()), {.z = z, .for_each = tests::last_first});
+  Pyramid pyramid({a_.view(), b_.view()}, {.z = z, .for_each = tests::last_first});
   for_each_window(a_, b_, Pyramid::rows_ahead,
                   [&](const auto& pair, RowRange rows) { pyramid.take(pair, rows); });
   const ImageFamily rows = pyramid.family();
-  const ImageFamily whole = image_pyramid(a_.view(), b_.view(), {.z = z_of_whole});
+  const ImageFamily whole = image_pyramid({a_.view(), b_.view()}, {.z = z_of_whole});
   expect_same(rows, whole);
   EXPECT_EQ(z, z_of_whole);
   EXPECT_EQ(rows.weights, whole.weights);
@@ -102,7 +102,7 @@ TEST_F(ImageRows, HaveTheDistanceOfTheWhole) {
     distance.take(pair, rows, tests::last_first);
   });
   const ImageDistance rows = distance.distance();
-  const ImageDistance whole = image_distance(a_.view(), b_.view());
+  const ImageDistance whole = image_distance({a_.view(), b_.view()});
   EXPECT_EQ(rows.squared_bias, whole.squared_bias);
   EXPECT_EQ(rows.squared_norm, whole.squared_norm);
   EXPECT_EQ(rows.bias_variance, whole.bias_variance);

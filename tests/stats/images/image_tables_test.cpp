@@ -44,7 +44,7 @@ TEST(ImageTables, TheJackknifeAgreesWithLeavingReplicatesOutOneByOne) {
   const auto a = images_of(1, 16);
   const auto b = images_of(2, 19);
   const std::vector<Row> rows = tests::read_table("image_equivalence");
-  const ImageDistance distance = image_distance(a.view(), b.view());
+  const ImageDistance distance = image_distance({a.view(), b.view()});
   EXPECT_NEAR(distance.squared_bias, rows[0]["estimate"], 1e-9);
   EXPECT_NEAR(std::sqrt(distance.bias_variance) / rows[0]["standard_error"], 1, 1e-9);
   for (const std::size_t k : {1UL, 2UL}) {

@@ -95,7 +95,7 @@ void expect_cells_of(const ImageExtent& extent, std::uint32_t test_case) {
   const OwnedStack second = draw_stack(extent, 16, draw);
   const ImageStack a = first.view();
   const ImageStack b = second.view();
-  const ImagePair pair{a, &b, nullptr};
+  const ImagePair pair{a, b};
   const RowRange rows{0, extent.height};
   const std::array<Half, halves> half = halves_of(pair, rows);
   const Groups groups = window_groups(extent);

@@ -51,18 +51,18 @@ OwnedStack correlated_stack(Philox& random, std::size_t replicates) {
 
 CALIBRATED(ImagePyramid, TwoStacksOfSixteenKeepTheirLevel, 821, 4000, Shape::at_most_uniform) {
   const OwnedStack a = normal_stack(random, 16, 3);
-  return image_pyramid(a.view(), normal_stack(random, 16).view()).log_p;
+  return image_pyramid({a.view(), normal_stack(random, 16).view()}).log_p;
 }
 
 CALIBRATED(ImagePyramid, SkewedStacksOfUnequalVarianceKeepTheirLevel, 822, 2000,
            Shape::at_most_uniform) {
   const OwnedStack a = skewed_stack(random, 32, 4);
-  return image_pyramid(a.view(), skewed_stack(random, 16, 12).view()).log_p;
+  return image_pyramid({a.view(), skewed_stack(random, 16, 12).view()}).log_p;
 }
 
 CALIBRATED(ImagePyramid, ACorrelatedStackKeepsItsLevel, 823, 4000, Shape::at_most_uniform) {
   const OwnedStack a = correlated_stack(random, 16);
-  return image_pyramid(a.view(), correlated_stack(random, 16).view()).log_p;
+  return image_pyramid({a.view(), correlated_stack(random, 16).view()}).log_p;
 }
 
 CALIBRATED(ImagePyramid, AReferencesErrorIsInTheTest, 824, 4000, Shape::at_most_uniform) {
@@ -70,7 +70,7 @@ CALIBRATED(ImagePyramid, AReferencesErrorIsInTheTest, 824, 4000, Shape::at_most_
   const std::vector<double> error(small.elements(), 0.3);
   std::vector<double> value = normals(random, small.elements());
   for (double& v : value) v *= 0.3;
-  return image_pyramid(a.view(), ImageReference{small, value, error}).log_p;
+  return image_pyramid({a.view(), ImageReference{small, value, error}}).log_p;
 }
 
 // Normal elements, and among them a block of which a single replicate saw one element lit.
@@ -93,8 +93,8 @@ TEST(ImagePyramid, AnErrorOfRoundingSizeGivesNoWeightToElementsThatDidNotVary) {
   std::vector<double> value(small.elements());
   value[7 * small.width + 5] = 1.0 / 32;
   const std::vector<double> error(small.elements(), 1e-17);
-  const ImageFamily exact = image_pyramid(stack.view(), ImageReference{small, value});
-  const ImageFamily nearly = image_pyramid(stack.view(), ImageReference{small, value, error});
+  const ImageFamily exact = image_pyramid({stack.view(), ImageReference{small, value}});
+  const ImageFamily nearly = image_pyramid({stack.view(), ImageReference{small, value, error}});
   ASSERT_EQ(exact.groups.size(), nearly.groups.size());
   for (std::size_t g = 0; g < exact.groups.size(); ++g) {
     EXPECT_LT(std::abs(exact.groups[g].z), 5) << exact.groups[g].window.width;
@@ -137,13 +137,13 @@ CALIBRATED(ImagePyramid, RarelyLitElementsAgainstASmoothSideKeepTheLevel, 847, 4
   const OwnedStack a = mostly_zero_stack(random, 64);
   const OwnedStack b =
       draw_stack(mostly_zero, 64, [&](std::size_t) { return 1 + 0.05 * random.normal(); });
-  return image_pyramid(a.view(), b.view()).log_p;
+  return image_pyramid({a.view(), b.view()}).log_p;
 }
 
 CALIBRATED(ImagePyramid, RarelyLitElementsAgainstTheirMeansKeepTheLevel, 848, 800,
            Shape::at_most_uniform) {
   const std::vector<double> means(mostly_zero.elements(), 1.0);
-  return image_pyramid(mostly_zero_stack(random, 32).view(), ImageReference{mostly_zero, means},
+  return image_pyramid({mostly_zero_stack(random, 32).view(), ImageReference{mostly_zero, means}},
                        {.constants_decide = false})
       .log_p;
 }
@@ -151,14 +151,14 @@ CALIBRATED(ImagePyramid, RarelyLitElementsAgainstTheirMeansKeepTheLevel, 848, 80
 CALIBRATED(ImagePyramid, RareLightOfOneSideKeepsTheLevel, 846, tests::repetitions(2000),
            Shape::at_most_uniform) {
   const OwnedStack a = lit_stack(random, {});
-  return image_pyramid(a.view(), smooth_stack(random).view()).log_p;
+  return image_pyramid({a.view(), smooth_stack(random).view()}).log_p;
 }
 
 // Half of the mean is in a fiftieth of the values: a cell often misses all of them.
 CALIBRATED(ImagePyramid, RarerLightOfOneSideKeepsTheLevel, 846, tests::repetitions(2000),
            Shape::at_most_uniform) {
   const OwnedStack a = lit_stack(random, {.rate = 0.02, .share = 0.5});
-  return image_pyramid(a.view(), smooth_stack(random).view()).log_p;
+  return image_pyramid({a.view(), smooth_stack(random).view()}).log_p;
 }
 
 // Four highlights of 4 x 4 in a dull picture. One side has their light in one of 75 values, of
@@ -180,7 +180,7 @@ OwnedStack highlight_stack(Philox& random, bool rare) {
 CALIBRATED(ImagePyramid, RareHighlightsOfOneSideKeepTheLevel, 850, tests::repetitions(2000),
            Shape::at_most_uniform) {
   const OwnedStack a = highlight_stack(random, true);
-  return image_pyramid(a.view(), highlight_stack(random, false).view()).log_p;
+  return image_pyramid({a.view(), highlight_stack(random, false).view()}).log_p;
 }
 
 // Welch's test of every element, which knows no neighbours.
@@ -213,7 +213,7 @@ TEST(ImagePyramid, NeighboursLeaveADefectToTwoImagesOfOneLaw) {
       scale(a, [](std::size_t x, std::size_t y) {
         return x >= 10 && x < 16 && y >= 5 && y < 11 ? 0.7F : 1.0F;
       });
-      found += image_pyramid(a.view(), lit_stack(random, rare).view()).log_p < std::log(1e-2);
+      found += image_pyramid({a.view(), lit_stack(random, rare).view()}).log_p < std::log(1e-2);
     }
     EXPECT_GE(found, 18) << share;
   }
@@ -243,18 +243,18 @@ CAUGHT(ImagePyramid, AReferencesErrorIgnoredIsCaught, 824, 2000, Shape::at_most_
   const OwnedStack a = normal_stack(random, 16);
   std::vector<double> value = normals(random, small.elements());
   for (double& v : value) v *= 0.3;
-  return image_pyramid(a.view(), ImageReference{small, value}).log_p;
+  return image_pyramid({a.view(), ImageReference{small, value}}).log_p;
 }
 
 CAUGHT(ImagePyramid, TheBestWindowWithoutItsCountIsCaught, 828, 4000, Shape::at_most_uniform) {
   const OwnedStack a = normal_stack(random, 16);
-  return image_pyramid(a.view(), ImageReference{small, zeros}).winner.log_p;
+  return image_pyramid({a.view(), ImageReference{small, zeros}}).winner.log_p;
 }
 
 CAUGHT(ImagePyramid, GroupsWithoutTheirSharesAreCaught, 829, 4000, Shape::at_most_uniform) {
   const auto groups = window_groups(small);
   const OwnedStack a = normal_stack(random, 16);
-  const ImageFamily family = image_pyramid(a.view(), ImageReference{small, zeros});
+  const ImageFamily family = image_pyramid({a.view(), ImageReference{small, zeros}});
   double smallest = 0;
   for (std::size_t g = 0; g < groups.size(); ++g) {
     smallest = std::min(smallest, family.groups[g].adjusted_log_p + std::log(groups[g].share));
@@ -288,7 +288,7 @@ TEST(ImagePyramid, DefectsOfEveryScaleAreFound) {
       // A standard error is 1/8.
       const OwnedStack a =
           draw_stack(extent, 64, [&](std::size_t e) { return random.normal() + shift[e] / 8; });
-      found += image_pyramid(a.view(), ImageReference{extent, truth}).log_p <= std::log(1e-3);
+      found += image_pyramid({a.view(), ImageReference{extent, truth}}).log_p <= std::log(1e-3);
     }
     EXPECT_GE(found, tests::is_long() ? at->second : at->second / 4 - 2) << defect.name;
     if (at->second == 0) {
@@ -316,7 +316,7 @@ TEST(ImagePyramid, MorePicturesNeverLosePower) {
       for (const std::size_t count : {128U, 64U, 32U, 16U}) {
         a.images.resize(count);
         b.images.resize(count);
-        found[count] += image_pyramid(a.view(), b.view()).log_p < std::log(1e-2);
+        found[count] += image_pyramid({a.view(), b.view()}).log_p < std::log(1e-2);
       }
     }
     std::cout << "  found of 100 in 16, 32, 64, 128 pictures: " << found[16] << ", " << found[32]
@@ -339,7 +339,7 @@ TEST(ImagePyramid, TheWinnerSaysWhereTheDefectIs) {
     }
   }
   const std::vector<double> truth(extent.elements());
-  const ImageFamily family = image_pyramid(stack.view(), ImageReference{extent, truth});
+  const ImageFamily family = image_pyramid({stack.view(), ImageReference{extent, truth}});
   EXPECT_LT(family.log_p, std::log(1e-20));
   EXPECT_EQ(family.winner.size, 8);
   EXPECT_EQ(family.winner.window, (Rectangle{26, 16, 8, 8}));
@@ -356,7 +356,7 @@ double log_p_of_the_true_effect(Philox& random, bool adjust) {
     const bool brightened = is_tile(e % small.width, e / small.width);
     return random.normal() + (brightened ? brighter : 0);
   });
-  const ImageFamily family = image_pyramid(a.view(), normal_stack(random, 16).view());
+  const ImageFamily family = image_pyramid({a.view(), normal_stack(random, 16).view()});
   const ImageFinding& found = family.winner;
   if (found.alternation) return 0;
   double sum = 0, weight = 0;
@@ -383,7 +383,7 @@ TEST(ImagePyramid, TheWinnersIntervalExcludesZeroWhereItIsAFinding) {
     const OwnedStack a = draw_stack(small, 16, [&](std::size_t e) {
       return random.normal() + (e % small.width / 4 == 1 && e / small.width / 5 == 1 ? .8 : 0);
     });
-    const ImageFinding found = image_pyramid(a.view(), normal_stack(random, 16).view()).winner;
+    const ImageFinding found = image_pyramid({a.view(), normal_stack(random, 16).view()}).winner;
     if (found.alternation || found.adjusted_log_p > std::log(1 - confidence_at_place)) continue;
     const double t = found.effect.estimate / found.effect.standard_error;
     const double own = adjusted(two_sided(student_t_tails(t, found.effect.degrees)), found.group);
@@ -410,12 +410,12 @@ TEST(ImagePyramid, OneDifferentConstantIsCertainAndPlaced) {
   OwnedStack b = normal_stack(random, 16);
   for (auto& image : a.images) image[27] = 1;
   for (auto& image : b.images) image[27] = 1;
-  const ImageFamily equal = image_pyramid(a.view(), b.view());
+  const ImageFamily equal = image_pyramid({a.view(), b.view()});
   EXPECT_EQ(equal.equal_constants, 1);
   EXPECT_EQ(equal.tested, 119);
   EXPECT_GT(equal.log_p, std::log(1e-6));
   for (auto& image : b.images) image[27] = std::nextafter(1.0F, 2.0F);
-  const ImageFamily different = image_pyramid(a.view(), b.view());
+  const ImageFamily different = image_pyramid({a.view(), b.view()});
   EXPECT_EQ(different.different_constants, 1);
   EXPECT_EQ(different.log_p, std::numeric_limits<double>::lowest());
   EXPECT_EQ(different.winner.window, (Rectangle{3, 2, 1, 1}));
@@ -432,7 +432,7 @@ TEST(ImagePyramid, AllDifferentConstantsOfOneSignAreThePlaceAndCertain) {
     for (auto& image : b.images) image[e] = e == 40 ? 1.0F : e == 119 ? 0.0F : 2.0F;
   }
   std::vector<double> z(small.elements());
-  const ImageFamily family = image_pyramid(a.view(), b.view(), {.z = z});
+  const ImageFamily family = image_pyramid({a.view(), b.view()}, {.z = z});
   EXPECT_EQ(family.winner.window, (Rectangle{3, 2, 9, 6}));
   // Sums of it are finite: maps average it.
   EXPECT_EQ(z[27], -certain_z);
@@ -452,7 +452,7 @@ TEST(ImagePyramid, AClearDefectIsWhereItIs) {
     for (auto& image : a.images) {
       for (std::size_t y = 8; y < 16; ++y) std::fill_n(&image[y * 64 + 40], 8, 0.0F);
     }
-    const ImageFinding winner = image_pyramid(a.view(), b.view()).winner;
+    const ImageFinding winner = image_pyramid({a.view(), b.view()}).winner;
     EXPECT_EQ(winner.window, (Rectangle{40, 8, 8, 8})) << seed;
     EXPECT_NEAR(winner.effect.estimate, -3, 0.15);
   }
@@ -465,7 +465,7 @@ TEST(ImagePyramid, AUniformDifferenceIsOfTheWholeImage) {
     Philox random(seed);
     const OwnedStack b = draw_stack(extent, 24, [&](std::size_t) { return random.normal(); });
     const OwnedStack a = draw_stack(extent, 24, [&](std::size_t) { return .04 + random.normal(); });
-    EXPECT_EQ(image_pyramid(a.view(), b.view()).winner.window, (Rectangle{0, 0, 64, 48})) << seed;
+    EXPECT_EQ(image_pyramid({a.view(), b.view()}).winner.window, (Rectangle{0, 0, 64, 48})) << seed;
   }
 }
 
@@ -486,7 +486,7 @@ TEST(ImagePyramid, AFindingIsThePlaceThatVaries) {
     };
     const OwnedStack a = stack_of(1.5);
     const OwnedStack b = stack_of(1);
-    const ImageFamily family = image_pyramid(a.view(), b.view());
+    const ImageFamily family = image_pyramid({a.view(), b.view()});
     EXPECT_LT(family.log_p, std::log(1e-6));
     EXPECT_EQ(family.winner.window, place);
     EXPECT_FALSE(family.winner.alternation);
@@ -503,16 +503,16 @@ TEST(ImagePyramid, SignsInTurnWinOnlyWhereNoCellTells) {
   };
   const OwnedStack b = stack_of([](std::size_t) { return 0.0; });
   const OwnedStack column = stack_of([](std::size_t e) { return e % 32 == 9 ? 1.5 : 0.0; });
-  const ImageFinding there = image_pyramid(column.view(), b.view()).winner;
+  const ImageFinding there = image_pyramid({column.view(), b.view()}).winner;
   EXPECT_FALSE(there.alternation);
   EXPECT_TRUE(there.window.x <= 9 && 9 < there.window.x + there.window.width);
   const OwnedStack turns = stack_of([](std::size_t e) { return e % 32 % 2 == 0 ? 0.1 : -0.1; });
-  EXPECT_EQ(image_pyramid(turns.view(), b.view()).winner.alternation, Alternation::columns);
+  EXPECT_EQ(image_pyramid({turns.view(), b.view()}).winner.alternation, Alternation::columns);
 }
 
 TEST(ImagePyramid, EqualConstantsEverywhereAreNoEvidence) {
   const OwnedStack a = draw_stack(small, 16, [](std::size_t e) { return static_cast<double>(e); });
-  const ImageFamily family = image_pyramid(a.view(), a.view());
+  const ImageFamily family = image_pyramid({a.view(), a.view()});
   EXPECT_EQ(family.log_p, 0);
   EXPECT_EQ(family.equal_constants, small.elements());
 }
@@ -554,7 +554,7 @@ TEST(ImagePyramid, ATypicalCellTellsWhatIsFound) {
     const auto draw = [&](std::size_t) { return random.normal(); };
     OwnedStack a = draw_stack(extent, 64, draw);
     const OwnedStack b = draw_stack(extent, 64, draw);
-    const TypicalCell typical = image_pyramid(a.view(), b.view()).typical;
+    const TypicalCell typical = image_pyramid({a.view(), b.view()}).typical;
     EXPECT_EQ(typical.group.count, 12);
     EXPECT_NEAR(std::sqrt(typical.noise.at(0).variance) / error, 1, 0.15);
     const double errors =
@@ -569,7 +569,7 @@ TEST(ImagePyramid, ATypicalCellTellsWhatIsFound) {
           }
         }
       }
-      found[part] += image_pyramid(a.view(), b.view()).log_p <= std::log(0.01) ? 1 : 0;
+      found[part] += image_pyramid({a.view(), b.view()}).log_p <= std::log(0.01) ? 1 : 0;
     }
   }
   EXPECT_GE(found[0], 37);
@@ -590,9 +590,9 @@ TEST(ImagePyramid, IsTheSameInAnyOrder) {
   const OwnedStack b = draw_stack(extent, 16, draw);
   std::vector<double> z(extent.elements());
   std::vector<double> other_z(extent.elements());
-  const ImageFamily family = image_pyramid(a.view(), b.view(), {.z = z});
+  const ImageFamily family = image_pyramid({a.view(), b.view()}, {.z = z});
   const ImageFamily other =
-      image_pyramid(a.view(), b.view(), {.z = other_z, .for_each = tests::last_first});
+      image_pyramid({a.view(), b.view()}, {.z = other_z, .for_each = tests::last_first});
   EXPECT_EQ(z, other_z);
   EXPECT_EQ(family.tested, other.tested);
   ASSERT_EQ(family.groups.size(), other.groups.size());
