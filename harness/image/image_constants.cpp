@@ -52,46 +52,40 @@ stats::ImageStack replaced(const stats::ImageStack& stack,
   return out;
 }
 
-/// Declarations of every element; pictures of files share one.
-class DeclaredElements {
- public:
-  explicit DeclaredElements(const Subject& subject) {
-    if (subject.setup->pictures()) return;
-    const double precision = relative_rounding(*subject.setup);
-    each_.reserve(subject.channels.size());
-    for (const Channel& channel : subject.declared()) {
-      each_.push_back({channel.low, channel.high, channel.rounding, precision});
-    }
-  }
-  const Declared& operator[](std::size_t element) const {
-    return each_.empty() ? any_ : each_[element];
-  }
-  template <class Map>
-  void map(const Map& mapped) {
-    any_ = mapped(any_);
-    for (Declared& channel : each_) channel = mapped(channel);
-  }
+/// Declarations of each element, or one that all share.
+using Declarations = std::vector<Declared>;
 
-  /// Makes them the declarations of differences from images near `image`, but for their range.
-  void subtract(const DeclaredElements& other, std::span<const float> image) {
-    each_.resize(std::max(each_.size(), other.each_.size()), any_);
-    for (std::size_t i = 0; i < each_.size(); ++i) {
-      each_[i].rounding = each_[i].error(image[i]) + other[i].error(image[i]);
-    }
-    any_.rounding += other.any_.rounding;
-  }
+const Declared& declared_at(const Declarations& all, std::size_t element) {
+  return all[all.size() == 1 ? 0 : element];
+}
 
- private:
-  Declared any_{Channel().low, Channel().high, Channel().rounding};
-  std::vector<Declared> each_;
-};
+/// Pictures of files share one.
+Declarations declared_by(const Subject& subject) {
+  if (subject.setup->pictures()) return {{Channel().low, Channel().high, Channel().rounding}};
+  const double precision = relative_rounding(*subject.setup);
+  Declarations all;
+  all.reserve(subject.channels.size());
+  for (const Channel& channel : subject.declared()) {
+    all.push_back({channel.low, channel.high, channel.rounding, precision});
+  }
+  return all;
+}
+
+/// The declarations of differences from images near `image`, but for their range.
+Declarations subtracted(Declarations one, const Declarations& other, std::span<const float> image) {
+  one.resize(std::max(one.size(), other.size()), one[0]);
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    one[i].rounding = one[i].error(image[i]) + declared_at(other, i).error(image[i]);
+  }
+  return one;
+}
 
 constexpr std::size_t at_a_time = 256;
 using Spans = std::array<Span, at_a_time>;
 
 /// Ranges of the elements from `first` on. An element's scan ends as soon as it is seen to vary,
 /// nearly always at the second image. Returns whether any may be constant.
-bool find_spans(const stats::ImageStack& stack, const DeclaredElements& channels, std::size_t first,
+bool find_spans(const stats::ImageStack& stack, const Declarations& channels, std::size_t first,
                 Spans& spans) {
   const std::size_t size = std::min(at_a_time, stack.extent.elements() - first);
   for (std::size_t i = 0; i < size; ++i) {
@@ -106,7 +100,7 @@ bool find_spans(const stats::ImageStack& stack, const DeclaredElements& channels
       const double value = image[i];
       spans[i].low = std::min(spans[i].low, value);
       spans[i].high = std::max(spans[i].high, value);
-      constants |= spans[i].constant(channels[first + i]);
+      constants |= spans[i].constant(declared_at(channels, first + i));
     }
   }
   return constants;
@@ -131,21 +125,18 @@ Constant mean_of(const stats::ImageStack& stack, std::size_t element) {
   return {moments.mean, moments.standard_error()};
 }
 
-/// The declaration of factor x + offset.
-Declared mapped(const Declared& channel, const Question& question) {
-  const double low = question.factor * channel.low + question.offset;
-  const double high = question.factor * channel.high + question.offset;
-  return {.low = std::min(low, high),
-          .high = std::max(low, high),
-          .rounding = channel.rounding * std::abs(question.factor),
-          .precision = channel.precision,
-          .offset = question.offset};
-}
-
-DeclaredElements mapped_elements(const Question& question) {
-  DeclaredElements second(question.subjects[1]);
-  second.map([&](const Declared& channel) { return mapped(channel, question); });
-  return second;
+/// The second side's declarations of factor x + offset.
+Declarations mapped_by(const Question& question) {
+  Declarations all = declared_by(question.subjects[1]);
+  for (Declared& each : all) {
+    const double low = question.factor * each.low + question.offset;
+    const double high = question.factor * each.high + question.offset;
+    each.low = std::min(low, high);
+    each.high = std::max(low, high);
+    each.rounding *= std::abs(question.factor);
+    each.offset = question.offset;
+  }
+  return all;
 }
 
 }  // namespace
@@ -166,11 +157,10 @@ VaryingPart::VaryingPart(const Question& question, const ImagePair& pair) : Comp
   }
 }
 
-void VaryingPart::settle_against_reference(const Question& question,
-                                           std::span<const float> subtracted) {
+void VaryingPart::settle_against_reference(const Question& question, std::span<const float> other) {
   auto& [images, none, numbers, errors] = static_cast<ComparedImages&>(*this);
-  DeclaredElements channels(question.subjects[0]);
-  if (!subtracted.empty()) channels.subtract(mapped_elements(question), subtracted);
+  Declarations channels = declared_by(question.subjects[0]);
+  if (!other.empty()) channels = subtracted(std::move(channels), mapped_by(question), other);
   Spans spans;
   bool constants = false;
   std::vector<Replacement> replacements;
@@ -178,14 +168,15 @@ void VaryingPart::settle_against_reference(const Question& question,
     if (i % at_a_time == 0) constants = find_spans(images, channels, i, spans);
     if (!constants) continue;
     const Span span = spans[i % at_a_time];
-    if (!span.constant(channels[i])) continue;
+    const Declared& channel = declared_at(channels, i);
+    if (!span.constant(channel)) continue;
     const double constant = images.images[0][i];
     const Constant expected{numbers[i], errors.empty() ? 0 : errors[i]};
-    const bool differs = std::abs(constant - expected.value) > channels[i].error(expected.value);
+    const bool differs = std::abs(constant - expected.value) > channel.error(expected.value);
     if (differs && question.is().of_pairs) continue;  // it fails, as of two images
     ++constants_;
     if (differs) {
-      const Missing missing{constant, channels[i].low, channels[i].high, images.images.size()};
+      const Missing missing{constant, channel.low, channel.high, images.images.size()};
       unseen_.push_back({i, missing.sign(expected), missing.log_p(expected)});
     }
     if (span.low < span.high) replacements.push_back({i, constant});
@@ -200,8 +191,8 @@ void VaryingPart::settle_against_reference(const Question& question,
 void VaryingPart::settle_two(const Question& question) {
   auto& stack = first;
   auto& other = *second;
-  const DeclaredElements one(question.subjects[0]);
-  const DeclaredElements two = mapped_elements(question);
+  const Declarations one = declared_by(question.subjects[0]);
+  const Declarations two = mapped_by(question);
   std::vector<Replacement> of_first;
   std::vector<Replacement> of_second;
   Spans first_spans;
@@ -213,19 +204,20 @@ void VaryingPart::settle_two(const Question& question) {
       constants |= find_spans(other, two, i, second_spans);
     }
     if (!constants) continue;
-    const bool first_constant = first_spans[i % at_a_time].constant(one[i]);
-    const bool second_constant = second_spans[i % at_a_time].constant(two[i]);
+    const bool first_constant = first_spans[i % at_a_time].constant(declared_at(one, i));
+    const bool second_constant = second_spans[i % at_a_time].constant(declared_at(two, i));
     if (!first_constant && !second_constant) continue;
     const double a = stack.images[0][i];
     const double b = other.images[0][i];
     if (first_constant && second_constant) {
       ++constants_;
-      const bool equal = std::abs(a - b) <= one[i].error(a) + two[i].error(b);
+      const bool equal =
+          std::abs(a - b) <= declared_at(one, i).error(a) + declared_at(two, i).error(b);
       of_first.push_back({i, a});
       of_second.push_back({i, equal ? a : b});
       continue;
     }
-    const Declared& channel = first_constant ? one[i] : two[i];
+    const Declared& channel = first_constant ? declared_at(one, i) : declared_at(two, i);
     const stats::ImageStack& constant = first_constant ? stack : other;
     const Constant mean = mean_of(first_constant ? other : stack, i);
     const Missing missing{first_constant ? a : b, channel.low, channel.high,

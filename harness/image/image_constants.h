@@ -40,7 +40,7 @@ struct VaryingPart : ComparedImages {
   bool any() const { return constants_ < first.extent.elements(); }
 
  private:
-  void settle_against_reference(const Question& question, std::span<const float> subtracted);
+  void settle_against_reference(const Question& question, std::span<const float> other);
   void settle_two(const Question& question);
 
   std::vector<std::vector<float>> settled_;  // images with a rounded element
