@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "stats/basics/moments.h"
 #include "stats/means/constant_sample.h"
@@ -30,27 +31,6 @@ struct Span {
   double high;
   bool constant(const Declared& channel) const { return high - low <= 2 * channel.error(low); }
 };
-
-/// A number of one image that replaces an element in every image of a stack.
-struct Replacement {
-  std::size_t element;
-  double value;
-};
-
-/// The stack with these elements replaced; changed images are kept in `copies`.
-stats::ImageStack replaced(const stats::ImageStack& stack,
-                           const std::vector<Replacement>& replacements,
-                           std::vector<std::vector<float>>& copies) {
-  if (replacements.empty()) return stack;
-  stats::ImageStack out{stack.extent, {}};
-  for (const std::span<const float> image : stack.images) {
-    std::vector<float>& copy = copies.emplace_back(image.begin(), image.end());
-    for (const Replacement& each : replacements)
-      copy[each.element] = static_cast<float>(each.value);
-    out.images.emplace_back(copy);
-  }
-  return out;
-}
 
 /// Declarations of each element, or one that all share.
 using Declarations = std::vector<Declared>;
@@ -80,32 +60,6 @@ Declarations subtracted(Declarations one, const Declarations& other, std::span<c
   return one;
 }
 
-constexpr std::size_t at_a_time = 256;
-using Spans = std::array<Span, at_a_time>;
-
-/// Ranges of the elements from `first` on. An element's scan ends as soon as it is seen to vary,
-/// nearly always at the second image. Returns whether any may be constant.
-bool find_spans(const stats::ImageStack& stack, const Declarations& channels, std::size_t first,
-                Spans& spans) {
-  const std::size_t size = std::min(at_a_time, stack.extent.elements() - first);
-  for (std::size_t i = 0; i < size; ++i) {
-    const double value = stack.images[0][first + i];
-    spans[i] = {value, value};
-  }
-  bool constants = true;
-  for (std::size_t r = 1; r < stack.images.size() && constants; ++r) {
-    const float* const image = stack.images[r].data() + first;
-    constants = false;
-    for (std::size_t i = 0; i < size; ++i) {
-      const double value = image[i];
-      spans[i].low = std::min(spans[i].low, value);
-      spans[i].high = std::max(spans[i].high, value);
-      constants |= spans[i].constant(declared_at(channels, first + i));
-    }
-  }
-  return constants;
-}
-
 /// The value of a constant, and the range of the law whose other values it can have missed.
 struct Missing : stats::ConstantSample {
   /// Tests it against a mean that is known or estimated.
@@ -118,12 +72,6 @@ struct Missing : stats::ConstantSample {
     return std::isfinite(mean.value < value ? low : high);
   }
 };
-
-Constant mean_of(const stats::ImageStack& stack, std::size_t element) {
-  stats::Moments moments;
-  for (const std::span<const float> image : stack.images) moments.add(image[element]);
-  return {moments.mean, moments.standard_error()};
-}
 
 /// The second side's declarations of factor x + offset.
 Declarations mapped_by(const Question& question) {
@@ -138,6 +86,74 @@ Declarations mapped_by(const Question& question) {
   }
   return all;
 }
+
+/// A side's images. Its elements are looked through in order.
+class ScannedSide {
+ public:
+  ScannedSide(stats::ImageStack& stack, Declarations declarations)
+      : stack_(stack), declarations_(std::move(declarations)) {}
+
+  const Declared& declared(std::size_t element) const {
+    return declared_at(declarations_, element);
+  }
+  /// The element of the first image.
+  double value(std::size_t element) const { return stack_.images[0][element]; }
+  const Span& span(std::size_t element) const { return spans_[element % at_a_time]; }
+
+  /// Call it for every element from 0 on.
+  bool is_constant(std::size_t element) {
+    if (element % at_a_time == 0) any_constant_ = find_spans(element);
+    return any_constant_ && span(element).constant(declared(element));
+  }
+  Missing missing(std::size_t element) const {
+    return {{value(element), declared(element).low, declared(element).high, stack_.images.size()}};
+  }
+  Constant mean(std::size_t element) const {
+    stats::Moments moments;
+    for (const std::span<const float> image : stack_.images) moments.add(image[element]);
+    return {moments.mean, moments.standard_error()};
+  }
+
+  /// Gives the element this value in every image.
+  void settle(std::size_t element, double number) { settled_.push_back({element, number}); }
+  /// Call it after the last element. Changed images are kept in `copies`.
+  void replace(std::vector<std::vector<float>>& copies) {
+    if (settled_.empty()) return;
+    for (std::span<const float>& image : stack_.images) {
+      std::vector<float>& copy = copies.emplace_back(image.begin(), image.end());
+      for (const auto& [element, number] : settled_) copy[element] = static_cast<float>(number);
+      image = copy;
+    }
+  }
+
+ private:
+  static constexpr std::size_t at_a_time = 256;
+
+  /// Finds ranges of the elements from `first` on. An element's scan ends as soon as it is seen to
+  /// vary, nearly always at the second image. Returns whether any may be constant.
+  bool find_spans(std::size_t first) {
+    const std::size_t size = std::min(at_a_time, stack_.extent.elements() - first);
+    for (std::size_t i = 0; i < size; ++i) spans_[i] = {value(first + i), value(first + i)};
+    bool constants = true;
+    for (std::size_t r = 1; r < stack_.images.size() && constants; ++r) {
+      const float* const image = stack_.images[r].data() + first;
+      constants = false;
+      for (std::size_t i = 0; i < size; ++i) {
+        const double number = image[i];
+        spans_[i].low = std::min(spans_[i].low, number);
+        spans_[i].high = std::max(spans_[i].high, number);
+        constants |= spans_[i].constant(declared(first + i));
+      }
+    }
+    return constants;
+  }
+
+  stats::ImageStack& stack_;
+  Declarations declarations_;
+  std::array<Span, at_a_time> spans_{};  // of the elements around the last one
+  bool any_constant_ = false;
+  std::vector<std::pair<std::size_t, double>> settled_;
+};
 
 }  // namespace
 
@@ -159,77 +175,58 @@ VaryingPart::VaryingPart(const Question& question, const ImagePair& pair) : Comp
 
 void VaryingPart::settle_against_reference(const Question& question, std::span<const float> other) {
   auto& [images, none, numbers, errors] = static_cast<ComparedImages&>(*this);
-  Declarations channels = declared_by(question.subjects[0]);
-  if (!other.empty()) channels = subtracted(std::move(channels), mapped_by(question), other);
-  Spans spans;
-  bool constants = false;
-  std::vector<Replacement> replacements;
+  Declarations declarations = declared_by(question.subjects[0]);
+  if (!other.empty()) {
+    declarations = subtracted(std::move(declarations), mapped_by(question), other);
+  }
+  ScannedSide side(images, std::move(declarations));
   for (std::size_t i = 0; i < numbers.size(); ++i) {
-    if (i % at_a_time == 0) constants = find_spans(images, channels, i, spans);
-    if (!constants) continue;
-    const Span span = spans[i % at_a_time];
-    const Declared& channel = declared_at(channels, i);
-    if (!span.constant(channel)) continue;
-    const double constant = images.images[0][i];
+    if (!side.is_constant(i)) continue;
+    const double constant = side.value(i);
     const Constant expected{numbers[i], errors.empty() ? 0 : errors[i]};
-    const bool differs = std::abs(constant - expected.value) > channel.error(expected.value);
+    const bool differs =
+        std::abs(constant - expected.value) > side.declared(i).error(expected.value);
     if (differs && question.is().of_pairs) continue;  // it fails, as of two images
     ++constants_;
+    if (side.span(i).low < side.span(i).high) side.settle(i, constant);
     if (differs) {
-      const Missing missing{constant, channel.low, channel.high, images.images.size()};
+      const Missing missing = side.missing(i);
       unseen_.push_back({i, missing.sign(expected), missing.log_p(expected)});
+      continue;
     }
-    if (span.low < span.high) replacements.push_back({i, constant});
-    if (differs) continue;
     numbers[i] = constant;
     if (!errors.empty()) errors[i] = 0;
   }
   drop_zero_errors();
-  images = replaced(images, replacements, settled_);
+  side.replace(settled_);
 }
 
 void VaryingPart::settle_two(const Question& question) {
-  auto& stack = first;
-  auto& other = *second;
-  const Declarations one = declared_by(question.subjects[0]);
-  const Declarations two = mapped_by(question);
-  std::vector<Replacement> of_first;
-  std::vector<Replacement> of_second;
-  Spans first_spans;
-  Spans second_spans;
-  bool constants = false;
-  for (std::size_t i = 0; i < stack.extent.elements(); ++i) {
-    if (i % at_a_time == 0) {
-      constants = find_spans(stack, one, i, first_spans);
-      constants |= find_spans(other, two, i, second_spans);
-    }
-    if (!constants) continue;
-    const bool first_constant = first_spans[i % at_a_time].constant(declared_at(one, i));
-    const bool second_constant = second_spans[i % at_a_time].constant(declared_at(two, i));
+  ScannedSide one(first, declared_by(question.subjects[0]));
+  ScannedSide two(*second, mapped_by(question));
+  for (std::size_t i = 0; i < first.extent.elements(); ++i) {
+    const bool first_constant = one.is_constant(i);
+    const bool second_constant = two.is_constant(i);
     if (!first_constant && !second_constant) continue;
-    const double a = stack.images[0][i];
-    const double b = other.images[0][i];
     if (first_constant && second_constant) {
       ++constants_;
-      const bool equal =
-          std::abs(a - b) <= declared_at(one, i).error(a) + declared_at(two, i).error(b);
-      of_first.push_back({i, a});
-      of_second.push_back({i, equal ? a : b});
+      const double a = one.value(i);
+      const double b = two.value(i);
+      const bool equal = std::abs(a - b) <= one.declared(i).error(a) + two.declared(i).error(b);
+      one.settle(i, a);
+      two.settle(i, equal ? a : b);
       continue;
     }
-    const Declared& channel = first_constant ? declared_at(one, i) : declared_at(two, i);
-    const stats::ImageStack& constant = first_constant ? stack : other;
-    const Constant mean = mean_of(first_constant ? other : stack, i);
-    const Missing missing{first_constant ? a : b, channel.low, channel.high,
-                          constant.images.size()};
+    const Missing missing = (first_constant ? one : two).missing(i);
+    const Constant mean = (first_constant ? two : one).mean(i);
     if (!missing.bounded(mean)) continue;
     const double sign = first_constant ? missing.sign(mean) : -missing.sign(mean);
     unseen_.push_back({i, sign, missing.log_p(mean)});
-    of_first.push_back({i, missing.value});
-    of_second.push_back({i, missing.value});
+    one.settle(i, missing.value);
+    two.settle(i, missing.value);
   }
-  stack = replaced(stack, of_first, settled_);
-  other = replaced(other, of_second, settled_);
+  one.replace(settled_);
+  two.replace(settled_);
 }
 
 }  // namespace assay::harness
