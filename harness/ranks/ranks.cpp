@@ -88,13 +88,11 @@ class Ranks::Window {
     std::size_t bytes = 0;
   };
 
-  Window(Round& round, const std::map<const Setup*, std::string>& names, std::size_t most_bytes)
-      : round_(round),
-        most_bytes_(most_bytes),
-        workers_(round.pools()),
-        usual_(round.pools().size()) {
+  Window(Ranks& ranks, Round& round)
+      : ranks_(ranks), round_(round), workers_(round.pools()), usual_(round.pools().size()) {
     for (const auto& pool : round.pools()) {
-      elsewhere_.push_back(pool->can_be_drawn_elsewhere() && names.contains(pool->setup().get()));
+      elsewhere_.push_back(pool->can_be_drawn_elsewhere() &&
+                           ranks.names_.contains(pool->setup().get()));
     }
   }
 
@@ -103,9 +101,8 @@ class Ranks::Window {
   const Pool& pool(const Slot& slot) const { return *round_.pools()[slot.task.pool]; }
   /// The rank that has the next block.
   int holder() const { return slots_.front().holder; }
-  const Waiting& most_waiting() const { return most_waiting_; }
   bool is_full(std::size_t arriving) const {
-    return !empty() && waiting_.bytes + arriving >= most_bytes_;
+    return !empty() && waiting_.bytes + arriving >= ranks_.window_bytes_;
   }
 
   /// Takes slots for a rank with so many threads, of `workers` in all.
@@ -203,8 +200,8 @@ class Ranks::Window {
     slot.drawn = std::make_unique<Pool::Block>(std::move(block));
     slot.bytes = bytes;
     waiting_ = {waiting_.blocks + 1, waiting_.bytes + bytes};
-    most_waiting_ = {std::max(most_waiting_.blocks, waiting_.blocks),
-                     std::max(most_waiting_.bytes, waiting_.bytes)};
+    Waiting& most = ranks_.most_waiting_;
+    most = {std::max(most.blocks, waiting_.blocks), std::max(most.bytes, waiting_.bytes)};
   }
 
   void give_to(int rank, std::uint64_t number) {
@@ -246,8 +243,8 @@ class Ranks::Window {
     return {front_};
   }
 
+  Ranks& ranks_;
   Round& round_;
-  std::size_t most_bytes_;
   Workers workers_;
   std::vector<bool> elsewhere_;
   std::vector<Usual> usual_;
@@ -255,7 +252,6 @@ class Ranks::Window {
   std::uint64_t front_ = 0;        ///< number of the first slot
   std::deque<std::uint64_t> own_;  ///< not begun, of pools that this rank alone can draw
   Waiting waiting_ = {};
-  Waiting most_waiting_ = {};
 };
 
 Ranks::Ranks(Messages& messages, std::optional<std::uint64_t> seed, Identity identity,
@@ -405,7 +401,7 @@ void Ranks::give(Window& window) {
 void Ranks::draw(Round& round) {
   ++round_;
   with_threads(threads_, [&] {
-    Window window(round, names_, window_bytes_);
+    Window window(*this, round);
     Pause pause;
     for (;;) {
       const bool taken = take_replies(window);
@@ -419,8 +415,6 @@ void Ranks::draw(Round& round) {
         pause.wait();
       }
     }
-    most_waiting_ = {std::max(most_waiting_.blocks, window.most_waiting().blocks),
-                     std::max(most_waiting_.bytes, window.most_waiting().bytes)};
     for (const auto& pool : round.pools()) pool->end_drawing();
   });
   for (int rank = 1; rank < messages_.size(); ++rank) {
