@@ -95,16 +95,11 @@ std::string side_text(const TestWork& work, std::size_t subject, std::size_t cha
 constexpr double zeta_3 = 1.2020569031595942;
 constexpr double credibility = 0.9;
 
-std::vector<stats::NightEstimate> estimates_of(const std::vector<LedgerNight>& nights) {
-  std::vector<stats::NightEstimate> all;
-  for (const LedgerNight& night : nights)
-    all.push_back(std::get<stats::NightEstimate>(night.value));
-  return all;
-}
-
-std::vector<double> log_p_values_of(const std::vector<LedgerNight>& nights) {
-  std::vector<double> all;
-  for (const LedgerNight& night : nights) all.push_back(std::get<NightPValue>(night.value).log_p);
+/// The values of nights, all of this kind.
+template <class Kind>
+std::vector<Kind> values_of(const std::vector<LedgerNight>& nights) {
+  std::vector<Kind> all;
+  for (const LedgerNight& night : nights) all.push_back(std::get<Kind>(night.value));
   return all;
 }
 
@@ -129,7 +124,7 @@ std::variant<NightEvidence, NoEvidence> night_evidence(const TestWork& work, std
     return NoEvidence{
         "one side is recorded, the same in every run, and distances from it do not add up"};
   }
-  return NightEvidence{.value = NightPValue{.log_p = outcome->decision.log_p_claimed}};
+  return NightEvidence{.value = outcome->decision.log_p_claimed};
 }
 
 std::string series_hash(const TestWork& work, std::size_t channel) {
@@ -152,14 +147,14 @@ std::vector<double> log_e_path(const LedgerSeries& series, const std::vector<Led
   std::vector<double> path;
   if (series.has_estimates()) {
     stats::PooledNights pooled;
-    for (const stats::NightEstimate& night : estimates_of(nights)) {
+    for (const auto& night : values_of<stats::NightEstimate>(nights)) {
       pooled.add(night);
       path.push_back(stats::log_e_value(pooled, nearest(claimed, pooled, series)));
     }
     return path;
   }
   stats::PooledPValues pooled;
-  for (const double log_p : log_p_values_of(nights)) {
+  for (const double log_p : values_of<NightLogP>(nights)) {
     pooled.add(log_p);
     path.push_back(stats::log_e_value(pooled));
   }
@@ -169,8 +164,8 @@ std::vector<double> log_e_path(const LedgerSeries& series, const std::vector<Led
 Moved moved(const LedgerSeries& series, const std::vector<LedgerNight>& nights,
             const stats::Range& claimed) {
   const auto change = [&] {
-    if (!series.has_estimates()) return stats::change_point(log_p_values_of(nights));
-    const std::vector<stats::NightEstimate> estimates = estimates_of(nights);
+    if (!series.has_estimates()) return stats::change_point(values_of<NightLogP>(nights));
+    const auto estimates = values_of<stats::NightEstimate>(nights);
     stats::PooledNights pooled;
     for (const stats::NightEstimate& night : estimates) pooled.add(night);
     return stats::change_point(estimates, nearest(claimed, pooled, series));
@@ -233,18 +228,15 @@ void read_moved(reports::LedgerSeries& result, const LedgerSeries& series,
   result.moved_to = nights[change.to].date;
 }
 
-/// A night as the report shows it, added to those before it.
-void read_value(reports::LedgerNight& result, const stats::NightEstimate& night,
-                stats::PooledNights& pooled) {
+/// An estimate as the report shows it, added to those before it.
+void read_estimate(reports::LedgerNight& result, const stats::NightEstimate& night,
+                   stats::PooledNights& pooled) {
   pooled.add(night);
   result.mean = pooled.difference();
   const double reach = stats::upper_normal_quantile(0.025) * night.standard_error;
   result.estimate = night.difference;
   result.low = night.difference - reach;
   result.high = night.difference + reach;
-}
-void read_value(reports::LedgerNight& result, const NightPValue& night, stats::PooledNights&) {
-  result.log_p = night.log_p;
 }
 
 void read_nights(reports::LedgerSeries& result, const LedgerBook& book, std::size_t index,
@@ -263,7 +255,11 @@ void read_nights(reports::LedgerSeries& result, const LedgerBook& book, std::siz
     night.date = nights[i].date;
     night.commit = nights[i].commit;
     night.log_e = path[i];
-    std::visit([&](const auto& value) { read_value(night, value, pooled); }, nights[i].value);
+    if (const auto* const log_p = std::get_if<NightLogP>(&nights[i].value)) {
+      night.log_p = *log_p;
+    } else {
+      read_estimate(night, std::get<stats::NightEstimate>(nights[i].value), pooled);
+    }
   }
   result.limit = -std::log(alpha);
   if (series.has_estimates()) {

@@ -49,15 +49,13 @@ std::string unquoted(std::istream& in) {
 /// True if everything was read, and the stream has no more than blanks.
 bool is_read(std::istream& in) { return in && (in >> std::ws).eof(); }
 
-std::string text_of(const stats::NightEstimate& night) {
+std::string text_of(const NightValue& value) {
   using reports::round_trip;
+  const auto* const night = std::get_if<stats::NightEstimate>(&value);
+  if (night == nullptr) return "log-p " + round_trip(std::get<NightLogP>(value));
   return fmt::format("estimate {} error {} observations {} effective {}",
-                     round_trip(night.difference), round_trip(night.standard_error),
-                     round_trip(night.observations), round_trip(night.effective));
-}
-
-std::string text_of(const NightPValue& night) {
-  return "log-p " + reports::round_trip(night.log_p);
+                     round_trip(night->difference), round_trip(night->standard_error),
+                     round_trip(night->observations), round_trip(night->effective));
 }
 
 std::string names_in_quotes(const LedgerSeries& series) {
@@ -73,9 +71,8 @@ std::string line_of(const LedgerSeries& series) {
 }
 
 std::string line_of(const LedgerNight& night, const LedgerSeries& of) {
-  const std::string value = std::visit([](const auto& each) { return text_of(each); }, night.value);
   return fmt::format("night {} seed {} commit {} series {} {} {}", night.date, night.seed,
-                     night.commit, of.hash, value, names_in_quotes(of));
+                     night.commit, of.hash, text_of(night.value), names_in_quotes(of));
 }
 
 /// "line | 1a2b3c4d": the low 32 bits of a hash.
@@ -83,11 +80,11 @@ std::string with_check(std::string_view line, std::uint64_t hash) {
   return fmt::format("{} | {:08x}", line, hash & 0xffffffffU);
 }
 
-bool is_possible(const stats::NightEstimate& night) {
-  return night.standard_error >= 0 && night.observations > 0 && night.effective >= 1;
+bool is_possible(const NightValue& value) {
+  const auto* const night = std::get_if<stats::NightEstimate>(&value);
+  if (night == nullptr) return std::get<NightLogP>(value) <= 0;
+  return night->standard_error >= 0 && night->observations > 0 && night->effective >= 1;
 }
-
-bool is_possible(const NightPValue& night) { return night.log_p <= 0; }
 
 bool same_place(const LedgerSeries& a, const LedgerSeries& b) {
   return a.test == b.test && a.channel == b.channel;
@@ -267,12 +264,11 @@ class LedgerReader {
       fields >> value.difference >> word >> value.standard_error >> word >> value.observations;
       fields >> word >> value.effective;
     } else {
-      fields >> night.value.emplace<NightPValue>().log_p;
+      fields >> night.value.emplace<NightLogP>();
     }
     of.test = unquoted(fields);
     of.channel = unquoted(fields);
-    const auto possible = [](const auto& value) { return is_possible(value); };
-    if (!std::visit(possible, night.value)) changed();
+    if (!is_possible(night.value)) changed();
     const auto series = book_.open_series(of);
     if (!series) refuse("no open series above has this night's hash and test" + mend());
     night.series = *series;

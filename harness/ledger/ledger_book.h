@@ -29,12 +29,9 @@ namespace assay::harness {
 /// The default error budget of a new ledger, over all its nights.
 inline constexpr double default_ledger_budget = 3e-3;
 
-/// The p-value of a night on a claim without an estimate: a distance between laws or images.
-struct NightPValue {
-  double log_p = 0;
-  friend bool operator==(const NightPValue&, const NightPValue&) = default;
-};
-using NightValue = std::variant<stats::NightEstimate, NightPValue>;
+/// ln p of a night on a claim without an estimate: a distance between laws or images.
+using NightLogP = double;
+using NightValue = std::variant<stats::NightEstimate, NightLogP>;
 
 /// The nights of one channel of one claim, as long as neither changes.
 struct LedgerSeries {

@@ -23,7 +23,7 @@ LedgerBook example() {
   book.add({"2026-11-01T02:00:00Z", 7, "abc", a,
             stats::NightEstimate{0.1 + 0.2, 1.0 / 3, 4096, 1365.5}});
   const std::size_t b = book.open(distance);
-  book.add({"2026-11-01T02:00:00Z", 7, "abc", b, NightPValue{-0.69}});
+  book.add({"2026-11-01T02:00:00Z", 7, "abc", b, NightLogP{-0.69}});
   book.add({"2026-11-02T02:00:00Z", std::numeric_limits<std::uint64_t>::max(), "abd", a,
             stats::NightEstimate{-1e-300, 0, 1e300}});
   return book;

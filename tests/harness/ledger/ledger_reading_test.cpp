@@ -62,7 +62,7 @@ TEST(LedgerReading, PValuesKnowNoRange) {
   std::vector<LedgerNight> nights;
   stats::PooledPValues pooled;
   for (const double log_p : {-0.5, -9.0, -7.0}) {
-    nights.push_back({.value = NightPValue{log_p}});
+    nights.push_back({.value = NightLogP{log_p}});
     pooled.add(log_p);
   }
   EXPECT_EQ(log_e_path(law, nights, {0, infinity}).back(), stats::log_e_value(pooled));

@@ -118,7 +118,7 @@ TEST_F(EvidenceOfNights, RecordedDataAreTheSameInEveryRun) {
 
 TEST_F(EvidenceOfNights, OfADistanceIsItsPValue) {
   const Ran ran = run_nights(place, "  - {claim: 'distribution(normal) == normal(2, 1)'}\n");
-  EXPECT_EQ(std::get<NightPValue>(ran.night(0).value).log_p,
+  EXPECT_EQ(std::get<NightLogP>(ran.night(0).value),
             ran.test(0).outcome.channels[0].decision.log_p_claimed);
 }
 
