@@ -66,10 +66,14 @@ stats::ImageDistance relative_to(const stats::ImageDistance& distance,
       stats::image_distance({other, stats::ImageReference{other.extent, zeros}}, on_all_threads));
 }
 
-stats::ImageDistance distance_of(const ImagePair& pair, stats::ElementErrors errors) {
+stats::ImageDistance distance_of(const Question& question, const ImagePair& pair) {
   const stats::ImageDistance distance = stats::image_distance(pair.pair(), on_all_threads);
   if (pair.subtracted) return relative_to(distance, *pair.subtracted);
-  return stats::with_reference_error(distance, pair.pair(), errors);
+  const bool independent = std::ranges::all_of(
+      question.subjects, [](const Subject& side) { return side.image->independent; });
+  return stats::with_reference_error(
+      distance, pair.pair(),
+      independent ? stats::ElementErrors::independent : stats::ElementErrors::unknown);
 }
 
 /// Standard errors of what this look finds.
@@ -226,8 +230,7 @@ PictureLook look_at(const Question& question, const ImageTest& test, const Image
   stats::check::replicates("image", fewest);
   require_independent(test, pair);
   PictureLook look{.pictures = most};
-  look.distance = distance_of(
-      pair, test.independent ? stats::ElementErrors::independent : stats::ElementErrors::unknown);
+  look.distance = distance_of(question, pair);
   const VaryingPart varying(question, pair);
   require_spread(question, varying.any() || (pair.subtracted && varies(*pair.subtracted)));
   look.z.resize(pair.first.extent.elements());

@@ -22,7 +22,6 @@ struct PictureLook;
 /// Settings of the family's test.
 struct ImageTest {
   ErrorShare share = {};              ///< Share of this look.
-  bool independent = true;            ///< False: an image's elements depend on each other.
   const PictureLook* look = nullptr;  ///< Look at pictures, taken while reading.
   StreamKey labels = {};              ///< Of a permutation test.
   /// Throws std::domain_error if images depend on each other.

@@ -126,11 +126,7 @@ void require_independent(const DrawnTest& test, const stats::ImageDependence& fo
 }  // namespace
 
 ImageTest image_test(const DrawnTest& test) {
-  const TestOutcome& outcome = test.outcome;
-  const std::vector<Subject>& subjects = outcome.question.subjects;
-  return {.share = outcome.share(),
-          .independent = std::all_of(subjects.begin(), subjects.end(),
-                                     [](const Subject& s) { return s.image->independent; }),
+  return {.share = test.outcome.share(),
           .look = test.samples[0].summary().look(),
           .labels = stream_key(test.samples[0].pool().key().bits, "labels", "", 0),
           .require_independent = [&](const auto& found) { require_independent(test, found); }};

@@ -61,7 +61,7 @@ ChannelEvidence evidence_of(std::uint32_t key, const DrawImage& draw) {
   }
   ChannelData data[1];
   data[0].images = ImageViews(std::move(images));
-  const ImageTest test{.share = {.alpha = alpha, .beta = alpha}, .independent = false};
+  const ImageTest test{.share = {.alpha = alpha, .beta = alpha}};
   return evidence_of_images({question, 0, data}, test);
 }
 
