@@ -108,7 +108,7 @@ std::vector<LedgerNight> LedgerBook::nights_of(std::size_t series) const {
 std::optional<std::size_t> LedgerBook::open_series(const LedgerSeries& wanted) const {
   for (std::size_t i = 0; i < series_.size(); ++i) {
     const bool same = series_[i].hash == wanted.hash && same_place(series_[i], wanted);
-    if (same && !closed_[i]) return i;
+    if (same && !series_[i].closed) return i;
   }
   return std::nullopt;
 }
@@ -128,7 +128,6 @@ bool LedgerBook::has_seed(const LedgerSeries& of, std::uint64_t seed) const {
 std::size_t LedgerBook::open(const LedgerSeries& wanted) {
   if (const auto found = open_series(wanted)) return *found;
   series_.push_back(wanted);
-  closed_.push_back(false);
   keep_checked(line_of(wanted));
   return series_.size() - 1;
 }
@@ -139,9 +138,7 @@ void LedgerBook::add(const LedgerNight& night) {
 }
 
 void LedgerBook::begin(const std::string& test) {
-  for (std::size_t i = 0; i < series_.size(); ++i) {
-    if (series_[i].test == test) closed_[i] = true;
-  }
+  for (LedgerSeries& each : series_) each.closed |= each.test == test;
   keep("begin " + in_quotes(test));
 }
 

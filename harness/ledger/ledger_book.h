@@ -41,6 +41,7 @@ struct LedgerSeries {
   double weight = 0;  ///< The test's share of the budget when the series began.
   std::string test;   ///< the test's id
   std::string channel;
+  bool closed = false;  ///< A `begin` line followed.
 
   bool has_estimates() const { return reference_error.has_value(); }
 };
@@ -91,7 +92,6 @@ class LedgerBook {
 
   double budget_;
   std::vector<LedgerSeries> series_;
-  std::vector<bool> closed_;
   std::vector<LedgerNight> nights_;
   std::vector<std::string> lines_;  ///< all but `end`, as in the file
   std::uint64_t check_;             ///< checksum of the header and all checked lines
