@@ -4,11 +4,11 @@
 #include <filesystem>
 #include <fstream>
 #include <span>
-#include <sstream>
 #include <vector>
 
 #include "estimators/core/quoting.h"
 #include "harness/base/refuse.h"
+#include "harness/base/text_file.h"
 #include "reports/report_formats.h"
 
 namespace assay::harness {
@@ -19,10 +19,7 @@ reports::Record read_record(const std::string& file) {
     refuse({.file = file},
            "there is no such file; `--report json=FILE` saves a run that can be read");
   }
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (!stream) refuse({.file = file}, "cannot be read; give a report of kind json");
+  if (!std::ifstream(file)) refuse({.file = file}, "cannot be read; give a report of kind json");
   for (const char* extension : {".yaml", ".yml"}) {
     if (!file.ends_with(extension)) continue;
     refuse({.file = file},
@@ -30,7 +27,7 @@ reports::Record read_record(const std::string& file) {
            "saves one",
            shell_quoted(file));
   }
-  return reports::read_json(text.str(), file);
+  return reports::read_json(bytes_of(file), file);
 }
 
 namespace {

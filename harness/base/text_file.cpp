@@ -8,6 +8,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include "harness/base/refuse.h"
 #include "reports/words/text.h"
@@ -59,6 +60,12 @@ std::string read_text_file(const std::string& file) {
   if (in.bad()) fail("reading it failed");
   if (text.size() > largest_file) fail("it is larger than 16 MiB");
   return text;
+}
+
+std::string bytes_of(const std::string& file) {
+  std::ostringstream bytes;
+  bytes << std::ifstream(file, std::ios::binary).rdbuf();
+  return std::move(bytes).str();
 }
 
 std::vector<std::string_view> lines_of(std::string_view text) {

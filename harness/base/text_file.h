@@ -11,6 +11,9 @@ namespace assay::harness {
 /// The whole of a text file. InputError when it is missing, a folder, unreadable or over 16 MiB.
 std::string read_text_file(const std::string& file);
 
+/// The bytes of any file; "" if it cannot be read.
+std::string bytes_of(const std::string& file);
+
 std::vector<std::string_view> lines_of(std::string_view text);
 
 /// Throws InputError at the first byte that is not UTF-8 or is a control character other than tab

@@ -4,8 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <ranges>
 #include <set>
@@ -16,6 +14,7 @@
 #include "harness/base/numbers.h"
 #include "harness/base/record_file.h"
 #include "harness/base/terminal.h"
+#include "harness/base/text_file.h"
 #include "harness/run/evaluate.h"
 
 namespace assay::harness {
@@ -32,10 +31,7 @@ std::string digest_of(const SuiteRun& run) {
       continue;
     }
     const std::string file = prepared->second.setup->data_file();
-    if (file.empty()) continue;
-    std::ifstream stream(file, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
-    hash = text_hash(text, hash);
+    if (!file.empty()) hash = text_hash(bytes_of(file), hash);
   }
   return fmt::format("{:016x}", hash);
 }

@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "estimators/core/value.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/refuse.h"
 #include "harness/base/terminal.h"
+#include "harness/base/text_file.h"
 #include "harness/base/whole_file.h"
 #include "harness/sampling/packing.h"
 
@@ -33,12 +32,11 @@ Checkpoint::Checkpoint(std::string file, std::chrono::duration<double> pause, Id
 }
 
 void Checkpoint::read() {
-  std::ostringstream text;
-  text << std::ifstream(file_, std::ios::binary).rdbuf();
+  const std::string bytes = bytes_of(file_);
   Identity identity;
   std::vector<std::pair<std::string, std::string>> entries;
   try {
-    unpack(text.view(), identity, entries);
+    unpack(bytes, identity, entries);
   } catch (const Unpackable& refusal) {
     refuse({.file = file_}, "is no checkpoint to go on from: {}; remove it", refusal.what());
   }
