@@ -12,20 +12,13 @@ struct Phase {
   std::string unit = "";    ///< "claims": the units are shown; "": only what part of them is done
 };
 
-/// Listens to how far a run is. Called from one thread.
+/// Listens to how far a run is; this one shows nothing. Called from one thread.
 class Progress {
  public:
   virtual ~Progress() = default;
-  virtual void begin(const Phase& phase) = 0;
-  virtual void advance(std::uint64_t done) = 0;  ///< units done so far in this phase
-  virtual void end() = 0;
-};
-
-class Silence final : public Progress {
- public:
-  void begin(const Phase&) override {}
-  void advance(std::uint64_t) override {}
-  void end() override {}
+  virtual void begin(const Phase& /*phase*/) {}
+  virtual void advance(std::uint64_t /*done*/) {}  ///< units done so far in this phase
+  virtual void end() {}
 };
 
 }  // namespace assay::harness

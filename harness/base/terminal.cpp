@@ -146,7 +146,7 @@ void write_beside_progress(const std::string& text, std::FILE* stream) {
 std::unique_ptr<Progress> make_progress(bool quiet) {
   const bool dumb = system_environment("TERM") == "dumb";
   if (quiet || dumb || !system_environment("CI").empty() || !isatty(STDERR_FILENO)) {
-    return std::make_unique<Silence>();
+    return std::make_unique<Progress>();
   }
   return std::make_unique<ProgressBar>(std::cerr);
 }

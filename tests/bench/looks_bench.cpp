@@ -77,7 +77,7 @@ struct Rounds {
 
 Rounds sample(std::vector<harness::TestWork*> open,
               const std::vector<std::shared_ptr<harness::Pool>>& pools) {
-  harness::Silence silence;
+  harness::Progress silence;
   Rounds seconds;
   Clock clock;
   while (!open.empty()) {

@@ -21,7 +21,7 @@ inline reports::Record run_files(const std::vector<std::string>& files,
                                  const RunOptions& options = {}) {
   std::vector<Suite> suites;
   for (const std::string& file : files) suites.push_back(load_suite(file));
-  Silence silence;
+  Progress silence;
   return run(suites, options, silence);
 }
 

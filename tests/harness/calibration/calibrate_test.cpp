@@ -6,7 +6,7 @@ namespace assay::harness {
 namespace {
 
 reports::Calibration measured(const CalibrateArguments& arguments) {
-  Silence silence;
+  Progress silence;
   return calibration(arguments, silence);
 }
 
