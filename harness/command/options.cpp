@@ -184,7 +184,12 @@ void Options::add_row(OptionText text, const std::string& about, bool repeats,
 }
 
 void Options::flag(const OptionText& name, const std::string& about, std::function<void()> act) {
-  rows_.push_back({app_.add_flag(name.name), name, [act](const std::string&) { act(); }});
+  const auto take = [act = std::move(act), name = name.name](const std::string& value) {
+    // CLI11 takes `--quiet=false` for the flag with a text.
+    if (value != "true") refuse({}, "{0} takes no value; write `{0}`, or leave it out", name);
+    act();
+  };
+  rows_.push_back({app_.add_flag(name.name), name, take});
   rows_.back().text.about = about;
 }
 
