@@ -53,54 +53,41 @@ std::optional<Mutant> mutant_of(const Suite& suite, const Test& test) {
   return std::nullopt;
 }
 
-Number found_from(const Test& test) { return test.detectable ? test.detectable : test.detect; }
-
-/// A test's word on one mutant.
-struct Tested {
-  const Test* test;
-  std::uint64_t samples;
-
-  /// An observation that was not finite is seen as well.
-  bool kills() const { return test->verdict == Verdict::fail || test->verdict == Verdict::error; }
+/// A test's word on one mutant. A lesser rank says more of the method: a kill by few samples first,
+/// what is undecided last.
+struct Result {
+  std::pair<int, double> rank;
+  KillCell cell;
 };
 
-/// Less of a result that says more of the method: a kill by few samples first, what is undecided
-/// last.
-std::pair<int, double> rank(const Tested& one) {
-  constexpr double none = std::numeric_limits<double>::infinity();
-  const auto samples = static_cast<double>(one.samples);
-  switch (one.test->verdict) {
-    case Verdict::fail:
-      return {0, samples};
-    case Verdict::error:
-      return {1, samples};
-    case Verdict::pass:
-      return {2, found_from(*one.test).value_or(none)};
-    default:
-      return {3, samples};
-  }
-}
-
-KillCell cell_of(const Tested& one) {
-  const std::string samples = counted(one.samples, "sample", "samples");
-  const auto cell = [&](const std::string& text, const std::string& sentence) {
-    return KillCell{one.test->id, text, sentence, one.kills()};
+Result result_of(const Test& test, std::uint64_t count) {
+  const std::string samples = counted(count, "sample", "samples");
+  const auto drawn = static_cast<double>(count);
+  const Verdict verdict = test.verdict;
+  // An observation that was not finite is seen as well.
+  const bool killed = verdict == Verdict::fail || verdict == Verdict::error;
+  const auto result = [&](std::pair<int, double> rank, const std::string& text,
+                          const std::string& sentence) {
+    return Result{rank, {test.id, text, sentence, killed}};
   };
-  const Verdict verdict = one.test->verdict;
-  if (verdict == Verdict::fail) return cell(count_text(one.samples), "killed by " + samples);
-  if (verdict == Verdict::error) return cell("not finite", "not finite among " + samples);
+  if (verdict == Verdict::fail)
+    return result({0, drawn}, count_text(count), "killed by " + samples);
+  if (verdict == Verdict::error)
+    return result({1, drawn}, "not finite", "not finite among " + samples);
   if (verdict != Verdict::pass)
-    return cell(verdict == Verdict::invalid ? "invalid" : "undecided",
-                fmt::format("{} after {}", to_string(verdict), samples));
-  if (!is_finite(found_from(*one.test))) return cell("survives", "survives " + samples);
-  const std::string least = margin_text(*found_from(*one.test), worst_channel(*one.test).effect);
-  return cell(
-      "< " + least,
+    return result({3, drawn}, verdict == Verdict::invalid ? "invalid" : "undecided",
+                  fmt::format("{} after {}", to_string(verdict), samples));
+  const Number found = test.detectable ? test.detectable : test.detect;
+  if (!is_finite(found))
+    return result({2, std::numeric_limits<double>::infinity()}, "survives", "survives " + samples);
+  const std::string least = margin_text(*found, worst_channel(test).effect);
+  return result(
+      {2, *found}, "< " + least,
       fmt::format("survives {}: an effect of {} or more would have been found", samples, least));
 }
 
 /// The best results on a mutant by method.
-using Best = std::map<std::string, Tested>;
+using Best = std::map<std::string, Result>;
 
 /// The mutants that were tested, and those that some method killed, plugins counted once.
 struct Plugins {
@@ -129,9 +116,9 @@ KillMatrix kill_matrix(const Suite& suite) {
     const std::optional<Mutant> mutant = mutant_of(suite, test);
     if (!mutant || test.verdict == Verdict::skipped) continue;
     const std::string method = method_of(test);
-    const Tested one{&test, mutant->sample->primaries * mutant->sample->secondaries};
+    const Result one = result_of(test, mutant->sample->primaries * mutant->sample->secondaries);
     const auto [best, is_first] = mutants[mutant->place].emplace(method, one);
-    if (!is_first && rank(one) < rank(best->second)) best->second = one;
+    if (!is_first && one.rank < best->second.rank) best->second = one;
     if (std::ranges::find(matrix.methods, method) == matrix.methods.end())
       matrix.methods.push_back(method);
   }
@@ -146,8 +133,8 @@ KillMatrix kill_matrix(const Suite& suite) {
     plugins.tested.insert(estimator.plugin);
     for (const std::string& method : matrix.methods) {
       const auto one = best.find(method);
-      row.cells.push_back(one == best.end() ? std::optional<KillCell>() : cell_of(one->second));
-      if (one != best.end() && one->second.kills()) plugins.killed.insert(estimator.plugin);
+      row.cells.push_back(one == best.end() ? std::optional<KillCell>() : one->second.cell);
+      if (one != best.end() && one->second.cell.killed) plugins.killed.insert(estimator.plugin);
     }
     matrix.rows.push_back(std::move(row));
   }
