@@ -219,29 +219,23 @@ std::vector<Draft> drafts_of(const Facts& facts) {
   return drafts;
 }
 
+using reports::CalibrationCell;
+using reports::Rate;
 using reports::Verdict;
+using reports::VerdictRates;
 
-/// Outcomes of one test over the seeds. They are sums of whole numbers, so the order of seeds does
-/// not matter.
-struct VerdictCounts {
-  std::uint64_t runs = 0;
-  std::map<Verdict, std::uint64_t> verdicts = {};  ///< Errors and refusals count as invalid.
-  std::uint64_t red = 0;
-  std::uint64_t mistaken_not_red = 0;  ///< Mistakes in runs without a red gate.
-  std::uint64_t observations = 0;      ///< Sum of each subject's at the last look taken.
-  std::map<std::string, std::uint64_t> methods = {};  ///< Number of runs that each method judged.
-};
-
-/// A claim as a suite of its own, if the case has it, and its outcomes.
+/// A claim as a suite of its own, if the case has it, and its outcomes over the seeds. Until all
+/// runs are done, rates are sums of whole numbers: the order of seeds does not matter.
 struct CalibratedClaim {
   std::optional<Suite> suite = {};
-  VerdictCounts counts = {};
+  VerdictRates rates = {};
+  std::uint64_t mistaken_not_red = 0;  ///< Mistakes in runs without a red gate.
 };
 
 /// A method on a question about a law at one alpha. The limits of its rates need the total number
 /// of cells.
 struct CalibrationCase {
-  reports::CalibrationCell cell = {};  ///< The rates come last.
+  CalibrationCell cell = {};  ///< The rates come last.
   /// Theta is 0. Missing if another method is the question's default.
   CalibratedClaim holds = {};
   /// Theta is at `detect`, for a proof at the border of the forbidden region. Missing if another
@@ -344,10 +338,6 @@ void require_calibrated(const std::string& method) {
 
 // ---- Runs
 
-using reports::CalibrationCell;
-using reports::Rate;
-using reports::VerdictRates;
-
 /// The claims of cases at a level. A proof errs by passing, so its level is beta.
 std::vector<CalibratedClaim*> claims_of(std::vector<CalibrationCase>& all) {
   std::vector<CalibratedClaim*> claims;
@@ -369,18 +359,30 @@ void leave_out_pictures(const Pools& pools) {
   }
 }
 
-void tally(const TestOutcome& outcome, VerdictCounts& counts) {
+/// Errors and refusals count as invalid.
+Rate& rate_of(Verdict verdict, VerdictRates& rates) {
+  if (verdict == Verdict::pass) return rates.pass;
+  if (verdict == Verdict::fail) return rates.fail;
+  return verdict == Verdict::inconclusive ? rates.inconclusive : rates.invalid;
+}
+
+void tally(const TestOutcome& outcome, CalibratedClaim& claim) {
   const auto any_red = [](const std::vector<Gate>& gates) {
     return std::ranges::any_of(gates, &Gate::is_red);
   };
   const bool red = any_red(outcome.plan.gates) || any_red(outcome.gates);
   const bool proof = is_proof(outcome.question.test->claim.relation);
   const bool mistaken = outcome.verdict == (proof ? Verdict::pass : Verdict::fail);
-  ++counts.verdicts[outcome.verdict == Verdict::error ? Verdict::invalid : outcome.verdict];
-  counts.red += red ? 1 : 0;
-  counts.mistaken_not_red += mistaken && !red ? 1 : 0;
-  counts.observations += outcome.secondaries();
-  ++counts.methods[outcome.plan.method.name];
+  VerdictRates& rates = claim.rates;
+  ++rates.pass.runs;
+  ++rate_of(outcome.verdict, rates).count;
+  rates.red.count += red ? 1 : 0;
+  claim.mistaken_not_red += mistaken && !red ? 1 : 0;
+  rates.observations += static_cast<double>(outcome.secondaries());
+  const std::string& method = outcome.plan.method.name;
+  auto judged = std::ranges::find(rates.by, method, &reports::MethodRuns::method);
+  if (judged == rates.by.end()) judged = rates.by.insert(judged, {method, 0});
+  ++judged->runs;
 }
 
 /// All claims see the same observations.
@@ -406,10 +408,7 @@ void run_once(const CalibrationBench& bench, const std::vector<CalibratedClaim*>
   sample_in_looks(open, pools.all(), {.executor = threads(1)}, silence);
   if (interrupted()) return;
   const std::lock_guard lock(counting);
-  for (std::size_t i = 0; i < claims.size(); ++i) {
-    ++claims[i]->counts.runs;
-    tally(works[i].outcome, claims[i]->counts);
-  }
+  for (std::size_t i = 0; i < claims.size(); ++i) tally(works[i].outcome, *claims[i]);
 }
 
 /// The cases of one law, by alpha. `done` gets the number of finished runs, on the calling thread.
@@ -446,41 +445,31 @@ std::vector<CalibrationCase> measure(const CalibrationBench& bench,
 }
 
 /// Exact limits, each side missing with probability `error`.
-Rate rate_of(std::uint64_t count, std::uint64_t runs, double error) {
+Rate with_limits(std::uint64_t count, std::uint64_t runs, double error) {
   if (runs == 0) return {};
   const stats::Interval limits =
       stats::clopper_pearson({.successes = count, .trials = runs}, 1 - 2 * error);
   return {.count = count, .runs = runs, .low = limits.low, .high = limits.high};
 }
 
-std::vector<reports::MethodRuns> by_frequency(const VerdictCounts& counts) {
-  std::vector<reports::MethodRuns> methods;
-  for (const auto& [method, runs] : counts.methods) methods.push_back({method, runs});
-  std::ranges::stable_sort(methods, std::greater{}, &reports::MethodRuns::runs);
-  return methods;
-}
-
-VerdictRates rates_of(VerdictCounts counts, double error) {
-  const auto rate = [&](Verdict verdict) {
-    return rate_of(counts.verdicts[verdict], counts.runs, error);
-  };
-  const double runs = static_cast<double>(std::max<std::uint64_t>(counts.runs, 1));
-  return {.pass = rate(Verdict::pass),
-          .fail = rate(Verdict::fail),
-          .inconclusive = rate(Verdict::inconclusive),
-          .invalid = rate(Verdict::invalid),
-          .red = rate_of(counts.red, counts.runs, error),
-          .observations = static_cast<double>(counts.observations) / runs,
-          .by = by_frequency(counts)};
+VerdictRates with_limits(VerdictRates rates, double error) {
+  const std::uint64_t runs = rates.runs();
+  for (Rate* rate : {&rates.pass, &rates.fail, &rates.inconclusive, &rates.invalid, &rates.red}) {
+    *rate = with_limits(rate->count, runs, error);
+  }
+  rates.observations /= static_cast<double>(std::max<std::uint64_t>(runs, 1));
+  std::ranges::sort(rates.by, {}, &reports::MethodRuns::method);
+  std::ranges::stable_sort(rates.by, std::greater{}, &reports::MethodRuns::runs);
+  return rates;
 }
 
 CalibrationCell cell_of(const CalibrationCase& measured, double error) {
-  const VerdictCounts& alone = measured.alone.counts;
+  const CalibratedClaim& alone = measured.alone;
   CalibrationCell cell = measured.cell;
-  cell.holds = rates_of(measured.holds.counts, error);
-  cell.off = rates_of(measured.off.counts, error);
-  cell.alone = rates_of(alone, error);
-  cell.alone_not_red = rate_of(alone.mistaken_not_red, alone.runs, error);
+  cell.holds = with_limits(measured.holds.rates, error);
+  cell.off = with_limits(measured.off.rates, error);
+  cell.alone = with_limits(alone.rates, error);
+  cell.alone_not_red = with_limits(alone.mistaken_not_red, alone.rates.runs(), error);
   return cell;
 }
 
