@@ -20,10 +20,8 @@
 namespace assay::harness {
 namespace {
 
-/// The first line begins at `indent`, the others at `hanging`.
-std::string hanging(const std::string& text, std::size_t indent, std::size_t hanging) {
-  return std::string(indent, ' ') + wrapped(text, page_width, hanging).substr(hanging);
-}
+/// A row of a section; its further lines are indented.
+std::string row_text(const std::string& text) { return "  " + wrapped(text, 6).substr(6); }
 
 const char* type_name(ParameterType type) {
   constexpr const char* names[] = {"number", "count",         "true or false",
@@ -75,7 +73,7 @@ std::string parameter_text(const ParameterInformation& p) {
   if (!range.empty()) head += ", " + range;
   if (!p.unit.empty()) head += ", " + p.unit;
   head += p.fallback.empty() ? ", required" : ", default " + p.fallback;
-  return hanging(head, 2, 6) + wrapped(p.summary, page_width, 6);
+  return row_text(head) + wrapped(p.summary, 6);
 }
 
 std::string parameters_text(const Information& information) {
@@ -97,22 +95,20 @@ std::string channel_text(const Channel& channel) {
     text += fmt::format(", values in [{:.6g}, {:.6g}]", channel.low, channel.high);
   }
   if (channel.diagnostic) text += ", diagnostic (tested only where a claim names it)";
-  return hanging(text, 2, 6);
+  return row_text(text);
 }
 
 std::string sampler_text(const NamedSampler& named) {
   const Domain domain = named.sampler->domain();
   std::string text = fmt::format("{}: {}; marginals", named.name, domain_name(domain));
   for (const Marginal& marginal : marginals(domain)) text += " " + marginal.name;
-  return hanging(text, 2, 6);
+  return row_text(text);
 }
 
 std::string image_text(const ImageShape& shape) {
-  return hanging(
-      fmt::format("{} x {} pixels of {}, {}", shape.width, shape.height,
-                  fmt::join(shape.components, ", "),
-                  shape.independent ? "independent of each other" : "which depend on each other"),
-      2, 6);
+  return row_text(fmt::format(
+      "{} x {} pixels of {}, {}", shape.width, shape.height, fmt::join(shape.components, ", "),
+      shape.independent ? "independent of each other" : "which depend on each other"));
 }
 
 std::string setup_text(const Setup& setup) {
@@ -140,8 +136,7 @@ std::string prepared_text(const Entry& plugin) {
     Parameters parameters(information.name, information.parameters, Value{}, ".");
     return setup_text(*plugin.prepare(parameters));
   } catch (const InputError& e) {
-    return wrapped("\nchannels: known once its parameters are given (" + e.message() + ")",
-                   page_width, 0);
+    return wrapped("\nchannels: known once its parameters are given (" + e.message() + ")");
   }
 }
 
@@ -149,7 +144,7 @@ std::string mutants_text(const Information& information, const std::vector<Entry
   std::string out;
   for (const Entry& entry : entries) {
     if (entry.information.original != information.name) continue;
-    out += hanging(entry.information.name + ": " + entry.information.defect, 2, 6);
+    out += row_text(entry.information.name + ": " + entry.information.defect);
   }
   return out.empty() ? "" : "\nmutants of it\n" + out;
 }
@@ -158,7 +153,7 @@ std::string mutants_text(const Information& information, const std::vector<Entry
 std::string page_of(const MethodRow& row) {
   std::string page;
   const auto say = [&](bool holds, const std::string& sentence) {
-    if (holds) page += wrapped(sentence, page_width, 2);
+    if (holds) page += wrapped(sentence, 2);
   };
   say(true, fmt::format("Force it by `test: {0}` in a suite, or by `--test {0}`.", row.name));
   say(row.is.exact, "Its level holds at every sample size.");
@@ -176,7 +171,7 @@ std::string page_of(const MethodRow& row) {
 TableRow row_of(const MethodRow& method) { return {method.name, method.summary, page_of(method)}; }
 
 TableRow row_of(const QuantityRow& quantity) {
-  std::string page = wrapped(fmt::format("Claim: {}", quantity.example), page_width, 2);
+  std::string page = wrapped(fmt::format("Claim: {}", quantity.example), 2);
   if (quantity.of_a_sampler) page += "  It is about a sampler of an estimator.\n";
   if (quantity.over_all_channels) page += "  It is over all channels of an estimator.\n";
   return {quantity.word, quantity.summary, page};
@@ -217,7 +212,7 @@ Table table_of(const char* plural, const char* singular, const Rows& rows) {
 
 }  // namespace
 
-std::string wrapped(const std::string& text, std::size_t width, std::size_t indent) {
+std::string wrapped(const std::string& text, std::size_t indent, std::size_t width) {
   std::string out;
   const std::string all = text.substr(0, text.find_last_not_of('\n') + 1);
   for (const std::string& line : reports::wrap(all, static_cast<int>(width - indent))) {
@@ -227,17 +222,15 @@ std::string wrapped(const std::string& text, std::size_t width, std::size_t inde
 }
 
 std::string beside(const std::string& left, const std::string& right, std::size_t column) {
-  const std::string lines = wrapped(right, page_width, column);
+  const std::string lines = wrapped(right, column);
   if (left.size() >= column) return left + "\n" + lines;
   return left + lines.substr(left.size());
 }
 
 std::string manual(const Entry& plugin, const std::vector<Entry>& entries) {
   const Information& information = plugin.information;
-  std::string out = information.name + "\n" + wrapped(information.summary, page_width, 2);
-  if (!information.description.empty()) {
-    out += "\n" + wrapped(information.description, page_width, 0);
-  }
+  std::string out = information.name + "\n" + wrapped(information.summary, 2);
+  if (!information.description.empty()) out += "\n" + wrapped(information.description);
   out += "\n" + field("bias", bias_text(information));
   out += field("primaries", primaries_text(information));
   out += field("mutant of", information.original) + field("defect", information.defect);
@@ -271,7 +264,7 @@ int describe(const std::string& name) {
       if (said.empty()) {
         pages += fmt::format("{}{}, {}\n", pages.empty() ? "" : "\n", row.name, table.singular);
       }
-      std::istringstream lines(wrapped(row.summary, page_width, 2) + row.page);
+      std::istringstream lines(wrapped(row.summary, 2) + row.page);
       for (std::string line; std::getline(lines, line);) {
         if (said.insert(line).second) pages += line + "\n";
       }

@@ -17,7 +17,8 @@ inline constexpr std::size_t page_width = 80;
 std::string manual(const Entry& plugin, const std::vector<Entry>& entries);
 
 /// The text in lines of at most `width` columns, each after `indent` blanks. Its line ends stay.
-std::string wrapped(const std::string& text, std::size_t width, std::size_t indent);
+std::string wrapped(const std::string& text, std::size_t indent = 0,
+                    std::size_t width = page_width);
 
 /// Two columns of a page, the right one from `column` on. A left side that is too long has its own
 /// line.

@@ -69,7 +69,7 @@ std::string roff(const std::string& text) {
 }
 
 /// Short lines, as mandoc asks for.
-std::string paragraph(const std::string& text) { return roff(wrapped(text, 70, 0)); }
+std::string paragraph(const std::string& text) { return roff(wrapped(text, 0, 70)); }
 
 std::string roff_entry(const std::string& bold, const std::string& italic,
                        const std::string& text) {

@@ -162,7 +162,7 @@ Row row_of(const TestOutcome& test, const Pilots& pilots) {
 }
 
 std::string on_page(const std::string& text, std::size_t indent = 0) {
-  return reports::plain_spaces(wrapped(reports::one_line(text), page_width, indent));
+  return reports::plain_spaces(wrapped(reports::one_line(text), indent));
 }
 
 std::array<int, column_count> widths_of(const std::vector<Row>& rows) {

@@ -242,8 +242,7 @@ bool print_comparison(const reports::Test& now, const reports::Test& then, bool 
   bool same = true;
   if (then.verdict == reports::Verdict::invalid || then.verdict == reports::Verdict::error) {
     fmt::print("{}", wrapped(fmt::format("{}, so the numbers below decide nothing: {}",
-                                         reports::to_string(then.verdict), then.message),
-                             page_width, 0));
+                                         reports::to_string(then.verdict), then.message)));
   }
   for (std::size_t i = 0; i < now.samples.size() && i < then.samples.size(); ++i) {
     same &= same_size(now.samples[i], then.samples[i]);

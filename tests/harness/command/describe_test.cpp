@@ -112,8 +112,8 @@ TEST(Describe, KeepsEveryManualWithinThePage) {
 }
 
 TEST(Wrapped, BreaksAtBlanksElseAtTheWidthAndKeepsLineEnds) {
-  EXPECT_EQ(wrapped("one two three\nfour", 9, 1), " one two\n three\n four\n");
-  EXPECT_EQ(wrapped("unbreakable", 5, 0), "unbre\nakabl\ne\n");
+  EXPECT_EQ(wrapped("one two three\nfour", 1, 9), " one two\n three\n four\n");
+  EXPECT_EQ(wrapped("unbreakable", 0, 5), "unbre\nakabl\ne\n");
 }
 
 TEST(List, PrintsEveryPluginOnALine) {
