@@ -230,14 +230,11 @@ Sides sides_of(const std::string& claim) {
   return {.left = claim};
 }
 
-bool is_proof(const Test& test) {
-  const std::string relation = sides_of(test.claim).relation;
-  return relation == "<" || relation == ">" || relation == "within";
-}
+bool is_proof(const Test& test) { return !contrary(test.claim).empty(); }
 
 std::string contrary(const std::string& claim) {
   const auto [left, relation, right] = sides_of(claim);
-  const std::map<std::string, const char*> others{
+  static const std::map<std::string, const char*> others{
       {"<", ">="}, {">", "<="}, {"within", "not within"}};
   const auto other = others.find(relation);
   return other == others.end() ? "" : fmt::format("{} {} {}", left, other->second, right);
