@@ -13,18 +13,6 @@
 namespace assay::stats {
 namespace {
 
-// An estimate that is normal about theta, in the limit, and its standard error.
-struct NormalEstimate {
-  double value = 0;
-  double standard_error = 1;
-};
-
-// Null hypothesis: theta = 0 (<= 0, >= 0), by z = value / standard_error. Asymptotic.
-TestResult normal_test(NormalEstimate estimate) {
-  const double z = estimate.value / estimate.standard_error;
-  return by_tails(z, {"normal", {}}, normal_tails(z), Exactness::asymptotic);
-}
-
 class Sequence {
  public:
   Sequence(const char* function, std::span<const double> values, std::size_t fewest)
@@ -80,7 +68,8 @@ TestResult lag_one_test(std::span<const double> values, const char* caller) {
   const double n = static_cast<double>(values.size());
   const double variance = (n * n * n * n - 4 * n * n * n + 3 * n * n + 4 * n - 4) /
                           ((n + 1) * n * n * (n - 1) * (n - 1));
-  return normal_test({r + 1 / n, std::sqrt(variance)});
+  const double z = (r + 1 / n) / std::sqrt(variance);
+  return by_tails(z, {"normal", {}}, normal_tails(z), Exactness::asymptotic);
 }
 
 double effective_sample_size(std::span<const double> values) {
