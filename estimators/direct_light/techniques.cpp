@@ -98,9 +98,8 @@ class AreaSampling final : public LightSampling {
   explicit AreaSampling(SharedSetting setting) : points_(std::move(setting)) {}
 
   std::optional<LightPoint> sample(Stream& random) const override {
-    double x = random.uniform();
-    const double y = random.uniform();
-    const LightTriangle& triangle = points_.setting().triangles()[points_.shares().pick(x)];
+    const auto [index, x, y] = points_.shares().choose(random);
+    const LightTriangle& triangle = points_.setting().triangles()[index];
     const auto [u, v] = luminaire::UniformTriangle{}(x, y);
     if (!triangle.emits) return {};
     const luminaire::Connection way = points_.setting().connect(triangle, u, v);
@@ -124,9 +123,8 @@ class SolidAngleSampling final : public LightSampling {
 
   std::optional<LightPoint> sample(Stream& random) const override {
     if (directions_.triangles().empty()) return {};
-    double u = random.uniform();
-    const double v = random.uniform();
-    const luminaire::LitTriangle& triangle = directions_.triangles()[directions_.shares().pick(u)];
+    const auto [index, u, v] = directions_.shares().choose(random);
+    const luminaire::LitTriangle& triangle = directions_.triangles()[index];
     const Vector3 w = triangle.seen.sample(u, v);
     return LightPoint{triangle.distance(w) * w, 1 / directions_.solid_angle()};
   }

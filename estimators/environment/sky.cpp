@@ -136,9 +136,8 @@ class EmittanceSampler final : public Sampler {
   }
 
   Choice choose(Stream& random) const {
-    double u = random.uniform();
-    const std::size_t texel = texels_.pick(u);
-    return {texel, direction_in(map().patch(texel), {u, random.uniform()})};
+    const auto [texel, u, v] = texels_.choose(random);
+    return {texel, direction_in(map().patch(texel), {u, v})};
   }
   /// X: radiance times cos+ V over the density.
   Rgb contribution(const Choice& choice, Cost& cost) const {

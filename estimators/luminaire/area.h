@@ -44,10 +44,8 @@ class AreaPrimary {
         term_(term) {}
 
   LightSample draw(Stream& random) const {
-    double x = random.uniform();
-    const double y = random.uniform();
-    const LightTriangle& triangle = setting_->triangles()[shares_.pick(x)];
-    return at(triangle, Warp{}(x, y));
+    const auto [index, x, y] = shares_.choose(random);
+    return at(setting_->triangles()[index], Warp{}(x, y));
   }
 
   double value(const LightSample& sample, Cost& cost) const {

@@ -58,9 +58,8 @@ class SolidAnglePrimary {
 
   LightSample draw(Stream& random) const {
     if (triangles_.empty()) return {};
-    double u = random.uniform();
-    const double v = random.uniform();
-    const LitTriangle& triangle = triangles_[shares_.pick(u)];
+    const auto [index, u, v] = shares_.choose(random);
+    const LitTriangle& triangle = triangles_[index];
     return along(Map{}(triangle.seen, u, v), triangle);
   }
 
@@ -104,9 +103,7 @@ class SolidAngleSampler final : public Sampler {
   Domain domain() const override { return domain_of(primary_.triangles()); }
 
   SamplerDraw sample(Stream& random) const override {
-    double u = random.uniform();
-    const double v = random.uniform();
-    const std::uint32_t index = primary_.shares().pick(u);
+    const auto [index, u, v] = primary_.shares().choose(random);
     const LitTriangle& triangle = primary_.triangles()[index];
     const render::Vector3 w = Map{}(triangle.seen, u, v);
     return {.point = point_of(w),

@@ -74,10 +74,9 @@ class HalfDropped {
   explicit HalfDropped(SharedSetting setting) : area_(std::move(setting)) {}
 
   LightSample draw(Stream& random) const {
-    double x = random.uniform();
-    const double y = random.uniform();
-    const LightTriangle& triangle = area_.setting().triangles()[area_.shares().pick(x)];
-    return x + y > 1 ? LightSample{} : area_.at(triangle, UnitSquare{}(x, y));
+    const auto [index, x, y] = area_.shares().choose(random);
+    if (x + y > 1) return {};
+    return area_.at(area_.setting().triangles()[index], UnitSquare{}(x, y));
   }
   double value(const LightSample& sample, Cost& cost) const { return area_.value(sample, cost); }
 

@@ -124,9 +124,7 @@ Vertex MeshWorld::on_patch(std::size_t patch, double u, double v) const {
 }
 
 Rgb MeshWorld::sampled_light(const Vertex& v, Stream& random, Cost& cost) const {
-  double x = random.uniform();
-  const std::uint32_t triangle = light_.pick(x);
-  const double y = random.uniform();
+  const auto [triangle, x, y] = light_.choose(random);
   const Vertex light = on_patch(2 * std::size_t{triangle}, x, y);
   const Vector3 way = light.position - v.position;
   const double square = squared_length(way);

@@ -31,6 +31,21 @@ class ShareTable {
     return index;
   }
 
+  /// An index and a point of the unit square, uniform, for a place within the share.
+  struct Choice {
+    std::uint32_t index;
+    double u;
+    double v;
+  };
+  /// Picks by two numbers of a stream.
+  template <class Random>
+  Choice choose(Random& random) const {
+    double u = random.uniform();
+    const double v = random.uniform();
+    const std::uint32_t index = pick(u);
+    return {index, u, v};
+  }
+
  private:
   struct Share {
     double begin;  // as a fraction of the total

@@ -176,10 +176,8 @@ std::optional<Rgb> Room::find_even_emission() const {
 }
 
 LightPath Room::shoot(Stream& random, Cost& cost) const {
-  double x = random.uniform();
-  const std::uint32_t side = sides_[shares_.pick(x)];
-  const double y = random.uniform();
-  LightPath path{.from = world_->on_patch(side, x, y)};
+  const auto [index, x, y] = shares_.choose(random);
+  LightPath path{.from = world_->on_patch(sides_[index], x, y)};
   path.at = world_->reflected(path.from, random, cost);
   const Rgb& emission = path.from.surface->emission;
   path.power = pi * shares_.total() / render::mean(emission) * emission;
