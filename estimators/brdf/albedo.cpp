@@ -16,9 +16,7 @@ namespace {
 
 using render::Target;
 using render::Vector3;
-
-Vector3 vector(const Point& p) { return {p[0], p[1], p[2]}; }
-Point point(const Vector3& v) { return {v.x, v.y, v.z}; }
+using render::vector_of;
 
 /// Directions of `point` with `density`; evaluate() is f cos.
 std::shared_ptr<const Sampler> brdf_sampler(const SharedBrdf& brdf,
@@ -29,7 +27,7 @@ std::shared_ptr<const Sampler> brdf_sampler(const SharedBrdf& brdf,
     return static_cast<std::size_t>(std::ceil(range / (8 * width)));
   };
   const auto evaluate = [brdf](const Point& p) {
-    return p[2] > 0 ? brdf->target(Target::brdf_cosine, vector(p)) : 0;
+    return p[2] > 0 ? brdf->target(Target::brdf_cosine, vector_of(p)) : 0;
   };
   return sampler_of(
       {.domain = Domain::hemisphere,
@@ -43,10 +41,10 @@ std::shared_ptr<const Sampler> brdf_sampler(const SharedBrdf& brdf,
 std::shared_ptr<const Sampler> rejection_sampler(const SharedBrdf& brdf, Target target,
                                                  double integral) {
   const auto point_above = [brdf, target](Stream& random) {
-    return point(render::sample_by_rejection(*brdf, target, random));
+    return point_of(render::sample_by_rejection(*brdf, target, random));
   };
   const auto density = [brdf, target, integral](const Point& p) {
-    return p[2] > 0 ? brdf->target(target, vector(p)) / integral : 0;
+    return p[2] > 0 ? brdf->target(target, vector_of(p)) / integral : 0;
   };
   return brdf_sampler(brdf, point_above, density);
 }
@@ -109,11 +107,12 @@ std::vector<ParameterInformation> incident_parameters() {
 }  // namespace
 
 std::shared_ptr<const Sampler> published_sampler(SharedBrdf brdf) {
-  const auto point_of = [brdf](Stream& random) {
+  const auto point_above = [brdf](Stream& random) {
     const Vector3 out = published_direction(*brdf, random);
-    return out.z > 0 ? std::optional(point(out)) : std::nullopt;
+    return out.z > 0 ? std::optional(point_of(out)) : std::nullopt;
   };
-  return brdf_sampler(brdf, point_of, [brdf](const Point& p) { return brdf->density(vector(p)); });
+  return brdf_sampler(brdf, point_above,
+                      [brdf](const Point& p) { return brdf->density(vector_of(p)); });
 }
 
 Channel published_channel(const render::HalfVectorBrdf& brdf) {

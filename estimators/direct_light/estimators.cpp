@@ -17,10 +17,9 @@ namespace {
 
 using namespace direct_light;
 
-using luminaire::direction_of;
 using luminaire::LitTriangle;
-using luminaire::point_of;
 using render::Vector3;
+using render::vector_of;
 using std::numbers::pi;
 
 // Directions in which f is the integrand of direct lighting.
@@ -33,7 +32,7 @@ class Directions : public Sampler {
   Domain domain() const override { return luminaire::domain_of(triangles_); }
 
   double evaluate(const Point& point) const override {
-    const Vector3 w = direction_of(point);
+    const Vector3 w = vector_of(point);
     const LitTriangle* triangle = containing(w);
     if (!triangle) return 0;
     Cost uncounted;
@@ -85,7 +84,7 @@ class LightDirections final : public Directions {
     if (!point) return {.valid = false};
     return draw(normalised(point->to_light), point->density, 0);
   }
-  double density(const Point& point) const override { return light_density(direction_of(point)); }
+  double density(const Point& point) const override { return light_density(vector_of(point)); }
 };
 
 class BrdfDirections final : public Directions {
@@ -96,7 +95,7 @@ class BrdfDirections final : public Directions {
     const Vector3 w = techniques().reflectance().sample(random);
     return w.z > 0 ? draw(w, brdf_density(w), 0) : SamplerDraw{.valid = false};
   }
-  double density(const Point& point) const override { return brdf_density(direction_of(point)); }
+  double density(const Point& point) const override { return brdf_density(vector_of(point)); }
 };
 
 class MixtureDirections final : public Directions {
@@ -121,7 +120,7 @@ class MixtureDirections final : public Directions {
   }
   int lobes() const override { return 2; }
   double lobe_density(int lobe, const Point& point) const override {
-    const Vector3 w = direction_of(point);
+    const Vector3 w = vector_of(point);
     return lobe == 0 ? probabilities_.light * light_density(w)
                      : probabilities_.brdf * brdf_density(w);
   }

@@ -118,15 +118,16 @@ class EmittanceSampler final : public Sampler {
   Domain domain() const override { return Domain::sphere; }
   SamplerDraw sample(Stream& random) const override {
     const Choice choice = choose(random);
-    const Vector3& w = choice.direction;
     Cost uncounted;
-    return {.point = {w.x, w.y, w.z},
+    return {.point = point_of(choice.direction),
             .density = density(choice.texel),
             .weight = sky_.setting->grey(contribution(choice, uncounted))};
   }
-  double density(const Point& p) const override { return density(map().texel({p[0], p[1], p[2]})); }
+  double density(const Point& p) const override {
+    return density(map().texel(render::vector_of(p)));
+  }
   double evaluate(const Point& p) const override {
-    const Vector3 w{p[0], p[1], p[2]};
+    const Vector3 w = render::vector_of(p);
     Cost uncounted;
     return sky_.setting->grey(map().radiance(w)) * received(w, uncounted);
   }

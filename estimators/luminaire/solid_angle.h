@@ -13,9 +13,6 @@
 
 namespace assay::luminaire {
 
-inline Point point_of(const render::Vector3& w) { return {w.x, w.y, w.z}; }
-inline render::Vector3 direction_of(const Point& p) { return {p[0], p[1], p[2]}; }
-
 /// A triangle of the luminaire that faces the receiver.
 struct LitTriangle {
   render::SphericalTriangle seen;
@@ -113,11 +110,11 @@ class SolidAngleSampler final : public Sampler {
   }
 
   double density(const Point& point) const override {
-    return containing(direction_of(point)) ? 1 / primary_.solid_angle() : 0;
+    return containing(render::vector_of(point)) ? 1 / primary_.solid_angle() : 0;
   }
 
   double evaluate(const Point& point) const override {
-    const render::Vector3 w = direction_of(point);
+    const render::Vector3 w = render::vector_of(point);
     const LitTriangle* triangle = containing(w);
     return triangle ? primary_.weight(w, *triangle) / primary_.solid_angle() : 0;
   }
@@ -130,7 +127,7 @@ class SolidAngleSampler final : public Sampler {
   // A triangle each.
   int lobes() const override { return static_cast<int>(primary_.triangles().size()); }
   double lobe_density(int lobe, const Point& point) const override {
-    const LitTriangle* triangle = containing(direction_of(point));
+    const LitTriangle* triangle = containing(render::vector_of(point));
     const LitTriangle* own = &primary_.triangles()[static_cast<std::size_t>(lobe)];
     return triangle == own ? 1 / primary_.solid_angle() : 0;
   }

@@ -176,8 +176,7 @@ Direct read_direct(Parameters& parameters, const Scene& scene) {
 NamedSampler direction_sampler() {
   const auto point = [](Stream& random) {
     const double u = random.uniform();
-    const render::Vector3 w = render::cosine_hemisphere(u, random.uniform());
-    return Point{w.x, w.y, w.z};
+    return point_of(render::cosine_hemisphere(u, random.uniform()));
   };
   const auto density = [](const Point& w) { return w[2] / std::numbers::pi; };
   return {"direction", sampler_of({Domain::hemisphere, point, density})};

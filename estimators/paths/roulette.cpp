@@ -142,8 +142,7 @@ std::vector<NamedSampler> samplers_of(const Scene& scene, const RoulettePlan& pl
     // The point where a reflected ray arrives: uniform in area.
     const auto hit = [world = *sphere](Stream& random) {
       Cost uncounted;
-      const Vertex seen = world->reflected(world->camera(uncounted), random, uncounted);
-      return Point{seen.position.x, seen.position.y, seen.position.z};
+      return point_of(world->reflected(world->camera(uncounted), random, uncounted).position);
     };
     all.push_back(
         {"hit", sampler_of({Domain::sphere, hit, uniform_density(1 / (4 * std::numbers::pi))})});

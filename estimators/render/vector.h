@@ -2,6 +2,7 @@
 
 // Points, directions and normals of three-space in double precision.
 
+#include <array>
 #include <cmath>
 
 namespace assay::render {
@@ -43,6 +44,10 @@ inline bool is_finite(const Vector3& v) {
 inline double angle_between(const Vector3& a, const Vector3& b) {
   return std::atan2(length(cross(a, b)), dot(a, b));
 }
+
+/// A vector as the coordinates of a sampler's point, and back.
+constexpr std::array<double, 3> point_of(const Vector3& v) { return {v.x, v.y, v.z}; }
+constexpr Vector3 vector_of(const std::array<double, 3>& p) { return {p[0], p[1], p[2]}; }
 
 /// Right-handed: tangent x bitangent = normal.
 struct Frame {

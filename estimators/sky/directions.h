@@ -56,14 +56,16 @@ class DirectionSampler final : public Sampler {
   SamplerDraw sample(Stream& random) const override {
     const double u = random.uniform();
     const Direction d = directions_->draw(u, random.uniform());
-    const Point point = {d.w.x, d.w.y, d.w.z};
+    const Point point = point_of(d.w);
     const double value = evaluate(point);
     return {.point = point, .density = d.density, .weight = value == 0 ? 0 : value / d.density};
   }
-  double density(const Point& p) const override { return directions_->density({p[0], p[1], p[2]}); }
+  double density(const Point& p) const override {
+    return directions_->density(render::vector_of(p));
+  }
   double evaluate(const Point& p) const override {
     Cost uncounted;
-    return setting_->grey(setting_->received({p[0], p[1], p[2]}, uncounted));
+    return setting_->grey(setting_->received(render::vector_of(p), uncounted));
   }
   Panels panels() const override { return directions_->panels(); }
 
