@@ -67,6 +67,8 @@ struct ImageEffect {
   double estimate = 0;
   double standard_error = 0;
   double degrees = 1;
+
+  double t() const { return estimate / standard_error; }
 };
 
 // The sums among which one was found, and their share of the level.

@@ -77,29 +77,16 @@ void Candidates::keep(const Candidate& candidate) {
   if (kept_.size() > most) kept_.pop_back();
 }
 
-bool beats(const ImageFinding& finding, const BestCell& best) {
-  return best.value.degrees == 0 || std::abs(finding.z) >= std::abs(best.finding.z);
-}
-
 void offer(BestCell& best, const Candidate& candidate, const NoisePyramid& noise) {
-  const bool may_win = beats(candidate.finding, best);
-  const auto is_clearer = [&](double t) { return std::abs(t) > std::abs(best.clearest_value.t); };
-  if (!may_win && !is_clearer(own_value(candidate.noise).t)) return;
-  const NoisePyramid::Kept kept =
-      noise.kept(candidate.noise, candidate.finding.window, candidate.finding.channel);
-  const StudentValue value{kept.t, candidate.noise.degrees};
+  // Neighbours only take away: no cell wins that does not by its own noise.
+  const bool may_win = !best.finding || std::abs(candidate.finding.z) >= std::abs(best.finding->z);
+  const double clearest = best.clearest ? std::abs(best.clearest->effect.t()) : 0;
+  if (!may_win && !(std::abs(own_value(candidate.noise).t) > clearest)) return;
   ImageFinding finding = candidate.finding;
-  finding.z = t_to_z(value);
-  finding.effect = {.estimate = candidate.noise.effect,
-                    .standard_error = kept.standard_error,
-                    .degrees = candidate.noise.degrees};
-  if (is_clearer(value.t)) {
-    best.clearest = finding;
-    best.clearest_value = value;
-  }
-  if (!may_win || (best.value.degrees > 0 && !beats(finding, best.finding))) return;
-  best.finding = finding;
-  best.value = value;
+  finding.effect = noise.kept(candidate.noise, finding.window, finding.channel);
+  finding.z = t_to_z({finding.effect.t(), finding.effect.degrees});
+  if (std::abs(finding.effect.t()) > clearest) best.clearest = finding;
+  if (may_win && (!best.finding || beats(finding, *best.finding))) best.finding = finding;
 }
 
 void WelchCells::start(std::size_t cells) {

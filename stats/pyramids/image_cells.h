@@ -74,14 +74,10 @@ class Candidates {
 // equals the first by channel, row and column wins, in whichever order they come. `clearest` is the
 // one of the largest t.
 struct BestCell {
-  ImageFinding finding;
-  StudentValue value{.t = 0, .degrees = 0};  // degrees 0: none yet.
-  ImageFinding clearest;
-  StudentValue clearest_value{.t = 0, .degrees = 0};
+  std::optional<ImageFinding> finding;
+  std::optional<ImageFinding> clearest;
   double windows = 0;
 };
-// False if a cell cannot beat it by its own noise. Neighbours only take away.
-bool beats(const ImageFinding& finding, const BestCell& best);
 void offer(BestCell& best, const Candidate& candidate, const NoisePyramid& noise);
 
 // The value that a cell's own noise gives.

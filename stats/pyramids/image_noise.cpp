@@ -209,12 +209,12 @@ double NoisePyramid::growth(const CellNoise& cell, double sign, const Rectangle&
   return std::max(std::abs(cell.weight) * largest, own);
 }
 
-NoisePyramid::Kept NoisePyramid::kept(const CellNoise& cell, const Rectangle& window,
-                                      std::size_t channel) const {
+ImageEffect NoisePyramid::kept(const CellNoise& cell, const Rectangle& window,
+                               std::size_t channel) const {
   const double growing = growth(cell, cell.effect, window, channel);
   const double standard_error =
       std::sqrt(cell.variance[0] + cell.variance[1] + std::abs(cell.effect) * growing);
-  return {.t = cell.effect / standard_error, .standard_error = standard_error};
+  return {.estimate = cell.effect, .standard_error = standard_error, .degrees = cell.degrees};
 }
 
 double NoisePyramid::hidden_squares() const {

@@ -95,7 +95,7 @@ class NoisePyramid {
   // To be called after the last element.
   void build();
 
-  // The statistic of a cell: Student's t, with the variance that it had if the means were equal.
+  // The effect of a cell, for Student's t with the variance that it had if the means were equal.
   // For an effect of size d that is v + d k3 / k2, where k3 counts in the direction that makes the
   // effect smaller. The largest k3 / k2 counts, of the cell itself and of every block of four times
   // its side up to the whole image. A block's deviations are cut off at every octave, so that the
@@ -104,11 +104,7 @@ class NoisePyramid {
   // Two sides of one law have k3 = 0. So the blocks count only where the sides have different laws
   // in one of them: one is noisier for its mean in too many elements (sign test), or the darker has
   // too many rare values beyond an octave. A reference has a law of its own.
-  struct Kept {
-    double t = 0;
-    double standard_error = 0;
-  };
-  Kept kept(const CellNoise& cell, const Rectangle& window, std::size_t channel) const;
+  ImageEffect kept(const CellNoise& cell, const Rectangle& window, std::size_t channel) const;
   // The k3 / k2 of an effect of this sign.
   double growth(const CellNoise& cell, double sign, const Rectangle& window,
                 std::size_t channel) const;

@@ -12,9 +12,9 @@ namespace {
 
 constexpr const char* function_name = "image_pyramid";
 
-LogTails tails_of(StudentValue value) {
-  return std::isinf(value.degrees) ? normal_tails(value.t)
-                                   : student_t_tails(value.t, value.degrees);
+LogTails tails_of(const ImageEffect& effect) {
+  return std::isinf(effect.degrees) ? normal_tails(effect.t())
+                                    : student_t_tails(effect.t(), effect.degrees);
 }
 
 // The least rectangle around the elements of a channel in the window of which this holds.
@@ -100,20 +100,19 @@ std::vector<CellNoiseOfMean> RowPyramid::offer_cells() {
 void RowPyramid::add_best(ImageFamily& family) const {
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     const BestCell& best = best_[g];
-    if (best.windows == 0) continue;
+    if (!best.finding) continue;
     const GroupSize size{best.windows, groups_[g].share};
     if (groups_[g].size == typical_side && groups_[g].grid == Grid::aligned)
       family.typical.group = size;
-    const auto add = [&](ImageFinding finding, StudentValue value,
-                         std::vector<ImageFinding>& findings) {
-      finding.log_p = log_p_two_sided(tails_of(value));
+    const auto add = [&](ImageFinding finding, std::vector<ImageFinding>& findings) {
+      finding.log_p = log_p_two_sided(tails_of(finding.effect));
       finding.adjusted_log_p = adjusted(finding.log_p, size);
       finding.group = size;
       divide_by_weights(finding, found_.weights, extent_);
       findings.push_back(finding);
     };
-    add(best.finding, best.value, family.groups);
-    if (best.clearest_value.t != 0) add(best.clearest, best.clearest_value, family.clearest);
+    add(*best.finding, family.groups);
+    if (best.clearest) add(*best.clearest, family.clearest);
   }
 }
 

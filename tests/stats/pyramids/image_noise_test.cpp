@@ -102,7 +102,7 @@ TEST(NoisePyramid, HasTheVarianceOfEqualMeans) {
   };
   const std::vector<double> rare = with_rare(40);
   const double alone = -3 / std::sqrt(2.0 / 16);
-  EXPECT_NEAR(pyramid_of({clean, normal_values(random)}).kept(dark, pixel, 0).t, alone, 0.3);
+  EXPECT_NEAR(pyramid_of({clean, normal_values(random)}).kept(dark, pixel, 0).t(), alone, 0.3);
   // One side has `more` values of 50 among its 1024, the other `fewer`. Their squares and those of
   // the normal values make k2, in means of 16.
   const auto t = [](double more, double fewer, double k3_values) {
@@ -111,36 +111,37 @@ TEST(NoisePyramid, HasTheVarianceOfEqualMeans) {
     return -3 / std::sqrt(2.0 / 16 + 3 * k3 / (16 * k2));
   };
   // Counts that may be of one law.
-  EXPECT_NEAR(pyramid_of({with_rare(8), with_rare(1)}).kept(dark, pixel, 0).t, alone, 1e-9);
-  EXPECT_NEAR(pyramid_of({with_rare(18), with_rare(1)}).kept(dark, pixel, 0).t, t(18, 1, 17), 0.02);
+  EXPECT_NEAR(pyramid_of({with_rare(8), with_rare(1)}).kept(dark, pixel, 0).t(), alone, 1e-9);
+  EXPECT_NEAR(pyramid_of({with_rare(18), with_rare(1)}).kept(dark, pixel, 0).t(), t(18, 1, 17),
+              0.02);
   // Sides of different laws: by their rare values, or as 60 of 64 elements are noisier.
-  EXPECT_NEAR(pyramid_of({rare, clean}).kept(dark, pixel, 0).t, t(40, 0, 40), 0.02);
-  EXPECT_NEAR(pyramid_of({with_rare(8), with_rare(1)}, {16, 16}, 60).kept(dark, pixel, 0).t,
+  EXPECT_NEAR(pyramid_of({rare, clean}).kept(dark, pixel, 0).t(), t(40, 0, 40), 0.02);
+  EXPECT_NEAR(pyramid_of({with_rare(8), with_rare(1)}, {16, 16}, 60).kept(dark, pixel, 0).t(),
               t(8, 1, 7), 0.02);
-  EXPECT_NEAR(pyramid_of({with_rare(8), with_rare(1)}, {16, 16}, 4).kept(dark, pixel, 0).t,
+  EXPECT_NEAR(pyramid_of({with_rare(8), with_rare(1)}, {16, 16}, 4).kept(dark, pixel, 0).t(),
               t(8, 1, 7), 0.02);
   // A giant tells no laws apart.
   std::vector<double> giant = clean;
   giant[999] = 1e5;
-  EXPECT_NEAR(pyramid_of({giant, clean}).kept(dark, pixel, 0).t, alone, 0.3);
+  EXPECT_NEAR(pyramid_of({giant, clean}).kept(dark, pixel, 0).t(), alone, 0.3);
   // A reference is of another law than the pictures.
-  EXPECT_NEAR(pyramid_of({giant, {}}, {16, 0}).kept(dark, pixel, 0).t,
+  EXPECT_NEAR(pyramid_of({giant, {}}, {16, 0}).kept(dark, pixel, 0).t(),
               -3 / std::sqrt(2.0 / 16 + 3 * 1e5 / 16), 0.02);
   // The brighter side misses the same.
-  EXPECT_NEAR(pyramid_of({rare, rare}).kept(dark, pixel, 0).t, alone, 0.3);
+  EXPECT_NEAR(pyramid_of({rare, rare}).kept(dark, pixel, 0).t(), alone, 0.3);
   // A brighter cell misses no bright values.
   CellNoise bright = dark;
   bright.effect = 3;
-  EXPECT_NEAR(pyramid_of({rare, clean}).kept(bright, pixel, 0).t, -alone, 0.3);
+  EXPECT_NEAR(pyramid_of({rare, clean}).kept(bright, pixel, 0).t(), -alone, 0.3);
 }
 
 TEST(NoisePyramid, TakesACellsOwnThirdCumulant) {
   const NoisePyramid none({8, 8, 1}, {16, 16});
   CellNoise cell{.effect = -4, .variance = {0.5, 0.5}, .degrees = 30, .third = 0.3, .weight = 1};
   const Rectangle whole{0, 0, 8, 8};
-  EXPECT_NEAR(none.kept(cell, whole, 0).t, -4 / std::sqrt(1 + 4 * 0.3), 1e-12);
+  EXPECT_NEAR(none.kept(cell, whole, 0).t(), -4 / std::sqrt(1 + 4 * 0.3), 1e-12);
   cell.third = -0.3;
-  EXPECT_NEAR(none.kept(cell, whole, 0).t, -4, 1e-12);
+  EXPECT_NEAR(none.kept(cell, whole, 0).t(), -4, 1e-12);
 }
 
 // Values of 0 and 10 at probability .05: an element lacks .5 if 16 replicates missed all.
