@@ -69,21 +69,6 @@ struct UnitSquare {
   Barycentric operator()(double x, double y) const { return {x, y}; }
 };
 
-class HalfDropped {
- public:
-  explicit HalfDropped(SharedSetting setting) : area_(std::move(setting)) {}
-
-  LightSample draw(Stream& random) const {
-    const auto [index, x, y] = area_.shares().choose(random);
-    if (x + y > 1) return {};
-    return area_.at(area_.setting().triangles()[index], UnitSquare{}(x, y));
-  }
-  double value(const LightSample& sample, Cost& cost) const { return area_.value(sample, cost); }
-
- private:
-  AreaPrimary<> area_;
-};
-
 // Replacements for Arvo's two steps.
 
 struct UniformArc {
@@ -136,8 +121,12 @@ std::shared_ptr<const Setup> unwarped_triangle(SharedSetting setting) {
 }
 
 std::shared_ptr<const Setup> half_dropped(SharedSetting setting) {
-  return averaging(only_mean(area_channel(*setting)), HalfDropped(setting),
-                   point_samplers<UnitSquare>(setting));
+  const auto primary = [area = AreaPrimary<>(setting)](Stream& random, Cost& cost) {
+    const auto [index, x, y] = area.shares().choose(random);
+    if (x + y > 1) return 0.0;
+    return area.value(area.at(area.setting().triangles()[index], UnitSquare{}(x, y)), cost);
+  };
+  return averaging(only_mean(area_channel(*setting)), primary, point_samplers<UnitSquare>(setting));
 }
 
 std::shared_ptr<const Setup> solid_angle_density(SharedSetting setting) {
