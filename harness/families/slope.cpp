@@ -296,9 +296,7 @@ class SlopeTheta final : public Theta {
     if (!expected) return std::nullopt;
     double most = 0;
     for (const double edge : {null - distance, null + distance}) {
-      const auto factor = stats::slope_sample_factor(
-          *expected, edge,
-          {.alpha = rates.two_sided ? rates.alpha / 2 : rates.alpha, .beta = rates.beta});
+      const auto factor = stats::slope_sample_factor(*expected, edge, rates);
       if (!factor) return impossible_secondaries;
       most = std::max(most, *factor);
     }

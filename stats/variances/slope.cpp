@@ -237,14 +237,15 @@ double slope_power(const SlopeData& expected, double null_slope, double alpha) {
 }
 
 std::optional<double> slope_sample_factor(const SlopeData& expected, double null_slope,
-                                          SlopeRates rates) {
+                                          ErrorRates rates) {
   check::inside_unit({"slope_sample_factor", "beta"}, rates.beta);
+  const double alpha = rates.two_sided ? rates.alpha / 2 : rates.alpha;
   constexpr double most = 0x1p60;
   const auto enough = [&](double factor) {
     if (factor >= most) return true;
     SlopeData larger = expected;
     for (SlopePoint& point : larger.points) point.standard_error /= std::sqrt(factor);
-    return slope_power(larger, null_slope, rates.alpha) >= 1 - rates.beta;
+    return slope_power(larger, null_slope, alpha) >= 1 - rates.beta;
   };
   const double found = planning::smallest_effect(enough, 0, 0x1p-40);
   return found < most ? std::optional(found) : std::nullopt;

@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "stats/planning/power.h"
 #include "stats/tails/test_result.h"
 
 namespace assay::stats {
@@ -64,13 +65,9 @@ SlopeEstimate slope_estimate(const SlopeData& data);
 // data.points. Noncentral chi-square with ncp = Q(null_slope).
 double slope_power(const SlopeData& expected, double null_slope, double alpha);
 
-// The factor for every sample size that gives power 1 - beta. Standard errors shrink by its root,
-// the reference's does not. Nothing if no factor suffices.
-struct SlopeRates {
-  double alpha = 0.01;
-  double beta = 0.01;
-};
+// The factor for every sample size that gives power 1 - beta, at alpha or half of it if two-sided.
+// Standard errors shrink by its root, the reference's does not. Nothing if no factor suffices.
 std::optional<double> slope_sample_factor(const SlopeData& expected, double null_slope,
-                                          SlopeRates rates);
+                                          ErrorRates rates);
 
 }  // namespace assay::stats

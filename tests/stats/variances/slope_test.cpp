@@ -172,7 +172,7 @@ TEST(Slope, APlannedFactorFindsTheSlopeItWasPlannedFor) {
   SlopeData expected = biases(random, -.5, 0, 0);
   for (SlopePoint& point : expected.points) point.standard_error = .1;
   expected.reference_error = .01;
-  const double factor = slope_sample_factor(expected, -.7, {.01, .2}).value();
+  const double factor = slope_sample_factor(expected, -.7, {.01, .2, false}).value();
   int found = 0;
   for (int i = 0; i < 4000; ++i) {
     const SlopeData data = biases(random, -.5, .1 / std::sqrt(factor), .01);
@@ -183,7 +183,7 @@ TEST(Slope, APlannedFactorFindsTheSlopeItWasPlannedFor) {
 
 TEST(Slope, NoSampleOutweighsAnErrorOfTheReferenceOnTwoPoints) {
   const SlopeData expected{{{1, .2, .01}, {4, .05, .01}}, 1};
-  EXPECT_FALSE(slope_sample_factor(expected, -.9, {.01, .2}).has_value());
+  EXPECT_FALSE(slope_sample_factor(expected, -.9, {.01, .2, false}).has_value());
 }
 
 }  // namespace
