@@ -52,7 +52,7 @@ std::vector<double> exact_variances(const std::vector<Moments>& moments) {
   return out;
 }
 
-// Of the choices of `allocation`.
+// The choices of `allocation` in their order.
 constexpr std::array exponents = {0.0, 1.0, 2.0 / 3, 0.5};
 
 }  // namespace

@@ -1,8 +1,8 @@
 // The radiance that a thin lens gathers of a wave that it sees in a curved, rough mirror.
 //
-// E[X] and Var X follow from the wave's frequency (spectrum.h), if the place on the board is linear
-// in the lens point, the pixel and the change of slope. Rays of the parabola are linear only in the
-// limit of a small lens.
+// E[X] and Var X follow from the wave's frequency (spectrum.h). The place on the board must be
+// linear in the lens point, the pixel and the change of slope. Rays of the parabola are linear only
+// in the limit of a small lens.
 
 #include <numbers>
 

@@ -1,7 +1,7 @@
 // Metropolis light transport in primary sample space.
 //
-// The stationary density is I / integral of I. With the chain's start and b from the same points
-// E[b h(x_k)] = integral of h I for every k (Veach 1997, section 11.3.1), by induction: a step
+// The stationary density is I / integral of I. The chain's start and b come from the same points.
+// Then E[b h(x_k)] = integral of h I for every k (Veach 1997, section 11.3.1), by induction: a step
 // leaves this measure as it is. So the mean-value form is unbiased at every length.
 
 #include <algorithm>

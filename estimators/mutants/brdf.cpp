@@ -150,7 +150,7 @@ Entry entry(const char* original, const Defect& defect,
   return mutant({defect.name, original, defect.what, {sampler}}, std::move(prepare));
 }
 
-// Of a mutant too.
+// A mutant of one is one.
 template <class Brdf>
 constexpr bool is_ward = std::is_base_of_v<Ward, Brdf>;
 

@@ -194,8 +194,8 @@ class LogTheta : public Theta {
 
   virtual bool is_inverse() const { return false; }
 
-  /// The variance of an observation's influence values over the quantity's square, for observations
-  /// of `averaged` of the pilot's single primaries; by default that of a variance.
+  /// The variance of an observation's influence values over the quantity's square; by default that
+  /// of a variance. An observation averages `averaged` of the pilot's single primaries.
   virtual std::optional<double> predicted_spread(const Question&, const ChannelData& pilot,
                                                  double averaged) const {
     if (!(pilot.moments.m2 > 0)) return std::nullopt;
@@ -578,7 +578,8 @@ class EfficiencyTheta final : public RatioTheta {
         .truth = {.known = {truth->value, truth->standard_error}, .turn = sample.x().mean}};
   }
   bool is_inverse() const override { return true; }
-  /// Of ln(mean squared error), to first and second order. More observations do not reduce it.
+  /// It moves ln(mean squared error), to first and second order. More observations do not reduce
+  /// it.
   double spread_of_truth(const Seen& seen, std::size_t subject) const override {
     const auto truth = truth_beside(seen, subject);
     if (!truth) return 0;

@@ -38,7 +38,7 @@ struct Subject {
     return std::min(look, setup->observations().value_or(look));
   }
 
-  /// What the set-up declares of a channel that the claim is about. It makes the names of all.
+  /// The set-up's declaration of a channel that the claim is about. It makes the names of all.
   Channel declared(std::size_t channel) const { return setup->channels()[channels[channel]]; }
   /// The same of all these channels.
   std::vector<Channel> declared() const;
