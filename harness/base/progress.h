@@ -20,5 +20,6 @@ class Progress {
   virtual void advance(std::uint64_t /*done*/) {}  ///< units done so far in this phase
   virtual void end() {}
 };
+inline Progress silence;
 
 }  // namespace assay::harness

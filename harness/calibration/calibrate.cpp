@@ -404,7 +404,6 @@ void run_once(const CalibrationBench& bench, const std::vector<CalibratedClaim*>
   std::vector<TestWork*> open;
   for (TestWork& work : works) open.push_back(&work);
   leave_out_pictures(pools);
-  Progress silence;
   sample_in_looks(open, pools.all(), {.executor = threads(1)}, silence);
   if (interrupted()) return;
   const std::lock_guard lock(counting);

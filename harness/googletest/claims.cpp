@@ -156,8 +156,7 @@ reports::Test tested(const std::string& claim, const Asked& asked, const ClaimBu
   TestWork work{.outcome = harness::plan_alone(suite, question, pilots)};
   harness::Pools pools;
   work.pools = pools.for_question(question, work.outcome.plan, seed, pilots);
-  harness::Progress silence;
-  harness::sample_in_looks({&work}, pools.all(), {}, silence);
+  harness::sample_in_looks({&work}, pools.all(), {}, harness::silence);
   reports::Test test = harness::record_of_test(work, "", false);
   const bool drawn = test.verdict != reports::Verdict::error;
   if (std::string why = drawn ? unrepeated(work) : ""; !why.empty()) {

@@ -278,7 +278,6 @@ Pilots pilots_of(const std::vector<Question>& questions, std::uint64_t seed,
   }
   std::vector<const PreparedEstimator*> estimators;
   for (const auto& [name, estimator] : used) estimators.push_back(estimator);
-  Progress silence;
   return run_pilots(estimators, pilot_run_of(questions, seed, std::move(executor)), silence);
 }
 

@@ -19,6 +19,7 @@
 namespace {
 
 using namespace assay::stats;
+using assay::tests::even_borders;
 using assay::tests::Philox;
 using assay::tests::point_by_point;
 
@@ -26,14 +27,6 @@ constexpr int points = 10'000;
 constexpr int samples = 400;
 constexpr double u = .4;
 constexpr double v = .7;
-
-std::vector<double> even(std::size_t cells) {
-  std::vector<double> borders;
-  for (std::size_t k = 0; k <= cells; ++k) {
-    borders.push_back(static_cast<double>(k) / static_cast<double>(cells));
-  }
-  return borders;
-}
 
 struct Peak {
   double deviation;
@@ -56,7 +49,7 @@ AdaptiveCells cells_of(const Peak& peak, double share) {
       .values = peak.at_pole ? point_by_point(about) : point_by_point(beside),
       .x_panels = {100},
       .y_panels = {peak.at_pole ? 1U : 100U}};
-  return adaptive_cells({even(16), even(32)}, density, share);
+  return adaptive_cells({even_borders(16), even_borders(32)}, density, share);
 }
 
 enum class Defect { none, wide, moved, spot };

@@ -43,8 +43,7 @@ double by_harness(const std::shared_ptr<const Setup>& setup, std::uint64_t total
     channel = {.histogram_low = 0, .histogram_high = 10, .keep = 2000};
   }
   pool->request(total / primaries);
-  harness::Progress silence;
-  harness::draw_all({pool}, *harness::threads(threads), "sampling", silence);
+  harness::draw_all({pool}, *harness::threads(threads), "sampling", harness::silence);
   return pool->sample(total / primaries).drawn()->summary().channels[0].moments.mean;
 }
 

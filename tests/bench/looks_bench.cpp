@@ -77,14 +77,13 @@ struct Rounds {
 
 Rounds sample(std::vector<harness::TestWork*> open,
               const std::vector<std::shared_ptr<harness::Pool>>& pools) {
-  harness::Progress silence;
   Rounds seconds;
   Clock clock;
   while (!open.empty()) {
     for (harness::TestWork* work : open) {
       for (const auto& pool : work->pools) pool->request(work->outcome.secondaries());
     }
-    harness::draw_all(pools, *harness::threads(1), "sampling", silence);
+    harness::draw_all(pools, *harness::threads(1), "sampling", harness::silence);
     seconds.draws += clock.lap();
     std::erase_if(open, [](harness::TestWork* work) {
       harness::take_look(*work, true);

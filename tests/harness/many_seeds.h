@@ -51,7 +51,6 @@ inline std::map<std::string, Outcomes> over_seeds(
 /// takes a hundred times as long. Another test checks that a run finds the same numbers.
 inline void take_first_looks(const Prepared& prepared, std::uint64_t seed,
                              std::map<std::string, Outcomes>& outcomes) {
-  Progress silence;
   for (std::size_t i = 0; i < prepared.plans.size(); ++i) {
     const Question& question = prepared.asked->questions[i];
     const Plan& plan = prepared.plans[i];

@@ -22,7 +22,6 @@ inline Prepared prepare_text(const std::string& text, std::uint64_t seed) {
   prepared.place = places(prepared.asked->suite, prepared.asked->questions);
   std::vector<const PreparedEstimator*> all;
   for (const auto& [name, estimator] : prepared.asked->estimators) all.push_back(&estimator);
-  Progress silence;
   prepared.pilots =
       run_pilots(all, pilot_run_of(prepared.asked->questions, seed, threads(1)), silence);
   const Primaries primaries =

@@ -21,7 +21,6 @@ inline reports::Record run_files(const std::vector<std::string>& files,
                                  const RunOptions& options = {}) {
   std::vector<Suite> suites;
   for (const std::string& file : files) suites.push_back(load_suite(file));
-  Progress silence;
   return run(suites, options, silence);
 }
 

@@ -6,7 +6,6 @@ namespace assay::harness {
 namespace {
 
 reports::Calibration measured(const CalibrateArguments& arguments) {
-  Progress silence;
   return calibration(arguments, silence);
 }
 

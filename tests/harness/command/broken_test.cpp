@@ -26,7 +26,6 @@ struct Heard {
 
 Heard heard(const Workplace& place, const std::string& text, const RunOptions& options) {
   Heard all;
-  Progress silence;
   all.record =
       run({load_suite(place.write("suite.yaml", text))}, options, silence,
           [&](const reports::Test& test) { all.broken.push_back(test.id + ": " + test.replay); });

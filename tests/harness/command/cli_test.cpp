@@ -16,7 +16,6 @@ Kind parsed(const std::vector<std::string>& arguments) {
 std::string refused(const std::vector<std::string>& arguments) {
   return refusal([&] {
     const Command command = parse_command_line(arguments);
-    Progress silence;
     if (const auto* run = std::get_if<RunCommand>(&command)) {
       std::vector<Suite> suites(1);
       suites[0].estimators = {parse_estimator_option("area=luminaire/area")};

@@ -26,7 +26,6 @@ tests:
 )";
 
 PlannedRun planned_of(const std::vector<Suite>& suites, const RunOptions& options = {}) {
-  Progress silence;
   return plan_run(suites, options, silence);
 }
 
@@ -50,7 +49,6 @@ using Forecasts = PlanTable;
 TEST_F(PlanTable, PlansWhatARunThenDoes) {
   const std::vector<Suite> suites = suites_of();
   const PlannedRun planned = planned_of(suites);
-  Progress silence;
   const reports::Record record = run(suites, {}, silence);
   ASSERT_EQ(planned.suites[0]->tests.size(), record.suites[0].tests.size());
   for (std::size_t i = 0; i < record.suites[0].tests.size(); ++i) {
@@ -121,7 +119,6 @@ TEST_F(PlanTable, ForetellsTheEffectThatRatiosFind) {
       "  - {claim: cost(a) == cost(h), secondaries: 4000}\n";
   const std::vector<Suite> suites = suites_of(text);
   const PlannedRun planned = planned_of(suites);
-  Progress silence;
   const reports::Record record = run(suites, {}, silence);
   for (std::size_t i = 0; i < record.suites[0].tests.size(); ++i) {
     const reports::Test& test = record.suites[0].tests[i];
@@ -221,7 +218,6 @@ tests:
       foretold[which] += (which == 0 ? found.if_true : found.if_off)->drawn / seeds;
       works.push_back(&work);
     }
-    Progress silence;
     sample_in_looks(works, planned.pools.all(), {.executor = threads(1)}, silence);
     for (std::size_t i = 0; i < works.size(); ++i) {
       drawn[i] += static_cast<double>(works[i]->outcome.secondaries()) /

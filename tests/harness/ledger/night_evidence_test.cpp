@@ -37,7 +37,6 @@ estimators:
   rare: {plugin: analytic/law, law: bernoulli(0.0001), primaries: 1}
 tests:
 )" + tests))};
-  Progress silence;
   ran.planned = plan_run(ran.suites, {.seed = seed}, silence);
   std::vector<TestWork*> works;
   for (TestWork& work : ran.planned.suites[0]->tests) works.push_back(&work);

@@ -156,7 +156,6 @@ TEST(Plan, ForcedMethodStandsWithItsGatesShown) {
 TEST(Plan, APilotIsTheSameWhateverIsClaimed) {
   const Workplace place;
   const auto values = [&](const std::string& claim, const std::string& estimator) {
-    Progress silence;
     const PlannedRun planned = plan_run({load_suite(place.write("pilots.yaml", R"(suite: pilots
 estimators:
   corners: {plugin: virtual_lights/weighted, primaries: 8}

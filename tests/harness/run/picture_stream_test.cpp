@@ -64,13 +64,11 @@ class PictureStream : public ::testing::Test {
   }
 
   bool streams(const std::string& lines) const {
-    Progress silence;
     const PlannedRun planned = plan_run({suite(lines)}, {}, silence);
     return planned.suites[0]->pilots.find("a")->sums->look() != nullptr;
   }
 
   reports::Test finding(const std::string& lines) const {
-    Progress silence;
     return run({suite(lines)}, {}, silence).suites[0].tests[0];
   }
 
@@ -78,7 +76,6 @@ class PictureStream : public ::testing::Test {
     const Suite read = suite();
     const auto estimators = prepare_all(read);
     const Question question = ask(read.tests[0], estimators, 1);
-    Progress silence;
     return stream_pictures(question, silence);
   }
 

@@ -74,7 +74,6 @@ std::shared_ptr<Pool> fresh(const Recipe& recipe, const OddSetup& setup) {
 }
 
 void draw_all_of(const std::shared_ptr<Pool>& pool) {
-  Progress silence;
   pool->request(200);
   draw_all({pool}, *threads(1), "sampling", silence);
 }

@@ -65,7 +65,6 @@ std::shared_ptr<Pool> drawn(const Wanted& wanted) {
       std::make_shared<Pool>(std::make_shared<SumsSetup>(wanted.behaviour), key, wanted.primaries);
   pool->plan({{.histogram_low = 0, .histogram_high = 1, .keep = 700}, {.keep = 20}});
   for (const std::uint64_t count : wanted.prefixes) pool->request(count);
-  Progress silence;
   draw_all({pool}, *threads(wanted.threads), "sampling", silence);
   return pool;
 }
@@ -125,7 +124,6 @@ TEST(Pool, OfWhichSecondsAreComparedAreDrawnSideBySide) {
     pools.back()->keep_blocks();
     pools.back()->request(name == 'a' ? 200000 : 50000);
   }
-  Progress silence;
   draw_all(pools, *threads(1), "sampling", silence);
   ASSERT_EQ(order.size(), 250000U);
   double drawn_a = 0;
@@ -163,7 +161,6 @@ std::shared_ptr<Pool> marked(std::uint64_t count) {
 }
 
 void draw_up_to(std::uint64_t count, const std::shared_ptr<Pool>& pool, unsigned threads) {
-  Progress silence;
   pool->request(count);
   draw_all({pool}, *harness::threads(threads), "sampling", silence);
 }

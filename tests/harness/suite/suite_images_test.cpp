@@ -129,7 +129,6 @@ std::vector<reports::Test> answers(const Workplace& place,
                                 place.file("b*"), "--pixels",    "independent"};
   line.insert(line.end(), more.begin(), more.end());
   const Command command = parse_command_line(line);
-  Progress silence;
   const Suite suite = suite_of_images(std::get<ImagesCommand>(command).arguments);
   return run({suite}, {.threads = 1}, silence).suites[0].tests;
 }
