@@ -125,7 +125,7 @@ reports::Record run_in_arena(const std::vector<Suite>& suites, const RunOptions&
   }
   const bool none =
       std::ranges::none_of(tests, [](const TestWork* x) { return x->outcome.decided; });
-  if (none || !options.ledger.empty()) stop_if_interrupted();
+  if (none || !options.ledger.empty() || options.shard) stop_if_interrupted();
   for (auto& run : planned.suites) {
     adjust_if_whole(*run, options);
     if (interrupted())

@@ -179,6 +179,7 @@ class Pool {
   /// here, element by element (sums_of_images).
   void end_drawing();
   std::uint64_t drawn() const { return running_.count; }
+  bool holds(std::uint64_t count) const { return is_ready_made() || count <= drawn(); }
   /// True for moments of an earlier run: nothing is drawn, and every prefix is the whole.
   bool is_ready_made() const { return ready_made_ != nullptr; }
 

@@ -241,6 +241,16 @@ interrupt_by() {
   none_left
 }
 
+interrupt_stuck() {
+  rm -f pilot waits
+  "$assay" run stuck.yaml --report json=run.json --report console=- "$@" >out 2>err &
+  until [ -e waits ]; do kill -0 $! || fail 'it ended'; sleep .05; done
+  sleep .5
+  kill -TERM $!
+  wait $!
+  [ $? -eq 130 ] || fail 'not interrupted'
+}
+
 test_an_interrupted_run_reports_the_verdicts_there_are() {
   # It answers the pilot's stream, the first, and the first looks of another.
   cat >stuck.py <<'END'
@@ -262,12 +272,10 @@ for line in sys.stdin:
 END
   suite stuck.yaml 'stuck: {plugin: process, command: [python3, stuck.py]}'
   sed -i 's/== 3.*/== 0.5, detect: 0.3%, secondaries: 20000}/' stuck.yaml
-  "$assay" run stuck.yaml --report json=run.json --report console=- >out 2>err &
-  until [ -e waits ]; do kill -0 $! || fail "it ended"; sleep .05; done
-  sleep .5
-  kill -TERM $!
-  wait $!
-  [ $? -eq 130 ] || fail 'not interrupted'
+  interrupt_stuck --shard 1/1
+  contains err 'interrupted; no report is written'
+  [ ! -e run.json ] || fail 'a shard would be merged as if it were whole'
+  interrupt_stuck
   contains out 'the run was interrupted before its verdict'
   /usr/bin/python3 - run.json <<'END' || fail 'the record is another'
 import json, sys
