@@ -121,9 +121,13 @@ def scaled(rng, scale):
 @assay.claim("mean(it) == 1")
 def lone():
     return 1
+
+@assay.claim("mean(it) == 1", expect="error")
+def raising(rng):
+    raise ValueError("no light")
 """)
     result = run(pytester)
-    result.assert_outcomes(passed=1, failed=3)
+    result.assert_outcomes(passed=2, failed=3)
     result.stdout.fnmatch_lines(["@assay.claim('mean(it) == 0.5', allow='2%', detect='1%'): *`detect`*",
                                  "@assay.claim('mean(it) == 0.5'): *`scaled` has the parameter `scale` without a value:*",
                                  "@assay.claim('mean(it) == 1'): *`lone` takes no argument:*"])

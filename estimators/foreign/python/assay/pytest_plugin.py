@@ -160,9 +160,10 @@ class _Run:
         try:
             if self._write:
                 self._write(self._claims, self.suite)
-            self._test(ids, len(self._claims), self.suite)
         except TypeError as error:  # a function that no suite can serve
             self._trouble = str(error)
+        else:
+            self._test(ids, len(self._claims), self.suite)
         if self._write and not self._record.exists():
             self._faults = {id: fault for id in self._claims if (fault := self._fault(id))}
             sound = [id for id in self._claims if id not in self._faults]
@@ -187,7 +188,7 @@ class _Run:
             file.unlink()
         # The place in a file that the user did not write says nothing, nor does its line.
         said = re.sub(r"(?s:\Aassay: .*?:\d+:\d+:\s)|\n.*\n *\^\s*\Z", "", planned.stderr)
-        return f"{self._claims[id]}: {' '.join(said.split())}" if planned.returncode else ""
+        return f"{self._claims[id]}: {' '.join(said.split())}" if planned.returncode == 2 else ""
 
     def _test(self, ids: list[str], claims: int, suite: Path) -> None:
         words = ["run", str(suite), "--report", f"json={self._record}", "--report", "console=/dev/null",
