@@ -19,7 +19,6 @@ reports::Record read_record(const std::string& file) {
     refuse({.file = file},
            "there is no such file; `--report json=FILE` saves a run that can be read");
   }
-  if (!std::ifstream(file)) refuse({.file = file}, "cannot be read; give a report of kind json");
   for (const char* extension : {".yaml", ".yml"}) {
     if (!file.ends_with(extension)) continue;
     refuse({.file = file},
@@ -27,7 +26,9 @@ reports::Record read_record(const std::string& file) {
            "saves one",
            shell_quoted(file));
   }
-  return reports::read_json(bytes_of(file), file);
+  const std::optional<std::string> text = bytes_of(file);
+  if (!text) refuse({.file = file}, "cannot be read; give a report of kind json");
+  return reports::read_json(*text, file);
 }
 
 namespace {

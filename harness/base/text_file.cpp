@@ -62,9 +62,11 @@ std::string read_text_file(const std::string& file) {
   return text;
 }
 
-std::string bytes_of(const std::string& file) {
+std::optional<std::string> bytes_of(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) return std::nullopt;
   std::ostringstream bytes;
-  bytes << std::ifstream(file, std::ios::binary).rdbuf();
+  bytes << stream.rdbuf();
   return std::move(bytes).str();
 }
 

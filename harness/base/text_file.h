@@ -11,8 +11,8 @@ namespace assay::harness {
 /// The whole of a text file. InputError when it is missing, a folder, unreadable or over 16 MiB.
 std::string read_text_file(const std::string& file);
 
-/// The bytes of any file; "" if it cannot be read.
-std::string bytes_of(const std::string& file);
+/// The bytes of any file, if it can be read.
+std::optional<std::string> bytes_of(const std::string& file);
 
 std::vector<std::string_view> lines_of(std::string_view text);
 

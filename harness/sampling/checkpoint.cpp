@@ -32,7 +32,7 @@ Checkpoint::Checkpoint(std::string file, std::chrono::duration<double> pause, Id
 }
 
 void Checkpoint::read() {
-  const std::string bytes = bytes_of(file_);
+  const std::string bytes = bytes_of(file_).value_or("");
   Identity identity;
   std::vector<std::pair<std::string, std::string>> entries;
   try {
