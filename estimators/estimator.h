@@ -310,19 +310,20 @@ std::shared_ptr<const Setup> imaging(ImageParts<Primary> parts) {
   for (std::size_t i = 0; i < parts.channels.size(); ++i) {
     parts.channels[i].name = element_name(parts.shape, i);
   }
-  std::vector<AveragingEstimator<Primary>> averages;
-  for (Primary& primary : parts.primaries) averages.emplace_back(std::move(primary));
-  const auto estimate = [averages = std::move(averages), own = parts.streams == ImageStreams::own](
-                            Stream& random, std::uint64_t primaries, std::span<double> out,
-                            Cost& cost) mutable {
-    for (std::size_t i = 0; i < averages.size(); ++i) {
-      Stream mine = random.substream(static_cast<std::uint32_t>(own ? i : 0));
-      averages[i].secondary(mine, primaries, out.subspan(i, 1), cost);
-    }
+  const auto make = [primaries = std::move(parts.primaries),
+                     own = parts.streams == ImageStreams::own] {
+    std::vector<AveragingEstimator<Primary>> averages(primaries.begin(), primaries.end());
+    return estimating([averages = std::move(averages), own](Stream& random, std::uint64_t count,
+                                                            std::span<double> out,
+                                                            Cost& cost) mutable {
+      for (std::size_t i = 0; i < averages.size(); ++i) {
+        Stream mine = random.substream(static_cast<std::uint32_t>(own ? i : 0));
+        averages[i].secondary(mine, count, out.subspan(i, 1), cost);
+      }
+    })();
   };
-  return setup_of({.channels = std::move(parts.channels),
-                   .make = estimating(estimate),
-                   .image = std::move(parts.shape)});
+  return setup_of(
+      {.channels = std::move(parts.channels), .make = make, .image = std::move(parts.shape)});
 }
 
 }  // namespace assay

@@ -49,8 +49,9 @@ std::shared_ptr<const Setup> prepare(Parameters& parameters) {
                                    Cost& cost) {
     for (std::size_t i = 0; i < out.size(); ++i) {
       Stream mine = random.substream(static_cast<std::uint32_t>(own ? i : 0));
+      const Variable& pixel = row[i % row.size()];
       double sum = 0;
-      for (std::uint64_t j = 0; j < primaries; ++j) sum += row[i % row.size()](mine);
+      for (std::uint64_t j = 0; j < primaries; ++j) sum += pixel(mine);
       out[i] = sum / static_cast<double>(primaries);
     }
     cost.samples += primaries * out.size();
