@@ -309,8 +309,8 @@ class Reader {
     if (may_be_decimals_ && !names_line_ && expected_ == Rows::several) {
       throw InputError(
           {.file = source_.name(), .line = table_.lines.front(), .column = 1},
-          std::string("a comma may be a decimal point: write it as one, and leave out those\n  "
-                      "between thousands; ") +
+          std::string("a comma may be a decimal point: write `.` for it,\n  and no comma between "
+                      "thousands;\n") +
               name_columns);
     }
     return std::move(table_);
@@ -418,8 +418,8 @@ class Reader {
                              '0' <= field.text[1] && field.text[1] <= '9';
     if (is_fraction && !names_line_) {
       refuse(field.column, in_message(field.text) +
-                               " follows a comma: write a decimal point for it,\n  or nothing "
-                               "between thousands; " +
+                               " follows a comma: write a decimal point for it,\n  and no comma "
+                               "between thousands;\n" +
                                name_columns);
     }
     const Parsed parsed = parse(field.text, separator_ == ';');

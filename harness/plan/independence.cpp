@@ -64,18 +64,16 @@ std::vector<Rows> rows_of(const Question& question, const Pilots& pilots, std::u
 std::string enough_of_a_chain(const Question& question, std::size_t rows, double time) {
   const auto apart = static_cast<std::size_t>(std::ceil(10 * time));
   if (!question.is().batches_serve) {
-    return fmt::format(", or keep one row in {}, {} of them at least", apart,
-                       fewest_in_order_to_tell);
+    return fmt::format("keep one row in {}, {} of them at least", apart, fewest_in_order_to_tell);
   }
-  if (question.test->method)
-    return ", or leave `test` out: batches of enough rows are then averaged";
+  if (question.test->method) return "leave `test` out: batches of enough rows are then averaged";
   if (question.test->claim.relation == Relation::within) {
-    return fmt::format(", or means of {} successive rows each, {} of them at least", apart,
+    return fmt::format("means of {} successive rows each, {} of them at least", apart,
                        fewest_in_order_to_tell);
   }
   const std::size_t enough = fewest_batches * std::max(apart, fewest_batches);
   if (rows >= enough) return "";
-  return fmt::format(", or {} rows at least, of which batches are then averaged", enough);
+  return fmt::format("{} rows at least, of which batches are then averaged", enough);
 }
 
 /// `at_a_lag`: values some steps apart show the dependence, not neighbours.
@@ -107,8 +105,9 @@ Reason dependent(const Question& question, const Rows& rows, bool at_a_lag) {
     return Reason::advising(
         why, "give sorted ones in the order drawn; of a slow chain they are too few");
   }
-  return Reason::advising(
-      why, "give one row a chain" + enough_of_a_chain(question, rows.values.size(), time));
+  const std::string or_enough = enough_of_a_chain(question, rows.values.size(), time);
+  return Reason::advising(why,
+                          "give one row a chain" + (or_enough.empty() ? "" : ", or " + or_enough));
 }
 
 std::string from_to(std::size_t first, std::size_t length) {

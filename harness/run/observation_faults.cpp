@@ -35,7 +35,7 @@ std::string not_finite(const TestOutcome& outcome, const Subject& side, const Dr
                   summary.nonfinite == 1 ? "is" : "are", summary.first_nonfinite);
   const auto place = side.setup->place_of(
       {.index = summary.first_nonfinite, .key = pool.key(), .primaries = pool.primaries()});
-  if (!place.empty()) return text + ", `" + place + "`; mend it, as to leave it out biases a mean";
+  if (!place.empty()) return text + ", `" + place + "`; mend it; leaving it out would bias a mean";
   return text + replay_line(outcome, summary.first_nonfinite);
 }
 

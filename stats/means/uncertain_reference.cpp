@@ -89,6 +89,10 @@ TestResult test_over_references(const std::function<TestResult(std::span<const d
   std::vector<double> known;
   for (const UncertainReference& reference : references) known.push_back(reference.known.value);
   TestResult result = at(known);
+  if (std::ranges::all_of(references, [](const UncertainReference& each) {
+        return each.known.standard_error == 0;
+      }))
+    return result;
   result.log_p_lower = log_p_over_references(
       [&](std::span<const double> values) { return at(values).log_p_lower; }, references);
   result.log_p_upper = log_p_over_references(

@@ -83,7 +83,7 @@ double log_far_lower(double shape, double x) {
   return special::log_gamma_prefix(shape, x, sum / shape);
 }
 
-// ln Q(a, x) by Legendre's continued fraction, DLMF 8.9.2. All is divided by b_0, which may be huge.
+// ln Q(a, x) by Legendre's continued fraction, DLMF 8.9.2, divided by b_0, which may be huge.
 double log_far_upper(double shape, double x) {
   const double per_first = 1 / (x + 1 - shape);
   Convergents fraction{.inverse_now = per_first};
