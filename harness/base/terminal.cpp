@@ -130,6 +130,14 @@ void ProgressBar::end() {
   bar_on = nullptr;
 }
 
+void ProgressLines::advance(std::uint64_t done) {
+  const auto now = now_();
+  if (now - said_ < 1min) return;
+  said_ = now;
+  const double seconds = std::chrono::duration<double>(now - first_).count();
+  say_beside_progress(fmt::format("{}  {:.0f} s", progress_text(phase_, done), seconds), out_);
+}
+
 void say_beside_progress(const std::string& sentence, std::ostream& out) {
   const std::scoped_lock lock(terminal);
   wipe_bar();
@@ -144,11 +152,11 @@ void write_beside_progress(const std::string& text, std::FILE* stream) {
 }
 
 std::unique_ptr<Progress> make_progress(bool quiet) {
-  const bool dumb = system_environment("TERM") == "dumb";
-  if (quiet || dumb || !system_environment("CI").empty() || !isatty(STDERR_FILENO)) {
-    return std::make_unique<Progress>();
-  }
-  return std::make_unique<ProgressBar>(std::cerr);
+  if (quiet) return std::make_unique<Progress>();
+  const bool redraws = isatty(STDERR_FILENO) && system_environment("TERM") != "dumb" &&
+                       system_environment("CI").empty();
+  if (redraws) return std::make_unique<ProgressBar>(std::cerr);
+  return std::make_unique<ProgressLines>(std::cerr);
 }
 
 }  // namespace assay::harness

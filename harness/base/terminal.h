@@ -56,6 +56,22 @@ class ProgressBar final : public Progress {
   std::chrono::steady_clock::time_point drawn_;
 };
 
+/// A line a minute, for what does not redraw lines: "assay: pilot  43 %  60 s".
+class ProgressLines final : public Progress {
+ public:
+  explicit ProgressLines(std::ostream& out, Clock now = std::chrono::steady_clock::now)
+      : out_(out), now_(std::move(now)), first_(now_()), said_(first_) {}
+  void begin(const Phase& phase) override { phase_ = phase; }
+  void advance(std::uint64_t done) override;
+
+ private:
+  std::ostream& out_;
+  Clock now_;
+  Phase phase_ = {};
+  std::chrono::steady_clock::time_point first_;
+  std::chrono::steady_clock::time_point said_;
+};
+
 /// Writes a line "assay: …" to standard error. A progress line is wiped first and drawn again
 /// later. Thread-safe.
 void say_beside_progress(const std::string& sentence, std::ostream& out = std::cerr);
@@ -63,7 +79,7 @@ void say_beside_progress(const std::string& sentence, std::ostream& out = std::c
 /// The same for text that has its lines.
 void write_beside_progress(const std::string& text, std::FILE* stream);
 
-/// A bar when standard error is a terminal and CI is not set, else silence.
+/// A bar when standard error is a terminal and CI is not set, else lines.
 std::unique_ptr<Progress> make_progress(bool quiet);
 
 /// "31 of 149 claims"; "pilot  43 %" of a phase without a unit.

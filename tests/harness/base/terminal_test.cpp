@@ -61,6 +61,15 @@ TEST(ProgressBar, TellsTheTimeOfAllPhasesAndWipesItself) {
   EXPECT_TRUE(shown.out.str().ends_with("\r\033[K"));
 }
 
+TEST(ProgressLines, AreOneAMinute) {
+  std::ostringstream out;
+  Hands hands;
+  ProgressLines lines(out, hands.clock());
+  lines.begin({.total = 150, .unit = "claims"});
+  for (std::uint64_t i = 0; i < 150; ++i, hands.time += 1s) lines.advance(i);
+  EXPECT_EQ(out.str(), "assay: 60 of 150 claims  60 s\nassay: 120 of 150 claims  120 s\n");
+}
+
 // The last column stays free: a line that fills it scrolls on some terminals.
 TEST(ProgressBar, IsCutToTheWidthOfTheTerminalAsItIs) {
   Bar shown;
