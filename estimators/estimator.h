@@ -291,8 +291,9 @@ enum class ImageStreams {
   shared  ///< one for all of them: each element's primary gets the same numbers
 };
 
-/// The parts of an image: a channel and a primary for each element, in the shape's order. The
-/// channels' names are those of element_name().
+/// The parts of an image: a channel for each element, in the shape's order, and primaries, which
+/// repeat where they are fewer: those of one row serve rows that are alike. The channels' names are
+/// those of element_name().
 template <class Primary>
 struct ImageParts {
   ImageShape shape;
@@ -302,8 +303,8 @@ struct ImageParts {
 };
 
 /// The set-up of an image whose elements are averages. A secondary estimate is an image at
-/// `primaries` samples an element. `Primary` is as for AveragingEstimator. `parts.channels` and
-/// `parts.primaries` have parts.shape.elements() entries.
+/// `primaries` samples an element. `Primary` is as for AveragingEstimator. `parts.channels` has
+/// parts.shape.elements() entries, and `parts.primaries` one at least.
 template <class Primary>
 std::shared_ptr<const Setup> imaging(ImageParts<Primary> parts) {
   parts.shape.independent = parts.streams == ImageStreams::own;
@@ -313,14 +314,14 @@ std::shared_ptr<const Setup> imaging(ImageParts<Primary> parts) {
   const auto make = [primaries = std::move(parts.primaries),
                      own = parts.streams == ImageStreams::own] {
     std::vector<AveragingEstimator<Primary>> averages(primaries.begin(), primaries.end());
-    return estimating([averages = std::move(averages), own](Stream& random, std::uint64_t count,
-                                                            std::span<double> out,
-                                                            Cost& cost) mutable {
-      for (std::size_t i = 0; i < averages.size(); ++i) {
+    auto image = [averages = std::move(averages), own](Stream& random, std::uint64_t count,
+                                                       std::span<double> out, Cost& cost) mutable {
+      for (std::size_t i = 0; i < out.size(); ++i) {
         Stream mine = random.substream(static_cast<std::uint32_t>(own ? i : 0));
-        averages[i].secondary(mine, count, out.subspan(i, 1), cost);
+        averages[i % averages.size()].secondary(mine, count, out.subspan(i, 1), cost);
       }
-    })();
+    };
+    return std::make_unique<FunctionEstimator<decltype(image)>>(std::move(image));
   };
   return setup_of(
       {.channels = std::move(parts.channels), .make = make, .image = std::move(parts.shape)});

@@ -25,39 +25,24 @@ Variable rescaled(const Law& law, double mean, double deviation) {
 std::shared_ptr<const Setup> prepare(Parameters& parameters) {
   constexpr std::array<double, 3> colour = {1, 0.8, 0.6};
   const std::size_t width = parameters.count("width");
-  const bool own = !parameters.boolean("shared");
-  ImageShape shape{.width = width, .height = parameters.count("height"), .independent = own};
-  if (parameters.boolean("colour")) shape.components = {"red", "green", "blue"};
+  ImageParts<Variable> parts{
+      .shape = {.width = width, .height = parameters.count("height")},
+      .streams = parameters.boolean("shared") ? ImageStreams::shared : ImageStreams::own};
+  if (parameters.boolean("colour")) parts.shape.components = {"red", "green", "blue"};
   const double spread = parameters.number("spread");
   const Law law = analytic::law_of(parameters);
   if (!law.facts().variance) parameters.refuse("law", "has no variance: nothing brings it to 1");
-  std::vector<Variable> row;  // of the elements of each row
-  for (std::size_t column = 0; column < width; ++column) {
-    const double brightness = 1 + 9 * static_cast<double>(column) / static_cast<double>(width - 1);
-    for (std::size_t component = 0; component < shape.components.size(); ++component) {
-      const double mean = brightness * colour[component];
-      row.push_back(rescaled(law, mean, mean * spread));
-    }
+  parts.channels.reserve(parts.shape.elements());
+  for (std::size_t i = 0; i < parts.shape.elements(); ++i) {
+    const std::size_t component = i % parts.shape.components.size();
+    const double column = static_cast<double>(i / parts.shape.components.size() % width);
+    const double mean = (1 + 9 * column / static_cast<double>(width - 1)) * colour[component];
+    const double deviation = mean * spread;
+    const Variable pixel = rescaled(law, mean, deviation);
+    parts.channels.push_back(channel_of(pixel));
+    if (i < width * parts.shape.components.size()) parts.primaries.push_back(pixel);
   }
-  std::vector<Channel> channels = element_channels(shape);
-  for (std::size_t i = 0; i < channels.size(); ++i) {
-    const std::string name = channels[i].name;
-    channels[i] = channel_of(row[i % row.size()]);
-    channels[i].name = name;
-  }
-  const auto estimate = [row, own](Stream& random, std::uint64_t primaries, std::span<double> out,
-                                   Cost& cost) {
-    for (std::size_t i = 0; i < out.size(); ++i) {
-      Stream mine = random.substream(static_cast<std::uint32_t>(own ? i : 0));
-      const Variable& pixel = row[i % row.size()];
-      double sum = 0;
-      for (std::uint64_t j = 0; j < primaries; ++j) sum += pixel(mine);
-      out[i] = sum / static_cast<double>(primaries);
-    }
-    cost.samples += primaries * out.size();
-  };
-  return setup_of(
-      {.channels = std::move(channels), .make = estimating(estimate), .image = std::move(shape)});
+  return imaging(std::move(parts));
 }
 
 ParameterInformation size(const char* name, const char* summary) {
