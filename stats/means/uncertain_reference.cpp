@@ -56,20 +56,23 @@ double largest_at(const LogP& log_p, std::span<const UncertainReference> referen
   return largest(log_p, all, at);
 }
 
+bool are_exact(std::span<const UncertainReference> references) {
+  return std::ranges::all_of(
+      references, [](const auto& reference) { return reference.known.standard_error == 0; });
+}
+
 }  // namespace
 
 double log_p_over_references(const LogP& log_p, std::span<const UncertainReference> references) {
-  bool exact = true;
   std::vector<double> known;
   for (const UncertainReference& reference : references) {
     check::finite({"log_p_over_references", "standard error"}, reference.known.standard_error);
     check::non_negative({"log_p_over_references", "standard error"},
                         reference.known.standard_error);
-    exact = exact && reference.known.standard_error == 0;
     known.push_back(reference.known.value);
   }
   const double at_known = log_p(known);
-  if (exact) return at_known;
+  if (are_exact(references)) return at_known;
   const double for_sample = std::log1p(-share_of_references);
   const auto rejects = [&](double log_level) {
     return largest_at(log_p, references, log_level) <= log_level + for_sample;
@@ -89,10 +92,7 @@ TestResult test_over_references(const std::function<TestResult(std::span<const d
   std::vector<double> known;
   for (const UncertainReference& reference : references) known.push_back(reference.known.value);
   TestResult result = at(known);
-  if (std::ranges::all_of(references, [](const UncertainReference& each) {
-        return each.known.standard_error == 0;
-      }))
-    return result;
+  if (are_exact(references)) return result;
   result.log_p_lower = log_p_over_references(
       [&](std::span<const double> values) { return at(values).log_p_lower; }, references);
   result.log_p_upper = log_p_over_references(
