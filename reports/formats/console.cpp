@@ -114,10 +114,10 @@ class Screen {
     if (room() < static_cast<int>(text.size()) && test.verdict != Verdict::fail && !asked)
       next = step_lines(explanation(test));
     for (std::size_t i = 1; i < all.size(); ++i) {
-      const bool again = test.verdict == Verdict::fail && all[i].paste == test.replay;
+      const bool again =
+          test.verdict == Verdict::fail && !test.replay.empty() && all[i].paste == test.replay;
       const std::vector<std::string> more = step_lines(all[i]);
-      if ((all[i].label == "or" || (again && !test.replay.empty())) &&
-          room() >= static_cast<int>(text.size() + more.size()))
+      if ((all[i].label == "or" || again) && room() >= static_cast<int>(text.size() + more.size()))
         next.insert(next.end(), more.begin(), more.end());
     }
     indented(text, room());
