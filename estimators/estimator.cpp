@@ -8,7 +8,13 @@ class SetupOfParts final : public Setup {
  public:
   explicit SetupOfParts(SetupParts parts) : parts_(std::move(parts)) {}
 
-  std::vector<Channel> channels() const override { return parts_.channels; }
+  std::size_t channel_count() const override { return elements() + parts_.channels.size(); }
+  Channel channel(std::size_t place) const override {
+    if (place >= elements()) return parts_.channels.at(place - elements());
+    Channel element = parts_.elements[place % parts_.elements.size()];
+    element.name = element_name(*parts_.image, place);
+    return element;
+  }
   std::unique_ptr<Estimator> make() const override { return parts_.make(); }
   std::vector<NamedSampler> samplers() const override { return parts_.samplers; }
   std::optional<ImageShape> image() const override { return parts_.image; }
@@ -16,6 +22,8 @@ class SetupOfParts final : public Setup {
   Cost cost() const override { return parts_.cost; }
 
  private:
+  std::size_t elements() const { return parts_.image ? parts_.image->elements() : 0; }
+
   SetupParts parts_;
 };
 
@@ -31,10 +39,10 @@ std::string element_name(const ImageShape& shape, std::size_t element) {
   return name;
 }
 
-std::vector<Channel> element_channels(const ImageShape& shape, const Channel& element) {
-  std::vector<Channel> channels(shape.elements(), element);
-  for (std::size_t e = 0; e < channels.size(); ++e) channels[e].name = element_name(shape, e);
-  return channels;
+std::vector<Channel> Setup::channels() const {
+  std::vector<Channel> all(channel_count());
+  for (std::size_t place = 0; place < all.size(); ++place) all[place] = channel(place);
+  return all;
 }
 
 std::shared_ptr<const Setup> setup_of(SetupParts parts) {

@@ -101,9 +101,6 @@ struct Channel {
   bool diagnostic = false;  ///< Tested only where a claim names it.
 };
 
-/// Channels under the names of an image's elements, of each of which the same is known.
-std::vector<Channel> element_channels(const ImageShape& shape, const Channel& element = {});
-
 /// A sampler under the name by which claims reach it.
 struct NamedSampler {
   std::string name;
@@ -125,7 +122,10 @@ class Pictures;  // ready_made.h
 class Setup {
  public:
   virtual ~Setup() = default;
-  virtual std::vector<Channel> channels() const = 0;
+  virtual std::size_t channel_count() const = 0;
+  virtual Channel channel(std::size_t place) const = 0;
+  /// All of them. An image has millions.
+  std::vector<Channel> channels() const;
   virtual std::unique_ptr<Estimator> make() const = 0;
   virtual std::vector<NamedSampler> samplers() const { return {}; }
   /// The shape of an observation whose first channels are an image. They are rounded to single
@@ -156,10 +156,13 @@ class Setup {
 
 /// The parts of a set-up that states what they say. `make` gives a worker its estimator.
 struct SetupParts {
-  std::vector<Channel> channels;
+  std::vector<Channel> channels = {};  ///< Of an image those that follow its elements.
   std::function<std::unique_ptr<Estimator>()> make;
   std::vector<NamedSampler> samplers = {};
   std::optional<ImageShape> image = {};
+  /// What is known of the image's elements: one at least. They repeat where they are fewer, and
+  /// take the names of element_name().
+  std::vector<Channel> elements = {};
   std::optional<Nature> nature = {};
   Cost cost = {};
 };
@@ -291,26 +294,22 @@ enum class ImageStreams {
   shared  ///< one for all of them: each element's primary gets the same numbers
 };
 
-/// The parts of an image: a channel for each element, in the shape's order, and primaries, which
-/// repeat where they are fewer: those of one row serve rows that are alike. The channels' names are
-/// those of element_name().
+/// The parts of an image: what is known of its elements, in the shape's order, and their primaries.
+/// Both repeat where they are fewer: those of one row serve rows that are alike.
 template <class Primary>
 struct ImageParts {
   ImageShape shape;
-  std::vector<Channel> channels;
+  std::vector<Channel> elements;
   std::vector<Primary> primaries;
   ImageStreams streams = ImageStreams::own;
 };
 
 /// The set-up of an image whose elements are averages. A secondary estimate is an image at
-/// `primaries` samples an element. `Primary` is as for AveragingEstimator. `parts.channels` has
-/// parts.shape.elements() entries, and `parts.primaries` one at least.
+/// `primaries` samples an element. `Primary` is as for AveragingEstimator. There is one primary at
+/// least.
 template <class Primary>
 std::shared_ptr<const Setup> imaging(ImageParts<Primary> parts) {
   parts.shape.independent = parts.streams == ImageStreams::own;
-  for (std::size_t i = 0; i < parts.channels.size(); ++i) {
-    parts.channels[i].name = element_name(parts.shape, i);
-  }
   const auto make = [primaries = std::move(parts.primaries),
                      own = parts.streams == ImageStreams::own] {
     std::vector<AveragingEstimator<Primary>> averages(primaries.begin(), primaries.end());
@@ -324,7 +323,7 @@ std::shared_ptr<const Setup> imaging(ImageParts<Primary> parts) {
     return std::make_unique<FunctionEstimator<decltype(image)>>(std::move(image));
   };
   return setup_of(
-      {.channels = std::move(parts.channels), .make = make, .image = std::move(parts.shape)});
+      {.make = make, .image = std::move(parts.shape), .elements = std::move(parts.elements)});
 }
 
 }  // namespace assay

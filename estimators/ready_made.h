@@ -28,8 +28,6 @@ class PictureRows {
 class Pictures {
  public:
   virtual ~Pictures() = default;
-  /// The number of channels, of which only the names are known. It saves making millions of names.
-  virtual std::size_t channel_count() const = 0;
   /// Reads observation `index` as the file has it, with one of `texels` for each element. The
   /// estimator's `secondary` gives the same numbers, and their average after them. Thread-safe.
   virtual void read(std::uint64_t index, std::span<float> texels, Cost& cost) const = 0;

@@ -32,15 +32,14 @@ std::shared_ptr<const Setup> prepare(Parameters& parameters) {
   const double spread = parameters.number("spread");
   const Law law = analytic::law_of(parameters);
   if (!law.facts().variance) parameters.refuse("law", "has no variance: nothing brings it to 1");
-  parts.channels.reserve(parts.shape.elements());
-  for (std::size_t i = 0; i < parts.shape.elements(); ++i) {
+  for (std::size_t i = 0; i < width * parts.shape.components.size(); ++i) {
     const std::size_t component = i % parts.shape.components.size();
-    const double column = static_cast<double>(i / parts.shape.components.size() % width);
+    const double column = static_cast<double>(i / parts.shape.components.size());
     const double mean = (1 + 9 * column / static_cast<double>(width - 1)) * colour[component];
     const double deviation = mean * spread;
     const Variable pixel = rescaled(law, mean, deviation);
-    parts.channels.push_back(channel_of(pixel));
-    if (i < width * parts.shape.components.size()) parts.primaries.push_back(pixel);
+    parts.elements.push_back(channel_of(pixel));
+    parts.primaries.push_back(pixel);
   }
   return imaging(std::move(parts));
 }

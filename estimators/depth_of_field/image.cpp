@@ -101,22 +101,12 @@ NoiseExtremes noise_extremes(const ImagePlan& plan) {
   return out;
 }
 
-std::vector<Channel> image_channels(const ImagePlan& plan) {
+std::vector<Channel> pixel_channels(const ImagePlan& plan) {
   std::vector<Channel> out;
-  const ImageShape shape{plan.grid.width, plan.grid.height, {"radiance"}};
   for (std::size_t i = 0; i < plan.exact.size(); ++i) {
     out.push_back(radiance_channel(plan.setting->scene(), plan.exact[i],
                                    static_cast<double>(plan.counts[i])));
-    out.back().name = element_name(shape, i);
   }
-  const NoiseExtremes ends = noise_extremes(plan);
-  const auto repeat = [&](std::size_t pixel, const char* name) {
-    out.push_back(out[pixel]);
-    out.back().name = name;
-    out.back().diagnostic = true;
-  };
-  repeat(ends.worst, "worst");
-  repeat(ends.quietest, "quietest");
   return out;
 }
 

@@ -59,17 +59,24 @@ struct NoiseExtremes {
 };
 NoiseExtremes noise_extremes(const ImagePlan& plan);
 
-/// Channels: the pixels, then the diagnostic ones `worst` and `quietest`, which repeat pixels.
-std::vector<Channel> image_channels(const ImagePlan& plan);
+/// What is known of each pixel.
+std::vector<Channel> pixel_channels(const ImagePlan& plan);
+
+/// A pixel's channel once more, for the eye.
+inline Channel repeated(Channel pixel, std::string name) {
+  pixel.name = std::move(name);
+  pixel.diagnostic = true;
+  return pixel;
+}
 
 /// A primary is an image: the prediction's rays, and for each pixel its number of lens samples from
-/// a substream of its own.
+/// a substream of its own. The channels after the pixels, `worst` and `quietest`, repeat pixels.
 template <class Shading = SoundShading>
 std::shared_ptr<const Setup> image_setup(ImagePlan plan, Shading shading = {}) {
   const auto shared = std::make_shared<const ImagePlan>(std::move(plan));
-  const auto estimate = [shared, shading, ends = noise_extremes(*shared)](
-                            Stream& random, std::uint64_t primaries, std::span<double> out,
-                            Cost& cost) {
+  const NoiseExtremes ends = noise_extremes(*shared);
+  const auto estimate = [shared, shading, ends](Stream& random, std::uint64_t primaries,
+                                                std::span<double> out, Cost& cost) {
     const std::size_t pixels = shared->grid.pixels();
     for (std::size_t i = 0; i < pixels; ++i) {
       Stream mine = random.substream(static_cast<std::uint32_t>(i));
@@ -83,11 +90,13 @@ std::shared_ptr<const Setup> image_setup(ImagePlan plan, Shading shading = {}) {
     cost.camera_rays += primaries * shared->overhead.camera_rays;
     cost.samples += primaries;
   };
-  return setup_of(
-      {.channels = image_channels(*shared),
-       .make = estimating(estimate),
-       .samplers = lens_samplers<>(),
-       .image = ImageShape{shared->grid.width, shared->grid.height, {"radiance"}, true}});
+  const std::vector<Channel> pixels = pixel_channels(*shared);
+  return setup_of({.channels = {repeated(pixels[ends.worst], "worst"),
+                                repeated(pixels[ends.quietest], "quietest")},
+                   .make = estimating(estimate),
+                   .samplers = lens_samplers<>(),
+                   .image = ImageShape{shared->grid.width, shared->grid.height, {"radiance"}, true},
+                   .elements = pixels});
 }
 
 }  // namespace assay::depth_of_field

@@ -108,17 +108,12 @@ std::size_t worst_pixel(const ReconstructionPlan& plan) {
   return static_cast<std::size_t>(std::ranges::max_element(bias, larger) - bias.begin());
 }
 
-std::vector<Channel> channels_of(const ReconstructionPlan& plan, const ImageShape& shape,
-                                 std::size_t worst) {
+std::vector<Channel> pixel_channels(const ReconstructionPlan& plan) {
   std::vector<Channel> out;
   for (std::size_t p = 0; p < plan.exact.size(); ++p) {
     out.push_back(radiance_channel(plan.setting->scene(), plan.exact[p]));
-    out.back().name = element_name(shape, p);
     out.back().variance.reset();
   }
-  out.push_back(out[worst]);
-  out.back().name = "worst";
-  out.back().diagnostic = true;
   return out;
 }
 
@@ -161,7 +156,6 @@ std::shared_ptr<const Setup> prepare_reconstruction(Parameters& given,
   const auto plan =
       std::make_shared<const ReconstructionPlan>(read_reconstruction_plan(given, rules));
   const std::size_t worst = worst_pixel(*plan);
-  const ImageShape shape{plan->grid.width, plan->grid.height, {"radiance"}, false};
   const auto estimate = [plan, worst, values = std::vector<double>(plan->samples.size())](
                             Stream& random, std::uint64_t primaries, std::span<double> out,
                             Cost& cost) mutable {
@@ -178,10 +172,12 @@ std::shared_ptr<const Setup> prepare_reconstruction(Parameters& given,
     cost.camera_rays += primaries * plan->overhead.camera_rays;
     cost.samples += primaries;
   };
-  return setup_of({.channels = channels_of(*plan, shape, worst),
+  const std::vector<Channel> pixels = pixel_channels(*plan);
+  return setup_of({.channels = {repeated(pixels[worst], "worst")},
                    .make = estimating(estimate),
                    .samplers = lens_samplers<>(),
-                   .image = shape});
+                   .image = ImageShape{plan->grid.width, plan->grid.height, {"radiance"}, false},
+                   .elements = pixels});
 }
 
 }  // namespace assay::depth_of_field

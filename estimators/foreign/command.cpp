@@ -89,14 +89,13 @@ class CommandSetup final : public Setup, public foreign::Rendered {
       : renderings_(std::move(renderings)),
         contents_(std::make_shared<const Contents>(std::move(contents))) {}
 
-  std::vector<Channel> channels() const override {
-    std::vector<Channel> channels;
-    if (contents_->shape) {
-      channels = element_channels(*contents_->shape);
-      channels.push_back(recorded::average_channel());
-    }
-    for (const std::string& column : contents_->columns) channels.push_back({.name = column});
-    return channels;
+  std::size_t channel_count() const override {
+    return contents_->size() + (contents_->shape ? 1 : 0);
+  }
+  Channel channel(std::size_t place) const override {
+    if (!contents_->shape) return {.name = contents_->columns[place]};
+    if (place == contents_->size()) return recorded::average_channel();
+    return {.name = element_name(*contents_->shape, place)};
   }
   std::optional<ImageShape> image() const override { return contents_->shape; }
   std::unique_ptr<Estimator> make() const override {

@@ -71,10 +71,10 @@ class Reader {
     if (!greeted_) throw ProtocolError("it says nothing; the first line is `assay 1 text`");
     if (!ready_) throw ProtocolError("its hello does not end with `ready`");
     refuse_double_components();
-    std::vector<Channel> all = elements();
-    all.insert(all.end(), hello_.channels.begin(), hello_.channels.end());
-    if (all.empty()) throw ProtocolError("its hello names neither a `channel` nor an `image`");
-    hello_.channels = std::move(all);
+    if (!hello_.image && !needs_image_.empty()) wrong(needs_image_, "there is no `image`");
+    if (hello_.channel_count() == 0) {
+      throw ProtocolError("its hello names neither a `channel` nor an `image`");
+    }
     refuse_doubles();
     require_sound_samplers();
     return hello_;
@@ -176,7 +176,7 @@ class Reader {
 
   void range(const Words& words) {
     if (words.size() != 3) wrong_here("a range is two numbers");
-    take_range(number(words[1]), number(words[2]), element_);
+    take_range(number(words[1]), number(words[2]), hello_.element);
     needs_image_ = line_;
   }
 
@@ -239,14 +239,6 @@ class Reader {
     };
   }
 
-  std::vector<Channel> elements() const {
-    if (!hello_.image) {
-      if (!needs_image_.empty()) wrong(needs_image_, "there is no `image`");
-      return {};
-    }
-    return element_channels(*hello_.image, element_);
-  }
-
   void refuse_double_components() const {
     if (!hello_.image) return;
     const std::vector<std::string>& all = hello_.image->components;
@@ -256,18 +248,21 @@ class Reader {
   }
 
   void refuse_doubles() const {
-    std::set<std::string_view> names;
+    std::set<std::string> names;
     for (const Channel& channel : hello_.channels) {
       if (names.insert(channel.name).second) continue;
-      const std::string mend =
-          hello_.image ? "; the elements of an image have their names, leave such channels out"
-                       : "";
-      throw ProtocolError("its hello names `" + channel.name + "` twice" + mend);
+      throw ProtocolError("its hello names `" + channel.name + "` twice");
     }
-    if (!hello_.image) return;
-    for (std::size_t i = hello_.image->elements(); i < hello_.channels.size(); ++i) {
-      if (hello_.channels[i].diagnostic) continue;
-      throw ProtocolError("its hello has the channel `" + hello_.channels[i].name +
+    if (names.empty() || !hello_.image) return;
+    for (std::size_t element = 0; element < hello_.image->elements(); ++element) {
+      const std::string name = element_name(*hello_.image, element);
+      if (!names.contains(name)) continue;
+      throw ProtocolError("its hello names `" + name +
+                          "`, an element of its image: leave such channels out");
+    }
+    for (const Channel& channel : hello_.channels) {
+      if (channel.diagnostic) continue;
+      throw ProtocolError("its hello has the channel `" + channel.name +
                           "` beside an image: such a channel is `diagnostic`");
     }
   }
@@ -300,7 +295,6 @@ class Reader {
        }}};
   std::uint64_t most_;
   Hello hello_;
-  Channel element_;
   std::string_view line_;
   std::string_view needs_image_;
   bool greeted_ = false;
@@ -371,10 +365,8 @@ Hello parse_hello(std::string_view text, std::uint64_t most) {
 std::string to_text(const Hello& hello) {
   std::string text = "assay " + std::to_string(protocol_version) +
                      (hello.numbers == Numbers::binary ? " binary\n" : " text\n");
-  if (hello.image) text += image_lines(*hello.image, hello.channels.front());
-  for (std::size_t i = hello.image ? hello.image->elements() : 0; i < hello.channels.size(); ++i) {
-    text += channel_line(hello.channels[i]);
-  }
+  if (hello.image) text += image_lines(*hello.image, hello.element);
+  for (const Channel& channel : hello.channels) text += channel_line(channel);
   if (hello.nature.averages) text += "averages\n";
   text += bias_line(hello.nature.bias);
   if (hello.rays) text += "rays\n";

@@ -51,16 +51,18 @@ struct SamplerNote {
 
 struct Hello {
   Numbers numbers = Numbers::text;
-  std::vector<Channel> channels = {};  ///< the elements of the image first
   std::optional<ImageShape> image = {};
+  Channel element = {};                ///< Known of every element of the image.
+  std::vector<Channel> channels = {};  ///< Those after the elements.
   Nature nature = {.averages = false};
   bool rays = false;
   std::vector<SamplerNote> samplers = {};
 
+  std::size_t channel_count() const { return (image ? image->elements() : 0) + channels.size(); }
   /// How many numbers of an observation, the first of them, are means of independent primaries.
-  std::size_t means() const { return nature.averages ? channels.size() : 0; }
+  std::size_t means() const { return nature.averages ? channel_count() : 0; }
   /// Numbers of an observation as they are sent.
-  std::size_t width() const { return channels.size() + (rays ? 1 : 0); }
+  std::size_t width() const { return channel_count() + (rays ? 1 : 0); }
 };
 
 /// True if a text holds a whole hello: one of its lines begins with `ready` or `error`.

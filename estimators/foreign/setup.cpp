@@ -431,6 +431,7 @@ std::shared_ptr<const Setup> setup_of(std::shared_ptr<Children> children) {
        .make = [children] { return std::make_unique<ForeignEstimator>(children); },
        .samplers = std::move(samplers),
        .image = hello.image,
+       .elements = {hello.element},
        .nature = hello.nature});
 }
 

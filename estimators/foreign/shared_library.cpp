@@ -373,7 +373,7 @@ std::vector<double> PreparedLibrary::observations(const Question& question) cons
                    .random = &random,
                    .primaries = question.primaries,
                    .out = row,
-                   .out_count = hello_.channels.size(),
+                   .out_count = hello_.channel_count(),
                    .message = message.data(),
                    .message_size = message.size(),
                    .rays = 0};

@@ -118,11 +118,16 @@ class ChainEstimator final : public Estimator {
   Tally tally_;
 };
 
-std::vector<Channel> image_channels(const Target& target) {
+std::vector<Channel> elements_of(const Target& target) {
+  std::vector<Channel> elements;
+  for (const double mean : target.means()) elements.push_back({.mean = mean, .low = 0});
+  if (elements.empty()) elements.push_back({.low = 0});
+  return elements;
+}
+
+Channel image_mean(const Target& target) {
   const ImageShape shape = target.shape();
   const std::vector<double> means = target.means();
-  std::vector<Channel> channels = element_channels(shape, {.low = 0});
-  for (std::size_t i = 0; i < means.size(); ++i) channels[i].mean = means[i];
   double sum = 0;
   const std::size_t components = shape.components.size();
   for (std::size_t i = 0; i < means.size(); i += components) {
@@ -130,8 +135,7 @@ std::vector<Channel> image_channels(const Target& target) {
   }
   Channel whole{.name = "image_mean", .low = 0, .diagnostic = true};
   if (!means.empty()) whole.mean = sum / static_cast<double>(shape.pixels());
-  channels.push_back(std::move(whole));
-  return channels;
+  return whole;
 }
 
 /// Points fall into one pixel or another, and a chain stays near where it was.
@@ -156,9 +160,10 @@ std::shared_ptr<const Setup> independent(SharedTarget target) {
     cost.samples += primaries;
     write_image(shape, tally, out);
   };
-  return setup_of({.channels = image_channels(*target),
+  return setup_of({.channels = {image_mean(*target)},
                    .make = estimating(estimate),
-                   .image = dependent(target->shape())});
+                   .image = dependent(target->shape()),
+                   .elements = elements_of(*target)});
 }
 
 std::vector<ParameterInformation> chain_parameters() {
@@ -245,15 +250,15 @@ double start_anywhere(Walker& walker, std::uint64_t count) {
 }
 
 std::shared_ptr<const Setup> chain(Recipe recipe) {
-  std::vector<Channel> channels = image_channels(*recipe.target);
-  channels.push_back(
-      {.name = "normaliser", .mean = channels.back().mean, .low = 0, .diagnostic = true});
-  channels.push_back({.name = "acceptance", .low = 0, .high = 1, .diagnostic = true});
+  const Channel whole = image_mean(*recipe.target);
+  const Channel normaliser{.name = "normaliser", .mean = whole.mean, .low = 0, .diagnostic = true};
+  const Channel acceptance{.name = "acceptance", .low = 0, .high = 1, .diagnostic = true};
   const auto shared = std::make_shared<const Recipe>(std::move(recipe));
-  return setup_of({.channels = std::move(channels),
+  return setup_of({.channels = {whole, normaliser, acceptance},
                    .make = [shared] { return std::make_unique<ChainEstimator>(shared); },
                    .samplers = step_samplers(shared->step),
-                   .image = dependent(shared->target->shape())});
+                   .image = dependent(shared->target->shape()),
+                   .elements = elements_of(*shared->target)});
 }
 
 Ingredients read_ingredients(Parameters& given) {

@@ -204,10 +204,10 @@ std::shared_ptr<const Setup> image_setup(Picture picture) {
   const ImageShape shape{
       shared->width, shared->height, {render::colours.begin(), render::colours.end()}, true};
   return setup_of(
-      {.channels = element_channels(shape, {.low = 0}),
-       .make = estimating([shared](Stream& random, std::uint64_t primaries, std::span<double> out,
+      {.make = estimating([shared](Stream& random, std::uint64_t primaries, std::span<double> out,
                                    Cost& cost) { render(*shared, random, primaries, out, cost); }),
-       .image = shape});
+       .image = shape,
+       .elements = {{.low = 0}}});
 }
 
 }  // namespace assay::path_tracing

@@ -141,10 +141,10 @@ class PictureSetup final : public Setup, public Pictures {
         shape_(stack_->view.shape(independent)),
         data_file_(std::move(data_file)) {}
 
-  std::vector<Channel> channels() const override {
-    std::vector<Channel> channels = element_channels(shape_);
-    channels.push_back(average_channel());
-    return channels;
+  std::size_t channel_count() const override { return shape_.elements() + 1; }
+  Channel channel(std::size_t place) const override {
+    if (place == shape_.elements()) return average_channel();
+    return {.name = element_name(shape_, place)};
   }
   std::optional<ImageShape> image() const override { return shape_; }
   std::unique_ptr<Estimator> make() const override {
@@ -155,7 +155,6 @@ class PictureSetup final : public Setup, public Pictures {
   std::string place_of(const WhichObservation& which) const override { return file(which.index); }
   const Pictures* pictures() const override { return this; }
 
-  std::size_t channel_count() const override { return shape_.elements() + 1; }
   void read(std::uint64_t index, std::span<float> texels, Cost& cost) const override {
     Picture(stack_, seen_).read(index, texels, cost);
   }
@@ -189,13 +188,12 @@ class ReferenceSetup final : public Setup {
   explicit ReferenceSetup(PictureMoments moments)
       : moments_(std::move(moments)), shape_(moments_.shape) {}
 
-  std::vector<Channel> channels() const override {
-    std::vector<Channel> channels = element_channels(shape_);
-    for (std::size_t i = 0; i < channels.size(); ++i) {
-      channels[i].mean = moments_.mean[i];
-      if (!moments_.standard_error.empty()) channels[i].mean_error = moments_.standard_error[i];
-    }
-    return channels;
+  std::size_t channel_count() const override { return shape_.elements(); }
+  Channel channel(std::size_t place) const override {
+    const std::vector<double>& errors = moments_.standard_error;
+    return {.name = element_name(shape_, place),
+            .mean = moments_.mean[place],
+            .mean_error = errors.empty() ? 0 : errors[place]};
   }
   std::optional<ImageShape> image() const override { return shape_; }
   std::unique_ptr<Estimator> make() const override {

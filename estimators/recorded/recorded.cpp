@@ -38,12 +38,9 @@ class RecordedSetup final : public Setup {
   RecordedSetup(Reading reading, Selection selection)
       : table_(std::move(reading.table)), selection_(selection), file_(std::move(reading.source)) {}
 
-  std::vector<Channel> channels() const override {
-    std::vector<Channel> channels;
-    for (std::size_t i = 0; i < selection_.count; ++i) {
-      channels.push_back({.name = table_->columns[selection_.first + i]});
-    }
-    return channels;
+  std::size_t channel_count() const override { return selection_.count; }
+  Channel channel(std::size_t place) const override {
+    return {.name = table_->columns[selection_.first + place]};
   }
   std::unique_ptr<Estimator> make() const override {
     return estimating([table = table_, selection = selection_](Stream& random,

@@ -109,7 +109,7 @@ double shift_at_law_effect(const Facts& facts) {
 
 Facts facts_of(const std::string& law) {
   const PreparedEstimator x = prepare(drawn_from(law, "x"), ".");
-  const Channel channel = x.setup->channels()[0];
+  const Channel channel = x.setup->channel(0);
   if (!channel.mean || !channel.variance) {
     refuse({}, "`{}` has no variance: nothing is promised on it", law);
   }

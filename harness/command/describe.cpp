@@ -116,12 +116,10 @@ std::string setup_text(const Setup& setup) {
   const std::optional<ImageShape> image = setup.image();
   if (image) out += "\nimage (with default parameters)\n" + image_text(*image);
   out += "\nchannels (with default parameters)\n";
-  const std::vector<Channel> channels = setup.channels();
+  const std::size_t count = setup.channel_count();
   const std::size_t shown = image ? 4 : 20;
-  for (std::size_t i = 0; i < std::min(shown, channels.size()); ++i) {
-    out += channel_text(channels[i]);
-  }
-  if (channels.size() > shown) out += fmt::format("  … {} more\n", channels.size() - shown);
+  for (std::size_t i = 0; i < std::min(shown, count); ++i) out += channel_text(setup.channel(i));
+  if (count > shown) out += fmt::format("  … {} more\n", count - shown);
   const std::vector<NamedSampler> samplers = setup.samplers();
   if (samplers.empty()) return out;
   out += "\nsamplers\n";

@@ -35,7 +35,7 @@ const reports::Sample* recorded_of(const reports::Test& test, const Question& qu
   auto earlier = std::ranges::count_if(
       std::span(question.subjects).first(subject),
       [&](const Subject& each) { return each.estimator->listed == side.estimator->listed; });
-  const std::string name = side.setup->channels()[channel].name;
+  const std::string name = side.setup->channel(channel).name;
   for (const reports::Sample& sample : test.samples) {
     const bool is_its = sample.estimator == side.estimator->listed &&
                         (side.image.has_value() || sample.channel == name);
@@ -138,8 +138,7 @@ bool print_observation(const Question& question, const Recorded& recorded, std::
       same &= taken || first == nullptr || index >= first->secondaries;
       continue;
     }
-    const std::vector<Channel> channels = side.setup->channels();
-    std::vector<double> values(channels.size());
+    std::vector<double> values(pool.channels());
     try {
       pool.draw_again(*side.setup->make(), index, values);
     } catch (...) {
@@ -147,7 +146,7 @@ bool print_observation(const Question& question, const Recorded& recorded, std::
       throw std::runtime_error(sentence_of(fault, side.estimator->name));
     }
     for (std::size_t c = 0; c < values.size(); ++c) {
-      if (channels[c].name == cell_channel && values[c] == no_cell) continue;
+      if (side.setup->channel(c).name == cell_channel && values[c] == no_cell) continue;
       const reports::Sample* sample = recorded_of(recorded.test, question, i, c);
       const bool has_range = sample != nullptr && index < sample->secondaries;
       const Comparison comparison = has_range ? compared(*sample, values[c]) : Comparison{};
@@ -155,8 +154,8 @@ bool print_observation(const Question& question, const Recorded& recorded, std::
       // An image shows the numbers that the claim names, and those that are not as recorded.
       const bool is_one_of_many = side.setup->image() && (recorded.test.image || !has_range);
       if (comparison.same && is_one_of_many) continue;
-      fmt::print("{}.{}  observation {}: {}\n{}", side.estimator->name, channels[c].name, index,
-                 values[c], comparison.text);
+      fmt::print("{}.{}  observation {}: {}\n{}", side.estimator->name, side.setup->channel(c).name,
+                 index, values[c], comparison.text);
     }
     if (const auto& shape = side.setup->image()) {
       fmt::print(

@@ -113,6 +113,7 @@ reports::Record run_in_arena(const std::vector<Suite>& suites, const RunOptions&
   stop_if_interrupted();
   std::vector<TestWork*> tests;
   for (auto& run : planned.suites) {
+    run->pilots.drop_drawn();
     for (TestWork& work : run->tests) tests.push_back(&work);
   }
   Listener listener(planned, options, broken);

@@ -47,7 +47,7 @@ Subject sampled_by(const Source& source, const Estimators& estimators, std::uint
     return cells_of({source.estimator, sampler, source.where}, estimators, seed);
   }
   Subject sampled = values(source, estimators);
-  if (source.part.empty()) sampled.channels = {0, 1, sampled.setup->channels().size()};
+  if (source.part.empty()) sampled.channels = {0, 1, sampled.setup->channel_count()};
   return sampled;
 }
 
@@ -75,10 +75,7 @@ int sample(const SampleArguments& arguments) {
   const StreamKey key = key_of(estimator, arguments.seed, 0, sampled.purpose);
 
   std::vector<std::string> names;
-  const std::vector<Channel> channels = sampled.setup->channels();
-  for (const std::size_t column : sampled.channels.all()) {
-    names.push_back(in_header(channels[column].name));
-  }
+  for (const Channel& column : sampled.declared()) names.push_back(in_header(column.name));
   fmt::print("# {} {} of {} primaries, seed {}\n", estimator.entry->information.name,
              estimator.parameters, arguments.primaries, arguments.seed);
   fmt::print("# stream: {:016x}\n# columns: {}\n", key.bits, fmt::join(names, " "));
@@ -89,7 +86,7 @@ int sample(const SampleArguments& arguments) {
   }
   const std::unique_ptr<Estimator> worker = sampled.setup->make();
   const FlushDenormals flush;
-  std::vector<double> out(channels.size());
+  std::vector<double> out(sampled.setup->channel_count());
   worker->announce({.key = key, .first = 0, .last = count});
   for (std::uint64_t row = 0; row < count && !interrupted(); ++row) {
     Stream random(key, row);

@@ -62,8 +62,9 @@ class ConsistencyEstimator final : public Estimator {
 ConsistencySetup::ConsistencySetup(const NamedSampler& named, const Location& where)
     : SamplerSetup(named, where), cells_(sampler()) {}
 
-std::vector<Channel> ConsistencySetup::channels() const {
-  return {{.name = inconsistent_channel}, {.name = "difference", .diagnostic = true}};
+Channel ConsistencySetup::channel(std::size_t place) const {
+  if (place == 0) return {.name = inconsistent_channel};
+  return {.name = "difference", .diagnostic = true};
 }
 
 std::unique_ptr<Estimator> ConsistencySetup::make() const {

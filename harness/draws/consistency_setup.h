@@ -19,7 +19,8 @@ class ConsistencySetup final : public SamplerSetup {
   /// Cells of equal measure; they do not depend on the density.
   const DrawCells& cells() const { return cells_; }
 
-  std::vector<Channel> channels() const override;
+  std::size_t channel_count() const override { return 2; }
+  Channel channel(std::size_t place) const override;
   std::unique_ptr<Estimator> make() const override;
   std::vector<Marginal> marginals() const override { return {}; }
   std::size_t cell_numbers() const override { return 1 + cells_.size(); }

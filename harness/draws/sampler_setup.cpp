@@ -152,13 +152,11 @@ SamplerSetup::SamplerSetup(NamedSampler named, const Location& where, StreamKey 
 
 std::vector<Marginal> SamplerSetup::marginals() const { return marginals_of(sampler()); }
 
-std::vector<Channel> SamplerSetup::channels() const {
-  std::vector<Channel> all;
-  for (const Marginal& marginal : marginals()) {
-    all.push_back({.name = marginal.name, .low = no_point(marginal), .high = marginal.high});
-  }
-  all.push_back({.name = cell_channel, .diagnostic = true});
-  return all;
+Channel SamplerSetup::channel(std::size_t place) const {
+  const std::vector<Marginal> all = marginals();
+  if (place == all.size()) return {.name = cell_channel, .diagnostic = true};
+  const Marginal& marginal = all[place];
+  return {.name = marginal.name, .low = no_point(marginal), .high = marginal.high};
 }
 
 std::unique_ptr<Estimator> SamplerSetup::make() const {

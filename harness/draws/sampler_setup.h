@@ -82,7 +82,8 @@ class SamplerSetup : public Setup {
   /// and ascending.
   explicit SamplerSetup(NamedSampler named, const Location& where = {}, StreamKey key = {});
 
-  std::vector<Channel> channels() const override;
+  std::size_t channel_count() const override { return marginals().size() + 1; }
+  Channel channel(std::size_t place) const override;
   std::unique_ptr<Estimator> make() const override;
 
   /// Computed on first use, then kept. Throws NoDensity.

@@ -170,13 +170,12 @@ std::string range_text(const std::string& name, const std::vector<double>& borde
 
 std::string describe(const stats::SampledCells& cells, const Subject& side, std::size_t cell) {
   if (cell == cells.size()) return "the draws without a point";
-  const std::vector<Channel> channels = side.declared();
   const auto after = std::ranges::upper_bound(cells.before, cell);
   const auto band = static_cast<std::size_t>(after - cells.before.begin()) - 1;
-  const std::string first = range_text(channels[0].name, cells.band_borders, band);
+  const std::string first = range_text(side.declared(0).name, cells.band_borders, band);
   if (side.channels.size() == 1) return first;
   return first + ", " +
-         range_text(channels[1].name, cells.cut_borders[band], cell - cells.before[band]);
+         range_text(side.declared(1).name, cells.cut_borders[band], cell - cells.before[band]);
 }
 
 /// Name of a tested cell, or of sparse cells that were pooled.

@@ -50,6 +50,8 @@ ImagePair::ImagePair(const Seen& seen) {
     value.assign(extent.elements(), 0);
     return;
   }
+  value.reserve(extent.elements());
+  error.reserve(extent.elements());
   for (const Constant& reference : question.references) {
     value.push_back(reference.value + question.offset);
     error.push_back(reference.standard_error);

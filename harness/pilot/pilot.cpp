@@ -87,7 +87,7 @@ std::shared_ptr<Pool> pilot_pool(const std::shared_ptr<const Setup>& setup, Stre
 std::uint64_t averaged_primaries_of(const PreparedEstimator& estimator) {
   const Setup& setup = *estimator.setup;
   if (!estimator.nature().averages || estimator.original || setup.observations() || setup.image() ||
-      as_recorded_run(setup) != nullptr || setup.channels().size() > most_kept_channels) {
+      as_recorded_run(setup) != nullptr || setup.channel_count() > most_kept_channels) {
     return 1;
   }
   return std::min(averaged_primaries, estimator.primaries.value_or(averaged_primaries));
@@ -158,6 +158,13 @@ std::string pilot_name(const Subject& subject) {
 const Pilot* averaged_pilot_of(const Subject& subject, const Pilots& pilots) {
   if (!subject.purpose.empty()) return nullptr;
   return pilots.find(pilot_name_of(subject.estimator->name, averages_purpose));
+}
+
+void Pilots::drop_drawn() {
+  std::erase_if(all_, [](const auto& entry) {
+    const auto* const pilot = std::get_if<Pilot>(&entry.second);
+    return pilot != nullptr && pilot->pool && !pilot->pool->setup()->observations();
+  });
 }
 
 std::uint64_t primaries_of_pilots(const Question& question, const Pilots& pilots) {

@@ -55,9 +55,8 @@ std::string not_finite_in_pilot(const Question& question, const Pilots& pilots) 
 
 /// Why a subject's observations are no means of its primaries; "" if they may be.
 std::string no_averages(const Subject& subject, const Pilot& single, const Pilot& averaged) {
-  const std::vector<Channel> channels = subject.declared();
   for (std::size_t channel = 0; channel < subject.channels.size(); ++channel) {
-    if (channels[channel].diagnostic) continue;
+    if (subject.declared(channel).diagnostic) continue;
     const PilotChannel primaries = pilot_channel(subject, single, channel);
     const PilotChannel means = pilot_channel(subject, averaged, channel);
     if (means.moments.count < means.values.size() ||

@@ -39,7 +39,7 @@ void require_no_sampler(const Source& source, const PreparedEstimator& estimator
   refuse(source.where,
          "`{}` is a sampler of `{}`: claims about it are `distribution`, `integral` and "
          "`inconsistency`; others take a channel of the estimator, as `{}.{}`",
-         name, source.estimator, source.estimator, estimator.setup->channels().front().name);
+         name, source.estimator, source.estimator, estimator.setup->channel(0).name);
 }
 
 [[noreturn]] void no_such_part(const Source& source, const PreparedEstimator& estimator) {
@@ -48,12 +48,12 @@ void require_no_sampler(const Source& source, const PreparedEstimator& estimator
 }
 
 /// The channel of that name, or all tested ones without a name.
-std::vector<std::size_t> channels_named(const std::vector<Channel>& channels,
-                                        const std::string& name) {
+std::vector<std::size_t> channels_named(const Setup& setup, const std::string& name) {
   std::vector<std::size_t> tested;
-  for (std::size_t i = 0; i < channels.size(); ++i) {
-    if (!name.empty() && channels[i].name == name) return {i};
-    if (name.empty() && !channels[i].diagnostic) tested.push_back(i);
+  for (std::size_t i = 0; i < setup.channel_count(); ++i) {
+    const Channel channel = setup.channel(i);
+    if (!name.empty() && channel.name == name) return {i};
+    if (name.empty() && !channel.diagnostic) tested.push_back(i);
   }
   return tested;
 }
@@ -85,14 +85,6 @@ const NamedSampler* sampler_named(const std::vector<NamedSampler>& samplers,
 
 }  // namespace
 
-std::vector<Channel> Subject::declared() const {
-  std::vector<Channel> all = setup->channels();
-  std::vector<Channel> tested;
-  tested.reserve(channels.size());
-  for (const std::size_t channel : channels.all()) tested.push_back(std::move(all[channel]));
-  return tested;
-}
-
 std::optional<std::uint64_t> Question::most_rows() const {
   std::optional<std::uint64_t> most;
   for (const Subject& subject : subjects) most = std::max(most, subject.setup->observations());
@@ -114,7 +106,7 @@ Subject estimates(const Source& source, const PreparedEstimator& estimator) {
     if (!subject.channels.empty()) subject.image = std::move(image);
   }
   if (subject.channels.empty()) {
-    subject.channels = channels_named(estimator.setup->channels(), source.part);
+    subject.channels = channels_named(*estimator.setup, source.part);
   }
   if (subject.channels.empty()) {
     require_no_sampler(source, estimator);
@@ -148,15 +140,14 @@ Subject draws(const Source& source, const Estimators& estimators, Draws what) {
   if (rest == cell_channel) no_such_part(source, estimator);
   if (what == Draws::cells && rest.empty()) rest = cell_channel;
   if (what == Draws::consistency) rest = inconsistent_channel;
-  subject.channels = channels_named(subject.setup->channels(), rest);
+  subject.channels = channels_named(*subject.setup, rest);
   if (subject.channels.empty()) no_such_part(source, estimator);
   return subject;
 }
 
 Subject values(const Source& source, const Estimators& estimators) {
   const PreparedEstimator& estimator = estimator_of(source, estimators);
-  const std::vector<Channel> channels = estimator.setup->channels();
-  if (source.part.empty() || !channels_named(channels, source.part).empty()) {
+  if (source.part.empty() || !channels_named(*estimator.setup, source.part).empty()) {
     return estimates(source, estimators);
   }
   return draws(source, estimators, Draws::marginals);
@@ -179,6 +170,7 @@ Constant analytic_variance(const Channel& channel, const Source& source) {
 
 std::vector<Constant> references_of(const Claim& claim, const Subject& subject) {
   std::vector<Constant> numbers;
+  numbers.reserve(subject.channels.size());
   for (const Channel& channel : subject.declared()) {
     const auto* const number = std::get_if<Constant>(&claim.right);
     numbers.push_back(number != nullptr ? *number
@@ -288,12 +280,11 @@ std::string outside_of_range(const Subject& subject, const Summary& drawn) {
   // A mutant has its original's declaration.
   const bool mutant = !subject.estimator->entry->information.original.empty();
   if (mutant || is_recorded(subject)) return "";
-  const std::vector<Channel> channels = subject.setup->channels();
   const auto finite = [](double end) { return std::isfinite(end) ? std::abs(end) : 0; };
   const double of_sums = 1e-9;
   const double rounding = of_sums + relative_rounding(*subject.setup);
   for (const std::size_t i : subject.channels.all()) {
-    const Channel& channel = channels[i];
+    const Channel channel = subject.setup->channel(i);
     const double slack = rounding * (finite(channel.low) + finite(channel.high));
     const stats::Moments& seen = drawn.channels[i].moments;
     if (seen.count == 0) continue;

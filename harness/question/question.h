@@ -38,10 +38,13 @@ struct Subject {
     return std::min(look, setup->observations().value_or(look));
   }
 
-  /// The set-up's declaration of a channel that the claim is about. It makes the names of all.
-  Channel declared(std::size_t channel) const { return setup->channels()[channels[channel]]; }
-  /// The same of all these channels.
-  std::vector<Channel> declared() const;
+  /// The set-up's declaration of a channel that the claim is about.
+  Channel declared(std::size_t channel) const { return setup->channel(channels[channel]); }
+  /// The same of each of these channels.
+  auto declared() const {
+    return std::views::iota(std::size_t{0}, channels.size()) |
+           std::views::transform([this](std::size_t channel) { return declared(channel); });
+  }
 
   /// The estimator's name, with the channel's if there are several: "area.red".
   std::string name_of(std::size_t channel) const {

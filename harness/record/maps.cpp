@@ -226,19 +226,19 @@ void add_image(const DrawnTest& drawn, reports::Test& test) {
 reports::EstimatorChannel image_channel(const Setup& setup, const Summary& summary, double averaged,
                                         double confidence) {
   const ImageShape shape = *setup.image();
-  const bool unknown = setup.pictures() != nullptr;
-  const std::vector<Channel> channels = unknown ? std::vector<Channel>() : setup.channels();
   const double elements = static_cast<double>(shape.elements());
   double mean = 0;
   double variance = 0;
   double reference = 0;
-  bool known = !unknown;
+  bool known = true;
   for (std::size_t i = 0; i < shape.elements(); ++i) {
     const stats::Moments moments = summary.moments(i);
     mean += moments.mean / elements;
     if (moments.count > 1) variance += averaged * moments.variance() / elements;
-    known = known && channels[i].mean.has_value();
-    if (known) reference += *channels[i].mean / elements;
+    if (!known) continue;
+    const std::optional<double> exact = setup.channel(i).mean;
+    known = exact.has_value();
+    reference += exact.value_or(0) / elements;
   }
   reports::EstimatorChannel row{.name = image_name(shape),
                                 .mean = image_mean(shape, summary, mean, confidence),
@@ -337,16 +337,16 @@ bool are_a_rectangle(const stats::SampledCells& cells) {
 /// The first sample, against its part of both together.
 Cells of_two(const Seen& seen, const stats::SampledCells& sampled) {
   const Subject& first = seen.question.subjects[0];
-  const std::vector<Channel> channels = first.declared();
   const std::vector<std::uint64_t> x = counts_in(sampled, seen, 0);
   const std::vector<std::uint64_t> y = counts_in(sampled, seen, 1);
   const auto n = static_cast<double>(seen.data[0].all_values[0].size());
   const auto m = static_cast<double>(seen.data[1].all_values[0].size());
-  Cells cells{.axes = fmt::format("of {}, parts of equal probability: of {} from top to bottom, of "
-                                  "{} within each from left to right; expected as of both samples",
-                                  first.estimator->listed, channels[0].name, channels[1].name),
-              .width = sampled.cut_borders.front().size() + 1,
-              .height = sampled.cut_borders.size()};
+  Cells cells{
+      .axes = fmt::format("of {}, parts of equal probability: of {} from top to bottom, of "
+                          "{} within each from left to right; expected as of both samples",
+                          first.estimator->listed, first.declared(0).name, first.declared(1).name),
+      .width = sampled.cut_borders.front().size() + 1,
+      .height = sampled.cut_borders.size()};
   for (std::size_t i = 0; i < sampled.size(); ++i) {
     cells.observed.push_back(static_cast<double>(x[i]));
     cells.expected.push_back(static_cast<double>(x[i] + y[i]) * n / (n + m));

@@ -302,10 +302,10 @@ class Looking {
 };
 
 bool is_streamed(const Subject& side, const Subject& other) {
-  const recorded::Pictures* const pictures = side.setup->pictures();
-  return pictures && pictures->channel_count() > most_kept_channels && side.image &&
-         !side.averages && side.channels.size() + 1 == pictures->channel_count() &&
-         pictures_of(side) == pictures_of(other) && pictures_of(side) >= stats::least_replicates;
+  const std::size_t channels = side.setup->channel_count();
+  return side.setup->pictures() && channels > most_kept_channels && side.image && !side.averages &&
+         side.channels.size() + 1 == channels && pictures_of(side) == pictures_of(other) &&
+         pictures_of(side) >= stats::least_replicates;
 }
 
 bool is_about(const Question& question, const Subject& side) {

@@ -39,7 +39,7 @@ std::vector<ChannelPlan> sampler_plan(const SamplerSetup& setup) {
   for (const Marginal& marginal : setup.marginals()) {
     plan.push_back(with_histogram({marginal.low, marginal.high}));
   }
-  plan.resize(setup.channels().size());
+  plan.resize(setup.channel_count());
   return plan;
 }
 
@@ -48,19 +48,19 @@ std::vector<ChannelPlan> estimator_plan(const Pool& pool, const PreparedEstimato
   std::vector<ChannelPlan> plan;
   // Images are shown as maps, without a histogram of each pixel.
   if (pool.is_ready_made() || pool.setup()->image()) return {};
-  const std::vector<Channel> channels = pool.setup()->channels();
   const Pilot* const pilot = pilots.find(estimator.name);  // null if it is read row by row
   const double averaged = estimator.nature().averages ? static_cast<double>(pool.primaries()) : 1;
-  for (std::size_t i = 0; i < channels.size(); ++i) {
+  for (std::size_t i = 0; i < pool.channels(); ++i) {
     if (pilot == nullptr || pilot->moments(i).count < 2) {
       plan.push_back({.keep = plotted_values});
       continue;
     }
     const stats::Moments& moments = pilot->moments(i);
     // The pilot of a file is all of it.
-    plan.push_back(with_histogram(pool.setup()->observations()
-                                      ? Range{moments.minimum, moments.maximum}
-                                      : expected_range(channels[i], moments, averaged)));
+    plan.push_back(
+        with_histogram(pool.setup()->observations()
+                           ? Range{moments.minimum, moments.maximum}
+                           : expected_range(pool.setup()->channel(i), moments, averaged)));
   }
   return plan;
 }

@@ -42,11 +42,6 @@ const Summary* ready_made(const Setup& setup) {
   return run == nullptr ? nullptr : &run->summary();
 }
 
-std::size_t channels_of(const Setup& setup) {
-  const recorded::Pictures* const pictures = setup.pictures();
-  return pictures ? pictures->channel_count() : setup.channels().size();
-}
-
 /// Sums up the observations of a block, in order. It buffers some, then takes a few channels of all
 /// of them. Drawing does not wait for sums, and the sums of a picture stay in the cache. Each
 /// channel's sums are the same as if values were taken one by one.
@@ -165,7 +160,7 @@ Pool::Pool(std::shared_ptr<const Setup> setup, Recipe recipe)
       ready_made_(ready_made(*setup_)),
       recipe_(std::move(recipe)),
       block_size_(block_size_of(primaries_of_observation(*setup_, recipe_.primaries))),
-      channels_(channels_of(*setup_)),
+      channels_(setup_->channel_count()),
       elements_(elements_of(*setup_)) {
   keep_observations(kept_anyway(*setup_));
   for (const std::uint64_t count : std::exchange(recipe_.marks, {})) mark(count);

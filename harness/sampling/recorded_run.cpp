@@ -138,12 +138,6 @@ reports::Record read(Parameters& parameters) {
 
 }  // namespace
 
-std::vector<Channel> RecordedRun::channels() const {
-  std::vector<Channel> channels;
-  for (const std::string& name : contents_.channels) channels.push_back({.name = name});
-  return channels;
-}
-
 std::unique_ptr<Estimator> RecordedRun::make() const {
   throw std::logic_error("a recorded run has moments, not observations");
 }

@@ -29,7 +29,8 @@ class RecordedRun final : public Setup {
   };
   explicit RecordedRun(Contents contents) : contents_(std::move(contents)) {}
 
-  std::vector<Channel> channels() const override;
+  std::size_t channel_count() const override { return contents_.channels.size(); }
+  Channel channel(std::size_t place) const override { return {.name = contents_.channels[place]}; }
   /// Throws std::logic_error: there are no observations.
   std::unique_ptr<Estimator> make() const override;
   std::optional<std::uint64_t> observations() const override { return contents_.summary.count; }

@@ -141,7 +141,7 @@ ImageFamily RowPyramid::family() {
 
 ImageFamily image_pyramid(const ImagePair& pair, const PyramidOptions& options) {
   // Intermediate data is not kept for all elements of a large image.
-  constexpr std::size_t rows_at_a_time = 512;
+  constexpr std::size_t rows_at_a_time = 128;
   const std::size_t height = pair.a.extent.height;
   RowPyramid pyramid(pair, options);
   for (std::size_t row = 0; row < height; row += rows_at_a_time) {

@@ -14,9 +14,8 @@ using assay::fuzz::require;
 class ThreeSums final : public Setup {
  public:
   explicit ThreeSums(bool image) : image_(image) {}
-  std::vector<Channel> channels() const override {
-    return {{.name = "one"}, {.name = "two"}, {.name = "three"}};
-  }
+  std::size_t channel_count() const override { return 3; }
+  Channel channel(std::size_t) const override { return {}; }
   std::unique_ptr<Estimator> make() const override { return nullptr; }
   std::optional<ImageShape> image() const override {
     return image_ ? std::optional(ImageShape{.width = 2, .height = 1}) : std::nullopt;

@@ -21,9 +21,8 @@ class OddSetup final : public Setup {
   std::optional<ImageShape> image() const override {
     return image_ ? std::optional(ImageShape{.width = 2, .height = 1}) : std::nullopt;
   }
-  std::vector<Channel> channels() const override {
-    return {{.name = "sum"}, {.name = "odd"}, {.name = "cell"}};
-  }
+  std::size_t channel_count() const override { return 3; }
+  Channel channel(std::size_t) const override { return {}; }
   std::unique_ptr<Estimator> make() const override {
     class Odd final : public Estimator {
      public:

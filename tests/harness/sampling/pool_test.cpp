@@ -40,7 +40,8 @@ class Sums final : public Estimator {
 class SumsSetup final : public Setup {
  public:
   explicit SumsSetup(Behaviour behaviour = {}) : behaviour_(behaviour) {}
-  std::vector<Channel> channels() const override { return {{.name = "sum"}, {.name = "log"}}; }
+  std::size_t channel_count() const override { return 2; }
+  Channel channel(std::size_t) const override { return {}; }
   std::unique_ptr<Estimator> make() const override { return std::make_unique<Sums>(behaviour_); }
   std::optional<std::uint64_t> observations() const override { return behaviour_.rows; }
   std::optional<ImageShape> image() const override {
@@ -91,7 +92,8 @@ void expect_same(const Summary& one, const Summary& other) {
 class NotingSetup final : public Setup {
  public:
   NotingSetup(char name, std::string& order) : name_(name), order_(order) {}
-  std::vector<Channel> channels() const override { return {{.name = "x"}}; }
+  std::size_t channel_count() const override { return 1; }
+  Channel channel(std::size_t) const override { return {}; }
   std::unique_ptr<Estimator> make() const override {
     class Noting final : public Estimator {
      public:
