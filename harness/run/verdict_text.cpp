@@ -80,8 +80,7 @@ std::string evidence_against(const TestOutcome& outcome, const ChannelOutcome& c
   const double edge = channel.regions.claimed_edge();
   const bool above = channel.regions.bounds_above() && lies_above(channel.effect, edge);
   const bool below = channel.regions.bounds_below() && lies_below(channel.effect, -edge);
-  // An image's interval is that of the difference's size, and does not decide.
-  if (channel.image || (!above && !below)) return "no evidence against the claim";
+  if (!above && !below) return "no evidence against the claim";
   return fmt::format("not enough evidence against the claim, {} where its share of alpha is {:.2g}",
                      p_text(channel.decision.log_p_claimed), outcome.place.share.alpha);
 }
