@@ -123,6 +123,7 @@ class Setup {
  public:
   virtual ~Setup() = default;
   virtual std::size_t channel_count() const = 0;
+  /// `place` is below channel_count().
   virtual Channel channel(std::size_t place) const = 0;
   /// All of them. An image has millions.
   std::vector<Channel> channels() const;
@@ -160,9 +161,9 @@ struct SetupParts {
   std::function<std::unique_ptr<Estimator>()> make;
   std::vector<NamedSampler> samplers = {};
   std::optional<ImageShape> image = {};
-  /// What is known of the image's elements: one at least. They repeat where they are fewer, and
-  /// take the names of element_name().
-  std::vector<Channel> elements = {};
+  /// What is known of the image's elements; by default nothing. They repeat where they are fewer,
+  /// and take the names of element_name().
+  std::vector<Channel> elements = {Channel{}};
   std::optional<Nature> nature = {};
   Cost cost = {};
 };

@@ -29,8 +29,7 @@ namespace {
 const reports::Sample* recorded_of(const reports::Test& test, const Question& question,
                                    std::size_t subject, std::size_t channel) {
   const Subject& side = question.subjects[subject];
-  const auto channels = side.channels.all();
-  if (std::ranges::find(channels, channel) == channels.end()) return nullptr;
+  if (!side.channels.contains(channel)) return nullptr;
   // Samples of two subjects with one estimator are in the subjects' order.
   auto earlier = std::ranges::count_if(
       std::span(question.subjects).first(subject),
@@ -146,7 +145,7 @@ bool print_observation(const Question& question, const Recorded& recorded, std::
       throw std::runtime_error(sentence_of(fault, side.estimator->name));
     }
     for (std::size_t c = 0; c < values.size(); ++c) {
-      if (side.setup->channel(c).name == cell_channel && values[c] == no_cell) continue;
+      if (values[c] == no_cell && side.setup->channel(c).name == cell_channel) continue;
       const reports::Sample* sample = recorded_of(recorded.test, question, i, c);
       const bool has_range = sample != nullptr && index < sample->secondaries;
       const Comparison comparison = has_range ? compared(*sample, values[c]) : Comparison{};

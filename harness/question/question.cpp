@@ -231,6 +231,7 @@ std::vector<Constant> truths_of(const TestEntry& test, const Subject& subject,
                                 const Source& source) {
   if (test.reference) return std::vector<Constant>(subject.channels.size());
   std::vector<Constant> truths;
+  truths.reserve(subject.channels.size());
   for (const Channel& channel : subject.declared()) {
     if (!test.reference_number && !channel.mean) {
       refuse(source.where,
@@ -309,8 +310,6 @@ stats::Range range_of(const Question& question, std::size_t subject, std::size_t
 
 double rounding_of(const Question& question, std::size_t subject, std::size_t channel) {
   const Subject& side = question.subjects[subject];
-  // Pictures declare nothing. Their millions of channel names are not made for one of them.
-  if (side.setup->pictures()) return 0;
   const Channel declared = side.declared(channel);
   return declared.rounding + relative_rounding(*side.setup) * std::abs(declared.mean.value_or(0));
 }

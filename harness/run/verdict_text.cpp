@@ -231,7 +231,10 @@ Reason what_would_decide(const TestOutcome& outcome, const ChannelOutcome& chann
   }
   const double beta = last_levels(outcome).beta;
   const stats::Interval interval = channel.evidence.interval(1 - 2 * beta);
-  const double half = (interval.high - interval.low) / 2;
+  // An image's interval that begins at 0 is cut off there.
+  const bool cut = channel.image && interval.low == 0;
+  const double half =
+      cut ? interval.high - channel.evidence.estimate : (interval.high - interval.low) / 2;
   const Room room = room_of(outcome, channel);
   if (outcome.plan.method.is.in_range && !std::isfinite(half)) {
     return "no number of observations would decide: what rare values could add is not bounded; " +

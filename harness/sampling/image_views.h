@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <ranges>
 #include <span>
@@ -24,6 +25,10 @@ class ChannelList {
   bool side_by_side() const { return places_.empty() && step_ == 1; }
   std::size_t operator[](std::size_t i) const {
     return places_.empty() ? first_ + i * step_ : places_[i];
+  }
+  bool contains(std::size_t place) const {
+    if (!places_.empty()) return std::ranges::find(places_, place) != places_.end();
+    return place >= first_ && (place - first_) % step_ == 0 && (place - first_) / step_ < size_;
   }
   auto all() const {
     return std::views::iota(std::size_t{0}, size_) |

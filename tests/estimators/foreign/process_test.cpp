@@ -399,11 +399,14 @@ TEST_F(Process, LeavesTheSignalsOfThisProgramAlone) {
 }
 
 TEST_F(Process, ImagesAreElementsRowByRow) {
-  const auto setup = run_shell(for_each("echo 1 2 3 4"), 20, "image 2 1 red green");
+  const auto setup = run_shell(for_each("echo 1 2 3 4 5"), 20,
+                               "image 2 1 red green\nrange 0 9\nchannel misses diagnostic");
   ASSERT_TRUE(setup->image().has_value());
   EXPECT_FALSE(setup->image()->independent);
   EXPECT_EQ(setup->channels()[2].name, "x1y0.red");
-  EXPECT_THAT(draw(*setup, 1, 1), ElementsAre(1, 2, 3, 4));
+  EXPECT_EQ(setup->channels()[2].high, 9);
+  EXPECT_EQ(setup->channels().at(4).name, "misses");
+  EXPECT_THAT(draw(*setup, 1, 1), ElementsAre(1, 2, 3, 4, 5));
 }
 
 }  // namespace

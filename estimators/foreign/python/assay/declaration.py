@@ -173,7 +173,7 @@ def takes_primaries(function: Callable[..., typing.Any]) -> bool:
     unknown = [other for other in others if other != "primaries"]
     if unknown:
         raise TypeError(f"`{name}` has the parameter `{unknown[0]}` without a value: "
-                        "give it a default value, or write `*` before it; only `primaries` is given, no fixture")
+                        "give it a default value, or write `*` before it; only `primaries` is given")
     return bool(others)
 
 
