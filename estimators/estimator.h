@@ -157,11 +157,11 @@ class Setup {
 
 /// The parts of a set-up that states what they say. `make` gives a worker its estimator.
 struct SetupParts {
-  std::vector<Channel> channels = {};  ///< Of an image those that follow its elements.
+  std::vector<Channel> channels = {};  ///< an image's follow its elements
   std::function<std::unique_ptr<Estimator>()> make;
   std::vector<NamedSampler> samplers = {};
   std::optional<ImageShape> image = {};
-  /// What is known of the image's elements; by default nothing. They repeat where they are fewer,
+  /// The image's elements, of which nothing is known by default. They repeat where they are fewer,
   /// and take the names of element_name().
   std::vector<Channel> elements = {Channel{}};
   std::optional<Nature> nature = {};

@@ -59,7 +59,7 @@ struct NoiseExtremes {
 };
 NoiseExtremes noise_extremes(const ImagePlan& plan);
 
-/// What is known of each pixel.
+/// The channels of the pixels, without their names.
 std::vector<Channel> pixel_channels(const ImagePlan& plan);
 
 /// A pixel's channel once more, for the eye.
