@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 #include <limits>
 #include <map>
 #include <random>
@@ -42,8 +43,12 @@ std::string key_of_a_suite(const CLI::App& sub, const std::string& option) {
 /// What to write in place of an argument too many.
 std::string mend_of_extra(const std::string& command, const std::string& extra) {
   if (command == "images") {
-    return "name each side by a pattern in quotes: `--candidate 'NEW/*.exr' --reference "
-           "'OLD/*.exr'`";
+    const std::filesystem::path file = extra;
+    if (!file.has_extension()) {
+      return "give the pictures by `--candidate 'NEW/*.exr' --reference 'OLD/*.exr'`";
+    }
+    return fmt::format("quote the pattern, as in '{}'",
+                       (file.parent_path() / ("*" + file.extension().string())).string());
   }
   if (command != "check") return fmt::format("see `assay {} --help`", command);
   const std::size_t equals = extra.find('=');

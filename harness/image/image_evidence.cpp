@@ -400,7 +400,6 @@ ChannelEvidence evidence_of_images(const Seen& seen, const ImageTest& test) {
       .hidden = std::sqrt(family.hidden_squares / distance.squared_norm),
       .of_means = distances_of_means(look, extent, distance.squared_norm, question.is().of_pairs)};
   const TestEntry& entry = *question.test;
-  // Other claims say that theta = 0: the family alone excludes it, from the interval too.
   const bool within = entry.claim.relation == Relation::within;
   if (within || entry.detect) {
     const double margin = within ? entry.claim.margin.value : entry.detect->value;
@@ -421,13 +420,11 @@ ChannelEvidence evidence_of_images(const Seen& seen, const ImageTest& test) {
                           if (theta > 0 && exact) return at_exactly(estimate, theta);
                           return theta > 0 ? at_margin(distances, theta) : equal;
                         },
-                    .interval = [=](double confidence) -> stats::Interval {
-                      if (exact) return {estimate, estimate, confidence};
-                      stats::Interval interval = interval_of(distances, confidence);
-                      const bool holds_0 = equal.log_p_upper > std::log((1 - confidence) / 2);
-                      if (holds_0 && !within) interval.low = 0;
-                      return interval;
-                    },
+                    .interval =
+                        [=](double confidence) {
+                          return exact ? stats::Interval{estimate, estimate, confidence}
+                                       : interval_of(distances, confidence);
+                        },
                     .quantity = relative ? "relative root mean square difference of the images"
                                          : "root mean square difference of the images",
                     .relative = relative,

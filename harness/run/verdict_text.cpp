@@ -80,7 +80,8 @@ std::string evidence_against(const TestOutcome& outcome, const ChannelOutcome& c
   const double edge = channel.regions.claimed_edge();
   const bool above = channel.regions.bounds_above() && lies_above(channel.effect, edge);
   const bool below = channel.regions.bounds_below() && lies_below(channel.effect, -edge);
-  if (!above && !below) return "no evidence against the claim";
+  // An image's interval is that of the difference's size, and does not decide.
+  if (channel.image || (!above && !below)) return "no evidence against the claim";
   return fmt::format("not enough evidence against the claim, {} where its share of alpha is {:.2g}",
                      p_text(channel.decision.log_p_claimed), outcome.place.share.alpha);
 }
@@ -231,10 +232,7 @@ Reason what_would_decide(const TestOutcome& outcome, const ChannelOutcome& chann
   }
   const double beta = last_levels(outcome).beta;
   const stats::Interval interval = channel.evidence.interval(1 - 2 * beta);
-  // An image's interval that begins at 0 is cut off there.
-  const bool cut = channel.image && interval.low == 0;
-  const double half =
-      cut ? interval.high - channel.evidence.estimate : (interval.high - interval.low) / 2;
+  const double half = (interval.high - interval.low) / 2;
   const Room room = room_of(outcome, channel);
   if (outcome.plan.method.is.in_range && !std::isfinite(half)) {
     return "no number of observations would decide: what rare values could add is not bounded; " +

@@ -272,15 +272,16 @@ TEST_F(PictureClaims, AReferenceIsHeldAgainstWithItsError) {
 }
 
 // Noise of half a standard error of the stack in each pixel of the reference is no pixel's finding.
-TEST_F(PictureClaims, TheIntervalOfAPassHoldsZero) {
+// The interval of the root mean square excludes 0.
+TEST_F(PictureClaims, APassThatItsIntervalDoubtsSaysWhatTheReferenceHides) {
   write(place, "a");
   write_stack(place, "ref", {.width = width, .height = height, .count = 1},
               [](int x, int, const std::string&, double noise) {
                 return static_cast<float>((1 + x / 16.0) * (1 + 0.01 * noise));
               });
   const reports::Test test = tested("mean(a) == mean(b)", "file: ref00.exr, exact: true");
-  expect_said(test, Verdict::pass);
-  EXPECT_EQ(test.channels[0].effect.low, 0);
+  expect_said(test, Verdict::pass, {"`b` is one picture, taken as exact"});
+  EXPECT_GT(test.channels[0].effect.low, 0);
 }
 
 TEST_F(PictureClaims, ADamagedFileIsAnErrorWithItsName) {
