@@ -94,8 +94,7 @@ class CommandSetup final : public Setup, public foreign::Rendered {
   }
   Channel channel(std::size_t place) const override {
     if (!contents_->shape) return {.name = contents_->columns[place]};
-    if (place == contents_->size()) return recorded::average_channel();
-    return {.name = element_name(*contents_->shape, place)};
+    return recorded::picture_channel(*contents_->shape, place);
   }
   std::optional<ImageShape> image() const override { return contents_->shape; }
   std::unique_ptr<Estimator> make() const override {

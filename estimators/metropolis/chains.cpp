@@ -118,16 +118,14 @@ class ChainEstimator final : public Estimator {
   Tally tally_;
 };
 
-std::vector<Channel> elements_of(const Target& target) {
+std::vector<Channel> elements_of(const std::vector<double>& means) {
   std::vector<Channel> elements;
-  for (const double mean : target.means()) elements.push_back({.mean = mean, .low = 0});
+  for (const double mean : means) elements.push_back({.mean = mean, .low = 0});
   if (elements.empty()) elements.push_back({.low = 0});
   return elements;
 }
 
-Channel image_mean(const Target& target) {
-  const ImageShape shape = target.shape();
-  const std::vector<double> means = target.means();
+Channel image_mean(const ImageShape& shape, const std::vector<double>& means) {
   double sum = 0;
   const std::size_t components = shape.components.size();
   for (std::size_t i = 0; i < means.size(); i += components) {
@@ -160,10 +158,11 @@ std::shared_ptr<const Setup> independent(SharedTarget target) {
     cost.samples += primaries;
     write_image(shape, tally, out);
   };
-  return setup_of({.channels = {image_mean(*target)},
+  const std::vector<double> means = target->means();
+  return setup_of({.channels = {image_mean(target->shape(), means)},
                    .make = estimating(estimate),
                    .image = dependent(target->shape()),
-                   .elements = elements_of(*target)});
+                   .elements = elements_of(means)});
 }
 
 std::vector<ParameterInformation> chain_parameters() {
@@ -250,7 +249,8 @@ double start_anywhere(Walker& walker, std::uint64_t count) {
 }
 
 std::shared_ptr<const Setup> chain(Recipe recipe) {
-  const Channel whole = image_mean(*recipe.target);
+  const std::vector<double> means = recipe.target->means();
+  const Channel whole = image_mean(recipe.target->shape(), means);
   const Channel normaliser{.name = "normaliser", .mean = whole.mean, .low = 0, .diagnostic = true};
   const Channel acceptance{.name = "acceptance", .low = 0, .high = 1, .diagnostic = true};
   const auto shared = std::make_shared<const Recipe>(std::move(recipe));
@@ -258,7 +258,7 @@ std::shared_ptr<const Setup> chain(Recipe recipe) {
                    .make = [shared] { return std::make_unique<ChainEstimator>(shared); },
                    .samplers = step_samplers(shared->step),
                    .image = dependent(shared->target->shape()),
-                   .elements = elements_of(*shared->target)});
+                   .elements = elements_of(means)});
 }
 
 Ingredients read_ingredients(Parameters& given) {

@@ -142,10 +142,7 @@ class PictureSetup final : public Setup, public Pictures {
         data_file_(std::move(data_file)) {}
 
   std::size_t channel_count() const override { return shape_.elements() + 1; }
-  Channel channel(std::size_t place) const override {
-    if (place == shape_.elements()) return average_channel();
-    return {.name = element_name(shape_, place)};
-  }
+  Channel channel(std::size_t place) const override { return picture_channel(shape_, place); }
   std::optional<ImageShape> image() const override { return shape_; }
   std::unique_ptr<Estimator> make() const override {
     return std::make_unique<Picture>(stack_, seen_);
@@ -251,7 +248,10 @@ std::optional<std::pair<std::uint64_t, std::uint64_t>> SeenPictures::shared_with
   return found;
 }
 
-Channel average_channel() { return {.name = "average", .diagnostic = true}; }
+Channel picture_channel(const ImageShape& shape, std::size_t place) {
+  if (place == shape.elements()) return {.name = "average", .diagnostic = true};
+  return {.name = element_name(shape, place)};
+}
 
 void write_observation(std::span<const float> texels, std::span<double> out) {
   double sum = 0;

@@ -26,8 +26,9 @@ std::shared_ptr<const Setup> picture_setup(PictureStack stack, bool independent,
 /// Means with their errors; there is nothing to draw.
 std::shared_ptr<const Setup> reference_setup(PictureMoments moments);
 
-/// The channel that follows the elements in an observation: their average, for claims that name it.
-Channel average_channel();
+/// A channel of an observation: an element, or their average, which follows for claims that name
+/// it.
+Channel picture_channel(const ImageShape& shape, std::size_t place);
 
 /// A picture's texels and their average.
 void write_observation(std::span<const float> texels, std::span<double> out);

@@ -44,7 +44,7 @@ std::string key_of_a_suite(const CLI::App& sub, const std::string& option) {
 std::string mend_of_extra(const std::string& command, const std::string& extra) {
   if (command == "images") {
     const std::filesystem::path file = extra;
-    if (!file.has_extension()) {
+    if (!file.has_extension() || extra.find('*') != std::string::npos) {
       return "give the pictures by `--candidate 'NEW/*.exr' --reference 'OLD/*.exr'`";
     }
     return fmt::format("quote the pattern, as in '{}'",
