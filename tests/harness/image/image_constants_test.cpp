@@ -145,9 +145,7 @@ TEST_F(ImageConstants, APixelThatOneOfTwoImagesNeverLitIsHeldAgainstItsRange) {
 class Tenth final : public Setup {
  public:
   std::size_t channel_count() const override { return 1; }
-  Channel channel(std::size_t) const override {
-    return {.name = "x0y0", .mean = 0.1, .low = 0, .high = 0.1};
-  }
+  Channel channel(std::size_t) const override { return {.mean = 0.1, .low = 0, .high = 0.1}; }
   std::unique_ptr<Estimator> make() const override { return nullptr; }
   std::optional<ImageShape> image() const override { return ImageShape{.width = 1, .height = 1}; }
 };
