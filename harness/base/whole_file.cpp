@@ -78,8 +78,18 @@ class Output {
     }
   }
 
+  void cut(std::uint64_t size) {
+    const auto end = static_cast<off_t>(size);
+    if (::ftruncate(descriptor_, end) != 0 || ::lseek(descriptor_, end, SEEK_SET) != end) {
+      fail("write", target_, errno);
+    }
+  }
+
+  void flush() {
+    if (::fsync(descriptor_) != 0) fail("write", target_, errno);
+  }
+
   void close() {
-    if (temporary_ && ::fsync(descriptor_) != 0) fail("write", target_, errno);
     // A network file system may report only here that the disk is full.
     if (::close(std::exchange(descriptor_, -1)) != 0) fail("write", target_, errno);
   }
@@ -170,9 +180,19 @@ void write_whole(const fs::path& path, std::string_view text) {
   }
   Output output(temporary_beside(target), O_CREAT | O_EXCL, target);
   output.write(text);
+  output.flush();
   output.close();
   output.rename();
 }
+
+void write_end(const fs::path& path, std::uint64_t first, std::string_view text) {
+  Output output(path, O_CREAT, path);
+  output.cut(first);
+  output.write(text);
+  output.close();
+}
+
+void flush(const fs::path& path) { Output(path, 0, path).flush(); }
 
 LockedFile::LockedFile(const std::string& path) : descriptor_(locked(path)) {
   while (!is_current(descriptor_, path)) {

@@ -2,6 +2,7 @@
 
 // Files written whole or not at all, by one process at a time.
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -14,6 +15,12 @@ namespace assay::harness {
 /// pipe, /dev/stdout) is written to directly, because it must not be replaced. Throws
 /// std::runtime_error that names path and reason, and leaves nothing behind.
 void write_whole(const std::filesystem::path& path, std::string_view text);
+
+/// Writes the text to the place `first` of a file, which ends with it. Makes the file if it is
+/// missing. Throws std::runtime_error that names path and reason.
+void write_end(const std::filesystem::path& path, std::uint64_t first, std::string_view text);
+/// Waits until a file is on the disk. Throws the same.
+void flush(const std::filesystem::path& path);
 
 /// A file that this process alone may replace while the object lives: two runs that add to one
 /// ledger take turns. The constructor makes the file, empty, if it is missing. It locks the file

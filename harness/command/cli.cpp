@@ -163,9 +163,10 @@ Examples:
   options.flag({"--fail-fast", "", Replay::nowhere},
                "draw no more once a claim is broken, the others are not run; default all are",
                [&command] { command.options.fail_fast = true; });
-  options.add({"--checkpoint", "FILE", Replay::nowhere, "", {"*"}}, command.options.checkpoint,
-              "keep what was drawn in a file, from which the same command goes on after a kill or "
-              "Ctrl-C; removed at the end; default none");
+  options.add(
+      {"--checkpoint", "FILE", Replay::nowhere, "", {"*"}}, command.options.checkpoint,
+      "keep what was drawn in FILE and FILE.kept, from which the same command goes on after "
+      "a kill or Ctrl-C; removed at the end; default none");
   options.add({"--checkpoint-every", "S", Replay::nowhere}, command.options.checkpoint_every,
               read_positive, "seconds between two writes of it; default 60");
   options.add({"--ledger", "FILE", Replay::nowhere, "", {"*"}}, command.options.ledger,

@@ -164,7 +164,8 @@ double z_of(const UnseenElement& unseen) {
   return unseen.sign * stats::normal_quantile({stats::Tail::upper, unseen.log_p - std::log(2.0)});
 }
 
-VaryingPart::VaryingPart(const Question& question, const ImagePair& pair) : ComparedImages(pair) {
+VaryingPart::VaryingPart(const Question& question, ImagePair& pair)
+    : ComparedImages(std::move(static_cast<ComparedImages&>(pair))) {
   if (second) {
     settle_two(question);
   } else {

@@ -224,23 +224,24 @@ void require_independent(const ImageTest& test, const ImagePair& pair) {
 }
 
 /// The look of kept pictures.
-PictureLook look_at(const Question& question, const ImageTest& test, const ImagePair& pair,
+PictureLook look_at(const Question& question, const ImageTest& test, ImagePair pair,
                     std::vector<UnseenElement>& unseen) {
   const auto [fewest, most] = pair.replicates();
   stats::check::replicates("image", fewest);
   require_independent(test, pair);
   PictureLook look{.pictures = most};
   look.distance = distance_of(question, pair);
+  look.means = {channel_means(pair.first), means_held_against(pair)};
+  look.z.resize(pair.first.extent.elements());
+  const bool of_two = pair.second.has_value();
   const VaryingPart varying(question, pair);
   require_spread(question, varying.any() || (pair.subtracted && varies(*pair.subtracted)));
-  look.z.resize(pair.first.extent.elements());
   const stats::PyramidOptions options{.z = look.z,
                                       .for_each = on_all_threads,
-                                      .constants_decide = pair.second || question.is().of_pairs};
+                                      .constants_decide = of_two || question.is().of_pairs};
   look.family = stats::image_pyramid(varying.pair(), options);
   unseen = varying.unseen();
   for (const UnseenElement& element : unseen) look.z[element.element] = z_of(element);
-  look.means = {channel_means(pair.first), means_held_against(pair)};
   return look;
 }
 

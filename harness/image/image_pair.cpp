@@ -51,12 +51,13 @@ ImagePair::ImagePair(const Seen& seen) {
     return;
   }
   value.reserve(extent.elements());
-  error.reserve(extent.elements());
   for (const Constant& reference : question.references) {
     value.push_back(reference.value + question.offset);
-    error.push_back(reference.standard_error);
   }
-  drop_zero_errors();
+  const bool exact = std::ranges::all_of(
+      question.references, [](const Constant& each) { return each.standard_error == 0; });
+  if (exact) return;
+  for (const Constant& reference : question.references) error.push_back(reference.standard_error);
 }
 
 stats::ImageStack difference(const stats::ImageStack& one, const stats::ImageStack& other,

@@ -27,7 +27,7 @@ struct ComparedImages {
     return second ? stats::ImagePair(first, *second) : stats::ImagePair(first, reference());
   }
   void drop_zero_errors() {
-    if (std::ranges::all_of(error, [](double each) { return each == 0; })) error = {};
+    if (std::ranges::all_of(error, [](double each) { return each == 0; })) error.clear();
   }
 };
 

@@ -175,9 +175,10 @@ std::string lack_of_density(const Question& question, const NoDensity& why) {
                      question.subjects[0].estimator->name, why.what());
 }
 
-TestOutcome plan_test(const Question& question, const FamilyPlace& place, const Pilots& pilots,
+TestOutcome plan_test(Question asked, const FamilyPlace& place, const Pilots& pilots,
                       const Primaries& primaries) {
-  TestOutcome test{.question = question, .place = place};
+  TestOutcome test{.question = std::move(asked), .place = place};
+  const Question& question = test.question;
   const std::optional<std::string>& forced = question.test->method;
   Plan& plan = test.plan;
   plan = {.method = forced ? find_method(question, *forced) : methods_for(question).front(),

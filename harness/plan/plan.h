@@ -24,7 +24,7 @@ Primaries choose_primaries(const std::vector<Question>& questions,
 
 /// One test with its plan. Where the pilots show a mistake, as a margin beyond reach, it is an
 /// error.
-TestOutcome plan_test(const Question& question, const FamilyPlace& place, const Pilots& pilots,
+TestOutcome plan_test(Question asked, const FamilyPlace& place, const Pilots& pilots,
                       const Primaries& primaries);
 /// The same as a suite of its own, drawn by itself.
 TestOutcome plan_alone(const Suite& suite, const Question& question, const Pilots& pilots);

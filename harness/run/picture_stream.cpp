@@ -93,7 +93,7 @@ class Side {
 
   /// Frees the rows.
   void end() {
-    texels_ = {};
+    LargeVector<float>().swap(texels_);
     there_ = {};
   }
 

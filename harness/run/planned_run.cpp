@@ -112,7 +112,7 @@ Pilots piloted(const SuiteRun& run, const RunOptions& options, Progress& progres
 void plan_tests(SuiteRun& run, const RunOptions& options, Progress& progress) {
   std::erase_if(run.untested,
                 [&](const Untested& each) { return !selects(options.selection, *each.test); });
-  const std::vector<Question>& questions = run.questions;
+  std::vector<Question>& questions = run.questions;
   if (std::ranges::none_of(questions, &Question::chosen)) return;
   run.used = used_by(run);
   const std::vector<FamilyPlace> place = places(run.suite, questions);
@@ -121,9 +121,11 @@ void plan_tests(SuiteRun& run, const RunOptions& options, Progress& progress) {
   const Primaries primaries = choose_primaries(questions, place, run.pilots);
   for (std::size_t i = 0; i < questions.size(); ++i) {
     if (!questions[i].chosen) continue;
-    run.tests.push_back({.suite_budget = run.suite.budget ? &*run.suite.budget : nullptr,
-                         .outcome = plan_test(questions[i], place[i], run.pilots, primaries)});
+    run.tests.push_back(
+        {.suite_budget = run.suite.budget ? &*run.suite.budget : nullptr,
+         .outcome = plan_test(std::move(questions[i]), place[i], run.pilots, primaries)});
   }
+  std::erase_if(questions, [](const Question& each) { return each.chosen; });
 }
 
 void plan_pools(SuiteRun& run, Pools& pools) {

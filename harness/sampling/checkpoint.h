@@ -13,11 +13,24 @@
 
 namespace assay::harness {
 
-/// Draws by another executor. Now and then, and when the user interrupts, it writes all that pools
-/// have drawn, whole or not at all. Pools of the same set-ups and recipes begin there.
+/// Bytes of a file.
+struct FilePart {
+  std::uint64_t first;
+  std::uint64_t size;
+};
+
+/// What a pool has drawn, as the files have it.
+struct DrawnPool {
+  std::string sums = "";
+  std::vector<FilePart> kept = {};
+};
+
+/// Draws by another executor. Now and then, and when the user interrupts, it writes the sums of all
+/// that pools have drawn, whole or not at all. What pools keep grows, and is added to a second
+/// file, of which the first names the parts. Pools of the same set-ups and recipes begin there.
 ///
-/// A pool whose source failed is drawn again. So are rows and pictures of files, and pools that are
-/// compared by their seconds.
+/// What was drawn since the last writing is drawn again. So are rows and pictures of files, and
+/// pools that are compared by their seconds.
 class Checkpoint final : public Executor {
  public:
   /// Reads the file if it is there. InputError if it is of another run, or cannot be written.
@@ -31,17 +44,27 @@ class Checkpoint final : public Executor {
   void remove() const;
 
  private:
+  struct Known {
+    DrawnPool drawn = {};           ///< As it stands in the files.
+    std::uint64_t kept_end = 0;     ///< Of the observations in the second file.
+    std::weak_ptr<Pool> pool = {};  ///< Once this process draws it, and as long as it needs it.
+  };
+
   void read();
-  void write() const;
+  void write();
+  void update(Known& known, const Pool& pool);
   void write_if_due();
+  void resume(Known& known, Pool& pool) const;
+  std::string bytes_of(const FilePart& part) const;
 
   std::string file_;
   std::chrono::steady_clock::duration pause_;
   Identity identity_;
   std::shared_ptr<Executor> inner_;
   std::map<const Setup*, std::string> names_;
-  std::map<std::string, std::string> read_;  ///< Packed blocks by packed recipe.
-  std::map<std::string, std::shared_ptr<Pool>> pools_;
+  std::string kept_file_;
+  std::uint64_t kept_size_ = 0;
+  std::map<std::string, Known> pools_;  ///< By packed recipe.
   std::chrono::steady_clock::time_point due_;
 };
 

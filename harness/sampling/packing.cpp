@@ -9,7 +9,7 @@ namespace assay::harness {
 namespace {
 
 constexpr std::string_view magic = "assay ";
-constexpr char format = '4';  // Another one for each change of what is packed.
+constexpr char format = '5';  // Another one for each change of what is packed.
 
 struct Head {
   std::array<char, 8> name{'a', 's', 's', 'a', 'y', ' ', format, '\n'};
@@ -178,20 +178,17 @@ Pool pool_of(const Recipe& recipe, std::shared_ptr<const Setup> setup) {
   return pool;
 }
 
-std::string packed_block(const Pool::Block& block) {
-  Packer pack;
-  pack(block.fault, block.values, *block.observations, block.whole,
-       static_cast<std::uint64_t>(block.partial.size()));
-  for (const auto& [count, sums] : block.partial) pack(count, *sums);
-  return std::move(pack).bytes();
+namespace {
+
+void unpack_kept(Unpacker& unpack, Pool::Block& block) {
+  unpack(block.values, *block.observations);
 }
 
-Pool::Block unpacked_block(std::string_view bytes, const Pool& pool, std::uint64_t first) {
-  Unpacker unpack(bytes);
+void unpack_sums(Unpacker& unpack, const Pool& pool, std::uint64_t first, Pool::Block& block) {
   const Recipe recipe = pool.recipe();
-  Pool::Block block{.whole = pool.no_sums()};
   std::uint64_t partials = 0;
-  unpack(block.fault, block.values, *block.observations, block.whole, partials);
+  block.whole = pool.no_sums();
+  unpack(block.fault, block.whole, partials);
   require_shape(block, recipe, pool, first);
   const std::uint64_t end = first + block.whole.count;
   const auto begin = std::ranges::upper_bound(recipe.marks, first);
@@ -206,7 +203,47 @@ Pool::Block unpacked_block(std::string_view bytes, const Pool& pool, std::uint64
     block.partial.emplace_back(mark, std::move(sums));
   }
   unpack.end();
+}
+
+}  // namespace
+
+std::string packed_kept(const Pool::Block& block) {
+  Packer pack;
+  pack(block.values, *block.observations);
+  return std::move(pack).bytes();
+}
+
+std::string packed_sums(const Pool::Block& block) {
+  Packer pack;
+  pack(block.fault, block.whole, static_cast<std::uint64_t>(block.partial.size()));
+  for (const auto& [count, sums] : block.partial) pack(count, *sums);
+  return std::move(pack).bytes();
+}
+
+std::string packed_block(const Pool::Block& block) {
+  return packed_kept(block) + packed_sums(block);
+}
+
+void add_kept(std::string_view bytes, Pool::Block& block) {
+  Unpacker unpack(bytes);
+  Pool::Block next;
+  unpack_kept(unpack, next);
+  unpack.end();
+  block.append_kept(std::move(next));
+}
+
+Pool::Block unpacked_block(std::string_view bytes, const Pool& pool, std::uint64_t first) {
+  Unpacker unpack(bytes);
+  Pool::Block block;
+  unpack_kept(unpack, block);
+  unpack_sums(unpack, pool, first, block);
   return block;
+}
+
+Pool::Block unpacked_drawn(std::string_view sums, Pool::Block&& kept, const Pool& pool) {
+  Unpacker unpack(sums);
+  unpack_sums(unpack, pool, 0, kept);
+  return std::move(kept);
 }
 
 }  // namespace assay::harness

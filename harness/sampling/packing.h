@@ -200,10 +200,19 @@ void parts(Archive& a, T& recipe) {
 /// A pool that draws by the recipe. Throws Unpackable if the set-up cannot.
 Pool pool_of(const Recipe& recipe, std::shared_ptr<const Setup> setup);
 
-/// Packs a block that was drawn, or all that a pool has drawn, to stand in a frame.
+/// Packs a block that was drawn, to stand in a frame.
 std::string packed_block(const Pool::Block& block);
 /// Reads it as a block of the pool that begins at observation `first`. Throws Unpackable unless it
 /// has the shape that the pool's plan says, so that it can be folded.
 Pool::Block unpacked_block(std::string_view bytes, const Pool& pool, std::uint64_t first);
+
+/// Packs a block's sums alone, or what it keeps.
+std::string packed_sums(const Pool::Block& block);
+std::string packed_kept(const Pool::Block& block);
+/// Adds what packed_kept packed of the observations that follow.
+void add_kept(std::string_view bytes, Pool::Block& block);
+/// Reads the sums of all that a pool has drawn into a block that has what it keeps, as
+/// unpacked_block does.
+Pool::Block unpacked_drawn(std::string_view sums, Pool::Block&& kept, const Pool& pool);
 
 }  // namespace assay::harness

@@ -27,6 +27,14 @@ constexpr std::uint64_t least_block = 8;
 constexpr std::uint64_t most_block = 4096;
 constexpr std::uint64_t most_observations = std::numeric_limits<std::uint64_t>::max();
 
+/// Places [first, last) of a list, as far as they are there.
+template <class T>
+std::span<const T> part_of(const std::vector<T>& list, std::uint64_t first, std::uint64_t last) {
+  const std::size_t end = std::min<std::size_t>(list.size(), last);
+  const std::size_t begin = std::min<std::size_t>(first, end);
+  return std::span(list).subspan(begin, end - begin);
+}
+
 std::size_t elements_of(const Setup& setup) {
   const std::optional<ImageShape> image = setup.image();
   return image ? image->elements() : 0;
@@ -372,21 +380,50 @@ bool Pool::can_be_drawn_elsewhere() const {
          !setup_->pictures() && !setup_->keeps_files();
 }
 
+namespace {
+
+std::shared_ptr<const Summary> without_sums(const Summary& of) {
+  auto summary = std::make_shared<Summary>();
+  summary->count = of.count;
+  summary->cost = of.cost;
+  summary->seconds = of.seconds;
+  return summary;
+}
+
+}  // namespace
+
 /// Without what end_drawing() makes again.
-Pool::Block Pool::drawn_block() const {
-  Block block{.whole = running_, .observations = kept_, .fault = fault_};
-  if (!sums_later()) block.values = values_;
+Pool::Block Pool::drawn_sums() const {
+  Block block{.whole = running_, .fault = fault_};
   for (const auto& [count, sums] : prefixes_) {
     if (count == 0 || count > drawn()) continue;
-    auto partial = std::make_shared<Summary>(*sums);
-    if (sums_later()) {
-      partial->channels.clear();
-      partial->detailed.clear();
-      partial->group_variances = {};
-    }
-    block.partial.emplace_back(count, std::move(partial));
+    block.partial.emplace_back(count, sums_later() ? without_sums(*sums) : sums);
   }
   return block;
+}
+
+std::uint64_t Pool::kept_end() const {
+  const std::uint64_t values = sums_later() ? 0 : most_kept(recipe_.plan);
+  return std::min(drawn(), std::max(values, recipe_.kept_observations));
+}
+
+Pool::Block Pool::kept_block(std::uint64_t first, std::uint64_t last) const {
+  Block block;
+  *block.observations = kept_->part(first, last);
+  if (sums_later()) return block;
+  for (const std::vector<double>& values : values_) {
+    const std::span<const double> part = part_of(values, first, last);
+    block.values.emplace_back(part.begin(), part.end());
+  }
+  return block;
+}
+
+void Pool::Block::append_kept(Block&& next) {
+  values.resize(std::max(values.size(), next.values.size()));
+  for (std::size_t c = 0; c < next.values.size(); ++c) {
+    values[c].insert(values[c].end(), next.values[c].begin(), next.values[c].end());
+  }
+  observations->append(std::move(*next.observations));
 }
 
 void Pool::keep_block(Summary block, std::uint64_t first) {
@@ -424,9 +461,18 @@ void Pool::draw_again(Estimator& estimator, std::uint64_t index, std::span<doubl
 }
 
 Images KeptObservations::range(std::uint64_t begin, std::uint64_t end) const {
-  const std::size_t last = std::min<std::size_t>(images.size(), end);
-  const std::size_t first = std::min<std::size_t>(begin, last);
-  return std::span(images).subspan(first, last - first);
+  return part_of(images, begin, end);
+}
+
+KeptObservations KeptObservations::part(std::uint64_t first, std::uint64_t last) const {
+  const auto copy = []<class T>(std::span<const T> some) {
+    return std::vector<T>(some.begin(), some.end());
+  };
+  KeptObservations part{.texels = copy(part_of(texels, first, last)),
+                        .values = copy(part_of(values, first, last)),
+                        .costs = copy(part_of(costs, first, last))};
+  part.images.assign(part.texels.begin(), part.texels.end());
+  return part;
 }
 
 std::span<const double> KeptObservations::whole(std::size_t index, std::span<double> out) const {

@@ -58,6 +58,8 @@ struct KeptObservations {
   std::vector<ChannelSummary> sums_of(std::uint64_t begin, std::uint64_t end) const;
   /// Appends the observations that follow.
   void append(KeptObservations&& next);
+  /// A copy of observations [first, last), as far as they are there, without sums.
+  KeptObservations part(std::uint64_t first, std::uint64_t last) const;
 };
 
 /// Primaries of an observation; for an image those of every pixel and component.
@@ -159,6 +161,9 @@ class Pool {
     std::shared_ptr<KeptObservations> observations = std::make_shared<KeptObservations>();
     std::vector<std::pair<std::uint64_t, std::shared_ptr<const Summary>>> partial = {};
     std::optional<Fault> fault = {};
+
+    /// Adds what is kept of the observations that follow.
+    void append_kept(Block&& next);
   };
   /// Draws one observation again.
   void draw_again(Estimator& estimator, std::uint64_t index, std::span<double> out) const;
@@ -167,8 +172,12 @@ class Pool {
   bool sums_later() const { return elements_ > 0 && recipe_.kept_observations >= most_marked(); }
   /// Sums of no observations, as those of a block begin.
   Summary no_sums() const;
-  /// All that is drawn, as one block.
-  Block drawn_block() const;
+  /// Sums of all that is drawn, as one block that keeps nothing.
+  Block drawn_sums() const;
+  /// Observations below it are kept whole, or some of their values.
+  std::uint64_t kept_end() const;
+  /// What is kept of observations [first, last), without sums.
+  Block kept_block(std::uint64_t first, std::uint64_t last) const;
   /// Draws observations [first, last) of one block with a worker's estimator, made if needed.
   /// Thread-safe. An exception of the source becomes the block's fault.
   Block draw(const std::function<Estimator&()>& estimator, std::uint64_t first,

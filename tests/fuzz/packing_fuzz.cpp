@@ -11,19 +11,11 @@ using namespace assay::harness;
 using assay::fuzz::require;
 
 /// Nothing is drawn of it. The first two may be an image.
-class ThreeSums final : public Setup {
- public:
-  explicit ThreeSums(bool image) : image_(image) {}
-  std::size_t channel_count() const override { return 3; }
-  Channel channel(std::size_t) const override { return {}; }
-  std::unique_ptr<Estimator> make() const override { return nullptr; }
-  std::optional<ImageShape> image() const override {
-    return image_ ? std::optional(ImageShape{.width = 2, .height = 1}) : std::nullopt;
-  }
-
- private:
-  bool image_;
-};
+std::shared_ptr<const Setup> three_sums(bool image) {
+  SetupParts parts{.channels = std::vector<Channel>(image ? 1 : 3)};
+  if (image) parts.image = ImageShape{.width = 2, .height = 1};
+  return setup_of(std::move(parts));
+}
 
 // Large enough to matter; small enough not to test the memory alone.
 bool is_modest(const Recipe& recipe) {
@@ -34,7 +26,7 @@ bool is_modest(const Recipe& recipe) {
 }
 
 void block(std::string_view bytes, const Recipe& recipe, bool image) try {
-  Pool pool = pool_of(recipe, std::make_shared<ThreeSums>(image));
+  Pool pool = pool_of(recipe, three_sums(image));
   const std::string packed = packed_block(unpacked_block(bytes, pool, 0));
   const Pool::Block again = unpacked_block(packed, pool, 0);
   require(packed_block(again) == packed);

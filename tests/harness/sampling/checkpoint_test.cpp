@@ -33,11 +33,14 @@ std::shared_ptr<Checkpoint> checkpoint(const std::string& file, const Identity& 
   return std::make_shared<Checkpoint>(file, std::chrono::seconds(0), identity, threads(2));
 }
 
+const std::string suite = ASSAY_SOURCE_DIR "/tests/suites/kinds.yaml";
+
 // Killed after 5 blocks, then after twice as many, until the run ends.
 TEST(Checkpoint, OfARunThatIsKilledGivesTheSameRecord) {
-  const std::string suite = ASSAY_SOURCE_DIR "/tests/suites/kinds.yaml";
   const Workplace place;
   const auto run_once = [&](std::size_t blocks) -> std::optional<reports::Record> {
+    // A kill may leave part of a writing.
+    std::ofstream(place.file("kept.kept"), std::ios::app) << "torn";
     try {
       const auto mortal = std::make_shared<Mortal>(checkpoint(place.file("kept")), blocks);
       return run_files({suite}, {.threads = 2, .executor = mortal, .coarsen = 8});
@@ -50,6 +53,20 @@ TEST(Checkpoint, OfARunThatIsKilledGivesTheSameRecord) {
   while (!(resumed = run_once(5U << kills))) ++kills;
   EXPECT_GT(kills, 1U);
   EXPECT_EQ(numbers_of(*resumed), numbers_of(run_files({suite}, {.threads = 1, .coarsen = 8})));
+}
+
+TEST(Checkpoint, WhoseKeptValuesAreDamagedIsRefused) {
+  const Workplace place;
+  const auto run_on = [&](std::size_t blocks) {
+    run_files({suite},
+              {.executor = std::make_shared<Mortal>(checkpoint(place.file("kept")), blocks),
+               .coarsen = 8});
+  };
+  EXPECT_THROW(run_on(20), Kill);
+  std::fstream(place.file("kept.kept")).seekp(100) << "damage";
+  EXPECT_THAT(refusal([&] { run_on(0); }), HasSubstr("kept: it is damaged: its checksum differs"));
+  std::filesystem::resize_file(place.file("kept.kept"), 50);
+  EXPECT_THAT(refusal([&] { run_on(0); }), HasSubstr("kept: it is nothing that Assay packed"));
 }
 
 TEST(Checkpoint, OfAnotherRunIsRefusedWithTheDifference) {

@@ -14,37 +14,20 @@ const std::string nothing = thrown([] {});
 
 /// Two sums, which may be an image, and the number of a cell. One observation may be no number, and
 /// one may throw.
-class OddSetup final : public Setup {
- public:
-  explicit OddSetup(std::optional<std::uint64_t> throws = {}, bool image = false)
-      : throws_(throws), image_(image) {}
-  std::optional<ImageShape> image() const override {
-    return image_ ? std::optional(ImageShape{.width = 2, .height = 1}) : std::nullopt;
-  }
-  std::size_t channel_count() const override { return 3; }
-  Channel channel(std::size_t) const override { return {}; }
-  std::unique_ptr<Estimator> make() const override {
-    class Odd final : public Estimator {
-     public:
-      explicit Odd(std::optional<std::uint64_t> throws) : throws_(throws) {}
-      void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
-                     Cost& cost) override {
-        if (random.observation() == throws_) throw std::runtime_error("the lamp burnt out");
+std::shared_ptr<const Setup> odd(std::optional<std::uint64_t> throws = {}, bool image = false) {
+  SetupParts parts{.channels = std::vector<Channel>(image ? 1 : 3)};
+  if (image) parts.image = ImageShape{.width = 2, .height = 1};
+  parts.make = estimating(
+      [throws](Stream& random, std::uint64_t primaries, std::span<double> out, Cost& cost) {
+        if (random.observation() == throws) throw std::runtime_error("the lamp burnt out");
         out[0] = random.uniform() + static_cast<double>(primaries);
         out[1] = random.observation() == 3 ? std::numeric_limits<double>::infinity() : -out[0];
         out[2] = static_cast<double>(random() % 5);
         cost.samples += primaries;
         cost.shadow_rays += random() % 3;
-      }
-      std::optional<std::uint64_t> throws_;
-    };
-    return std::make_unique<Odd>(throws_);
-  }
-
- private:
-  std::optional<std::uint64_t> throws_;
-  bool image_;
-};
+      });
+  return setup_of(std::move(parts));
+}
 
 Recipe some_recipe() {
   Recipe recipe{.key = {*rc::gen::arbitrary<std::uint64_t>()},
@@ -68,8 +51,8 @@ Recipe some_recipe() {
   return recipe;
 }
 
-std::shared_ptr<Pool> fresh(const Recipe& recipe, const OddSetup& setup) {
-  return std::make_shared<Pool>(pool_of(recipe, std::make_shared<OddSetup>(setup)));
+std::shared_ptr<Pool> fresh(const Recipe& recipe, const std::shared_ptr<const Setup>& setup) {
+  return std::make_shared<Pool>(pool_of(recipe, setup));
 }
 
 void draw_all_of(const std::shared_ptr<Pool>& pool) {
@@ -77,16 +60,21 @@ void draw_all_of(const std::shared_ptr<Pool>& pool) {
   draw_all({pool}, *threads(1), "sampling", silence);
 }
 
+std::string drawn_of(const Pool& pool) {
+  return packed_kept(pool.kept_block(0, pool.drawn())) + packed_sums(pool.drawn_sums());
+}
+
 /// All that is drawn, without the seconds.
 std::string contents_of(const Pool& pool) {
-  Pool::Block block = unpacked_block(packed_block(pool.drawn_block()), pool, 0);
+  Pool::Block block = unpacked_block(drawn_of(pool), pool, 0);
   block.whole.seconds = 0;
   for (auto& [count, sums] : block.partial) std::const_pointer_cast<Summary>(sums)->seconds = 0;
   return packed_block(block);
 }
 
 /// Draws the blocks in another process's way: by an unpacked recipe, and packed.
-std::vector<std::string> blocks_elsewhere(const Recipe& recipe, const OddSetup& setup) {
+std::vector<std::string> blocks_elsewhere(const Recipe& recipe,
+                                          const std::shared_ptr<const Setup>& setup) {
   Recipe there;
   unpack(packed(recipe), there);
   const std::shared_ptr<Pool> pool = fresh(there, setup);
@@ -101,8 +89,8 @@ std::vector<std::string> blocks_elsewhere(const Recipe& recipe, const OddSetup& 
 }
 
 RC_GTEST_PROP(Packing, GivesThePoolThatIsDrawnHere, ()) {
-  const OddSetup setup(*rc::gen::element<std::optional<std::uint64_t>>({}, 0, 10, 150),
-                       *rc::gen::arbitrary<bool>());
+  const auto setup = odd(*rc::gen::element<std::optional<std::uint64_t>>({}, 0, 10, 150),
+                         *rc::gen::arbitrary<bool>());
   const Recipe recipe = some_recipe();
   const std::shared_ptr<Pool> here = fresh(recipe, setup);
   draw_all_of(here);
@@ -113,18 +101,22 @@ RC_GTEST_PROP(Packing, GivesThePoolThatIsDrawnHere, ()) {
   }
   RC_ASSERT(contents_of(*folded) == contents_of(*here));
   RC_ASSERT(folded->fault().has_value() == here->fault().has_value());
-  // All that is drawn is one block, too.
+  // What is kept comes in parts, too.
   const std::shared_ptr<Pool> again = fresh(recipe, setup);
-  again->fold(unpacked_block(packed_block(here->drawn_block()), *again, 0));
-  RC_ASSERT(packed_block(again->drawn_block()) == packed_block(here->drawn_block()));
+  Pool::Block kept;
+  for (std::uint64_t i = 0; i <= here->kept_end(); i += 30) {
+    add_kept(packed_kept(here->kept_block(i, i + 30)), kept);
+  }
+  again->fold(unpacked_drawn(packed_sums(here->drawn_sums()), std::move(kept), *again));
+  RC_ASSERT(drawn_of(*again) == drawn_of(*here));
 }
 
 /// Nothing but Unpackable may come of bytes that are not a block.
 bool folds_or_is_refused(const std::string& frame, const Recipe& recipe) {
-  const std::shared_ptr<Pool> pool = fresh(recipe, OddSetup());
+  const std::shared_ptr<Pool> pool = fresh(recipe, odd());
   return thrown<Unpackable>([&] {
            pool->fold(unpacked_block(unframed(frame), *pool, 0));
-           packed_block(pool->drawn_block());
+           drawn_of(*pool);
          }).size() > 5;
 }
 
@@ -134,8 +126,8 @@ bool is_refused(const std::string& frame, const Pool& pool) {
 
 RC_GTEST_PROP(Packing, RefusesWhatIsCutShortOrDamaged, ()) {
   const Recipe recipe = some_recipe();
-  const std::string frame = blocks_elsewhere(recipe, OddSetup()).front();
-  const std::shared_ptr<Pool> pool = fresh(recipe, OddSetup());
+  const std::string frame = blocks_elsewhere(recipe, odd()).front();
+  const std::shared_ptr<Pool> pool = fresh(recipe, odd());
   RC_ASSERT(!is_refused(frame, *pool));
   RC_ASSERT(is_refused(frame.substr(0, *rc::gen::inRange<std::size_t>(0, frame.size())), *pool));
   std::string flipped = frame;
@@ -148,7 +140,7 @@ RC_GTEST_PROP(Packing, RefusesWhatIsCutShortOrDamaged, ()) {
 // A damage that the checksum does not show: each list is still bounded.
 RC_GTEST_PROP(Packing, OfDamagedBytesUnderARightChecksumDoesNotCrash, ()) {
   const Recipe recipe = some_recipe();
-  std::string bytes(unframed(blocks_elsewhere(recipe, OddSetup()).front()));
+  std::string bytes(unframed(blocks_elsewhere(recipe, odd()).front()));
   const std::size_t at = *rc::gen::inRange<std::size_t>(0, bytes.size());
   for (std::size_t i = at; i < std::min(at + 8, bytes.size()); ++i) {
     bytes[i] = *rc::gen::arbitrary<char>();
@@ -166,12 +158,12 @@ RC_GTEST_PROP(Packing, OfADamagedRecipeDoesNotCrash, ()) {
   thrown<Unpackable>([&] {
     Recipe recipe;
     unpack(framed(bytes), recipe);
-    pool_of(recipe, std::make_shared<OddSetup>());
+    pool_of(recipe, odd());
   });
 }
 
 TEST(Packing, RefusesAMarkAtNoObservation) {
-  const auto make = [] { pool_of({.marks = {0}}, std::make_shared<OddSetup>()); };
+  const auto make = [] { pool_of({.marks = {0}}, odd()); };
   EXPECT_EQ(thrown<Unpackable>(make), "a mark at no observation");
 }
 

@@ -89,31 +89,14 @@ void expect_same(const Summary& one, const Summary& other) {
 }
 
 /// Notes in which order observations are drawn.
-class NotingSetup final : public Setup {
- public:
-  NotingSetup(char name, std::string& order) : name_(name), order_(order) {}
-  std::size_t channel_count() const override { return 1; }
-  Channel channel(std::size_t) const override { return {}; }
-  std::unique_ptr<Estimator> make() const override {
-    class Noting final : public Estimator {
-     public:
-      Noting(char name, std::string& order) : name_(name), order_(order) {}
-      void secondary(Stream& random, std::uint64_t, std::span<double> out, Cost&) override {
-        out[0] = random.uniform();
-        order_ += name_;
-      }
-
-     private:
-      char name_;
-      std::string& order_;
-    };
-    return std::make_unique<Noting>(name_, order_);
-  }
-
- private:
-  char name_;
-  std::string& order_;
-};
+std::shared_ptr<const Setup> noting(char name, std::string& order) {
+  return setup_of({.channels = {Channel{}},
+                   .make = estimating(
+                       [name, &order](Stream& random, std::uint64_t, std::span<double> out, Cost&) {
+                         out[0] = random.uniform();
+                         order += name;
+                       })});
+}
 
 // Pools whose seconds are compared are drawn side by side. At any time, equal parts of both are
 // drawn, up to a block, though one has four times as many observations.
@@ -121,8 +104,8 @@ TEST(Pool, OfWhichSecondsAreComparedAreDrawnSideBySide) {
   std::string order;
   std::vector<std::shared_ptr<Pool>> pools;
   for (const char name : {'a', 'b'}) {
-    pools.push_back(std::make_shared<Pool>(std::make_shared<NotingSetup>(name, order),
-                                           stream_key(1, std::string(1, name), "", 0), 1));
+    pools.push_back(
+        std::make_shared<Pool>(noting(name, order), stream_key(1, std::string(1, name), "", 0), 1));
     pools.back()->keep_blocks();
     pools.back()->request(name == 'a' ? 200000 : 50000);
   }
