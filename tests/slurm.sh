@@ -4,7 +4,7 @@
 #   bash tests/slurm.sh [SUITE]
 set -euo pipefail
 cd "$(dirname "$0")/.."
-suite=$PWD/${1:-suites/luminaire.yaml}
+suite=$PWD/${1:-suites/brdf.yaml}
 assay=$PWD/build/harness/assay
 for program in munged slurmctld slurmd sbatch "$assay-mpi"; do
   command -v "$program" >/dev/null || { echo "skipped: $program is missing"; exit 77; }
@@ -51,7 +51,7 @@ PartitionName=all Nodes=ALL Default=YES State=UP
 END
 export SLURM_CONF=$work/slurm.conf
 # Two nodes of one machine share no memory segments.
-export OMPI_MCA_btl=self,tcp
+export OMPI_MCA_btl=self,tcp OMPI_MCA_btl_tcp_if_include=lo
 
 head -c 1024 /dev/urandom >"$work/munge.key"
 chmod 400 "$work/munge.key"
@@ -92,7 +92,7 @@ await() {
   tail -n 5 "$work"/*.log "$work/out" || true
   exit 1
 }
-has_nodes() { [ "$(sinfo -h -t idle -o %D)" = 2 ]; }
+has_nodes() { [ "$(sinfo -h -N -o %T)" = $'idle\nidle' ]; }
 runs() { [ "$(state_of_job)" = RUNNING ]; }
 is_over() { [ -z "$(state_of_job)" ]; }
 waits() { [ "$(state_of_job)" = PENDING ]; }
@@ -112,6 +112,7 @@ await 60 lost
 rm -rf "$work"/spool.n2 "$work"/tmp.n2/*  # as a node that starts anew
 start_node n2
 await 60 waits
+await 60 has_nodes
 # Slurm would start it two minutes later.
 scontrol update JobId="$job" StartTime=now
 await 300 is_over
