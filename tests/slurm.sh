@@ -104,7 +104,7 @@ await 60 has_nodes
 job=$(sbatch --parsable --requeue -N 2 -n 4 -o "$work/out" --wrap "srun --mpi=pmix $assay run $suite \
   --quiet --checkpoint $work/kept --checkpoint-every .1 --report json=$work/ranks/run.json")
 await 60 runs
-await 60 test -s "$work/kept"
+await 60 test -s "$work/kept.kept"
 # shellcheck disable=SC2046  # one word a process
 kill -KILL "$node" $(processes_of n2)
 [ -s "$work/kept" ] || { echo 'FAILED: the run was over before its node was lost'; exit 1; }

@@ -72,8 +72,7 @@ void Dialogue::hear_hello() {
     const std::size_t count = listen(buffer, end);
     if (count == 0) {
       const std::string said = text.empty() ? "" : "; it said `" + shown(text) + "`";
-      give_up(child_.ending() + " before it printed the line `ready`" + said + "; " +
-              terms_.who_is_ready);
+      give_up(child_.ending() + " before it printed the line `ready`" + said, terms_.who_is_ready);
     }
     text.append(buffer.data(), count);
     if (text.size() > longest_hello) throw ProtocolError("its hello has no end");

@@ -27,6 +27,15 @@ namespace fs = std::filesystem;
                                        std::generic_category().message(error)));
 }
 
+void write_all(int descriptor, std::string_view text, const fs::path& path) {
+  while (!text.empty()) {
+    const ssize_t written = ::write(descriptor, text.data(), text.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail("write", path, errno);
+    text.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
 constexpr std::string_view temporary_begin = ".assay-";
 constexpr std::string_view temporary_end = ".tmp";
 
@@ -69,27 +78,10 @@ class Output {
     if (lock_ >= 0) ::close(lock_);
   }
 
-  void write(std::string_view text) {
-    while (!text.empty()) {
-      const ssize_t written = ::write(descriptor_, text.data(), text.size());
-      if (written < 0 && errno == EINTR) continue;
-      if (written < 0) fail("write", target_, errno);
-      text.remove_prefix(static_cast<std::size_t>(written));
-    }
-  }
-
-  void cut(std::uint64_t size) {
-    const auto end = static_cast<off_t>(size);
-    if (::ftruncate(descriptor_, end) != 0 || ::lseek(descriptor_, end, SEEK_SET) != end) {
-      fail("write", target_, errno);
-    }
-  }
-
-  void flush() {
-    if (::fsync(descriptor_) != 0) fail("write", target_, errno);
-  }
+  void write(std::string_view text) { write_all(descriptor_, text, target_); }
 
   void close() {
+    if (temporary_ && ::fsync(descriptor_) != 0) fail("write", target_, errno);
     // A network file system may report only here that the disk is full.
     if (::close(std::exchange(descriptor_, -1)) != 0) fail("write", target_, errno);
   }
@@ -180,19 +172,53 @@ void write_whole(const fs::path& path, std::string_view text) {
   }
   Output output(temporary_beside(target), O_CREAT | O_EXCL, target);
   output.write(text);
-  output.flush();
   output.close();
   output.rename();
 }
 
-void write_end(const fs::path& path, std::uint64_t first, std::string_view text) {
-  Output output(path, O_CREAT, path);
-  output.cut(first);
-  output.write(text);
-  output.close();
+GrowingFile::GrowingFile(fs::path path)
+    : path_(std::move(path)),
+      descriptor_(::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
+  if (descriptor_ < 0) fail("write", path_, errno);
+  if (!lock(descriptor_)) {
+    ::close(descriptor_);
+    throw std::runtime_error(fmt::format("another run is writing to {}", path_.string()));
+  }
+  size_ = fs::file_size(path_);
 }
 
-void flush(const fs::path& path) { Output(path, 0, path).flush(); }
+GrowingFile::~GrowingFile() { ::close(descriptor_); }
+
+void GrowingFile::cut(std::uint64_t size) {
+  if (::ftruncate(descriptor_, static_cast<off_t>(size)) != 0) fail("write", path_, errno);
+  size_ = size;
+}
+
+void GrowingFile::append(std::string_view bytes) {
+  // An earlier call may have failed half-way.
+  if (::lseek(descriptor_, static_cast<off_t>(size_), SEEK_SET) < 0) fail("write", path_, errno);
+  write_all(descriptor_, bytes, path_);
+  size_ += bytes.size();
+}
+
+void GrowingFile::flush() {
+  if (::fsync(descriptor_) != 0) fail("write", path_, errno);
+}
+
+std::string GrowingFile::read(std::uint64_t first, std::uint64_t size) const {
+  std::string bytes(size, '\0');
+  std::uint64_t there = 0;
+  while (there < size) {
+    const ssize_t got =
+        ::pread(descriptor_, bytes.data() + there, size - there, static_cast<off_t>(first + there));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) fail("read", path_, errno);
+    if (got == 0) break;
+    there += static_cast<std::uint64_t>(got);
+  }
+  bytes.resize(there);
+  return bytes;
+}
 
 LockedFile::LockedFile(const std::string& path) : descriptor_(locked(path)) {
   while (!is_current(descriptor_, path)) {

@@ -16,11 +16,31 @@ namespace assay::harness {
 /// std::runtime_error that names path and reason, and leaves nothing behind.
 void write_whole(const std::filesystem::path& path, std::string_view text);
 
-/// Writes the text to the place `first` of a file, which ends with it. Makes the file if it is
-/// missing. Throws std::runtime_error that names path and reason.
-void write_end(const std::filesystem::path& path, std::uint64_t first, std::string_view text);
-/// Waits until a file is on the disk. Throws the same.
-void flush(const std::filesystem::path& path);
+/// A file to which this process adds while the object lives. Made empty if it is missing. Each
+/// function throws std::runtime_error with path and reason; the constructor also if another process
+/// has the file.
+class GrowingFile {
+ public:
+  explicit GrowingFile(std::filesystem::path path);
+  ~GrowingFile();
+  GrowingFile(const GrowingFile&) = delete;
+  GrowingFile& operator=(const GrowingFile&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  std::uint64_t size() const { return size_; }
+  /// Drops what follows the first `size` bytes.
+  void cut(std::uint64_t size);
+  void append(std::string_view bytes);
+  /// Waits until all is on the disk.
+  void flush();
+  /// Fewer bytes if the file ends.
+  std::string read(std::uint64_t first, std::uint64_t size) const;
+
+ private:
+  std::filesystem::path path_;
+  int descriptor_;
+  std::uint64_t size_;
+};
 
 /// A file that this process alone may replace while the object lives: two runs that add to one
 /// ledger take turns. The constructor makes the file, empty, if it is missing. It locks the file

@@ -47,8 +47,9 @@ unsigned threads_of_rank(const RunOptions& options) { return std::max(1U, option
 
 int run_suites(const std::vector<Suite>& suites, const RunOptions& options, const Output& output) {
   std::vector<std::string> kept = files_read(suites);
-  for (const std::string& file : {options.ledger, options.checkpoint}) {
-    if (!file.empty()) kept.push_back(file);
+  if (!options.ledger.empty()) kept.push_back(options.ledger);
+  if (!options.checkpoint.empty()) {
+    kept.insert(kept.end(), {options.checkpoint, Checkpoint::kept_file(options.checkpoint)});
   }
   require_writable(output, kept);
   if (options.ranks != nullptr && options.shard) {

@@ -705,10 +705,9 @@ class MeanTheta : public Theta {
       const std::uint64_t seen = outcome.secondaries(side) * outcome.plan.primaries[side];
       if (std::isfinite(upwards ? range.high : range.low) || seen >= many) continue;
       const bool rows = is_recorded(question.subjects[side]);
-      return fmt::format(
-          "{} {} may lack values rarer than one in {}, and no test can know what those carry{}",
-          seen, rows ? "rows" : "primaries", std::max<std::uint64_t>(1, seen / 3),
-          rows ? "" : "; a declared range bounds them");
+      return fmt::format("values rarer than one in {} may be missing{}",
+                         std::max<std::uint64_t>(1, seen / 3),
+                         rows ? "" : "; a declared range helps");
     }
     return "";
   }

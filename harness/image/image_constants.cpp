@@ -164,7 +164,7 @@ double z_of(const UnseenElement& unseen) {
   return unseen.sign * stats::normal_quantile({stats::Tail::upper, unseen.log_p - std::log(2.0)});
 }
 
-VaryingPart::VaryingPart(const Question& question, ImagePair& pair)
+VaryingPart::VaryingPart(const Question& question, ImagePair&& pair)
     : ComparedImages(std::move(static_cast<ComparedImages&>(pair))) {
   if (second) {
     settle_two(question);
@@ -198,7 +198,7 @@ void VaryingPart::settle_against_reference(const Question& question, std::span<c
     numbers[i] = constant;
     if (!errors.empty()) errors[i] = 0;
   }
-  drop_zero_errors();
+  if (std::ranges::all_of(errors, [](double each) { return each == 0; })) errors.clear();
   side.replace(settled_);
 }
 

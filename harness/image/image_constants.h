@@ -32,8 +32,8 @@ double z_of(const UnseenElement& unseen);
 /// alone varied, its standard error tests the other's constant, provided that the other declares a
 /// range. Without a range Welch's test takes the values seen.
 struct VaryingPart : ComparedImages {
-  /// Takes the numbers of the pair, which must outlive it.
-  VaryingPart(const Question& question, ImagePair& pair);
+  /// Moves images and numbers out of the pair. The pair owns the texels and must outlive it.
+  VaryingPart(const Question& question, ImagePair&& pair);
   VaryingPart(const VaryingPart&) = delete;  // spans point inside
   VaryingPart& operator=(const VaryingPart&) = delete;
 

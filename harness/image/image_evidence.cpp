@@ -234,7 +234,7 @@ PictureLook look_at(const Question& question, const ImageTest& test, ImagePair p
   look.means = {channel_means(pair.first), means_held_against(pair)};
   look.z.resize(pair.first.extent.elements());
   const bool of_two = pair.second.has_value();
-  const VaryingPart varying(question, pair);
+  const VaryingPart varying(question, std::move(pair));
   require_spread(question, varying.any() || (pair.subtracted && varies(*pair.subtracted)));
   const stats::PyramidOptions options{.z = look.z,
                                       .for_each = on_all_threads,

@@ -26,9 +26,6 @@ struct ComparedImages {
   stats::ImagePair pair() const {
     return second ? stats::ImagePair(first, *second) : stats::ImagePair(first, reference());
   }
-  void drop_zero_errors() {
-    if (std::ranges::all_of(error, [](double each) { return each == 0; })) error.clear();
-  }
 };
 
 /// The images of a claim, with the second's scaled. Of a paired claim the replicates are

@@ -91,8 +91,7 @@ class Ranks::Window {
   Window(Ranks& ranks, Round& round)
       : ranks_(ranks), round_(round), workers_(round.pools()), usual_(round.pools().size()) {
     for (const auto& pool : round.pools()) {
-      elsewhere_.push_back(pool->can_be_drawn_elsewhere() &&
-                           ranks.names_.contains(pool->setup().get()));
+      elsewhere_.push_back(pool->can_be_drawn_elsewhere() && ranks.names_.contains(pool->setup()));
     }
   }
 
@@ -300,7 +299,7 @@ void Ranks::greet(const Messages::Message& message, const std::set<std::string>&
 void Ranks::introduce(const NamedSetups& setups) {
   std::set<std::string> names;
   for (const auto& [name, setup] : setups) {
-    names_.emplace(setup.get(), name);
+    names_.emplace(setup, name);
     names.insert(name);
   }
   const double limit = std::max(patience, 10 * seconds_since(begun_));
@@ -379,7 +378,7 @@ void Ranks::send_batch(int rank, std::vector<std::uint64_t> slots, const Window&
     const Pool& pool = window.pool(slot);
     orders.push_back(slot.task);
     if (!to.recipes.insert(slot.task.pool).second) continue;
-    recipes.push_back({slot.task.pool, names_.at(pool.setup().get()), pool.recipe()});
+    recipes.push_back({slot.task.pool, names_.at(pool.setup()), pool.recipe()});
   }
   messages_.send(rank, packed(Kind::batch, next_batch_, recipes, orders));
   batches_[next_batch_++] = {rank, round_, std::move(slots), Clock::now()};

@@ -103,7 +103,7 @@ class Ranks final : public Executor {
   std::size_t window_bytes_;
   Clock::time_point begun_ = Clock::now();
   std::vector<Rank> ranks_;
-  std::map<const Setup*, std::string> names_;
+  std::map<std::shared_ptr<const Setup>, std::string> names_;
   std::map<std::uint64_t, Batch> batches_;  ///< by number; may be of earlier rounds
   std::uint64_t next_batch_ = 0;
   std::uint64_t round_ = 0;

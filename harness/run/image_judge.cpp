@@ -162,11 +162,10 @@ std::optional<PlaceEffect> effect_at_place(const DrawnTest& test) {
                                                 effect.degrees);
   const double base = other_mean(test, elements, family.weights);
   return PlaceEffect{
-      .estimate = mean_over(test, 0, elements, family.weights) - base,
+      .estimate = effect.estimate,
       .interval = {effect.estimate - half, effect.estimate + half, stats::confidence_at_place},
       .other = base,
-      .elements = std::move(elements),
-      .weights = family.weights};
+      .elements = std::move(elements)};
 }
 
 std::string others_at(const DrawnTest& test, const PlaceEffect& place) {
@@ -186,11 +185,13 @@ std::string others_at(const DrawnTest& test, const PlaceEffect& place) {
     }
     // As many standard errors of independent pixels.
     if (!(std::abs(sum) > clear * std::sqrt(static_cast<double>(elements.size())))) continue;
-    const double base = other_mean(test, elements, place.weights);
-    const double difference = mean_over(test, 0, elements, place.weights) - base;
+    const double base = other_mean(test, elements, {});
+    const double difference = mean_over(test, 0, elements, {}) - base;
+    if (difference * sum < 0) continue;
     const reports::Effect effect{.relative = base != 0};
     const double unit = effect.relative ? std::abs(base) : 1;
-    texts.push_back(names[c] + " by " + reports::theta_text(difference / unit, effect));
+    texts.push_back(names[c] + (texts.empty() ? " differs by " : " by ") +
+                    reports::theta_text(difference / unit, effect));
   }
   return fmt::format("{}", fmt::join(texts, ", "));
 }
@@ -211,14 +212,17 @@ std::string means_where_it_differs(const DrawnTest& test) {
   const bool relative = effect->other != 0;
   const double unit = relative ? std::abs(effect->other) / 100 : 1;
   const char* const per_cent = relative ? " %" : "";
+  const char* const weighted =
+      channels[0].image->family.weights.empty() ? "" : ", pixels weighted by their noise";
+  const auto shown = [&](double value) { return reports::human(value / unit, 3); };
   return fmt::format(
-             "; there it is {:.3g}{} too {} ({:.3g} to {:.3g}{}): {:.5g} against {:.5g}{}",
-             std::abs(effect->estimate) / unit, per_cent, effect->estimate < 0 ? "dark" : "bright",
-             (effect->estimate < 0 ? -effect->interval.high : effect->interval.low) / unit,
-             (effect->estimate < 0 ? -effect->interval.low : effect->interval.high) / unit,
-             per_cent, effect->other + effect->estimate, effect->other,
+             "; there it is {}{} too {} ({} to {}{}): {:.5g} against {:.5g}{}",
+             shown(std::abs(effect->estimate)), per_cent, effect->estimate < 0 ? "dark" : "bright",
+             shown(effect->estimate < 0 ? -effect->interval.high : effect->interval.low),
+             shown(effect->estimate < 0 ? -effect->interval.low : effect->interval.high), per_cent,
+             effect->other + effect->estimate, effect->other,
              effect->interval.low < effect->interval.high
-                 ? ""
+                 ? weighted
                  : ", without noise; if it should vary, give each image a seed of its own") +
          constants;
 }

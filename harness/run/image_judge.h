@@ -25,11 +25,10 @@ struct PlaceEffect {
   stats::Interval interval = {};
   double other = 0;                        ///< The mean that it is held against.
   std::vector<std::size_t> elements = {};  ///< In the question.
-  std::span<const float> weights = {};     ///< The test's, by element; empty if they are alike.
 };
 std::optional<PlaceEffect> effect_at_place(const DrawnTest& test);
 
-/// "G by -5.1 %, B by -4.9 %": what other components clearly differ by there, three at most.
+/// "G differs by -5.1 %, B by -4.9 %": what other components clearly differ by there, three at most.
 std::string others_at(const DrawnTest& test, const PlaceEffect& place);
 
 /// "; there it is 3 % too bright (2 to 4 %): 1.03 against 1", if one cell decided a failed claim on

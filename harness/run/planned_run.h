@@ -37,8 +37,7 @@ struct SuiteRun {
   Suite suite;
   std::uint64_t seed = 1;
   std::map<std::string, PreparedEstimator> estimators;
-  /// Of its tests, without untested ones. Those of planned tests move to the plans.
-  std::vector<Question> questions = {};
+  std::vector<Question> questions = {};  ///< Questions of its tests that have no plan yet.
   std::vector<const PreparedEstimator*> used = {};  ///< Of the selected tests, in the file's order.
   Pilots pilots = {};                               ///< Pilots of the selected tests' estimators.
   std::vector<TestWork> tests = {};                 ///< The selected tests, in a shard its own.

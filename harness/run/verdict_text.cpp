@@ -244,6 +244,13 @@ Reason what_would_decide(const TestOutcome& outcome, const ChannelOutcome& chann
   // The samples' standard errors must shrink to the room that the reference's leaves.
   const double fixed = reference_error(outcome, channel);
   const double error = half / interval_errors(channel, beta);
+  if (channel.regions.proof() && room.size < error) {
+    return Reason::advising(
+        "the estimate is less than a standard error from what is to be shown; ",
+        channel.regions.within()
+            ? "give a larger margin"
+            : "if both sides may be equal, claim that they are `within` a margin");
+  }
   const double sampled = error * error - fixed * fixed;
   const double wanted = std::pow(room.size / room.standard_errors, 2) - fixed * fixed;
   if (!(wanted > 0)) {

@@ -3,14 +3,12 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
 
 #include "estimators/core/value.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/refuse.h"
 #include "harness/base/terminal.h"
 #include "harness/base/text_file.h"
-#include "harness/base/whole_file.h"
 #include "harness/sampling/packing.h"
 
 namespace assay::harness {
@@ -18,14 +16,14 @@ namespace {
 
 // Writing may take so small a part of the time.
 constexpr int pauses_a_write = 20;
-// Numbers of a part, or those of one observation.
+// A part has so many numbers at most, or those of one observation.
 constexpr std::size_t most_numbers = std::size_t{1} << 21;
 
 }  // namespace
 
-template <class Archive, maybe_const<FilePart> T>
+template <class Archive, maybe_const<KeptPart> T>
 void parts(Archive& a, T& part) {
-  a(part.first, part.size);
+  a(part.observation, part.place, part.size);
 }
 
 template <class Archive, maybe_const<DrawnPool> T>
@@ -36,17 +34,19 @@ void parts(Archive& a, T& drawn) {
 Checkpoint::Checkpoint(std::string file, std::chrono::duration<double> pause, Identity identity,
                        std::shared_ptr<Executor> inner)
     : file_(std::move(file)),
-      pause_(std::chrono::duration_cast<std::chrono::steady_clock::duration>(pause)),
+      pause_(std::chrono::duration_cast<Clock::duration>(pause)),
       identity_(std::move(identity)),
-      inner_(std::move(inner)),
-      kept_file_(file_ + ".kept") {
-  if (std::filesystem::exists(file_)) read();
+      inner_(std::move(inner)) {
+  const bool is_resumed = std::filesystem::exists(file_);
+  if (is_resumed) read();
+  open_kept(is_resumed);
   write();
-  due_ = std::chrono::steady_clock::now() + pause_;
+  soonest_ = Clock::now();
+  due_ = soonest_ + pause_;
 }
 
 void Checkpoint::read() {
-  const std::string bytes = harness::bytes_of(file_).value_or("");
+  const std::string bytes = bytes_of(file_).value_or("");
   Identity identity;
   std::vector<std::pair<std::string, DrawnPool>> entries;
   try {
@@ -59,61 +59,78 @@ void Checkpoint::read() {
            "is the checkpoint of another run: {} was {} and is {}; remove it, or name another file",
            other->name, other->theirs, other->ours);
   }
-  for (auto& [recipe, drawn] : entries) {
-    for (const FilePart& part : drawn.kept) {
-      kept_size_ = std::max(kept_size_, part.first + part.size);
-    }
-    pools_[recipe].drawn = std::move(drawn);
+  for (auto& [recipe, drawn] : entries) pools_[recipe].drawn = std::move(drawn);
+}
+
+/// Drops what was added when FILE was not written any more.
+void Checkpoint::open_kept(bool is_resumed) {
+  kept_ = std::make_unique<GrowingFile>(kept_file(file_));
+  const Location where{.file = kept_->path()};
+  std::uint64_t end = 0;
+  for (const auto& [recipe, known] : pools_) {
+    for (const KeptPart& part : known.drawn.kept) end = std::max(end, part.place + part.size);
   }
+  if (kept_->size() < end) refuse(where, "is shorter than {} says; remove both", file_);
+  if (!is_resumed && kept_->size() > 0 && kept_->read(0, magic.size()) != magic) {
+    refuse(where, "is nothing that Assay packed, and would be lost; name another checkpoint");
+  }
+  kept_->cut(end);
 }
 
 void Checkpoint::write() {
-  const std::uint64_t size = kept_size_;
-  std::vector<std::pair<std::string, DrawnPool>> entries;
+  std::uint64_t count = 0;
   for (auto& [recipe, known] : pools_) {
     const std::shared_ptr<Pool> pool = known.pool.lock();
-    if (pool && pool->drawn() > 0 && !pool->fault()) update(known, *pool);
-    if (!known.drawn.sums.empty()) entries.emplace_back(recipe, known.drawn);
+    if (pool && pool->drawn() > known.count && !pool->fault()) update(recipe, known, *pool);
+    count += known.drawn.sums.empty() ? 0U : 1U;
   }
-  if (kept_size_ > size) flush(kept_file_);
-  write_whole(file_, packed(identity_, entries));
+  kept_->flush();
+  Packer pack;
+  pack(identity_, count);
+  for (const auto& [recipe, known] : pools_) {
+    if (!known.drawn.sums.empty()) pack(recipe, known.drawn);
+  }
+  write_whole(file_, framed(std::move(pack).bytes()));
 }
 
-void Checkpoint::update(Known& known, const Pool& pool) {
-  const std::uint64_t most = std::max<std::uint64_t>(1, most_numbers / pool.channels());
-  std::vector<FilePart> kept = known.drawn.kept;
-  for (std::uint64_t first = known.kept_end; first < pool.kept_end(); first += most) {
+void Checkpoint::update(const std::string& recipe, Known& known, const Pool& pool) {
+  const std::uint64_t most = std::max<std::uint64_t>(1, most_numbers / pool.kept_width());
+  DrawnPool drawn{.sums = packed_sums(pool.drawn_sums()), .kept = known.drawn.kept};
+  for (std::uint64_t first = known.count; first < pool.kept_end(); first += most) {
     const std::uint64_t last = std::min(first + most, pool.kept_end());
-    const std::string part = framed(packed_kept(pool.kept_block(first, last)));
-    write_end(kept_file_, kept_size_, part);
-    kept.push_back({kept_size_, part.size()});
-    kept_size_ += part.size();
+    const std::string part =
+        packed(text_hash(recipe), first, packed_kept(pool.kept_block(first, last)));
+    drawn.kept.push_back({first, kept_->size(), part.size()});
+    kept_->append(part);
   }
-  known.kept_end = pool.kept_end();
-  known.drawn = {packed_sums(pool.drawn_sums()), std::move(kept)};
+  known.drawn = std::move(drawn);
+  known.count = pool.drawn();
 }
 
-void Checkpoint::write_if_due() {
-  const auto start = std::chrono::steady_clock::now();
-  if (start < due_) return;
+bool Checkpoint::try_to_write() {
+  const Clock::time_point start = Clock::now();
+  bool written = false;
   try {
     write();
-  } catch (const std::runtime_error& error) {  // a full disk must not end a long run
+    written = true;
+  } catch (const std::runtime_error& error) {
     say_beside_progress(error.what());
   }
-  const auto end = std::chrono::steady_clock::now();
-  due_ = end + std::max(pause_, pauses_a_write * (end - start));
+  const Clock::time_point end = Clock::now();
+  soonest_ = end + pauses_a_write * (end - start);
+  due_ = std::max(soonest_, end + pause_);
+  return written;
 }
 
 void Checkpoint::introduce(const NamedSetups& setups) {
-  for (const auto& [name, setup] : setups) names_.emplace(setup.get(), name);
+  for (const auto& [name, setup] : setups) names_.emplace(setup, name);
   inner_->introduce(setups);
 }
 
 void Checkpoint::recall(const SomePools& pools) {
   inner_->recall(pools);
   for (const auto& pool : pools) {
-    const auto name = names_.find(pool->setup().get());
+    const auto name = names_.find(pool->setup());
     if (name == names_.end() || pool->drawn() > 0 || pool->fault() ||
         !pool->can_be_drawn_elsewhere()) {
       continue;
@@ -122,42 +139,46 @@ void Checkpoint::recall(const SomePools& pools) {
     Known& known = pools_[recipe];
     if (!known.pool.expired()) continue;
     known.pool = pool;
-    if (!known.drawn.sums.empty()) resume(known, *pool);
+    if (!known.drawn.sums.empty()) resume(recipe, known, *pool);
   }
 }
 
-void Checkpoint::resume(Known& known, Pool& pool) const {
+void Checkpoint::resume(const std::string& recipe, Known& known, Pool& pool) const {
   Pool::Block block;
   try {
-    for (const FilePart& part : known.drawn.kept) {
-      add_kept(unframed(bytes_of(part)), block);
+    for (const KeptPart& part : known.drawn.kept) {
+      std::uint64_t hash = 0;
+      std::uint64_t observation = 0;
+      std::string_view kept;
+      const std::string frame = kept_->read(part.place, part.size);
+      unpack(frame, hash, observation, kept);
+      Unpacker::require(hash == text_hash(recipe) && observation == part.observation,
+                        "it holds other observations");
+      add_kept(kept, block);
     }
     pool.fold(unpacked_drawn(known.drawn.sums, std::move(block), pool));
   } catch (const Unpackable& refusal) {
-    refuse({.file = kept_file_}, "does not go with {}: {}; remove both", file_, refusal.what());
+    refuse({.file = kept_->path()}, "does not go with {}: {}; remove both", file_, refusal.what());
   }
-  known.kept_end = pool.kept_end();
+  known.count = pool.drawn();
 }
 
 void Checkpoint::draw(Round& round) {
-  round.after_fold([this] { write_if_due(); });
+  round.after_fold([this] {
+    if (Clock::now() >= due_) try_to_write();
+  });
   inner_->draw(round);
-  if (!interrupted()) return;
-  write();
-  say_beside_progress(fmt::format("what was drawn is kept in {}; the same command goes on", file_));
-}
-
-std::string Checkpoint::bytes_of(const FilePart& part) const {
-  std::ifstream stream(kept_file_, std::ios::binary);
-  std::string bytes(part.size, '\0');
-  stream.seekg(static_cast<std::streamoff>(part.first));
-  if (!stream.read(bytes.data(), static_cast<std::streamsize>(part.size))) bytes.clear();
-  return bytes;
+  if (!interrupted()) {
+    if (Clock::now() >= soonest_) try_to_write();
+  } else if (try_to_write()) {
+    say_beside_progress(fmt::format("what was drawn is kept in {} and {}; the same command goes on",
+                                    file_, kept_->path().string()));
+  }
 }
 
 void Checkpoint::remove() const {
   std::filesystem::remove(file_);
-  std::filesystem::remove(kept_file_);
+  std::filesystem::remove(kept_->path());
 }
 
 }  // namespace assay::harness

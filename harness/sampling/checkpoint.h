@@ -1,6 +1,6 @@
 #pragma once
 
-// A checkpoint keeps what pools have drawn in a file, so that a run that was killed goes on.
+// A checkpoint keeps what pools have drawn in two files, so that a run that was killed goes on.
 // Everything else follows from that: pilots, plans, looks and verdicts come again by themselves.
 
 #include <chrono>
@@ -9,31 +9,35 @@
 #include <string>
 
 #include "harness/base/identity.h"
+#include "harness/base/whole_file.h"
 #include "harness/sampling/executor.h"
 
 namespace assay::harness {
 
-/// Bytes of a file.
-struct FilePart {
-  std::uint64_t first;
+/// This part of FILE.kept has what a pool keeps from `observation` on.
+struct KeptPart {
+  std::uint64_t observation;
+  std::uint64_t place;
   std::uint64_t size;
 };
 
-/// What a pool has drawn, as the files have it.
+/// A pool's observations when it was last written.
 struct DrawnPool {
   std::string sums = "";
-  std::vector<FilePart> kept = {};
+  std::vector<KeptPart> kept = {};
 };
 
-/// Draws by another executor. Now and then, and when the user interrupts, it writes the sums of all
-/// that pools have drawn, whole or not at all. What pools keep grows, and is added to a second
-/// file, of which the first names the parts. Pools of the same set-ups and recipes begin there.
+/// Draws by another executor. Now and then, at the end of a round and when the user interrupts, it
+/// writes what pools have drawn. FILE holds their sums and is written whole or not at all.
+/// FILE.kept holds what they keep, and only grows. Pools of the same set-ups and recipes begin
+/// there.
 ///
-/// What was drawn since the last writing is drawn again. So are rows and pictures of files, and
-/// pools that are compared by their seconds.
+/// Observations that no writing holds are drawn again. So are rows and pictures of files, and pools
+/// that are compared by their seconds.
 class Checkpoint final : public Executor {
  public:
-  /// Reads the file if it is there. InputError if it is of another run, or cannot be written.
+  /// Reads FILE if it is there. InputError if it is of another run. std::runtime_error if a file
+  /// cannot be written, or if another run writes it.
   Checkpoint(std::string file, std::chrono::duration<double> pause, Identity identity,
              std::shared_ptr<Executor> inner);
 
@@ -43,29 +47,34 @@ class Checkpoint final : public Executor {
   /// Call it when the run's reports are written.
   void remove() const;
 
+  /// The name of the file that grows.
+  static std::string kept_file(const std::string& file) { return file + ".kept"; }
+
  private:
+  using Clock = std::chrono::steady_clock;
   struct Known {
-    DrawnPool drawn = {};           ///< As it stands in the files.
-    std::uint64_t kept_end = 0;     ///< Of the observations in the second file.
-    std::weak_ptr<Pool> pool = {};  ///< Once this process draws it, and as long as it needs it.
+    DrawnPool drawn = {};
+    std::uint64_t count = 0;        ///< The number of observations in `drawn`.
+    std::weak_ptr<Pool> pool = {};  ///< The pool lives as long as this run needs it.
   };
 
   void read();
+  void open_kept(bool is_resumed);
   void write();
-  void update(Known& known, const Pool& pool);
-  void write_if_due();
-  void resume(Known& known, Pool& pool) const;
-  std::string bytes_of(const FilePart& part) const;
+  void update(const std::string& recipe, Known& known, const Pool& pool);
+  /// False if it fails, which is said: a full disk must not end a long run.
+  bool try_to_write();
+  void resume(const std::string& recipe, Known& known, Pool& pool) const;
 
   std::string file_;
-  std::chrono::steady_clock::duration pause_;
+  Clock::duration pause_;
   Identity identity_;
   std::shared_ptr<Executor> inner_;
-  std::map<const Setup*, std::string> names_;
-  std::string kept_file_;
-  std::uint64_t kept_size_ = 0;
+  std::map<std::shared_ptr<const Setup>, std::string> names_;
+  std::unique_ptr<GrowingFile> kept_;
   std::map<std::string, Known> pools_;  ///< By packed recipe.
-  std::chrono::steady_clock::time_point due_;
+  Clock::time_point soonest_;           ///< Writing again may begin.
+  Clock::time_point due_;
 };
 
 }  // namespace assay::harness

@@ -8,7 +8,6 @@
 namespace assay::harness {
 namespace {
 
-constexpr std::string_view magic = "assay ";
 constexpr char format = '5';  // Another one for each change of what is packed.
 
 struct Head {

@@ -167,6 +167,9 @@ class Unpacker {
   std::string_view rest_;
 };
 
+/// The beginning of a frame.
+inline constexpr std::string_view magic = "assay ";
+
 std::string framed(std::string_view bytes);
 /// The bytes in a frame. Throws Unpackable for another format or byte order, and for data that are
 /// cut short or damaged.
@@ -211,8 +214,7 @@ std::string packed_sums(const Pool::Block& block);
 std::string packed_kept(const Pool::Block& block);
 /// Adds what packed_kept packed of the observations that follow.
 void add_kept(std::string_view bytes, Pool::Block& block);
-/// Reads the sums of all that a pool has drawn into a block that has what it keeps, as
-/// unpacked_block does.
+/// Adds the packed sums of a pool to what it keeps. Throws Unpackable unless both fit the pool.
 Pool::Block unpacked_drawn(std::string_view sums, Pool::Block&& kept, const Pool& pool);
 
 }  // namespace assay::harness

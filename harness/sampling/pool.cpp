@@ -35,6 +35,18 @@ std::span<const T> part_of(const std::vector<T>& list, std::uint64_t first, std:
   return std::span(list).subspan(begin, end - begin);
 }
 
+/// Appends the values of observations that follow to those of each channel.
+void append(std::vector<std::vector<double>>& all, std::vector<std::vector<double>>&& next) {
+  all.resize(std::max(all.size(), next.size()));
+  for (std::size_t c = 0; c < next.size(); ++c) {
+    if (all[c].empty()) {
+      all[c] = std::move(next[c]);
+    } else {
+      all[c].insert(all[c].end(), next[c].begin(), next[c].end());
+    }
+  }
+}
+
 std::size_t elements_of(const Setup& setup) {
   const std::optional<ImageShape> image = setup.image();
   return image ? image->elements() : 0;
@@ -382,6 +394,7 @@ bool Pool::can_be_drawn_elsewhere() const {
 
 namespace {
 
+/// A copy without what end_drawing() makes again.
 std::shared_ptr<const Summary> without_sums(const Summary& of) {
   auto summary = std::make_shared<Summary>();
   summary->count = of.count;
@@ -392,7 +405,6 @@ std::shared_ptr<const Summary> without_sums(const Summary& of) {
 
 }  // namespace
 
-/// Without what end_drawing() makes again.
 Pool::Block Pool::drawn_sums() const {
   Block block{.whole = running_, .fault = fault_};
   for (const auto& [count, sums] : prefixes_) {
@@ -407,6 +419,13 @@ std::uint64_t Pool::kept_end() const {
   return std::min(drawn(), std::max(values, recipe_.kept_observations));
 }
 
+std::size_t Pool::kept_width() const {
+  if (recipe_.kept_observations > 0) return channels_;
+  const auto keeping = std::ranges::count_if(
+      recipe_.plan, [](const ChannelPlan& channel) { return channel.keep > 0; });
+  return static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, keeping));
+}
+
 Pool::Block Pool::kept_block(std::uint64_t first, std::uint64_t last) const {
   Block block;
   *block.observations = kept_->part(first, last);
@@ -419,10 +438,7 @@ Pool::Block Pool::kept_block(std::uint64_t first, std::uint64_t last) const {
 }
 
 void Pool::Block::append_kept(Block&& next) {
-  values.resize(std::max(values.size(), next.values.size()));
-  for (std::size_t c = 0; c < next.values.size(); ++c) {
-    values[c].insert(values[c].end(), next.values[c].begin(), next.values[c].end());
-  }
+  append(values, std::move(next.values));
   observations->append(std::move(*next.observations));
 }
 
@@ -446,9 +462,7 @@ void Pool::fold(Block&& block) {
   }
   const std::uint64_t before = running_.count;
   running_.append(block.whole);
-  for (std::size_t c = 0; c < block.values.size(); ++c) {
-    values_[c].insert(values_[c].end(), block.values[c].begin(), block.values[c].end());
-  }
+  append(values_, std::move(block.values));
   kept_->append(std::move(*block.observations));
   if (keeps_blocks_) keep_block(std::move(block.whole), before);
   fault_ = std::move(block.fault);

@@ -174,9 +174,11 @@ class Pool {
   Summary no_sums() const;
   /// Sums of all that is drawn, as one block that keeps nothing.
   Block drawn_sums() const;
+  /// The pool keeps so many numbers of each of the first observations.
+  std::size_t kept_width() const;
   /// Observations below it are kept whole, or some of their values.
   std::uint64_t kept_end() const;
-  /// What is kept of observations [first, last), without sums.
+  /// The block keeps what the pool keeps of observations [first, last). It has no sums.
   Block kept_block(std::uint64_t first, std::uint64_t last) const;
   /// Draws observations [first, last) of one block with a worker's estimator, made if needed.
   /// Thread-safe. An exception of the source becomes the block's fault.

@@ -31,8 +31,8 @@ std::string readable(const std::string& message) {
       {YAML::ErrorMsg::END_OF_SEQ,
        "expected another `- ` item here; indent all items alike, and all keys of an item"},
       {YAML::ErrorMsg::MAP_VALUE,
-       "a `:` cannot stand here; indent all keys of a map alike, and put text that "
-       "contains `: ` in quotes"},
+       "a `:` cannot stand here: a key above may lack its own; indent all keys of a map alike, and "
+       "put text that contains `: ` in quotes"},
       {YAML::ErrorMsg::MAP_KEY, "a key cannot stand here"},
       {YAML::ErrorMsg::BLOCK_ENTRY, "a `- ` item cannot stand here"},
       {YAML::ErrorMsg::TAB_IN_INDENTATION, "indent with spaces, not with a tab"},

@@ -86,7 +86,7 @@ std::string found_in_image(const Image& image) {
     if (size.low.value_or(0) >= 0) std::erase(interval, '+');
     return fmt::format("{} is {} too {}{}{}", pixels(image, winner),
                        size_text(*size.estimate, size), dark ? "dark" : "bright", interval,
-                       winner.others.empty() ? "" : "; there differ " + winner.others);
+                       winner.others.empty() ? "" : "; there " + winner.others);
   }
   if (winner.statistic == "alternating") return "the whole image differs with alternating signs";
   if (winner.statistic != "window") {

@@ -38,11 +38,11 @@ test_interrupted_run_goes_on() {
   local suite=$source_folder/suites/luminaire.yaml
   of_one_thread "$suite" --coarsen 4
   "$assay" run "$suite" --coarsen 4 --quiet --checkpoint kept --checkpoint-every .01 >/dev/null 2>err </dev/null &
-  until [ -s kept ]; do sleep .01; done
+  until [ -s kept.kept ]; do sleep .01; done
   kill -TERM $!
   wait $!
   [ $? -eq 130 ] || fail 'not interrupted'
-  contains err 'what was drawn is kept in kept; the same command goes on'
+  contains err 'what was drawn is kept in kept and kept.kept; the same command goes on'
   expect 2 run "$suite" --coarsen 4 --seed 7 --checkpoint kept
   contains err "kept: is the checkpoint of another run: the seed was the suite's and is 7; remove it, or name another file"
   "$assay" run "$suite" --coarsen 4 --quiet --checkpoint kept --report json=other/run.json >/dev/null 2>err
@@ -50,8 +50,15 @@ test_interrupted_run_goes_on() {
 }
 
 test_checkpoint_cannot_be_a_report_or_a_suite() {
-  expect 2 run "$source_folder/suites/luminaire.yaml" --checkpoint a --report json=a
-  contains err 'a report would replace it'
+  local report
+  for report in a a.kept; do
+    expect 2 run "$source_folder/suites/luminaire.yaml" --checkpoint a --report json=$report
+    contains err 'a report would replace it'
+  done
+  echo mine >b.kept
+  expect 2 run "$source_folder/suites/luminaire.yaml" --checkpoint b
+  contains err 'b.kept: is nothing that Assay packed, and would be lost; name another checkpoint'
+  [ "$(cat b.kept)" = mine ] || fail 'a file of the user is lost'
   expect 2 run "$source_folder/suites/luminaire.yaml" --checkpoint "$source_folder/suites/luminaire.yaml"
   contains err 'it is nothing that Assay packed'
 }
@@ -103,9 +110,9 @@ test_ranks_that_stall_are_done_without() {
   local suite=$source_folder/suites/luminaire.yaml signal
   of_one_thread "$suite" --coarsen 4
   for signal in STOP TERM; do
-    rm -f kept
+    rm -f kept kept.kept
     ranks 3 run "$suite" --coarsen 4 --quiet --checkpoint kept --checkpoint-every .01 --report json=other/run.json &
-    until [ "$(stat -c %s kept 2>/dev/null)0" -gt 40000 ]; do sleep .01; done  # all ranks draw
+    until [ "$(stat -c %s kept.kept 2>/dev/null)0" -gt 40000 ]; do sleep .01; done  # all ranks draw
     signal_rank $signal 2 $! || fail 'no rank'
     wait $!
     same_as_of_one_thread "SIG$signal"

@@ -342,7 +342,7 @@ function Viewer({ painter, name }: { painter: Painter; name: string }) {
           {scales[mode] && painter.z.about.components.length > 1 && ` Component ${painter.finding.component}.`}
           {reduced > 1 && ` Each pixel here is the mean of ${reduced} by ${reduced}. An EXR file beside the record of --report json=FILE has them all.`}
         </p>
-        <p class="code">{pixel}</p>
+        <p class="code pixel">{pixel}</p>
       </div>
     </div>
   );

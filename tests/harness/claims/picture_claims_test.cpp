@@ -244,7 +244,8 @@ TEST_F(PictureClaims, ADefectIsFoundWhereItIs) {
   // Every component is brighter there.
   double green = 0, blue = 0;
   const std::string& others = test.image->winner.others;
-  ASSERT_EQ(std::sscanf(others.c_str(), "G by %lf\u00a0%%, B by %lf", &green, &blue), 2) << others;
+  ASSERT_EQ(std::sscanf(others.c_str(), "G differs by %lf\u00a0%%, B by %lf", &green, &blue), 2)
+      << others;
   EXPECT_NEAR(green, 10, 4);
   EXPECT_NEAR(blue, 10, 4);
 }
@@ -282,6 +283,21 @@ TEST_F(PictureClaims, APassThatItsIntervalDoubtsSaysWhatTheReferenceHides) {
   const reports::Test test = tested("mean(a) == mean(b)", "file: ref00.exr, exact: true");
   expect_said(test, Verdict::pass, {"`b` is one picture, taken as exact"});
   EXPECT_GT(test.channels[0].effect.low, 0);
+}
+
+// Weights that a pixel's own noise chose would make skewed noise look dark.
+TEST_F(PictureClaims, TheEffectAtAPlaceOfSkewedNoiseLiesInItsInterval) {
+  const auto mean = [](int x) { return std::pow(2.0, x / 16.0); };
+  write_stack(place, "ref", {.width = 64, .height = 48, .count = 1},
+              [&](int x, int, const std::string&, double) { return static_cast<float>(mean(x)); });
+  write_stack(place, "a", {.width = 64, .height = 48, .count = 32},
+              [&](int x, int, const std::string&, double noise) {
+                return static_cast<float>(1.1 * mean(x) * noise * noise);
+              });
+  const reports::Test test = tested("mean(a) == mean(b)", "file: ref00.exr, exact: true");
+  const reports::Effect& effect = *test.image->winner.effect;
+  EXPECT_THAT(*effect.estimate, AllOf(Gt(*effect.low), Lt(*effect.high)));
+  EXPECT_THAT(0.1, AllOf(Gt(*effect.low), Lt(*effect.high)));
 }
 
 TEST_F(PictureClaims, ADamagedFileIsAnErrorWithItsName) {

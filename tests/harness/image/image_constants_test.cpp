@@ -49,7 +49,7 @@ class ImageConstants : public testing::Test {
       data_[i].images = ImageViews(std::move(sides[i]));
     }
     pair_.emplace(Seen{asked_->questions[test], 0, data_});
-    return VaryingPart(asked_->questions[test], *pair_);
+    return VaryingPart(asked_->questions[test], std::move(*pair_));
   }
 
   std::unique_ptr<Asked> asked_ = ask_text(suite);
@@ -142,18 +142,13 @@ TEST_F(ImageConstants, APixelThatOneOfTwoImagesNeverLitIsHeldAgainstItsRange) {
   EXPECT_NEAR(part.unseen()[0].log_p, 16 * std::log1p(-0.0052 / 7.98), 1e-3);
 }
 
-class Tenth final : public Setup {
- public:
-  std::size_t channel_count() const override { return 1; }
-  Channel channel(std::size_t) const override { return {.mean = 0.1, .low = 0, .high = 0.1}; }
-  std::unique_ptr<Estimator> make() const override { return nullptr; }
-  std::optional<ImageShape> image() const override { return ImageShape{.width = 1, .height = 1}; }
-};
-
 // The float next to 0.1 is 1.5e-9 above it.
 TEST(ImageRounding, IsNeitherBeyondARangeNorADifferenceFromTheMean) {
   const Entry entry{};
-  const PreparedEstimator estimator{.entry = &entry, .setup = std::make_shared<Tenth>()};
+  const PreparedEstimator estimator{
+      .entry = &entry,
+      .setup = assay::setup_of(SetupParts{.image = ImageShape{.width = 1, .height = 1},
+                                          .elements = {{.mean = 0.1, .low = 0, .high = 0.1}}})};
   Question question;
   question.subjects.push_back(
       {.estimator = &estimator, .setup = estimator.setup, .channels = {0, 1, 1}});

@@ -10,11 +10,12 @@ class Kill : public std::runtime_error {
   Kill() : std::runtime_error("killed") {}
 };
 
-/// Dies after so many blocks.
+/// Dies after so many blocks, of which it tells how many are left.
 class Mortal final : public Executor {
  public:
   Mortal(std::shared_ptr<Executor> inner, std::size_t blocks)
       : inner_(std::move(inner)), blocks_(blocks) {}
+  std::size_t left() const { return blocks_; }
   void introduce(const NamedSetups& setups) override { inner_->introduce(setups); }
   void recall(const SomePools& pools) override { inner_->recall(pools); }
   void draw(Round& round) override {
@@ -35,38 +36,50 @@ std::shared_ptr<Checkpoint> checkpoint(const std::string& file, const Identity& 
 
 const std::string suite = ASSAY_SOURCE_DIR "/tests/suites/kinds.yaml";
 
+/// The run's record and how many blocks it drew, unless it dies after so many.
+std::optional<std::pair<reports::Record, std::size_t>> drawn_by(std::shared_ptr<Executor> executor,
+                                                                std::size_t blocks) {
+  const auto mortal = std::make_shared<Mortal>(std::move(executor), blocks);
+  try {
+    reports::Record record = run_files({suite}, {.executor = mortal, .coarsen = 8});
+    return std::pair(std::move(record), blocks - mortal->left());
+  } catch (const Kill&) {
+    return std::nullopt;
+  }
+}
+
 // Killed after 5 blocks, then after twice as many, until the run ends.
 TEST(Checkpoint, OfARunThatIsKilledGivesTheSameRecord) {
   const Workplace place;
-  const auto run_once = [&](std::size_t blocks) -> std::optional<reports::Record> {
-    // A kill may leave part of a writing.
-    std::ofstream(place.file("kept.kept"), std::ios::app) << "torn";
-    try {
-      const auto mortal = std::make_shared<Mortal>(checkpoint(place.file("kept")), blocks);
-      return run_files({suite}, {.threads = 2, .executor = mortal, .coarsen = 8});
-    } catch (const Kill&) {
-      return std::nullopt;
-    }
-  };
+  const auto whole = drawn_by(threads(1), 1'000'000);
+  auto resumed = drawn_by(checkpoint(place.file("kept")), 5);
   std::size_t kills = 0;
-  std::optional<reports::Record> resumed;
-  while (!(resumed = run_once(5U << kills))) ++kills;
-  EXPECT_GT(kills, 1U);
-  EXPECT_EQ(numbers_of(*resumed), numbers_of(run_files({suite}, {.threads = 1, .coarsen = 8})));
+  for (; !resumed; resumed = drawn_by(checkpoint(place.file("kept")), 5U << kills)) {
+    std::ofstream(place.file("kept.kept"), std::ios::app) << "part of a writing";
+    ++kills;
+  }
+  EXPECT_LT(resumed->second, whole->second);
+  EXPECT_EQ(numbers_of(resumed->first), numbers_of(whole->first));
 }
 
 TEST(Checkpoint, WhoseKeptValuesAreDamagedIsRefused) {
   const Workplace place;
-  const auto run_on = [&](std::size_t blocks) {
-    run_files({suite},
-              {.executor = std::make_shared<Mortal>(checkpoint(place.file("kept")), blocks),
-               .coarsen = 8});
-  };
-  EXPECT_THROW(run_on(20), Kill);
-  std::fstream(place.file("kept.kept")).seekp(100) << "damage";
-  EXPECT_THAT(refusal([&] { run_on(0); }), HasSubstr("kept: it is damaged: its checksum differs"));
-  std::filesystem::resize_file(place.file("kept.kept"), 50);
-  EXPECT_THAT(refusal([&] { run_on(0); }), HasSubstr("kept: it is nothing that Assay packed"));
+  const std::string file = place.file("kept");
+  EXPECT_FALSE(drawn_by(checkpoint(file), 20));
+  std::fstream(file + ".kept").seekp(100) << "damage";
+  EXPECT_THAT(refusal([&] { drawn_by(checkpoint(file), 0); }), HasSubstr("its checksum differs"));
+  std::filesystem::resize_file(file + ".kept", 50);
+  EXPECT_THAT(refusal([&] { checkpoint(file); }), HasSubstr("says; remove both"));
+}
+
+TEST(Checkpoint, IsOfOneProcessAndCanBeWritten) {
+  const Workplace place;
+  const auto first = checkpoint(place.file("kept"));
+  EXPECT_THAT(thrown<std::runtime_error>([&] { checkpoint(place.file("kept")); }),
+              HasSubstr("another run is writing to"));
+  std::filesystem::create_directory(place.file("other.kept"));
+  EXPECT_THAT(thrown<std::runtime_error>([&] { checkpoint(place.file("other")); }),
+              HasSubstr("cannot write"));
 }
 
 TEST(Checkpoint, OfAnotherRunIsRefusedWithTheDifference) {
@@ -79,13 +92,11 @@ TEST(Checkpoint, OfAnotherRunIsRefusedWithTheDifference) {
             "another file");
 }
 
-TEST(Checkpoint, ThatIsNoneOrCutShortIsRefused) {
+TEST(Checkpoint, ThatIsCutShortIsRefused) {
   const Workplace place;
   checkpoint(place.file("kept"));
   std::filesystem::resize_file(place.file("kept"), 30);
   EXPECT_THAT(refusal([&] { checkpoint(place.file("kept")); }), HasSubstr("cut short"));
-  EXPECT_THAT(refusal([&] { checkpoint(place.write("text", "hello")); }),
-              HasSubstr("is nothing that Assay packed; remove it"));
 }
 
 }  // namespace

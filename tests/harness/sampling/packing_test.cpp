@@ -101,7 +101,7 @@ RC_GTEST_PROP(Packing, GivesThePoolThatIsDrawnHere, ()) {
   }
   RC_ASSERT(contents_of(*folded) == contents_of(*here));
   RC_ASSERT(folded->fault().has_value() == here->fault().has_value());
-  // What is kept comes in parts, too.
+  // Kept values come in parts, too.
   const std::shared_ptr<Pool> again = fresh(recipe, setup);
   Pool::Block kept;
   for (std::uint64_t i = 0; i <= here->kept_end(); i += 30) {
@@ -137,24 +137,26 @@ RC_GTEST_PROP(Packing, RefusesWhatIsCutShortOrDamaged, ()) {
   RC_ASSERT(is_refused(frame + "x", *pool));
 }
 
+/// Changes some bytes; tells the first.
+std::size_t damage(std::string& bytes) {
+  const std::size_t at = *rc::gen::inRange<std::size_t>(0, bytes.size());
+  const std::size_t end = std::min(at + 8, bytes.size());
+  for (std::size_t i = at; i < end; ++i) bytes[i] = *rc::gen::arbitrary<char>();
+  return at;
+}
+
 // A damage that the checksum does not show: each list is still bounded.
 RC_GTEST_PROP(Packing, OfDamagedBytesUnderARightChecksumDoesNotCrash, ()) {
   const Recipe recipe = some_recipe();
   std::string bytes(unframed(blocks_elsewhere(recipe, odd()).front()));
-  const std::size_t at = *rc::gen::inRange<std::size_t>(0, bytes.size());
-  for (std::size_t i = at; i < std::min(at + 8, bytes.size()); ++i) {
-    bytes[i] = *rc::gen::arbitrary<char>();
-  }
+  const std::size_t at = damage(bytes);
   RC_ASSERT(folds_or_is_refused(framed(bytes), recipe));
   RC_ASSERT(folds_or_is_refused(framed(bytes.substr(0, at)), recipe));
 }
 
 RC_GTEST_PROP(Packing, OfADamagedRecipeDoesNotCrash, ()) {
   std::string bytes(unframed(packed(some_recipe())));
-  const std::size_t at = *rc::gen::inRange<std::size_t>(0, bytes.size());
-  for (std::size_t i = at; i < std::min(at + 8, bytes.size()); ++i) {
-    bytes[i] = *rc::gen::arbitrary<char>();
-  }
+  damage(bytes);
   thrown<Unpackable>([&] {
     Recipe recipe;
     unpack(framed(bytes), recipe);

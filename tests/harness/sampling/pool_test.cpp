@@ -17,32 +17,25 @@ struct Behaviour {
   bool image = false;
 };
 
-class Sums final : public Estimator {
- public:
-  explicit Sums(Behaviour behaviour) : behaviour_(behaviour) {}
-  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
-                 Cost& cost) override {
-    if (random.observation() == behaviour_.throws) throw std::runtime_error("the lamp burnt out");
-    double sum = 0;
-    for (std::uint64_t i = 0; i < primaries; ++i) sum += random.uniform();
-    out[0] = sum / static_cast<double>(primaries);
-    out[1] = std::log(random.uniform_open());
-    if (random.observation() == behaviour_.not_a_number) {
-      out[1] = std::numeric_limits<double>::quiet_NaN();
-    }
-    cost.samples += primaries;
-  }
-
- private:
-  Behaviour behaviour_;
-};
-
 class SumsSetup final : public Setup {
  public:
   explicit SumsSetup(Behaviour behaviour = {}) : behaviour_(behaviour) {}
   std::size_t channel_count() const override { return 2; }
   Channel channel(std::size_t) const override { return {}; }
-  std::unique_ptr<Estimator> make() const override { return std::make_unique<Sums>(behaviour_); }
+  std::unique_ptr<Estimator> make() const override {
+    return estimating([given = behaviour_](Stream& random, std::uint64_t primaries,
+                                           std::span<double> out, Cost& cost) {
+      if (random.observation() == given.throws) throw std::runtime_error("the lamp burnt out");
+      double sum = 0;
+      for (std::uint64_t i = 0; i < primaries; ++i) sum += random.uniform();
+      out[0] = sum / static_cast<double>(primaries);
+      out[1] = std::log(random.uniform_open());
+      if (random.observation() == given.not_a_number) {
+        out[1] = std::numeric_limits<double>::quiet_NaN();
+      }
+      cost.samples += primaries;
+    })();
+  }
   std::optional<std::uint64_t> observations() const override { return behaviour_.rows; }
   std::optional<ImageShape> image() const override {
     if (!behaviour_.image) return std::nullopt;
