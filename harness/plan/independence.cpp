@@ -102,8 +102,11 @@ Reason dependent(const Question& question, const Rows& rows, bool at_a_lag) {
       "the {} are not independent: {} of them are worth about {:.0f} independent ones; ",
       rows.label, rows.values.size(), worth);
   if (worth < fewest_of_a_chain) {
+    const bool several = question.subjects[0].channels.size() > 1;
     return Reason::advising(
-        why, "give sorted ones in the order drawn; of a slow chain they are too few");
+        why,
+        std::string(several ? "name another column, if this one counts the rows; " : "") +
+            "give sorted ones in the order drawn; of a slow chain they are too few");
   }
   const std::string or_enough = enough_of_a_chain(question, rows.values.size(), time);
   return Reason::advising(why,
