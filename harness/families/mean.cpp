@@ -106,10 +106,9 @@ Cells cells_of(const Side& side) {
 
 /// Values are exact to `rounding`: each tail is that of the nearest null.
 TestResult within_rounding(const std::function<TestResult(double)>& at, double rounding) {
-  if (rounding == 0) return at(0);
-  TestResult result = at(0);
-  result.log_p_upper = at(rounding).log_p_upper;
-  result.log_p_lower = at(-rounding).log_p_lower;
+  TestResult result = at(rounding);
+  result.statistic += rounding;
+  if (rounding > 0) result.log_p_lower = at(-rounding).log_p_lower;
   return result;
 }
 

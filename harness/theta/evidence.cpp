@@ -5,30 +5,26 @@
 #include <limits>
 #include <numbers>
 
+#include "stats/basics/search.h"
+
 namespace assay::harness {
 namespace {
 
 constexpr int most_doublings = 60;
-constexpr double precision = 1e-12;
+constexpr unsigned digits_of_reach = 40;
 
-/// The end of the kept values in one direction.
-double end_of(const std::function<bool(double)>& kept, const Whereabouts& around,
-              double direction) {
-  double inside = around.estimate;
-  double reach = around.step;
-  int doublings = 0;
-  while (kept(around.estimate + direction * reach)) {
-    inside = around.estimate + direction * reach;
-    reach *= 2;
+/// The end in one direction of the values at which a curve is positive.
+double end_of(const stats::Curve& curve, const Whereabouts& around, double direction) {
+  const auto at = [&](double reach) { return curve(around.estimate + direction * reach); };
+  double inside = 0;
+  double outside = around.step;
+  for (int doublings = 0; at(outside) > 0; outside *= 2) {
+    inside = outside;
     if (++doublings == most_doublings) return direction * std::numeric_limits<double>::infinity();
   }
-  double outside = around.estimate + direction * reach;
-  while (std::abs(outside - inside) > precision * around.step) {
-    const double middle = inside + (outside - inside) / 2;
-    if (middle == inside || middle == outside) break;
-    (kept(middle) ? inside : outside) = middle;
-  }
-  return inside;
+  if (!(inside > 0 || at(inside) > 0)) return around.estimate;
+  return around.estimate +
+         direction * stats::root_bracket(at, inside, outside, digits_of_reach).first;
 }
 
 constexpr double log_of_impossible = std::numeric_limits<double>::lowest();
@@ -83,8 +79,8 @@ Evidence absolute(const Evidence& of_theta) {
 stats::Interval interval_by_inversion(const std::function<stats::TestResult(double)>& at,
                                       const Whereabouts& around, double confidence) {
   const double level = std::log((1 - confidence) / 2);
-  const auto above = [&](double theta) { return at(theta).log_p_lower > level; };
-  const auto below = [&](double theta) { return at(theta).log_p_upper > level; };
+  const auto above = [&](double theta) { return at(theta).log_p_lower - level; };
+  const auto below = [&](double theta) { return at(theta).log_p_upper - level; };
   return {end_of(below, around, -1), end_of(above, around, 1), confidence};
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "stats/basics/check.h"
+#include "stats/basics/search.h"
 #include "stats/tails/special.h"
 
 namespace assay::stats {
@@ -62,7 +63,8 @@ double log_p_upper(const ValueCells& x, double sign, double null, double room) {
   if (room == infinity) return 0;
   const double mean_above = sign * (x.mean() - null);
   if (room < 0 || (room == 0 && mean_above > 0)) return special::lowest_log();
-  if (room == 0) return 0;
+  // ln(1 + b g) is b g at most, so that no bet gains.
+  if (room == 0 || mean_above <= 0) return 0;
   return special::clamp_log(-log_wealth(x, sign, null, room));
 }
 
@@ -93,19 +95,21 @@ struct Bettor {
 
 // ln p of "sign (E x - scale E y) <= sign offset".
 double log_p_contrast(const Bettor& x, const Bettor& y, Contrast null, double sign) {
-  constexpr int halvings = 20;
-  double near = null.scale * y.values.mean() + null.offset;
-  double far = x.values.mean();
+  constexpr unsigned digits = 20;
+  const double near = null.scale * y.values.mean() + null.offset;
+  const double far = x.values.mean();
   if (sign * (far - near) <= 0) return 0;
   const double sign_of_y = -std::copysign(sign, sign * null.scale);
   double smallest = 0;
-  for (int i = 0; i < halvings; ++i) {
-    const double middle = near + (far - near) / 2;
+  // Both tails are the same where the larger one is smallest.
+  const auto difference = [&](double part) {
+    const double middle = near + part * (far - near);
     const double of_x = x.log_p(sign, middle);
     const double of_y = y.log_p(sign_of_y, (middle - null.offset) / null.scale);
     smallest = std::min(smallest, std::max(of_x, of_y));
-    (of_x < of_y ? near : far) = middle;
-  }
+    return of_x - of_y;
+  };
+  if (difference(0) < 0 && difference(1) > 0) root_bracket(difference, 0, 1, digits);
   return special::clamp_log(std::log(2.0) + smallest);
 }
 
