@@ -48,8 +48,8 @@ struct Whereabouts {
 };
 
 /// The values of theta that `at` rejects in neither tail at (1 - confidence) / 2. The ends are
-/// exact to 1e-12 of the step. An end beyond 60 doublings of the step is infinite. `at` must be
-/// monotone: its upper tail rejects larger values less.
+/// exact to 1e-12 of their distance from the estimate. An end beyond 60 doublings of the step is
+/// infinite. `at` must be monotone: its upper tail rejects larger values less.
 stats::Interval interval_by_inversion(const std::function<stats::TestResult(double)>& at,
                                       const Whereabouts& around, double confidence);
 

@@ -2,11 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <numbers>
 
 #include "stats/basics/check.h"
 #include "stats/basics/search.h"
+#include "stats/basics/vector_copies.h"
 #include "stats/tails/special.h"
 
 namespace assay::stats {
@@ -17,8 +21,15 @@ constexpr std::size_t ranks_a_value = 32;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-constexpr std::array<double, bet_count> bets = [] {
-  std::array<double, bet_count> each{1 - 0x1p-10, 0.875, 0.6875};
+// The gain of a bet that no null hypothesis survives.
+constexpr double most_gain = 1e300;
+
+// Whole vectors of numbers: the last bet is nothing, and not counted.
+constexpr std::size_t bets_and_none = bet_count + 1;
+using OfBets = std::array<double, bets_and_none>;
+
+constexpr OfBets bets = [] {
+  OfBets each{1 - 0x1p-10, 0.875, 0.6875};
   double next = 1;
   for (std::size_t k = 3; k < bet_count; ++k) each[k] = next /= 2;
   return each;
@@ -39,23 +50,45 @@ ValueCells::Cell cell_of(std::span<const double> values) {
 // The gain of a bet on a value, as a share of itself. Rounding may take a value past the range's
 // end.
 double gain(double value, double null, double room) {
-  return std::max(-1.0, (value - null) / room);
+  return std::clamp((value - null) / room, -1.0, most_gain);
+}
+
+// ln(1 + z), -1 < z, in steps that a compiler takes for several numbers at once. With
+// 1 + z = 2^e m and sqrt(1/2) <= m < sqrt 2, ln m = 2 artanh((m - 1) / (m + 1)), by its series.
+inline double log1p_in_steps(double z) {
+  constexpr std::uint64_t half_root = 0x3fe6a09e667f3bcd;  // sqrt(1/2)
+  constexpr std::uint64_t bias = 1023;
+  constexpr std::uint64_t of_2_to_52 = 0x4330000000000000;
+  const double u = 1 + z;
+  const auto bits = std::bit_cast<std::uint64_t>(u);
+  const std::uint64_t exponent = (bits - half_root + (bias << 52)) >> 52;
+  const double e = std::bit_cast<double>(exponent | of_2_to_52) - (0x1p52 + bias);
+  const double m = std::bit_cast<double>(bits - (exponent << 52) + (bias << 52));
+  const double s = (m - 1) / (m + 1);
+  const double t = s * s;
+  double series = 0;
+  for (int k = 21; k >= 3; k -= 2) series = (series + 1.0 / k) * t;
+  constexpr double ln2_high = 0x1.62e42fefa38p-1;  // 2046 times it is exact
+  const double lost = (z - (u - 1)) / u;
+  return e * ln2_high + (2 * s + (2 * s * series + (e * (std::numbers::ln2 - ln2_high) + lost)));
+}
+
+// Adds the logarithms of each bet's wealth after so many values of one gain.
+ASSAY_VECTOR_COPIES void add_logs(double count, double gained, double* logs) {
+  for (std::size_t k = 0; k < bets_and_none; ++k)
+    logs[k] += count * log1p_in_steps(bets[k] * gained);
 }
 
 // ln of the mixture's wealth against "E (sign x) <= sign null".
 double log_wealth(const ValueCells& x, double sign, double null, double room) {
-  std::array<double, bet_count> logs{};
+  OfBets logs{};
   for (const ValueCells::Cell& cell : x.cells()) {
-    const double low = gain(sign * cell.least, sign * null, room);
-    const double high = gain(sign * cell.largest, sign * null, room);
-    const double at_low = cell.count - cell.at_largest;
-    for (std::size_t k = 0; k < bet_count; ++k) {
-      logs[k] += at_low * std::log1p(bets[k] * low);
-      if (cell.at_largest > 0) logs[k] += cell.at_largest * std::log1p(bets[k] * high);
-    }
+    add_logs(cell.count - cell.at_largest, gain(sign * cell.least, sign * null, room), logs.data());
+    if (cell.at_largest == 0) continue;
+    add_logs(cell.at_largest, gain(sign * cell.largest, sign * null, room), logs.data());
   }
-  if (*std::max_element(logs.begin(), logs.end()) == infinity) return infinity;
-  return special::log_sum_of(logs) - std::log(static_cast<double>(bet_count));
+  return special::log_sum_of(std::span(logs).first(bet_count)) -
+         std::log(static_cast<double>(bet_count));
 }
 
 // ln p of "E (sign x) <= sign null", where `room` is from the null to the end of the range below.

@@ -63,8 +63,9 @@ TestResult betting_mean(const ValueCells& x, Range range, double null_mean);
 // against "E x - scale E y <= d", on either side of one number s:
 //   p = 2 min_s max(p of "E x <= s", p of "scale E y + d >= s").
 // Under the null, one of the two is true for each s. The p of each is smallest at its own truth. So
-// the minimum is no less than the smaller of two valid p-values, at every look. Twenty halvings
-// find s. The statistic is mean x - scale mean y - offset. Throws as above.
+// the minimum is no less than the smaller of two valid p-values, at every look. The
+// number s is found to 2^-20 of its range. The statistic is mean x - scale mean y - offset. Throws
+// as above.
 TestResult betting_contrast(const ValueCells& x, Range of_x, const ValueCells& y, Range of_y,
                             Contrast null_value);
 
