@@ -53,8 +53,8 @@ double gain(double value, double null, double room) {
   return std::clamp((value - null) / room, -1.0, most_gain);
 }
 
-// ln(1 + z), -1 < z, in steps that a compiler takes for several numbers at once. With
-// 1 + z = 2^e m and sqrt(1/2) <= m < sqrt 2, ln m = 2 artanh((m - 1) / (m + 1)), by its series.
+// ln(1 + z) for z > -1, in steps that a compiler takes for several numbers at once. Let
+// 1 + z = 2^e m with sqrt(1/2) <= m < sqrt 2. A series gives ln m = 2 artanh((m - 1) / (m + 1)).
 inline double log1p_in_steps(double z) {
   constexpr std::uint64_t half_root = 0x3fe6a09e667f3bcd;  // sqrt(1/2)
   constexpr std::uint64_t bias = 1023;
