@@ -86,7 +86,7 @@ void Checkpoint::write() {
   }
   kept_->flush();
   Packer pack;
-  pack(identity_, count);
+  pack(identity_, count);  // A list of pairs follows, without a copy of their sums.
   for (const auto& [recipe, known] : pools_) {
     if (!known.drawn.sums.empty()) pack(recipe, known.drawn);
   }

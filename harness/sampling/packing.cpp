@@ -179,10 +179,6 @@ Pool pool_of(const Recipe& recipe, std::shared_ptr<const Setup> setup) {
 
 namespace {
 
-void unpack_kept(Unpacker& unpack, Pool::Block& block) {
-  unpack(block.values, *block.observations);
-}
-
 void unpack_sums(Unpacker& unpack, const Pool& pool, std::uint64_t first, Pool::Block& block) {
   const Recipe recipe = pool.recipe();
   std::uint64_t partials = 0;
@@ -226,7 +222,7 @@ std::string packed_block(const Pool::Block& block) {
 void add_kept(std::string_view bytes, Pool::Block& block) {
   Unpacker unpack(bytes);
   Pool::Block next;
-  unpack_kept(unpack, next);
+  unpack(next.values, *next.observations);
   unpack.end();
   block.append_kept(std::move(next));
 }
@@ -234,7 +230,7 @@ void add_kept(std::string_view bytes, Pool::Block& block) {
 Pool::Block unpacked_block(std::string_view bytes, const Pool& pool, std::uint64_t first) {
   Unpacker unpack(bytes);
   Pool::Block block;
-  unpack_kept(unpack, block);
+  unpack(block.values, *block.observations);
   unpack_sums(unpack, pool, first, block);
   return block;
 }

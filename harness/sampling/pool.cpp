@@ -47,6 +47,15 @@ void append(std::vector<std::vector<double>>& all, std::vector<std::vector<doubl
   }
 }
 
+/// A copy without what end_drawing() makes again.
+std::shared_ptr<const Summary> without_sums(const Summary& of) {
+  auto summary = std::make_shared<Summary>();
+  summary->count = of.count;
+  summary->cost = of.cost;
+  summary->seconds = of.seconds;
+  return summary;
+}
+
 std::size_t elements_of(const Setup& setup) {
   const std::optional<ImageShape> image = setup.image();
   return image ? image->elements() : 0;
@@ -391,19 +400,6 @@ bool Pool::can_be_drawn_elsewhere() const {
   return !is_ready_made() && !known_ && !keeps_blocks_ && !setup_->observations() &&
          !setup_->pictures() && !setup_->keeps_files();
 }
-
-namespace {
-
-/// A copy without what end_drawing() makes again.
-std::shared_ptr<const Summary> without_sums(const Summary& of) {
-  auto summary = std::make_shared<Summary>();
-  summary->count = of.count;
-  summary->cost = of.cost;
-  summary->seconds = of.seconds;
-  return summary;
-}
-
-}  // namespace
 
 Pool::Block Pool::drawn_sums() const {
   Block block{.whole = running_, .fault = fault_};

@@ -24,15 +24,19 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // The gain of a bet that no null hypothesis survives.
 constexpr double most_gain = 1e300;
 
-// Whole vectors of numbers: the last bet is nothing, and not counted.
-constexpr std::size_t bets_and_none = bet_count + 1;
-using OfBets = std::array<double, bets_and_none>;
-
-constexpr OfBets bets = [] {
-  OfBets each{1 - 0x1p-10, 0.875, 0.6875};
+constexpr std::array<double, bet_count> bets = [] {
+  std::array<double, bet_count> each{1 - 0x1p-10, 0.875, 0.6875};
   double next = 1;
   for (std::size_t k = 3; k < bet_count; ++k) each[k] = next /= 2;
   return each;
+}();
+
+// Whole vectors of numbers: the last bet is nothing, and not counted.
+using OfBets = std::array<double, bet_count + 1>;
+constexpr OfBets bets_and_none = [] {
+  OfBets all{};
+  std::copy(bets.begin(), bets.end(), all.begin());
+  return all;
 }();
 
 // The cell of values[begin, end), ascending.
@@ -75,8 +79,9 @@ inline double log1p_in_steps(double z) {
 
 // Adds the logarithms of each bet's wealth after so many values of one gain.
 ASSAY_VECTOR_COPIES void add_logs(double count, double gained, double* logs) {
-  for (std::size_t k = 0; k < bets_and_none; ++k)
-    logs[k] += count * log1p_in_steps(bets[k] * gained);
+  for (std::size_t k = 0; k < bets_and_none.size(); ++k) {
+    logs[k] += count * log1p_in_steps(bets_and_none[k] * gained);
+  }
 }
 
 // ln of the mixture's wealth against "E (sign x) <= sign null".

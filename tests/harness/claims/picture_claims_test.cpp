@@ -243,9 +243,9 @@ TEST_F(PictureClaims, ADefectIsFoundWhereItIs) {
   EXPECT_NEAR(part, 10, 4);
   // Every component is brighter there.
   double green = 0, blue = 0;
-  const std::string& others = test.image->winner.others;
-  ASSERT_EQ(std::sscanf(others.c_str(), "G differs by %lf\u00a0%%, B by %lf", &green, &blue), 2)
-      << others;
+  const std::string& also = test.image->winner.others;
+  ASSERT_EQ(std::sscanf(also.c_str(), "G differs by %lf\u00a0%%, B by %lf", &green, &blue), 2)
+      << also;
   EXPECT_NEAR(green, 10, 4);
   EXPECT_NEAR(blue, 10, 4);
 }

@@ -58,6 +58,7 @@ TEST(Checkpoint, OfARunThatIsKilledGivesTheSameRecord) {
     std::ofstream(place.file("kept.kept"), std::ios::app) << "part of a writing";
     ++kills;
   }
+  EXPECT_GT(kills, 1U);
   EXPECT_LT(resumed->second, whole->second);
   EXPECT_EQ(numbers_of(resumed->first), numbers_of(whole->first));
 }
@@ -92,11 +93,13 @@ TEST(Checkpoint, OfAnotherRunIsRefusedWithTheDifference) {
             "another file");
 }
 
-TEST(Checkpoint, ThatIsCutShortIsRefused) {
+TEST(Checkpoint, ThatIsNoneOrCutShortIsRefused) {
   const Workplace place;
   checkpoint(place.file("kept"));
   std::filesystem::resize_file(place.file("kept"), 30);
   EXPECT_THAT(refusal([&] { checkpoint(place.file("kept")); }), HasSubstr("cut short"));
+  EXPECT_THAT(refusal([&] { checkpoint(place.write("text", "hello")); }),
+              HasSubstr("is nothing that Assay packed; remove it"));
 }
 
 }  // namespace

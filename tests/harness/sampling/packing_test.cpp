@@ -73,11 +73,10 @@ std::string contents_of(const Pool& pool) {
 }
 
 /// Draws the blocks in another process's way: by an unpacked recipe, and packed.
-std::vector<std::string> blocks_elsewhere(const Recipe& recipe,
-                                          const std::shared_ptr<const Setup>& setup) {
+std::vector<std::string> blocks_elsewhere(const Recipe& recipe, std::shared_ptr<const Setup> of) {
   Recipe there;
   unpack(packed(recipe), there);
-  const std::shared_ptr<Pool> pool = fresh(there, setup);
+  const std::shared_ptr<Pool> pool = fresh(there, std::move(of));
   const SomePools pools{pool};
   Workers workers(pools);
   std::vector<std::string> blocks;
@@ -165,8 +164,7 @@ RC_GTEST_PROP(Packing, OfADamagedRecipeDoesNotCrash, ()) {
 }
 
 TEST(Packing, RefusesAMarkAtNoObservation) {
-  const auto make = [] { pool_of({.marks = {0}}, odd()); };
-  EXPECT_EQ(thrown<Unpackable>(make), "a mark at no observation");
+  EXPECT_EQ(thrown<Unpackable>([] { pool_of({.marks = {0}}, odd()); }), "a mark at no observation");
 }
 
 std::string refusal_of(std::string frame, std::size_t at, char byte) {

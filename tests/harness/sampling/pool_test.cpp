@@ -83,12 +83,11 @@ void expect_same(const Summary& one, const Summary& other) {
 
 /// Notes in which order observations are drawn.
 std::shared_ptr<const Setup> noting(char name, std::string& order) {
-  return setup_of({.channels = {Channel{}},
-                   .make = estimating(
-                       [name, &order](Stream& random, std::uint64_t, std::span<double> out, Cost&) {
-                         out[0] = random.uniform();
-                         order += name;
-                       })});
+  const auto note = [name, &order](Stream& random, std::uint64_t, std::span<double> out, Cost&) {
+    out[0] = random.uniform();
+    order += name;
+  };
+  return setup_of({.channels = {Channel{}}, .make = estimating(note)});
 }
 
 // Pools whose seconds are compared are drawn side by side. At any time, equal parts of both are
