@@ -249,13 +249,18 @@ std::string text_of(const Table& table) {
   std::size_t longest = 0;
   for (const TableRow& row : table.rows) longest = std::max(longest, row.name.size());
   std::string text;
-  for (const TableRow& row : table.rows) text += beside(row.name, row.summary, longest + 2);
+  std::string last;
+  for (const TableRow& row : table.rows) {
+    text += beside(row.name == last ? "" : row.name, row.summary, longest + 2);
+    last = row.name;
+  }
   return text;
 }
 
 int describe(const std::string& name) {
   std::string pages;
   for (const Table& table : tables()) {
+    if (name == table.plural) pages += text_of(table);
     std::set<std::string> said;  // Rows of one name have most sentences in common.
     for (const TableRow& row : table.rows) {
       if (row.name != name) continue;

@@ -216,7 +216,7 @@ std::string means_where_it_differs(const DrawnTest& test) {
       channels[0].image->family.weights.empty() ? "" : ", pixels weighted by their noise";
   const auto shown = [&](double value) { return reports::human(value / unit, 3); };
   return fmt::format(
-             "; there it is {}{} too {} ({} to {}{}): {:.5g} against {:.5g}{}",
+             "; at that place it is {}{} too {} ({} to {}{}): {:.5g} against {:.5g}{}",
              shown(std::abs(effect->estimate)), per_cent, effect->estimate < 0 ? "dark" : "bright",
              shown(effect->estimate < 0 ? -effect->interval.high : effect->interval.low),
              shown(effect->estimate < 0 ? -effect->interval.low : effect->interval.high), per_cent,

@@ -154,9 +154,10 @@ std::string passed_proof(const TestOutcome& outcome, const ChannelOutcome& chann
 Reason failed(const TestOutcome& outcome, const ChannelOutcome& channel) {
   if (channel.image) {
     return fmt::format(
-        "differs most at {}, {}; {}",
+        "differs most at {}, {}; {}{}",
         place_text(channel.image->family.winner, *outcome.question.subjects[0].image),
-        p_text(channel.decision.log_p_claimed), finding(channel));
+        p_text(channel.decision.log_p_claimed),
+        channel.effect.estimate ? "over all pixels the " : "", finding(channel));
   }
   const std::string text = fmt::format("{}{}, {}", finding(channel), in_channel(outcome, channel),
                                        p_text(channel.decision.log_p_claimed));

@@ -56,8 +56,8 @@ std::string method_text(const Test& test) {
   return test.forced ? "forced " + test.method : test.method;
 }
 
-// "(welch, two-sided), 1 after Holm; its share of alpha is 0.00125". Holm's number stands where the
-// family changes what is written: of a single test it does not.
+// "(welch, two-sided), 1 over all claims (Holm); its share of alpha is 0.00125". Holm's number
+// stands where the family changes what is written: of a single test it does not.
 std::string about_the_claim(const Test& test) {
   const Channel channel = worst_channel(test);
   std::string how = method_text(test);
@@ -66,7 +66,7 @@ std::string about_the_claim(const Test& test) {
   if (!how.empty()) text += fmt::format(" ({})", how);
   const std::string adjusted = p_text(channel.p_adjusted, channel.log10_p_adjusted);
   if (adjusted != no_number && adjusted != p_text(channel.p_value, channel.log10_p))
-    text += fmt::format(", {} after Holm", adjusted);
+    text += fmt::format(", {} over all claims (Holm)", adjusted);
   if (test.alpha) text += fmt::format("; its share of alpha is {}", human(test.alpha, 3));
   return text;
 }
@@ -349,7 +349,7 @@ std::vector<Fact> facts(const Test& test) {
   if (is_evidence(test)) {
     if (channel.effect.estimate) add("estimate", estimate_fact(channel.effect));
     add("evidence", evidence_text(test));
-    add(is_proof(test) ? "beside it" : "passing", exclusion_text(test));
+    add(is_proof(test) ? "against it" : "for a pass", exclusion_text(test));
     add("margins", margins_fact(test));
     add("channels", channels_fact(test));
     add("image", image_fact(test));

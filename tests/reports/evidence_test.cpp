@@ -57,7 +57,7 @@ TEST(Evidence, WhatUnderflowedAfterHolmIsWrittenFromItsLogarithm) {
   reports::Test test = proof(Verdict::fail);
   test.channels[0].p_adjusted = 5e-324;
   test.channels[0].log10_p_adjusted = -799.5;
-  EXPECT_THAT(evidence_text(test), HasSubstr("3.2e-800 after Holm"));
+  EXPECT_THAT(evidence_text(test), HasSubstr("3.2e-800 over all claims (Holm)"));
 }
 
 TEST(Evidence, HolmIsNamedOnlyWhereItChangesWhatIsWritten) {
@@ -68,7 +68,7 @@ TEST(Evidence, HolmIsNamedOnlyWhereItChangesWhatIsWritten) {
   EXPECT_THAT(evidence_text(test), Not(HasSubstr("Holm")));
   channel.p_adjusted = 0.06;
   channel.log10_p_adjusted = std::log10(0.06);
-  EXPECT_THAT(evidence_text(test), HasSubstr("= 0.03 (F, upper), 0.06 after Holm"));
+  EXPECT_THAT(evidence_text(test), HasSubstr("= 0.03 (F, upper), 0.06 over all claims (Holm)"));
 }
 
 }  // namespace

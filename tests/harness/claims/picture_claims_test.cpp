@@ -226,7 +226,7 @@ TEST_F(PictureClaims, ADefectIsFoundWhereItIs) {
   write(place, "b");
   const reports::Test test = tested();
   // Means of 24 x 64 values: five standard errors of theirs.
-  const std::string words = "; there it is ";
+  const std::string words = "; at that place it is ";
   expect_said(test, Verdict::fail, {"columns 4-11, rows 4-11", words});
   double part = 0, low = 0, high = 0, mean = 0, other = 0;
   const std::string found = test.message.substr(test.message.find(words) + words.size());
