@@ -16,7 +16,9 @@ namespace assay::harness {
 namespace {
 
 std::string short_number(reports::Number value) {
+  constexpr double beyond_use = 1e6;
   if (!value) return "not a number";
+  if (*value > beyond_use) return "over a million";
   return std::abs(*value) >= 1000 ? reports::human(*value, 3) : fmt::format("{:.3g}", *value);
 }
 

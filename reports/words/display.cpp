@@ -204,14 +204,18 @@ void add_suspects(const Suite& suite, Standing how, std::vector<Suspect>& all) {
 std::string tally_sentence(Standings count) {
   int total = 0;
   for (const auto& [standing, some] : count) total += some;
-  const int broken = count[Standing::broken], none = count[Standing::no_verdict];
-  const int undecided = count[Standing::undecided], skipped = count[Standing::not_run];
+  const int skipped = count[Standing::not_run];
   if (total == 0) return "No claim was tested";
-  if (broken > 0)
-    return of_claims(broken, total) + " broken" +
-           (none > 0 ? fmt::format(", {} without a verdict", none) : "");
-  if (none > 0) return of_claims(none, total) + " without a verdict";
-  if (undecided > 0) return of_claims(undecided, total) + " undecided";
+  std::string text;
+  for (const auto& [standing, words] : {std::pair{Standing::broken, "broken"},
+                                        {Standing::no_verdict, "without a verdict"},
+                                        {Standing::undecided, "undecided"}}) {
+    const int some = count[standing];
+    if (some > 0)
+      text +=
+          text.empty() ? of_claims(some, total) + " " + words : fmt::format(", {} {}", some, words);
+  }
+  if (!text.empty()) return text;
   if (total == 1) return skipped > 0 ? "The claim was not tested" : "The claim is as it should be";
   if (skipped == total) return fmt::format("None of {} claims was tested", total);
   if (skipped > 0)
