@@ -193,8 +193,8 @@ std::vector<double> read_counts(const PictureFile& file, const MomentChannels& e
     counts = everywhere(*number);
   } else {
     counts = read_doubles(file, view_of_others(view, {text}));
-    for (std::size_t i = 0; i < view.left_out.size(); ++i) {
-      if (view.left_out[i]) counts[i] = least;
+    for (std::size_t i = 0; view.left_out && i < counts.size(); ++i) {
+      if ((*view.left_out)[i]) counts[i] = least;
     }
   }
   const auto few = std::ranges::find_if(counts, [&](double count) { return !(count >= least); });
@@ -256,7 +256,8 @@ ImageShape PictureView::shape(bool independent) const {
           .components = channels.components,
           .independent = independent,
           .left = window.left,
-          .top = window.top};
+          .top = window.top,
+          .left_out = left_out};
 }
 
 namespace {
@@ -305,10 +306,10 @@ void PictureView::read(const PictureFile& file, std::span<float> texels, std::si
     take_rows(*this, source, texels);
   }
   if (rounding != Rounding::none) round_all(*this, texels);
-  if (left_out.empty()) return;
+  if (!left_out) return;
   const std::size_t components = channels.components.size();
   for (std::size_t i = 0; i < texels.size(); ++i) {
-    if (left_out[first * window.width + i / components]) texels[i] = 0;
+    if ((*left_out)[first * window.width + i / components]) texels[i] = 0;
   }
 }
 
@@ -345,8 +346,10 @@ std::vector<bool> pixels_with(const PictureFile& file, const PictureView& part,
   return found;
 }
 
-/// Leaves out where all colours of the mask are 0. It covers the window, or has its size.
-void apply_mask(const std::string& name, PictureView& view) {
+/// Leaves out where all colours of the mask are 0. It has the size of the whole picture, of its
+/// canvas, or of the crop.
+void apply_mask(const std::string& name, const PictureFile& of, const PictureView& view,
+                std::vector<bool>& left_out) {
   const std::unique_ptr<const PictureFile> file = open_picture(name);
   PictureView mask;
   mask.channels = choose_channels(*file, "usual");
@@ -354,20 +357,24 @@ void apply_mask(const std::string& name, PictureView& view) {
   mask.window = view.window;
   if (mask.whole.width == view.window.width && mask.whole.height == view.window.height) {
     mask.window = mask.whole;
+  } else if (mask.whole != view.whole && mask.whole != of.canvas()) {
+    refuse(name, "it has " + size_text(mask.whole) + " pixels, and the pictures have " +
+                     size_text(view.whole) + "; a mask has as many as they");
   }
   const std::vector<bool> lit = pixels_with(*file, mask, [](float x) { return x != 0; });
-  for (std::size_t i = 0; i < lit.size(); ++i) view.left_out[i] = view.left_out[i] || !lit[i];
+  for (std::size_t i = 0; i < lit.size(); ++i) left_out[i] = left_out[i] || !lit[i];
 }
 
 /// Leaves out where a number of these files is not finite.
-void apply_finite(const std::string& patterns, const std::string& chosen, PictureView& view) {
+void apply_finite(const std::string& patterns, const std::string& chosen, const PictureView& view,
+                  std::vector<bool>& left_out) {
   for (const std::string& pattern : split_at_commas(patterns)) {
     for (const std::string& name : files_of(pattern)) {
       const std::unique_ptr<const PictureFile> file = open_picture(name);
       PictureView all{.window = view.window, .channels = choose_channels(*file, chosen)};
       all.whole = file->window(all.channels.names);
       const auto bad = pixels_with(*file, all, [](float x) { return !std::isfinite(x); });
-      for (std::size_t i = 0; i < bad.size(); ++i) view.left_out[i] = view.left_out[i] || bad[i];
+      for (std::size_t i = 0; i < bad.size(); ++i) left_out[i] = left_out[i] || bad[i];
     }
   }
 }
@@ -380,13 +387,14 @@ PictureView view_of(const PictureFile& file, const std::string& patterns,
   view.of_files = file.channel(view.channels.names[0]).rounding;
   view.window = treatment.crop.value_or(view.whole);
   require_inside(file, view.window, view.whole);
-  if (treatment.mask.empty() && treatment.finite.empty()) return view;
-  view.left_out.resize(view.window.width * view.window.height);
-  if (!treatment.mask.empty()) apply_mask(treatment.mask, view);
-  if (!treatment.finite.empty()) apply_finite(treatment.finite, patterns, view);
-  if (std::ranges::all_of(view.left_out, [](bool out) { return out; })) {
+  std::vector<bool> left_out(view.window.width * view.window.height);
+  if (!treatment.mask.empty()) apply_mask(treatment.mask, file, view, left_out);
+  if (!treatment.finite.empty()) apply_finite(treatment.finite, patterns, view, left_out);
+  const auto count = static_cast<std::size_t>(std::ranges::count(left_out, true));
+  if (count == left_out.size()) {
     refuse(file.name(), "all its pixels are left out; see that the mask is not black");
   }
+  if (count > 0) view.left_out = std::make_shared<const std::vector<bool>>(std::move(left_out));
   return view;
 }
 

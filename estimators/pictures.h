@@ -55,7 +55,8 @@ struct PictureView {
   PictureChannels channels = {};
   Rounding of_files = Rounding::none;  ///< as the files are rounded
   Rounding rounding = Rounding::none;  ///< what is done to them
-  std::vector<bool> left_out = {};     ///< of each pixel of the window, or empty
+  /// Of each pixel of the window; null if none is.
+  std::shared_ptr<const std::vector<bool>> left_out = {};
 
   std::size_t row() const { return window.width * channels.components.size(); }
   ImageShape shape(bool independent = true) const;

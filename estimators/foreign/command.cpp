@@ -185,12 +185,14 @@ void check_command(const Parameters& parameters, const std::vector<std::string>&
   }
 }
 
+std::string ending_of(const std::string& output) { return output == "text" ? "txt" : output; }
+
 std::shared_ptr<const Setup> prepare(Parameters& parameters) {
   foreign::Rendering rendering{.command = parameters.texts("command"),
                                .depends = parameters.texts("depends"),
                                .folder = parameters.folder().empty() ? "." : parameters.folder(),
                                .cache = parameters.file("cache"),
-                               .ending = parameters.string("output") == "text" ? "txt" : "exr",
+                               .ending = ending_of(parameters.string("output")),
                                .timeout = parameters.number("timeout"),
                                .retries = parameters.count("retries"),
                                .memory = parameters.number("memory"),
@@ -230,9 +232,9 @@ std::vector<Entry> foreign_command() {
         .description =
             "In the words of `command` `{seed}`, `{samples}` and `{out}` stand for a seed, the "
             "number of `primaries` and the file to write; it runs in the suite's folder. The file "
-            "is an OpenEXR picture, an image, or a text of one row. With `{seeds}` one program "
-            "makes several: it gets seeds with commas between and writes SEED.exr in the folder "
-            "`{out}`.\n"
+            "is a picture, an image, or a text of one row. With `{seeds}` one program makes "
+            "several: "
+            "it gets seeds with commas between and writes SEED.exr in the folder `{out}`.\n"
             "A seed is 1 + 630360016 (key + observation) mod (2^31 - 1), key the stream's: no two "
             "observations of a stream have the same, and where two streams of a run would meet, "
             "that is an error.\n"
@@ -249,7 +251,8 @@ std::vector<Entry> foreign_command() {
               .type = ParameterType::texts,
               .summary = "the program and its arguments, with the places `{seed}` or `{seeds}`, "
                          "`{samples}` and `{out}`"},
-             text_parameter("output", "what it writes: OpenEXR, or text", "exr", {"exr", "text"}),
+             text_parameter("output", "what it writes: a picture of this kind, or text", "exr",
+                            {"exr", "pfm", "png", "text"}),
              text_parameter(
                  "channels",
                  "of pictures: the channels to use, patterns with commas between; R, G and "

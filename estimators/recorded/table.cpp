@@ -285,7 +285,11 @@ class Reader {
     separator_ = separator_of(content);
     std::vector<Field> fields = split(content, separator_);
     if (fields.empty() || header(fields)) return;
-    if (unnamed_rows_) fields.erase(fields.begin());
+    if (names_rows(fields)) {
+      rows_named_ = true;
+      table_.columns.erase(table_.columns.begin());
+    }
+    if (rows_named_) fields.erase(fields.begin());
     if (table_.columns.empty()) table_.columns = default_names(fields.size());
     check_length(fields);
     may_be_decimals_ = may_be_decimals_ && may_be_a_decimal(fields, separator_);
@@ -365,9 +369,19 @@ class Reader {
       return !is_empty(field) && may_be_name(field);
     });
     if (!names) return false;
-    unnamed_rows_ = rows_named;
+    rows_named_ = rows_named;
     add_names({first, fields.end()}, 0);
     return true;
+  }
+
+  /// True of a first row that begins with a word, and has no other.
+  bool names_rows(const std::vector<Field>& fields) const {
+    const auto is_word = [](const Field& field) {
+      return !field.text.empty() && may_be_name(field);
+    };
+    return !rows_named_ && names_line_ && table_.lines.empty() && fields.size() > 1 &&
+           fields.size() == table_.columns.size() && is_word(fields[0]) &&
+           std::none_of(fields.begin() + 1, fields.end(), is_word);
   }
 
   void stream(const Field& field) {
@@ -443,7 +457,7 @@ class Reader {
   Rows expected_;
   int line_ = 0;
   std::string_view text_;
-  bool unnamed_rows_ = false;
+  bool rows_named_ = false;
   bool may_be_decimals_ = true;
   std::optional<int> names_line_;
   char separator_ = blank;  ///< of this line

@@ -35,7 +35,7 @@ enum class Rows { several, one_is_fine };
 ///
 /// A first line in which nothing begins like a number names the columns, and so does
 /// `# columns: a b c` before the first row. Else they are `value`, or `value1`, `value2`, …. A
-/// first column whose name is empty holds the names of rows (pandas, R). It is left out. The line
+/// first column without a name, or of words, holds the names of rows. It is left out. The line
 /// `# stream: HEX` has the key of the stream that the rows were drawn from.
 ///
 /// LineError for a field that is no number or that no double can hold, an empty field, and a row of

@@ -82,6 +82,10 @@ Recorded find_test(const reports::Record& record, const std::string& file,
            some_ids(named));
   }
   if (parts.size() == 1) return parts.front();
+  if (!parts.empty() && name.empty()) {
+    refuse(where, "{} tests; give the id of one, or a part of it: {}", parts.size(),
+           some_ids(parts));
+  }
   if (!parts.empty()) {
     refuse(where, "{} tests have `{}` in their id; give more of one: {}", parts.size(), name,
            some_ids(parts));

@@ -301,9 +301,11 @@ Examples:
       ask(ImageQuestion::law));
   options.add_key(
       {"--detect", "X"}, given.keys,
-      "the difference over the whole picture that must not pass, as 0.5% or 0.002; default none");
+      "the root mean square difference of all pixels that must not pass, as 0.5% or 0.002; default "
+      "none");
   options.add_key({"--allow", "X"}, given.keys,
-                  "the difference that may be there, as 0.5% or 0.002; default 0");
+                  "the root mean square difference that may be there, of which a wrong pixel is "
+                  "little, as 0.5% or 0.002; default 0");
   options.add(
       {"--within", "X"}, given.within,
       "prove that the pictures differ by less, as 1% or 0.002; default test that they are equal");
@@ -460,8 +462,9 @@ Examples:
   assay explain 'luminaire/mean(triangle_area) == analytic'
   assay explain run.json triangle_area
 )");
-  options.add({.name = "TEST", .value = "[RUN.json] TEST", .needed = "a test"}, given.words,
-              "a saved run, if not the last one, and a test's id or a part of it");
+  options.add(
+      {.name = "TEST", .value = "[RUN.json] TEST"}, given.words,
+      "a saved run, if not the last one, and a test's id or a part of it, if it has several");
 }
 
 void define_merge(Options& options, MergeCommand& command) {
@@ -533,6 +536,13 @@ Examples:
               OneOf<std::string>{shells}, "bash, fish or zsh");
 }
 
+/// The language of claims and the keys of a suite, as suites/README.md has them.
+std::string language_of_claims() {
+  const auto file = std::ranges::find(carried_files(), "claims.md", &CarriedFile::path);
+  const std::size_t begin = file->text.find("## The claim language");
+  return std::string(file->text.substr(begin, file->text.find("## How to add") - begin));
+}
+
 const std::vector<CommandRow>& command_rows();
 
 void define_man(Options& options, TextCommand& command) {
@@ -588,6 +598,7 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
         completions(texts_of(command_rows()), {arguments.begin() + 1, arguments.end()})};
   }
   if (arguments == Texts{"help", "all"}) return TextCommand{help_of_all(texts_of(command_rows()))};
+  if (arguments == Texts{"help", "claims"}) return TextCommand{language_of_claims()};
   return parsed(arguments, command_rows());
 }
 

@@ -126,11 +126,12 @@ int list_tests(const std::vector<Suite>& suites, const Selection& selection) {
 int explain(const ExplainArguments& arguments) {
   const std::vector<std::string>& words = arguments.words;
   if (words.size() > 2) refuse({}, "`assay explain` takes a saved run and one test");
-  const std::string file = words.size() > 1 ? words.front() : last_run();
+  const bool saved =
+      words.size() == 2 || (words.size() == 1 && std::filesystem::is_regular_file(words.front()));
+  const std::string file = saved ? words.front() : last_run();
   const reports::Record record = read_record(file);
-  const Recorded found = find_test(record, file, words.back());
-  if (words.size() < 2)
-    fmt::print("The last run from this folder began at {}.\n\n", record.started);
+  const Recorded found = find_test(record, file, words.size() > saved ? words.back() : "");
+  if (!saved) fmt::print("The last run from this folder began at {}.\n\n", record.started);
   fmt::print("{}",
              reports::explain(found.suite, found.test, std::min(terminal_width(stdout), 100)));
   return 0;

@@ -172,6 +172,7 @@ TableRow row_of(const QuantityRow& quantity) {
   std::string page = wrapped(fmt::format("Claim: {}", quantity.example), 2);
   if (quantity.of_a_sampler) page += "  It is about a sampler of an estimator.\n";
   if (quantity.over_all_channels) page += "  It is over all channels of an estimator.\n";
+  page += "  `assay help claims` explains margins and further keys.\n";
   return {quantity.word, quantity.summary, page};
 }
 

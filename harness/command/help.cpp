@@ -134,7 +134,10 @@ Offers offers_of(const std::vector<CommandText>& commands, std::vector<std::stri
   const bool is_help = words.size() == 2 && words.front() == "help";
   if (words.size() == 1 || is_help) {
     for (const CommandText& command : commands) offers.emplace_back(command.name, command.summary);
-    if (is_help) return offers.emplace_back("all", "every command"), offers;
+    if (is_help) {
+      offers.insert(offers.end(), {{"all", "every command"}, {"claims", "how claims are written"}});
+      return offers;
+    }
     offers.insert(offers.end(), {{"help", "explain a command"}, {"--help", ""}, {"--version", ""}});
     return offers;
   }
@@ -157,8 +160,9 @@ Commands of the first hour:
     text += entry(*std::ranges::find(commands, name, &CommandText::name));
   }
   text += R"(
-`assay COMMAND --help` explains a command; `assay help all` lists all commands
-and exit codes; `assay man` prints the whole as a manual page.
+`assay COMMAND --help` explains a command; `assay help claims` says how claims
+and suites are written; `assay help all` lists all commands and exit codes.
+`assay man` prints a manual page of all commands.
 `assay completion bash|zsh|fish` prints what completes commands in a shell.
 
 Options:

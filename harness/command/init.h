@@ -6,7 +6,8 @@
 
 namespace assay::harness {
 
-/// A file that the program carries: a template of `assay init`, or a script of `assay completion`.
+/// A file that the program carries: a template of `assay init`, a script of `assay completion`, or
+/// "claims.md", which is suites/README.md.
 struct CarriedFile {
   std::string_view path;  ///< below harness/command, as "init/suite/mine.yaml"
   std::string_view text;

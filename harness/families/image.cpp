@@ -34,7 +34,10 @@ void require_one_size(const Question& question) {
     const bool same = first.image && other.image && first.image->width == other.image->width &&
                       first.image->height == other.image->height &&
                       first.image->components.size() == other.image->components.size();
-    if (same) continue;
+    if (same) {
+      require_equal_pixels(question, other);
+      continue;
+    }
     refuse(place_of(question),
            "{}, and {}: only images of one size and as many channels can be compared, element by "
            "element",
@@ -67,6 +70,16 @@ bool is_against_darkness(const Question& question) {
   return !question.of_two() &&
          std::ranges::all_of(question.references,
                              [](const Constant& reference) { return reference.value == 0; });
+}
+
+/// A number is held against all pixels, those too that are left out.
+void require_all_pixels(const Question& question) {
+  const Subject& first = question.subjects[0];
+  const bool number = std::holds_alternative<Constant>(question.test->claim.right);
+  if (!number || is_against_darkness(question) || !first.image->left_out) return;
+  refuse(place_of(question),
+         "`{}` leaves out pixels, which a number is held against too: take a `crop` for the `mask`",
+         first.estimator->name);
 }
 
 void require_something(const Question& question) {
@@ -287,6 +300,7 @@ class ImageTheta : public Theta {
     require_one_size(question);
     require_tested_relation(question);
     require_exact_number(question);
+    require_all_pixels(question);
     require_something(question);
   }
   void check_margin(const Question&, const Margin&) const override {}

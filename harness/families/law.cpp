@@ -426,7 +426,7 @@ class LawTheta : public Theta {
   }
 
   void check_margin(const Question& question, const Margin& margin) const override {
-    require_absolute(margin, "a distance between laws is a probability");
+    require_absolute(margin, "a distance between laws is a probability, and 1 per cent is 0.01");
     Theta::check_margin(question, margin);
   }
 

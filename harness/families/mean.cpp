@@ -310,6 +310,7 @@ std::vector<Constant> recorded_means(const Question& question, const Subject& re
         "`{}` has {} and `{}` has {}: only what is of one size can be compared, element by element",
         subject.estimator->name, size_of(subject), reference.estimator->name, size_of(reference));
   }
+  if (subject.image && reference.image) require_equal_pixels(question, reference);
   std::vector<Constant> means;
   for (const Channel& channel : reference.declared()) {
     means.push_back({question.factor * channel.mean.value_or(0),
@@ -704,7 +705,7 @@ class MeanTheta : public Theta {
       const std::uint64_t seen = outcome.secondaries(side) * outcome.plan.primaries[side];
       if (std::isfinite(upwards ? range.high : range.low) || seen >= many) continue;
       const bool rows = is_recorded(question.subjects[side]);
-      return fmt::format("values rarer than one in {} may be missing{}",
+      return fmt::format("values rarer than one in {} may explain it{}",
                          std::max<std::uint64_t>(1, seen / 3),
                          rows ? "" : "; a declared range helps");
     }

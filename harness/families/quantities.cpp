@@ -74,7 +74,8 @@ const std::vector<QuantityRow>& quantities() {
        .counts_cost = true},
       {.word = "distribution",
        .example = "distribution(a) == normal(0, 1)",
-       .summary = "The law of an observation, or of a sampler's draws.",
+       .summary = "The law of an observation, or of a sampler's draws, "
+                  "`distribution(a.sampler) == density`.",
        .theta = &theta_of_laws(),
        .of_a_law = true},
       {.word = "integral",

@@ -636,8 +636,8 @@ bool is_biased(const Subject& subject) {
 void require_primaries(const Subject& subject) {
   if (!subject.averages || subject.estimator->primaries) return;
   refuse(subject.estimator->where,
-         "the mean squared error of `{}` depends on how many primaries it averages: give it "
-         "`primaries`",
+         "the mean squared error of `{0}` depends on how many primaries it averages: give them, "
+         "as in `{0}: {{…, primaries: 16}}`",
          subject.estimator->name);
 }
 

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdlib>
 #include <map>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
 
+#include "estimators/core/quoting.h"
 #include "estimators/estimator.h"
 #include "harness/base/refuse.h"
 #include "harness/base/terminal.h"
@@ -202,9 +204,11 @@ testing::AssertionResult judged(const std::string& claim, const std::vector<Part
   const std::uint64_t number = ordinal();
   record("claim", number, claim);
   const Asked sources = asked(parts, current_test() + "#" + std::to_string(number));
-  const reports::Test test = tested(claim, sources, *state.budget);
+  reports::Test test = tested(claim, sources, *state.budget);
   record(test, number);
   const bool holds = test.verdict == reports::Verdict::pass;
+  test.replay = fmt::format("{} --gtest_filter={}", shell_quoted(program_invocation_name),
+                            shell_quoted(current_test()));
   std::string whole = reports::plain_text(test);  // "message: …" and further facts
   whole.replace(0, whole.find(':'), reports::to_string(test.verdict));
   std::string text;

@@ -102,7 +102,8 @@ ChannelMeans means_held_against(const ImagePair& pair) {
 /// Estimates of theta, which decide beside the test of theta = 0.
 struct Distances {
   stats::ImageDistance of_elements = {};
-  double hidden = 0;  ///< The norm of a bias that values can hide which no element showed.
+  double hidden = 0;           ///< The norm of a bias that values can hide which no element showed.
+  double hidden_of_twice = 0;  ///< With twice the replicates.
   /// The size of each channel's difference between the whole images' means, with its error. Theta
   /// is at least as large.
   std::vector<Constant> of_means = {};
@@ -152,22 +153,29 @@ stats::TestResult at_margin(const Distances& distances, double margin) {
 }
 
 /// Replicates at which theta would be excluded from `margin` on; 0 if the estimate is not below it.
-/// The squared bias's standard error falls like 1 / R in noise, like 1 / sqrt R if there is a bias.
+/// With f times the replicates the squared bias's standard error is 1 / f of what it is in noise,
+/// and 1 / sqrt f if there is a bias. A hidden bias falls like exp(-f).
 double wanted_replicates(const Distances& distances, double margin, const ImageTest& test,
                          double replicates) {
+  constexpr double least_factor = 1.1;
+  constexpr double most_factor = 1e6;
   const stats::ImageDistance& distance = distances.of_elements;
   const double estimate = std::max(0.0, distance.squared_bias / distance.squared_norm);
-  const double room = margin * margin - estimate;
-  const double t =
-      -stats::student_t_quantile({stats::Tail::lower, std::log(test.share.beta)}, distance.degrees);
-  const double needed = (t + 1) * std::sqrt(distance.bias_variance) / distance.squared_norm / room;
-  double factor = std::max({1.1, needed, estimate > 0 ? needed * needed : 0.0});
-  bool below = room > 0;
-  for (const Constant& mean : distances.of_means) {
-    below = below && margin > mean.value;
-    factor = std::max(factor, std::pow((t + 1) * mean.standard_error / (margin - mean.value), 2));
-  }
-  return below ? replicates * factor : 0;
+  const double errors = 1 - stats::student_t_quantile(
+                                {stats::Tail::lower, std::log(test.share.beta)}, distance.degrees);
+  const double of_square = errors * std::sqrt(distance.bias_variance) / distance.squared_norm;
+  const double decay = distances.hidden > 0 ? distances.hidden_of_twice / distances.hidden : 0;
+  const auto decides = [&](double factor) {
+    const double least = margin - distances.hidden * std::pow(decay, factor - 1);
+    const double error = of_square / (estimate > 0 ? std::sqrt(factor) : factor);
+    return least > 0 && error < least * least - estimate &&
+           std::ranges::all_of(distances.of_means, [&](const Constant& mean) {
+             return errors * mean.standard_error / std::sqrt(factor) < least - mean.value;
+           });
+  };
+  double factor = least_factor;
+  while (factor < most_factor && !decides(factor)) factor *= least_factor;
+  return factor < most_factor ? replicates * factor : 0;
 }
 
 /// Tests of a theta that is known exactly.
@@ -253,9 +261,10 @@ PictureLook look_of(const Seen& seen, const ImageTest& test, std::vector<UnseenE
   return *test.look;
 }
 
-std::string range_text(std::int64_t first, std::uint32_t count, const char* name) {
-  if (count == 1) return fmt::format("{} {}", name, first);
-  return fmt::format("{}s {}-{}", name, first, first + count - 1);
+/// "x 8-15".
+std::string range_text(char axis, std::int64_t first, std::uint32_t count) {
+  if (count == 1) return fmt::format("{} {}", axis, first);
+  return fmt::format("{} {}-{}", axis, first, first + count - 1);
 }
 
 // ---- Laws
@@ -358,7 +367,8 @@ ChannelEvidence evidence_of_image_laws(const Seen& seen, const ImageTest& test) 
   return {std::move(evidence), std::move(outcome)};
 }
 
-std::string place_text(const stats::ImageFinding& finding, const ImageShape& shape) {
+std::string place_text(const stats::ImageFinding& finding, const ImageShape& shape,
+                       std::span<const float> weights) {
   const std::string component =
       shape.components.size() > 1 ? " of " + shape.components[finding.channel] : "";
   // A constant difference has no z.
@@ -370,17 +380,31 @@ std::string place_text(const stats::ImageFinding& finding, const ImageShape& sha
     return fmt::format("the whole image{} with alternating signs ({}){}", component,
                        patterns[static_cast<int>(*finding.alternation)], z);
   }
-  const std::int64_t x = shape.left + window.x;
-  const std::int64_t y = shape.top + window.y;
-  if (window.width == 1 && window.height == 1) {
-    return fmt::format("pixel x {}, y {}{}{}", x, y, component, z);
+  const bool whole = window.width == shape.width && window.height == shape.height;
+  const std::string place = (whole ? "the whole image"
+                                   : range_text('x', shape.left + window.x, window.width) + ", " +
+                                         range_text('y', shape.top + window.y, window.height)) +
+                            component;
+  if (window.width == 1 && window.height == 1) return fmt::format("pixel {}{}", place, z);
+  const std::vector<std::size_t> all = elements_of(finding, shape);
+  const auto varying = static_cast<std::size_t>(std::ranges::count_if(
+      all, [&](std::size_t element) { return weights.empty() || weights[element] > 0; }));
+  if (std::isfinite(finding.z) && 2 * varying < all.size()) {
+    return fmt::format("what varies in {} ({} of {} pixels){}", place, varying, all.size(), z);
   }
-  if (window.width == shape.width && window.height == shape.height) {
-    return fmt::format("the whole image{}{}", component, z);
+  if (whole) return place + z;
+  return fmt::format("{} ({} x {} pixels){}", place, window.width, window.height, z);
+}
+
+std::vector<std::size_t> elements_of(const stats::ImageFinding& finding, const ImageShape& shape) {
+  std::vector<std::size_t> elements;
+  const stats::Rectangle& window = finding.window;
+  for (std::size_t y = window.y; y < window.y + window.height; ++y) {
+    for (std::size_t x = window.x; x < window.x + window.width; ++x) {
+      elements.push_back((y * shape.width + x) * shape.components.size() + finding.channel);
+    }
   }
-  return fmt::format("{}, {}{} ({} x {} pixels){}", range_text(x, window.width, "column"),
-                     range_text(y, window.height, "row"), component, window.width, window.height,
-                     z);
+  return elements;
 }
 
 ChannelEvidence evidence_of_images(const Seen& seen, const ImageTest& test) {
@@ -399,6 +423,7 @@ ChannelEvidence evidence_of_images(const Seen& seen, const ImageTest& test) {
   const Distances distances{
       .of_elements = distance,
       .hidden = std::sqrt(family.hidden_squares / distance.squared_norm),
+      .hidden_of_twice = std::sqrt(family.hidden_squares_of_twice / distance.squared_norm),
       .of_means = distances_of_means(look, extent, distance.squared_norm, question.is().of_pairs)};
   const TestEntry& entry = *question.test;
   const bool within = entry.claim.relation == Relation::within;

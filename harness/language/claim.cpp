@@ -375,6 +375,8 @@ class Parser {
 
   std::string side_advice(const Token& token) {
     if (token.text == "pi") return "; write it as a number, 3.141592653589793";
+    if (token.text.starts_with("pi/")) return "; a claim has no arithmetic: write the number";
+    if (token.text == "pdf") return "; did you mean `density`?";
     if (token.text == "gaussian") return "; did you mean `normal(0, 1)`?";
     const std::string near = did_you_mean(token.text, side_words());
     if (!near.empty()) return near;

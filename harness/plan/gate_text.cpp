@@ -16,16 +16,16 @@ namespace assay::harness {
 namespace {
 
 std::string short_number(reports::Number value) {
-  constexpr double beyond_use = 1e6;
   if (!value) return "not a number";
-  if (*value > beyond_use) return "over a million";
   return std::abs(*value) >= 1000 ? reports::human(*value, 3) : fmt::format("{:.3g}", *value);
 }
 
 std::string sentence(const Gate& gate) {
-  const std::string value = short_number(gate.value);
-  const std::string limit = short_number(gate.limit);
+  constexpr double most_useful_factor = 100;
   const GateKind& row = gate.row();
+  const bool is_useless = row.falls == Falls::by_its_logarithm && gate.value > most_useful_factor;
+  const std::string value = is_useless ? "over 100" : short_number(gate.value);
+  const std::string limit = short_number(gate.limit);
   if (row.sentence.empty()) return fmt::format("{} is {}, limit {}", gate.name, value, limit);
   // The rest of the name is a channel or an estimator.
   return fmt::format(fmt::runtime(row.sentence), value, limit) +

@@ -200,7 +200,6 @@ Reason too_few_to_tell(TestOutcome& test, const Pilots& pilots, std::uint64_t co
 
 /// Allows for a dependence of rows that is too weak for a gate.
 void allow_for_dependence(const std::vector<Rows>& all, Plan& plan) {
-  std::vector<std::string> allowed;
   for (const Rows& rows : all) {
     const double factor = stats::allowance_for_dependence(rows.values);
     if (!(factor > 1)) continue;
@@ -208,15 +207,7 @@ void allow_for_dependence(const std::vector<Rows>& all, Plan& plan) {
         {.subject = rows.subject, .channel = rows.channel, .factor = factor});
     plan.gates.push_back(
         gate_of("variance of the mean, allowed for dependence, " + rows.label, factor, 1, "amber"));
-    allowed.push_back(rows.label);
   }
-  if (allowed.empty()) return;
-  const std::size_t others = allowed.size() - 1;
-  if (others > 1) allowed = {allowed[0], fmt::format("{} others", others)};
-  plan.caution = fmt::format(
-      "the interval is wider because successive {} look correlated, "
-      "which may be chance",
-      fmt::join(allowed, " and "));
 }
 
 }  // namespace

@@ -208,9 +208,24 @@ TestOutcome plan_test(Question asked, const FamilyPlace& place, const Pilots& pi
     } else {
       plan.looks = look_for_its_picture(test);
     }
-    if (question.test->detect_by_default) {  // a possible slip of the user
-      plan.caution += fmt::format("{}`detect` is {}, the default of claims about laws",
-                                  plan.caution.empty() ? "" : "; ", question.test->detect->value);
+    const auto caution = [&](const std::string& words) {
+      plan.caution += (plan.caution.empty() ? "" : "; ") + words;
+    };
+    if (question.test->detect_by_default) {
+      caution(fmt::format("`detect` is {}, the default of claims about laws",
+                          question.test->detect->value));
+    }
+    constexpr double large = 0.1;
+    const std::optional<Margin>& detect = question.test->detect;
+    const double size = std::max(question.theta->known_size(question),
+                                 question.theta->piloted_size(question, pilots));
+    if (detect && !detect->relative && size > 0 && detect->value > large * size) {
+      caution(fmt::format("`detect` is {:.0f} % of the reference", 100 * detect->value / size));
+    }
+    const std::optional<ImageShape>& image = question.subjects[0].image;
+    if (image && image->left_out) {
+      caution(fmt::format("{} of {} pixels are left out",
+                          std::ranges::count(*image->left_out, true), image->pixels()));
     }
   } catch (const std::domain_error& error) {
     plan.invalid = in_words(error);

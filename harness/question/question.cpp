@@ -43,6 +43,10 @@ void require_no_sampler(const Source& source, const PreparedEstimator& estimator
 }
 
 [[noreturn]] void no_such_part(const Source& source, const PreparedEstimator& estimator) {
+  if (source.part.empty()) {
+    refuse(source.where, "of `{}` name the part, as in `{}.PART`: it has {}", source.estimator,
+           source.estimator, parts_of(estimator));
+  }
   refuse(source.where, "`{}` has no part `{}`; it has {}", source.estimator, source.part,
          parts_of(estimator));
 }
@@ -181,6 +185,16 @@ std::vector<Constant> references_of(const Claim& claim, const Subject& subject) 
 
 std::string image_name(const ImageShape& shape) {
   return fmt::format("{} x {} {}", shape.width, shape.height, fmt::join(shape.components, ", "));
+}
+
+void require_equal_pixels(const Question& question, const Subject& other) {
+  const Subject& first = question.subjects[0];
+  const auto& mine = first.image->left_out;
+  const auto& theirs = other.image->left_out;
+  if (mine == theirs || (mine && theirs && *mine == *theirs)) return;
+  refuse(question.test->claim.left.where,
+         "`{}` and `{}` do not leave out the same pixels: give both the same `mask` and `finite`",
+         first.estimator->name, other.estimator->name);
 }
 
 StreamKey stream_of(const Subject& subject, std::uint64_t seed) {

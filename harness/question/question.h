@@ -142,6 +142,9 @@ std::vector<Constant> references_of(const Claim& claim, const Subject& subject);
 
 /// "32 x 32 irradiance".
 std::string image_name(const ImageShape& shape);
+/// InputError if the first subject and the other leave out different pixels, which would be 0 on
+/// one side alone. Both are images.
+void require_equal_pixels(const Question& question, const Subject& other);
 
 /// The stream of a subject's observations.
 StreamKey stream_of(const Subject& subject, std::uint64_t seed);

@@ -26,9 +26,10 @@ namespace {
 
 using reports::Number;
 
-reports::ImageFinding finding_of(const stats::ImageFinding& finding, const ImageShape& shape) {
+reports::ImageFinding finding_of(const stats::ImageFinding& finding, const ImageShape& shape,
+                                 std::span<const float> weights) {
   return {.statistic = finding.alternation ? "alternating" : "window",
-          .place = place_text(finding, shape),
+          .place = place_text(finding, shape, weights),
           .x = finding.window.x,
           .y = finding.window.y,
           .width = finding.window.width,
@@ -49,9 +50,9 @@ reports::Image image_of(const ImageOutcome& outcome, const ImageShape& shape) {
                        .constant = family.equal_constants - outcome.unseen.size(),
                        .unseen = outcome.unseen.size()};
   if (family.groups.empty()) return image;
-  image.winner = finding_of(family.winner, shape);
+  image.winner = finding_of(family.winner, shape, family.weights);
   for (const stats::ImageFinding& group : family.groups) {
-    image.groups.push_back(finding_of(group, shape));
+    image.groups.push_back(finding_of(group, shape, family.weights));
   }
   return image;
 }

@@ -19,18 +19,6 @@
 namespace assay::harness {
 namespace {
 
-/// Indices of a window's elements in a question.
-std::vector<std::size_t> elements_of(const stats::ImageFinding& finding, const ImageShape& shape) {
-  std::vector<std::size_t> elements;
-  const stats::Rectangle& window = finding.window;
-  for (std::size_t y = window.y; y < window.y + window.height; ++y) {
-    for (std::size_t x = window.x; x < window.x + window.width; ++x) {
-      elements.push_back((y * shape.width + x) * shape.components.size() + finding.channel);
-    }
-  }
-  return elements;
-}
-
 /// The mean of a subject over elements, by their weights or plain.
 double mean_over(const DrawnTest& test, std::size_t subject,
                  const std::vector<std::size_t>& elements, std::span<const float> weights) {
@@ -161,37 +149,35 @@ std::optional<PlaceEffect> effect_at_place(const DrawnTest& test) {
                       stats::student_t_quantile({stats::Tail::upper, log_level - std::numbers::ln2},
                                                 effect.degrees);
   const double base = other_mean(test, elements, family.weights);
-  return PlaceEffect{
-      .estimate = effect.estimate,
-      .interval = {effect.estimate - half, effect.estimate + half, stats::confidence_at_place},
-      .other = base,
-      .elements = std::move(elements)};
+  // The halves weigh a pixel differently, which is nothing to its reader.
+  const double estimate =
+      elements.size() == 1 ? mean_over(test, 0, elements, {}) - base : effect.estimate;
+  return PlaceEffect{.estimate = estimate,
+                     .interval = {estimate - half, estimate + half, stats::confidence_at_place},
+                     .other = base,
+                     .elements = std::move(elements)};
 }
 
 std::string others_at(const DrawnTest& test, const PlaceEffect& place) {
   constexpr std::size_t most = 3;
-  constexpr double clear = 3;
+  constexpr double considerable = 0.5;
   const std::vector<std::string>& names = test.outcome.question.subjects[0].image->components;
-  const std::vector<double>& z = test.outcome.channels[0].image->z;
   const std::size_t mine = place.elements[0] % names.size();
-  std::vector<std::string> texts;
-  for (std::size_t c = 0; c < names.size() && texts.size() < most; ++c) {
-    if (c == mine) continue;
+  const auto effect_of = [&](std::size_t component) {
     std::vector<std::size_t> elements = place.elements;
-    double sum = 0;
-    for (std::size_t& i : elements) {
-      i = i - mine + c;
-      sum += z[i];
-    }
-    // As many standard errors of independent pixels.
-    if (!(std::abs(sum) > clear * std::sqrt(static_cast<double>(elements.size())))) continue;
+    for (std::size_t& i : elements) i = i - mine + component;
     const double base = other_mean(test, elements, {});
     const double difference = mean_over(test, 0, elements, {}) - base;
-    if (difference * sum < 0) continue;
-    const reports::Effect effect{.relative = base != 0};
-    const double unit = effect.relative ? std::abs(base) : 1;
+    return reports::Effect{.estimate = base != 0 ? difference / std::abs(base) : difference,
+                           .relative = base != 0};
+  };
+  const double found = *effect_of(mine).estimate;
+  std::vector<std::string> texts;
+  for (std::size_t c = 0; c < names.size() && texts.size() < most; ++c) {
+    const reports::Effect effect = effect_of(c);
+    if (c == mine || !(*effect.estimate / found >= considerable)) continue;
     texts.push_back(names[c] + (texts.empty() ? " differs by " : " by ") +
-                    reports::theta_text(difference / unit, effect));
+                    reports::theta_text(*effect.estimate, effect));
   }
   return fmt::format("{}", fmt::join(texts, ", "));
 }
@@ -213,7 +199,7 @@ std::string means_where_it_differs(const DrawnTest& test) {
   const double unit = relative ? std::abs(effect->other) / 100 : 1;
   const char* const per_cent = relative ? " %" : "";
   const char* const weighted =
-      channels[0].image->family.weights.empty() ? "" : ", pixels weighted by their noise";
+      effect->elements.size() == 1 ? "" : ", pixels weighted by their noise";
   const auto shown = [&](double value) { return reports::human(value / unit, 3); };
   return fmt::format(
              "; at that place it is {}{} too {} ({} to {}{}): {:.5g} against {:.5g}{}",

@@ -28,12 +28,12 @@ struct PlaceEffect {
 };
 std::optional<PlaceEffect> effect_at_place(const DrawnTest& test);
 
-/// "G differs by -5.1 %, B by -4.9 %": what other components clearly differ by there, three at
-/// most.
+/// What other components differ by there, three at most, if it is half as much or more: "G differs
+/// by -5.1 %, B by -4.9 %".
 std::string others_at(const DrawnTest& test, const PlaceEffect& place);
 
-/// "; at that place it is 3 % too bright (2 to 4 %): 1.03 against 1", if one cell decided a failed
-/// claim on images. Else "".
+/// "; at that place it is 3 % too bright (2 to 4 %): 1.03 against 1". It is "" unless one cell
+/// decided a failed claim on images.
 std::string means_where_it_differs(const DrawnTest& test);
 
 /// Sets the least detectable difference: one that is the same everywhere, by the sum over the whole

@@ -250,8 +250,12 @@ std::vector<foreign::MissingFile> missing_files(const std::vector<Suite>& suites
       Pools pools;
       plan_tests(*run, options, progress);
       plan_pools(*run, pools);
-      for (const auto& pool : pools.all()) {
-        add_missing(*pool, std::max(pool->most_marked(), pool->requested()), missing);
+      for (const TestWork& work : run->tests) {
+        const TestOutcome& outcome = work.outcome;
+        for (std::size_t i = 0; i < work.pools.size(); ++i) {
+          const Subject& side = outcome.question.subjects[i];
+          add_missing(*work.pools[i], side.secondaries(outcome.plan.most_secondaries()), missing);
+        }
       }
     }
     all.merge(missing);

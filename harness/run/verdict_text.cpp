@@ -98,7 +98,8 @@ std::string passed_by_empty_interval(const ChannelOutcome& channel) {
 std::string found_in_cell(const ChannelOutcome& channel) {
   if (!channel.image || !channel.image->detectable_in_cell) return "";
   return fmt::format(
-      "; in one typical square of {0} x {0} pixels alone, {1}{2} would have been found{3}",
+      "; in one typical square of {0} x {0} pixels alone, {1}{2} would have been found, too bright "
+      "or too dark{3}",
       stats::typical_side, reports::margin_text(*channel.image->detectable_in_cell, channel.effect),
       channel.effect.relative ? " of the image's mean" : "",
       channel.effect.relative && *channel.image->detectable_in_cell > 1
@@ -153,11 +154,11 @@ std::string passed_proof(const TestOutcome& outcome, const ChannelOutcome& chann
 
 Reason failed(const TestOutcome& outcome, const ChannelOutcome& channel) {
   if (channel.image) {
-    return fmt::format(
-        "differs most at {}, {}; {}{}",
-        place_text(channel.image->family.winner, *outcome.question.subjects[0].image),
-        p_text(channel.decision.log_p_claimed),
-        channel.effect.estimate ? "over all pixels the " : "", finding(channel));
+    return fmt::format("differs most at {}, {}; {}{}",
+                       place_text(channel.image->family.winner, *outcome.question.subjects[0].image,
+                                  channel.image->family.weights),
+                       p_text(channel.decision.log_p_claimed),
+                       channel.effect.estimate ? "over all pixels the " : "", finding(channel));
   }
   const std::string text = fmt::format("{}{}, {}", finding(channel), in_channel(outcome, channel),
                                        p_text(channel.decision.log_p_claimed));
@@ -264,6 +265,10 @@ Reason undecided(const TestOutcome& outcome, const ChannelOutcome& channel) {
   Reason reason = what_would_decide(outcome, channel);
   reason.text = fmt::format("{}{}: neither shown nor refuted; {}", finding(channel),
                             in_channel(outcome, channel), reason.text);
+  if (!outcome.plan.method.frozen.row_allowances.empty()) {
+    reason.text +=
+        "; its interval is wider because successive rows look correlated, which may be chance";
+  }
   return reason;
 }
 

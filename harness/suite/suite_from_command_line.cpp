@@ -106,10 +106,14 @@ EstimatorEntry parse_estimator_option(const std::string& text) {
   }
   require_estimator_name(head->first, where);
   if (std::filesystem::is_regular_file(head->second)) {
-    refuse(where,
-           "`{1}` is a file: `{0}=recorded,file={1}` reads numbers, and "
-           "`{0}=process,command=[{1}]` runs a program",
-           head->first, head->second);
+    const std::string& file = head->second;
+    refuse(where, "`{1}` is a file: {2}", head->first, file,
+           file.ends_with(".so") ? fmt::format("`{}=library,file={}` loads it", head->first, file)
+           : file.ends_with(".py")
+               ? fmt::format("`{}=process,command=[python3, {}]` runs it", head->first, file)
+               : fmt::format("`{0}=recorded,file={1}` reads numbers, and "
+                             "`{0}=process,command=[{2}{1}]` runs a program",
+                             head->first, file, file.find('/') == file.npos ? "./" : ""));
   }
   EstimatorEntry entry{.name = head->first,
                        .plugin = find_plugin(head->second, where).information.name,

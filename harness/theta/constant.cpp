@@ -23,9 +23,9 @@ bool meets_claimed(const stats::Range& theta, const Regions& regions) {
 /// Hint at the commonest cause of constant observations.
 std::string seeds(const Question& question) {
   for (const Subject& subject : question.subjects) {
-    if (is_recorded(subject)) return "; if they should vary, has each a seed of its own?";
+    if (is_recorded(subject)) return "if they should vary, has each a seed of its own? ";
     if (subject.estimator->entry->information.says_nature) {
-      return "; if they should vary, does the program use the index of the observation?";
+      return "if they should vary, does each draw its own random numbers? ";
     }
   }
   return "";
@@ -87,10 +87,10 @@ std::optional<ConstantVerdict> judge_constant(const Seen& seen, const Regions& r
   }
   return ConstantVerdict{
       Verdict::invalid,
-      fmt::format("every observation is {:.10g}, off by {:.3g}: rare other values may be unseen, "
-                  "and could make up for it; {}{}",
-                  seen.moments(0).mean, difference, range_advice(seen.question),
-                  seeds(seen.question))};
+      fmt::format("every observation is {:.10g}, off by {:.3g}: {}rare other values may be unseen, "
+                  "and could make up for it; {}",
+                  seen.moments(0).mean, difference, seeds(seen.question),
+                  range_advice(seen.question))};
 }
 
 std::optional<ConstantVerdict> judge_constant_variance(const Seen& seen, const Regions& regions) {

@@ -57,16 +57,9 @@ std::string found(const Test& test, const Effect& effect) {
 }
 
 /// "x 152-183, y 136-167 of red".
-std::string pixels(const Image& image, const ImageFinding& finding) {
-  const auto span = [](char axis, std::uint64_t first, std::uint64_t count) {
-    return count < 2 ? fmt::format("{} {}", axis, first)
-                     : fmt::format("{} {}-{}", axis, first, first + count - 1);
-  };
-  const bool whole = finding.width == image.width && finding.height == image.height;
-  const std::string place =
-      whole ? "the whole image"
-            : span('x', finding.x, finding.width) + ", " + span('y', finding.y, finding.height);
-  return image.components.size() > 1 ? place + " of " + finding.component : place;
+std::string pixels(const ImageFinding& finding) {
+  const std::string& place = finding.place;
+  return place.substr(0, std::min(place.find(" ("), place.find(", z = ")));
 }
 
 std::string found_in_image(const Image& image) {
@@ -84,16 +77,15 @@ std::string found_in_image(const Image& image) {
     // The words have the sign.
     std::string interval = bracket(size);
     if (size.low.value_or(0) >= 0) std::erase(interval, '+');
-    return fmt::format("{} is {} too {}{}{}", pixels(image, winner),
-                       size_text(*size.estimate, size), dark ? "dark" : "bright", interval,
+    return fmt::format("{} is {} too {}{}{}", pixels(winner), size_text(*size.estimate, size),
+                       dark ? "dark" : "bright", interval,
                        winner.others.empty() ? "" : "; there " + winner.others);
   }
   if (winner.statistic == "alternating") return "the whole image differs with alternating signs";
   if (winner.statistic != "window") {
-    return fmt::format("{}: {}", pixels(image, winner), winner.statistic);
+    return fmt::format("{}: {}", pixels(winner), winner.statistic);
   }
-  return fmt::format("{} is too {}", pixels(image, winner),
-                     winner.z.value_or(0) > 0 ? "bright" : "dark");
+  return fmt::format("{} is too {}", pixels(winner), winner.z.value_or(0) > 0 ? "bright" : "dark");
 }
 
 /// A pass whose interval leaves out all that is claimed or allowed says so.
@@ -228,8 +220,8 @@ std::string run_sentence(const Record& record) {
   if (record.shard && tests_of(record).empty()) return "This shard, which has no claim, ended";
   const auto alarm_count = static_cast<std::uint64_t>(alarms(record.ledger));
   const std::string nights =
-      alarm_count > 0 ? "; " + counted(alarm_count, "ledger alarm", "ledger alarms") : "";
-  return tally_sentence(standings(record)) + nights;
+      alarm_count > 0 ? counted(alarm_count, "ledger alarm", "ledger alarms") + ". " : "";
+  return nights + tally_sentence(standings(record));
 }
 
 std::string false_alarms(double alpha) {
@@ -301,7 +293,7 @@ std::string meaning(const Test& test) {
       "The claim is wrong.",
       "The observations do not suffice to say whether the claim holds.",
       "Nothing was decided, because the data break what the test relies on.",
-      "There are no numbers to judge, because drawing them failed.",
+      "Nothing was decided, because drawing failed.",
       "The claim was not tested."};
   return meanings[static_cast<int>(test.verdict)];
 }

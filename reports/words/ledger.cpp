@@ -70,10 +70,12 @@ std::string alarm_sentence(const LedgerSeries& series) {
                                 ? std::string()
                                 : fmt::format(" (90\u00A0%: {} to {})", minute(series.moved_from),
                                               minute(series.moved_to));
-  return fmt::format(
-      "The nights together refute the claim since {}. It moved most likely on the night of {}, "
-      "commit {}{}.",
-      minute(series.since), minute(series.moved), series.moved_commit, range);
+  const bool always = !series.nights.empty() && series.moved == series.nights.front().date;
+  return fmt::format("The nights together refute the claim since {}. {}{}.", minute(series.since),
+                     always ? "Most likely it was so from the first night on"
+                            : fmt::format("It moved most likely on the night of {}, by Assay {}",
+                                          minute(series.moved), series.moved_commit),
+                     range);
 }
 
 std::string changes(const LedgerSeries& series) {

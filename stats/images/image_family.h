@@ -130,6 +130,7 @@ struct ImageFamily {
   // The squared norm of the bias that values can hide which their elements never showed
   // (image_noise.h), in units of the images.
   double hidden_squares = 0;
+  double hidden_squares_of_twice = 0;  // With twice the replicates.
   TypicalCell typical = {};
 };
 

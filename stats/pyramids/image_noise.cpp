@@ -217,14 +217,14 @@ ImageEffect NoisePyramid::kept(const CellNoise& cell, const Rectangle& window,
   return {.estimate = cell.effect, .standard_error = standard_error, .degrees = cell.degrees};
 }
 
-double NoisePyramid::hidden_squares() const {
+double NoisePyramid::hidden_squares(double times) const {
   const Level& fine = levels_[0];
   double sum = 0;
   for (std::size_t i = 0; i < fine.width * fine.height * fine.channels; ++i) {
     double larger = 0;
     for (std::size_t s = 0; s < sides_of_pair; ++s) {
       if (replicates_[s] == 0) continue;
-      larger = std::max(larger, fine.noise[s][i].hidden_squares(replicates_[s]));
+      larger = std::max(larger, fine.noise[s][i].hidden_squares(times * replicates_[s]));
     }
     sum += larger;
   }

@@ -109,9 +109,9 @@ class NoisePyramid {
   double growth(const CellNoise& cell, double sign, const Rectangle& window,
                 std::size_t channel) const;
 
-  // The squared bias, summed over the elements, that values can hide which they never showed. In
-  // each block the larger side's counts.
-  double hidden_squares() const;
+  // The squared bias, summed over the elements, that values can hide which they never showed in so
+  // many times the replicates. In each block the larger side's counts.
+  double hidden_squares(double times = 1) const;
 
  private:
   struct Level {

@@ -121,7 +121,8 @@ ImageFamily RowPyramid::family() {
   ImageFamily family{.tested = counts.tested,
                      .equal_constants = counts.equal_constants,
                      .different_constants = counts.different_constants,
-                     .hidden_squares = found_.noise.hidden_squares()};
+                     .hidden_squares = found_.noise.hidden_squares(),
+                     .hidden_squares_of_twice = found_.noise.hidden_squares(2)};
   if (counts.different_constants > 0) {
     family.groups.push_back(certain_finding(extent_, counts.first_different, counts.difference));
     ImageFinding& all = family.groups.back();

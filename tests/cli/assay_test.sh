@@ -101,7 +101,7 @@ test_ledger_alarm_is_1() {
   done
   [ "$code" -eq 1 ] || fail "ended with $code, not 1"
   contains out '✗ ledger alarm: nights/off'
-  contains out '✗ The claim is as it should be; 1 ledger alarm in'
+  contains out '✗ 1 ledger alarm. The claim is as it should be in'
 }
 
 test_ledger_keeps_nights_and_refuses_changed_lines() {

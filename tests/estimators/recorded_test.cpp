@@ -121,6 +121,7 @@ TEST_F(Recorded, ReadsRowsAsProgramsWriteThem) {
            {",a,b\n0,1,2\n1,3,4\n", {"a", "b"}, {1, 2, 3, 4}},
            {"\"\",\"a\",\"b\"\n\"r1\",1,2\n\"r2\",3,4\n", {"a", "b"}, {1, 2, 3, 4}},
            {"\"x\";\"y\"\n1,5;-2,25e1\n3;4.5\n", {"x", "y"}, {1.5, -22.5, 3, 4.5}},
+           {"frame,a,b\nf1,1,2\nf2,3,4\n", {"a", "b"}, {1, 2, 3, 4}},
            {"x pos\ty pos\n1\t2\n3\t4\t\n", {"x pos", "y pos"}, {1, 2, 3, 4}},
            // Every bit of a number.
            {"0.1\n", {"value"}, {.1}},

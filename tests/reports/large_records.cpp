@@ -112,7 +112,7 @@ Record pair(const Area& area, double raised_z, double raised_value) {
             .replicates = 64,
             .tested = width * height * components,
             .winner = {.statistic = "window",
-                       .place = "a place",
+                       .place = "x 600-680, y 276-324 of G",
                        .x = first(area.x, area.half_width),
                        .y = first(area.y, area.half_height),
                        .width = static_cast<std::uint64_t>(2 * area.half_width) + 1,

@@ -174,7 +174,7 @@ const views = {
   async "an alarm of nights shows when it moved and what changed"() {
     const page = await opened("example");
     const card = page.locator(".card", { hasText: "drifted" });
-    assert.match(await plain(card), /most likely on the night of 2026-11-13 02:00 UTC, commit 14467a0bbe61/);
+    assert.match(await plain(card), /most likely on the night of 2026-11-13 02:00 UTC, by Assay 14467a0bbe61/);
     assert.match(await plain(card), /git log --oneline \w+\.\.14467a0bbe61/);
     assert.equal(await card.locator("figure circle").count(), 12);
     assert.equal(await card.locator('figure path[stroke-dasharray], figure [stroke-dasharray] path').count(), 1);

@@ -80,7 +80,7 @@ TEST_F(ImageClaims, TheTileIsLocated) {
   EXPECT_EQ(winner.height, 4u);
   EXPECT_EQ(winner.component, "irradiance");
   EXPECT_GT(*winner.z, 6);
-  expect_said(test, Verdict::fail, {"columns 8-11, rows 8-11 (4 x 4 pixels)", "too bright ("});
+  expect_said(test, Verdict::fail, {"x 8-11, y 8-11 (4 x 4 pixels)", "too bright ("});
   ASSERT_TRUE(winner.effect);
   EXPECT_GT(*winner.effect->low, 0);
   EXPECT_LT(*winner.effect->low, *winner.effect->estimate);

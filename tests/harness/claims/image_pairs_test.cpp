@@ -187,7 +187,7 @@ TEST_F(ImageLaws, SayWhatDiffersWhere) {
   EXPECT_EQ(test.verdict, Verdict::fail) << test.message;
   EXPECT_NEAR(*test.channels[0].log10_p, -3, 1e-9);
   EXPECT_THAT(test.message, HasSubstr("there the values are mostly larger in b"));
-  EXPECT_THAT(test.message, HasSubstr("columns 0-"));
+  EXPECT_THAT(test.message, HasSubstr("x 0-"));
   EXPECT_EQ(test.image->winner.statistic, "the values are mostly larger in b");
   EXPECT_FALSE(test.image->winner.effect);
 }

@@ -227,7 +227,7 @@ TEST_F(PictureClaims, ADefectIsFoundWhereItIs) {
   const reports::Test test = tested();
   // Means of 24 x 64 values: five standard errors of theirs.
   const std::string words = "; at that place it is ";
-  expect_said(test, Verdict::fail, {"columns 4-11, rows 4-11", words});
+  expect_said(test, Verdict::fail, {"x 4-11, y 4-11", words});
   double part = 0, low = 0, high = 0, mean = 0, other = 0;
   const std::string found = test.message.substr(test.message.find(words) + words.size());
   ASSERT_EQ(std::sscanf(found.c_str(), "%lf %% too bright (%lf to %lf %%): %lf against %lf", &part,

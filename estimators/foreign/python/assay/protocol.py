@@ -71,7 +71,7 @@ def run(prepare: Callable[[], tuple[Callable[..., typing.Any], Declaration, Sequ
             replies.flush()
     except BrokenPipeError:
         os._exit(1)  # nobody listens
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         print(last_line(error), file=sys.stderr, flush=True)
         sys.exit(1)
 
@@ -201,6 +201,8 @@ def _wrong(value: typing.Any, size: int) -> TypeError:
     """The error for a value that is not so many numbers."""
     if value is None:
         return TypeError("the estimate is None: does the function end with `return`?")
+    if isinstance(value, str):
+        return TypeError(f"the estimate is the text {reprlib.repr(value)}: return a number")
     return TypeError(f"the estimate is {reprlib.repr(value)}, not {size} number{'s' if size > 1 else ''}: "
                      "name the channels, or the image")
 
