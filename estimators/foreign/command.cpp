@@ -233,8 +233,8 @@ std::vector<Entry> foreign_command() {
             "In the words of `command` `{seed}`, `{samples}` and `{out}` stand for a seed, the "
             "number of `primaries` and the file to write; it runs in the suite's folder. The file "
             "is a picture, an image, or a text of one row. With `{seeds}` one program makes "
-            "several: "
-            "it gets seeds with commas between and writes SEED.exr in the folder `{out}`.\n"
+            "several: it gets seeds with commas between and writes SEED.exr in the folder "
+            "`{out}`.\n"
             "A seed is 1 + 630360016 (key + observation) mod (2^31 - 1), key the stream's: no two "
             "observations of a stream have the same, and where two streams of a run would meet, "
             "that is an error.\n"
@@ -243,9 +243,8 @@ std::vector<Entry> foreign_command() {
             "goes on where it stopped. A file counts once its program has ended with status 0. "
             "A program that fails, takes too long or writes nothing, and so at each of its "
             "`retries`, is an error with its exit status and the end of its standard error. The "
-            "size is learnt from one picture of one sample; a test is "
-            "planned on a pilot of pictures that it does not judge, 32 or, of small ones, up to "
-            "512.",
+            "size is learnt from one picture of one sample. A test is planned on a pilot of 32 "
+            "pictures or 512 texts, which it does not judge.",
         .parameters =
             {{.name = "command",
               .type = ParameterType::texts,

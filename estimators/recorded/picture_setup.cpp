@@ -17,32 +17,18 @@ std::uint64_t step(std::uint64_t digest, std::uint64_t value) {
   return digest ^ digest >> 32;  // the product alone never carries a high bit down
 }
 
-constexpr std::uint64_t basis = 0xcbf29ce484222325;
-
-std::uint64_t word(const float* texels) {
-  std::uint64_t bits = 0;
-  std::memcpy(&bits, texels, sizeof bits);
-  return bits;
-}
-
-/// A digest of two texels at a time. Every eighth pair goes to a digest of its own, so that none
-/// waits for the last.
+/// Products of texels of one half and of the other, summed up. Each is first disguised by its
+/// place, so that no zero hides another.
 std::uint64_t digest_of_bits(std::span<const float> texels) {
-  constexpr std::size_t lanes = 8;
-  std::uint64_t whole = basis;
-  std::array<std::uint64_t, lanes> digests;
-  digests.fill(whole);
-  std::size_t i = 0;
-  for (; i + 2 * lanes <= texels.size(); i += 2 * lanes) {
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      digests[lane] = step(digests[lane], word(texels.data() + i + 2 * lane));
-    }
+  const std::size_t half = texels.size() / 2;
+  const float* const others = texels.data() + half;
+  std::uint32_t key = 0x9e3779b9;
+  std::uint64_t sum = 0;
+  for (std::size_t i = 0; i < half; ++i, key += 0xc2b2ae35) {
+    const std::uint64_t one = std::bit_cast<std::uint32_t>(texels[i]) ^ key;
+    sum += one * (std::bit_cast<std::uint32_t>(others[i]) ^ ~key);
   }
-  for (const std::uint64_t digest : digests) whole = step(whole, digest);
-  for (; i < texels.size(); ++i) {
-    whole = step(whole, std::bit_cast<std::uint32_t>(texels[i]));
-  }
-  return whole;
+  return texels.size() == 2 * half ? sum : step(sum, std::bit_cast<std::uint32_t>(texels.back()));
 }
 
 using SharedStack = std::shared_ptr<const PictureStack>;
@@ -213,15 +199,13 @@ void PictureDigest::add(std::span<const float> texels) {
     const std::span<const float> some = texels.subspan(begin, row_);
     value_ = step(value_, digest_of_bits(some));
     std::uint32_t beyond = 0;
-    std::uint32_t differs = 0;
     for (const float texel : some) {
       constexpr std::uint32_t exponent = 0x7f800000;
       const auto bits = std::bit_cast<std::uint32_t>(texel);
       beyond |= (bits & exponent) == exponent ? 1U : 0U;
-      differs |= texel != *first_ ? 1U : 0U;
     }
     finite_ &= beyond == 0;
-    one_value_ &= differs == 0;
+    one_value_ = one_value_ && std::ranges::all_of(some, [&](float x) { return x == *first_; });
   }
 }
 

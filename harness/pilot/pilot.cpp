@@ -36,6 +36,7 @@ const std::string averages_purpose = "(averages)";
 std::optional<std::uint64_t> usual_images(const Setup& setup, std::uint64_t primaries) {
   const auto image = setup.image();
   if (!image) return std::nullopt;
+  if (setup.keeps_files()) return least_images;  // a program that renders each is dear
   return std::clamp(image_elements / (image->elements() * primaries), least_images,
                     few_observations);
 }
@@ -44,7 +45,6 @@ std::optional<std::uint64_t> usual_images(const Setup& setup, std::uint64_t prim
 std::uint64_t usual_observations(const PreparedEstimator& estimator, std::uint64_t primaries) {
   if (const auto images = usual_images(*estimator.setup, primaries)) return *images;
   if (estimator.nature().averages) return many_observations;
-  // A program that renders each observation is dear.
   if (estimator.setup->keeps_files()) return few_observations;
   return std::clamp(primaries_of_few / primaries, few_observations, many_observations);
 }
