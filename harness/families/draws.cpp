@@ -35,8 +35,8 @@ Evidence integral(const Method&, const Seen& seen) {
       from_probability({.successes = cells.in_cells(counts).back(), .trials = sum(counts)},
                        cells.mass.total - seen.reference().value, cells.tolerance());
   evidence.quantity = fmt::format(
-      "total probability (integral of the density {:.10g} +- {:.1g}, and the counted share "
-      "of draws without a point) minus {:g}",
+      "integral of the density ({:.10g} +- {:.1g}) with the share of draws without a point, less "
+      "{:g},",
       cells.mass.total, cells.tolerance(), seen.reference().value);
   return evidence;
 }
@@ -52,8 +52,9 @@ Evidence inconsistency(const Method&, const Seen& seen) {
   Evidence evidence = from_probability({.successes = inconsistent, .trials = draws_made}, -claimed);
   evidence.quantity = "probability of an inconsistent draw";
   if (claimed != 0) evidence.quantity += fmt::format(", less {:g},", claimed);
-  if (inconsistent > 0) {
-    const auto most = std::max_element(counts.begin() + 1, counts.end());
+  constexpr double considerable = 0.1;
+  const auto most = std::max_element(counts.begin() + 1, counts.end());
+  if (static_cast<double>(*most) > considerable * static_cast<double>(inconsistent)) {
     const auto cell = static_cast<std::size_t>(most - counts.begin()) - 1;
     evidence.most_against =
         always(fmt::format("more in one cell than in any other, {} of them, in {}",

@@ -79,10 +79,13 @@ def test_the_replay_line_finds_the_same(folder):
     import shlex
     import subprocess
 
-    result = run(folder, "-k", "0.26")
+    result = run(folder, "-v", "-k", "0.26")
     replay = next(line for line in result.outlines if line.startswith("  replay "))
     finding = next(line for line in result.outlines if line.startswith("  message "))
     words = shlex.split(replay.split(None, 1)[1])
+    short = run(folder, "-k", "0.26").outlines
+    assert "  again: " + replay.split(None, 1)[1] in short
+    assert not [line for line in short if line.startswith(("  message ", "  evidence "))]
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
     ended = subprocess.run([os.environ["ASSAY"], *words[1:], "-vv", "--shard", "1/1"], capture_output=True,
                            text=True, check=False, cwd="/", env=environment)
@@ -252,10 +255,10 @@ estimators:
 tests:
   - claim: mean(n) == 0
 ''')
-    result = run(pytester, "-rs")
+    result = run(pytester, "-v", "-rs")
     result.assert_outcomes(failed=3, skipped=1)
     result.stdout.fnmatch_lines(["inconclusive: *", "*neither shown nor refuted*", "error: *exit status 3*",
-                                 "pass: *", "*pass, but invalid expected",
+                                 "pass, but invalid expected: *",
                                  "SKIPPED *needs the program `no-such-program`*"])
 
 

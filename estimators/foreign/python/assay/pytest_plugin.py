@@ -213,7 +213,7 @@ class ClaimItem(pytest.Item):
         if test["verdict"] == "skipped":
             pytest.skip(test["message"])
         if not test["ok"]:
-            raise AssayError(_words(test))
+            raise AssayError(_words(test, in_full=self.config.option.verbose > 0))
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException],
                      style: typing.Any = None) -> typing.Any:
@@ -225,13 +225,17 @@ class ClaimItem(pytest.Item):
         return self.path, None if self._line is None else self._line - 1, self.name
 
 
-def _words(test: dict[str, typing.Any]) -> str:
-    sentence = test["display"]["sentence"]
-    facts = [(fact["label"], fact["text"]) for fact in test["display"]["facts"] if fact["text"] != sentence]
-    lines = [_wrapped(f"{test['verdict']}: {sentence}", "  "),
-             *(_wrapped(f"  {label:<16} {text}", " " * 19) for label, text in facts)]
-    if test["replay"]:
-        lines.append(f"  {'replay':<16} {test['replay']}")
+def _words(test: dict[str, typing.Any], in_full: bool) -> str:
+    """The finding and what to do next; with `-v` all numbers."""
+    display = test["display"]
+    lines = [_wrapped(f"{display['verdict']}: {display['sentence']}", "  ")]
+    if in_full:
+        facts = [(fact["label"], fact["text"]) for fact in display["facts"] if fact["text"] != display["sentence"]]
+        lines += [_wrapped(f"  {label:<16} {text}", " " * 19) for label, text in facts]
+        lines += [f"  {'replay':<16} {test['replay']}"] if test["replay"] else []
+    else:
+        lines += [f"  {step['label']}: {step['paste']}" if step["paste"] else
+                  _wrapped(f"  {step['label']}: {step['words']}", " " * 4) for step in display["steps"]]
     return "\n".join(lines).replace("\N{NO-BREAK SPACE}", " ")
 
 
