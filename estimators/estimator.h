@@ -36,7 +36,7 @@ struct ImageShape {
   /// Corner in the whole picture, of which a crop shows a part.
   std::int64_t left = 0;
   std::int64_t top = 0;
-  /// Of each pixel whether it is left out and counts as 0; null if none is.
+  /// True where a pixel is left out; it counts as 0. Null if none is.
   std::shared_ptr<const std::vector<bool>> left_out = {};
 
   std::size_t pixels() const { return width * height; }

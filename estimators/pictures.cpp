@@ -357,7 +357,7 @@ void apply_mask(const std::string& name, const PictureFile& of, const PictureVie
   mask.window = view.window;
   if (mask.whole.width == view.window.width && mask.whole.height == view.window.height) {
     mask.window = mask.whole;
-  } else if (mask.whole != view.whole && mask.whole != of.canvas()) {
+  } else if (mask.whole != view.whole && file->canvas() != of.canvas()) {
     refuse(name, "it has " + size_text(mask.whole) + " pixels, and the pictures have " +
                      size_text(view.whole) + "; a mask has as many as they");
   }

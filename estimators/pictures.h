@@ -55,7 +55,7 @@ struct PictureView {
   PictureChannels channels = {};
   Rounding of_files = Rounding::none;  ///< as the files are rounded
   Rounding rounding = Rounding::none;  ///< what is done to them
-  /// Of each pixel of the window; null if none is.
+  /// True where a pixel of the window is left out; null if none is.
   std::shared_ptr<const std::vector<bool>> left_out = {};
 
   std::size_t row() const { return window.width * channels.components.size(); }

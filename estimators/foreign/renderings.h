@@ -49,7 +49,7 @@ bool has_place(const std::vector<std::string>& command, std::string_view place);
 
 /// How a file is made. In the words of the command `{seed}`, `{samples}` and `{out}` stand for the
 /// seed, the number of primaries and the file to write. With `{seeds}` one program makes several:
-/// it is given seeds with commas between, and `{out}` is the folder in which it writes SEED.exr.
+/// it is given seeds with commas between, and `{out}` is the folder in which it writes SEED.ENDING.
 struct Rendering {
   std::vector<std::string> command;
   std::vector<std::string> depends = {};  ///< Files that also change the result.
@@ -85,8 +85,8 @@ struct Wanted {
 
 /// The files of one rendering. Thread-safe.
 ///
-/// They stand in `cache`/HASH/SEED.exr; the file command.txt beside them says what they are. HASH
-/// is of the command before it is filled in, the samples, the folder, and every file that the
+/// They stand in `cache`/HASH/SEED.ENDING; the file command.txt beside them says what they are.
+/// HASH is of the command before it is filled in, the samples, the folder, and every file that the
 /// command or `depends` names. A file counts by its contents; a program, or a file beyond 16 MiB,
 /// by size and time of change. An argument names files by itself, as `--scene=FILE`, and as a line
 /// of a shell does.

@@ -181,11 +181,13 @@ PictureRequest picture_request(Parameters& parameters) {
 
 /// Reports an error of a file at the parameter that names it.
 template <class Read>
-auto reading(const Parameters& parameters, const Read& read) {
+auto reading(const Parameters& parameters, const PictureRequest& request, const Read& read) {
   try {
     return read();
   } catch (const InputError& error) {
-    parameters.refuse("file", "is `" + error.where().file + "`: " + error.message());
+    const bool of_mask = error.where().file == request.treatment.mask;
+    parameters.refuse(of_mask ? "mask" : "file",
+                      "is `" + error.where().file + "`: " + error.message());
   }
 }
 
@@ -204,7 +206,7 @@ std::shared_ptr<const Setup> prepare_reference(const Parameters& parameters,
   if (request.exact && errors.any()) {
     parameters.refuse("exact", "is given beside a variance: a mean is exact or has an error");
   }
-  return recorded::reference_setup(reading(parameters, [&] {
+  return recorded::reference_setup(reading(parameters, request, [&] {
     return recorded::read_moments(files[0], request.channels, errors, request.treatment);
   }));
 }
@@ -215,12 +217,12 @@ std::shared_ptr<const Setup> prepare_pictures(const Parameters& parameters,
     parameters.refuse("column", "is of text files; of pictures choose `channels`");
   }
   std::vector<std::string> files =
-      reading(parameters, [&] { return recorded::files_of(request.pattern); });
+      reading(parameters, request, [&] { return recorded::files_of(request.pattern); });
   if (request.exact || request.errors.any()) return prepare_reference(parameters, request, files);
   if (!request.errors.samples.empty()) {
     parameters.refuse("samples", "needs `variance` or `second_moment` beside it");
   }
-  recorded::PictureStack stack = reading(parameters, [&] {
+  recorded::PictureStack stack = reading(parameters, request, [&] {
     return recorded::open_stack(std::move(files), request.channels, request.treatment);
   });
   return recorded::picture_setup(std::move(stack), request.independent,

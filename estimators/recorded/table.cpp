@@ -150,6 +150,8 @@ bool may_be_name(const Field& field) {
          (field.text[0] != '"' || is_quoted(field.text));
 }
 
+bool is_word(const Field& field) { return !field.text.empty() && may_be_name(field); }
+
 using namespace std::string_view_literals;
 
 struct Format {
@@ -286,8 +288,13 @@ class Reader {
     std::vector<Field> fields = split(content, separator_);
     if (fields.empty() || header(fields)) return;
     if (names_rows(fields)) {
-      rows_named_ = true;
+      rows_named_ = words_first_ = true;
       table_.columns.erase(table_.columns.begin());
+    }
+    if (words_first_ && !is_word(fields[0])) {
+      refuse(fields[0].column, in_message(fields[0].text) +
+                                   " stands where an earlier row has a word, which would name "
+                                   "it;\n  write numbers in all rows, or words");
     }
     if (rows_named_) fields.erase(fields.begin());
     if (table_.columns.empty()) table_.columns = default_names(fields.size());
@@ -376,9 +383,6 @@ class Reader {
 
   /// True of a first row that begins with a word, and has no other.
   bool names_rows(const std::vector<Field>& fields) const {
-    const auto is_word = [](const Field& field) {
-      return !field.text.empty() && may_be_name(field);
-    };
     return !rows_named_ && names_line_ && table_.lines.empty() && fields.size() > 1 &&
            fields.size() == table_.columns.size() && is_word(fields[0]) &&
            std::none_of(fields.begin() + 1, fields.end(), is_word);
@@ -458,6 +462,7 @@ class Reader {
   int line_ = 0;
   std::string_view text_;
   bool rows_named_ = false;
+  bool words_first_ = false;  ///< The first column has words.
   bool may_be_decimals_ = true;
   std::optional<int> names_line_;
   char separator_ = blank;  ///< of this line

@@ -90,6 +90,7 @@ Recorded find_test(const reports::Record& record, const std::string& file,
     refuse(where, "{} tests have `{}` in their id; give more of one: {}", parts.size(), name,
            some_ids(parts));
   }
+  if (all.empty()) refuse(where, "this run has no test");
   const std::string near = meant(name, all);
   refuse(where, "no test `{}` in this run; {}", name,
          near.empty() ? "there is: " + some_ids(all) : "did you mean `" + near + "`?");

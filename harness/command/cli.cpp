@@ -536,13 +536,6 @@ Examples:
               OneOf<std::string>{shells}, "bash, fish or zsh");
 }
 
-/// The language of claims and the keys of a suite, as suites/README.md has them.
-std::string language_of_claims() {
-  const auto file = std::ranges::find(carried_files(), "claims.md", &CarriedFile::path);
-  const std::size_t begin = file->text.find("## The claim language");
-  return std::string(file->text.substr(begin, file->text.find("## How to add") - begin));
-}
-
 const std::vector<CommandRow>& command_rows();
 
 void define_man(Options& options, TextCommand& command) {
@@ -598,7 +591,11 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
         completions(texts_of(command_rows()), {arguments.begin() + 1, arguments.end()})};
   }
   if (arguments == Texts{"help", "all"}) return TextCommand{help_of_all(texts_of(command_rows()))};
-  if (arguments == Texts{"help", "claims"}) return TextCommand{language_of_claims()};
+  if (arguments == Texts{"help", "claims"}) {
+    const auto& files = carried_files();
+    const auto file = std::ranges::find(files, "claims.md", &CarriedFile::path);
+    return TextCommand{std::string(file->text)};
+  }
   return parsed(arguments, command_rows());
 }
 

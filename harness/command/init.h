@@ -6,10 +6,10 @@
 
 namespace assay::harness {
 
-/// A file that the program carries: a template of `assay init`, a script of `assay completion`, or
-/// "claims.md", which is suites/README.md.
+/// A text that the program carries: a template of `assay init`, a script of `assay completion`, or
+/// what suites/README.md says of claims.
 struct CarriedFile {
-  std::string_view path;  ///< below harness/command, as "init/suite/mine.yaml"
+  std::string_view path;  ///< below harness/command, as "init/suite/mine.yaml"; or "claims.md"
   std::string_view text;
 };
 

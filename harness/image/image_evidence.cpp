@@ -152,9 +152,10 @@ stats::TestResult at_margin(const Distances& distances, double margin) {
   return result;
 }
 
-/// Replicates at which theta would be excluded from `margin` on; 0 if the estimate is not below it.
-/// With f times the replicates the squared bias's standard error is 1 / f of what it is in noise,
-/// and 1 / sqrt f if there is a bias. A hidden bias falls like exp(-f).
+/// Replicates at which theta would be excluded from `margin` on, a million times as many at most.
+/// It is 0 if the estimate is not below the margin. With f times the replicates the squared bias's
+/// standard error is 1 / f of what it is in noise, and 1 / sqrt f if there is a bias. A hidden bias
+/// falls like exp(-f).
 double wanted_replicates(const Distances& distances, double margin, const ImageTest& test,
                          double replicates) {
   constexpr double least_factor = 1.1;
@@ -173,9 +174,12 @@ double wanted_replicates(const Distances& distances, double margin, const ImageT
              return errors * mean.standard_error / std::sqrt(factor) < least - mean.value;
            });
   };
+  const bool below = margin * margin > estimate &&
+                     std::ranges::all_of(distances.of_means,
+                                         [&](const Constant& mean) { return margin > mean.value; });
   double factor = least_factor;
   while (factor < most_factor && !decides(factor)) factor *= least_factor;
-  return factor < most_factor ? replicates * factor : 0;
+  return below ? replicates * factor : 0;
 }
 
 /// Tests of a theta that is known exactly.
@@ -259,6 +263,20 @@ PictureLook look_of(const Seen& seen, const ImageTest& test, std::vector<UnseenE
   if (test.look == nullptr) return look_at(seen.question, test, ImagePair(seen), unseen);
   if (test.require_independent) test.require_independent(test.look->dependence);
   return *test.look;
+}
+
+/// The pixels of a finding's window that have a weight.
+std::size_t varying(const stats::ImageFinding& finding, const ImageShape& shape,
+                    std::span<const float> weights) {
+  const auto has_weight = [&](std::size_t element) { return weights[element] > 0; };
+  return static_cast<std::size_t>(std::ranges::count_if(elements_of(finding, shape), has_weight));
+}
+
+/// True if fewer than half of them have one. A constant difference has no weights.
+bool varies_little(const stats::ImageFinding& finding, const ImageShape& shape,
+                   std::span<const float> weights) {
+  return !weights.empty() && !finding.alternation && std::isfinite(finding.z) &&
+         2 * varying(finding, shape, weights) < finding.window.area();
 }
 
 /// "x 8-15".
@@ -371,29 +389,34 @@ std::string place_text(const stats::ImageFinding& finding, const ImageShape& sha
                        std::span<const float> weights) {
   const std::string component =
       shape.components.size() > 1 ? " of " + shape.components[finding.channel] : "";
-  // A constant difference has no z.
-  const std::string z =
-      std::isfinite(finding.z) ? fmt::format(", z = {:+.3g}", finding.z) : std::string();
   const stats::Rectangle& window = finding.window;
+  const bool whole = window.width == shape.width && window.height == shape.height;
+  const bool one = window.width == 1 && window.height == 1;
+  const std::string place =
+      (whole && !one ? "the whole image"
+                     : range_text('x', shape.left + window.x, window.width) + ", " +
+                           range_text('y', shape.top + window.y, window.height)) +
+      component;
   if (finding.alternation) {
     constexpr const char* patterns[] = {"columns in turn", "rows in turn", "a checkerboard"};
-    return fmt::format("the whole image{} with alternating signs ({}){}", component,
-                       patterns[static_cast<int>(*finding.alternation)], z);
+    return fmt::format("{} with alternating signs ({})", place,
+                       patterns[static_cast<int>(*finding.alternation)]);
   }
-  const bool whole = window.width == shape.width && window.height == shape.height;
-  const std::string place = (whole ? "the whole image"
-                                   : range_text('x', shape.left + window.x, window.width) + ", " +
-                                         range_text('y', shape.top + window.y, window.height)) +
-                            component;
-  if (window.width == 1 && window.height == 1) return fmt::format("pixel {}{}", place, z);
-  const std::vector<std::size_t> all = elements_of(finding, shape);
-  const auto varying = static_cast<std::size_t>(std::ranges::count_if(
-      all, [&](std::size_t element) { return weights.empty() || weights[element] > 0; }));
-  if (std::isfinite(finding.z) && 2 * varying < all.size()) {
-    return fmt::format("what varies in {} ({} of {} pixels){}", place, varying, all.size(), z);
+  if (one) return "pixel " + place;
+  return (varies_little(finding, shape, weights) ? "what varies in " : "") + place;
+}
+
+std::string size_text(const stats::ImageFinding& finding, const ImageShape& shape,
+                      std::span<const float> weights) {
+  const stats::Rectangle& window = finding.window;
+  std::string text;
+  if (varies_little(finding, shape, weights)) {
+    text = fmt::format(" ({} of {} pixels)", varying(finding, shape, weights), window.area());
+  } else if (!finding.alternation && window.area() > 1 && window.area() < shape.pixels()) {
+    text = fmt::format(" ({} x {} pixels)", window.width, window.height);
   }
-  if (whole) return place + z;
-  return fmt::format("{} ({} x {} pixels){}", place, window.width, window.height, z);
+  // A constant difference has no z.
+  return text + (std::isfinite(finding.z) ? fmt::format(", z = {:+.3g}", finding.z) : "");
 }
 
 std::vector<std::size_t> elements_of(const stats::ImageFinding& finding, const ImageShape& shape) {

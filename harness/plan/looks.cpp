@@ -131,10 +131,7 @@ stats::LookSchedule plan_looks(const TestOutcome& test, const Pilots& pilots,
   // Each look pays for itself in a union bound, and costs next to nothing otherwise.
   const bool unknown = law == stats::LookLaw::unknown;
   const double growth = unknown ? 2 : std::numbers::sqrt2;
-  // The first look of a budget in seconds is not to take more than that.
-  constexpr std::size_t most_of_seconds = 40;
-  const bool in_seconds = entry.budget && entry.budget->seconds;
-  const std::size_t most_of_them = unknown ? 10 : in_seconds ? most_of_seconds : most_looks;
+  const std::size_t most_of_them = unknown ? 10 : most_looks(test.place);
   const stats::ErrorRates errors{
       .alpha = whole.alpha, .beta = whole.beta, .two_sided = is_two_sided(entry.claim.relation)};
   const std::size_t sizes = stats::geometric_sizes({.first = first, .last = needed}, growth).size();

@@ -168,6 +168,15 @@ bool takes_single_primaries(const Question& question, const Pilots& pilots) {
   return question.is().of_moments && !question.is().of_spread && bets_on_range(question, pilots);
 }
 
+/// `detect`, if it is not in per cent, as a part of the claimed number or image; 0 of another.
+double part_of_size(const Question& question, const Pilots& pilots) {
+  const std::optional<Margin>& detect = question.test->detect;
+  if (!detect || detect->relative) return 0;
+  const double size = std::max(question.theta->known_size(question),
+                               question.theta->piloted_size(question, pilots));
+  return size > 0 ? detect->value / size : 0;
+}
+
 }  // namespace
 
 std::string lack_of_density(const Question& question, const NoDensity& why) {
@@ -215,12 +224,9 @@ TestOutcome plan_test(Question asked, const FamilyPlace& place, const Pilots& pi
       caution(fmt::format("`detect` is {}, the default of claims about laws",
                           question.test->detect->value));
     }
-    constexpr double large = 0.1;
-    const std::optional<Margin>& detect = question.test->detect;
-    const double size = std::max(question.theta->known_size(question),
-                                 question.theta->piloted_size(question, pilots));
-    if (detect && !detect->relative && size > 0 && detect->value > large * size) {
-      caution(fmt::format("`detect` is {:.0f} % of the reference", 100 * detect->value / size));
+    if (const double part = part_of_size(question, pilots); part > 0.1) {
+      caution(
+          fmt::format("errors below `detect`, {:.0f} % of what is claimed, may pass", 100 * part));
     }
     const std::optional<ImageShape>& image = question.subjects[0].image;
     if (image && image->left_out) {

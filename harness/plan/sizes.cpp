@@ -25,9 +25,11 @@ double critical_value(double alpha, bool two_sided) {
   return stats::upper_normal_quantile(two_sided ? alpha / 2 : alpha);
 }
 
+std::size_t most_looks(const FamilyPlace& place) { return place.in_seconds ? 40 : 16; }
+
 double kurtosis_limit(const Question& question, const FamilyPlace& place) {
   const bool planned = has_planned_size(question) && !question.test->secondaries;
-  const double looks = planned ? static_cast<double>(most_looks) : 1;
+  const double looks = planned ? static_cast<double>(most_looks(place)) : 1;
   const double critical =
       critical_value(place.share.alpha / looks, is_two_sided(question.test->claim.relation));
   const double log_tail = stats::normal_tails(critical).upper;

@@ -33,8 +33,9 @@ inline constexpr std::uint64_t floor_of_evidence = std::uint64_t{1} << 14;
 // A method is taken to keep its level up to this factor.
 inline constexpr double level_factor = 1.25;
 
-// A test has at most so many looks: one may end after 1/181 of the last.
-inline constexpr std::size_t most_looks = 16;
+/// Looks that a test has at most: one may end after 1/181 of the last. With a budget in seconds,
+/// which the first look is not to exceed, one may end after 1/740,000.
+std::size_t most_looks(const FamilyPlace& place);
 
 /// True if `detect` or `within` determines the size.
 bool has_planned_size(const Question& question);

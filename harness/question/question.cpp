@@ -44,7 +44,7 @@ void require_no_sampler(const Source& source, const PreparedEstimator& estimator
 
 [[noreturn]] void no_such_part(const Source& source, const PreparedEstimator& estimator) {
   if (source.part.empty()) {
-    refuse(source.where, "of `{}` name the part, as in `{}.PART`: it has {}", source.estimator,
+    refuse(source.where, "`{}` has several parts; name one, as in `{}.PART`: {}", source.estimator,
            source.estimator, parts_of(estimator));
   }
   refuse(source.where, "`{}` has no part `{}`; it has {}", source.estimator, source.part,
@@ -115,6 +115,14 @@ Subject estimates(const Source& source, const PreparedEstimator& estimator) {
   if (subject.channels.empty()) {
     require_no_sampler(source, estimator);
     no_such_part(source, estimator);
+  }
+  const auto whole = estimator.setup->image();
+  if (!subject.image && whole && whole->left_out) {
+    refuse(
+        source.where,
+        "`{}` counts pixels as 0 that `mask` or `finite` leaves out: claim the whole picture, or "
+        "take a `crop`",
+        to_string(source));
   }
   return subject;
 }

@@ -299,8 +299,8 @@ Estimate variance_of(const stats::Moments& moments, double primaries, double con
   if (moments.m2 == 0) return {0.0, 0.0, 0.0};
   if (!has_spread(moments)) return {number(primaries * moments.variance()), {}, {}};
   const stats::Influence influence = stats::influence_of_variance(moments);
-  // A heavy tail has not shown its size.
-  if (stats::effective_observations_gate({&influence.relative, 1}).state == stats::GateState::red)
+  // One observation makes up most of what the variance's own spread is known from.
+  if (stats::dominance_gate(influence.relative).state == stats::GateState::red)
     return {number(primaries * moments.variance()), {}, {}};
   const stats::Interval log = interval_by_inversion(
       [&](double theta) { return stats::influence_t(influence, theta); },

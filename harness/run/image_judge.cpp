@@ -46,6 +46,23 @@ double other_mean(const DrawnTest& test, const std::vector<std::size_t>& element
   return question.of_two() ? question.factor * mean + question.offset : mean;
 }
 
+/// The standard error of the plain mean difference over elements that are independent, as are the
+/// sides.
+double error_over(const DrawnTest& test, const std::vector<std::size_t>& elements) {
+  const Question& question = test.outcome.question;
+  double squares = 0;
+  for (const std::size_t i : elements) {
+    for (std::size_t side = 0; side < question.compared(); ++side) {
+      const stats::Moments x =
+          test.samples[side].summary().moments(question.subjects[side].channels[i]);
+      const double factor = side == 0 ? 1 : question.factor;
+      squares += factor * factor * x.variance() / static_cast<double>(x.count);
+    }
+    if (!question.of_two()) squares += std::pow(question.references[i].standard_error, 2);
+  }
+  return std::sqrt(squares) / static_cast<double>(elements.size());
+}
+
 /// "`b.exr`", or "image 3 of `b`"; of a pair "`b.exr` less `a.exr`".
 std::string name_of(const DrawnTest& test, const stats::WhichImage& which) {
   const Question& question = test.outcome.question;
@@ -149,35 +166,42 @@ std::optional<PlaceEffect> effect_at_place(const DrawnTest& test) {
                       stats::student_t_quantile({stats::Tail::upper, log_level - std::numbers::ln2},
                                                 effect.degrees);
   const double base = other_mean(test, elements, family.weights);
-  // The halves weigh a pixel differently, which is nothing to its reader.
-  const double estimate =
-      elements.size() == 1 ? mean_over(test, 0, elements, {}) - base : effect.estimate;
+  // Halves that weigh a single pixel differently are nothing to its reader. As a part of the
+  // estimate the interval stays.
+  const double plain = mean_over(test, 0, elements, {}) - base;
+  const double estimate = elements.size() == 1 && plain != 0 ? plain : effect.estimate;
+  const double reach = half * std::abs(estimate / effect.estimate);
   return PlaceEffect{.estimate = estimate,
-                     .interval = {estimate - half, estimate + half, stats::confidence_at_place},
+                     .interval = {estimate - reach, estimate + reach, stats::confidence_at_place},
                      .other = base,
                      .elements = std::move(elements)};
 }
 
 std::string others_at(const DrawnTest& test, const PlaceEffect& place) {
   constexpr std::size_t most = 3;
-  constexpr double considerable = 0.5;
+  constexpr double clear = 3;
   const std::vector<std::string>& names = test.outcome.question.subjects[0].image->components;
+  const std::vector<double>& z = test.outcome.channels[0].image->z;
   const std::size_t mine = place.elements[0] % names.size();
-  const auto effect_of = [&](std::size_t component) {
-    std::vector<std::size_t> elements = place.elements;
-    for (std::size_t& i : elements) i = i - mine + component;
-    const double base = other_mean(test, elements, {});
-    const double difference = mean_over(test, 0, elements, {}) - base;
-    return reports::Effect{.estimate = base != 0 ? difference / std::abs(base) : difference,
-                           .relative = base != 0};
-  };
-  const double found = *effect_of(mine).estimate;
   std::vector<std::string> texts;
   for (std::size_t c = 0; c < names.size() && texts.size() < most; ++c) {
-    const reports::Effect effect = effect_of(c);
-    if (c == mine || !(*effect.estimate / found >= considerable)) continue;
+    if (c == mine) continue;
+    std::vector<std::size_t> elements = place.elements;
+    double sum = 0;
+    for (std::size_t& i : elements) {
+      i = i - mine + c;
+      sum += z[i];
+    }
+    const double base = other_mean(test, elements, {});
+    const double difference = mean_over(test, 0, elements, {}) - base;
+    // Pixels count as independent, each as clear as the others or as noisy as it is.
+    const bool is_clear = std::abs(sum) > clear * std::sqrt(static_cast<double>(elements.size())) ||
+                          std::abs(difference) > clear * error_over(test, elements);
+    if (!is_clear || difference * place.estimate < 0) continue;
+    const reports::Effect effect{.relative = base != 0};
+    const double unit = effect.relative ? std::abs(base) : 1;
     texts.push_back(names[c] + (texts.empty() ? " differs by " : " by ") +
-                    reports::theta_text(*effect.estimate, effect));
+                    reports::theta_text(difference / unit, effect));
   }
   return fmt::format("{}", fmt::join(texts, ", "));
 }

@@ -154,11 +154,12 @@ std::string passed_proof(const TestOutcome& outcome, const ChannelOutcome& chann
 
 Reason failed(const TestOutcome& outcome, const ChannelOutcome& channel) {
   if (channel.image) {
-    return fmt::format("differs most at {}, {}; {}{}",
-                       place_text(channel.image->family.winner, *outcome.question.subjects[0].image,
-                                  channel.image->family.weights),
-                       p_text(channel.decision.log_p_claimed),
-                       channel.effect.estimate ? "over all pixels the " : "", finding(channel));
+    const stats::ImageFamily& family = channel.image->family;
+    const ImageShape& shape = *outcome.question.subjects[0].image;
+    return fmt::format(
+        "differs most at {}{}, {}; {}{}", place_text(family.winner, shape, family.weights),
+        size_text(family.winner, shape, family.weights), p_text(channel.decision.log_p_claimed),
+        channel.effect.estimate ? "over all pixels the " : "", finding(channel));
   }
   const std::string text = fmt::format("{}{}, {}", finding(channel), in_channel(outcome, channel),
                                        p_text(channel.decision.log_p_claimed));
@@ -263,12 +264,13 @@ Reason what_would_decide(const TestOutcome& outcome, const ChannelOutcome& chann
 
 Reason undecided(const TestOutcome& outcome, const ChannelOutcome& channel) {
   Reason reason = what_would_decide(outcome, channel);
-  reason.text = fmt::format("{}{}: neither shown nor refuted; {}", finding(channel),
-                            in_channel(outcome, channel), reason.text);
-  if (!outcome.plan.method.frozen.row_allowances.empty()) {
-    reason.text +=
-        "; its interval is wider because successive rows look correlated, which may be chance";
-  }
+  const bool allows = !outcome.plan.method.frozen.row_allowances.empty();
+  reason.text = fmt::format(
+      "{}{}: neither shown nor refuted; {}{}", finding(channel), in_channel(outcome, channel),
+      allows
+          ? "the interval is wider because successive rows look correlated, which may be chance; "
+          : "",
+      reason.text);
   return reason;
 }
 

@@ -161,6 +161,9 @@ Question ask(const TestEntry& test, const Estimators& estimators, std::uint64_t 
   if (left.slope && left.row->slope == nullptr) refuse_slope(left);
   Question question = (left.slope ? left.row->slope : left.row->theta)->bind(test, estimators);
   require_observations(question);
+  for (const Subject& other : question.subjects) {
+    if (question.subjects[0].image && other.image) require_equal_pixels(question, other);
+  }
   if (has_image(question)) ask_of_images(question);
   if (test.paired) ask_of_pairs(question);
   question.theta->check(question);

@@ -22,7 +22,11 @@ std::vector<FamilyPlace> places(const Suite& suite, const std::vector<Question>&
   int outside = 0;
   for (const Question& question : questions) {
     const bool inside = inside_family(question);
-    all.push_back({.inside = inside});
+    const auto timed = [](const std::optional<Budget>& budget) {
+      return budget && budget->seconds;
+    };
+    all.push_back(
+        {.inside = inside, .in_seconds = timed(suite.budget) || timed(question.test->budget)});
     all_weight += question.test->weight;
     if (inside) inside_weight += question.test->weight;
     if (!inside) ++outside;

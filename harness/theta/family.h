@@ -11,9 +11,10 @@ namespace assay::harness {
 
 /// A test's place in its suite's family.
 struct FamilyPlace {
-  bool inside = true;     ///< False for mutants and expected failures.
-  double weight = 0;      ///< Weight of one channel; a family's weights sum to 1.
-  ErrorShare share = {};  ///< Share of one channel.
+  bool inside = true;       ///< False for mutants and expected failures.
+  double weight = 0;        ///< Weight of one channel; a family's weights sum to 1.
+  ErrorShare share = {};    ///< Share of one channel.
+  bool in_seconds = false;  ///< A budget in seconds, the test's or the suite's, bounds it.
 };
 
 /// Places of a suite's questions, in order. Inside the family alpha is split by weight, then evenly

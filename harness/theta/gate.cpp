@@ -11,8 +11,8 @@ const std::vector<GateKind>& gate_kinds() {
                    "frequent as they should be, limit {1}",
        .falls = Falls::by_its_logarithm},
       {.name = "effective observations",
-       .sentence = "a few large observations make up most of the spread, as {0} equal ones would; "
-                   "it takes {1} to tell how heavy the tail is",
+       .sentence = "the spread rests on a few large observations: they count as {0} equal ones, "
+                   "and {1} are needed",
        .falls = Falls::inversely},
       {.name = "level factor after correction",
        .sentence = "the observations are so skewed that false alarms on one side are {0} times as "

@@ -63,7 +63,7 @@ struct Effect {
 struct ImageFinding {
   /// "window", "alternating" (signs); of laws what differs: "the mean is larger in a".
   std::string statistic;
-  std::string place;                                  ///< where, and its z, in words
+  std::string place;                                  ///< where, in words
   std::uint64_t x = 0, y = 0, width = 0, height = 0;  ///< the rectangle of pixels
   std::string component;
   Number z;  ///< positive where the first image is brighter

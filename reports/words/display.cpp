@@ -56,12 +56,6 @@ std::string found(const Test& test, const Effect& effect) {
                         theta > 0 ? "above" : "below", right));
 }
 
-/// "x 152-183, y 136-167 of red".
-std::string pixels(const ImageFinding& finding) {
-  const std::string& place = finding.place;
-  return place.substr(0, std::min(place.find(" ("), place.find(", z = ")));
-}
-
 std::string found_in_image(const Image& image) {
   const ImageFinding& winner = image.winner;
   if (winner.place.empty()) return {};
@@ -77,15 +71,15 @@ std::string found_in_image(const Image& image) {
     // The words have the sign.
     std::string interval = bracket(size);
     if (size.low.value_or(0) >= 0) std::erase(interval, '+');
-    return fmt::format("{} is {} too {}{}{}", pixels(winner), size_text(*size.estimate, size),
+    return fmt::format("{} is {} too {}{}{}", winner.place, size_text(*size.estimate, size),
                        dark ? "dark" : "bright", interval,
                        winner.others.empty() ? "" : "; there " + winner.others);
   }
   if (winner.statistic == "alternating") return "the whole image differs with alternating signs";
   if (winner.statistic != "window") {
-    return fmt::format("{}: {}", pixels(winner), winner.statistic);
+    return fmt::format("{}: {}", winner.place, winner.statistic);
   }
-  return fmt::format("{} is too {}", pixels(winner), winner.z.value_or(0) > 0 ? "bright" : "dark");
+  return fmt::format("{} is too {}", winner.place, winner.z.value_or(0) > 0 ? "bright" : "dark");
 }
 
 /// A pass whose interval leaves out all that is claimed or allowed says so.

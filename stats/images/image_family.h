@@ -16,6 +16,7 @@ struct Rectangle {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
 
+  std::size_t area() const { return std::size_t{width} * height; }
   friend bool operator==(const Rectangle&, const Rectangle&) = default;
 };
 

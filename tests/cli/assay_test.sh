@@ -385,12 +385,20 @@ test_explain_tells_of_the_last_run() {
   contains out 'The observations do not suffice'
   contains out 'The last run from this folder began'
   contains out 'secondaries: '
+  expect 2 explain
+  contains err '3 tests; give the id of one'
   expect 0 explain run.json mixed/wrong
   contains out 'The claim is wrong.'
   expect 2 explain mixed/
   contains err '3 tests have `mixed/` in their id'
   expect 2 explain mixed/wrnog
   contains err 'mixed/wrong'
+  write_suite single.yaml "$good"
+  expect 0 run single.yaml --report json=single.json
+  expect 0 explain
+  contains out 'Nothing speaks against the claim.'
+  expect 0 explain single.json
+  contains out 'Nothing speaks against the claim.'
   mkdir elsewhere
   cd elsewhere || exit 1
   expect 2 explain open
@@ -574,6 +582,9 @@ test_check_points_at_the_option_that_is_wrong() {
 }
 
 test_help_is_a_command() {
+  expect 0 help claims
+  contains out '| `detect` | effect that must not pass'
+  lacks out 'How to add'
   expect 0 help all
   contains out 'Exit codes:'
   local command

@@ -134,6 +134,48 @@ test_a_farm_fills_the_cache_and_a_run_only_reads() {
   same_tests run.json farm.json || fail 'the farm changes the numbers'
 }
 
+# A look may be put off to 64 times the last one. The list has what `in all` says.
+test_renders_that_a_heavy_tail_alone_would_need_are_not_listed() {
+  cat >text.yaml <<'SUITE'
+suite: text
+estimators:
+  a:
+    plugin: command
+    output: text
+    command: [sh, -c, 'awk -v s=$1 "BEGIN{srand(s); print rand() + rand() + rand()}" >$2', sh, "{seed}", "{out}"]
+tests:
+  - {claim: mean(a) == 1.5, detect: 5%}
+SUITE
+  expect 0 plan text.yaml --list-renders
+  [ "$(wc -l <out)" = 512 ] || fail "$(wc -l <out) renders of the pilot"
+  expect 0 plan text.yaml
+  local last
+  last=$(awk '$1 == "t" && NF > 5 { print $5 }' out)
+  [ "$last" -gt 512 ] || fail 'no last look'
+  expect 0 plan text.yaml --list-renders
+  [ "$(wc -l <out)" = "$last" ] || fail "$(wc -l <out) renders, and the last look has $last"
+}
+
+# Pictures of every kind that is read are taken of a program too.
+test_a_command_may_write_pfm() {
+  cat >render.py <<'PROGRAM'
+import random, struct, sys
+
+rng = random.Random(int(sys.argv[1]))
+with open(sys.argv[2], "wb") as out:
+    out.write(b"Pf\n4 4\n-1.0\n" + b"".join(struct.pack("<f", rng.uniform(0, 1)) for _ in range(16)))
+PROGRAM
+  cat >pfm.yaml <<'SUITE'
+suite: pfm
+estimators:
+  a: {plugin: command, output: pfm, command: [/usr/bin/python3, -I, render.py, "{seed}", "{out}"]}
+tests:
+  - {claim: mean(a) == 0.5, secondaries: 32}
+  - {name: off, claim: mean(a) == 0.6, secondaries: 32, expect: fail}
+SUITE
+  expect 0 run pfm.yaml
+}
+
 test_a_command_that_makes_several_pictures_is_listed_one_by_one() {
   farm
   cat >several.sh <<'PROGRAM'

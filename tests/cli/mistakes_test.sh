@@ -49,6 +49,41 @@ claim: mean(area) within 5 of analytic|30: the margin 5 is larger than the refer
 TABLE
 }
 
+test_pixels_that_one_side_leaves_out_are_refused() {
+  /usr/bin/python3 -I - <<'PROGRAM'
+import random, struct
+
+def picture(name, number, width=8):
+    with open(name, "wb") as out:
+        out.write(b"PF\n%d 4\n-1.0\n" % width)
+        out.write(b"".join(struct.pack("<f", number()) for _ in range(3 * 4 * width)))
+
+for side in "ab":
+    for i in range(16):
+        rng = random.Random(f"{side}{i}")
+        picture(f"{side}{i:02}.pfm", lambda: rng.uniform(0.5, 1.5))
+pixels = iter([0.0] * 3 + [1.0] * 93)  # one is black
+picture("mask.pfm", lambda: next(pixels))
+picture("large.pfm", lambda: 1.0, 10)
+PROGRAM
+  local claim message
+  while IFS='|' read -r claim message; do
+    printf '%s\n' 'suite: s' 'estimators:' "  a: {plugin: recorded, file: 'a*.pfm', mask: mask.pfm}" \
+      "  b: {plugin: recorded, file: 'b*.pfm'}" 'tests:' "  - claim: $claim" >s.yaml
+    answers 2 "$message" run s.yaml
+  done <<'TABLE'
+mean(a) == mean(b)|`a` and `b` do not leave out the same pixels
+total_variance(a) <= total_variance(b)|`a` and `b` do not leave out the same pixels
+mean(a) == 1|`a` leaves out pixels, which a number is held against too
+mean(a.average) == 1|`a.average` counts pixels as 0 that `mask` or `finite` leaves out
+TABLE
+  local sides=(--candidate 'a*.pfm' --reference 'b*.pfm')
+  answers 2 'parameter `mask` is `large.pfm`: it has 10 x 4 pixels, and the pictures have 8 x 4' \
+    images "${sides[@]}" --mask large.pfm
+  expect 0 images "${sides[@]}" --mask mask.pfm
+  contains out '1 of 32 pixels are left'
+}
+
 test_mistakes_at_the_head_of_a_suite_say_what_to_write() {
   local line message
   while IFS='|' read -r line message; do

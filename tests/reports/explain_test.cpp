@@ -8,7 +8,7 @@ namespace {
 TEST(Explain, AFindingOfLawsIsASentence) {
   reports::Test test = failing();
   test.image->winner = {.statistic = "the mean is larger in a",
-                        .place = "the whole image of red, z = +7.9",
+                        .place = "the whole image of red",
                         .width = test.image->width,
                         .height = test.image->height,
                         .component = "red"};

@@ -138,7 +138,7 @@ TEST(Plan, AsksForMoreAtASmallerShare) {
 TEST(Plan, TakesFewerLooksWhereTheReferencesErrorAllowsNoMore) {
   const Prepared planned = plan_text("  - {claim: mean(single) == 2 +- 0.001, detect: 0.005}\n");
   EXPECT_LT(planned.plans[0].most_secondaries(), 1e8);
-  EXPECT_LT(planned.plans[0].looks.count(), most_looks);
+  EXPECT_LT(planned.plans[0].looks.count(), most_looks({}));
 }
 
 TEST(Plan, ForcedMethodStandsWithItsGatesShown) {
