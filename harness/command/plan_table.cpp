@@ -56,14 +56,6 @@ struct Total {
   }
 };
 
-void add_last_look(const TestOutcome& test, const Pilots& pilots, Total& total) {
-  const std::uint64_t last = test.plan.most_secondaries();
-  for (std::size_t i = 0; i < test.question.subjects.size(); ++i) {
-    const Subject& side = test.question.subjects[i];
-    total.add(side, test.plan.primaries[i], side.secondaries(last), pilots);
-  }
-}
-
 /// One number, both if the subjects differ, or a sweep's least and most.
 std::string primaries_text(const Plan& plan) {
   const auto [least, most] = std::ranges::minmax_element(plan.primaries);
@@ -133,7 +125,10 @@ std::string trouble_of(const TestOutcome& test) {
 Row row_of(const TestOutcome& test, const Pilots& pilots) {
   const Plan& plan = test.plan;
   Total total;
-  add_last_look(test, pilots, total);
+  for (std::size_t i = 0; i < test.question.subjects.size(); ++i) {
+    const Subject& side = test.question.subjects[i];
+    total.add(side, plan.primaries[i], side.secondaries(plan.most_secondaries()), pilots);
+  }
   const Forecast expected = forecast(test, pilots);
   Row row{.name = test.question.test->name, .notes = gate_notes(plan.gates)};
   row.cells = {plan.method.name,
@@ -261,31 +256,19 @@ std::string total_text(const Total& total) {
 }
 
 void write_totals(std::string& page, const PlannedRun& planned) {
-  std::size_t tests = 0;
-  Total separate;
-  for (const auto& run : planned.suites) {
-    tests += run->tests.size();
-    for (const TestWork& work : run->tests) add_last_look(work.outcome, run->pilots, separate);
-  }
-  page += on_page(fmt::format("{} test{}, each by itself to its last look: {}.", tests,
-                              tests == 1 ? "" : "s", total_text(separate)));
   const auto most = [](const TestOutcome& test, const Pilots& /*pilots*/) {
     const std::vector<std::uint64_t>& postponed = test.plan.postponed;
     return postponed.empty() ? test.plan.most_secondaries() : postponed.back();
   };
   page += on_page(fmt::format(
-      "Tests of one estimator share observations, and most end at an earlier look: about {} if "
-      "every claim holds exactly (tests whose mean is not known counted in full). Looks that the "
-      "run plans only when it knows the spread may raise this to {}.",
+      "Tests of one estimator share observations: the run draws about {} if every claim holds "
+      "exactly. Heavy tails may raise this to {}.",
       total_text(total_of(planned, expected_secondaries)), total_text(total_of(planned, most))));
   page += on_page(
-      "primaries: of one secondary estimate. last: secondaries of each source at the last look, of "
-      "a file all its rows where these are fewer. in all, rays, CPU time: primaries of all sources "
-      "up to the last look, of images those of every pixel and component, and what they cost by "
-      "the pilot. effect: what the last look finds (or shows, of within and of < and >) with "
-      "probability 1 - beta. if it holds, if off by the effect: how probable each verdict is if "
-      "the claim holds exactly, or is wrong by the effect. draws: the mean part of the last look "
-      "that is drawn. These take the pilot's spread for the true one, and no data for invalid.");
+      "last: the observations of each source at the last look. in all, rays, CPU time: what all "
+      "sources draw up to it, by the pilot. effect: what it finds, or shows of `within`, `<` and "
+      "`>`, with probability 1 - beta. draws: the mean part of it that is drawn. These take "
+      "the pilot's spread for the true one, and no data for invalid.");
 }
 
 }  // namespace

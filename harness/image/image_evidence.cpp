@@ -265,20 +265,6 @@ PictureLook look_of(const Seen& seen, const ImageTest& test, std::vector<UnseenE
   return *test.look;
 }
 
-/// The pixels of a finding's window that have a weight.
-std::size_t varying(const stats::ImageFinding& finding, const ImageShape& shape,
-                    std::span<const float> weights) {
-  const auto has_weight = [&](std::size_t element) { return weights[element] > 0; };
-  return static_cast<std::size_t>(std::ranges::count_if(elements_of(finding, shape), has_weight));
-}
-
-/// True if fewer than half of them have one. A constant difference has no weights.
-bool varies_little(const stats::ImageFinding& finding, const ImageShape& shape,
-                   std::span<const float> weights) {
-  return !weights.empty() && !finding.alternation && std::isfinite(finding.z) &&
-         2 * varying(finding, shape, weights) < finding.window.area();
-}
-
 /// "x 8-15".
 std::string range_text(char axis, std::int64_t first, std::uint32_t count) {
   if (count == 1) return fmt::format("{} {}", axis, first);
@@ -385,38 +371,35 @@ ChannelEvidence evidence_of_image_laws(const Seen& seen, const ImageTest& test) 
   return {std::move(evidence), std::move(outcome)};
 }
 
-std::string place_text(const stats::ImageFinding& finding, const ImageShape& shape,
-                       std::span<const float> weights) {
-  const std::string component =
-      shape.components.size() > 1 ? " of " + shape.components[finding.channel] : "";
+PlaceText place_text(const stats::ImageFinding& finding, const ImageShape& shape,
+                     std::span<const float> weights) {
   const stats::Rectangle& window = finding.window;
-  const bool whole = window.width == shape.width && window.height == shape.height;
-  const bool one = window.width == 1 && window.height == 1;
-  const std::string place =
-      (whole && !one ? "the whole image"
-                     : range_text('x', shape.left + window.x, window.width) + ", " +
-                           range_text('y', shape.top + window.y, window.height)) +
-      component;
+  const std::size_t pixels = window.area();
+  const bool whole = pixels > 1 && pixels == shape.pixels();
+  PlaceText text{.place = whole ? "the whole image"
+                                : range_text('x', shape.left + window.x, window.width) + ", " +
+                                      range_text('y', shape.top + window.y, window.height)};
+  if (shape.components.size() > 1) text.place += " of " + shape.components[finding.channel];
+  // A constant difference has neither weights nor a z.
+  const bool varies = std::isfinite(finding.z);
+  const auto has_weight = [&](std::size_t element) { return weights[element] > 0; };
+  const auto varying = weights.empty() || !varies ? pixels
+                                                  : static_cast<std::size_t>(std::ranges::count_if(
+                                                        elements_of(finding, shape), has_weight));
   if (finding.alternation) {
     constexpr const char* patterns[] = {"columns in turn", "rows in turn", "a checkerboard"};
-    return fmt::format("{} with alternating signs ({})", place,
-                       patterns[static_cast<int>(*finding.alternation)]);
+    text.place += fmt::format(" with alternating signs ({})",
+                              patterns[static_cast<int>(*finding.alternation)]);
+  } else if (pixels == 1) {
+    text.place = "pixel " + text.place;
+  } else if (2 * varying < pixels) {
+    text.place = "what varies in " + text.place;
+    text.size = fmt::format(" ({} of {} pixels)", varying, pixels);
+  } else if (!whole) {
+    text.size = fmt::format(" ({} x {} pixels)", window.width, window.height);
   }
-  if (one) return "pixel " + place;
-  return (varies_little(finding, shape, weights) ? "what varies in " : "") + place;
-}
-
-std::string size_text(const stats::ImageFinding& finding, const ImageShape& shape,
-                      std::span<const float> weights) {
-  const stats::Rectangle& window = finding.window;
-  std::string text;
-  if (varies_little(finding, shape, weights)) {
-    text = fmt::format(" ({} of {} pixels)", varying(finding, shape, weights), window.area());
-  } else if (!finding.alternation && window.area() > 1 && window.area() < shape.pixels()) {
-    text = fmt::format(" ({} x {} pixels)", window.width, window.height);
-  }
-  // A constant difference has no z.
-  return text + (std::isfinite(finding.z) ? fmt::format(", z = {:+.3g}", finding.z) : "");
+  if (varies) text.size += fmt::format(", z = {:+.3g}", finding.z);
+  return text;
 }
 
 std::vector<std::size_t> elements_of(const stats::ImageFinding& finding, const ImageShape& shape) {

@@ -55,12 +55,13 @@ ChannelEvidence evidence_of_image_laws(const Seen& seen, const ImageTest& test);
 /// Indices of a window's elements in a question.
 std::vector<std::size_t> elements_of(const stats::ImageFinding& finding, const ImageShape& shape);
 
-/// The place of a finding in the whole picture: "x 8-15, y 16-23 of red". If fewer than half of its
-/// pixels have a weight, it is "what varies in x 8-15, …".
-std::string place_text(const stats::ImageFinding& finding, const ImageShape& shape,
-                       std::span<const float> weights);
-/// What follows a place: " (8 x 8 pixels), z = +6.1".
-std::string size_text(const stats::ImageFinding& finding, const ImageShape& shape,
-                      std::span<const float> weights);
+struct PlaceText {
+  /// In the whole picture: "x 8-15, y 16-23 of red". If fewer than half of its pixels have a
+  /// weight, it is "what varies in x 8-15, …".
+  std::string place = "";
+  std::string size = "";  ///< What follows it: " (8 x 8 pixels), z = +6.1".
+};
+PlaceText place_text(const stats::ImageFinding& finding, const ImageShape& shape,
+                     std::span<const float> weights);
 
 }  // namespace assay::harness

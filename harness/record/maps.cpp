@@ -29,7 +29,7 @@ using reports::Number;
 reports::ImageFinding finding_of(const stats::ImageFinding& finding, const ImageShape& shape,
                                  std::span<const float> weights) {
   return {.statistic = finding.alternation ? "alternating" : "window",
-          .place = place_text(finding, shape, weights),
+          .place = place_text(finding, shape, weights).place,
           .x = finding.window.x,
           .y = finding.window.y,
           .width = finding.window.width,

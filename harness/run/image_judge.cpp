@@ -166,11 +166,11 @@ std::optional<PlaceEffect> effect_at_place(const DrawnTest& test) {
                       stats::student_t_quantile({stats::Tail::upper, log_level - std::numbers::ln2},
                                                 effect.degrees);
   const double base = other_mean(test, elements, family.weights);
-  // Halves that weigh a single pixel differently are nothing to its reader. As a part of the
-  // estimate the interval stays.
-  const double plain = mean_over(test, 0, elements, {}) - base;
-  const double estimate = elements.size() == 1 && plain != 0 ? plain : effect.estimate;
-  const double reach = half * std::abs(estimate / effect.estimate);
+  // Halves that weigh a single pixel differently are nothing to its reader.
+  const double plain = elements.size() == 1 ? mean_over(test, 0, elements, {}) - base : 0;
+  const double scale = plain * effect.estimate != 0 ? plain / effect.estimate : 1;
+  const double estimate = scale * effect.estimate;
+  const double reach = std::abs(scale) * half;
   return PlaceEffect{.estimate = estimate,
                      .interval = {estimate - reach, estimate + reach, stats::confidence_at_place},
                      .other = base,
@@ -195,9 +195,9 @@ std::string others_at(const DrawnTest& test, const PlaceEffect& place) {
     const double base = other_mean(test, elements, {});
     const double difference = mean_over(test, 0, elements, {}) - base;
     // Pixels count as independent, each as clear as the others or as noisy as it is.
-    const bool is_clear = std::abs(sum) > clear * std::sqrt(static_cast<double>(elements.size())) ||
-                          std::abs(difference) > clear * error_over(test, elements);
-    if (!is_clear || difference * place.estimate < 0) continue;
+    const double root = std::sqrt(static_cast<double>(elements.size()));
+    const bool by_each = std::abs(sum) > clear * root && difference * sum > 0;
+    if (!by_each && !(std::abs(difference) > clear * error_over(test, elements))) continue;
     const reports::Effect effect{.relative = base != 0};
     const double unit = effect.relative ? std::abs(base) : 1;
     texts.push_back(names[c] + (texts.empty() ? " differs by " : " by ") +

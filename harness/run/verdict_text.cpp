@@ -155,11 +155,11 @@ std::string passed_proof(const TestOutcome& outcome, const ChannelOutcome& chann
 Reason failed(const TestOutcome& outcome, const ChannelOutcome& channel) {
   if (channel.image) {
     const stats::ImageFamily& family = channel.image->family;
-    const ImageShape& shape = *outcome.question.subjects[0].image;
-    return fmt::format(
-        "differs most at {}{}, {}; {}{}", place_text(family.winner, shape, family.weights),
-        size_text(family.winner, shape, family.weights), p_text(channel.decision.log_p_claimed),
-        channel.effect.estimate ? "over all pixels the " : "", finding(channel));
+    const auto [place, size] =
+        place_text(family.winner, *outcome.question.subjects[0].image, family.weights);
+    return fmt::format("differs most at {}{}, {}; {}{}", place, size,
+                       p_text(channel.decision.log_p_claimed),
+                       channel.effect.estimate ? "over all pixels the " : "", finding(channel));
   }
   const std::string text = fmt::format("{}{}, {}", finding(channel), in_channel(outcome, channel),
                                        p_text(channel.decision.log_p_claimed));
