@@ -186,7 +186,7 @@ broken() {
   {
     printf '%s\n' 'suite: broken' 'estimators:' '  sound: {plugin: library, file: sound.so}'
     for name in "$@"; do
-      printf '  %s: {plugin: library, file: %s.so, timeout: 0.5}\n' "$name" "$name"
+      printf '  %s: {plugin: library, file: %s.so, timeout: 1.5}\n' "$name" "$name"
     done
     printf '%s\n' 'tests:' '  - {name: sound, claim: distribution(sound.cosine) == density}'
     for name in "$@"; do
@@ -224,7 +224,7 @@ test_densities_that_break_are_errors_and_the_others_finish() {
   message run.json crashes
   tells err 'was ended by signal 11 (Segmentation fault) instead of answering for 1 density'
   message run.json hangs
-  tells err 'did not answer for 1 density within 0.5 seconds'
+  tells err 'did not answer for 1 density within 1.5 seconds'
   message run.json nothing
   tells err 'density() is nan'
   message run.json prints
@@ -257,7 +257,7 @@ test_draws_that_break_are_errors_and_the_others_finish() {
   message run.json crashes
   tells err 'was ended by signal 11 (Segmentation fault) instead of answering for 1 draw'
   message run.json hangs
-  tells err 'did not answer for 1 draw within 0.5 seconds'
+  tells err 'did not answer for 1 draw within 1.5 seconds'
   message run.json nothing
   tells err ': sample() gave the point ('
   tells err 'density nan and weight'
