@@ -250,9 +250,19 @@ std::vector<std::pair<std::string, std::shared_ptr<Pool>>> pilot_pools(
 Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators, const PilotRun& run,
                   Progress& progress) {
   const auto named = pilot_pools(estimators, run);
-  std::vector<std::shared_ptr<Pool>> pools;
-  for (const auto& [name, pool] : named) pools.push_back(pool);
+  SomePools pools;
+  SomePools averaging;
+  for (const auto& [name, pool] : named) {
+    (name.ends_with(averages_purpose) ? averaging : pools).push_back(pool);
+  }
   draw_all(pools, *run.executor, "pilot", progress);
+  // A program that hung is not waited for again.
+  for (const auto& pool : averaging) {
+    const auto same = [&](const auto& each) { return each->setup() == pool->setup(); };
+    const auto own = std::ranges::find_if(pools, same);
+    if (own != pools.end() && (*own)->fault()) pool->fail(*(*own)->fault());
+  }
+  draw_all(averaging, *run.executor, "pilot", progress);
   Pilots pilots;
   if (interrupted()) return pilots;
   for (const auto& [name, pool] : named) pilots.add(name, read(pool));

@@ -363,4 +363,31 @@ test_manuals_tell_all() {
   tells out 'a crash of the library ends the whole run'
 }
 
+# Once for a block of observations, and once for the one that hangs.
+test_a_program_that_hangs_is_waited_for_twice() {
+  cat >hangs.py <<'PROGRAM'
+import random, sys, time
+
+print("assay 1 text\nchannel v\naverages\nready", flush=True)
+for line in sys.stdin:
+    first, count = map(int, line.split()[2:4])
+    for index in range(first, first + count):
+        if index == 600:
+            print("waits", file=open("waits", "a"))
+            time.sleep(60)
+        print(random.Random(line.split()[1] + str(index)).random())
+    print(line, end="", flush=True)
+PROGRAM
+  cat >hangs.yaml <<'SUITE'
+suite: hangs
+estimators:
+  a: {plugin: process, command: [/usr/bin/python3, -I, hangs.py], timeout: 2}
+tests:
+  - claim: mean(a) == 0.5
+SUITE
+  expect 1 run hangs.yaml
+  contains out 'did not answer for observation 600'
+  [ "$(wc -l <waits)" = 2 ] || fail "$(wc -l <waits) waits"
+}
+
 "$3"
