@@ -256,13 +256,13 @@ Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators, const
     (name.ends_with(averages_purpose) ? averaging : pools).push_back(pool);
   }
   draw_all(pools, *run.executor, "pilot", progress);
-  // A program that hung is not waited for again.
+  // A program that hung is not waited for again. Without these pools there is no second round.
   for (const auto& pool : averaging) {
     const auto same = [&](const auto& each) { return each->setup() == pool->setup(); };
     const auto own = std::ranges::find_if(pools, same);
     if (own != pools.end() && (*own)->fault()) pool->fail(*(*own)->fault());
   }
-  draw_all(averaging, *run.executor, "pilot", progress);
+  if (!averaging.empty()) draw_all(averaging, *run.executor, "pilot", progress);
   Pilots pilots;
   if (interrupted()) return pilots;
   for (const auto& [name, pool] : named) pilots.add(name, read(pool));

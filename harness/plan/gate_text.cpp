@@ -24,7 +24,8 @@ std::string sentence(const Gate& gate) {
   constexpr double most_useful_factor = 100;
   const GateKind& row = gate.row();
   const bool is_useless = row.falls == Falls::by_its_logarithm && gate.value > most_useful_factor;
-  const std::string value = is_useless ? "over 100" : short_number(gate.value);
+  const std::string value =
+      is_useless ? fmt::format("over {:g}", most_useful_factor) : short_number(gate.value);
   const std::string limit = short_number(gate.limit);
   if (row.sentence.empty()) return fmt::format("{} is {}, limit {}", gate.name, value, limit);
   // The rest of the name is a channel or an estimator.

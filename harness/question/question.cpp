@@ -105,7 +105,9 @@ const PreparedEstimator& estimator_of(const Source& source, const Estimators& es
 Subject estimates(const Source& source, const PreparedEstimator& estimator) {
   Subject subject{
       .estimator = &estimator, .setup = estimator.setup, .averages = estimator.nature().averages};
-  if (auto image = estimator.setup->image()) {
+  auto image = estimator.setup->image();
+  const bool masked = image && image->left_out;
+  if (image) {
     subject.channels = elements_named(*image, source.part);
     if (!subject.channels.empty()) subject.image = std::move(image);
   }
@@ -116,8 +118,7 @@ Subject estimates(const Source& source, const PreparedEstimator& estimator) {
     require_no_sampler(source, estimator);
     no_such_part(source, estimator);
   }
-  const auto whole = estimator.setup->image();
-  if (!subject.image && whole && whole->left_out) {
+  if (masked && !subject.image) {
     refuse(
         source.where,
         "`{}` counts pixels as 0 that `mask` or `finite` leaves out: claim the whole picture, or "

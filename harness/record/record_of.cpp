@@ -297,11 +297,11 @@ Estimate mean_of(const stats::Moments& moments, double confidence) {
 Estimate variance_of(const stats::Moments& moments, double primaries, double confidence) {
   if (moments.count < 2) return {};
   if (moments.m2 == 0) return {0.0, 0.0, 0.0};
-  if (!has_spread(moments)) return {number(primaries * moments.variance()), {}, {}};
+  const Estimate alone{number(primaries * moments.variance()), {}, {}};
+  if (!has_spread(moments)) return alone;
   const stats::Influence influence = stats::influence_of_variance(moments);
   // One observation makes up most of what the variance's own spread is known from.
-  if (stats::dominance_gate(influence.relative).state == stats::GateState::red)
-    return {number(primaries * moments.variance()), {}, {}};
+  if (stats::dominance_gate(influence.relative).state == stats::GateState::red) return alone;
   const stats::Interval log = interval_by_inversion(
       [&](double theta) { return stats::influence_t(influence, theta); },
       {.estimate = influence.log_value, .step = influence.relative.standard_error()}, confidence);

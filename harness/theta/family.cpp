@@ -20,11 +20,9 @@ std::vector<FamilyPlace> places(const Suite& suite, const std::vector<Question>&
   double inside_weight = 0;
   double all_weight = 0;
   int outside = 0;
+  const auto timed = [](const std::optional<Budget>& budget) { return budget && budget->seconds; };
   for (const Question& question : questions) {
     const bool inside = inside_family(question);
-    const auto timed = [](const std::optional<Budget>& budget) {
-      return budget && budget->seconds;
-    };
     all.push_back(
         {.inside = inside, .in_seconds = timed(suite.budget) || timed(question.test->budget)});
     all_weight += question.test->weight;
