@@ -203,65 +203,6 @@ std::vector<double> read_counts(const PictureFile& file, const MomentChannels& e
                           " or more, and in some pixel is " + std::to_string(*few));
 }
 
-}  // namespace
-
-bool names_pictures(const std::string& file) {
-  std::error_code ignored;
-  const auto status = std::filesystem::status(file, ignored);
-  if (!std::filesystem::exists(status) && is_pattern(file)) return true;
-  // A look into a pipe would take its bytes away.
-  return file.ends_with(".exr") || (std::filesystem::is_regular_file(status) && is_picture(file));
-}
-
-std::vector<std::string> files_of(const std::string& pattern) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(pattern, ignored)) {
-    refuse(pattern, "is a folder; name its pictures, as in `" + pattern + "/*.exr`");
-  }
-  if (std::filesystem::exists(pattern, ignored)) return {pattern};
-  std::vector<std::string> files;
-  glob_t found{};
-  if (glob(pattern.c_str(), GLOB_NOSORT, nullptr, &found) == 0) {
-    files.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
-  }
-  globfree(&found);
-  if (files.empty()) {
-    refuse(pattern, is_pattern(pattern) ? "no file matches" : "there is no such file");
-  }
-  std::ranges::sort(files);
-  return files;
-}
-
-PictureChannels choose_channels(const PictureFile& file, const std::string& patterns) {
-  PictureChannels channels;
-  if (patterns == "usual") {
-    channels.names = usual_channels(file);
-  } else {
-    channels.names = matching_channels(file, patterns);
-    sort_channels(channels.names);
-  }
-  if (channels.names.empty()) refuse(file.name(), "no channel is chosen");
-  name_components(channels, file.channel_names());
-  return channels;
-}
-
-std::string layer_of(const std::string& channel) {
-  const std::size_t dot = channel.rfind('.');
-  return dot == channel.npos ? "" : channel.substr(0, dot);
-}
-
-ImageShape PictureView::shape(bool independent) const {
-  return {.width = window.width,
-          .height = window.height,
-          .components = channels.components,
-          .independent = independent,
-          .left = window.left,
-          .top = window.top,
-          .left_out = left_out};
-}
-
-namespace {
-
 /// Copies rows of a file into those of a view.
 void take_rows(const PictureView& view, std::span<const float> source, std::span<float> texels) {
   const std::size_t names = view.channels.names.size();
@@ -290,30 +231,6 @@ void round_all(const PictureView& view, std::span<float> texels) {
     texels[i] = rounded(texels[i], view.rounding, alpha[i % components]);
   }
 }
-
-}  // namespace
-
-void PictureView::read(const PictureFile& file, std::span<float> texels, std::size_t first) const {
-  const std::size_t rows = texels.size() / row();
-  const std::size_t above = static_cast<std::size_t>(window.top - whole.top);
-  const bool plain = window.width == whole.width &&
-                     std::ranges::none_of(channels.depth, [](bool depth) { return depth; });
-  if (plain) {
-    file.read(channels.names, texels, above + first);
-  } else {
-    std::vector<float> source(rows * whole.width * channels.names.size());
-    file.read(channels.names, source, above + first);
-    take_rows(*this, source, texels);
-  }
-  if (rounding != Rounding::none) round_all(*this, texels);
-  if (!left_out) return;
-  const std::size_t components = channels.components.size();
-  for (std::size_t i = 0; i < texels.size(); ++i) {
-    if ((*left_out)[first * window.width + i / components]) texels[i] = 0;
-  }
-}
-
-namespace {
 
 void require_inside(const PictureFile& file, const PictureWindow& window,
                     const PictureWindow& whole) {
@@ -398,34 +315,6 @@ PictureView view_of(const PictureFile& file, const std::string& patterns,
   return view;
 }
 
-}  // namespace
-
-std::unique_ptr<const PictureFile> PictureStack::open(std::size_t index) const {
-  auto file = open_picture(files[index]);
-  require_same(*file, view, files[0]);
-  return file;
-}
-
-void PictureStack::read(std::size_t index, std::span<float> texels) const {
-  view.read(*open(index), texels);
-}
-
-PictureStack open_stack(std::vector<std::string> files, const std::string& patterns,
-                        const PictureTreatment& treatment) {
-  const std::unique_ptr<const PictureFile> first = open_picture(files.at(0));
-  PictureStack stack{.files = std::move(files), .view = view_of(*first, patterns, treatment)};
-  for (std::size_t i = 1; i < stack.files.size(); ++i) stack.open(i);
-  return stack;
-}
-
-MomentChannels usual_moments(const PictureFile& file, const PictureChannels& channels) {
-  if (file.has(substituted("Variance.*", channels.names))) return {.variance = "Variance.*"};
-  if (file.has(substituted("m2_*", channels.names))) return {.second_moment = "m2_*"};
-  return {};
-}
-
-namespace {
-
 /// Samples from which on a pixel's own variance is known well enough.
 constexpr double many_samples = 1e5;
 
@@ -469,6 +358,105 @@ void raise_where_few(const std::vector<double>& counts, const ImageShape& shape,
 }
 
 }  // namespace
+
+bool names_pictures(const std::string& file) {
+  std::error_code ignored;
+  const auto status = std::filesystem::status(file, ignored);
+  if (!std::filesystem::exists(status) && is_pattern(file)) return true;
+  // A look into a pipe would take its bytes away.
+  return file.ends_with(".exr") || (std::filesystem::is_regular_file(status) && is_picture(file));
+}
+
+std::vector<std::string> files_of(const std::string& pattern) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(pattern, ignored)) {
+    refuse(pattern, "is a folder; name its pictures, as in `" + pattern + "/*.exr`");
+  }
+  if (std::filesystem::exists(pattern, ignored)) return {pattern};
+  std::vector<std::string> files;
+  glob_t found{};
+  if (glob(pattern.c_str(), GLOB_NOSORT, nullptr, &found) == 0) {
+    files.assign(found.gl_pathv, found.gl_pathv + found.gl_pathc);
+  }
+  globfree(&found);
+  if (files.empty()) {
+    refuse(pattern, is_pattern(pattern) ? "no file matches" : "there is no such file");
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
+PictureChannels choose_channels(const PictureFile& file, const std::string& patterns) {
+  PictureChannels channels;
+  if (patterns == "usual") {
+    channels.names = usual_channels(file);
+  } else {
+    channels.names = matching_channels(file, patterns);
+    sort_channels(channels.names);
+  }
+  if (channels.names.empty()) refuse(file.name(), "no channel is chosen");
+  name_components(channels, file.channel_names());
+  return channels;
+}
+
+std::string layer_of(const std::string& channel) {
+  const std::size_t dot = channel.rfind('.');
+  return dot == channel.npos ? "" : channel.substr(0, dot);
+}
+
+ImageShape PictureView::shape(bool independent) const {
+  return {.width = window.width,
+          .height = window.height,
+          .components = channels.components,
+          .independent = independent,
+          .left = window.left,
+          .top = window.top,
+          .left_out = left_out};
+}
+
+void PictureView::read(const PictureFile& file, std::span<float> texels, std::size_t first) const {
+  const std::size_t rows = texels.size() / row();
+  const std::size_t above = static_cast<std::size_t>(window.top - whole.top);
+  const bool plain = window.width == whole.width &&
+                     std::ranges::none_of(channels.depth, [](bool depth) { return depth; });
+  if (plain) {
+    file.read(channels.names, texels, above + first);
+  } else {
+    std::vector<float> source(rows * whole.width * channels.names.size());
+    file.read(channels.names, source, above + first);
+    take_rows(*this, source, texels);
+  }
+  if (rounding != Rounding::none) round_all(*this, texels);
+  if (!left_out) return;
+  const std::size_t components = channels.components.size();
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    if ((*left_out)[first * window.width + i / components]) texels[i] = 0;
+  }
+}
+
+std::unique_ptr<const PictureFile> PictureStack::open(std::size_t index) const {
+  auto file = open_picture(files[index]);
+  require_same(*file, view, files[0]);
+  return file;
+}
+
+void PictureStack::read(std::size_t index, std::span<float> texels) const {
+  view.read(*open(index), texels);
+}
+
+PictureStack open_stack(std::vector<std::string> files, const std::string& patterns,
+                        const PictureTreatment& treatment) {
+  const std::unique_ptr<const PictureFile> first = open_picture(files.at(0));
+  PictureStack stack{.files = std::move(files), .view = view_of(*first, patterns, treatment)};
+  for (std::size_t i = 1; i < stack.files.size(); ++i) stack.open(i);
+  return stack;
+}
+
+MomentChannels usual_moments(const PictureFile& file, const PictureChannels& channels) {
+  if (file.has(substituted("Variance.*", channels.names))) return {.variance = "Variance.*"};
+  if (file.has(substituted("m2_*", channels.names))) return {.second_moment = "m2_*"};
+  return {};
+}
 
 PictureMoments read_moments(const std::string& name, const std::string& patterns,
                             const MomentChannels& errors, const PictureTreatment& treatment) {

@@ -51,6 +51,39 @@ std::string range_text(const std::string& name, stats::Span span) {
   return fmt::format("{} {:.{}g} to {:.{}g}", name, span.low, digits, span.high, digits);
 }
 
+// Fine enough to see a defect of one quadrant or a wrong exponent. The test pools cells that expect
+// fewer than 20 points.
+constexpr std::array<std::size_t, 2> plane_cells = {16, 32};
+constexpr std::size_t interval_cells = 64;
+
+stats::PlaneGrid grid_of(const Sampler& sampler, const auto& shares) {
+  if (sampler.domain() != Domain::interval) {
+    const DomainChart chart = chart_by(sampler.domain(), 0);
+    const auto below = [&](double share) { return quantile(sampler.domain(), share); };
+    const auto beside = [&](double share) { return share * chart.second.width(); };
+    std::vector<double> first = borders(chart.first, shares(plane_cells[0]), below);
+    return {std::move(first), borders(chart.second, shares(plane_cells[1]), beside)};
+  }
+  const auto [low, high] = sampler.bounds();
+  stats::PlaneGrid grid{.x_borders = {low}, .y_borders = {0, 1}};
+  for (const double share : shares(interval_cells)) {
+    const double border = low + (high - low) * share;
+    if (border > grid.x_borders.back()) grid.x_borders.push_back(border);
+  }
+  if (grid.x_borders.back() == high) grid.x_borders.pop_back();
+  grid.x_borders.push_back(high);
+  return grid;
+}
+
+/// Shares of the measure below the borders between equal cells.
+std::vector<double> equal_shares(std::size_t cells) {
+  std::vector<double> shares;
+  for (std::size_t k = 1; k < cells; ++k) {
+    shares.push_back(static_cast<double>(k) / static_cast<double>(cells));
+  }
+  return shares;
+}
+
 }  // namespace
 
 Coordinate DomainChart::coordinate(double value) const {
@@ -93,43 +126,6 @@ DomainChart chart_by(Domain domain, std::size_t marginal) {
   if (chart.turned) std::swap(chart.first, chart.second);
   return chart;
 }
-
-namespace {
-
-// Fine enough to see a defect of one quadrant or a wrong exponent. The test pools cells that expect
-// fewer than 20 points.
-constexpr std::array<std::size_t, 2> plane_cells = {16, 32};
-constexpr std::size_t interval_cells = 64;
-
-stats::PlaneGrid grid_of(const Sampler& sampler, const auto& shares) {
-  if (sampler.domain() != Domain::interval) {
-    const DomainChart chart = chart_by(sampler.domain(), 0);
-    const auto below = [&](double share) { return quantile(sampler.domain(), share); };
-    const auto beside = [&](double share) { return share * chart.second.width(); };
-    std::vector<double> first = borders(chart.first, shares(plane_cells[0]), below);
-    return {std::move(first), borders(chart.second, shares(plane_cells[1]), beside)};
-  }
-  const auto [low, high] = sampler.bounds();
-  stats::PlaneGrid grid{.x_borders = {low}, .y_borders = {0, 1}};
-  for (const double share : shares(interval_cells)) {
-    const double border = low + (high - low) * share;
-    if (border > grid.x_borders.back()) grid.x_borders.push_back(border);
-  }
-  if (grid.x_borders.back() == high) grid.x_borders.pop_back();
-  grid.x_borders.push_back(high);
-  return grid;
-}
-
-/// Shares of the measure below the borders between equal cells.
-std::vector<double> equal_shares(std::size_t cells) {
-  std::vector<double> shares;
-  for (std::size_t k = 1; k < cells; ++k) {
-    shares.push_back(static_cast<double>(k) / static_cast<double>(cells));
-  }
-  return shares;
-}
-
-}  // namespace
 
 stats::PlaneGrid shifted_grid(const Sampler& sampler, StreamKey key) {
   Stream random(key, 0);

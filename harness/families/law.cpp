@@ -199,75 +199,6 @@ std::string worst_of(const stats::ChiSquareFit& fit, const DrawCells& cells) {
                             pool_text(worst->members, describe), worst->observed, worst->expected);
 }
 
-}  // namespace
-
-const DensityCells& density_of(const Question& question) {
-  return dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup).density_cells();
-}
-
-Points points_of(const Seen& seen, std::size_t subject) {
-  const std::span<const double> values = seen.data[subject].values;
-  Points points{.sorted = {values.begin(), values.end()}, .draws = values.size()};
-  if (const auto none = no_point_of(seen.question.subjects[subject], seen.channel)) {
-    points.of_a_sampler = true;
-    std::erase(points.sorted, *none);
-  }
-  points.sorted = stats::sorted(std::move(points.sorted));
-  return points;
-}
-
-DeclaredLaw declared_law(const Question& question, std::size_t channel) {
-  const auto* draws = dynamic_cast<const SamplerSetup*>(question.subjects[0].setup.get());
-  DeclaredLaw declared;
-  if (!question.law.name.empty()) {
-    declared.law = law_cdf(question.law);
-  } else {
-    const stats::TabulatedLaw& table = draws->marginal_law(question.channel_name(channel));
-    declared.law = std::cref(table);
-    declared.error = table.error;
-  }
-  if (draws != nullptr) {
-    declared.missing = draws->density_cells().without_density();
-    declared.missing_error = draws->density_cells().tolerance();
-  }
-  return declared;
-}
-
-Evidence points_against_law(const Points& points, const DeclaredLaw& declared) {
-  require_points(points);
-  const std::vector<double> values = stats::probabilities(points.sorted, declared.law);
-  const Evidence rest = from_distance(
-      stats::ks_distance(points.sorted, stats::Probabilities{values}), declared.error);
-  if (declared.missing == 0 && points.missing() == 0) return rest;
-  const stats::Successes missing{.successes = points.missing(), .trials = points.draws};
-  const Evidence excess = from_probability(missing, -declared.missing, declared.missing_error);
-  return larger_of(rest, absolute(excess));
-}
-
-Evidence points_against_points(const Points& x, const Points& y) {
-  require_points(x);
-  require_points(y);
-  const Evidence rest = from_distance(x.sorted, y.sorted);
-  if (!x.of_a_sampler && !y.of_a_sampler) return rest;
-  return larger_of(rest, absolute(from_probabilities(x, y)));
-}
-
-std::vector<std::uint64_t> counts_in(const stats::SampledCells& cells, const Seen& seen,
-                                     std::size_t subject) {
-  const ChannelData& data = seen.data[subject];
-  std::vector<std::uint64_t> counts(cells.size() + 1);
-  const std::span<const double> first = data.all_values[0];
-  const bool plane = data.all_values.size() > 1;
-  const std::optional<double> none = no_point_of(seen.question.subjects[subject]);
-  for (std::size_t i = 0; i < first.size(); ++i) {
-    const bool point = first[i] != none;
-    ++counts[point ? cells.index({first[i], plane ? data.all_values[1][i] : 0}) : cells.size()];
-  }
-  return counts;
-}
-
-namespace {
-
 Evidence cells_against_density(const Method&, const Seen& seen) {
   const DensityCells& density = density_of(seen.question);
   stats::CellCounts counts{.observed = density.in_cells(seen.data[0].cells),
@@ -562,6 +493,71 @@ void require_same_marginals(const Question& question, const Location& where) {
 }
 
 }  // namespace
+
+const DensityCells& density_of(const Question& question) {
+  return dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup).density_cells();
+}
+
+Points points_of(const Seen& seen, std::size_t subject) {
+  const std::span<const double> values = seen.data[subject].values;
+  Points points{.sorted = {values.begin(), values.end()}, .draws = values.size()};
+  if (const auto none = no_point_of(seen.question.subjects[subject], seen.channel)) {
+    points.of_a_sampler = true;
+    std::erase(points.sorted, *none);
+  }
+  points.sorted = stats::sorted(std::move(points.sorted));
+  return points;
+}
+
+DeclaredLaw declared_law(const Question& question, std::size_t channel) {
+  const auto* draws = dynamic_cast<const SamplerSetup*>(question.subjects[0].setup.get());
+  DeclaredLaw declared;
+  if (!question.law.name.empty()) {
+    declared.law = law_cdf(question.law);
+  } else {
+    const stats::TabulatedLaw& table = draws->marginal_law(question.channel_name(channel));
+    declared.law = std::cref(table);
+    declared.error = table.error;
+  }
+  if (draws != nullptr) {
+    declared.missing = draws->density_cells().without_density();
+    declared.missing_error = draws->density_cells().tolerance();
+  }
+  return declared;
+}
+
+Evidence points_against_law(const Points& points, const DeclaredLaw& declared) {
+  require_points(points);
+  const std::vector<double> values = stats::probabilities(points.sorted, declared.law);
+  const Evidence rest = from_distance(
+      stats::ks_distance(points.sorted, stats::Probabilities{values}), declared.error);
+  if (declared.missing == 0 && points.missing() == 0) return rest;
+  const stats::Successes missing{.successes = points.missing(), .trials = points.draws};
+  const Evidence excess = from_probability(missing, -declared.missing, declared.missing_error);
+  return larger_of(rest, absolute(excess));
+}
+
+Evidence points_against_points(const Points& x, const Points& y) {
+  require_points(x);
+  require_points(y);
+  const Evidence rest = from_distance(x.sorted, y.sorted);
+  if (!x.of_a_sampler && !y.of_a_sampler) return rest;
+  return larger_of(rest, absolute(from_probabilities(x, y)));
+}
+
+std::vector<std::uint64_t> counts_in(const stats::SampledCells& cells, const Seen& seen,
+                                     std::size_t subject) {
+  const ChannelData& data = seen.data[subject];
+  std::vector<std::uint64_t> counts(cells.size() + 1);
+  const std::span<const double> first = data.all_values[0];
+  const bool plane = data.all_values.size() > 1;
+  const std::optional<double> none = no_point_of(seen.question.subjects[subject]);
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const bool point = first[i] != none;
+    ++counts[point ? cells.index({first[i], plane ? data.all_values[1][i] : 0}) : cells.size()];
+  }
+  return counts;
+}
 
 Question LawTheta::bind(const TestEntry& test, const Estimators& estimators) const {
   const Claim& claim = test.claim;

@@ -74,6 +74,100 @@ void parts(Archive& a, T& named) {
   a(named.pool, named.setup, named.recipe);
 }
 
+/// A rank's answers to rank 0.
+class Servant {
+ public:
+  Servant(Messages& messages,
+          const std::function<PreparedRank(std::optional<std::uint64_t>)>& prepare)
+      : messages_(messages), prepare_(prepare) {}
+
+  /// False when it is dismissed.
+  bool obey(const std::string& bytes) {
+    Unpacker unpack(unframed(bytes));
+    Kind kind{};
+    unpack(kind);
+    if (kind == Kind::begin) begin(unpack);
+    if (kind == Kind::batch) draw(unpack);
+    if (kind == Kind::forget) round_.reset();
+    if (kind == Kind::end) messages_.send(0, packed(Kind::goodbye));
+    return kind != Kind::end;
+  }
+
+ private:
+  static constexpr std::uint64_t most_pools = std::uint64_t{1} << 20;
+
+  /// Pools of a round by rank 0's recipes, and who draws their blocks.
+  struct DrawnRound {
+    SomePools pools = {};
+    Workers workers{pools};
+  };
+
+  void begin(Unpacker& unpack) {
+    std::optional<std::uint64_t> seed;
+    unpack(seed);
+    std::string fault;
+    try {
+      prepared_ = prepare_(seed);
+    } catch (const std::exception&) {
+      fault = "cannot prepare the run: " + words_of(std::current_exception());
+    }
+    std::set<std::string> names;
+    for (const auto& [name, setup] : prepared_.setups) names.insert(name);
+    messages_.send(0, packed(Kind::hello, host_name(), fault, prepared_.identity,
+                             std::vector(names.begin(), names.end()), prepared_.threads));
+  }
+
+  void draw(Unpacker& unpack) {
+    std::uint64_t number = 0;
+    std::vector<NamedRecipe> recipes;
+    std::vector<Task> orders;
+    unpack(number, recipes, orders);
+    unpack.end();
+    const Clock::time_point start = Clock::now();
+    if (!round_) round_ = std::make_unique<DrawnRound>();
+    for (const NamedRecipe& each : recipes) add(each);
+    const std::vector<std::string> blocks = drawn(orders);
+    // Programs may have stopped for the same signal.
+    if (interrupted()) return;
+    messages_.send(0, packed(Kind::reply, number, seconds_since(start), blocks));
+  }
+
+  void add(const NamedRecipe& named) {
+    const auto setup =
+        std::ranges::find(prepared_.setups, named.setup, &NamedSetups::value_type::first);
+    Unpacker::require(setup != prepared_.setups.end() && named.pool < most_pools,
+                      "a recipe for no set-up");
+    // Workers count in cells that are there when they are made (run/pools.cpp).
+    const auto* const draws = dynamic_cast<const SamplerSetup*>(setup->second.get());
+    const bool counts =
+        std::ranges::any_of(named.recipe.plan, [](const auto& each) { return each.cells > 0; });
+    if (draws != nullptr && counts) draws->cell_numbers();
+    SomePools& pools = round_->pools;
+    pools.resize(std::max<std::size_t>(pools.size(), named.pool + 1));
+    pools[named.pool] = std::make_shared<Pool>(pool_of(named.recipe, setup->second));
+  }
+
+  std::vector<std::string> drawn(const std::vector<Task>& orders) {
+    const SomePools& pools = round_->pools;
+    for (const Task& order : orders) {
+      Unpacker::require(order.pool < pools.size() && pools[order.pool] && order.first < order.last,
+                        "an order for no pool");
+    }
+    std::vector<std::string> blocks(orders.size());
+    with_threads(prepared_.threads, [&] {
+      on_all_threads(orders.size(), [&](std::size_t i) {
+        blocks[i] = packed_block(round_->workers.draw(orders[i]));
+      });
+    });
+    return blocks;
+  }
+
+  Messages& messages_;
+  const std::function<PreparedRank(std::optional<std::uint64_t>)>& prepare_;
+  PreparedRank prepared_ = {};
+  std::unique_ptr<DrawnRound> round_;
+};
+
 }  // namespace
 
 /// Blocks of a round from their hand-out to their fold. Ranks keep what they drew while too many
@@ -451,104 +545,6 @@ bool dismiss(Messages& messages) try {
 } catch (const Unpackable&) {  // of another version, which did not understand either
   return false;
 }
-
-namespace {
-
-/// A rank's answers to rank 0.
-class Servant {
- public:
-  Servant(Messages& messages,
-          const std::function<PreparedRank(std::optional<std::uint64_t>)>& prepare)
-      : messages_(messages), prepare_(prepare) {}
-
-  /// False when it is dismissed.
-  bool obey(const std::string& bytes) {
-    Unpacker unpack(unframed(bytes));
-    Kind kind{};
-    unpack(kind);
-    if (kind == Kind::begin) begin(unpack);
-    if (kind == Kind::batch) draw(unpack);
-    if (kind == Kind::forget) round_.reset();
-    if (kind == Kind::end) messages_.send(0, packed(Kind::goodbye));
-    return kind != Kind::end;
-  }
-
- private:
-  static constexpr std::uint64_t most_pools = std::uint64_t{1} << 20;
-
-  /// Pools of a round by rank 0's recipes, and who draws their blocks.
-  struct DrawnRound {
-    SomePools pools = {};
-    Workers workers{pools};
-  };
-
-  void begin(Unpacker& unpack) {
-    std::optional<std::uint64_t> seed;
-    unpack(seed);
-    std::string fault;
-    try {
-      prepared_ = prepare_(seed);
-    } catch (const std::exception&) {
-      fault = "cannot prepare the run: " + words_of(std::current_exception());
-    }
-    std::set<std::string> names;
-    for (const auto& [name, setup] : prepared_.setups) names.insert(name);
-    messages_.send(0, packed(Kind::hello, host_name(), fault, prepared_.identity,
-                             std::vector(names.begin(), names.end()), prepared_.threads));
-  }
-
-  void draw(Unpacker& unpack) {
-    std::uint64_t number = 0;
-    std::vector<NamedRecipe> recipes;
-    std::vector<Task> orders;
-    unpack(number, recipes, orders);
-    unpack.end();
-    const Clock::time_point start = Clock::now();
-    if (!round_) round_ = std::make_unique<DrawnRound>();
-    for (const NamedRecipe& each : recipes) add(each);
-    const std::vector<std::string> blocks = drawn(orders);
-    // Programs may have stopped for the same signal.
-    if (interrupted()) return;
-    messages_.send(0, packed(Kind::reply, number, seconds_since(start), blocks));
-  }
-
-  void add(const NamedRecipe& named) {
-    const auto setup =
-        std::ranges::find(prepared_.setups, named.setup, &NamedSetups::value_type::first);
-    Unpacker::require(setup != prepared_.setups.end() && named.pool < most_pools,
-                      "a recipe for no set-up");
-    // Workers count in cells that are there when they are made (run/pools.cpp).
-    const auto* const draws = dynamic_cast<const SamplerSetup*>(setup->second.get());
-    const bool counts =
-        std::ranges::any_of(named.recipe.plan, [](const auto& each) { return each.cells > 0; });
-    if (draws != nullptr && counts) draws->cell_numbers();
-    SomePools& pools = round_->pools;
-    pools.resize(std::max<std::size_t>(pools.size(), named.pool + 1));
-    pools[named.pool] = std::make_shared<Pool>(pool_of(named.recipe, setup->second));
-  }
-
-  std::vector<std::string> drawn(const std::vector<Task>& orders) {
-    const SomePools& pools = round_->pools;
-    for (const Task& order : orders) {
-      Unpacker::require(order.pool < pools.size() && pools[order.pool] && order.first < order.last,
-                        "an order for no pool");
-    }
-    std::vector<std::string> blocks(orders.size());
-    with_threads(prepared_.threads, [&] {
-      on_all_threads(orders.size(), [&](std::size_t i) {
-        blocks[i] = packed_block(round_->workers.draw(orders[i]));
-      });
-    });
-    return blocks;
-  }
-
-  Messages& messages_;
-  const std::function<PreparedRank(std::optional<std::uint64_t>)>& prepare_;
-  PreparedRank prepared_ = {};
-  std::unique_ptr<DrawnRound> round_;
-};
-
-}  // namespace
 
 void serve(Messages& messages,
            const std::function<PreparedRank(std::optional<std::uint64_t> seed)>& prepare) {

@@ -175,100 +175,6 @@ reports::Estimate image_mean(const ImageShape& shape, const Summary& summary, do
   return estimate;
 }
 
-}  // namespace
-
-void add_elements(const Subject& side, const Summary& summary, reports::Sample& sample) {
-  Extremes extremes = summary.elements ? summary.elements->extremes : Extremes();
-  stats::Moments means;
-  double variance = 0;
-  for (const std::size_t channel : side.channels.all()) {
-    const stats::Moments moments = summary.moments(channel);
-    if (!summary.elements) {
-      sample.nonfinite += summary.channels[channel].nonfinite;
-      extremes.nonzero += moments.nonzero;
-    }
-    if (moments.count < 2) continue;
-    extremes.merge({moments.minimum, moments.maximum, 0});
-    means.add(moments.mean);
-    variance += moments.variance();
-  }
-  sample.nonzero = extremes.nonzero;
-  if (means.count > 0) {
-    sample.mean = number(means.mean);
-    sample.variance = number(variance / static_cast<double>(means.count));
-    sample.min = number(extremes.minimum);
-    sample.max = number(extremes.maximum);
-  }
-}
-
-void add_image(const DrawnTest& drawn, reports::Test& test) {
-  const TestOutcome& outcome = drawn.outcome;
-  if (outcome.channels.empty() || !outcome.channels[0].image) return;
-  const ImageOutcome& found = *outcome.channels[0].image;
-  test.image = image_of(found, *outcome.question.subjects[0].image);
-  if (!found.seen.empty()) test.image->winner.statistic = found.seen;
-  if (const std::optional<PlaceEffect> effect = effect_at_place(drawn)) {
-    const bool relative = effect->other != 0;
-    const double unit = relative ? std::abs(effect->other) : 1;
-    test.image->winner.effect =
-        reports::Effect{.quantity = relative ? "relative difference" : "difference",
-                        .estimate = number(effect->estimate / unit),
-                        .low = number(effect->interval.low / unit),
-                        .high = number(effect->interval.high / unit),
-                        .confidence = stats::confidence_at_place,
-                        .relative = relative};
-    if (outcome.verdict == reports::Verdict::fail) {
-      test.image->winner.others = others_at(drawn, *effect);
-    }
-  }
-  add_maps(drawn, found, test);
-}
-
-reports::EstimatorChannel image_channel(const Setup& setup, const Summary& summary, double averaged,
-                                        double confidence) {
-  const ImageShape shape = *setup.image();
-  const double elements = static_cast<double>(shape.elements());
-  double mean = 0;
-  double variance = 0;
-  double reference = 0;
-  bool known = true;
-  for (std::size_t i = 0; i < shape.elements(); ++i) {
-    const stats::Moments moments = summary.moments(i);
-    mean += moments.mean / elements;
-    if (moments.count > 1) variance += averaged * moments.variance() / elements;
-    if (!known) continue;
-    const std::optional<double> exact = setup.channel(i).mean;
-    known = exact.has_value();
-    reference += exact.value_or(0) / elements;
-  }
-  reports::EstimatorChannel row{.name = image_name(shape),
-                                .mean = image_mean(shape, summary, mean, confidence),
-                                .variance = {number(variance), {}, {}}};
-  if (known) row.reference = number(reference);
-  return row;
-}
-
-void write_maps(reports::Record& record, const std::string& json_path) {
-  const std::filesystem::path path(json_path);
-  const std::filesystem::path folder = path.parent_path() / (path.stem().string() + ".maps");
-  for (reports::Suite& suite : record.suites) {
-    for (reports::Test& test : suite.tests) {
-      if (test.maps.empty()) continue;
-      std::filesystem::create_directories(folder);
-      const std::string name = file_name(test.id);
-      const MapSize size{test.maps.front().width, test.maps.front().height};
-      std::vector<MapLayer> layers;
-      for (reports::Map& map : test.maps) {
-        map.file = (folder.filename() / name).string();
-        layers.push_back({map.name, map.components, map.texels.values});
-      }
-      write_map_file((folder / name).string(), size, layers);
-    }
-  }
-}
-
-namespace {
-
 struct Cells {
   std::string axes;
   std::size_t width = 0, height = 0;
@@ -402,6 +308,96 @@ reports::EmpiricalLaw empirical_law(const Points& points, double confidence,
 }
 
 }  // namespace
+
+void add_elements(const Subject& side, const Summary& summary, reports::Sample& sample) {
+  Extremes extremes = summary.elements ? summary.elements->extremes : Extremes();
+  stats::Moments means;
+  double variance = 0;
+  for (const std::size_t channel : side.channels.all()) {
+    const stats::Moments moments = summary.moments(channel);
+    if (!summary.elements) {
+      sample.nonfinite += summary.channels[channel].nonfinite;
+      extremes.nonzero += moments.nonzero;
+    }
+    if (moments.count < 2) continue;
+    extremes.merge({moments.minimum, moments.maximum, 0});
+    means.add(moments.mean);
+    variance += moments.variance();
+  }
+  sample.nonzero = extremes.nonzero;
+  if (means.count > 0) {
+    sample.mean = number(means.mean);
+    sample.variance = number(variance / static_cast<double>(means.count));
+    sample.min = number(extremes.minimum);
+    sample.max = number(extremes.maximum);
+  }
+}
+
+void add_image(const DrawnTest& drawn, reports::Test& test) {
+  const TestOutcome& outcome = drawn.outcome;
+  if (outcome.channels.empty() || !outcome.channels[0].image) return;
+  const ImageOutcome& found = *outcome.channels[0].image;
+  test.image = image_of(found, *outcome.question.subjects[0].image);
+  if (!found.seen.empty()) test.image->winner.statistic = found.seen;
+  if (const std::optional<PlaceEffect> effect = effect_at_place(drawn)) {
+    const bool relative = effect->other != 0;
+    const double unit = relative ? std::abs(effect->other) : 1;
+    test.image->winner.effect =
+        reports::Effect{.quantity = relative ? "relative difference" : "difference",
+                        .estimate = number(effect->estimate / unit),
+                        .low = number(effect->interval.low / unit),
+                        .high = number(effect->interval.high / unit),
+                        .confidence = stats::confidence_at_place,
+                        .relative = relative};
+    if (outcome.verdict == reports::Verdict::fail) {
+      test.image->winner.others = others_at(drawn, *effect);
+    }
+  }
+  add_maps(drawn, found, test);
+}
+
+reports::EstimatorChannel image_channel(const Setup& setup, const Summary& summary, double averaged,
+                                        double confidence) {
+  const ImageShape shape = *setup.image();
+  const double elements = static_cast<double>(shape.elements());
+  double mean = 0;
+  double variance = 0;
+  double reference = 0;
+  bool known = true;
+  for (std::size_t i = 0; i < shape.elements(); ++i) {
+    const stats::Moments moments = summary.moments(i);
+    mean += moments.mean / elements;
+    if (moments.count > 1) variance += averaged * moments.variance() / elements;
+    if (!known) continue;
+    const std::optional<double> exact = setup.channel(i).mean;
+    known = exact.has_value();
+    reference += exact.value_or(0) / elements;
+  }
+  reports::EstimatorChannel row{.name = image_name(shape),
+                                .mean = image_mean(shape, summary, mean, confidence),
+                                .variance = {number(variance), {}, {}}};
+  if (known) row.reference = number(reference);
+  return row;
+}
+
+void write_maps(reports::Record& record, const std::string& json_path) {
+  const std::filesystem::path path(json_path);
+  const std::filesystem::path folder = path.parent_path() / (path.stem().string() + ".maps");
+  for (reports::Suite& suite : record.suites) {
+    for (reports::Test& test : suite.tests) {
+      if (test.maps.empty()) continue;
+      std::filesystem::create_directories(folder);
+      const std::string name = file_name(test.id);
+      const MapSize size{test.maps.front().width, test.maps.front().height};
+      std::vector<MapLayer> layers;
+      for (reports::Map& map : test.maps) {
+        map.file = (folder.filename() / name).string();
+        layers.push_back({map.name, map.components, map.texels.values});
+      }
+      write_map_file((folder / name).string(), size, layers);
+    }
+  }
+}
 
 void add_cells(const DrawnTest& drawn, reports::Test& test) {
   if (drawn.outcome.channels.empty()) return;

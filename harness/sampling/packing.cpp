@@ -63,6 +63,27 @@ void require_shape(const Pool::Block& block, const Recipe& recipe, const Pool& p
   }
 }
 
+void unpack_sums(Unpacker& unpack, const Pool& pool, std::uint64_t first, Pool::Block& block) {
+  const Recipe recipe = pool.recipe();
+  std::uint64_t partials = 0;
+  block.whole = pool.no_sums();
+  unpack(block.fault, block.whole, partials);
+  require_shape(block, recipe, pool, first);
+  const std::uint64_t end = first + block.whole.count;
+  const auto begin = std::ranges::upper_bound(recipe.marks, first);
+  const std::vector<std::uint64_t> marks(begin, std::ranges::upper_bound(recipe.marks, end));
+  Unpacker::require(partials == marks.size(), "other marks than its plan says");
+  for (const std::uint64_t mark : marks) {
+    std::uint64_t count = 0;
+    auto sums = std::make_shared<Summary>(pool.no_sums());
+    unpack(count, *sums);
+    Unpacker::require(count == mark && sums->count == mark - first,
+                      "other marks than its plan says");
+    block.partial.emplace_back(mark, std::move(sums));
+  }
+  unpack.end();
+}
+
 }  // namespace
 
 std::string framed(std::string_view bytes) {
@@ -176,31 +197,6 @@ Pool pool_of(const Recipe& recipe, std::shared_ptr<const Setup> setup) {
   }
   return pool;
 }
-
-namespace {
-
-void unpack_sums(Unpacker& unpack, const Pool& pool, std::uint64_t first, Pool::Block& block) {
-  const Recipe recipe = pool.recipe();
-  std::uint64_t partials = 0;
-  block.whole = pool.no_sums();
-  unpack(block.fault, block.whole, partials);
-  require_shape(block, recipe, pool, first);
-  const std::uint64_t end = first + block.whole.count;
-  const auto begin = std::ranges::upper_bound(recipe.marks, first);
-  const std::vector<std::uint64_t> marks(begin, std::ranges::upper_bound(recipe.marks, end));
-  Unpacker::require(partials == marks.size(), "other marks than its plan says");
-  for (const std::uint64_t mark : marks) {
-    std::uint64_t count = 0;
-    auto sums = std::make_shared<Summary>(pool.no_sums());
-    unpack(count, *sums);
-    Unpacker::require(count == mark && sums->count == mark - first,
-                      "other marks than its plan says");
-    block.partial.emplace_back(mark, std::move(sums));
-  }
-  unpack.end();
-}
-
-}  // namespace
 
 std::string packed_kept(const Pool::Block& block) {
   Packer pack;

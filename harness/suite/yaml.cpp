@@ -47,6 +47,33 @@ std::string readable(const std::string& message) {
   return "not YAML: " + message;
 }
 
+void refuse_tabs(const std::vector<std::string>& lines, const std::string& file) {
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const std::size_t at = lines[i].find_first_not_of(' ');
+    const bool tab = at != std::string_view::npos && lines[i][at] == '\t';
+    if (tab && lines[i].find_first_not_of(" \t") != std::string_view::npos) {
+      refuse({file, static_cast<int>(i) + 1, static_cast<int>(at) + 1},
+             "indent with spaces, not with a tab");
+    }
+  }
+}
+
+/// A wrong type and a wrong value get the same message: what is allowed, and what was given.
+template <class Read, class Allowed>
+auto read_within(const Value& value, std::string_view what, const std::string& range, Read read,
+                 Allowed allowed) {
+  std::string found = "no single value";
+  if (value.kind() == Value::Kind::scalar) {
+    found = "`" + value.text() + "`";
+    try {
+      const auto number = read();
+      if (allowed(number)) return number;
+    } catch (const InputError&) {
+    }
+  }
+  refuse(value.where(), "{} must be {}, but it is {}", what, range, found);
+}
+
 }  // namespace
 
 /// Receives yaml-cpp's events, which still show tags, anchors and repeated keys.
@@ -211,21 +238,6 @@ class DocumentBuilder final : public YAML::EventHandler {
   bool complete_ = false;
 };
 
-namespace {
-
-void refuse_tabs(const std::vector<std::string>& lines, const std::string& file) {
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    const std::size_t at = lines[i].find_first_not_of(' ');
-    const bool tab = at != std::string_view::npos && lines[i][at] == '\t';
-    if (tab && lines[i].find_first_not_of(" \t") != std::string_view::npos) {
-      refuse({file, static_cast<int>(i) + 1, static_cast<int>(at) + 1},
-             "indent with spaces, not with a tab");
-    }
-  }
-}
-
-}  // namespace
-
 Document::Document(std::string file, std::string_view text, std::optional<Location> only_place)
     : file_(std::move(file)), only_place_(std::move(only_place)) {
   require_utf8(text, file_);
@@ -322,26 +334,6 @@ const Value& Keys::require(std::string_view key, std::string_view example) const
   if (const Value* value = find(key)) return *value;
   refuse(map_.where(), "{} needs the key `{}`, as in `{}`", what_, key, example);
 }
-
-namespace {
-
-/// A wrong type and a wrong value get the same message: what is allowed, and what was given.
-template <class Read, class Allowed>
-auto read_within(const Value& value, std::string_view what, const std::string& range, Read read,
-                 Allowed allowed) {
-  std::string found = "no single value";
-  if (value.kind() == Value::Kind::scalar) {
-    found = "`" + value.text() + "`";
-    try {
-      const auto number = read();
-      if (allowed(number)) return number;
-    } catch (const InputError&) {
-    }
-  }
-  refuse(value.where(), "{} must be {}, but it is {}", what, range, found);
-}
-
-}  // namespace
 
 double positive_number(const Value& value, std::string_view what) {
   return read_within(
