@@ -21,23 +21,13 @@ struct ConsoleOptions {
   std::string report = "";    ///< Path of a report that shows more; "": none.
 };
 
-/// The text of one run for a terminal or a log.
-class Console {
- public:
-  explicit Console(ConsoleOptions options) : options_(std::move(options)) {}
+/// A broken claim in 5 lines at most, and an empty line. It may be told before the run ends.
+std::string broken_claim(const Test&, const ConsoleOptions& = {});
 
-  /// A broken claim in 5 lines at most, and an empty line. It may be told before the run ends.
-  std::string broken(const Test&);
-
-  /// Suites, then claims that are not as they should be and were not told, then the verdict.
-  std::string rest(const Record&, const ConsoleOptions&) const;
-
- private:
-  ConsoleOptions options_;
-  std::set<std::string> told_ = {};  ///< Ids.
-};
-
-std::string console(const Record&, const ConsoleOptions& = {});
+/// The text of one run for a terminal or a log: suites, then claims that are not as they should be,
+/// then the verdict. Claims of the ids in `told` were told before.
+std::string console(const Record&, const ConsoleOptions& = {},
+                    const std::set<std::string>& told = {});
 
 /// The record as JSON (record.schema.json): keys in fixed order, doubles that read back as the same
 /// double. A number that does not exist is null; one that is not finite is the string "NaN",

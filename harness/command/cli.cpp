@@ -493,6 +493,7 @@ Examples:
 )");
   options.add({.name = "RUN.json", .needed = "a saved run", .words = {"*.json"}}, command.file,
               "a saved run");
+  command.output.github = false;
   add_output(options, command.output);
 }
 

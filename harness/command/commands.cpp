@@ -12,10 +12,9 @@
 #include "harness/base/record_file.h"
 #include "harness/base/terminal.h"
 #include "harness/command/describe.h"
-#include "harness/command/plan_table.h"
-#include "harness/command/run.h"
 #include "harness/ranks/ranks.h"
 #include "harness/record/record_of.h"
+#include "harness/run/planned_run.h"
 #include "harness/sampling/checkpoint.h"
 #include "reports/report_formats.h"
 
@@ -58,7 +57,7 @@ int run_suites(const std::vector<Suite>& suites, const RunOptions& options, cons
   if (selects_nothing(suites, options.selection)) return nothing_ran;
   const std::unique_ptr<Progress> progress = make_progress(output.quiet);
   std::string ledger_fault;
-  RunReports console(output);
+  std::set<std::string> told;  // ids
   RunOptions drawn = options;
   std::shared_ptr<Ranks> ranks;
   if (options.ranks != nullptr) {
@@ -74,10 +73,11 @@ int run_suites(const std::vector<Suite>& suites, const RunOptions& options, cons
         identity_of(suites, options), executor_of(drawn));
     drawn.executor = checkpoint;
   }
-  reports::Record record = run(
-      suites, drawn, *progress, [&](const reports::Test& test) { console.tell(test); },
-      &ledger_fault);
-  console.write_and_annotate(record);
+  const auto broken = [&](const reports::Test& test) {
+    if (tell(test, output)) told.insert(test.id);
+  };
+  reports::Record record = run(suites, drawn, *progress, broken, &ledger_fault);
+  report(record, output, told);
   if (output.kept) keep_last_run(record, output.detail > 0);
   if (ranks && output.detail > 1) say_beside_progress(ranks->window_text());
   if (checkpoint && !interrupted()) checkpoint->remove();
@@ -140,7 +140,7 @@ int explain(const ExplainArguments& arguments) {
 int report_saved_run(const std::string& file, const Output& output) {
   require_writable(output, {file});
   reports::Record record = read_record(file);
-  RunReports(output).write(record);
+  report(record, output);
   return 0;
 }
 

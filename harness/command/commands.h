@@ -2,15 +2,29 @@
 
 // The subcommands, without the parsing of arguments. Each returns an exit code.
 
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "harness/base/identity.h"
+#include "harness/base/progress.h"
 #include "harness/record/output.h"
 #include "harness/suite/run_options.h"
 #include "harness/suite/suite.h"
+#include "reports/record/record.h"
 
 namespace assay::harness {
+
+struct PlannedRun;
+
+/// Hears of a broken claim when it is decided.
+using Broken = std::function<void(const reports::Test&)>;
+
+/// Runs the selected tests of the suites. InputError for any mistake found before sampling. A
+/// ledger that cannot be written is a std::runtime_error, or goes to `ledger_fault`.
+reports::Record run(const std::vector<Suite>& suites, const RunOptions& options, Progress& progress,
+                    const Broken& broken = {}, std::string* ledger_fault = nullptr);
 
 /// Runs the suites and writes the reports. Returns 4 without a report if no test is selected.
 int run_suites(const std::vector<Suite>& suites, const RunOptions& options, const Output& output);
@@ -22,6 +36,13 @@ int list_renders(const std::vector<Suite>& suites, const RunOptions& options, bo
 /// Prints what a run would do; only pilots are drawn. Returns 4 if no test is selected, 1 if a test
 /// cannot come out as expected.
 int plan_suites(const std::vector<Suite>& suites, const RunOptions& options, bool quiet);
+/// Tables of at most 80 columns without colours: a row a test, with notes on the forecast and the
+/// pilot's gates below it. Totals end the page.
+std::string plan_text(const PlannedRun& planned);
+
+/// Returns 1 if a selected test cannot come out as expected: no method is valid, or a source
+/// stopped. Returns 77 if all selected tests will be skipped, 4 if none is selected, else 0.
+int plan_exit_code(const PlannedRun& planned);
 int report_saved_run(const std::string& file, const Output& output);
 
 struct ExplainArguments {

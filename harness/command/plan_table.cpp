@@ -1,13 +1,13 @@
-#include "harness/command/plan_table.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "harness/command/commands.h"
 #include "harness/command/describe.h"
 #include "harness/plan/forecast.h"
+#include "harness/run/planned_run.h"
 #include "harness/theta/theta.h"
 #include "reports/words/number.h"
 #include "reports/words/text.h"

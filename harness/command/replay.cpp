@@ -12,7 +12,7 @@
 #include "harness/base/terminal.h"
 #include "harness/command/cli.h"
 #include "harness/command/describe.h"
-#include "harness/command/loaded.h"
+#include "harness/command/program.h"
 #include "harness/draws/sampler_setup.h"
 #include "harness/question/question.h"
 #include "harness/record/output.h"
@@ -287,7 +287,7 @@ bool replay_test(const Loaded& run, const Recorded& recorded) {
   }
   sample_in_looks({&work}, planned.pools.all(), {}, *progress);
   stop_if_interrupted();
-  const reports::Test now = record_of_test(work, recorded.suite.file, false);
+  const reports::Test now = record_of_test(work, recorded.suite.file);
   fmt::print("{}\n{}\n", then.id, then.claim);
   if (now.verdict == reports::Verdict::error && then.verdict != now.verdict) {
     throw std::runtime_error(now.message);

@@ -1,5 +1,3 @@
-#include "harness/command/run.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 
 #include "harness/base/interrupt.h"
 #include "harness/base/parallel.h"
+#include "harness/command/commands.h"
 #include "harness/ledger/ledger.h"
 #include "harness/record/record_of.h"
 #include "harness/run/evaluate.h"
@@ -17,12 +16,11 @@ namespace assay::harness {
 namespace {
 
 /// A family without some of its tests has no adjusted p-values.
-void adjust_if_whole(SuiteRun& run, const RunOptions& options) {
+void note_whether_whole(SuiteRun& run, const RunOptions& options) {
   const bool all = run.tests.size() + run.untested.size() == run.suite.tests.size();
   const bool early =
       std::ranges::any_of(run.tests, [](const TestWork& work) { return !work.outcome.decided; });
   run.adjusted = all && !early && !options.shard;
-  if (run.adjusted) adjust_p_values(run.tests);
 }
 
 void add_note(reports::Record& record, const std::string& note) {
@@ -30,8 +28,7 @@ void add_note(reports::Record& record, const std::string& note) {
 }
 
 /// Adds remarks on the ledger.
-void note_ledger(reports::Record& record, const std::vector<std::unique_ptr<SuiteRun>>& runs,
-                 const RunOptions& options) {
+void note_ledger(reports::Record& record, const SuiteRuns& runs, const RunOptions& options) {
   std::size_t outside = 0;
   for (const auto& run : runs) {
     for (const TestWork& work : run->tests) outside += work.outcome.place.inside ? 0 : 1;
@@ -59,7 +56,7 @@ class Listener {
       const bool its =
           std::ranges::any_of(run->tests, [&](const TestWork& x) { return &x == &work; });
       if (!its || !is_broken(work)) continue;
-      tell(*run, record_of_test(work, run->suite.file, run->adjusted), *work.outcome.question.test);
+      tell(*run, record_of_test(work, run->suite.file), *work.outcome.question.test);
     }
     return may_go_on();
   }
@@ -128,7 +125,7 @@ reports::Record run_in_arena(const std::vector<Suite>& suites, const RunOptions&
       std::ranges::none_of(tests, [](const TestWork* x) { return x->outcome.decided; });
   if (none || !options.ledger.empty() || options.shard) stop_if_interrupted();
   for (auto& run : planned.suites) {
-    adjust_if_whole(*run, options);
+    note_whether_whole(*run, options);
     if (interrupted())
       leave_out(*run, "the run was interrupted before its verdict");
     else if (!listener.may_go_on())

@@ -159,7 +159,7 @@ reports::Test tested(const std::string& claim, const Asked& asked, const ClaimBu
   harness::Pools pools;
   work.pools = pools.for_question(question, work.outcome.plan, seed, pilots);
   harness::sample_in_looks({&work}, pools.all(), {}, harness::silence);
-  reports::Test test = harness::record_of_test(work, "", false);
+  reports::Test test = harness::record_of_test(work, "");
   const bool drawn = test.verdict != reports::Verdict::error;
   if (std::string why = drawn ? unrepeated(work) : ""; !why.empty()) {
     test.verdict = reports::Verdict::error;

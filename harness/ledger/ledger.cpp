@@ -59,7 +59,7 @@ std::optional<ThetaError> error_of_interval(const Question& question, std::size_
   return ThetaError{.drawn = half};
 }
 
-std::variant<NightEvidence, NoEvidence> of_estimate(const DrawnTest& drawn, std::size_t channel) {
+NightEvidence of_estimate(const DrawnTest& drawn, std::size_t channel) {
   const Question& question = drawn.outcome.question;
   const std::vector<ChannelData> data = data_of(drawn, channel);
   std::optional<ThetaError> error = question.theta->error({question, channel, data});
@@ -68,9 +68,9 @@ std::variant<NightEvidence, NoEvidence> of_estimate(const DrawnTest& drawn, std:
     if (!error) error = error_of_interval(question, channel, outcome->evidence);
     if (error) error->estimate = outcome->evidence.estimate;
   }
-  if (!error) return NoEvidence{"no error of its estimate is known"};
-  if (!error->estimate) return NoEvidence{"its observations have no spread"};
-  return NightEvidence{.value = sized(drawn.outcome, *error), .reference_error = error->fixed};
+  if (!error) return {.obstacle = "no error of its estimate is known"};
+  if (!error->estimate) return {.obstacle = "its observations have no spread"};
+  return {.value = sized(drawn.outcome, *error), .reference_error = error->fixed};
 }
 
 std::string margin_text(const std::optional<Margin>& margin) {
@@ -109,74 +109,6 @@ stats::NullTheta nearest(const stats::Range& claimed, const stats::PooledNights&
   return {.value = std::clamp(pooled.difference(), claimed.low, claimed.high),
           .reference_error = *series.reference_error};
 }
-
-}  // namespace
-
-std::variant<NightEvidence, NoEvidence> night_evidence(const TestWork& work, std::size_t channel) {
-  const TestOutcome& test = work.outcome;
-  if (std::string why = obstacle(test); !why.empty()) return NoEvidence{std::move(why)};
-  const std::optional<DrawnTest> numbers = drawn(work);
-  if (!numbers) return NoEvidence{"it was not drawn"};
-  const ChannelOutcome* outcome = outcome_of(test, channel);
-  if (outcome == nullptr || !outcome->evidence.distance) return of_estimate(*numbers, channel);
-  const std::vector<Subject>& sides = test.question.subjects;
-  if (std::ranges::any_of(sides, is_recorded)) {
-    return NoEvidence{
-        "one side is recorded, the same in every run, and distances from it do not add up"};
-  }
-  return NightEvidence{.value = outcome->decision.log_p_claimed};
-}
-
-std::string series_hash(const TestWork& work, std::size_t channel) {
-  const Question& question = work.outcome.question;
-  const TestEntry& entry = *question.test;
-  std::string text = fmt::format("{}\nallow {} detect {}\nchannel {}", to_string(entry.claim),
-                                 margin_text(entry.allow), margin_text(entry.detect),
-                                 question.channel_name(channel));
-  for (std::size_t i = 0; i < question.subjects.size(); ++i) text += side_text(work, i, channel);
-  if (!question.references.empty()) {
-    const Constant& reference = question.references[channel];
-    // Twelve digits: quadratures may differ in the last ones between machines.
-    text += fmt::format("\n{:.12g} {:.12g}", reference.value, reference.standard_error);
-  }
-  return fmt::format("{:016x}", text_hash(text));
-}
-
-std::vector<double> log_e_path(const LedgerSeries& series, const std::vector<LedgerNight>& nights,
-                               const stats::Range& claimed) {
-  std::vector<double> path;
-  if (series.has_estimates()) {
-    stats::PooledNights pooled;
-    for (const auto& night : values_of<stats::NightEstimate>(nights)) {
-      pooled.add(night);
-      path.push_back(stats::log_e_value(pooled, nearest(claimed, pooled, series)));
-    }
-    return path;
-  }
-  stats::PooledPValues pooled;
-  for (const double log_p : values_of<NightLogP>(nights)) {
-    pooled.add(log_p);
-    path.push_back(stats::log_e_value(pooled));
-  }
-  return path;
-}
-
-Moved moved(const LedgerSeries& series, const std::vector<LedgerNight>& nights,
-            const stats::Range& claimed) {
-  const auto change = [&] {
-    if (!series.has_estimates()) return stats::change_point(values_of<NightLogP>(nights));
-    const auto estimates = values_of<stats::NightEstimate>(nights);
-    stats::PooledNights pooled;
-    for (const stats::NightEstimate& night : estimates) pooled.add(night);
-    return stats::change_point(estimates, nearest(claimed, pooled, series));
-  }();
-  const std::vector<std::size_t> credible = stats::credible_nights(change, credibility);
-  return {change.night, credible.front(), credible.back()};
-}
-
-double generation_share(int generation) { return 1 / (zeta_3 * std::pow(generation, 3)); }
-
-namespace {
 
 LedgerBook read_ledger(const std::string& file) {
   std::error_code ignored;
@@ -292,21 +224,82 @@ reports::LedgerSeries keep(LedgerBook& book, const LedgerRun& ledger, const Entr
       .series = series.hash,
       .quantity = quantity_of(test),
       .relative = test.question.theta->is_relative(test.question, entry.channel)};
-  const auto night = night_evidence(entry.work, entry.channel);
-  if (const auto* none = std::get_if<NoEvidence>(&night)) {
-    result.note = "nothing added: " + none->why;
+  const NightEvidence night = night_evidence(entry.work, entry.channel);
+  series.reference_error = night.reference_error;
+  if (night.value) {
+    add_night(book, ledger, entry, series, *night.value, result);
   } else {
-    const auto& evidence = std::get<NightEvidence>(night);
-    if (std::holds_alternative<stats::NightEstimate>(evidence.value)) {
-      series.reference_error = evidence.reference_error;
-    }
-    add_night(book, ledger, entry, series, evidence.value, result);
+    result.note = "nothing added: " + night.obstacle;
   }
   if (const auto open = book.open_series(series)) read_nights(result, book, *open, entry);
   return result;
 }
 
 }  // namespace
+
+NightEvidence night_evidence(const TestWork& work, std::size_t channel) {
+  const TestOutcome& test = work.outcome;
+  if (std::string why = obstacle(test); !why.empty()) return {.obstacle = std::move(why)};
+  const std::optional<DrawnTest> numbers = drawn(work);
+  if (!numbers) return {.obstacle = "it was not drawn"};
+  const ChannelOutcome* outcome = outcome_of(test, channel);
+  if (outcome == nullptr || !outcome->evidence.distance) return of_estimate(*numbers, channel);
+  const std::vector<Subject>& sides = test.question.subjects;
+  if (std::ranges::any_of(sides, is_recorded)) {
+    return {.obstacle =
+                "one side is recorded, the same in every run, and distances from it do not add up"};
+  }
+  return {.value = outcome->decision.log_p_claimed};
+}
+
+std::string series_hash(const TestWork& work, std::size_t channel) {
+  const Question& question = work.outcome.question;
+  const TestEntry& entry = *question.test;
+  std::string text = fmt::format("{}\nallow {} detect {}\nchannel {}", to_string(entry.claim),
+                                 margin_text(entry.allow), margin_text(entry.detect),
+                                 question.channel_name(channel));
+  for (std::size_t i = 0; i < question.subjects.size(); ++i) text += side_text(work, i, channel);
+  if (!question.references.empty()) {
+    const Constant& reference = question.references[channel];
+    // Twelve digits: quadratures may differ in the last ones between machines.
+    text += fmt::format("\n{:.12g} {:.12g}", reference.value, reference.standard_error);
+  }
+  return fmt::format("{:016x}", text_hash(text));
+}
+
+std::vector<double> log_e_path(const LedgerSeries& series, const std::vector<LedgerNight>& nights,
+                               const stats::Range& claimed) {
+  std::vector<double> path;
+  if (series.has_estimates()) {
+    stats::PooledNights pooled;
+    for (const auto& night : values_of<stats::NightEstimate>(nights)) {
+      pooled.add(night);
+      path.push_back(stats::log_e_value(pooled, nearest(claimed, pooled, series)));
+    }
+    return path;
+  }
+  stats::PooledPValues pooled;
+  for (const double log_p : values_of<NightLogP>(nights)) {
+    pooled.add(log_p);
+    path.push_back(stats::log_e_value(pooled));
+  }
+  return path;
+}
+
+Moved moved(const LedgerSeries& series, const std::vector<LedgerNight>& nights,
+            const stats::Range& claimed) {
+  const auto change = [&] {
+    if (!series.has_estimates()) return stats::change_point(values_of<NightLogP>(nights));
+    const auto estimates = values_of<stats::NightEstimate>(nights);
+    stats::PooledNights pooled;
+    for (const stats::NightEstimate& night : estimates) pooled.add(night);
+    return stats::change_point(estimates, nearest(claimed, pooled, series));
+  }();
+  const std::vector<std::size_t> credible = stats::credible_nights(change, credibility);
+  return {change.night, credible.front(), credible.back()};
+}
+
+double generation_share(int generation) { return 1 / (zeta_3 * std::pow(generation, 3)); }
 
 void require_ledger(const std::string& file) {
   const std::filesystem::path path(file);
@@ -316,8 +309,7 @@ void require_ledger(const std::string& file) {
   read_ledger(file);
 }
 
-reports::Ledger add_to_ledger(const LedgerRun& ledger,
-                              const std::vector<std::unique_ptr<SuiteRun>>& runs) {
+reports::Ledger add_to_ledger(const LedgerRun& ledger, const SuiteRuns& runs) {
   const LockedFile lock(ledger.file);
   LedgerBook book = read_ledger(ledger.file);
   const bool is_new = std::filesystem::file_size(ledger.file) == 0;

@@ -15,8 +15,8 @@
 // the others would be those that look well: samples without their rare values.
 
 #include <memory>
+#include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "harness/ledger/ledger_book.h"
@@ -27,16 +27,12 @@
 namespace assay::harness {
 
 struct NightEvidence {
-  NightValue value = {};
-  double reference_error = 0;  ///< The error that all runs share; 0 beside a p-value.
+  std::optional<NightValue> value = {};
+  std::optional<double> reference_error = {};  ///< Error that all runs share, beside an estimate.
+  std::string obstacle = "";                   ///< Why there is no value that nights could pool.
 };
 
-/// Why a test gives nothing that nights could pool.
-struct NoEvidence {
-  std::string why;
-};
-
-std::variant<NightEvidence, NoEvidence> night_evidence(const TestWork& work, std::size_t channel);
+NightEvidence night_evidence(const TestWork& work, std::size_t channel);
 
 /// A hash of claim, margins, plugins, parameters and primaries of its estimators, references and
 /// recorded data.
@@ -79,7 +75,6 @@ struct LedgerRun {
 /// is there already. Returns what all nights of these tests mean together. An alarm is raised if E
 /// reaches 1 / (budget * the channel's weight in its suite * generation_share). The file is locked
 /// while it is read and replaced.
-reports::Ledger add_to_ledger(const LedgerRun& ledger,
-                              const std::vector<std::unique_ptr<SuiteRun>>& runs);
+reports::Ledger add_to_ledger(const LedgerRun& ledger, const SuiteRuns& runs);
 
 }  // namespace assay::harness

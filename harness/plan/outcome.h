@@ -71,7 +71,6 @@ struct ChannelOutcome {
   stats::TestResult at_null;  ///< Statistic and distribution at the null value.
   Evidence evidence;
   ChannelDecision decision = {};  ///< Decision over the looks taken.
-  double log_p_adjusted = 0;
   reports::Effect effect = {};
   std::optional<double> detectable = {};  ///< Least theta found with probability 1 - beta.
   bool finds_nothing = false;             ///< No theta in the range is found so.

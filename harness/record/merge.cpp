@@ -36,19 +36,6 @@ std::string digest_of(const SuiteRun& run) {
   return fmt::format("{:016x}", hash);
 }
 
-std::uint64_t position_of(const TestEntry& test, const Suite& suite) {
-  return static_cast<std::uint64_t>(&test - suite.tests.data());
-}
-
-reports::ShardTest test_of(const TestOutcome& outcome, const SuiteRun& run) {
-  const FamilyMember member = member_of(outcome);
-  return {.position = position_of(*outcome.question.test, run.suite),
-          .inside = outcome.place.inside,
-          .weight = member.weight,
-          .untested = member.untested,
-          .log_p = member.log_p};
-}
-
 using reports::Verdict;
 
 std::set<std::uint64_t> indices_of(const std::vector<ShardFile>& shards) {
@@ -72,14 +59,8 @@ std::string missing_shards(const std::vector<ShardFile>& shards) {
       count, fmt::join(missing, ", "), missing.front(), count, missing.size() > 1 ? ", …" : "");
 }
 
-/// A shard's test with the data for Holm's method.
-struct Part {
-  reports::Test test;
-  reports::ShardTest family;
-};
-
-std::vector<Part> parts_of(const std::vector<ShardFile>& shards, std::size_t suite) {
-  std::vector<Part> parts;
+std::vector<FamilyMember> parts_of(const std::vector<ShardFile>& shards, std::size_t suite) {
+  std::vector<FamilyMember> parts;
   for (const ShardFile& shard : shards) {
     const std::vector<reports::Test>& tests = shard.record.suites[suite].tests;
     for (std::size_t i = 0; i < tests.size(); ++i) {
@@ -100,31 +81,8 @@ std::vector<Part> parts_of(const std::vector<ShardFile>& shards, std::size_t sui
           .message = fmt::format("shard {} of {} is missing", test.shard, any.shard->count)},
          {.position = test.position}});
   }
-  std::ranges::sort(parts, {}, [](const Part& part) { return part.family.position; });
+  std::ranges::sort(parts, {}, [](const FamilyMember& part) { return part.family.position; });
   return parts;
-}
-
-void adjust_p_values(std::vector<Part>& parts) {
-  std::vector<FamilyMember> family;
-  for (Part& part : parts) {
-    if (!part.family.inside) continue;
-    family.push_back({.verdict = part.test.verdict,
-                      .weight = part.family.weight,
-                      .untested = part.family.untested,
-                      .log_p = part.family.log_p,
-                      .adjusted = [&part](std::size_t i, double log_p) {
-                        part.test.channels[i].p_adjusted = probability(log_p);
-                        part.test.channels[i].log10_p_adjusted = log10_of(log_p);
-                      }});
-  }
-  try {
-    adjust_family(family);
-  } catch (const std::domain_error& error) {
-    refuse({},
-           "the shards' shares of alpha do not fit together: {}; was a record edited? Run the "
-           "shards again",
-           error.what());
-  }
 }
 
 /// Takes each estimator's row from the shard that drew most of it.
@@ -170,12 +128,19 @@ reports::Suite merge_suite(const std::vector<ShardFile>& shards, std::size_t ind
   }
   suite.timed = std::ranges::any_of(
       shards, [&](const ShardFile& shard) { return shard.record.suites[index].timed; });
-  std::vector<Part> parts = parts_of(shards, index);
+  std::vector<FamilyMember> parts = parts_of(shards, index);
   const bool complete = parts.size() == shards.front().record.shard->suites[index].tests &&
                         missing_shards(shards).empty();
-  if (complete) adjust_p_values(parts);
+  try {
+    if (complete) adjust_p_values(parts);
+  } catch (const std::domain_error& error) {
+    refuse({},
+           "the shards' shares of alpha do not fit together: {}; was a record edited? Run the "
+           "shards again",
+           error.what());
+  }
   whole = whole && complete;
-  for (Part& part : parts) {
+  for (FamilyMember& part : parts) {
     // The file was beside the shard's record; a report that writes maps names it again.
     for (reports::Map& map : part.test.maps) map.file.clear();
     suite.tests.push_back(std::move(part.test));
@@ -278,18 +243,13 @@ void add_shard(const SuiteRuns& runs, const RunOptions& options, reports::Record
   reports::Shard shard{
       .index = index, .count = count, .options = options.command + options_text(options.selection)};
   for (const auto& run : runs) {
-    reports::ShardSuite suite{.digest = digest_of(*run), .tests = run->suite.tests.size()};
-    for (const TestWork& work : run->tests) suite.results.push_back(test_of(work.outcome, *run));
+    reports::ShardSuite suite{
+        .digest = digest_of(*run), .tests = run->suite.tests.size(), .elsewhere = run->elsewhere};
+    for (const TestWork& work : run->tests) {
+      suite.results.push_back(member_of(work.outcome, run->suite));
+    }
     for (const Untested& each : run->untested) {
       suite.results.push_back({.position = position_of(*each.test, run->suite)});
-    }
-    for (const Elsewhere& each : run->elsewhere) {
-      suite.elsewhere.push_back({.shard = each.shard,
-                                 .position = position_of(*each.test, run->suite),
-                                 .id = each.test->id,
-                                 .name = each.test->name,
-                                 .claim = each.test->claim.text,
-                                 .line = each.test->where.line});
     }
     // The record has its tests in this order.
     std::ranges::sort(suite.results, {}, &reports::ShardTest::position);
@@ -330,7 +290,7 @@ int merge_shards(const std::vector<std::string>& records, const Output& output) 
   std::vector<ShardFile> shards;
   for (const std::string& file : records) shards.push_back({file, read_record(file)});
   reports::Record record = merge(shards);
-  RunReports(output).write_and_annotate(record);
+  report(record, output);
   const std::string missing = missing_shards(shards);
   if (missing.empty()) return exit_code(record, output.inconclusive);
   fmt::print(stderr, "{}", in_lines(missing));

@@ -137,27 +137,23 @@ void write_reports(const Output& output, const ReportWriter& written) {
   if (!failures.empty()) throw std::runtime_error(failures);
 }
 
-RunReports::RunReports(const Output& output)
-    : output_(output),
-      stream_(console_stream(output)),
-      console_(console_options(output, stream_)) {}
-
-void RunReports::tell(const reports::Test& broken) {
-  if (stream_ != nullptr) write_beside_progress(console_.broken(broken), stream_);
+bool tell(const reports::Test& broken, const Output& output) {
+  std::FILE* const stream = console_stream(output);
+  if (stream == nullptr) return false;
+  write_beside_progress(reports::broken_claim(broken, console_options(output, stream)), stream);
+  return true;
 }
 
-void RunReports::write(reports::Record& record) const {
-  write_reports(output_, [&](const ReportRequest& request, const reports::ConsoleOptions& options) {
-    if (request.kind == "console" && request.path == "-") return console_.rest(record, options);
+void report(reports::Record& record, const Output& output, const std::set<std::string>& told) {
+  write_reports(output, [&](const ReportRequest& request, const reports::ConsoleOptions& options) {
+    if (request.kind == "console" && request.path == "-") {
+      return reports::console(record, options, told);
+    }
     if (request.kind == "json" && request.path != "-") write_maps(record, request.path);
     return reports::report_format(request.kind).of_record(record, options);
   });
-}
-
-void RunReports::write_and_annotate(reports::Record& record) const {
-  write(record);
   // GitHub's runner reads both streams; other programs read reports from standard output.
-  if (output_.github) fmt::print(stderr, "{}", tell_github(record, system_environment));
+  if (output.github) fmt::print(stderr, "{}", tell_github(record, system_environment));
 }
 
 int exit_code(const reports::Record& record, InconclusivePolicy policy) {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -47,24 +48,12 @@ void require_writable(const Output& output, const std::vector<std::string>& kept
 /// some could not be written.
 void write_reports(const Output& output, const ReportWriter& written);
 
-/// All that a command reports of a record.
-class RunReports {
- public:
-  explicit RunReports(const Output& output);
+/// Tells of a broken claim at once, beside the progress. False if a file has the console.
+bool tell(const reports::Test& broken, const Output& output);
 
-  /// Tells of a broken claim at once, beside the progress.
-  void tell(const reports::Test& broken);
-
-  /// Writes the reports. Maps are written beside the JSON report, and the record gets their names.
-  void write(reports::Record& record) const;
-  /// Also tells GitHub Actions.
-  void write_and_annotate(reports::Record& record) const;
-
- private:
-  const Output& output_;
-  std::FILE* stream_;  ///< Terminal or log that shows the console; null if a file has it.
-  reports::Console console_;
-};
+/// Writes a record's reports and tells GitHub Actions. Maps are written beside the JSON report, and
+/// the record gets their names. The console says no more of the claims that were told.
+void report(reports::Record& record, const Output& output, const std::set<std::string>& told = {});
 
 /// Returns 0 if every test is ok, and 1 if one is not or the ledger has an alarm. Returns 3 if
 /// nothing failed but something is inconclusive, 4 if nothing ran, 77 if all were skipped.

@@ -8,7 +8,6 @@
 #include <ctime>
 #include <fstream>
 #include <limits>
-#include <map>
 
 #include "estimators/instruction_set.h"
 #include "estimators/rendered.h"
@@ -26,6 +25,7 @@
 #include "harness/theta/methods.h"
 #include "stats/gates/independence_gates.h"
 #include "stats/means/student_t.h"
+#include "stats/planning/holm.h"
 #include "stats/tails/tails.h"
 #include "stats/variances/influence.h"
 
@@ -150,17 +150,13 @@ std::vector<reports::Sample> samples_of(const TestWork& work) {
   return samples;
 }
 
-reports::Channel channel_of(const ChannelOutcome& outcome, bool adjusted, const Regions& regions) {
+reports::Channel channel_of(const ChannelOutcome& outcome, const Regions& regions) {
   reports::Channel channel{.name = outcome.name,
                            .statistic = number(outcome.at_null.statistic),
                            .distribution = {.family = outcome.at_null.distribution.family,
                                             .parameters = outcome.at_null.distribution.parameters},
                            .p_value = probability(outcome.decision.log_p_claimed),
                            .log10_p = log10_of(outcome.decision.log_p_claimed)};
-  if (adjusted) {
-    channel.p_adjusted = probability(outcome.log_p_adjusted);
-    channel.log10_p_adjusted = log10_of(outcome.log_p_adjusted);
-  }
   if (regions.has_forbidden()) {
     channel.p_pass = probability(outcome.decision.log_p_forbidden);
     channel.log10_p_pass = log10_of(outcome.decision.log_p_forbidden);
@@ -384,6 +380,20 @@ reports::EstimatorSummary summarise(const PreparedEstimator& estimator, const Su
   return row;
 }
 
+/// A suite's tests in the order of its file.
+std::vector<FamilyMember> members_of(const SuiteRun& run) {
+  std::vector<FamilyMember> members;
+  for (const Untested& each : run.untested) {
+    members.push_back({record_of_untested(each, run), {position_of(*each.test, run.suite)}});
+  }
+  for (const TestWork& work : run.tests) {
+    members.push_back({record_of_test(work, run.suite.file), member_of(work.outcome, run.suite)});
+  }
+  std::ranges::sort(members, {}, [](const FamilyMember& each) { return each.family.position; });
+  if (run.adjusted) adjust_p_values(members);
+  return members;
+}
+
 }  // namespace
 
 reports::Tool this_tool() { return {.name = "assay", .version = version(), .commit = commit()}; }
@@ -404,7 +414,7 @@ std::string utc_now() {
   return text;
 }
 
-reports::Test record_of_test(const TestWork& work, const std::string& file, bool adjusted) {
+reports::Test record_of_test(const TestWork& work, const std::string& file) {
   const TestOutcome& outcome = work.outcome;
   const TestEntry& entry = *outcome.question.test;
   const Regions& regions = outcome.plan.regions[0];
@@ -427,7 +437,7 @@ reports::Test record_of_test(const TestWork& work, const std::string& file, bool
   test.samples = samples_of(work);
   if (const std::optional<DrawnTest> drawn = harness::drawn(work)) {
     for (const ChannelOutcome& channel : outcome.channels) {
-      test.channels.push_back(channel_of(channel, adjusted && outcome.place.inside, regions));
+      test.channels.push_back(channel_of(channel, regions));
       test.channels.back().laws = empirical_laws(*drawn, channel.index);
     }
     if (!outcome.channels.empty()) test.detectable = outcome.channels.front().detectable;
@@ -491,6 +501,39 @@ reports::Test record_of_untested(const Untested& untested, const SuiteRun& run) 
   return test;
 }
 
+reports::ShardTest member_of(const TestOutcome& outcome, const Suite& suite) {
+  reports::ShardTest member{.position = position_of(*outcome.question.test, suite),
+                            .inside = outcome.place.inside,
+                            .weight = outcome.place.weight,
+                            .untested = outcome.question.channel_count() - outcome.channels.size()};
+  for (const ChannelOutcome& channel : outcome.channels) {
+    member.log_p.push_back(channel.decision.log_p_claimed);
+  }
+  return member;
+}
+
+void adjust_p_values(std::vector<FamilyMember>& suite) {
+  std::vector<stats::WeightedLogP> entries;
+  std::vector<reports::Channel*> channels;  // null where one has no p-value
+  for (auto& [test, family] : suite) {
+    if (!family.inside) continue;
+    const bool is_tested = reports::is_evidence(test);
+    for (std::size_t i = 0; i < family.log_p.size(); ++i) {
+      entries.push_back({is_tested ? family.log_p[i] : stats::untested_log_p, family.weight});
+      channels.push_back(&test.channels[i]);
+    }
+    entries.resize(entries.size() + family.untested, {stats::untested_log_p, family.weight});
+    channels.resize(entries.size());
+  }
+  if (entries.empty()) return;
+  const std::vector<double> adjusted = stats::weighted_holm(entries);
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    if (channels[i] == nullptr) continue;
+    channels[i]->p_adjusted = probability(adjusted[i]);
+    channels[i]->log10_p_adjusted = log10_of(adjusted[i]);
+  }
+}
+
 bool is_broken(const TestWork& work) {
   const TestOutcome& outcome = work.outcome;
   return outcome.decided && outcome.verdict != reports::Verdict::inconclusive &&
@@ -508,17 +551,9 @@ reports::Record record_of(const SuiteRuns& runs, const RunOptions& options) {
                          .seed = run->seed,
                          .alpha = run->suite.alpha,
                          .beta = run->suite.beta};
-    std::map<const TestEntry*, reports::Test> tests;  // in the order of the suite's file
-    for (const Untested& each : run->untested) {
-      tests.emplace(each.test, record_of_untested(each, *run));
-    }
-    for (const TestWork& work : run->tests) {
-      tests.emplace(work.outcome.question.test,
-                    record_of_test(work, run->suite.file, run->adjusted));
-    }
-    for (auto& [entry, test] : tests) {
-      add_replay(*entry, *run, runs, options, test);
-      suite.tests.push_back(std::move(test));
+    for (FamilyMember& each : members_of(*run)) {
+      add_replay(run->suite.tests[each.family.position], *run, runs, options, each.test);
+      suite.tests.push_back(std::move(each.test));
     }
     suite.statements = statements_of(run->suite, suite.tests);
     suite.timed = std::ranges::any_of(run->tests, is_timed);

@@ -23,9 +23,7 @@ inline constexpr const char* partial_note =
     "not every test of the suites ran: their p-values are not adjusted by Holm's method, which "
     "takes all";
 
-reports::Test record_of_test(const TestWork& work, const std::string& file, bool adjusted);
-
-using SuiteRuns = std::vector<std::unique_ptr<SuiteRun>>;
+reports::Test record_of_test(const TestWork& work, const std::string& file);
 
 /// Adds the command that repeats a test, or why there is none. It is that of its suite alone if it
 /// can be. Some runs have no command.
@@ -33,6 +31,20 @@ void add_replay(const TestEntry& entry, const SuiteRun& run, const SuiteRuns& ru
                 const RunOptions& options, reports::Test& test);
 
 reports::Test record_of_untested(const Untested& untested, const SuiteRun& run);
+
+/// A test in its suite's family, with the p-values that Holm's method takes.
+struct FamilyMember {
+  reports::Test test;
+  reports::ShardTest family;
+};
+
+/// A test's place and p-values. Channels without a p-value are counted.
+reports::ShardTest member_of(const TestOutcome& outcome, const Suite& suite);
+
+/// Fills in Holm's adjusted p-values over a suite's family, run together or in shards. They decide
+/// nothing: a verdict rests on its test's own share of alpha. Invalid and error count as p = 1, and
+/// so does a channel without a p-value. std::domain_error if the weights sum to more than 1.
+void adjust_p_values(std::vector<FamilyMember>& suite);
 
 /// True if the test is decided and not as its suite expects.
 bool is_broken(const TestWork& work);

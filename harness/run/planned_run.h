@@ -26,12 +26,6 @@ struct Untested {
   std::string message;
 };
 
-/// A selected test that another shard of the run takes.
-struct Elsewhere {
-  const TestEntry* test;
-  std::uint64_t shard;  ///< from 1
-};
-
 /// A suite in a run: its text, what was prepared from it, and its results.
 struct SuiteRun {
   Suite suite;
@@ -42,9 +36,11 @@ struct SuiteRun {
   Pilots pilots = {};                               ///< Pilots of the selected tests' estimators.
   std::vector<TestWork> tests = {};                 ///< The selected tests, in a shard its own.
   std::vector<Untested> untested = {};              ///< Those of them without a question.
-  std::vector<Elsewhere> elsewhere = {};
+  std::vector<reports::ShardElsewhere> elsewhere = {};  ///< Those of other shards.
   bool adjusted = false;  ///< True if the whole family ran, so that its p-values are adjusted.
 };
+
+using SuiteRuns = std::vector<std::unique_ptr<SuiteRun>>;
 
 /// Leaves the planned tests of shard I of N, counted from 1; `elsewhere` names the others. Every
 /// shard draws the pilots of all selected tests and deals the tests in the same way, from the
@@ -54,11 +50,10 @@ struct SuiteRun {
 /// pilot. Tests of one stream share their observations: the longest prefix counts. The dearest test
 /// is dealt first (Graham 1969). It goes where it adds least, among the shards that stay near a
 /// fair part. If none does, it goes to the shard that has least to draw with it.
-void keep_shard(const std::vector<std::unique_ptr<SuiteRun>>& runs,
-                std::pair<unsigned, unsigned> shard);
+void keep_shard(const SuiteRuns& runs, std::pair<unsigned, unsigned> shard);
 
 struct PlannedRun {
-  std::vector<std::unique_ptr<SuiteRun>> suites;
+  SuiteRuns suites;
   Pools pools;  ///< For the selected tests; nothing is drawn.
 };
 

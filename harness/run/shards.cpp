@@ -73,8 +73,7 @@ std::vector<std::size_t> dealt(const std::vector<Prefixes>& costs, unsigned coun
 
 }  // namespace
 
-void keep_shard(const std::vector<std::unique_ptr<SuiteRun>>& runs,
-                std::pair<unsigned, unsigned> shard) {
+void keep_shard(const SuiteRuns& runs, std::pair<unsigned, unsigned> shard) {
   std::vector<Prefixes> costs;
   for (const auto& run : runs) {
     for (const TestWork& work : run->tests) costs.push_back(prefixes_of(work.outcome, *run));
@@ -87,7 +86,12 @@ void keep_shard(const std::vector<std::unique_ptr<SuiteRun>>& runs,
     const auto is_elsewhere = [&](const TestEntry* test) {
       const std::size_t owner = *next++ + 1;
       if (owner == shard.first) return false;
-      run->elsewhere.push_back({test, owner});
+      run->elsewhere.push_back({.shard = owner,
+                                .position = position_of(*test, run->suite),
+                                .id = test->id,
+                                .name = test->name,
+                                .claim = test->claim.text,
+                                .line = test->where.line});
       return true;
     };
     std::erase_if(run->tests,

@@ -96,6 +96,11 @@ struct Suite {
   std::vector<reports::Statement> statements = {};
 };
 
+/// The place of one of its tests.
+inline std::uint64_t position_of(const TestEntry& test, const Suite& suite) {
+  return static_cast<std::uint64_t>(&test - suite.tests.data());
+}
+
 /// Reads a suite. InputError (file:line:column, the mend) for anything that is not exactly a suite.
 /// Named scenes replace their names. Parameters of plugins are checked when they are prepared.
 Suite load_suite(const std::string& file);

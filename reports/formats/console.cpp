@@ -4,7 +4,6 @@
 #include <functional>
 #include <limits>
 #include <map>
-#include <set>
 
 #include "reports/report_formats.h"
 #include "reports/words/describe.h"
@@ -452,22 +451,18 @@ class Screen {
 
 }  // namespace
 
-std::string Console::broken(const Test& test) {
-  told_.insert(test.id);
-  Screen screen(options_);
+std::string broken_claim(const Test& test, const ConsoleOptions& options) {
+  Screen screen(options);
   screen.block(test);
   return screen.take();
 }
 
-std::string Console::rest(const Record& record, const ConsoleOptions& options) const {
+std::string console(const Record& record, const ConsoleOptions& options,
+                    const std::set<std::string>& told) {
   Screen screen(options);
-  screen.all(record, told_);
+  screen.all(record, told);
   screen.end(record);
   return screen.take();
-}
-
-std::string console(const Record& record, const ConsoleOptions& options) {
-  return Console(options).rest(record, options);
 }
 
 }  // namespace assay::reports

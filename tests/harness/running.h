@@ -1,6 +1,6 @@
 #pragma once
 
-#include "harness/command/run.h"
+#include "harness/command/commands.h"
 #include "harness/sampling/prepare.h"
 #include "reports/report_formats.h"
 #include "tests/prelude.h"

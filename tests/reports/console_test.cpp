@@ -46,11 +46,12 @@ TEST(Console, ClaimsThatWereNotRunTakeTheTickAway) {
 
 TEST(Console, ABrokenClaimIsToldOnce) {
   const Record record = example_record();
-  Console screen({});
-  const std::string told = screen.broken(record.suites[0].tests[2]);
+  const reports::Test& broken = record.suites[0].tests[2];
+  const std::string told = broken_claim(broken);
   EXPECT_THAT(console(record), HasSubstr(told));
-  EXPECT_EQ(screen.rest(record, {}).find(told), std::string::npos);
-  EXPECT_THAT(screen.rest(record, {}), HasSubstr("3 of 13 claims broken, 2 without a verdict"));
+  const std::string rest = console(record, {}, {broken.id});
+  EXPECT_EQ(rest.find(told), std::string::npos);
+  EXPECT_THAT(rest, HasSubstr("3 of 13 claims broken, 2 without a verdict"));
 }
 
 // A prefix with a star selects the test too.
@@ -58,8 +59,7 @@ TEST(Console, AnIdThatIsTooLongForALineEndsInAStar) {
   Record record = example_record();
   reports::Test& test = record.suites[0].tests[2];
   test.replay = "assay run a.yaml --seed 1 --filter 'a/it'\\''s " + std::string(100, 'x') + "'";
-  Console screen({.width = 60});
-  const std::string text = screen.broken(test);
+  const std::string text = broken_claim(test, {.width = 60});
   EXPECT_THAT(text, HasSubstr("--seed 1 \\\n           --filter 'a/it'\\''s xxx"));
   EXPECT_THAT(text, HasSubstr("xxx*'\n"));
   for (const std::string& line : lines(text)) EXPECT_LE(columns(line), 60) << line;

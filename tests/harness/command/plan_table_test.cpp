@@ -1,6 +1,4 @@
-#include "harness/command/plan_table.h"
-
-#include "harness/command/run.h"
+#include "harness/command/commands.h"
 #include "harness/plan/forecast.h"
 #include "harness/run/looks.h"
 #include "reports/words/number.h"

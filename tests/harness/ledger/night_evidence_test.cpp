@@ -13,15 +13,11 @@ struct Ran {
   PlannedRun planned;
 
   const TestWork& test(std::size_t i) const { return planned.suites[0]->tests[i]; }
-  NightEvidence night(std::size_t i) const {
-    return std::get<NightEvidence>(night_evidence(test(i), 0));
-  }
+  NightEvidence night(std::size_t i) const { return night_evidence(test(i), 0); }
   stats::NightEstimate estimate(std::size_t i) const {
-    return std::get<stats::NightEstimate>(night(i).value);
+    return std::get<stats::NightEstimate>(night(i).value.value());
   }
-  std::string missing(std::size_t i) const {
-    return std::get<NoEvidence>(night_evidence(test(i), 0)).why;
-  }
+  std::string missing(std::size_t i) const { return night(i).obstacle; }
   stats::Moments moments(std::size_t i, std::size_t subject = 0) const {
     return data_of(*drawn(test(i)), 0)[subject].moments;
   }
@@ -67,7 +63,7 @@ TEST_F(EvidenceOfNights, OfAMeanIsItsEstimateAndErrorPerhapsInUnitsOfTheReferenc
   const stats::Moments y = ran.moments(1);
   EXPECT_NEAR(ran.estimate(1).difference, (y.mean - 2) / 2, 1e-15);
   EXPECT_DOUBLE_EQ(ran.estimate(1).standard_error, y.standard_error() / 2);
-  EXPECT_NEAR(ran.night(1).reference_error, 0.05, 1e-15);
+  EXPECT_NEAR(*ran.night(1).reference_error, 0.05, 1e-15);
 }
 
 TEST_F(EvidenceOfNights, OfTwoMeansAndVariancesHasTheDeltaMethodsError) {
@@ -111,13 +107,13 @@ TEST_F(EvidenceOfNights, RecordedDataAreTheSameInEveryRun) {
                              "  - {claim: distribution(normal) == distribution(mine)}\n");
   EXPECT_NE(ran.missing(0), "");
   EXPECT_NE(ran.missing(2), "");
-  EXPECT_NEAR(ran.night(1).reference_error, ran.moments(1, 1).standard_error(), 1e-12);
+  EXPECT_NEAR(*ran.night(1).reference_error, ran.moments(1, 1).standard_error(), 1e-12);
   EXPECT_NEAR(ran.estimate(1).standard_error, ran.moments(1).standard_error(), 1e-12);
 }
 
 TEST_F(EvidenceOfNights, OfADistanceIsItsPValue) {
   const Ran ran = run_nights(place, "  - {claim: 'distribution(normal) == normal(2, 1)'}\n");
-  EXPECT_EQ(std::get<NightLogP>(ran.night(0).value),
+  EXPECT_EQ(std::get<NightLogP>(ran.night(0).value.value()),
             ran.test(0).outcome.channels[0].decision.log_p_claimed);
 }
 

@@ -1,5 +1,4 @@
-#include "harness/command/run.h"
-
+#include "harness/command/commands.h"
 #include "harness/record/output.h"
 #include "reports/report_formats.h"
 #include "tests/harness/prelude.h"

@@ -4,7 +4,7 @@
 #include <png.h>
 
 #include "harness/command/cli.h"
-#include "harness/command/run.h"
+#include "harness/command/commands.h"
 #include "harness/suite/suite.h"
 #include "tests/harness/pictures.h"
 #include "tests/harness/prelude.h"
