@@ -21,7 +21,7 @@ NEW_FILES = {
 
 namespace assay::harness {
 
-Evidence added_evidence(const Method&, const Seen& seen);
+Evidence added_evidence(const Seen& seen);
 
 }  // namespace assay::harness
 """,
@@ -32,7 +32,7 @@ Evidence added_evidence(const Method&, const Seen& seen);
 
 namespace assay::harness {
 
-Evidence added_evidence(const Method&, const Seen& seen) {
+Evidence added_evidence(const Seen& seen) {
   const stats::Moments x = seen.moments(0);
   const double null = seen.reference().value;
   return {.estimate = x.mean - null,
@@ -66,7 +66,7 @@ namespace assay::harness {
 namespace {
 
 /// theta = E x^2 - r.
-Evidence t_of_squares(const Method&, const Seen& seen) {
+Evidence t_of_squares(const Seen& seen) {
   stats::Moments squares;
   for (const double x : seen.data[0].values) squares.add(x * x);
   const double null = seen.reference().value;
@@ -150,7 +150,7 @@ REPORT_ROW = """      {"added", "added", "an added report",
 EDITS = {
     "harness/families/mean.cpp": (
         '#include "harness/families/families.h"\n',
-        '#include "harness/families/added_method.h"\n', '      {"batch-means",\n', METHOD_ROW),
+        '#include "harness/families/added_method.h"\n', '      {"batch-means",', METHOD_ROW),
     "harness/families/quantities.cpp": (
         '#include <algorithm>\n', '#include "harness/families/added_quantity.h"\n',
         '      {.word = "variance",\n', QUANTITY_ROW),

@@ -392,7 +392,7 @@ void run_once(const CalibrationBench& bench, const std::vector<CalibratedClaim*>
   for (const CalibratedClaim* const claim : claims) {
     questions.push_back(ask(claim->suite->tests[0], bench.estimators, seed));
   }
-  const Pilots pilots = pilots_of(questions, seed, threads(1));
+  const Pilots pilots = pilots_of(questions, seed, *threads(1));
   Pools pools;
   std::vector<TestWork> works;
   for (std::size_t i = 0; i < claims.size(); ++i) {

@@ -148,7 +148,7 @@ std::string mutants_text(const Information& information, const std::vector<Entry
 }
 
 /// A sentence for each property that a user may have to know.
-std::string page_of(const MethodRow& row) {
+std::string page_of(const Method& row) {
   std::string page;
   const auto say = [&](bool holds, const std::string& sentence) {
     if (holds) page += wrapped(sentence, 2);
@@ -166,7 +166,7 @@ std::string page_of(const MethodRow& row) {
   return page;
 }
 
-TableRow row_of(const MethodRow& method) { return {method.name, method.summary, page_of(method)}; }
+TableRow row_of(const Method& method) { return {method.name, method.summary, page_of(method)}; }
 
 TableRow row_of(const QuantityRow& quantity) {
   std::string page = wrapped(fmt::format("Claim: {}", quantity.example), 2);

@@ -28,7 +28,7 @@ std::string per_cent(double part) { return fmt::format("{:.3g} %", 100 * part); 
 /// theta = S + q - claimed. Here S is the density's integral over the domain plus its point masses,
 /// by quadrature with a known error. The other part, q, is the probability of a draw without a
 /// point, by exact binomial tests at both ends of that error.
-Evidence integral(const Method&, const Seen& seen) {
+Evidence integral(const Seen& seen) {
   const std::span<const std::uint64_t> counts = seen.data[0].cells;
   const DensityCells& cells = density_of(seen.question);
   Evidence evidence =
@@ -43,7 +43,7 @@ Evidence integral(const Method&, const Seen& seen) {
 
 /// theta = q - claimed. q is the probability of an inconsistent draw (consistency_setup.h), by
 /// exact binomial tests. One such draw disproves "q = 0".
-Evidence inconsistency(const Method&, const Seen& seen) {
+Evidence inconsistency(const Seen& seen) {
   const std::span<const std::uint64_t> counts = seen.data[0].cells;
   const auto& draws = dynamic_cast<const ConsistencySetup&>(*seen.question.subjects[0].setup);
   const std::uint64_t draws_made = sum(counts);
@@ -75,9 +75,9 @@ struct CountedProbability {
 class DrawsTheta : public Theta {
  public:
   /// `tests` counts the sampler's `draws`.
-  DrawsTheta(Draws draws, const char* summary, Evidence (*tests)(const Method&, const Seen&))
+  DrawsTheta(Draws draws, const char* summary, Evidence (*tests)(const Seen&))
       : Theta({.of_single_values = true},
-              {{"binomial", summary, any_question, Keeps::cells, tests, {.exact = true}}}),
+              {{"binomial", summary, any_question, Keeps::cells, tests, exact_at_any_size}}),
         draws_(draws) {}
 
   Question bind(const TestEntry& test, const Estimators& estimators) const override {

@@ -26,8 +26,6 @@ const Theta& theta_of_inconsistencies();
 const Theta& theta_of_slopes();
 const Theta& theta_of_variance_slopes();
 
-/// Values with their cost, in rays or samples. Throws std::domain_error if nothing was counted.
-const stats::JointMoments& counted_cost(const Question& question, const ChannelData& data);
 /// The mean cost of a primary.
 stats::Influence cost_of(const Seen& seen, std::size_t subject);
 /// The powers of a channel's values, as far as they are kept: a cost means nothing.

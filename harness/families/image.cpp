@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <regex>
 
 #include "harness/base/parallel.h"
 #include "harness/families/families.h"
@@ -119,12 +120,8 @@ bool is_digit(char c) { return '0' <= c && c <= '9'; }
 
 /// Characters at the beginning that all names have in common, without part of a number.
 std::size_t common_beginning(const std::vector<std::string>& names) {
-  std::size_t length = names[0].size();
-  for (const std::string& name : names) {
-    const auto end = names[0].begin() + static_cast<std::ptrdiff_t>(length);
-    const auto differs = std::mismatch(names[0].begin(), end, name.begin(), name.end()).first;
-    length = static_cast<std::size_t>(differs - names[0].begin());
-  }
+  const auto [first, last] = std::ranges::minmax(names);
+  auto length = static_cast<std::size_t>(std::ranges::mismatch(first, last).in1 - first.begin());
   const bool in_number = std::ranges::any_of(names, [&](const std::string& name) {
     return length < name.size() && is_digit(name[length]);
   });
@@ -141,13 +138,7 @@ void remove_beginnings(std::vector<std::string>& names) {
 }
 
 std::string without_leading_zeros(const std::string& text) {
-  std::string out;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const bool leads =
-        (out.empty() || !is_digit(out.back())) && i + 1 < text.size() && is_digit(text[i + 1]);
-    if (text[i] != '0' || !leads) out += text[i];
-  }
-  return out;
+  return std::regex_replace(text, std::regex("(^|[^0-9])0+(?=[0-9])"), "$1");
 }
 
 /// Keys tell a side's pictures apart: their names without the beginning and the end that all have
@@ -284,9 +275,9 @@ double squared_unit(const Question& question, const PlannedImage& last) {
 class ImageTheta : public Theta {
  public:
   explicit ImageTheta(const ThetaTraits& traits = {.joins_channels = true, .of_images = true},
-                      const MethodRow& row = {"image",
-                                              "cells of every size, and alternating sums: images",
-                                              any_question, Keeps::images, nullptr})
+                      const Method& row = {"image",
+                                           "cells of every size, and alternating sums: images",
+                                           any_question, Keeps::images, nullptr})
       : Theta(traits, {row}) {}
 
   const Theta* of_images() const override { return this; }
@@ -450,12 +441,8 @@ class ImageLawTheta final : public ImageTheta {
  public:
   ImageLawTheta()
       : ImageTheta({.joins_channels = true, .of_single_values = true, .of_a_law = true},
-                   {"permutation",
-                    "permutation of labels: laws of two images",
-                    any_question,
-                    Keeps::images,
-                    nullptr,
-                    {.exact = true}}) {}
+                   {"permutation", "permutation of labels: laws of two images", any_question,
+                    Keeps::images, nullptr, exact_at_any_size}) {}
 
   const Theta* of_pairs() const override { return nullptr; }
   void check(const Question& question) const override {

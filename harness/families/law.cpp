@@ -199,7 +199,7 @@ std::string worst_of(const stats::ChiSquareFit& fit, const DrawCells& cells) {
                             pool_text(worst->members, describe), worst->observed, worst->expected);
 }
 
-Evidence cells_against_density(const Method&, const Seen& seen) {
+Evidence cells_against_density(const Seen& seen) {
   const DensityCells& density = density_of(seen.question);
   stats::CellCounts counts{.observed = density.in_cells(seen.data[0].cells),
                            .probability = density.mass.probability,
@@ -224,9 +224,9 @@ Evidence cells_against_density(const Method&, const Seen& seen) {
 
 /// Two samples against each other in the method's cells. One more cell counts draws without a
 /// point. Throws std::domain_error if there are no cells.
-Evidence cells_against_cells(const Method& method, const Seen& seen) {
-  if (!method.frozen.cells) throw std::domain_error("the pilots gave no cells to count in");
-  const stats::SampledCells& cells = *method.frozen.cells;
+Evidence cells_against_cells(const Seen& seen) {
+  if (!seen.data[0].sampled) throw std::domain_error("the pilots gave no cells to count in");
+  const stats::SampledCells& cells = *seen.data[0].sampled;
   const stats::ChiSquareTwoSample fit = stats::chi_square_two_sample(
       {.x = counts_in(cells, seen, 0), .y = counts_in(cells, seen, 1)});
   const auto at = [fit](double theta) {
@@ -248,11 +248,11 @@ Evidence cells_against_cells(const Method& method, const Seen& seen) {
           .distance = true};
 }
 
-Evidence law_against_law(const Method&, const Seen& seen) {
+Evidence law_against_law(const Seen& seen) {
   return points_against_points(points_of(seen, 0), points_of(seen, 1));
 }
 
-Evidence values_against_law(const Method&, const Seen& seen) {
+Evidence values_against_law(const Seen& seen) {
   return points_against_law(points_of(seen, 0), declared_law(seen.question, seen.channel));
 }
 
@@ -277,13 +277,13 @@ stats::DistancePlan distance_plan(const TestOutcome& test, const ErrorShare& sha
 
 /// True if counts in cells are tested. A plan without frozen cells is invalid.
 bool in_cells(const Plan& plan) {
-  return plan.method.keeps == Keeps::cells || plan.method.frozen.cells != nullptr;
+  return plan.method.keeps == Keeps::cells || plan.cells != nullptr;
 }
 
 /// Degrees of freedom at so many observations. Cells that expect too few are pooled.
 double degrees_of_freedom(const TestOutcome& test, double observations) {
   // Draws without a point are one more cell, so none is subtracted.
-  if (const auto& cells = test.plan.method.frozen.cells) return static_cast<double>(cells->size());
+  if (const auto& cells = test.plan.cells) return static_cast<double>(cells->size());
   const DensityCells& density = density_of(test.question);
   const double least = stats::FitOptions{}.minimum_expected;
   double pools = 0;
@@ -323,18 +323,63 @@ bool of_one_law(const Question& question) {
   return !question.of_two() && (!question.law.name.empty() || !of_whole_draws(question));
 }
 
+// 64 pilot points of both sides to a cell.
+constexpr stats::CellNumbers plane_cells{.bands = 16, .cuts = 16};
+constexpr stats::CellNumbers line_cells{.bands = 64, .cuts = 1};
+
+std::vector<double> pilot_values(const TestOutcome& test, std::size_t subject, std::size_t channel,
+                                 const Pilots& pilots) {
+  const Subject& side = test.question.subjects[subject];
+  if (pilot_of(side, pilots) == nullptr) return {};
+  // Rows choose only if no side has a pilot of its own.
+  if (is_recorded(side) && !std::ranges::all_of(test.question.subjects, is_recorded)) return {};
+  return as_secondaries(side, pilot_channel(test.question, subject, channel, pilots).values,
+                        test.plan.primaries[subject]);
+}
+
+/// Both sides' pilot points, without draws that yield none.
+std::vector<stats::PlanePoint> pilot_points(const TestOutcome& test, const Pilots& pilots) {
+  std::vector<stats::PlanePoint> points;
+  for (std::size_t subject = 0; subject < test.question.subjects.size(); ++subject) {
+    const Subject& side = test.question.subjects[subject];
+    const std::vector<double> first = pilot_values(test, subject, 0, pilots);
+    const std::vector<double> second = side.channels.size() > 1
+                                           ? pilot_values(test, subject, 1, pilots)
+                                           : std::vector<double>(first.size(), 0);
+    const std::optional<double> none = no_point_of(side);
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      if (first[i] != none && std::isfinite(first[i]) && std::isfinite(second[i])) {
+        points.push_back({first[i], second[i]});
+      }
+    }
+  }
+  return points;
+}
+
+/// Gives the plan's method what it takes from the pilots; sets `invalid` if they lack it. Rows of a
+/// file are their own pilot, both sides together; beside drawn values they are not used.
+void freeze(TestOutcome& test, const Pilots& pilots) {
+  if (test.plan.method.keeps != Keeps::points) return;
+  std::vector<stats::PlanePoint> points = pilot_points(test, pilots);
+  if (points.empty()) {
+    test.plan.invalid = Reason("the pilots gave no point to choose cells by");
+    return;
+  }
+  const bool plane = test.question.subjects[0].channels.size() > 1;
+  test.plan.cells = std::make_shared<const stats::SampledCells>(
+      stats::sampled_cells(std::move(points), plane ? plane_cells : line_cells));
+}
+
+constexpr MethodTraits of_distinct_values{.of_distinct_values = true};
+
 /// Theta is a distance between two laws: of their distribution functions, or Cohen's effect size
 /// over cells.
 class LawTheta : public Theta {
  public:
   explicit LawTheta(const ThetaTraits& traits)
       : Theta(traits,
-              {{"ks",
-                "Kolmogorov-Smirnov: values against a law",
-                of_one_law,
-                Keeps::values,
-                values_against_law,
-                {.of_distinct_values = true}},
+              {{"ks", "Kolmogorov-Smirnov: values against a law", of_one_law, Keeps::values,
+                values_against_law, of_distinct_values},
                {"ks", "Kolmogorov-Smirnov: values of two, a frequent one apart",
                 [](const Question& q) { return q.of_two() && !q.is().joins_channels; },
                 Keeps::values, law_against_law},
@@ -563,7 +608,7 @@ Question LawTheta::bind(const TestEntry& test, const Estimators& estimators) con
   const Claim& claim = test.claim;
   const Source& source = claim.left.source;
   if (const auto* other = std::get_if<ScaledQuantity>(&claim.right)) {
-    const bool cells = std::ranges::any_of(methods, [&](const MethodRow& row) {
+    const bool cells = std::ranges::any_of(methods, [&](const Method& row) {
       return test.method == row.name && row.keeps == Keeps::points;
     });
     Question question{

@@ -9,7 +9,7 @@
 
 #include "harness/draws/declared_density.h"
 #include "harness/question/question.h"
-#include "harness/theta/evidence.h"
+#include "harness/theta/decision.h"
 #include "harness/theta/methods.h"
 #include "stats/laws/kolmogorov_smirnov.h"
 

@@ -14,8 +14,7 @@
 #include "harness/question/question.h"
 #include "harness/run/evaluate.h"
 #include "harness/theta/ask.h"
-#include "harness/theta/constant.h"
-#include "harness/theta/evidence.h"
+#include "harness/theta/decision.h"
 #include "harness/theta/methods.h"
 #include "harness/theta/theta.h"
 #include "stats/basics/moments.h"
@@ -255,7 +254,7 @@ Evidence mean_against_number(const MeanTest& mean, const Seen& seen) {
 }
 
 template <const MeanTest& mean>
-Evidence evidence_of_means(const Method&, const Seen& seen) {
+Evidence evidence_of_means(const Seen& seen) {
   if (!seen.question.of_two()) return mean_against_number(mean, seen);
   return (seen.relative() ? ratio_of_means : difference_of_means)(
       mean, seen.question, side_of(seen, 0), side_of(seen, 1));
@@ -459,6 +458,16 @@ bool can_afford_bets(TestOutcome betting, const Pilots& pilots) {
 
 // ---- Data
 
+/// Bound at this level on a constant sample's shift by unseen values: q times the declared range to
+/// the worse side, plus rounding.
+double unseen_shift(const Seen& seen, std::size_t subject, double level) {
+  const stats::Moments& x = seen.moments(subject);
+  const stats::Range range = range_of(seen.question, subject, seen.channel, x);
+  const double unseen = -std::expm1(std::log(level) / static_cast<double>(x.count));
+  return unseen * std::max({0.0, x.mean - range.low, range.high - x.mean}) +
+         rounding_of(seen.question, subject, seen.channel);
+}
+
 /// Why two means cannot be compared if one is constant and its unseen values could decide; "" if
 /// they can.
 std::string unseen_could_decide(const TestOutcome& outcome, const Seen& seen) {
@@ -483,6 +492,78 @@ std::string unseen_could_decide(const TestOutcome& outcome, const Seen& seen) {
   return "";
 }
 
+/// Skewness of a secondary. Student's t takes values for near normal where it is green.
+stats::Gate near_normal_gate(const Known& known) {
+  // At the floor of evidence it moves a tail of one per cent by a fifth.
+  constexpr double near_normal = 0.3;
+  // Normal data exceed the allowance with this probability.
+  constexpr double unlikely = 0.01;
+  const stats::Moments& moments = known.pilot.moments;
+  const double root = std::sqrt(known.averaged);
+  const double value = std::abs(moments.skewness()) / root;
+  const double allowance =
+      stats::normal_skewness_quantile(static_cast<double>(moments.count), unlikely) / root;
+  const double limit = std::max(near_normal, allowance);
+  return {.name = "skewness of an observation",
+          .value = value,
+          .low = value,
+          .limit = limit,
+          .state = value <= limit ? stats::GateState::green : stats::GateState::amber};
+}
+
+bool meets_claimed(const stats::Range& theta, const Regions& regions) {
+  const stats::Range claimed = regions.claimed();
+  return regions.proof() ? theta.low < claimed.high && theta.high > claimed.low
+                         : theta.low <= claimed.high && theta.high >= claimed.low;
+}
+
+/// Hint at the commonest cause of constant observations.
+std::string seeds(const Question& question) {
+  for (const Subject& subject : question.subjects) {
+    if (is_recorded(subject)) return "if they should vary, has each a seed of its own? ";
+    if (subject.estimator->entry->information.says_nature) {
+      return "if they should vary, does each draw its own random numbers? ";
+    }
+  }
+  return "";
+}
+
+/// Verdict on a mean claim whose samples are all constant, where no declared range bounds what was
+/// never seen; nullopt if one varies. A constant as claimed passes if there is no forbidden region;
+/// else it is inconclusive. Any other constant is invalid.
+std::optional<ConstantVerdict> judge_constant(const Seen& seen, const Regions& regions) {
+  const Question& question = seen.question;
+  double rounding = 0;
+  for (std::size_t subject = 0; subject < seen.data.size(); ++subject) {
+    if (!is_constant(seen, subject)) return {};
+    rounding += question.factor_of(subject) * rounding_of(question, subject, seen.channel);
+  }
+  const double reference =
+      question.of_two() ? question.factor * seen.moments(1).mean : seen.reference().value;
+  const double difference = seen.moments(0).mean - question.offset - reference;
+  const double unit = seen.relative() && reference != 0 ? std::abs(reference) : 1;
+  const stats::Range theta{.low = (difference - rounding) / unit,
+                           .high = (difference + rounding) / unit};
+  if (meets_claimed(theta, regions)) {
+    if (!regions.has_forbidden()) {
+      return ConstantVerdict{
+          reports::Verdict::pass,
+          "every observation is the same and as claimed; values never seen are not ruled out"};
+    }
+    return ConstantVerdict{
+        reports::Verdict::inconclusive,
+        "every observation is the same and as claimed, but what values never seen could add is "
+        "bounded by no number of observations; " +
+            range_advice(seen.question)};
+  }
+  return ConstantVerdict{
+      reports::Verdict::invalid,
+      fmt::format("every observation is {:.10g}, off by {:.3g}: {}rare other values may be unseen, "
+                  "and could make up for it; {}",
+                  seen.moments(0).mean, difference, seeds(seen.question),
+                  range_advice(seen.question))};
+}
+
 stats::Gate skewness_gate(const Seen& seen, double x) {
   if (seen.data.size() == 1) return stats::skewness_gate(seen.moments(0), x);
   return stats::skewness_gate(seen.moments(0), seen.moments(1), seen.question.factor, x);
@@ -497,44 +578,35 @@ stats::Gate residual_gate(const Seen& seen, double x) {
       seen.moments(0), {reference.value + seen.question.offset, reference.standard_error}, x);
 }
 
-std::vector<MethodRow> methods_of_means() {
-  const MethodTraits of_scores{.over_looks = stats::LookLaw::independent_increments};
-  return {{"t", "Student's t: a mean against a number",
-           [](const Question& q) { return !q.of_two() && !is_within(q); }, Keeps::moments,
-           evidence_of_means<by_t>, of_scores},
-          {"welch", "Welch's t: two means, whatever their variances",
-           [](const Question& q) { return q.of_two() && !is_within(q); }, Keeps::moments,
-           evidence_of_means<by_t>, of_scores},
-          {"tost", "two one-sided t tests: a mean lies within a margin", is_within, Keeps::moments,
-           evidence_of_means<by_t>, of_scores},
-          {"skewness-corrected-t",
-           "t or Welch with Hall's correction for the skewness of the values",
-           any_question,
-           Keeps::moments,
-           evidence_of_means<by_corrected_t>,
-           {.corrects_skewness = true, .over_looks = stats::LookLaw::independent_increments}},
-          {"binomial",
-           "exact: a mean of values that are the two ends of a range",
-           any_question,
-           Keeps::moments,
-           evidence_of_means<by_counts>,
-           {.exact = true, .of_observations = true, .plans = &stats::binomial_planning}},
-          {"betting",
-           "exact at every look: means of values in declared ranges, by bets",
-           any_question,
-           Keeps::values,
-           evidence_of_means<by_bets>,
-           {.exact = true,
-            .in_range = true,
-            .of_observations = true,
-            .over_looks = stats::LookLaw::anytime_valid,
-            .plans = &stats::betting_planning}},
-          {"batch-means",
-           "t of batch means: a mean of observations that depend on their neighbours",
-           [](const Question& q) { return !is_within(q); },
-           Keeps::values,
-           evidence_of_means<by_t>,
-           {.of_observations = true, .of_batches = true}}};
+std::vector<Method> methods_of_means() {
+  constexpr MethodTraits corrected{.corrects_skewness = true,
+                                   .over_looks = stats::LookLaw::independent_increments};
+  constexpr MethodTraits of_counts{
+      .exact = true, .of_observations = true, .plans = &stats::binomial_planning};
+  constexpr MethodTraits of_bets{.exact = true,
+                                 .in_range = true,
+                                 .of_observations = true,
+                                 .over_looks = stats::LookLaw::anytime_valid,
+                                 .plans = &stats::betting_planning};
+  constexpr MethodTraits of_batches{.of_observations = true, .of_batches = true};
+  return {
+      {"t", "Student's t: a mean against a number",
+       [](const Question& q) { return !q.of_two() && !is_within(q); }, Keeps::moments,
+       evidence_of_means<by_t>, of_scores},
+      {"welch", "Welch's t: two means, whatever their variances",
+       [](const Question& q) { return q.of_two() && !is_within(q); }, Keeps::moments,
+       evidence_of_means<by_t>, of_scores},
+      {"tost", "two one-sided t tests: a mean lies within a margin", is_within, Keeps::moments,
+       evidence_of_means<by_t>, of_scores},
+      {"skewness-corrected-t", "t or Welch with Hall's correction for the skewness of the values",
+       any_question, Keeps::moments, evidence_of_means<by_corrected_t>, corrected},
+      {"binomial", "exact: a mean of values that are the two ends of a range", any_question,
+       Keeps::moments, evidence_of_means<by_counts>, of_counts},
+      {"betting", "exact at every look: means of values in declared ranges, by bets", any_question,
+       Keeps::values, evidence_of_means<by_bets>, of_bets},
+      {"batch-means", "t of batch means: a mean of observations that depend on their neighbours",
+       [](const Question& q) { return !is_within(q); }, Keeps::values, evidence_of_means<by_t>,
+       of_batches}};
 }
 
 double unit_of(const Seen& seen) {

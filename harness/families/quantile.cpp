@@ -52,7 +52,7 @@ Evidence against_number(const Seen& seen, std::vector<double> values) {
 }
 
 /// Exact for every law.
-Evidence quantile(const Method&, const Seen& seen) {
+Evidence quantile(const Seen& seen) {
   const Question& question = seen.question;
   std::vector<double> x = sorted(seen.data[0].values, 1);
   if (!question.of_two()) return against_number(seen, std::move(x));
@@ -167,18 +167,10 @@ class QuantileTheta final : public Theta {
  public:
   QuantileTheta()
       : Theta({.of_single_values = true, .may_be_unbounded = true},
-              {{"binomial",
-                "exact: a quantile against a number",
-                of_one,
-                Keeps::values,
-                quantile,
-                {.exact = true}},
-               {"quantile",
-                "exact: two quantiles, by the counts on both sides",
-                of_two,
-                Keeps::values,
-                quantile,
-                {.exact = true}}}) {}
+              {{"binomial", "exact: a quantile against a number", of_one, Keeps::values, quantile,
+                exact_at_any_size},
+               {"quantile", "exact: two quantiles, by the counts on both sides", of_two,
+                Keeps::values, quantile, exact_at_any_size}}) {}
 
   Question bind(const TestEntry& test, const Estimators& estimators) const override {
     Question question = Theta::bind(test, estimators);

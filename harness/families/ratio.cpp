@@ -19,8 +19,7 @@
 #include "harness/question/question.h"
 #include "harness/run/evaluate.h"
 #include "harness/theta/ask.h"
-#include "harness/theta/constant.h"
-#include "harness/theta/evidence.h"
+#include "harness/theta/decision.h"
 #include "harness/theta/methods.h"
 #include "stats/gates/assumption_gates.h"
 #include "stats/means/skewness_corrected_t.h"
@@ -90,6 +89,22 @@ TestResult test(const LogRatio& ratio, std::span<const double> truths, double th
   return result;
 }
 
+/// Why a channel's variance cannot be tested: a sample without spread; "" if it can.
+std::string lack_of_variance(const Seen& seen) {
+  const Question& question = seen.question;
+  for (std::size_t subject = 0; subject < question.compared(); ++subject) {
+    if (is_constant(seen, subject)) {
+      return fmt::format(
+          "every observation of `{}` is {:.10g} but for rounding: a sample without spread says "
+          "nothing of a variance, and a rare value may be unseen; {}",
+          question.subjects[subject].estimator->name, seen.moments(subject).mean,
+          question.of_two() ? "compare the other with a number, or take more observations"
+                            : "see that it uses its random numbers, or take more observations");
+    }
+  }
+  return "";
+}
+
 // ---- Plans
 
 /// The variance of one observation's influence values of a variance, over its square. It is 2 for a
@@ -98,7 +113,7 @@ double averaged_spread(double of_one, double averaged) { return 2 + (of_one - 2)
 
 class LogTheta : public Theta {
  public:
-  LogTheta(const ThetaTraits& traits, RatioWords named, std::vector<MethodRow> rows)
+  LogTheta(const ThetaTraits& traits, RatioWords named, std::vector<Method> rows)
       : Theta(traits, std::move(rows)), words(named) {}
 
   void check_margin(const Question& question, const Margin& margin) const override {
@@ -264,7 +279,7 @@ std::string quantity_of(const Question& question) {
                            : fmt::format("{} over the reference", words.one);
 }
 
-Evidence by_influence(const Method&, const Seen& seen) {
+Evidence by_influence(const Seen& seen) {
   const auto& family = dynamic_cast<const LogTheta&>(*seen.question.theta);
   LogRatio ratio{.log_null = family.log_null(seen), .sign = family.is_inverse() ? -1.0 : 1.0};
   std::vector<Influence> known;
@@ -293,13 +308,13 @@ Evidence by_influence(const Method&, const Seen& seen) {
 }
 
 /// The row of the one method of influence values, for a family that keeps them so.
-MethodRow influence_row(bool (*answers)(const Question&), Keeps keeps) {
+Method influence_row(bool (*answers)(const Question&), Keeps keeps) {
   return {"influence-t",
           "Student's t of influence values with Hall's correction: variances, costs, efficiencies",
           answers,
           keeps,
           by_influence,
-          {.over_looks = stats::LookLaw::independent_increments}};
+          of_scores};
 }
 
 // ---- Variances
@@ -312,7 +327,7 @@ double null_of(const Seen& seen) {
   return question.factor * question.subjects[1].averaged(seen.data[1].primaries) / x;
 }
 
-Evidence of_normal_values(const Method&, const Seen& seen) {
+Evidence of_normal_values(const Seen& seen) {
   const bool two = seen.question.of_two();
   const Moments x = seen.moments(0);
   const Moments y = two ? seen.moments(1) : Moments{};
@@ -365,6 +380,29 @@ std::string rows_beside_primaries(const Question& question) {
         rows.estimator->name, other.estimator->name);
   }
   return "";
+}
+
+/// The spread that rounding may hide, by the size of the values or as declared.
+double hidden_deviation(const Seen& seen) {
+  const double averaged = seen.question.subjects[0].averaged(seen.data[0].primaries);
+  const double size = std::abs(seen.moments(0).mean) * averaged;
+  const double spacing = std::nextafter(size, std::numeric_limits<double>::infinity()) - size;
+  return std::max(spacing, 2 * rounding_of(seen.question, 0, seen.channel));
+}
+
+/// Passes a constant sample if the claim bounds its variance from above and forbids no region, as
+/// each channel of `worst_variance`. Returns nullopt for other claims, for samples that vary, or if
+/// rounding may hide a variance beyond the bound.
+std::optional<ConstantVerdict> judge_constant_variance(const Seen& seen, const Regions& regions) {
+  if (regions.relation != Relation::at_most || regions.has_forbidden() || !is_constant(seen, 0)) {
+    return {};
+  }
+  const double hidden = hidden_deviation(seen);
+  if (hidden * hidden > seen.reference().value) return {};
+  return ConstantVerdict{reports::Verdict::pass,
+                         fmt::format("every observation is {:.10g}, so that no variance was seen "
+                                     "that could be too large; values never seen are not ruled out",
+                                     seen.moments(0).mean)};
 }
 
 constexpr MethodTraits for_normal_values{.of_normal_values = true,
@@ -482,7 +520,7 @@ Moments logarithms(const Seen& seen, std::size_t subject) {
 /// Costs and efficiencies in seconds, from replicates: Student's or Welch's t on the logarithms of
 /// their costs, or of cost x variance. The mean logarithm is off by about 1 / replicate size, alike
 /// on both sides.
-Evidence evidence_of_replicates(const Method&, const Seen& seen) {
+Evidence evidence_of_replicates(const Seen& seen) {
   const Question& question = seen.question;
   const bool two = question.of_two();
   const Moments x = logarithms(seen, 0);
@@ -511,7 +549,7 @@ class RatioTheta : public LogTheta {
   using LogTheta::LogTheta;
 
  protected:
-  static std::vector<MethodRow> rows(const char* of_replicates) {
+  static std::vector<Method> rows(const char* of_replicates) {
     return {influence_row(in_counts, Keeps::costs),
             {"replicates", of_replicates, in_seconds, Keeps::blocks, evidence_of_replicates}};
   }
@@ -558,6 +596,15 @@ class CostTheta final : public RatioTheta {
     return stats::influence_of_mean(cost).relative.variance() / averaged;
   }
 };
+
+/// Values with their cost, in rays or samples. Throws std::domain_error if nothing was counted.
+const JointMoments& counted_cost(const Question& question, const ChannelData& data) {
+  const JointMoments& sample = by_its_cost(question, data.joint);
+  if (sample.of_cost.mean > 0) return sample;
+  throw std::domain_error(
+      "no cost was counted: an estimator that traces no rays counts its `samples`; write " +
+      written_key(*question.test, "cost", "samples"));
+}
 
 class EfficiencyTheta final : public RatioTheta {
  public:
@@ -642,14 +689,6 @@ void require_primaries(const Subject& subject) {
 }
 
 }  // namespace
-
-const JointMoments& counted_cost(const Question& question, const ChannelData& data) {
-  const JointMoments& sample = by_its_cost(question, data.joint);
-  if (sample.of_cost.mean > 0) return sample;
-  throw std::domain_error(
-      "no cost was counted: an estimator that traces no rays counts its `samples`; write " +
-      written_key(*question.test, "cost", "samples"));
-}
 
 JointMoments powers_of_values(const ChannelData& data) {
   return data.joint.empty() ? stats::joint_of_four(data.moments) : data.joint.front();

@@ -11,7 +11,6 @@
 #include "harness/question/question.h"
 #include "harness/run/evaluate.h"
 #include "harness/suite/suite.h"
-#include "harness/theta/constant.h"
 #include "stats/gates/assumption_gates.h"
 #include "stats/variances/influence.h"
 
@@ -131,7 +130,7 @@ Evidence exact_evidence(const SlopeData& data, double null) {
 
 /// Theta is the exponent minus the claimed one. Biases and means are fitted as they are, variances
 /// and costs by their logarithms (stats/variances/slope.h). Costs that never vary are exact.
-Evidence slope(const Method&, const Seen& seen) {
+Evidence slope(const Seen& seen) {
   const SlopeData points = points_of(seen);
   const double null = seen.reference().value;
   if (is_exact(points)) return exact_evidence(points, null);

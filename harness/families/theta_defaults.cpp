@@ -117,7 +117,7 @@ std::string Theta::lack_of_numbers(const TestOutcome&, const Seen& seen) const {
 }
 
 ChannelEvidence Theta::evidence(const DrawnTest& test, const Seen& seen) const {
-  return {.evidence = evidence_of(test.outcome.plan.method, seen)};
+  return {.evidence = test.outcome.plan.method.evidence(seen)};
 }
 
 }  // namespace assay::harness

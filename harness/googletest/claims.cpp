@@ -154,7 +154,7 @@ reports::Test tested(const std::string& claim, const Asked& asked, const ClaimBu
   suite.tests[0].where = {};
   const harness::Question question =
       harness::ask_as_written(suite.tests[0], asked.estimators, seed);
-  const harness::Pilots pilots = harness::pilots_of({question}, seed, harness::threads());
+  const harness::Pilots pilots = harness::pilots_of({question}, seed, *harness::threads());
   TestWork work{.outcome = harness::plan_alone(suite, question, pilots)};
   harness::Pools pools;
   work.pools = pools.for_question(question, work.outcome.plan, seed, pilots);

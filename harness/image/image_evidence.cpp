@@ -246,13 +246,14 @@ PictureLook look_at(const Question& question, const ImageTest& test, ImagePair p
   look.means = {channel_means(pair.first), means_held_against(pair)};
   look.z.resize(pair.first.extent.elements());
   const bool of_two = pair.second.has_value();
-  const VaryingPart varying(question, std::move(pair));
-  require_spread(question, varying.any() || (pair.subtracted && varies(*pair.subtracted)));
+  ImageConstants constants = pair.settle(question);
+  require_spread(question, constants.count < pair.first.extent.elements() ||
+                               (pair.subtracted && varies(*pair.subtracted)));
   const stats::PyramidOptions options{.z = look.z,
                                       .for_each = on_all_threads,
                                       .constants_decide = of_two || question.is().of_pairs};
-  look.family = stats::image_pyramid(varying.pair(), options);
-  unseen = varying.unseen();
+  look.family = stats::image_pyramid(pair.pair(), options);
+  unseen = std::move(constants.unseen);
   for (const UnseenElement& element : unseen) look.z[element.element] = z_of(element);
   return look;
 }

@@ -8,10 +8,8 @@
 #include <functional>
 #include <optional>
 
-#include "harness/image/image_constants.h"
 #include "harness/image/image_pair.h"
-#include "harness/theta/evidence.h"
-#include "harness/theta/family.h"
+#include "harness/theta/decision.h"
 #include "stats/images/image_dependence.h"
 #include "stats/images/image_family.h"
 

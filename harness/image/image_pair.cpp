@@ -3,31 +3,152 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <utility>
 
 #include "harness/base/parallel.h"
 #include "stats/basics/moments.h"
 #include "stats/images/image_moments.h"
+#include "stats/means/constant_sample.h"
+#include "stats/tails/tails.h"
 
 namespace assay::harness {
 namespace {
 
-/// c y + b, to which E x is compared.
-struct Mapping {
-  double factor;
-  double offset;
-  bool changes() const { return factor != 1 || offset != 0; }
-  double operator()(double value) const { return factor * value + offset; }
-};
-
 std::vector<std::vector<float>> mapped(const std::vector<std::span<const float>>& images,
-                                       const Mapping& mapping) {
+                                       const Question& question) {
   std::vector<std::vector<float>> copies;
   for (const std::span<const float> image : images) {
     std::vector<float>& copy = copies.emplace_back(image.begin(), image.end());
-    for (float& value : copy) value = static_cast<float>(mapping(value));
+    for (float& value : copy) value = static_cast<float>(question.mapped(value));
   }
   return copies;
 }
+
+/// A channel's declaration of its values.
+struct Declared {
+  double low;
+  double high;
+  double rounding;
+  double precision = 0;  ///< relative rounding of an image's numbers when they are drawn
+  double offset = 0;     ///< added after that
+  /// The largest error of a value.
+  double error(double value) const {
+    return rounding + precision * (std::abs(value) + std::abs(value - offset));
+  }
+};
+
+struct Span {
+  double low;
+  double high;
+  bool constant(const Declared& channel) const { return high - low <= 2 * channel.error(low); }
+};
+
+/// Declarations of each element, or one that all share.
+using Declarations = std::vector<Declared>;
+
+const Declared& declared_at(const Declarations& all, std::size_t element) {
+  return all[all.size() == 1 ? 0 : element];
+}
+
+/// Pictures of files share one.
+Declarations declared_by(const Subject& subject) {
+  if (subject.setup->pictures()) return {{Channel().low, Channel().high, Channel().rounding}};
+  const double precision = relative_rounding(*subject.setup);
+  Declarations all;
+  all.reserve(subject.channels.size());
+  for (const Channel& channel : subject.declared()) {
+    all.push_back({channel.low, channel.high, channel.rounding, precision});
+  }
+  return all;
+}
+
+/// The declarations of differences from images near `image`, but for their range.
+Declarations of_differences(Declarations one, const Declarations& other,
+                            std::span<const float> image) {
+  one.resize(std::max(one.size(), other.size()), one[0]);
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    one[i].rounding = one[i].error(image[i]) + declared_at(other, i).error(image[i]);
+  }
+  return one;
+}
+
+/// The value of a constant, and the range of the law whose other values it can have missed.
+struct Missing : stats::ConstantSample {
+  /// Tests it against a mean that is known or estimated.
+  double log_p(const Constant& mean) const {
+    return stats::log_p_constant({value, std::min(low, value), std::max(high, value), count},
+                                 {mean.value, mean.standard_error});
+  }
+  double sign(const Constant& mean) const { return value < mean.value ? -1 : 1; }
+  bool bounded(const Constant& mean) const {
+    return std::isfinite(mean.value < value ? low : high);
+  }
+};
+
+/// The second side's declarations of factor x + offset.
+Declarations mapped_by(const Question& question) {
+  Declarations all = declared_by(question.subjects[1]);
+  for (Declared& each : all) {
+    const double low = question.mapped(each.low);
+    const double high = question.mapped(each.high);
+    each.low = std::min(low, high);
+    each.high = std::max(low, high);
+    each.rounding *= std::abs(question.factor);
+    each.offset = question.offset;
+  }
+  return all;
+}
+
+/// A side's images.
+class ScannedSide {
+ public:
+  ScannedSide(stats::ImageStack& stack, Declarations declarations)
+      : stack_(stack), declarations_(std::move(declarations)) {}
+
+  const Declared& declared(std::size_t element) const {
+    return declared_at(declarations_, element);
+  }
+  /// The element of the first image.
+  double value(std::size_t element) const { return stack_.images[0][element]; }
+  /// The range of the element last looked at, if it is constant.
+  const Span& span() const { return span_; }
+
+  /// Looks at the element's values until they are seen to vary, nearly always at the second.
+  bool is_constant(std::size_t element) {
+    span_ = {value(element), value(element)};
+    return std::ranges::all_of(stack_.images, [&](std::span<const float> image) {
+      const double number = image[element];
+      span_ = {std::min(span_.low, number), std::max(span_.high, number)};
+      return span_.constant(declared(element));
+    });
+  }
+  Missing missing(std::size_t element) const {
+    return {{value(element), declared(element).low, declared(element).high, stack_.images.size()}};
+  }
+  Constant mean(std::size_t element) const {
+    stats::Moments moments;
+    for (const std::span<const float> image : stack_.images) moments.add(image[element]);
+    return {moments.mean, moments.standard_error()};
+  }
+
+  /// Gives the element this value in every image.
+  void settle(std::size_t element, double number) { settled_.push_back({element, number}); }
+  /// Call it after the last element. Changed images are kept in `copies`.
+  void replace(std::vector<std::vector<float>>& copies) {
+    if (settled_.empty()) return;
+    for (std::span<const float>& image : stack_.images) {
+      std::vector<float>& copy = copies.emplace_back(image.begin(), image.end());
+      for (const auto& [element, number] : settled_) copy[element] = static_cast<float>(number);
+      image = copy;
+    }
+  }
+
+ private:
+  stats::ImageStack& stack_;
+  Declarations declarations_;
+  Span span_{};
+  std::vector<std::pair<std::size_t, double>> settled_;
+};
 
 }  // namespace
 
@@ -40,10 +161,10 @@ ImagePair::ImagePair(const Seen& seen) {
   const stats::ImageExtent extent = extent_of(*question.subjects[0].image);
   first = {extent, seen.data[0].images.images()};
   if (question.of_two()) {
-    const Mapping mapping{question.factor, question.offset};
+    const bool maps = question.factor != 1 || question.offset != 0;
     const ImageViews& other = seen.data[1].images;
-    if (mapping.changes()) scaled_ = ImageViews(mapped(other.images(), mapping));
-    second = {extent, (mapping.changes() ? scaled_ : other).images()};
+    if (maps) scaled_ = ImageViews(mapped(other.images(), question));
+    second = {extent, (maps ? scaled_ : other).images()};
     if (!question.is().of_pairs) return;
     subtracted.swap(second);
     first = difference(first, *subtracted, differences_);
@@ -119,6 +240,77 @@ double least_error(std::span<const double> errors, const ChannelMeans& means, bo
     least = std::min(least, relative ? errors[c] / std::abs(means[c].value) : errors[c]);
   }
   return least;
+}
+
+double z_of(const UnseenElement& unseen) {
+  if (unseen.log_p == std::numeric_limits<double>::lowest()) {
+    return unseen.sign * stats::certain_z;
+  }
+  return unseen.sign * stats::normal_quantile({stats::Tail::upper, unseen.log_p - std::log(2.0)});
+}
+
+ImageConstants ImagePair::settle(const Question& question) {
+  return second ? settle_two(question) : settle_against_reference(question);
+}
+
+ImageConstants ImagePair::settle_against_reference(const Question& question) {
+  ImageConstants constants;
+  Declarations declarations = declared_by(question.subjects[0]);
+  if (subtracted) {
+    declarations =
+        of_differences(std::move(declarations), mapped_by(question), subtracted->images[0]);
+  }
+  ScannedSide side(first, std::move(declarations));
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    if (!side.is_constant(i)) continue;
+    const double constant = side.value(i);
+    const Constant expected{value[i], error.empty() ? 0 : error[i]};
+    const bool differs =
+        std::abs(constant - expected.value) > side.declared(i).error(expected.value);
+    if (differs && question.is().of_pairs) continue;  // it fails, as of two images
+    ++constants.count;
+    if (side.span().low < side.span().high) side.settle(i, constant);
+    if (differs) {
+      const Missing missing = side.missing(i);
+      constants.unseen.push_back({i, missing.sign(expected), missing.log_p(expected)});
+      continue;
+    }
+    value[i] = constant;
+    if (!error.empty()) error[i] = 0;
+  }
+  if (std::ranges::all_of(error, [](double each) { return each == 0; })) error.clear();
+  side.replace(settled_);
+  return constants;
+}
+
+ImageConstants ImagePair::settle_two(const Question& question) {
+  ImageConstants constants;
+  ScannedSide one(first, declared_by(question.subjects[0]));
+  ScannedSide two(*second, mapped_by(question));
+  for (std::size_t i = 0; i < first.extent.elements(); ++i) {
+    const bool first_constant = one.is_constant(i);
+    const bool second_constant = two.is_constant(i);
+    if (!first_constant && !second_constant) continue;
+    if (first_constant && second_constant) {
+      ++constants.count;
+      const double a = one.value(i);
+      const double b = two.value(i);
+      const bool equal = std::abs(a - b) <= one.declared(i).error(a) + two.declared(i).error(b);
+      one.settle(i, a);
+      two.settle(i, equal ? a : b);
+      continue;
+    }
+    const Missing missing = (first_constant ? one : two).missing(i);
+    const Constant mean = (first_constant ? two : one).mean(i);
+    if (!missing.bounded(mean)) continue;
+    const double sign = first_constant ? missing.sign(mean) : -missing.sign(mean);
+    constants.unseen.push_back({i, sign, missing.log_p(mean)});
+    one.settle(i, missing.value);
+    two.settle(i, missing.value);
+  }
+  one.replace(settled_);
+  two.replace(settled_);
+  return constants;
 }
 
 }  // namespace assay::harness

@@ -1,11 +1,13 @@
 #pragma once
 
+// The images of a claim, and what of them varied. Elements that never varied have no standard
+// error, and rare values may be unseen.
+
 #include <algorithm>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "harness/question/question.h"
 #include "harness/sampling/summary.h"
 #include "harness/theta/methods.h"
 #include "stats/images/image.h"
@@ -14,23 +16,27 @@ namespace assay::harness {
 
 stats::ImageExtent extent_of(const ImageShape& shape);
 
-/// Replicates of an image, and their comparison: replicates of another image, or a number for each
-/// element.
-struct ComparedImages {
-  stats::ImageStack first = {};
-  std::optional<stats::ImageStack> second = {};
-  std::vector<double> value = {};
-  std::vector<double> error = {};  ///< Empty if no number has one.
-
-  stats::ImageReference reference() const { return {first.extent, value, error}; }
-  stats::ImagePair pair() const {
-    return second ? stats::ImagePair(first, *second) : stats::ImagePair(first, reference());
-  }
+/// An element that was the same in every replicate and differs from its reference, or the other
+/// image's mean, by more than rounding. Unseen values may make up the difference
+/// (constant_sample.h). Without a declared range its p-value is 1.
+struct UnseenElement {
+  std::size_t element = 0;
+  double sign = 0;  ///< sign of constant - reference
+  double log_p = 0;
 };
 
-/// The images of a claim, with the second's scaled. Of a paired claim the replicates are
-/// differences, which are held against 0.
-struct ImagePair : ComparedImages {
+/// The normal z of its p-value, with the difference's sign.
+double z_of(const UnseenElement& unseen);
+
+/// The elements of an image pair that did not vary by more than their channels' declared rounding.
+struct ImageConstants {
+  std::vector<UnseenElement> unseen = {};
+  std::size_t count = 0;
+};
+
+/// Replicates of an image, and their comparison: replicates of another image, scaled, or a number
+/// for each element. Of a paired claim the replicates are differences, which are held against 0.
+struct ImagePair {
   explicit ImagePair(const Seen& seen);
   ImagePair(const ImagePair&) = delete;  // spans point inside
   ImagePair& operator=(const ImagePair&) = delete;
@@ -39,13 +45,33 @@ struct ImagePair : ComparedImages {
   auto replicates() const {
     return std::minmax({first.images.size(), (second ? *second : first).images.size()});
   }
+  stats::ImageReference reference() const { return {first.extent, value, error}; }
+  stats::ImagePair pair() const {
+    return second ? stats::ImagePair(first, *second) : stats::ImagePair(first, reference());
+  }
+  /// Gives elements that did not vary one value. Images that are drawn are also rounded to single
+  /// precision.
+  ///
+  /// An element that did not vary is tested in sums with its neighbours. By itself it is held
+  /// against its range, in `unseen`. Constants that differ by rounding only are equal. If one of
+  /// two images alone varied, its standard error tests the other's constant, provided that the
+  /// other declares a range. Without a range Welch's test takes the values seen.
+  ImageConstants settle(const Question& question);
 
+  stats::ImageStack first = {};
+  std::optional<stats::ImageStack> second = {};
+  std::vector<double> value = {};
+  std::vector<double> error = {};  ///< Empty if no number has one.
   /// The replicates that were subtracted in pairs.
   std::optional<stats::ImageStack> subtracted = {};
 
  private:
+  ImageConstants settle_against_reference(const Question& question);
+  ImageConstants settle_two(const Question& question);
+
   ImageViews scaled_;  // the second side, if it is
   std::vector<float> differences_;
+  std::vector<std::vector<float>> settled_;  // images with a rounded element
 };
 
 /// The images of one stack less those of another, in `texels`.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 
 #include "harness/base/interrupt.h"
 #include "harness/sampling/recorded_run.h"
@@ -140,9 +141,16 @@ std::set<std::string> costly(const std::vector<Question>& questions) {
   return names;
 }
 
-std::uint64_t most_of(const PilotRun& run, const PreparedEstimator& estimator) {
-  const auto found = run.most.find(estimator.listed);
-  return found == run.most.end() ? unlimited : found->second;
+/// Primaries of a pool, by the listed names of the estimators.
+std::map<std::string, std::uint64_t> paid_for(const std::vector<Question>& questions) {
+  std::map<std::string, std::uint64_t> most;
+  for (const Question& question : questions) {
+    for (const Subject& side : question.subjects) {
+      std::uint64_t& paid = most[side.estimator->listed];
+      paid = std::max(paid, paid_by(question, side));
+    }
+  }
+  return most;
 }
 
 std::string pilot_name_of(const std::string& estimator, const std::string& purpose) {
@@ -218,75 +226,69 @@ PilotChannel pilot_channel(const Question& question, std::size_t subject, std::s
 }
 
 std::vector<std::pair<std::string, std::shared_ptr<Pool>>> pilot_pools(
-    const std::vector<const PreparedEstimator*>& estimators, const PilotRun& run) {
+    const std::vector<const PreparedEstimator*>& estimators, const std::vector<Question>& questions,
+    std::uint64_t seed) {
+  const std::set<std::string> with_cost = costly(questions);
+  const auto paid = paid_for(questions);
+  const auto most_of = [&](const PreparedEstimator& estimator) {
+    const auto found = paid.find(estimator.listed);
+    return found == paid.end() ? unlimited : found->second;
+  };
   std::vector<std::pair<std::string, std::shared_ptr<Pool>>> pools;
   for (const PreparedEstimator* estimator : estimators) {
     const bool averages = estimator->nature().averages;
     const std::uint64_t primaries = averages ? 1 : estimator->primaries.value_or(1);
-    pools.emplace_back(
-        estimator->name,
-        pilot_pool(estimator->setup, key_of(*estimator, run.seed, 0, "pilot"), primaries,
-                   usual_observations(*estimator, primaries), most_of(run, *estimator)));
-    if (run.with_cost.contains(estimator->name)) {
+    pools.emplace_back(estimator->name,
+                       pilot_pool(estimator->setup, key_of(*estimator, seed, 0, "pilot"), primaries,
+                                  usual_observations(*estimator, primaries), most_of(*estimator)));
+    if (with_cost.contains(estimator->name)) {
       for (ChannelPlan& channel : pools.back().second->plans()) channel.powers = Powers::with_costs;
     }
   }
   for (const PreparedEstimator* estimator : estimators) {
     const std::uint64_t primaries = averaged_primaries_of(*estimator);
     if (primaries == 1) continue;
-    const StreamKey key = key_of(*estimator, run.seed, 0, averages_purpose + " pilot");
+    const StreamKey key = key_of(*estimator, seed, 0, averages_purpose + " pilot");
     pools.emplace_back(pilot_name_of(estimator->name, averages_purpose),
                        pilot_pool(estimator->setup, key, primaries, many_observations / primaries,
-                                  most_of(run, *estimator)));
+                                  most_of(*estimator)));
   }
-  for (const Subject* subject : run.draws) {
-    const StreamKey key = key_of(*subject->estimator, run.seed, 0, subject->purpose + " pilot");
-    pools.emplace_back(pilot_name(*subject), pilot_pool(subject->setup, key, 1, many_observations,
-                                                        most_of(run, *subject->estimator)));
+  for (const Question& question : questions) {
+    if (!question.chosen || methods_for(question).front().keeps != Keeps::points) continue;
+    for (const Subject& side : question.subjects) {
+      if (side.purpose.empty()) continue;
+      const StreamKey key = key_of(*side.estimator, seed, 0, side.purpose + " pilot");
+      pools.emplace_back(pilot_name(side), pilot_pool(side.setup, key, 1, many_observations,
+                                                      most_of(*side.estimator)));
+    }
   }
   return pools;
 }
 
-Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators, const PilotRun& run,
+Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators,
+                  const std::vector<Question>& questions, std::uint64_t seed, Executor& executor,
                   Progress& progress) {
-  const auto named = pilot_pools(estimators, run);
+  const auto named = pilot_pools(estimators, questions, seed);
   SomePools pools;
   SomePools averaging;
   for (const auto& [name, pool] : named) {
     (name.ends_with(averages_purpose) ? averaging : pools).push_back(pool);
   }
-  draw_all(pools, *run.executor, "pilot", progress);
+  draw_all(pools, executor, "pilot", progress);
   // A program that hung is not waited for again. Without these pools there is no second round.
   for (const auto& pool : averaging) {
     const auto same = [&](const auto& each) { return each->setup() == pool->setup(); };
     const auto own = std::ranges::find_if(pools, same);
     if (own != pools.end() && (*own)->fault()) pool->fail(*(*own)->fault());
   }
-  if (!averaging.empty()) draw_all(averaging, *run.executor, "pilot", progress);
+  if (!averaging.empty()) draw_all(averaging, executor, "pilot", progress);
   Pilots pilots;
   if (interrupted()) return pilots;
   for (const auto& [name, pool] : named) pilots.add(name, read(pool));
   return pilots;
 }
 
-PilotRun pilot_run_of(const std::vector<Question>& questions, std::uint64_t seed,
-                      std::shared_ptr<Executor> executor) {
-  PilotRun run{.seed = seed, .executor = std::move(executor), .with_cost = costly(questions)};
-  for (const Question& question : questions) {
-    for (const Subject& side : question.subjects) {
-      std::uint64_t& most = run.most[side.estimator->listed];
-      most = std::max(most, paid_by(question, side));
-    }
-    if (!question.chosen || methods_for(question).front().keeps != Keeps::points) continue;
-    for (const Subject& side : question.subjects) {
-      if (!side.purpose.empty()) run.draws.push_back(&side);
-    }
-  }
-  return run;
-}
-
-Pilots pilots_of(const std::vector<Question>& questions, std::uint64_t seed,
-                 std::shared_ptr<Executor> executor) {
+Pilots pilots_of(const std::vector<Question>& questions, std::uint64_t seed, Executor& executor) {
   std::map<std::string, const PreparedEstimator*> used;
   for (const Question& question : questions) {
     for (const Subject& subject : question.subjects) {
@@ -295,7 +297,7 @@ Pilots pilots_of(const std::vector<Question>& questions, std::uint64_t seed,
   }
   std::vector<const PreparedEstimator*> estimators;
   for (const auto& [name, estimator] : used) estimators.push_back(estimator);
-  return run_pilots(estimators, pilot_run_of(questions, seed, std::move(executor)), silence);
+  return run_pilots(estimators, questions, seed, executor, silence);
 }
 
 }  // namespace assay::harness

@@ -6,7 +6,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
 #include <variant>
@@ -69,14 +68,6 @@ class Pilots {
   std::map<std::string, std::variant<Pilot, Fault>> all_;
 };
 
-struct PilotRun {
-  std::uint64_t seed;
-  std::shared_ptr<Executor> executor = threads();
-  std::set<std::string> with_cost = {};            ///< estimators whose costs are needed
-  std::vector<const Subject*> draws = {};          ///< samplers whose draws are needed too
-  std::map<std::string, std::uint64_t> most = {};  ///< primaries of a pool, by listed name
-};
-
 /// The estimator's name. For a sampler's draws a dot and their purpose follow.
 std::string pilot_name(const Subject& subject);
 
@@ -107,22 +98,20 @@ PilotChannel pilot_channel(const Subject& subject, const Pilot& pilot, std::size
 PilotChannel pilot_channel(const Question& question, std::size_t subject, std::size_t channel,
                            const Pilots& pilots);
 
+// Demands of a suite's claims on the pilots of its estimators. All questions decide what a pilot
+// keeps, so a selection does not change it. The chosen ones decide whether a sampler's draws are
+// piloted.
+
 /// The pools of the pilots by their names. Nothing is drawn.
 std::vector<std::pair<std::string, std::shared_ptr<Pool>>> pilot_pools(
-    const std::vector<const PreparedEstimator*>& estimators, const PilotRun& run);
+    const std::vector<const PreparedEstimator*>& estimators, const std::vector<Question>& questions,
+    std::uint64_t seed);
 
-Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators, const PilotRun& run,
+Pilots run_pilots(const std::vector<const PreparedEstimator*>& estimators,
+                  const std::vector<Question>& questions, std::uint64_t seed, Executor& executor,
                   Progress& progress);
 
-// Demands of a suite's claims on the pilots of its estimators.
-
-/// The pilots of a suite's questions. All questions decide what a pilot keeps, so a selection does
-/// not change it. The chosen ones decide whether a sampler's draws are piloted.
-PilotRun pilot_run_of(const std::vector<Question>& questions, std::uint64_t seed,
-                      std::shared_ptr<Executor> executor);
-
 /// The pilots of these questions alone, drawn in silence.
-Pilots pilots_of(const std::vector<Question>& questions, std::uint64_t seed,
-                 std::shared_ptr<Executor> executor);
+Pilots pilots_of(const std::vector<Question>& questions, std::uint64_t seed, Executor& executor);
 
 }  // namespace assay::harness

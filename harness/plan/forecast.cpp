@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "harness/plan/sizes.h"
-#include "harness/theta/constant.h"
 #include "harness/theta/theta.h"
 #include "stats/planning/boundary.h"
 #include "stats/tails/tails.h"

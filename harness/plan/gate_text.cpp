@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "harness/pilot/pilot.h"
-#include "harness/plan/looks.h"
 #include "harness/plan/sizes.h"
 #include "harness/theta/ask.h"
 #include "reports/words/number.h"

@@ -4,12 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "estimators/ready_made.h"
 #include "harness/plan/gate_text.h"
 #include "harness/theta/ask.h"
-#include "harness/theta/constant.h"
 #include "harness/theta/gate.h"
 #include "harness/theta/theta.h"
 #include "stats/gates/copies.h"
@@ -104,9 +102,8 @@ Reason dependent(const Question& question, const Rows& rows, bool at_a_lag) {
   if (worth < fewest_of_a_chain) {
     const bool several = question.subjects[0].channels.size() > 1;
     return Reason::advising(
-        why,
-        std::string(several ? "name another column, if this one counts the rows; " : "") +
-            "give sorted ones in the order drawn; of a slow chain they are too few");
+        why, std::string(several ? "name another column, if this one counts the rows; " : "") +
+                 "give sorted ones in the order drawn; of a slow chain they are too few");
   }
   const std::string or_enough = enough_of_a_chain(question, rows.values.size(), time);
   return Reason::advising(why,
@@ -203,7 +200,7 @@ void allow_for_dependence(const std::vector<Rows>& all, Plan& plan) {
   for (const Rows& rows : all) {
     const double factor = stats::allowance_for_dependence(rows.values);
     if (!(factor > 1)) continue;
-    plan.method.frozen.row_allowances.push_back(
+    plan.row_allowances.push_back(
         {.subject = rows.subject, .channel = rows.channel, .factor = factor});
     plan.gates.push_back(
         gate_of("variance of the mean, allowed for dependence, " + rows.label, factor, 1, "amber"));
@@ -282,22 +279,13 @@ stats::Moments as_tested(const Plan& plan, std::size_t subject, std::size_t chan
   // Constants are judged by themselves, and have no order.
   if (!(moments.m2 > 0) || values.size() < fewest_in_order) return moments;
   if (plan.method.is.of_batches) return stats::batch_means(values, stats::sufficient_batch(values));
-  for (const RowAllowance& each : plan.method.frozen.row_allowances) {
+  for (const RowAllowance& each : plan.row_allowances) {
     if (each.subject != subject || each.channel != channel) continue;
     moments.m2 *= each.factor;
     moments.m3 *= each.factor * std::sqrt(each.factor);
     moments.m4 *= each.factor * each.factor;
   }
   return moments;
-}
-
-std::string passing_rows(const Suite& suite, const EstimatorEntry& entry) {
-  const Value* const file = entry.plugin == "recorded" ? entry.parameters.find("file") : nullptr;
-  if (file == nullptr) return "";
-  const std::string& name = file->text();
-  const std::string path = (std::filesystem::path(suite.folder) / name).string();
-  if (!recorded::is_read_once(name) && !recorded::is_read_once(path)) return "";
-  return name == "-" || name == "/dev/stdin" ? "standard input" : "`" + name + "`";
 }
 
 bool shows_order(const Subject& subject) {

@@ -34,10 +34,6 @@ void judge_independence(TestOutcome& test, const Pilots& pilots, std::uint64_t c
 stats::Moments as_tested(const Plan& plan, std::size_t subject, std::size_t channel,
                          std::span<const double> values, stats::Moments moments);
 
-/// Names the source of an estimator's rows if it cannot be read again. It is "standard input", or a
-/// pipe or device in backquotes; else empty.
-std::string passing_rows(const Suite& suite, const EstimatorEntry& entry);
-
 /// True if a subject's observations are drawn one by one, and not as pictures. Their order then
 /// shows whether they are independent. judge_independence judges rows.
 bool shows_order(const Subject& subject);

@@ -9,7 +9,6 @@
 #include "harness/image/image_evidence.h"
 #include "harness/question/question.h"
 #include "harness/theta/decision.h"
-#include "harness/theta/family.h"
 #include "harness/theta/gate.h"
 #include "harness/theta/methods.h"
 #include "reports/record/record.h"
@@ -44,8 +43,10 @@ struct Reason {
 /// The design of a test, frozen before its own data are drawn.
 struct Plan {
   Method method;
-  std::vector<std::uint64_t> primaries = {};  ///< One a subject.
-  stats::LookSchedule looks = {};             ///< Sizes are the most that any subject takes.
+  std::shared_ptr<const stats::SampledCells> cells = {};  ///< Of the pilots' points.
+  std::vector<RowAllowance> row_allowances = {};          ///< For means.
+  std::vector<std::uint64_t> primaries = {};              ///< One a subject.
+  stats::LookSchedule looks = {};  ///< Sizes are the most that any subject takes.
   /// Larger sizes that the last look is put off to while no look is sound. More observations must
   /// mend the red gates. It is the only look then.
   std::vector<std::uint64_t> postponed = {};

@@ -28,17 +28,11 @@ struct Known {
 std::vector<double> as_secondaries(const Subject& side, std::span<const double> values,
                                    std::uint64_t primaries);
 
-/// Why the pilot cannot choose: powers of its values are beyond doubles. Empty if none are.
-std::string unusable_pilot(const Question& question, const Pilots& pilots);
-
 /// The channels that pilots or rows show, without those that never vary.
 std::vector<Known> known_channels(const TestOutcome& test, const Pilots& pilots);
 
 /// Notes a gate of the pilot, but none of rows: they are judged with the test's own data.
 void note(Plan& plan, const Known& known, const stats::Gate& gate);
-
-/// Skewness of a secondary. Student's t takes values for near normal where it is green.
-stats::Gate near_normal_gate(const Known& known);
 
 /// True if the values beyond half the way from their mean to an end are few: there may be more.
 bool hides(std::span<const double> values, double mean, double end);
@@ -47,9 +41,5 @@ bool hides(std::span<const double> values, double mean, double end);
 /// Every end that a decision needs is finite, and a pilot saw few values in the outer half before
 /// one, or none that vary. Two means are bet on only if both are constant.
 bool bets_on_range(const Question& question, const Pilots& pilots);
-
-/// Gives the plan's method what it takes from the pilots; sets `invalid` if they lack it. Rows of a
-/// file are their own pilot, both sides together; beside drawn values they are not used.
-void freeze(TestOutcome& test, const Pilots& pilots);
 
 }  // namespace assay::harness

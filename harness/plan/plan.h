@@ -9,9 +9,8 @@
 
 #include "harness/draws/sampler_setup.h"
 #include "harness/pilot/pilot.h"
-#include "harness/plan/looks.h"
 #include "harness/plan/outcome.h"
-#include "harness/theta/family.h"
+#include "harness/theta/decision.h"
 
 namespace assay::harness {
 

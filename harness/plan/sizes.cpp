@@ -9,10 +9,23 @@
 namespace assay::harness {
 namespace {
 
+// A method is taken to keep its level up to this factor.
+constexpr double level_factor = 1.25;
+
 /// Chi-square and F take flatter data for normal ones and find as little as in those.
 double deviation_for(const Method& method, double deviation) {
   return method.is.of_normal_values && deviation > 0 ? std::max(std::numbers::sqrt2, deviation)
                                                      : deviation;
+}
+
+/// The plan for subjects of equal sizes.
+stats::MeanPlan mean_plan(const Method& method, const stats::ErrorRates& rates,
+                          const PlannedChannel& channel) {
+  return {.standard_deviation = deviation_for(method, channel.deviations[0]),
+          .other_standard_deviation = deviation_for(method, channel.deviations[1]),
+          .allow = channel.regions.allow * channel.unit,
+          .reference_standard_error = channel.reference_error,
+          .rates = rates};
 }
 
 }  // namespace
@@ -47,15 +60,6 @@ stats::ErrorRates planned_rates(const ErrorShare& share, const Regions& regions)
   return {.alpha = share.alpha, .beta = share.beta, .two_sided = regions.two_sided()};
 }
 
-stats::MeanPlan mean_plan(const Method& method, const stats::ErrorRates& rates,
-                          const PlannedChannel& channel) {
-  return {.standard_deviation = deviation_for(method, channel.deviations[0]),
-          .other_standard_deviation = deviation_for(method, channel.deviations[1]),
-          .allow = channel.regions.allow * channel.unit,
-          .reference_standard_error = channel.reference_error,
-          .rates = rates};
-}
-
 stats::MeanPlan mean_plan(const Sized& sized) {
   stats::MeanPlan plan = mean_plan(sized.test.plan.method, sized.rates(), sized.channel);
   plan.allocation = sized.sizes().y / sized.sizes().x;
@@ -78,6 +82,19 @@ std::uint64_t secondaries_of_floor(const TestOutcome& test) {
     floor = std::max(floor, (floor_of_evidence + each - 1) / each);
   }
   return floor;
+}
+
+stats::LookSchedule one_look(std::uint64_t secondaries, const ErrorShare& share) {
+  return {.sizes = {secondaries}, .alpha = {share.alpha}, .beta = {share.beta}};
+}
+
+std::uint64_t primaries_of_look(const TestOutcome& test, std::uint64_t look) {
+  std::uint64_t sum = 0;
+  for (std::size_t i = 0; i < test.plan.primaries.size(); ++i) {
+    const Subject& side = test.question.subjects[i];
+    sum += primaries_of_observation(*side.setup, test.plan.primaries[i]) * side.secondaries(look);
+  }
+  return sum;
 }
 
 std::uint64_t whole_secondaries(double count) {

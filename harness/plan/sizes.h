@@ -9,7 +9,6 @@
 #include "harness/plan/outcome.h"
 #include "harness/question/question.h"
 #include "harness/theta/decision.h"
-#include "harness/theta/family.h"
 #include "harness/theta/theta.h"
 #include "stats/planning/power.h"
 
@@ -30,9 +29,6 @@ inline constexpr std::uint64_t classical_replicates = 64;
 // value that it never drew (Bahadur & Savage 1956).
 inline constexpr std::uint64_t floor_of_evidence = std::uint64_t{1} << 14;
 
-// A method is taken to keep its level up to this factor.
-inline constexpr double level_factor = 1.25;
-
 /// Looks that a test has at most: one may end after 1/181 of the last. With a budget in seconds,
 /// which the first look is not to exceed, one may end after 1/740,000.
 std::size_t most_looks(const FamilyPlace& place);
@@ -50,11 +46,8 @@ double kurtosis_limit(const Question& question, const FamilyPlace& place);
 /// region at beta. For `within` both sides are rejected, and each misses with beta / 2.
 stats::ErrorRates planned_rates(const ErrorShare& share, const Regions& regions);
 
-/// The t test of a channel's mean, or of its two means, for subjects of equal sizes. Theta is taken
+/// The t test of a channel's mean, or of its two means, for the subjects' own sizes. Theta is taken
 /// for such a mean where it is the logarithm of a ratio.
-stats::MeanPlan mean_plan(const Method& method, const stats::ErrorRates& rates,
-                          const PlannedChannel& channel);
-/// The same for the subjects' own sizes.
 stats::MeanPlan mean_plan(const Sized& sized);
 /// Secondaries with which it finds the channel's `detect`.
 std::uint64_t secondaries_by_t(const Method& method, const stats::ErrorRates& rates,
@@ -64,6 +57,11 @@ std::uint64_t secondaries_by_t(const Method& method, const stats::ErrorRates& ra
 /// of a file, pictures and files that a program writes are as many as somebody paid for: they have
 /// no floor.
 std::uint64_t secondaries_of_floor(const TestOutcome& test);
+
+stats::LookSchedule one_look(std::uint64_t secondaries, const ErrorShare& share);
+
+/// Primaries of a look of this size, all subjects together; of an image, in all its elements.
+std::uint64_t primaries_of_look(const TestOutcome& test, std::uint64_t look);
 
 /// A computed count, rounded up; `impossible_secondaries` if it is too large or NaN.
 std::uint64_t whole_secondaries(double count);

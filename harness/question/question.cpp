@@ -216,36 +216,6 @@ StreamKey stream_of_cells(const PreparedEstimator& estimator, const std::string&
   return key_of(estimator, seed, 0, sampler + " cells");
 }
 
-void require_moments_suffice(const Question& question) {
-  for (std::size_t i = 0; i < question.subjects.size(); ++i) {
-    const Subject& side = question.subjects[i];
-    const RecordedRun* run = as_recorded_run(*side.setup);
-    if (run == nullptr) continue;
-    const std::string name = side.estimator->name;
-    const bool reference = i >= question.compared();
-    const Quantity& quantity = question.test->claim.left;
-    const bool costs = quantity.row->counts_cost && !quantity.slope;
-    if (!reference && !costs && !question.is().of_moments) {
-      refuse(question.test->where,
-             "`{}` has the moments of a run, not its observations: they tell of mean, bias, "
-             "variance, cost and efficiency, not of this; keep observations with `assay sample` "
-             "and give them as `file`",
-             name);
-    }
-    if (costs && !reference && !run->knows_cost(question.test->cost)) {
-      refuse(question.test->where,
-             "the run that `{}` is of does not tell how its costs vary: claim something of its "
-             "efficiency there",
-             name);
-    }
-    if (question.test->secondaries && *question.test->secondaries != run->summary().count) {
-      refuse(question.test->place_of("secondaries"),
-             "`{}` has the moments of {} observations together; leave `secondaries` out", name,
-             run->summary().count);
-    }
-  }
-}
-
 const ScaledQuantity* other_side(const Claim& claim) {
   return std::get_if<ScaledQuantity>(&claim.right);
 }
@@ -335,6 +305,17 @@ double rounding_of(const Question& question, std::size_t subject, std::size_t ch
   const Subject& side = question.subjects[subject];
   const Channel declared = side.declared(channel);
   return declared.rounding + relative_rounding(*side.setup) * std::abs(declared.mean.value_or(0));
+}
+
+bool is_constant(const Question& question, std::size_t subject, std::size_t channel,
+                 const stats::Moments& moments) {
+  return moments.maximum - moments.minimum <= 2 * rounding_of(question, subject, channel);
+}
+
+std::string range_advice(const Question& question) {
+  return std::string(has_rows(question) ? "let a program draw the values instead of a file, and "
+                                        : "") +
+         "declare the range of its channel, `low` to `high`";
 }
 
 std::optional<double> no_point_of(const Subject& side, std::size_t channel) {

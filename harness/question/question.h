@@ -110,6 +110,8 @@ struct Question {
   bool of_two() const { return sizes.empty() && compared() == 2; }
   /// Factor on a subject's standard deviation in the comparison.
   double factor_of(std::size_t subject) const { return subject == 0 ? 1 : std::abs(factor); }
+  /// What the first is compared with where the second is this.
+  double mapped(double second) const { return factor * second + offset; }
 };
 
 /// True if any subject's observations are ready-made.
@@ -153,9 +155,6 @@ StreamKey stream_of(const Subject& subject, std::uint64_t seed);
 StreamKey stream_of_cells(const PreparedEstimator& estimator, const std::string& sampler,
                           std::uint64_t seed);
 
-/// InputError at the claim if it needs more of a recorded run than moments.
-void require_moments_suffice(const Question& question);
-
 /// The quantity on the right; null if there is another side.
 const ScaledQuantity* other_side(const Claim& claim);
 
@@ -188,6 +187,13 @@ stats::Range range_of(const Question& question, std::size_t subject, std::size_t
 
 /// The rounding that a channel declares of its values, and that of their mean in single precision.
 double rounding_of(const Question& question, std::size_t subject, std::size_t channel);
+
+/// True if the values differ by no more than twice the channel's declared rounding.
+bool is_constant(const Question& question, std::size_t subject, std::size_t channel,
+                 const stats::Moments& moments);
+
+/// Says how to declare the range that bounds what was never seen.
+std::string range_advice(const Question& question);
 
 /// The value of a subject's channel that stands for "no point"; only samplers have one.
 std::optional<double> no_point_of(const Subject& side, std::size_t channel = 0);

@@ -271,7 +271,7 @@ Cells cells_of(const DrawnTest& test) {
     const auto& draws = dynamic_cast<const SamplerSetup&>(*question.subjects[0].setup);
     if (draws.sampler().domain() != Domain::interval) return of_density(draws, data[0]);
   }
-  const auto& sampled = outcome.plan.method.frozen.cells;
+  const auto& sampled = outcome.plan.cells;
   const bool plane = question.subjects[0].channels.size() > 1;
   if (plane && sampled && are_a_rectangle(*sampled))
     return of_two({question, channel, data}, *sampled);

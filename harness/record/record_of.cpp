@@ -6,10 +6,12 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 
 #include "estimators/instruction_set.h"
+#include "estimators/ready_made.h"
 #include "estimators/rendered.h"
 #include "harness/base/numbers.h"
 #include "harness/base/parallel.h"
@@ -21,7 +23,7 @@
 #include "harness/run/pools.h"
 #include "harness/sampling/summary.h"
 #include "harness/theta/ask.h"
-#include "harness/theta/evidence.h"
+#include "harness/theta/decision.h"
 #include "harness/theta/methods.h"
 #include "stats/gates/independence_gates.h"
 #include "stats/means/student_t.h"
@@ -392,6 +394,17 @@ std::vector<FamilyMember> members_of(const SuiteRun& run) {
   std::ranges::sort(members, {}, [](const FamilyMember& each) { return each.family.position; });
   if (run.adjusted) adjust_p_values(members);
   return members;
+}
+
+/// Names the source of an estimator's rows if it cannot be read again. It is "standard input", or a
+/// pipe or device in backquotes; else empty.
+std::string passing_rows(const Suite& suite, const EstimatorEntry& entry) {
+  const Value* const file = entry.plugin == "recorded" ? entry.parameters.find("file") : nullptr;
+  if (file == nullptr) return "";
+  const std::string& name = file->text();
+  const std::string path = (std::filesystem::path(suite.folder) / name).string();
+  if (!recorded::is_read_once(name) && !recorded::is_read_once(path)) return "";
+  return name == "-" || name == "/dev/stdin" ? "standard input" : "`" + name + "`";
 }
 
 }  // namespace

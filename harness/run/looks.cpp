@@ -5,7 +5,7 @@
 #include <set>
 
 #include "harness/base/interrupt.h"
-#include "harness/plan/looks.h"
+#include "harness/plan/sizes.h"
 
 namespace assay::harness {
 namespace {

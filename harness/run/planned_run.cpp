@@ -85,10 +85,6 @@ Used with_sweeps(Used estimators, const SuiteRun& run) {
   return estimators;
 }
 
-PilotRun pilot_run(const SuiteRun& run, const RunOptions& options) {
-  return pilot_run_of(run.questions, run.seed, executor_of(options));
-}
-
 /// The pilots of a suite's estimators: first of pictures that are read row by row, then the others.
 Pilots piloted(const SuiteRun& run, const RunOptions& options, Progress& progress) {
   Used used = run.used;
@@ -105,7 +101,8 @@ Pilots piloted(const SuiteRun& run, const RunOptions& options, Progress& progres
     pilots.merge(std::move(taken.pilots));
   }
   if (used.empty()) return pilots;
-  pilots.merge(run_pilots(with_sweeps(std::move(used), run), pilot_run(run, options), progress));
+  pilots.merge(run_pilots(with_sweeps(std::move(used), run), run.questions, run.seed,
+                          *executor_of(options), progress));
   return pilots;
 }
 
@@ -229,10 +226,10 @@ void add_missing(const Pool& pool, std::uint64_t count, Missing& missing) {
   }
 }
 
-Missing missing_in_pilots(const SuiteRun& run, const RunOptions& options) {
+Missing missing_in_pilots(const SuiteRun& run) {
   const Used used = with_sweeps(used_by(run), run);
   Missing missing;
-  for (const auto& [name, pool] : pilot_pools(used, pilot_run(run, options))) {
+  for (const auto& [name, pool] : pilot_pools(used, run.questions, run.seed)) {
     add_missing(*pool, pool->requested(), missing);
   }
   return missing;
@@ -245,7 +242,7 @@ std::vector<foreign::MissingFile> missing_files(const std::vector<Suite>& suites
   Missing all;
   for (const Suite& suite : suites) {
     const std::unique_ptr<SuiteRun> run = prepare_suite(suite, options);
-    Missing missing = missing_in_pilots(*run, options);
+    Missing missing = missing_in_pilots(*run);
     if (missing.empty()) {
       Pools pools;
       plan_tests(*run, options, progress);

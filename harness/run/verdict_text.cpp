@@ -7,9 +7,8 @@
 #include <numbers>
 
 #include "harness/plan/gate_text.h"
-#include "harness/plan/looks.h"
+#include "harness/plan/sizes.h"
 #include "harness/theta/ask.h"
-#include "harness/theta/constant.h"
 #include "harness/theta/theta.h"
 #include "reports/words/number.h"
 #include "reports/words/text.h"
@@ -264,7 +263,7 @@ Reason what_would_decide(const TestOutcome& outcome, const ChannelOutcome& chann
 
 Reason undecided(const TestOutcome& outcome, const ChannelOutcome& channel) {
   Reason reason = what_would_decide(outcome, channel);
-  const bool allows = !outcome.plan.method.frozen.row_allowances.empty();
+  const bool allows = !outcome.plan.row_allowances.empty();
   reason.text = fmt::format(
       "{}{}: neither shown nor refuted; {}{}", finding(channel), in_channel(outcome, channel),
       allows

@@ -77,6 +77,46 @@ void seed_cells(Question& question, const Claim& claim, std::uint64_t seed) {
   }
 }
 
+/// InputError at the claim if it needs more of a recorded run than moments.
+void require_moments_suffice(const Question& question) {
+  for (std::size_t i = 0; i < question.subjects.size(); ++i) {
+    const Subject& side = question.subjects[i];
+    const RecordedRun* run = as_recorded_run(*side.setup);
+    if (run == nullptr) continue;
+    const std::string name = side.estimator->name;
+    const bool reference = i >= question.compared();
+    const Quantity& quantity = question.test->claim.left;
+    const bool costs = quantity.row->counts_cost && !quantity.slope;
+    if (!reference && !costs && !question.is().of_moments) {
+      refuse(question.test->where,
+             "`{}` has the moments of a run, not its observations: they tell of mean, bias, "
+             "variance, cost and efficiency, not of this; keep observations with `assay sample` "
+             "and give them as `file`",
+             name);
+    }
+    if (costs && !reference && !run->knows_cost(question.test->cost)) {
+      refuse(question.test->where,
+             "the run that `{}` is of does not tell how its costs vary: claim something of its "
+             "efficiency there",
+             name);
+    }
+    if (question.test->secondaries && *question.test->secondaries != run->summary().count) {
+      refuse(question.test->place_of("secondaries"),
+             "`{}` has the moments of {} observations together; leave `secondaries` out", name,
+             run->summary().count);
+    }
+  }
+}
+
+/// The margins of a test: `detect`, `allow` and that of `within`.
+std::vector<Margin> margins_of(const TestEntry& test) {
+  std::vector<Margin> margins;
+  if (test.detect) margins.push_back(*test.detect);
+  if (test.allow) margins.push_back(*test.allow);
+  if (test.claim.relation == Relation::within) margins.push_back(test.claim.margin);
+  return margins;
+}
+
 void refuse_missing_per_cent(const Question& question) {
   const QuantityRow& quantity = *question.test->claim.left.row;
   const double size = question.theta->known_size(question);
@@ -183,14 +223,6 @@ std::string written_key(const TestEntry& test, const std::string& key, const std
   const bool of_command_line = test.where.file == "claim";
   if (!of_command_line) return fmt::format("`{}: {}`", key, value);
   return value == "true" ? fmt::format("`--{}`", key) : fmt::format("`--{} {}`", key, value);
-}
-
-std::vector<Margin> margins_of(const TestEntry& test) {
-  std::vector<Margin> margins;
-  if (test.detect) margins.push_back(*test.detect);
-  if (test.allow) margins.push_back(*test.allow);
-  if (test.claim.relation == Relation::within) margins.push_back(test.claim.margin);
-  return margins;
 }
 
 std::string missing_per_cent(const Margin& margin, double size) {

@@ -32,9 +32,6 @@ Question ask_as_written(TestEntry& test, const Estimators& estimators, std::uint
 /// A key of the test as its user writes it: "`test: t`", or "`--test t`" of the command line.
 std::string written_key(const TestEntry& test, const std::string& key, const std::string& value);
 
-/// The margins of a test: `detect`, `allow` and that of `within`.
-std::vector<Margin> margins_of(const TestEntry& test);
-
 /// True if the number is at least 8 standard errors from 0. Margins cannot be relative to a mean
 /// near 0.
 inline bool exceeds_its_error(double value, double standard_error) {

@@ -46,9 +46,9 @@ void require_data(const Method& method, const Question& question) {
 
 /// The rows of the families that claims about the quantities may belong to. Families that derive
 /// from each other have the same ones.
-std::vector<MethodRow> rows_of_families() {
-  std::vector<MethodRow> rows;
-  const auto same = [](const MethodRow& a, const MethodRow& b) {
+std::vector<Method> rows_of_families() {
+  std::vector<Method> rows;
+  const auto same = [](const Method& a, const Method& b) {
     return a.name == b.name && a.summary == b.summary && a.keeps == b.keeps;
   };
   const auto add = [&](const Theta* theta) {
@@ -63,15 +63,15 @@ std::vector<MethodRow> rows_of_families() {
 
 }  // namespace
 
-const std::vector<MethodRow>& method_table() {
-  static const std::vector<MethodRow> table = rows_of_families();
+const std::vector<Method>& method_table() {
+  static const std::vector<Method> table = rows_of_families();
   return table;
 }
 
 const std::vector<std::string>& method_names() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> each;
-    for (const MethodRow& row : method_table()) {
+    for (const Method& row : method_table()) {
       if (std::ranges::find(each, row.name) == each.end()) each.push_back(row.name);
     }
     return each;
@@ -81,7 +81,7 @@ const std::vector<std::string>& method_names() {
 
 std::vector<Method> methods_for(const Question& question) {
   std::vector<Method> methods;
-  for (const MethodRow& row : question.theta->methods) {
+  for (const Method& row : question.theta->methods) {
     if (row.answers(question)) methods.push_back({row});
   }
   return methods;

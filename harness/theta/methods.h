@@ -10,7 +10,7 @@
 #include "harness/question/question.h"
 #include "harness/sampling/image_views.h"
 #include "harness/sampling/summary.h"
-#include "harness/theta/evidence.h"
+#include "harness/theta/decision.h"
 #include "stats/cells/sampled_cells.h"
 #include "stats/means/power_exact.h"
 #include "stats/planning/looks.h"
@@ -33,6 +33,8 @@ struct ChannelData {
   std::span<const std::uint64_t> cells = {};
   std::vector<stats::JointMoments> joint = {};  ///< The channel's ChannelDetails::joint.
   stats::Moments group_variances = {};
+  /// The cells that a method of Keeps::points counts in; null if the pilots gave none.
+  std::shared_ptr<const stats::SampledCells> sampled = {};
   ImageViews images = {};  ///< The subject's elements of each observation.
   std::vector<Replicate> replicates = {};
 };
@@ -49,6 +51,10 @@ struct Seen {
   /// True if theta is in units of the reference.
   bool relative() const;
 };
+
+inline bool is_constant(const Seen& seen, std::size_t subject) {
+  return is_constant(seen.question, subject, seen.channel, seen.moments(subject));
+}
 
 /// Data that a method needs kept. `points` are the values of all channels together.
 enum class Keeps { moments, values, points, cells, powers, costs, group_variances, blocks, images };
@@ -68,14 +74,6 @@ struct RowAllowance {
   double factor;
 };
 
-/// Data that a method takes from the pilot, before the test's own are seen.
-struct Frozen {
-  std::shared_ptr<const stats::SampledCells> cells = nullptr;  ///< For chi-square-two-sample.
-  std::vector<RowAllowance> row_allowances = {};               ///< For means.
-};
-
-struct Method;
-
 /// Other properties of a method.
 struct MethodTraits {
   bool exact = false;               ///< The level holds at every sample size.
@@ -89,29 +87,22 @@ struct MethodTraits {
   const stats::ExactPlanning* plans = nullptr;          ///< Planning of an exact method of a mean.
 };
 
+inline constexpr MethodTraits exact_at_any_size{.exact = true};
+inline constexpr MethodTraits of_scores{.over_looks = stats::LookLaw::independent_increments};
+
 /// A row of the method table (methods.h). Rows of different families of claims may share a name.
-struct MethodRow {
+struct Method {
   std::string name;     ///< Name in suites and records.
   std::string summary;  ///< Hypothesis and range of validity, for `assay list methods`.
   bool (*answers)(const Question&);
   Keeps keeps;
   /// Null if the family has evidence of its own (Theta::evidence).
-  Evidence (*evidence)(const Method&, const Seen&);
+  Evidence (*evidence)(const Seen&);
   MethodTraits is = {};
 };
 
-/// A row with what a test has frozen for it.
-struct Method : MethodRow {
-  Frozen frozen = {};
-};
-
-/// Evidence on theta of one channel.
-inline Evidence evidence_of(const Method& method, const Seen& seen) {
-  return method.evidence(method, seen);
-}
-
 /// The table. A new method is a row in the file of its family, and a function for its evidence.
-const std::vector<MethodRow>& method_table();
+const std::vector<Method>& method_table();
 
 /// The methods that answer a question, the default first; `test:` may force any of them.
 std::vector<Method> methods_for(const Question& question);

@@ -12,9 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "harness/theta/constant.h"
 #include "harness/theta/decision.h"
-#include "harness/theta/family.h"
 #include "harness/theta/gate.h"
 #include "harness/theta/methods.h"
 #include "stats/means/betting_mean.h"
@@ -75,18 +73,24 @@ struct ThetaError {
   std::optional<double> effective = {};
 };
 
+/// The verdict on a channel that needs no test.
+struct ConstantVerdict {
+  reports::Verdict verdict;
+  std::string message;
+};
+
 /// An object has no data of a claim: every function takes the question. `""` and nullopt stand for
 /// "nothing to say".
 class Theta {
  public:
-  Theta(const ThetaTraits& traits, std::vector<MethodRow> rows)
+  Theta(const ThetaTraits& traits, std::vector<Method> rows)
       : is(traits), methods(std::move(rows)) {}
   virtual ~Theta() = default;
   Theta(const Theta&) = delete;
   Theta& operator=(const Theta&) = delete;
 
   const ThetaTraits is;
-  const std::vector<MethodRow> methods;  ///< Of the family, the default first.
+  const std::vector<Method> methods;  ///< Of the family, the default first.
 
   // ---- The claim
 

@@ -59,7 +59,7 @@ inline void take_first_looks(const Prepared& prepared, std::uint64_t seed,
     work.pools = pools.for_question(question, plan, seed, prepared.pilots);
     for (const auto& pool : work.pools) pool->request(plan.looks.sizes.front());
     draw_all(pools.all(), *threads(1), "sampling", silence);
-    const Evidence evidence = evidence_of(plan.method, {question, 0, data_of(*drawn(work), 0)});
+    const Evidence evidence = plan.method.evidence({question, 0, data_of(*drawn(work), 0)});
     Outcomes& mine = outcomes[question.test->name];
     mine.log_p.push_back(log_p_claimed(evidence, plan.regions[0]));
     mine.log_p_pass.push_back(log_p_forbidden(evidence, plan.regions[0]));

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "harness/theta/evidence.h"
+#include "harness/theta/decision.h"
 #include "stats/tails/tails.h"
 
 namespace assay::harness {

@@ -22,8 +22,7 @@ inline Prepared prepare_text(const std::string& text, std::uint64_t seed) {
   prepared.place = places(prepared.asked->suite, prepared.asked->questions);
   std::vector<const PreparedEstimator*> all;
   for (const auto& [name, estimator] : prepared.asked->estimators) all.push_back(&estimator);
-  prepared.pilots =
-      run_pilots(all, pilot_run_of(prepared.asked->questions, seed, threads(1)), silence);
+  prepared.pilots = run_pilots(all, prepared.asked->questions, seed, *threads(1), silence);
   const Primaries primaries =
       choose_primaries(prepared.asked->questions, prepared.place, prepared.pilots);
   for (std::size_t i = 0; i < prepared.place.size(); ++i) {

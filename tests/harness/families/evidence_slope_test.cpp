@@ -1,4 +1,3 @@
-#include "harness/plan/looks.h"
 #include "harness/plan/outcome.h"
 #include "harness/plan/sizes.h"
 #include "harness/run/evaluate.h"
@@ -67,7 +66,7 @@ TEST(EvidenceOfSlope, WhereEverySlopeIsRejectedTheGateIsRed) {
   const auto asked = ask_text(suite);
   const std::array<ChannelData, 4> data = bent();
   const Question question = asked->question("within");
-  const Evidence evidence = evidence_of(methods_for(question).front(), {question, 0, data});
+  const Evidence evidence = methods_for(question).front().evidence({question, 0, data});
   const Regions regions{.relation = Relation::within, .detect = 0.1};
   ASSERT_GT(std::abs(evidence.estimate), 0.1);
   ASSERT_LT(log_p_forbidden(evidence, regions), std::log(beta));

@@ -1,4 +1,3 @@
-#include "harness/plan/looks.h"
 #include "harness/plan/outcome.h"
 #include "harness/plan/sizes.h"
 #include "harness/theta/methods.h"

@@ -1,7 +1,6 @@
 // Pixels of images that never varied, and those of which one half of the images saw nothing.
 
-#include "harness/image/image_constants.h"
-
+#include "harness/image/image_pair.h"
 #include "harness/question/question.h"
 #include "tests/harness/questions.h"
 #include "tests/prelude.h"
@@ -31,7 +30,7 @@ using Stack = std::vector<std::vector<float>>;
 /// The next larger number: half a unit in the last place may be an image's, half another's.
 void round_up(float& value) { value = std::nextafter(value, std::numeric_limits<float>::max()); }
 
-class ImageConstants : public testing::Test {
+class Constants : public testing::Test {
  protected:
   /// Images that are the reference everywhere.
   Stack at_reference(std::size_t count) const {
@@ -42,14 +41,19 @@ class ImageConstants : public testing::Test {
     return Stack(count, image);
   }
 
-  /// What varies of these sides of a test.
-  VaryingPart varying(std::size_t test, std::vector<Stack> sides) {
+  /// The sides of a test, whose constants are settled.
+  struct Settled {
+    const ImagePair& pair;
+    ImageConstants constants;
+    bool any_varies() const { return constants.count < pair.first.extent.elements(); }
+  };
+  Settled settled(std::size_t test, std::vector<Stack> sides) {
     data_.resize(sides.size());
     for (std::size_t i = 0; i < sides.size(); ++i) {
       data_[i].images = ImageViews(std::move(sides[i]));
     }
     pair_.emplace(Seen{asked_->questions[test], 0, data_});
-    return VaryingPart(asked_->questions[test], std::move(*pair_));
+    return {*pair_, pair_->settle(asked_->questions[test])};
   }
 
   std::unique_ptr<Asked> asked_ = ask_text(suite);
@@ -57,51 +61,51 @@ class ImageConstants : public testing::Test {
   std::optional<ImagePair> pair_;
 };
 
-TEST_F(ImageConstants, AConstantWithinRoundingOfItsReferenceIsAtIt) {
+TEST_F(Constants, AConstantWithinRoundingOfItsReferenceIsAtIt) {
   Stack images = at_reference(64);
   for (auto& image : images) {
     round_up(image[dark]);
   }
   round_up(images[5][7]);  // varies, but not by more than rounding
   images[5][8] += 1e-3F;
-  const VaryingPart part = varying(0, {images});
-  EXPECT_TRUE(part.any());
-  EXPECT_TRUE(part.unseen().empty());
+  const Settled part = settled(0, {images});
+  EXPECT_TRUE(part.any_varies());
+  EXPECT_TRUE(part.constants.unseen.empty());
   for (const std::size_t i : {std::size_t{3}, std::size_t{7}, dark}) {
-    for (const auto& image : part.first.images) EXPECT_EQ(image[i], part.value[i]);
+    for (const auto& image : part.pair.first.images) EXPECT_EQ(image[i], part.pair.value[i]);
   }
-  EXPECT_NE(part.first.images[5][8], part.value[8]);
+  EXPECT_NE(part.pair.first.images[5][8], part.pair.value[8]);
 }
 
 // The references of other pixels have errors of 1e-16 to 1e-12, which are no spread of this one.
-TEST_F(ImageConstants, APixelThatWasNeverLitIsHeldAgainstItsRangeAlone) {
+TEST_F(Constants, APixelThatWasNeverLitIsHeldAgainstItsRangeAlone) {
   const Constant& reference = asked_->questions[0].references[dark];
   ASSERT_NEAR(reference.value, 0.025014548794971263, 1e-15);
   ASSERT_GT(reference.standard_error, 0);
   Stack images = at_reference(64);
   for (auto& image : images) image[dark] = 0.02F;
-  const VaryingPart part = varying(0, {images});
-  EXPECT_FALSE(part.any());
-  ASSERT_EQ(part.unseen().size(), 1u);
-  EXPECT_EQ(part.unseen()[0].element, dark);
-  EXPECT_EQ(part.unseen()[0].sign, -1);
-  EXPECT_NEAR(part.unseen()[0].log_p, 64 * std::log1p(-0.005014548794971263 / 7.98), 1e-8);
+  const Settled part = settled(0, {images});
+  EXPECT_FALSE(part.any_varies());
+  ASSERT_EQ(part.constants.unseen.size(), 1u);
+  EXPECT_EQ(part.constants.unseen[0].element, dark);
+  EXPECT_EQ(part.constants.unseen[0].sign, -1);
+  EXPECT_NEAR(part.constants.unseen[0].log_p, 64 * std::log1p(-0.005014548794971263 / 7.98), 1e-8);
   // Sums with its neighbours see it where it is.
-  EXPECT_EQ(part.value[dark], reference.value);
+  EXPECT_EQ(part.pair.value[dark], reference.value);
 }
 
-TEST_F(ImageConstants, BeyondTheRangeAConstantIsCertainlyWrong) {
+TEST_F(Constants, BeyondTheRangeAConstantIsCertainlyWrong) {
   Stack images = at_reference(64);
   for (auto& image : images) image[17 * 24] = 8;  // where nothing but the background is seen
-  const VaryingPart part = varying(0, {images});
-  ASSERT_EQ(part.unseen().size(), 1u);
-  EXPECT_LT(part.unseen()[0].log_p, std::log(1e-100));
-  EXPECT_GT(z_of(part.unseen()[0]), 20);
+  const Settled part = settled(0, {images});
+  ASSERT_EQ(part.constants.unseen.size(), 1u);
+  EXPECT_LT(part.constants.unseen[0].log_p, std::log(1e-100));
+  EXPECT_GT(z_of(part.constants.unseen[0]), 20);
 }
 
 // As constants of two images that differ fail, a difference of pairs that never varies stays as it
 // is.
-TEST_F(ImageConstants, OfTwoImagesAndOfPairsAreEqualWithinRoundingOnly) {
+TEST_F(Constants, OfTwoImagesAndOfPairsAreEqualWithinRoundingOnly) {
   const Stack first = at_reference(16);
   Stack second = first;
   for (auto& image : second) {
@@ -110,36 +114,36 @@ TEST_F(ImageConstants, OfTwoImagesAndOfPairsAreEqualWithinRoundingOnly) {
   }
   Stack varied = first;
   round_up(varied[2][5]);
-  const VaryingPart two = varying(2, {varied, second});
-  const auto& a = two.first.images;
-  const auto& b = two.second.value().images;
+  const Settled two = settled(2, {varied, second});
+  const auto& a = two.pair.first.images;
+  const auto& b = two.pair.second.value().images;
   for (std::size_t r = 0; r < a.size(); ++r) {
     EXPECT_EQ(a[r][3], b[r][3]);
     EXPECT_NE(a[r][4], b[r][4]);
     EXPECT_EQ(a[r][5], b[r][5]);
   }
-  const VaryingPart pairs = varying(3, {first, second});
-  EXPECT_TRUE(pairs.any());
-  EXPECT_TRUE(pairs.unseen().empty());
-  for (const auto& image : pairs.first.images) {
-    EXPECT_EQ(image[3], pairs.value[3]);
-    EXPECT_NE(image[4], pairs.value[4]);
+  const Settled pairs = settled(3, {first, second});
+  EXPECT_TRUE(pairs.any_varies());
+  EXPECT_TRUE(pairs.constants.unseen.empty());
+  for (const auto& image : pairs.pair.first.images) {
+    EXPECT_EQ(image[3], pairs.pair.value[3]);
+    EXPECT_NE(image[4], pairs.pair.value[4]);
   }
 }
 
 // One image never lit a pixel, and the other did now and then; that is no contradiction. At 0.0052
 // above 0.02 a value of 8 has probability 0.0007.
-TEST_F(ImageConstants, APixelThatOneOfTwoImagesNeverLitIsHeldAgainstItsRange) {
+TEST_F(Constants, APixelThatOneOfTwoImagesNeverLitIsHeldAgainstItsRange) {
   Stack first = at_reference(16);
   Stack second = first;
   for (std::size_t r = 0; r < 16; ++r) {
     first[r][dark] = 0.02F;
     second[r][dark] = 0.025F + 0.0001F * static_cast<float>(r % 5);
   }
-  const VaryingPart part = varying(2, {first, second});
-  ASSERT_EQ(part.unseen().size(), 1u);
-  EXPECT_EQ(part.unseen()[0].sign, -1);
-  EXPECT_NEAR(part.unseen()[0].log_p, 16 * std::log1p(-0.0052 / 7.98), 1e-3);
+  const Settled part = settled(2, {first, second});
+  ASSERT_EQ(part.constants.unseen.size(), 1u);
+  EXPECT_EQ(part.constants.unseen[0].sign, -1);
+  EXPECT_NEAR(part.constants.unseen[0].log_p, 16 * std::log1p(-0.0052 / 7.98), 1e-3);
 }
 
 // The float next to 0.1 is 1.5e-9 above it.
@@ -163,7 +167,7 @@ TEST(ImageRounding, IsNeitherBeyondARangeNorADifferenceFromTheMean) {
 
 // 147 of 432 pixels see one surface that is alike everywhere. Their values differ from the closed
 // form by rounding, up to 1.5e-15. False alarm 1e-5 at each seed.
-TEST_F(ImageConstants, PixelsThatAreConstantAreNoEvidence) {
+TEST_F(Constants, PixelsThatAreConstantAreNoEvidence) {
   for (std::uint64_t seed = 1; seed <= (tests::is_long() ? 3 : 1); ++seed) {
     const reports::Record record =
         run_text(suite, {.seed = seed, .selection = {.filters = {"*mean(uniform) == analytic"}}});

@@ -1,6 +1,6 @@
 #include "harness/plan/gate_text.h"
 
-#include "harness/plan/looks.h"
+#include "harness/plan/sizes.h"
 #include "tests/harness/questions.h"
 #include "tests/prelude.h"
 
@@ -33,9 +33,8 @@ TEST(GateText, OfHeavyTailsAdvisesNoMoreObservations) {
 // The logarithm of the factor falls like 1 / sqrt(n): (ln 4 / ln 1.25)^2 x 1000 = 38596.
 TEST(GateText, OfSkewnessSaysHowManyObservationsWouldHelp) {
   const std::string help = help_for(red("level factor by skewness"));
-  EXPECT_THAT(
-      help,
-      HasSubstr("`secondaries: 39000` may do. Without a declared range no test decides"));
+  EXPECT_THAT(help,
+              HasSubstr("`secondaries: 39000` may do. Without a declared range no test decides"));
   EXPECT_THAT(help, Not(HasSubstr("heavy-tailed")));
 }
 

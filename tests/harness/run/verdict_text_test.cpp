@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "harness/plan/looks.h"
+#include "harness/plan/sizes.h"
 #include "harness/suite/run_options.h"
 #include "reports/words/number.h"
 #include "tests/harness/prelude.h"

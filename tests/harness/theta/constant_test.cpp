@@ -1,7 +1,6 @@
-#include "harness/theta/constant.h"
-
 #include "harness/theta/decision.h"
 #include "harness/theta/methods.h"
+#include "harness/theta/theta.h"
 #include "tests/harness/prelude.h"
 #include "tests/harness/questions.h"
 
@@ -46,7 +45,7 @@ ConstantVerdict judge(const ConstantCase& of) {
   for (std::size_t i = 0; i < of.seen.size(); ++i) {
     for (std::uint64_t k = 0; k < of.count; ++k) data[i].moments.add(of.seen[i]);
   }
-  return judge_constant({question, 0, data}, regions_of(*question.test)).value();
+  return question.theta->settled({question, 0, data}, regions_of(*question.test)).value();
 }
 
 /// The same by bets on the declared range, at alpha = beta = .01.
@@ -61,7 +60,7 @@ Verdict bet_on(const ConstantCase& of) {
     for (const double value : values[i]) data[i].moments.add(value);
   }
   const Regions regions = regions_of(*question.test);
-  const Evidence evidence = evidence_of(find_method(question, "betting"), {question, 0, data});
+  const Evidence evidence = find_method(question, "betting").evidence({question, 0, data});
   return decide({{.log_p_claimed = log_p_claimed(evidence, regions),
                   .log_p_forbidden = log_p_forbidden(evidence, regions),
                   .rejected = log_p_claimed(evidence, regions) <= std::log(.01)}},

@@ -1,5 +1,4 @@
-#include "harness/theta/family.h"
-
+#include "harness/theta/decision.h"
 #include "tests/harness/questions.h"
 #include "tests/prelude.h"
 

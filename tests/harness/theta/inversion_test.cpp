@@ -1,4 +1,4 @@
-#include "harness/theta/evidence.h"
+#include "harness/theta/decision.h"
 #include "stats/means/student_t.h"
 #include "tests/prelude.h"
 #include "tests/stats/samples.h"

@@ -60,8 +60,8 @@ Evidence evidence(const std::string& name, const std::vector<Side>& sides,
   }
   const auto asked = ask_text(suite);
   const Question& question = asked->question(name);
-  return evidence_of(method.empty() ? methods_for(question).front() : find_method(question, method),
-                     {question, 0, data});
+  return (method.empty() ? methods_for(question).front() : find_method(question, method))
+      .evidence({question, 0, data});
 }
 
 TEST(Method, MeasuresInTheEstimatorsUnitWhereMarginsAreAbsolute) {
