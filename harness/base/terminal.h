@@ -40,6 +40,7 @@ class ProgressBar final : public Progress {
   explicit ProgressBar(
       std::ostream& out, Clock now = std::chrono::steady_clock::now,
       std::function<int()> width = [] { return terminal_width(stderr); });
+  ~ProgressBar() override { ProgressBar::end(); }
   void begin(const Phase& phase) override;
   void advance(std::uint64_t done) override;
   void end() override;  ///< wipes the line

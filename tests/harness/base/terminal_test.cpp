@@ -61,6 +61,16 @@ TEST(ProgressBar, TellsTheTimeOfAllPhasesAndWipesItself) {
   EXPECT_TRUE(shown.out.str().ends_with("\r\033[K"));
 }
 
+TEST(ProgressBar, IsWipedWhereAMistakeEndsTheRun) {
+  std::ostringstream out;
+  { ProgressBar(out).begin({.total = 4, .unit = "claims"}); }
+  EXPECT_TRUE(out.str().ends_with("\r\033[K"));
+  const std::string all = out.str();
+  std::ostringstream other;
+  say_beside_progress("it is slow", other);
+  EXPECT_EQ(out.str(), all);
+}
+
 TEST(ProgressLines, AreOneAMinute) {
   std::ostringstream out;
   Hands hands;
