@@ -119,11 +119,12 @@ std::string unrepeated(const TestWork& work) {
   for (std::size_t side = 0; side < work.pools.size(); ++side) {
     const harness::Pool& pool = *work.pools[side];
     const harness::Sample sample = work.sample(side);
-    if (sample.drawn() == nullptr) continue;
+    const auto* const drawn = std::get_if<harness::Drawn>(&sample);
+    if (drawn == nullptr) continue;
     const std::string& name = work.outcome.question.subjects[side].estimator->name;
     const std::unique_ptr<Estimator> estimator = pool.setup()->make();
     std::vector<double> again(pool.channels());
-    for (std::size_t i = 0; i < std::min(most, sample.drawn()->values(0).size()); ++i) {
+    for (std::size_t i = 0; i < std::min(most, drawn->values(0).size()); ++i) {
       try {
         pool.draw_again(*estimator, i, again);
       } catch (...) {
@@ -131,7 +132,7 @@ std::string unrepeated(const TestWork& work) {
                            harness::words_of(std::current_exception()));
       }
       for (std::size_t channel = 0; channel < again.size(); ++channel) {
-        const double before = sample.drawn()->values(channel)[i];
+        const double before = drawn->values(channel)[i];
         if (harness::same_number(before, again[channel])) continue;
         return fmt::format(
             "`{}` gave {} for observation {}, and {} when it was drawn again: take all random "

@@ -85,7 +85,7 @@ std::string side_text(const TestWork& work, std::size_t subject, std::size_t cha
       estimator.primaries ? fmt::format("{}", *estimator.primaries) : "auto", side.purpose);
   if (!is_recorded(side)) return text;
   const Sample sample = work.sample(subject);
-  if (const Drawn* const rows = sample.drawn()) {
+  if (const Drawn* const rows = std::get_if<Drawn>(&sample)) {
     const stats::Moments moments = rows->summary().moments(side.channels[channel]);
     text += fmt::format(" {} {} {}", moments.count, moments.mean, moments.m2);
   }

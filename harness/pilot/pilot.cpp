@@ -121,8 +121,8 @@ std::shared_ptr<const Summary> sums_of(const Drawn& drawn) {
 
 std::variant<Pilot, Fault> read(const std::shared_ptr<const Pool>& pool) {
   const Sample sample = pool->sample(pool->requested());
-  if (sample.fault() != nullptr) return *sample.fault();
-  const Drawn& drawn = *sample.drawn();
+  if (const Fault* const fault = std::get_if<Fault>(&sample)) return *fault;
+  const Drawn& drawn = std::get<Drawn>(sample);
   const std::uint64_t images = usual_images(*pool->setup(), pool->primaries()).value_or(0);
   return Pilot{.sums = sums_of(drawn),
                .primaries = pool->primaries(),

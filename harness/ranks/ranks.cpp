@@ -16,10 +16,8 @@
 
 namespace assay::harness {
 
-template <class Archive, maybe_const<Task> T>
-void parts(Archive& a, T& task) {
-  a(task.pool, task.first, task.last);
-}
+template <>
+inline constexpr bool is_plain<Task> = true;
 
 namespace {
 

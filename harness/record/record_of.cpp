@@ -143,7 +143,7 @@ std::vector<reports::Sample> samples_of(const TestWork& work) {
   const std::size_t rows = has_image(outcome.question) ? 1 : subjects[0].channels.size();
   for (std::size_t row = 0; row < rows; ++row) {
     for (std::size_t subject = 0; subject < all.size(); ++subject) {
-      const Drawn* const drawn = all[subject].drawn();
+      const Drawn* const drawn = std::get_if<Drawn>(&all[subject]);
       if (drawn == nullptr || row >= subjects[subject].channels.size()) continue;
       samples.push_back(subjects[subject].image ? image_sample(outcome, subject, *drawn)
                                                 : sample_of(outcome, subject, *drawn, row));
@@ -359,7 +359,7 @@ reports::EstimatorSummary summarise(const PreparedEstimator& estimator, const Su
   row.primaries = draw->pool->primaries();
   row.secondaries = draw->secondaries;
   const Sample sample = draw->pool->sample(draw->secondaries);
-  const Drawn* const drawn = sample.drawn();
+  const Drawn* const drawn = std::get_if<Drawn>(&sample);
   if (drawn == nullptr) return row;
   const Summary& summary = drawn->summary();
   row.cost = cost_of(summary);

@@ -379,8 +379,9 @@ std::vector<Sample> TestWork::samples() const {
 std::optional<DrawnTest> drawn(const TestWork& work) {
   DrawnTest test{.outcome = work.outcome};
   for (const Sample& sample : work.samples()) {
-    if (sample.drawn() == nullptr) return std::nullopt;
-    test.samples.push_back(*sample.drawn());
+    const Drawn* const drawn = std::get_if<Drawn>(&sample);
+    if (drawn == nullptr) return std::nullopt;
+    test.samples.push_back(*drawn);
   }
   return test;
 }

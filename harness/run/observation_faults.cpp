@@ -83,10 +83,13 @@ bool estimates_differ(const Subject& subject, const Pool& pool, std::uint64_t ob
   std::vector<double> a(channels);
   std::vector<double> b(channels);
   for (std::uint64_t i = 0; i < observations; ++i) {
-    // One observation, such as an image, may cost as much as the rest of a look.
-    if (i >= kept.size()) pool.draw_again(*one, i, a);
+    if (i < kept.size()) {
+      kept.whole(i, a);
+    } else {
+      pool.draw_again(*one, i, a);
+    }
     pool.draw_again(*other, i, b);
-    if (!std::ranges::equal(i < kept.size() ? kept.whole(i, a) : a, b)) return true;
+    if (a != b) return true;
   }
   return false;
 }
@@ -96,7 +99,7 @@ bool estimates_differ(const Subject& subject, const Pool& pool, std::uint64_t ob
 std::string where_it_stopped(const TestWork& work) {
   const std::vector<Sample> samples = work.samples();
   for (std::size_t subject = 0; subject < samples.size(); ++subject) {
-    if (const Fault* fault = samples[subject].fault()) {
+    if (const Fault* fault = std::get_if<Fault>(&samples[subject])) {
       return sentence_of(*fault, work.outcome.question.subjects[subject].estimator->name);
     }
   }

@@ -77,7 +77,21 @@ void count_cells(const Subject& side, Pool& pool) {
   }
 }
 
-void keep_for(const Method& method, const Subject& side, Pool& pool) {
+void keep_values(std::uint64_t count, const Subject& side, Pool& pool) {
+  for (const std::size_t channel : side.channels.all()) {
+    std::uint64_t& keep = pool.plans()[channel].keep;
+    keep = std::max(keep, count);
+  }
+}
+
+void keep_for(const Plan& plan, const Subject& side, Pool& pool) {
+  const Method& method = plan.method;
+  const std::uint64_t most = plan.most_secondaries();
+  if (method.keeps == Keeps::values || method.keeps == Keeps::points) keep_values(most, side, pool);
+  if (method.keeps == Keeps::images) pool.keep_observations(most);
+  if (shows_order(side)) keep_values(std::min(ordered_values, most), side, pool);
+  // An image may cost as much as the rest of a look: was_activated takes a mutant's first one.
+  if (side.estimator->original && pool.elements() > 0) pool.keep_observations(1);
   for (const std::size_t channel : side.channels.all()) {
     if (powers_of(method.keeps) == Powers::none) break;
     Powers& powers = pool.plans()[channel].powers;
@@ -128,32 +142,13 @@ std::vector<std::shared_ptr<Pool>> Pools::for_question(const Question& question,
                                                        std::uint64_t seed, const Pilots& pilots) {
   std::vector<std::shared_ptr<Pool>> pools;
   for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
-    pools.push_back(for_subject(question, subject, plan, seed, pilots));
+    const Subject& side = question.subjects[subject];
+    pools.push_back(find_or_make(side, plan.primaries[subject], seed, pilots));
+    keep_for(plan, side, *pools.back());
+    for (const std::uint64_t size : plan.looks.sizes) pools.back()->mark(side.secondaries(size));
+    for (const std::uint64_t size : plan.postponed) pools.back()->mark(side.secondaries(size));
   }
   return pools;
-}
-
-std::shared_ptr<Pool> Pools::for_subject(const Question& question, std::size_t subject,
-                                         const Plan& plan, std::uint64_t seed,
-                                         const Pilots& pilots) {
-  const Subject& side = question.subjects[subject];
-  const std::shared_ptr<Pool> pool = find_or_make(side, plan.primaries[subject], seed, pilots);
-  const std::uint64_t most = plan.most_secondaries();
-  const auto keep_values = [&](std::uint64_t count) {
-    for (const std::size_t channel : side.channels.all()) {
-      std::uint64_t& keep = pool->plans()[channel].keep;
-      keep = std::max(keep, count);
-    }
-  };
-  if (plan.method.keeps == Keeps::values || plan.method.keeps == Keeps::points) keep_values(most);
-  if (plan.method.keeps == Keeps::images) pool->keep_observations(most);
-  if (shows_order(side)) keep_values(std::min(ordered_values, most));
-  // Keeps a mutant's first observations, which was_activated compares with its original's.
-  if (side.estimator->original && side.purpose.empty()) pool->keep_observations(1);
-  keep_for(plan.method, side, *pool);
-  for (const std::uint64_t size : plan.looks.sizes) pool->mark(side.secondaries(size));
-  for (const std::uint64_t size : plan.postponed) pool->mark(side.secondaries(size));
-  return pool;
 }
 
 }  // namespace assay::harness

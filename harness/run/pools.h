@@ -30,8 +30,6 @@ class Pools {
   const std::vector<std::shared_ptr<Pool>>& all() const { return all_; }
 
  private:
-  std::shared_ptr<Pool> for_subject(const Question& question, std::size_t subject, const Plan& plan,
-                                    std::uint64_t seed, const Pilots& pilots);
   /// The pool of a subject, without plans for a test.
   std::shared_ptr<Pool> find_or_make(const Subject& side, std::uint64_t primaries,
                                      std::uint64_t seed, const Pilots& pilots);

@@ -21,10 +21,8 @@ constexpr std::size_t most_numbers = std::size_t{1} << 21;
 
 }  // namespace
 
-template <class Archive, maybe_const<KeptPart> T>
-void parts(Archive& a, T& part) {
-  a(part.observation, part.place, part.size);
-}
+template <>
+inline constexpr bool is_plain<KeptPart> = true;
 
 template <class Archive, maybe_const<DrawnPool> T>
 void parts(Archive& a, T& drawn) {

@@ -3,9 +3,9 @@
 namespace assay::harness {
 
 ImageViews::ImageViews(Images images, const ChannelList& channels) {
-  for (const std::span<const float> image : images) {
+  for (const std::vector<float>& image : images) {
     if (channels.side_by_side()) {
-      images_.push_back(image.subspan(channels[0], channels.size()));
+      images_.push_back(std::span(image).subspan(channels[0], channels.size()));
       continue;
     }
     std::vector<float>& copy = copies_.emplace_back();

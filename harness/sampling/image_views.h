@@ -43,7 +43,7 @@ class ChannelList {
 };
 
 /// Observed images: the numbers of each, in single precision.
-using Images = std::span<const std::span<const float>>;
+using Images = std::span<const std::vector<float>>;
 
 /// The elements of each image at these channels, in their order. Channels that stand side by side
 /// are viewed, others copied.

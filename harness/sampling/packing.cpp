@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <array>
-
-#include "estimators/core/flush_denormals.h"
+#include <functional>
 
 namespace assay::harness {
 namespace {
 
-constexpr char format = '5';  // Another one for each change of what is packed.
+constexpr char format = '6';  // Another one for each change of what is packed.
 
 struct Head {
   std::array<char, 8> name{'a', 's', 's', 'a', 'y', ' ', format, '\n'};
@@ -17,21 +16,6 @@ struct Head {
 };
 
 constexpr std::size_t most_cells = std::size_t{1} << 24;
-
-/// Takes words of 8 bytes. Data that differ in one word have another checksum.
-std::uint64_t checksum_of(std::string_view bytes) {
-  constexpr std::uint64_t odd = 0x9e3779b97f4a7c15U;
-  std::uint64_t sum = bytes.size();
-  while (!bytes.empty()) {
-    std::uint64_t word = 0;
-    const std::size_t size = std::min(bytes.size(), sizeof word);
-    std::memcpy(&word, bytes.data(), size);
-    bytes.remove_prefix(size);
-    sum = (sum ^ word) * odd;
-    sum ^= sum >> 32;
-  }
-  return sum;
-}
 
 /// The number of observations [first, first + count) that lie below `end`.
 std::uint64_t below(std::uint64_t end, std::uint64_t first, std::uint64_t count) {
@@ -53,13 +37,12 @@ void require_shape(const Pool::Block& block, const Recipe& recipe, const Pool& p
   const KeptObservations& kept = *block.observations;
   const std::size_t elements = pool.elements();
   const std::size_t whole = below(recipe.kept_observations, first, count);
-  require(kept.costs.size() == whole && kept.values.size() == whole &&
-              kept.images.size() == (elements > 0 ? whole : 0),
+  require(kept.costs.size() == whole && kept.values.size() == whole && kept.images.size() == whole,
           "other observations than its plan says");
   for (std::size_t i = 0; i < whole; ++i) {
-    require(elements + kept.values[i].size() == pool.channels() &&
-                (elements == 0 || kept.images[i].size() == elements),
-            "an observation of other channels than the pool has");
+    require(
+        elements + kept.values[i].size() == pool.channels() && kept.images[i].size() == elements,
+        "an observation of other channels than the pool has");
   }
 }
 
@@ -88,7 +71,7 @@ void unpack_sums(Unpacker& unpack, const Pool& pool, std::uint64_t first, Pool::
 
 std::string framed(std::string_view bytes) {
   const Head head{.size = bytes.size()};
-  const std::uint64_t checksum = checksum_of(bytes);
+  const std::uint64_t checksum = std::hash<std::string_view>()(bytes);
   std::string frame;
   frame.reserve(sizeof head + bytes.size() + sizeof checksum);
   frame.append(reinterpret_cast<const char*>(&head), sizeof head);
@@ -116,30 +99,9 @@ std::string_view unframed(std::string_view frame) {
   }
   std::memcpy(&checksum, frame.data() + head.size, sizeof checksum);
   frame.remove_suffix(sizeof checksum);
-  if (checksum != checksum_of(frame)) throw Unpackable("it is damaged: its checksum differs");
+  if (checksum != std::hash<std::string_view>()(frame))
+    throw Unpackable("it is damaged: its checksum differs");
   return frame;
-}
-
-template <class Archive, maybe_const<Cost> T>
-void parts(Archive& a, T& cost) {
-  a(cost.camera_rays, cost.closest_hit_rays, cost.shadow_rays, cost.samples);
-}
-
-template <class Archive, maybe_const<stats::Moments> T>
-void parts(Archive& a, T& moments) {
-  a(moments.count, moments.mean, moments.m2, moments.m3, moments.m4, moments.minimum,
-    moments.maximum, moments.nonzero, moments.rest);
-}
-
-template <class Archive, maybe_const<stats::JointMoments::Coordinate> T>
-void parts(Archive& a, T& coordinate) {
-  a(coordinate.mean, coordinate.rest, coordinate.minimum, coordinate.maximum);
-}
-
-template <class Archive, maybe_const<stats::JointMoments> T>
-void parts(Archive& a, T& joint) {
-  a(joint.count, joint.known, joint.of_x, joint.of_cost);
-  a.fixed(joint.sums);
 }
 
 void parts(Packer& a, const stats::JointSums& sums) { a(sums.moments()); }
@@ -158,11 +120,6 @@ void parts(Archive& a, T& details) {
   a.fixed(details.joint);
 }
 
-template <class Archive, maybe_const<ChannelSummary> T>
-void parts(Archive& a, T& channel) {
-  a(channel.moments, channel.nonfinite, channel.first_nonfinite);
-}
-
 template <class Archive, maybe_const<Summary> T>
 void parts(Archive& a, T& summary) {
   a(summary.count, summary.group_variances, summary.cost, summary.seconds);
@@ -170,10 +127,9 @@ void parts(Archive& a, T& summary) {
   for (auto& [channel, details] : summary.detailed) a(details);
 }
 
-void parts(Packer& a, const KeptObservations& kept) { a(kept.texels, kept.values, kept.costs); }
-void parts(Unpacker& a, KeptObservations& kept) {
-  a(kept.texels, kept.values, kept.costs);
-  for (const std::vector<float>& image : kept.texels) kept.images.emplace_back(image);
+template <class Archive, maybe_const<KeptObservations> T>
+void parts(Archive& a, T& kept) {
+  a(kept.images, kept.values, kept.costs);
 }
 
 template <class Archive, maybe_const<Fault> T>

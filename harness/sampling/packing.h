@@ -31,8 +31,20 @@ class Unpackable : public std::runtime_error {
 template <class T, class Struct>
 concept maybe_const = std::same_as<std::remove_const_t<T>, Struct>;
 
+/// Numbers, and structs of numbers of 8 bytes, go by their bits.
 template <class T>
-concept PlainNumber = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+inline constexpr bool is_plain = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+template <>
+inline constexpr bool is_plain<Cost> = true;
+template <>
+inline constexpr bool is_plain<stats::Moments> = true;
+template <>
+inline constexpr bool is_plain<stats::JointMoments> = true;
+template <>
+inline constexpr bool is_plain<ChannelSummary> = true;
+
+template <class T>
+concept Plain = is_plain<T> && std::is_trivially_copyable_v<T>;
 
 /// Appends values to bytes. A type of its own has a function parts(archive, value), which calls the
 /// archive with its members; Unpacker takes the same function.
@@ -46,7 +58,7 @@ class Packer {
   template <class List>
   void fixed(const List& list) {
     put(static_cast<std::uint64_t>(list.size()));
-    if constexpr (PlainNumber<typename List::value_type>) {
+    if constexpr (Plain<typename List::value_type>) {
       bytes_.append(reinterpret_cast<const char*>(list.data()), list.size() * sizeof list[0]);
     } else {
       for (const auto& each : list) put(each);
@@ -55,7 +67,7 @@ class Packer {
   std::string bytes() && { return std::move(bytes_); }
 
  private:
-  template <PlainNumber T>
+  template <Plain T>
   void put(const T& number) {
     bytes_.append(reinterpret_cast<const char*>(&number), sizeof number);
   }
@@ -123,14 +135,14 @@ class Unpacker {
   }
   template <class List>
   void get_each(List& list) {
-    if constexpr (PlainNumber<typename List::value_type>) {
+    if constexpr (Plain<typename List::value_type>) {
       const std::string_view bytes = taken(list.size() * sizeof list[0]);
       if (!bytes.empty()) std::memcpy(list.data(), bytes.data(), bytes.size());
     } else {
       for (auto& each : list) get(each);
     }
   }
-  template <PlainNumber T>
+  template <Plain T>
   void get(T& number) {
     std::memcpy(&number, taken(sizeof number).data(), sizeof number);
   }
@@ -144,7 +156,7 @@ class Unpacker {
   void get(std::string& text) { text = taken(length(1)); }
   template <class T>
   void get(std::vector<T>& list) {
-    list.resize(length(PlainNumber<T> ? sizeof(T) : sizeof(std::uint64_t)));
+    list.resize(length(Plain<T> ? sizeof(T) : sizeof(std::uint64_t)));
     get_each(list);
   }
   template <class T>

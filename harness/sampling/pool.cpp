@@ -71,59 +71,6 @@ const Summary* ready_made(const Setup& setup) {
   return run == nullptr ? nullptr : &run->summary();
 }
 
-/// Sums up the observations of a block, in order. It buffers some, then takes a few channels of all
-/// of them. Drawing does not wait for sums, and the sums of a picture stay in the cache. Each
-/// channel's sums are the same as if values were taken one by one.
-class Intake {
- public:
-  explicit Intake(Summary& sums)
-      : sums_(sums),
-        width_(sums.channels.size()),
-        most_rows_(std::clamp<std::size_t>(at_a_time / std::max<std::size_t>(width_, 1), 1, 32)),
-        rows_(most_rows_ * width_) {}
-
-  std::span<double> row() { return std::span(rows_).subspan(filled_ * width_, width_); }
-
-  /// Takes an observation drawn in row(), or one that stays in place until the block ends.
-  void take(std::span<const double> values, std::uint64_t index, const ObservationCost& cost) {
-    waiting_.push_back({values, index, cost});
-    if (values.data() != row().data()) return;
-    if (++filled_ == most_rows_) take_waiting();
-  }
-
-  void take_waiting() {
-    for (std::size_t first = 0; first < width_; first += at_a_time) {
-      const std::size_t last = std::min(first + at_a_time, width_);
-      for (const Waiting& each : waiting_) {
-        for (std::size_t c = first; c < last; ++c) {
-          add_observation(sums_.channels[c], each.values[c], each.index);
-        }
-      }
-    }
-    for (auto& [channel, details] : sums_.detailed) {
-      for (const Waiting& each : waiting_) add_details(details, each.values[channel], each.cost);
-    }
-    waiting_.clear();
-    filled_ = 0;
-  }
-
- private:
-  struct Waiting {
-    std::span<const double> values;
-    std::uint64_t index;
-    ObservationCost cost;
-  };
-
-  static constexpr std::size_t at_a_time = 512;
-
-  Summary& sums_;
-  std::size_t width_;
-  std::size_t most_rows_;
-  std::size_t filled_ = 0;
-  std::vector<double> rows_;
-  std::vector<Waiting> waiting_;
-};
-
 }  // namespace
 
 std::string sentence_of(const Fault& fault, const std::string& estimator, const std::string& when) {
@@ -233,15 +180,9 @@ std::uint64_t Pool::block_end(std::uint64_t first) const {
       {first + block_size_, most_marked(), setup_->observations().value_or(most_observations)});
 }
 
-std::span<float> Pool::room_for_image(Block& block) const {
-  KeptObservations& kept = *block.observations;
-  kept.images.emplace_back(kept.texels.emplace_back(elements_));
-  return kept.texels.back();
-}
-
 /// Reads a picture to where it is kept. Its average follows it.
 void Pool::read_picture(std::uint64_t index, Block& block) const {
-  const std::span<float> picture = room_for_image(block);
+  std::vector<float>& picture = block.observations->images.emplace_back(elements_);
   setup_->pictures()->read(index, picture, block.whole.cost);
   stats::ChannelSums sum(1);
   sum.add(picture);
@@ -256,32 +197,31 @@ void Pool::draw_one(Estimator& estimator, std::uint64_t index, std::span<double>
   for (double& number : out.first(elements_)) number = static_cast<float>(number);
 }
 
-/// One observation, in `out` or in kept storage.
-std::span<const double> Pool::observe(Estimator& estimator, std::uint64_t index,
-                                      std::span<double> out, Block& block) const {
+/// One observation. Those that are summed later need not stand in `out`.
+void Pool::observe(Estimator& estimator, std::uint64_t index, std::span<double> out,
+                   Block& block) const {
   if (known_ && index < known_->size()) {
     block.whole.cost += known_->costs[index];
-    return sums_later() ? std::span<const double>() : known_->whole(index, out);
+    if (!sums_later()) known_->whole(index, out);
+    return;
   }
-  const bool kept = !known_ && index < recipe_.kept_observations;
-  // Counted at the sum: reading back at once what an estimator just stored in parts stalls the
-  // processor.
-  Cost before;
-  if (kept) before = block.whole.cost;
-  std::span<const double> drawn = out;
-  if (kept && setup_->pictures()) {
+  if (known_ || index >= recipe_.kept_observations) {
+    draw_one(estimator, index, out, block.whole.cost);
+    return;
+  }
+  const Cost before = block.whole.cost;
+  KeptObservations& kept = *block.observations;
+  if (setup_->pictures()) {
     read_picture(index, block);
+    if (!sums_later()) kept.whole(kept.images.size() - 1, out);
   } else {
     draw_one(estimator, index, out, block.whole.cost);
-    if (kept) {
-      if (elements_ > 0) std::ranges::copy(out.first(elements_), room_for_image(block).begin());
-      const std::span<const double> rest = out.subspan(elements_);
-      const auto& values = block.observations->values.emplace_back(rest.begin(), rest.end());
-      if (elements_ == 0) drawn = values;
-    }
+    const std::span<const double> image = out.first(elements_);
+    const std::span<const double> rest = out.subspan(elements_);
+    kept.images.emplace_back(image.begin(), image.end());
+    kept.values.emplace_back(rest.begin(), rest.end());
   }
-  if (kept) block.observations->costs.push_back(block.whole.cost - before);
-  return drawn;
+  kept.costs.push_back(block.whole.cost - before);
 }
 
 Pool::Block Pool::draw(const std::function<Estimator&()>& estimator, std::uint64_t first,
@@ -290,8 +230,7 @@ Pool::Block Pool::draw(const std::function<Estimator&()>& estimator, std::uint64
   const std::uint64_t values_kept = later ? 0 : most_kept(recipe_.plan);
   Block block{.whole = no_sums(),
               .values = std::vector<std::vector<double>>(values_kept > 0 ? channels_ : 0)};
-  std::vector<double> unsummed(later && !setup_->pictures() ? channels_ : 0);
-  Intake intake(block.whole);
+  std::vector<double> row(later && setup_->pictures() ? 0 : channels_);
   auto mark = prefixes_.upper_bound(first);
   Estimator* source = nullptr;
   const auto seconds = [&source] {
@@ -311,17 +250,15 @@ Pool::Block Pool::draw(const std::function<Estimator&()>& estimator, std::uint64
     for (; index < last; ++index) {
       Cost before;
       if (with_costs) before = block.whole.cost;
-      const std::span<double> out = later ? std::span(unsummed) : intake.row();
-      const std::span<const double> drawn = observe(*source, index, out, block);
+      observe(*source, index, row, block);
       if (with_costs) cost = counted(block.whole.cost - before);
-      if (!later) intake.take(drawn, index, cost);
-      for (std::size_t c = 0; index < values_kept && c < drawn.size(); ++c) {
-        if (index < recipe_.plan[c].keep) block.values[c].push_back(drawn[c]);
+      if (!later) block.whole.add_observation(row, index, cost);
+      for (std::size_t c = 0; index < values_kept && c < row.size(); ++c) {
+        if (index < recipe_.plan[c].keep) block.values[c].push_back(row[c]);
       }
-      if (const auto variance = groups.add(drawn)) block.whole.group_variances.add(*variance);
+      if (const auto variance = groups.add(row)) block.whole.group_variances.add(*variance);
       ++block.whole.count;
       if (mark != prefixes_.end() && index + 1 == mark->first) {
-        intake.take_waiting();
         auto partial = std::make_shared<Summary>(block.whole);
         partial->seconds = seconds() - start;
         block.partial.emplace_back(mark->first, std::move(partial));
@@ -331,7 +268,6 @@ Pool::Block Pool::draw(const std::function<Estimator&()>& estimator, std::uint64
   } catch (...) {
     block.fault = {.observation = index, .words = words_of(std::current_exception())};
   }
-  intake.take_waiting();
   block.whole.seconds = seconds() - start;
   return block;
 }
@@ -352,10 +288,10 @@ void Pool::take_details(Summary& summary) const {
   GroupVariance groups(recipe_.grouped_channels);
   std::vector<double> out(channels_);
   for (std::uint64_t index = 0; index < summary.count; ++index) {
-    const std::span<const double> values = all_kept().whole(index, out);
+    all_kept().whole(index, out);
     const ObservationCost cost = counted(all_kept().costs[index]);
-    for (auto& [channel, details] : summary.detailed) add_details(details, values[channel], cost);
-    if (const auto variance = groups.add(values)) summary.group_variances.add(*variance);
+    for (auto& [channel, details] : summary.detailed) add_details(details, out[channel], cost);
+    if (const auto variance = groups.add(out)) summary.group_variances.add(*variance);
   }
 }
 
@@ -366,9 +302,9 @@ void Pool::keep_values() {
   std::vector<double> out(channels_);
   values_.resize(channels_);
   for (; values_taken_ < most; ++values_taken_) {
-    const std::span<const double> values = all_kept().whole(values_taken_, out);
+    all_kept().whole(values_taken_, out);
     for (std::size_t c = 0; c < recipe_.plan.size(); ++c) {
-      if (values_taken_ < recipe_.plan[c].keep) values_[c].push_back(values[c]);
+      if (values_taken_ < recipe_.plan[c].keep) values_[c].push_back(out[c]);
     }
   }
 }
@@ -478,18 +414,13 @@ KeptObservations KeptObservations::part(std::uint64_t first, std::uint64_t last)
   const auto copy = []<class T>(std::span<const T> some) {
     return std::vector<T>(some.begin(), some.end());
   };
-  KeptObservations part{.texels = copy(part_of(texels, first, last)),
-                        .values = copy(part_of(values, first, last)),
-                        .costs = copy(part_of(costs, first, last))};
-  part.images.assign(part.texels.begin(), part.texels.end());
-  return part;
+  return {.images = copy(part_of(images, first, last)),
+          .values = copy(part_of(values, first, last)),
+          .costs = copy(part_of(costs, first, last))};
 }
 
-std::span<const double> KeptObservations::whole(std::size_t index, std::span<double> out) const {
-  if (images.empty()) return values[index];
-  const auto rest = std::ranges::copy(images[index], out.begin()).out;
-  std::ranges::copy(values[index], rest);
-  return out;
+void KeptObservations::whole(std::size_t index, std::span<double> out) const {
+  std::ranges::copy(values[index], std::ranges::copy(images[index], out.begin()).out);
 }
 
 std::vector<ChannelSummary> KeptObservations::sums_of(std::uint64_t begin,
@@ -506,7 +437,6 @@ std::vector<ChannelSummary> KeptObservations::sums_of(std::uint64_t begin,
 }
 
 void KeptObservations::append(KeptObservations&& next) {
-  std::ranges::move(next.texels, std::back_inserter(texels));
   std::ranges::move(next.images, std::back_inserter(images));
   std::ranges::move(next.values, std::back_inserter(values));
   std::ranges::move(next.costs, std::back_inserter(costs));

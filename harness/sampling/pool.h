@@ -41,10 +41,10 @@ std::string sentence_of(const Fault& fault, const std::string& estimator,
 /// The words of an exception, never empty. An InputError's place stands before them.
 std::string words_of(const std::exception_ptr& thrown);
 
+/// Observed images, and the channels that follow each.
 struct KeptObservations {
-  std::vector<std::vector<float>> texels = {};      ///< of each image, if there is one
-  std::vector<std::span<const float>> images = {};  ///< of the texels
-  std::vector<std::vector<double>> values = {};     ///< of the channels that follow the image
+  std::vector<std::vector<float>> images = {};
+  std::vector<std::vector<double>> values = {};
   std::vector<Cost> costs = {};
   /// Moments of the first observations, by their number.
   std::map<std::uint64_t, std::shared_ptr<const Summary>> sums = {};
@@ -52,8 +52,8 @@ struct KeptObservations {
   std::size_t size() const { return costs.size(); }
   /// The images of [begin, end) that exist.
   Images range(std::uint64_t begin, std::uint64_t end) const;
-  /// All channels of one observation: a view, or `out`, which must have room for them.
-  std::span<const double> whole(std::size_t index, std::span<double> out) const;
+  /// Copies all channels of one observation.
+  void whole(std::size_t index, std::span<double> out) const;
   /// The summary of every channel over observations [begin, end) of images.
   std::vector<ChannelSummary> sums_of(std::uint64_t begin, std::uint64_t end) const;
   /// Appends the observations that follow.
@@ -86,7 +86,9 @@ struct Recipe {
 /// Channels keep values of observations below it.
 std::uint64_t most_kept(std::span<const ChannelPlan> plan);
 
-class Sample;
+class Drawn;
+/// Drawn observations, or the fault that prevented them.
+using Sample = std::variant<Drawn, Fault>;
 
 class Pool {
  public:
@@ -115,7 +117,7 @@ class Pool {
   /// is drawn.
   void keep_blocks() { keeps_blocks_ = true; }
   bool keeps_blocks() const { return keeps_blocks_; }
-  /// Stores the first `count` observations whole. Call it before anything is drawn. An image's
+  /// Stores the first `count` observations of an image whole. Call it before anything is drawn. Its
   /// numbers are rounded to single precision when they are drawn, as those of files.
   void keep_observations(std::uint64_t count) {
     recipe_.kept_observations = std::max(recipe_.kept_observations, count);
@@ -207,9 +209,8 @@ class Pool {
   std::shared_ptr<const Summary> sums_of_first(std::uint64_t count, const Summary& drawn);
   void take_details(Summary& summary) const;
   void keep_values();
-  std::span<const double> observe(Estimator& estimator, std::uint64_t index, std::span<double> out,
-                                  Block& block) const;
-  std::span<float> room_for_image(Block& block) const;
+  void observe(Estimator& estimator, std::uint64_t index, std::span<double> out,
+               Block& block) const;
   void read_picture(std::uint64_t index, Block& block) const;
   void draw_one(Estimator& estimator, std::uint64_t index, std::span<double> out, Cost& cost) const;
   void keep_block(Summary block, std::uint64_t first);
@@ -252,21 +253,6 @@ class Drawn {
   const Pool* pool_;
   std::uint64_t count_;
   std::shared_ptr<const Summary> summary_;
-};
-
-/// Drawn observations, or the fault that prevented them.
-class Sample {
- public:
-  Sample(Drawn drawn) : either_(std::move(drawn)) {}  // NOLINT: converts on purpose
-  Sample(Fault fault) : either_(std::move(fault)) {}  // NOLINT: converts on purpose
-
-  /// Null if there is a fault.
-  const Drawn* drawn() const { return std::get_if<Drawn>(&either_); }
-  /// Null if all was drawn.
-  const Fault* fault() const { return std::get_if<Fault>(&either_); }
-
- private:
-  std::variant<Drawn, Fault> either_;
 };
 
 }  // namespace assay::harness

@@ -105,6 +105,14 @@ Summary::Summary(std::size_t count_of_channels, std::span<const ChannelPlan> pla
   }
 }
 
+void Summary::add_observation(std::span<const double> values, std::uint64_t index,
+                              const ObservationCost& counted) {
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    harness::add_observation(channels[c], values[c], index);
+  }
+  for (auto& [channel, details] : detailed) add_details(details, values[channel], counted);
+}
+
 void Summary::append(const Summary& next) {
   count += next.count;
   group_variances.merge(next.group_variances);

@@ -145,6 +145,9 @@ struct Summary {
 
   /// A summary of no observations. Without a plan it keeps moments alone.
   explicit Summary(std::size_t count_of_channels = 0, std::span<const ChannelPlan> plan = {});
+  /// Takes the values of an observation. The caller counts it.
+  void add_observation(std::span<const double> values, std::uint64_t index,
+                       const ObservationCost& counted);
   /// Appends the observations that follow. The order of blocks decides the result, not who drew
   /// them.
   void append(const Summary& next);

@@ -66,8 +66,10 @@ std::shared_ptr<Pool> drawn(const Wanted& wanted) {
 /// The first observations of a pool that has drawn them.
 Drawn sample_of(const Pool& pool, std::uint64_t count) {
   const Sample sample = pool.sample(count);
-  if (sample.fault() != nullptr) throw std::runtime_error(sentence_of(*sample.fault(), "lamp"));
-  return *sample.drawn();
+  if (const Fault* fault = std::get_if<Fault>(&sample)) {
+    throw std::runtime_error(sentence_of(*fault, "lamp"));
+  }
+  return std::get<Drawn>(sample);
 }
 
 void expect_same(const Summary& one, const Summary& other) {
@@ -211,8 +213,7 @@ TEST(Pool, SaysAtWhichObservationItsEstimatorThrew) {
   ASSERT_TRUE(pool->fault());
   EXPECT_EQ(sentence_of(*pool->fault(), "lamp"),
             "`lamp` stopped at observation 4321: the lamp burnt out");
-  EXPECT_EQ(pool->sample(6000).drawn(), nullptr);
-  EXPECT_EQ(pool->sample(6000).fault()->observation, 4321);
+  EXPECT_EQ(std::get<Fault>(pool->sample(6000)).observation, 4321);
   // Observations from before the trouble are still there.
   expect_same(sample_of(*pool, 1000).summary(),
               sample_of(*drawn({.prefixes = {1000}}), 1000).summary());
@@ -238,7 +239,7 @@ TEST(Pool, DrawsNothingFromASourceThatFailedBefore) {
   pool->fail({.words = "it ended in the pilot"});
   draw_up_to(1000, pool, 2);
   EXPECT_EQ(pool->drawn(), 0);
-  EXPECT_EQ(pool->sample(1000).fault()->words, "it ended in the pilot");
+  EXPECT_EQ(std::get<Fault>(pool->sample(1000)).words, "it ended in the pilot");
 }
 
 TEST(Pool, OfBoundedDataEndsWhereTheyEnd) {
