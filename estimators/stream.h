@@ -63,7 +63,7 @@ class Stream {
   }
 
   /// Says that dozens of words will be asked for: from now on they are drawn sixteen at a time, in
-  /// a quarter of the time. They are the same words.
+  /// half of the time. They are the same words.
   void draw_ahead() { ahead_ = true; }
 
   /// Uniform in [0, 1): a multiple of 2^-53.

@@ -31,77 +31,75 @@ std::uint64_t digest_of_bits(std::span<const float> texels) {
   return texels.size() == 2 * half ? sum : step(sum, std::bit_cast<std::uint32_t>(texels.back()));
 }
 
-using SharedStack = std::shared_ptr<const PictureStack>;
-
-/// Which pictures of a stack have been seen, by whoever reads them.
-class Seen {
+/// A stack of pictures, and which of them have been seen, by whoever reads them.
+class SeenStack {
  public:
-  explicit Seen(SharedStack stack) : stack_(std::move(stack)) {}
+  explicit SeenStack(PictureStack stack) : stack_(std::move(stack)) {}
+
+  const PictureStack& stack() const { return stack_; }
+  std::size_t row() const { return stack_.view.row(); }
+  const SeenPictures& seen() const { return seen_; }
 
   /// Copies are no independent observations: they would make the variance too small.
   void refuse_a_copy(std::uint64_t index, const PictureDigest& digest) {
-    const auto same = pictures_.note(index, digest);
+    const auto same = seen_.note(index, digest);
     if (!same) return;
-    throw InputError({.file = stack_->files[same->second]},
-                     "is the same picture as `" + stack_->files[same->first] +
+    throw InputError({.file = stack_.files[same->second]},
+                     "is the same picture as `" + stack_.files[same->first] +
                          "`, bit for bit: give each render a seed of its own, or leave it out");
   }
-  const SeenPictures& pictures() const { return pictures_; }
+
+  void read(std::uint64_t index, std::span<float> texels, Cost& cost) {
+    if (index >= stack_.files.size()) {
+      throw std::out_of_range("recorded: there is no observation " + std::to_string(index) +
+                              ", there are " + std::to_string(stack_.files.size()) + " files");
+    }
+    stack_.read(index, texels);
+    PictureDigest digest(row());
+    digest.add(texels);
+    refuse_a_copy(index, digest);
+    cost.samples += 1;
+  }
 
  private:
-  SharedStack stack_;
-  SeenPictures pictures_;
+  PictureStack stack_;
+  SeenPictures seen_;
 };
-
-std::size_t row_of(const PictureStack& stack) { return stack.view.row(); }
+using SharedStack = std::shared_ptr<SeenStack>;
 
 class Picture final : public Estimator {
  public:
-  Picture(SharedStack stack, std::shared_ptr<Seen> seen)
-      : stack_(std::move(stack)), seen_(std::move(seen)) {}
+  explicit Picture(SharedStack pictures) : pictures_(std::move(pictures)) {}
 
   void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
                  Cost& cost) override {
     if (primaries != 1) throw std::invalid_argument("recorded: `primaries` must be 1");
     texels_.resize(out.size() - 1);
-    read(random.observation(), texels_, cost);
+    pictures_->read(random.observation(), texels_, cost);
     write_observation(texels_, out);
   }
 
-  void read(std::uint64_t index, std::span<float> texels, Cost& cost) {
-    if (index >= stack_->files.size()) {
-      throw std::out_of_range("recorded: there is no observation " + std::to_string(index) +
-                              ", there are " + std::to_string(stack_->files.size()) + " files");
-    }
-    stack_->read(index, texels);
-    PictureDigest digest(row_of(*stack_));
-    digest.add(texels);
-    seen_->refuse_a_copy(index, digest);
-    cost.samples += 1;
-  }
-
  private:
-  SharedStack stack_;
-  std::shared_ptr<Seen> seen_;
+  SharedStack pictures_;
   std::vector<float> texels_;  // scratch
 };
 
 class StackRows final : public PictureRows {
  public:
-  StackRows(SharedStack stack, std::shared_ptr<Seen> seen)
-      : stack_(std::move(stack)),
-        seen_(std::move(seen)),
-        pictures_(stack_->files.size(), {nullptr, PictureDigest(row_of(*stack_)), 0}) {}
+  explicit StackRows(SharedStack pictures)
+      : pictures_(std::move(pictures)),
+        readings_(pictures_->stack().files.size(), {nullptr, PictureDigest(pictures_->row()), 0}) {}
 
   void read(std::uint64_t index, std::span<float> texels) override {
-    Reading& picture = pictures_.at(index);
-    if (!picture.file) picture.file = stack_->open(index);
-    stack_->view.read(*picture.file, texels, picture.rows);
+    const PictureStack& stack = pictures_->stack();
+    Reading& picture = readings_.at(index);
+    if (!picture.file) picture.file = stack.open(index);
+    stack.view.read(*picture.file, texels, picture.rows);
     picture.digest.add(texels);
-    picture.rows += texels.size() / row_of(*stack_);
-    const bool last = picture.rows == stack_->view.window.height;
-    if (last) seen_->refuse_a_copy(index, picture.digest);
-    if (last || pictures_.size() > most_open) picture.file.reset();
+    picture.rows += texels.size() / pictures_->row();
+    const bool last = picture.rows == stack.view.window.height;
+    if (last) pictures_->refuse_a_copy(index, picture.digest);
+    if (last || readings_.size() > most_open) picture.file.reset();
   }
 
  private:
@@ -114,54 +112,52 @@ class StackRows final : public PictureRows {
     std::size_t rows = 0;
   };
 
-  SharedStack stack_;
-  std::shared_ptr<Seen> seen_;
-  std::vector<Reading> pictures_;
+  SharedStack pictures_;
+  std::vector<Reading> readings_;
 };
 
 class PictureSetup final : public Setup, public Pictures {
  public:
   PictureSetup(PictureStack stack, bool independent, std::string data_file)
-      : stack_(std::make_shared<const PictureStack>(std::move(stack))),
-        seen_(std::make_shared<Seen>(stack_)),
-        shape_(stack_->view.shape(independent)),
+      : pictures_(std::make_shared<SeenStack>(std::move(stack))),
+        shape_(pictures_->stack().view.shape(independent)),
         data_file_(std::move(data_file)) {}
 
   std::size_t channel_count() const override { return shape_.elements() + 1; }
   Channel channel(std::size_t place) const override { return picture_channel(shape_, place); }
   std::optional<ImageShape> image() const override { return shape_; }
-  std::unique_ptr<Estimator> make() const override {
-    return std::make_unique<Picture>(stack_, seen_);
+  std::unique_ptr<Estimator> make() const override { return std::make_unique<Picture>(pictures_); }
+  std::optional<std::uint64_t> observations() const override {
+    return pictures_->stack().files.size();
   }
-  std::optional<std::uint64_t> observations() const override { return stack_->files.size(); }
   std::string data_file() const override { return data_file_; }
   std::string place_of(const WhichObservation& which) const override { return file(which.index); }
   const Pictures* pictures() const override { return this; }
 
   void read(std::uint64_t index, std::span<float> texels, Cost& cost) const override {
-    Picture(stack_, seen_).read(index, texels, cost);
+    pictures_->read(index, texels, cost);
   }
   std::unique_ptr<PictureRows> rows() const override {
-    return std::make_unique<StackRows>(stack_, seen_);
+    return std::make_unique<StackRows>(pictures_);
   }
   std::optional<std::pair<std::string, std::string>> shared_with(
       const Pictures& others, std::uint64_t count) const override {
     const auto& other = dynamic_cast<const PictureSetup&>(others);
     // One render in two precisions is no copy: rounding has made it so.
-    const bool alike = stack_->view.of_files == other.stack_->view.of_files;
-    if (seen_ == other.seen_ || !alike) return {};
-    const auto indices = seen_->pictures().shared_with(other.seen_->pictures(), count);
+    const bool alike = pictures_->stack().view.of_files == other.pictures_->stack().view.of_files;
+    if (pictures_ == other.pictures_ || !alike) return {};
+    const auto indices = pictures_->seen().shared_with(other.pictures_->seen(), count);
     if (!indices) return {};
     return std::pair(file(indices->first), other.file(indices->second));
   }
 
  private:
   std::string file(std::uint64_t index) const {
-    return index < stack_->files.size() ? stack_->files[index] : "";
+    const std::vector<std::string>& files = pictures_->stack().files;
+    return index < files.size() ? files[index] : "";
   }
 
-  SharedStack stack_;
-  std::shared_ptr<Seen> seen_;
+  SharedStack pictures_;
   ImageShape shape_;
   std::string data_file_;
 };

@@ -49,7 +49,9 @@ void add_unseen(const stats::ImageExtent& extent, ImageOutcome& outcome) {
 /// The distance with the margin's norm.
 stats::ImageDistance in_units_of_margin(const stats::ImageDistance& distance,
                                         const stats::ImageExtent& extent, bool relative) {
-  if (!relative) return stats::with_norm(distance, static_cast<double>(extent.elements()));
+  if (!relative) {
+    return stats::relative_to(distance, {.squared_bias = static_cast<double>(extent.elements())});
+  }
   if (!(distance.squared_norm > 0)) {
     throw std::domain_error(
         "the image that it is held against is zero within its noise, and nothing is a per cent of "

@@ -231,11 +231,6 @@ ImageDistance image_distance(const ImagePair& pair, const ForEach& for_each) {
   return rows.distance();
 }
 
-ImageDistance with_norm(ImageDistance distance, double squared_norm) {
-  check::positive({"with_norm", "squared norm"}, squared_norm);
-  return relative_to(distance, {.squared_bias = squared_norm});
-}
-
 ImageDistance relative_to(ImageDistance distance, const ImageDistance& norm) {
   distance.squared_norm = norm.squared_bias;
   distance.norm_variance = norm.bias_variance;

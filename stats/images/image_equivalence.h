@@ -57,11 +57,8 @@ class RowDistance {
 // The same of whole images. Throws as above.
 ImageDistance image_distance(const ImagePair& pair, const ForEach& for_each = one_by_one);
 
-// The same with an exact norm: a margin in units of its root.
-ImageDistance with_norm(ImageDistance distance, double squared_norm);
-
 // The same with the norm of another image, of which `norm` is the distance from 0. Their errors
-// count as independent.
+// count as independent. With a squared bias alone the norm is exact.
 ImageDistance relative_to(ImageDistance distance, const ImageDistance& norm);
 
 // Independent errors of a reference's elements, or errors of unknown dependence.

@@ -5,28 +5,15 @@
 #include <numeric>
 #include <span>
 
-#include "stats/basics/vector_copies.h"
 #include "stats/images/image_moments.h"
 
 namespace assay::stats {
 namespace {
 
-// Means over numbers that are so far apart, of which the first are at `values`.
-constexpr std::size_t around = 2 * rows_beside + 1;
-ASSAY_VECTOR_COPIES void means_around(const double* values, std::size_t apart, double* to,
-                                      std::size_t size) {
-  double* const __restrict mean = to;
-  for (std::size_t i = 0; i < size; ++i) {
-    double sum = values[i];
-    for (std::size_t k = 1; k < around; ++k) sum += values[i + k * apart];
-    mean[i] = sum / static_cast<double>(around);
-  }
-}
-
 // Means over the 5 groups of `size` numbers around each, fewer at the ends.
 void smooth(std::span<const double> values, std::size_t size, std::span<double> means) {
   const std::size_t count = values.size() / size;
-  const auto mean_at_end = [&](std::size_t group) {
+  for (std::size_t group = 0; group < count; ++group) {
     const std::size_t begin = group - std::min(group, rows_beside);
     const std::size_t end = std::min(group + rows_beside + 1, count);
     for (std::size_t i = 0; i < size; ++i) {
@@ -34,12 +21,7 @@ void smooth(std::span<const double> values, std::size_t size, std::span<double> 
       for (std::size_t j = begin; j < end; ++j) sum += values[j * size + i];
       means[group * size + i] = sum / static_cast<double>(end - begin);
     }
-  };
-  const std::size_t inner = count - std::min(count, around - 1);
-  const std::size_t first = inner > 0 ? rows_beside : count;
-  for (std::size_t group = 0; group < first; ++group) mean_at_end(group);
-  means_around(values.data(), size, means.data() + first * size, inner * size);
-  for (std::size_t group = first + inner; group < count; ++group) mean_at_end(group);
+  }
 }
 
 std::vector<double> smoothed(const ImageExtent& extent, std::span<const double> values) {

@@ -24,15 +24,8 @@ class Power {
 
   double at(EffectPlan effect) const { return with_far(near(effect), effect); }
 
-  // True if the power is at least 1 - beta. The tail on the other side is a fifth of the work and
-  // never above alpha / 2. Far from the question it need not be known.
-  bool suffices_at(EffectPlan effect) const {
-    constexpr double rounding = 1e-9;
-    const double power = near(effect);
-    const double wanted = 1 - rates_.beta;
-    if (power >= wanted || power + rates_.alpha / 2 + rounding < wanted) return power >= wanted;
-    return with_far(power, effect) >= wanted;
-  }
+  // True if the power is at least 1 - beta.
+  bool suffices_at(EffectPlan effect) const { return at(effect) >= 1 - rates_.beta; }
 
   // The effect with a power of nearly 1 - beta. Its normal score at noncentrality d is almost
   // linear (Johnson & Welch 1940).

@@ -5,8 +5,6 @@
 #include <limits>
 #include <tuple>
 
-#include "stats/basics/vector_copies.h"
-
 namespace assay::stats {
 namespace {
 
@@ -16,39 +14,6 @@ bool beats(const ImageFinding& a, const ImageFinding& b) {
   const double theirs = std::abs(b.z);
   return ours > theirs || (ours == theirs && std::tuple(a.channel, a.window.y, a.window.x) <
                                                  std::tuple(b.channel, b.window.y, b.window.x));
-}
-
-struct PartSums {
-  double* variance;
-  double* of_half;
-  double* reciprocal_degrees;
-};
-
-// Adds a part's squared errors, and makes its squares zero.
-ASSAY_VECTOR_COPIES void add_part(std::vector<double>& from, double count, const PartSums& to) {
-  double* const __restrict squares = from.data();
-  double* const __restrict variance = to.variance;
-  double* const __restrict of_half = to.of_half;
-  double* const __restrict reciprocal_degrees = to.reciprocal_degrees;
-  const std::size_t size = from.size();
-  const double scale = factor_of_half * factor_of_half / (count * (count - 1));
-  for (std::size_t i = 0; i < size; ++i) {
-    const double part = scale * squares[i];
-    variance[i] += part;
-    of_half[i] += part;
-    reciprocal_degrees[i] += part * part / (count - 1);
-    squares[i] = 0;
-  }
-}
-
-ASSAY_VECTOR_COPIES void find_t(const std::array<const double*, 5>& from, std::span<double> t) {
-  const auto [effect, one, other, first_half, second_half] = from;
-  double* const __restrict out = t.data();
-  for (std::size_t i = 0; i < t.size(); ++i) {
-    const double value = effect[i] / std::sqrt(one[i] + other[i]);
-    const bool varied = first_half[i] > 0 && second_half[i] > 0;
-    out[i] = varied ? value : std::numeric_limits<double>::quiet_NaN();
-  }
 }
 
 }  // namespace
@@ -97,14 +62,22 @@ void WelchCells::start(std::size_t cells) {
 }
 
 void WelchCells::finish_part(std::size_t half, std::size_t side, double count) {
-  add_part(squares, count,
-           {variance[side].data(), of_half[half].data(), reciprocal_degrees.data()});
+  const double scale = factor_of_half * factor_of_half / (count * (count - 1));
+  for (std::size_t i = 0; i < squares.size(); ++i) {
+    const double part = scale * squares[i];
+    variance[side][i] += part;
+    of_half[half][i] += part;
+    reciprocal_degrees[i] += part * part / (count - 1);
+    squares[i] = 0;
+  }
 }
 
 void WelchCells::statistics(std::size_t first, std::span<double> t) const {
-  find_t({effect.data() + first, variance[0].data() + first, variance[1].data() + first,
-          of_half[0].data() + first, of_half[1].data() + first},
-         t);
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    const std::size_t cell = first + i;
+    t[i] = varied(cell) ? effect[cell] / std::sqrt(variance[0][cell] + variance[1][cell])
+                        : std::numeric_limits<double>::quiet_NaN();
+  }
 }
 
 void WelchCells::put(std::size_t cell, CellNoise& noise) const {

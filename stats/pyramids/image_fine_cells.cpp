@@ -454,6 +454,13 @@ class FineTiles {
     });
   }
 
+  // Fills rows with a number of each element.
+  static auto each(const auto& number) {
+    return [=](std::size_t, std::size_t first, std::span<double> out) {
+      for (std::size_t i = 0; i < out.size(); ++i) out[i] = number(first + i);
+    };
+  }
+
   // Sums of the weights and of their squares.
   void add_weights(const Tile& tile, std::size_t size) {
     const auto keep_in = [&](std::array<std::vector<double>, fine_squares.size()>& kept) {
@@ -462,21 +469,12 @@ class FineTiles {
         std::copy_n(sums, tile.size(), kept[k].data() + y * tile.stride());
       };
     };
-    add_up(
-        tile, coarse_.weights,
-        [&](std::size_t, std::size_t first, std::span<double> out) {
-          for (std::size_t i = 0; i < out.size(); ++i) out[i] = weight_of(first + i);
-        },
-        keep_in(weights_));
-    add_up(
-        tile, coarse_.squared_weights,
-        [&](std::size_t, std::size_t first, std::span<double> out) {
-          for (std::size_t i = 0; i < out.size(); ++i) {
-            const double weight = weight_of(first + i);
-            out[i] = weight * weight;
-          }
-        },
-        keep_in(squared_weights_));
+    const auto weight = [&](std::size_t element) { return weight_of(element); };
+    const auto square = [&](std::size_t element) {
+      return weight_of(element) * weight_of(element);
+    };
+    add_up(tile, coarse_.weights, each(weight), keep_in(weights_));
+    add_up(tile, coarse_.squared_weights, each(square), keep_in(squared_weights_));
   }
 
   // A reference's squared error, weighted as the element is.
@@ -558,32 +556,25 @@ class FineTiles {
   void count_varied(const Tile& tile, std::size_t h) {
     const Half& own = cells_.half[h];
     const Half& other = cells_.half[1 - h];
-    add_up(
-        tile, coarse_.varied[h],
-        [&](std::size_t, std::size_t first, std::span<double> out) {
-          const std::size_t here = first - own.first;
-          for (std::size_t i = 0; i < out.size(); ++i) {
-            out[i] = other.weight[here + i] > 0 && own.varied[here + i] > 0 ? 1 : 0;
-          }
-        },
-        [](auto...) {});
+    const auto varies = [&](std::size_t element) {
+      const std::size_t here = element - own.first;
+      return other.weight[here] > 0 && own.varied[here] > 0 ? 1 : 0;
+    };
+    add_up(tile, coarse_.varied[h], each(varies), [](auto...) {});
   }
 
   // A reference's error is one for both halves, independent between elements, and known without
   // degrees of freedom. A sum that did not vary stays untested, without variance. The error says
   // nothing of values never seen.
   void add_reference_error(const Tile& tile) {
-    add_up(
-        tile, coarse_.squared_error,
-        [&](std::size_t, std::size_t first, std::span<double> out) {
-          for (std::size_t i = 0; i < out.size(); ++i) out[i] = error_of(first + i);
-        },
-        [&](std::size_t k, std::size_t y, const double* sums) {
-          for (std::size_t i = 0; i < tile.size(); ++i) {
-            const std::size_t cell = y * tile.stride() + i;
-            if (moments_[k].variance[0][cell] > 0) moments_[k].variance[1][cell] += sums[i];
-          }
-        });
+    add_up(tile, coarse_.squared_error,
+           each([&](std::size_t element) { return error_of(element); }),
+           [&](std::size_t k, std::size_t y, const double* sums) {
+             for (std::size_t i = 0; i < tile.size(); ++i) {
+               const std::size_t cell = y * tile.stride() + i;
+               if (moments_[k].variance[0][cell] > 0) moments_[k].variance[1][cell] += sums[i];
+             }
+           });
   }
 
   void offer_squares(const Tile& tile, std::size_t k) {
