@@ -61,8 +61,23 @@ std::vector<EstimatorEntry> parse_options(const std::vector<std::string>& option
   return entries;
 }
 
+/// Says how an estimator is made of a file.
+[[noreturn]] void refuse_file(const Location& where, const std::string& name,
+                              const std::string& file) {
+  refuse(where, "`{}` is a file: {}", file,
+         file.ends_with(".so")
+             ? fmt::format("`--estimator {}=library,file={}` loads it", name, file)
+         : file.ends_with(".py")
+             ? fmt::format("`--estimator '{}=process,command=[python3, {}]'` runs it", name, file)
+             : fmt::format("`--estimator {0}=recorded,file={1}` reads numbers, and `--estimator "
+                           "'{0}=process,command=[{2}{1}]'` runs a program",
+                           name, file, file.find('/') == file.npos ? "./" : ""));
+}
+
 EstimatorEntry entry_for(const Source& source, const std::vector<EstimatorEntry>& given) {
   if (const auto* entry = entry_named(given, source.estimator)) return *entry;
+  const std::string file = source.estimator + "." + source.part;
+  if (std::filesystem::is_regular_file(file)) refuse_file(source.where, source.estimator, file);
   const std::string near = nearest(source.estimator, names_of(given, &EstimatorEntry::name));
   if (!near.empty()) {
     refuse(source.where, "no --estimator is named `{}`; did you mean `{}`?", source.estimator,
@@ -105,16 +120,7 @@ EstimatorEntry parse_estimator_option(const std::string& text) {
            shell_quoted("x=" + text));
   }
   require_estimator_name(head->first, where);
-  if (std::filesystem::is_regular_file(head->second)) {
-    const std::string& file = head->second;
-    refuse(where, "`{1}` is a file: {2}", head->first, file,
-           file.ends_with(".so") ? fmt::format("`{}=library,file={}` loads it", head->first, file)
-           : file.ends_with(".py")
-               ? fmt::format("`{}=process,command=[python3, {}]` runs it", head->first, file)
-               : fmt::format("`{0}=recorded,file={1}` reads numbers, and "
-                             "`{0}=process,command=[{2}{1}]` runs a program",
-                             head->first, file, file.find('/') == file.npos ? "./" : ""));
-  }
+  if (std::filesystem::is_regular_file(head->second)) refuse_file(where, head->first, head->second);
   EstimatorEntry entry{.name = head->first,
                        .plugin = find_plugin(head->second, where).information.name,
                        .parameters = Value::map({}, where),
