@@ -57,9 +57,8 @@ TestRow row_of(const Test& test) {
   std::string number = words.effect.empty() ? words.verdict : words.effect;
   if (!words.interval.empty()) number += fmt::format(" ({})", words.interval);
   if (is_evidence(test) && test.channels.size() > 1) number += " of " + deciding_channel(test).name;
-  return {.name = one_line(test.name),
-          .number = one_line(number),
-          .cost = one_line(cost_text(total_cost(test)))};
+  return {
+      .name = one_line(test.name), .number = one_line(number), .cost = one_line(cost_text(test))};
 }
 
 class Screen {

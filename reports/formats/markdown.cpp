@@ -44,7 +44,7 @@ std::string problem(const Test& test) {
 
 std::string row(const Test& test) {
   return fmt::format("| {} {} | {} | {} | {} | {} |\n", mark(standing(test)), verdict_text(test),
-                     cell(test.name), cell(key_number(test)), cell(cost_text(total_cost(test))),
+                     cell(test.name), cell(key_number(test)), cell(cost_text(test)),
                      duration(total_cost(test).seconds));
 }
 

@@ -317,6 +317,14 @@ std::string cost_text(const Cost& cost) {
   return cost.samples > 0 ? counted(cost.samples, "sample", "samples") : std::string();
 }
 
+std::string cost_text(const Test& test) {
+  const Cost cost = total_cost(test);
+  if (!test.image || rays(cost) > 0) return cost_text(cost);
+  std::uint64_t pictures = 0;
+  for (const Sample& sample : test.samples) pictures += sample.secondaries;
+  return counted(pictures, "picture", "pictures");
+}
+
 std::string place(const Test& test) {
   if (test.file.empty()) return {};
   return test.line > 0 ? fmt::format("{}:{}", test.file, test.line) : test.file;
@@ -356,7 +364,7 @@ std::vector<Fact> facts(const Test& test) {
   }
   add("assumptions", gates_fact(test));
   add("observations", observations_fact(test));
-  add("cost", cost_text(total_cost(test)));
+  add("cost", cost_text(test));
   add("where", place(test));
   add("replay", test.no_replay);
   return result;

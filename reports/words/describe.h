@@ -69,6 +69,8 @@ std::string key_number(const Test&);
 
 /// "1.05 M rays", or samples where no ray was traced.
 std::string cost_text(const Cost&);
+/// That of a claim on images that no ray tells of is the number of pictures.
+std::string cost_text(const Test&);
 std::uint64_t rays(const Cost&);
 
 /// "suites/triangle.yaml:14".

@@ -174,7 +174,9 @@ TEST(Console, TheRowOfAFailedImageIsTheFindingAtItsPlace) {
   std::vector<reports::Test>& tests = record.suites[0].tests;
   tests[0].image->winner = {.place = "x 1, y 2", .effect = mean_effect(0.0162, 0.002)};
   tests[1].image->winner = {.statistic = "alternating", .place = "the whole image"};
+  tests[0].samples = {{.secondaries = 64}, {.secondaries = 63}};
   EXPECT_THAT(console(record, {.detail = 1}), HasSubstr("+1.62 % ("));
+  EXPECT_EQ(cost_text(tests[0]), "127\u00a0pictures");
   EXPECT_EQ(display(tests[1]).effect + display(tests[1]).interval, "") << "signs have no effect";
 }
 
