@@ -25,7 +25,7 @@ struct ConsoleOptions {
 std::string broken_claim(const Test&, const ConsoleOptions& = {});
 
 /// The text of one run for a terminal or a log: suites, then claims that are not as they should be,
-/// then the verdict. Claims of the ids in `told` were told before.
+/// then the verdict. Claims whose ids are in `told` are left out of the second part.
 std::string console(const Record&, const ConsoleOptions& = {},
                     const std::set<std::string>& told = {});
 

@@ -1,12 +1,17 @@
 #include "harness/command/cli.h"
 
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <map>
 #include <memory>
 
 #include "estimators/catalogue.h"
+#include "harness/base/refuse.h"
 #include "harness/command/describe.h"
+#include "harness/command/environment.h"
 #include "harness/command/options.h"
 #include "harness/language/quantities.h"
 #include "reports/report_formats.h"
@@ -493,7 +498,6 @@ Examples:
 )");
   options.add({.name = "RUN.json", .needed = "a saved run", .words = {"*.json"}}, command.file,
               "a saved run");
-  command.output.github = false;
   add_output(options, command.output);
 }
 
@@ -583,6 +587,13 @@ const std::vector<CommandRow>& command_rows() {
   return rows;
 }
 
+/// Keeps freed memory in the process. Pictures allocate and free tens of megabytes, and new pages
+/// from the system would cost more than the work on them.
+void keep_freed_memory() {
+  mallopt(M_MMAP_MAX, 0);
+  mallopt(M_TRIM_THRESHOLD, -1);
+}
+
 }  // namespace
 
 Command parse_command_line(const std::vector<std::string>& arguments) {
@@ -598,6 +609,44 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
     return TextCommand{std::string(file->text)};
   }
   return parsed(arguments, command_rows());
+}
+
+std::vector<Suite> load_suites(const std::vector<std::string>& files,
+                               const std::vector<std::string>& assignments) {
+  std::vector<Suite> suites;
+  std::map<std::string, std::string> files_of;  // by stem
+  for (const std::string& file : files) {
+    suites.push_back(load_suite(file));
+    const auto [first, is_new] = files_of.emplace(suites.back().stem, file);
+    if (is_new) continue;
+    const std::string both = fmt::format("`{}` and `{}`", first->second, file);
+    if (std::filesystem::equivalent(first->second, file)) {
+      refuse({}, both + " are one suite; give it once");
+    }
+    refuse({},
+           "{} are two suites whose tests have the ids `{}/…`; rename one of the files, or run "
+           "each by itself",
+           both, first->first);
+  }
+  for (const std::string& assignment : assignments) set_parameter(suites, assignment);
+  return suites;
+}
+
+Loaded loaded(const Command& command) {
+  if (const auto* run = std::get_if<RunCommand>(&command)) {
+    Loaded all{load_suites(run->suites, run->assignments), run->options};
+    all.options.assigns = !run->assignments.empty();
+    take_shard_from(system_environment, all.options);
+    return all;
+  }
+  if (const auto* check = std::get_if<CheckCommand>(&command)) {
+    return {{suite_of_claim(check->arguments)}, check->options};
+  }
+  if (const auto* images = std::get_if<ImagesCommand>(&command)) {
+    keep_freed_memory();
+    return {{suite_of_images(images->arguments)}, images->options};
+  }
+  refuse({}, "this command runs no test");
 }
 
 }  // namespace assay::harness

@@ -74,10 +74,10 @@ int run_suites(const std::vector<Suite>& suites, const RunOptions& options, cons
     drawn.executor = checkpoint;
   }
   const auto broken = [&](const reports::Test& test) {
-    if (tell(test, output)) told.insert(test.id);
+    if (tell_broken(test, output)) told.insert(test.id);
   };
   reports::Record record = run(suites, drawn, *progress, broken, &ledger_fault);
-  report(record, output, told);
+  write_run(record, output, told);
   if (output.kept) keep_last_run(record, output.detail > 0);
   if (ranks && output.detail > 1) say_beside_progress(ranks->window_text());
   if (checkpoint && !interrupted()) checkpoint->remove();
@@ -140,7 +140,9 @@ int explain(const ExplainArguments& arguments) {
 int report_saved_run(const std::string& file, const Output& output) {
   require_writable(output, {file});
   reports::Record record = read_record(file);
-  report(record, output);
+  Output quiet = output;
+  quiet.github = false;  // the run has told it
+  write_run(record, quiet);
   return 0;
 }
 

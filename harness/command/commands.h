@@ -1,6 +1,6 @@
 #pragma once
 
-// The subcommands, without the parsing of arguments. Each returns an exit code.
+// The subcommands, without the parsing of arguments. Those that answer an int return an exit code.
 
 #include <functional>
 #include <optional>
@@ -39,7 +39,6 @@ int plan_suites(const std::vector<Suite>& suites, const RunOptions& options, boo
 /// Tables of at most 80 columns without colours: a row a test, with notes on the forecast and the
 /// pilot's gates below it. Totals end the page.
 std::string plan_text(const PlannedRun& planned);
-
 /// Returns 1 if a selected test cannot come out as expected: no method is valid, or a source
 /// stopped. Returns 77 if all selected tests will be skipped, 4 if none is selected, else 0.
 int plan_exit_code(const PlannedRun& planned);

@@ -11,20 +11,6 @@ namespace assay::harness {
 /// `claim` is that of a claim from the command line.
 std::string failure_text(const InputError& error, const std::string& claim);
 
-/// The suites of these files with the parameters that `--set` assigns. InputError for any mistake.
-std::vector<Suite> load_suites(const std::vector<std::string>& files,
-                               const std::vector<std::string>& assignments = {});
-
-/// A run that a command asks for.
-struct Loaded {
-  std::vector<Suite> suites;
-  RunOptions options;
-};
-
-/// Reads the suites of `run`, `check` or `images`. InputError for any mistake in them, and for
-/// other commands.
-Loaded loaded(const Command& command);
-
 class Messages;
 
 /// The whole program, or rank 0 of several: parses, acts, and turns every exception into one clear

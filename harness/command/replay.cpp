@@ -12,7 +12,6 @@
 #include "harness/base/terminal.h"
 #include "harness/command/cli.h"
 #include "harness/command/describe.h"
-#include "harness/command/program.h"
 #include "harness/draws/sampler_setup.h"
 #include "harness/question/question.h"
 #include "harness/record/output.h"

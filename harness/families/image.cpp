@@ -138,7 +138,8 @@ void remove_beginnings(std::vector<std::string>& names) {
 }
 
 std::string without_leading_zeros(const std::string& text) {
-  return std::regex_replace(text, std::regex("(^|[^0-9])0+(?=[0-9])"), "$1");
+  static const std::regex zeros("(^|[^0-9])0+(?=[0-9])");
+  return std::regex_replace(text, zeros, "$1");
 }
 
 /// Keys tell a side's pictures apart: their names without the beginning and the end that all have

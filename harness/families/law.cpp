@@ -222,11 +222,11 @@ Evidence cells_against_density(const Seen& seen) {
           .distance = true};
 }
 
-/// Two samples against each other in the method's cells. One more cell counts draws without a
+/// Two samples against each other in the plan's cells. One more cell counts draws without a
 /// point. Throws std::domain_error if there are no cells.
 Evidence cells_against_cells(const Seen& seen) {
-  if (!seen.data[0].sampled) throw std::domain_error("the pilots gave no cells to count in");
-  const stats::SampledCells& cells = *seen.data[0].sampled;
+  if (!seen.data[0].sampled_cells) throw std::domain_error("the pilots gave no cells to count in");
+  const stats::SampledCells& cells = *seen.data[0].sampled_cells;
   const stats::ChiSquareTwoSample fit = stats::chi_square_two_sample(
       {.x = counts_in(cells, seen, 0), .y = counts_in(cells, seen, 1)});
   const auto at = [fit](double theta) {
@@ -356,9 +356,9 @@ std::vector<stats::PlanePoint> pilot_points(const TestOutcome& test, const Pilot
   return points;
 }
 
-/// Gives the plan's method what it takes from the pilots; sets `invalid` if they lack it. Rows of a
+/// Chooses the plan's cells by the pilots' points; sets `invalid` if there are none. Rows of a
 /// file are their own pilot, both sides together; beside drawn values they are not used.
-void freeze(TestOutcome& test, const Pilots& pilots) {
+void choose_cells(TestOutcome& test, const Pilots& pilots) {
   if (test.plan.method.keeps != Keeps::points) return;
   std::vector<stats::PlanePoint> points = pilot_points(test, pilots);
   if (points.empty()) {
@@ -407,7 +407,7 @@ class LawTheta : public Theta {
   }
 
   std::uint64_t choose(TestOutcome& test, const Pilots& pilots) const override {
-    freeze(test, pilots);
+    choose_cells(test, pilots);
     return least_secondaries;
   }
 

@@ -28,10 +28,10 @@ struct UnseenElement {
 /// The normal z of its p-value, with the difference's sign.
 double z_of(const UnseenElement& unseen);
 
-/// The elements of an image pair that did not vary by more than their channels' declared rounding.
+/// The elements of an image pair that did not vary.
 struct ImageConstants {
-  std::vector<UnseenElement> unseen = {};
-  std::size_t count = 0;
+  std::vector<UnseenElement> unseen = {};  ///< Those that are held against their ranges.
+  std::size_t count = 0;                   ///< Elements in which nothing varied on either side.
 };
 
 /// Replicates of an image, and their comparison: replicates of another image, scaled, or a number
@@ -49,8 +49,8 @@ struct ImagePair {
   stats::ImagePair pair() const {
     return second ? stats::ImagePair(first, *second) : stats::ImagePair(first, reference());
   }
-  /// Gives elements that did not vary one value. Images that are drawn are also rounded to single
-  /// precision.
+  /// Gives elements that did not vary one value. An element did not vary if its values differ by
+  /// rounding only: as its channel declares, and of drawn images also to single precision.
   ///
   /// An element that did not vary is tested in sums with its neighbours. By itself it is held
   /// against its range, in `unseen`. Constants that differ by rounding only are equal. If one of

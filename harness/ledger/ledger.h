@@ -14,7 +14,6 @@
 // A night is left out for what its pilots say and for errors. Its own data never leave it out, as
 // the others would be those that look well: samples without their rare values.
 
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,6 +25,7 @@
 
 namespace assay::harness {
 
+/// What nights can pool, or the obstacle: one of `value` and `obstacle` is set.
 struct NightEvidence {
   std::optional<NightValue> value = {};
   std::optional<double> reference_error = {};  ///< Error that all runs share, beside an estimate.

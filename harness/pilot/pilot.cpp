@@ -141,8 +141,8 @@ std::set<std::string> costly(const std::vector<Question>& questions) {
   return names;
 }
 
-/// Primaries of a pool, by the listed names of the estimators.
-std::map<std::string, std::uint64_t> paid_for(const std::vector<Question>& questions) {
+/// The most primaries of a pilot's pool that any claim pays for, by the estimators' listed names.
+std::map<std::string, std::uint64_t> most_primaries(const std::vector<Question>& questions) {
   std::map<std::string, std::uint64_t> most;
   for (const Question& question : questions) {
     for (const Subject& side : question.subjects) {
@@ -229,7 +229,7 @@ std::vector<std::pair<std::string, std::shared_ptr<Pool>>> pilot_pools(
     const std::vector<const PreparedEstimator*>& estimators, const std::vector<Question>& questions,
     std::uint64_t seed) {
   const std::set<std::string> with_cost = costly(questions);
-  const auto paid = paid_for(questions);
+  const auto paid = most_primaries(questions);
   const auto most_of = [&](const PreparedEstimator& estimator) {
     const auto found = paid.find(estimator.listed);
     return found == paid.end() ? unlimited : found->second;

@@ -17,6 +17,14 @@
 
 namespace assay::harness {
 
+/// A test's place in its suite's family.
+struct FamilyPlace {
+  bool inside = true;       ///< False for mutants and expected failures.
+  double weight = 0;        ///< Weight of one channel; a family's weights sum to 1.
+  ErrorShare share = {};    ///< Share of one channel.
+  bool in_seconds = false;  ///< A budget in seconds, the test's or the suite's, bounds it.
+};
+
 /// Noise and brightness of an observation of an image, by the pilots.
 struct PlannedImage {
   double trace = 0;         ///< tr C, of the elements' covariance C
@@ -40,13 +48,21 @@ struct Reason {
   bool empty() const { return text.empty(); }
 };
 
+/// Factor on the variance of the mean of a recorded channel's rows.
+struct RowAllowance {
+  std::size_t subject;
+  std::size_t channel;
+  double factor;
+};
+
 /// The design of a test, frozen before its own data are drawn.
 struct Plan {
   Method method;
-  std::shared_ptr<const stats::SampledCells> cells = {};  ///< Of the pilots' points.
-  std::vector<RowAllowance> row_allowances = {};          ///< For means.
-  std::vector<std::uint64_t> primaries = {};              ///< One a subject.
-  stats::LookSchedule looks = {};  ///< Sizes are the most that any subject takes.
+  /// The pilots choose the cells that both sides' points are counted in.
+  std::shared_ptr<const stats::SampledCells> cells = {};
+  std::vector<RowAllowance> row_allowances = {};
+  std::vector<std::uint64_t> primaries = {};  ///< One a subject.
+  stats::LookSchedule looks = {};             ///< Sizes are the most that any subject takes.
   /// Larger sizes that the last look is put off to while no look is sound. More observations must
   /// mend the red gates. It is the only look then.
   std::vector<std::uint64_t> postponed = {};

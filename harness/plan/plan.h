@@ -14,6 +14,12 @@
 
 namespace assay::harness {
 
+/// Places of a suite's questions, in order. Inside the family alpha is split by weight, then evenly
+/// over a claim's channels. A test outside has the smallest share in the suite, and beta over the
+/// number of tests outside. A suite of mutants only shares out alpha among them. A test without a
+/// question keeps its part.
+std::vector<FamilyPlace> places(const Suite& suite, const std::vector<Question>& questions);
+
 /// Primaries of a secondary for each averaging estimator that says `auto`. Variance claims get
 /// near-normal secondaries, mean claims a right tail at their level. The number depends on the
 /// whole suite, not on a selection.

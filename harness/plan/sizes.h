@@ -49,7 +49,7 @@ stats::ErrorRates planned_rates(const ErrorShare& share, const Regions& regions)
 /// The t test of a channel's mean, or of its two means, for the subjects' own sizes. Theta is taken
 /// for such a mean where it is the logarithm of a ratio.
 stats::MeanPlan mean_plan(const Sized& sized);
-/// Secondaries with which it finds the channel's `detect`.
+/// Secondaries, as many of each subject, with which a t test finds the channel's `detect`.
 std::uint64_t secondaries_by_t(const Method& method, const stats::ErrorRates& rates,
                                const PlannedChannel& channel);
 

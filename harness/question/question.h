@@ -110,7 +110,7 @@ struct Question {
   bool of_two() const { return sizes.empty() && compared() == 2; }
   /// Factor on a subject's standard deviation in the comparison.
   double factor_of(std::size_t subject) const { return subject == 0 ? 1 : std::abs(factor); }
-  /// What the first is compared with where the second is this.
+  /// The second side's value on the first's scale.
   double mapped(double second) const { return factor * second + offset; }
 };
 

@@ -11,11 +11,9 @@
 #include <utility>
 
 #include "harness/base/identity.h"
-#include "harness/base/numbers.h"
 #include "harness/base/record_file.h"
 #include "harness/base/terminal.h"
 #include "harness/base/text_file.h"
-#include "harness/run/evaluate.h"
 
 namespace assay::harness {
 namespace {
@@ -81,7 +79,7 @@ std::vector<FamilyMember> parts_of(const std::vector<ShardFile>& shards, std::si
           .message = fmt::format("shard {} of {} is missing", test.shard, any.shard->count)},
          {.position = test.position}});
   }
-  std::ranges::sort(parts, {}, [](const FamilyMember& part) { return part.family.position; });
+  std::ranges::sort(parts, {}, [](const FamilyMember& part) { return part.place.position; });
   return parts;
 }
 
@@ -246,7 +244,7 @@ void add_shard(const SuiteRuns& runs, const RunOptions& options, reports::Record
     reports::ShardSuite suite{
         .digest = digest_of(*run), .tests = run->suite.tests.size(), .elsewhere = run->elsewhere};
     for (const TestWork& work : run->tests) {
-      suite.results.push_back(member_of(work.outcome, run->suite));
+      suite.results.push_back(place_in_family(work.outcome, run->suite));
     }
     for (const Untested& each : run->untested) {
       suite.results.push_back({.position = position_of(*each.test, run->suite)});
@@ -290,7 +288,7 @@ int merge_shards(const std::vector<std::string>& records, const Output& output) 
   std::vector<ShardFile> shards;
   for (const std::string& file : records) shards.push_back({file, read_record(file)});
   reports::Record record = merge(shards);
-  report(record, output);
+  write_run(record, output);
   const std::string missing = missing_shards(shards);
   if (missing.empty()) return exit_code(record, output.inconclusive);
   fmt::print(stderr, "{}", in_lines(missing));

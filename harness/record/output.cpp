@@ -137,14 +137,14 @@ void write_reports(const Output& output, const ReportWriter& written) {
   if (!failures.empty()) throw std::runtime_error(failures);
 }
 
-bool tell(const reports::Test& broken, const Output& output) {
+bool tell_broken(const reports::Test& test, const Output& output) {
   std::FILE* const stream = console_stream(output);
   if (stream == nullptr) return false;
-  write_beside_progress(reports::broken_claim(broken, console_options(output, stream)), stream);
+  write_beside_progress(reports::broken_claim(test, console_options(output, stream)), stream);
   return true;
 }
 
-void report(reports::Record& record, const Output& output, const std::set<std::string>& told) {
+void write_run(reports::Record& record, const Output& output, const std::set<std::string>& told) {
   write_reports(output, [&](const ReportRequest& request, const reports::ConsoleOptions& options) {
     if (request.kind == "console" && request.path == "-") {
       return reports::console(record, options, told);

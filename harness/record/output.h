@@ -49,11 +49,12 @@ void require_writable(const Output& output, const std::vector<std::string>& kept
 void write_reports(const Output& output, const ReportWriter& written);
 
 /// Tells of a broken claim at once, beside the progress. False if a file has the console.
-bool tell(const reports::Test& broken, const Output& output);
+bool tell_broken(const reports::Test& test, const Output& output);
 
 /// Writes a record's reports and tells GitHub Actions. Maps are written beside the JSON report, and
 /// the record gets their names. The console says no more of the claims that were told.
-void report(reports::Record& record, const Output& output, const std::set<std::string>& told = {});
+void write_run(reports::Record& record, const Output& output,
+               const std::set<std::string>& told = {});
 
 /// Returns 0 if every test is ok, and 1 if one is not or the ledger has an alarm. Returns 3 if
 /// nothing failed but something is inconclusive, 4 if nothing ran, 77 if all were skipped.

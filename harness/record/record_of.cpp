@@ -382,16 +382,17 @@ reports::EstimatorSummary summarise(const PreparedEstimator& estimator, const Su
   return row;
 }
 
-/// A suite's tests in the order of its file.
+/// A suite's tests in the order of its file, with adjusted p-values if the whole family ran.
 std::vector<FamilyMember> members_of(const SuiteRun& run) {
   std::vector<FamilyMember> members;
   for (const Untested& each : run.untested) {
     members.push_back({record_of_untested(each, run), {position_of(*each.test, run.suite)}});
   }
   for (const TestWork& work : run.tests) {
-    members.push_back({record_of_test(work, run.suite.file), member_of(work.outcome, run.suite)});
+    members.push_back(
+        {record_of_test(work, run.suite.file), place_in_family(work.outcome, run.suite)});
   }
-  std::ranges::sort(members, {}, [](const FamilyMember& each) { return each.family.position; });
+  std::ranges::sort(members, {}, [](const FamilyMember& each) { return each.place.position; });
   if (run.adjusted) adjust_p_values(members);
   return members;
 }
@@ -514,7 +515,7 @@ reports::Test record_of_untested(const Untested& untested, const SuiteRun& run) 
   return test;
 }
 
-reports::ShardTest member_of(const TestOutcome& outcome, const Suite& suite) {
+reports::ShardTest place_in_family(const TestOutcome& outcome, const Suite& suite) {
   reports::ShardTest member{.position = position_of(*outcome.question.test, suite),
                             .inside = outcome.place.inside,
                             .weight = outcome.place.weight,
@@ -528,14 +529,14 @@ reports::ShardTest member_of(const TestOutcome& outcome, const Suite& suite) {
 void adjust_p_values(std::vector<FamilyMember>& suite) {
   std::vector<stats::WeightedLogP> entries;
   std::vector<reports::Channel*> channels;  // null where one has no p-value
-  for (auto& [test, family] : suite) {
-    if (!family.inside) continue;
+  for (auto& [test, place] : suite) {
+    if (!place.inside) continue;
     const bool is_tested = reports::is_evidence(test);
-    for (std::size_t i = 0; i < family.log_p.size(); ++i) {
-      entries.push_back({is_tested ? family.log_p[i] : stats::untested_log_p, family.weight});
+    for (std::size_t i = 0; i < place.log_p.size(); ++i) {
+      entries.push_back({is_tested ? place.log_p[i] : stats::untested_log_p, place.weight});
       channels.push_back(&test.channels[i]);
     }
-    entries.resize(entries.size() + family.untested, {stats::untested_log_p, family.weight});
+    entries.resize(entries.size() + place.untested, {stats::untested_log_p, place.weight});
     channels.resize(entries.size());
   }
   if (entries.empty()) return;
@@ -565,7 +566,7 @@ reports::Record record_of(const SuiteRuns& runs, const RunOptions& options) {
                          .alpha = run->suite.alpha,
                          .beta = run->suite.beta};
     for (FamilyMember& each : members_of(*run)) {
-      add_replay(run->suite.tests[each.family.position], *run, runs, options, each.test);
+      add_replay(run->suite.tests[each.place.position], *run, runs, options, each.test);
       suite.tests.push_back(std::move(each.test));
     }
     suite.statements = statements_of(run->suite, suite.tests);

@@ -404,7 +404,7 @@ std::vector<ChannelData> data_of(const DrawnTest& test, std::size_t channel) {
                                  : joint_moments(summary.details(index)),
                     .group_variances = summary.group_variances});
     if (plan.method.keeps == Keeps::points) {
-      data.back().sampled = plan.cells;
+      data.back().sampled_cells = plan.cells;
       for (const std::size_t each : channels.all())
         data.back().all_values.push_back(sample.values(each));
     }

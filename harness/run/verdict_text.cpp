@@ -73,14 +73,21 @@ bool holds_no_effect(const ChannelOutcome& channel) {
   return channel.evidence.distance && !channel.effect.low && !channel.effect.high;
 }
 
+/// An image's interval is that of the difference's size, and does not decide.
+const char* no_evidence(const ChannelOutcome& channel) {
+  return channel.image && channel.effect.low.value_or(0) > 0
+             ? "no place differs beyond noise, but all pixels together do, by small differences of "
+               "either sign"
+             : "no evidence against the claim";
+}
+
 /// The interval that decides a pass is narrower than the one at the test's share of alpha. It may
 /// leave out the claimed value.
 std::string evidence_against(const TestOutcome& outcome, const ChannelOutcome& channel) {
   const double edge = channel.regions.claimed_edge();
   const bool above = channel.regions.bounds_above() && lies_above(channel.effect, edge);
   const bool below = channel.regions.bounds_below() && lies_below(channel.effect, -edge);
-  // An image's interval is that of the difference's size, and does not decide.
-  if (channel.image || (!above && !below)) return "no evidence against the claim";
+  if (channel.image || (!above && !below)) return no_evidence(channel);
   return fmt::format("not enough evidence against the claim, {} where its share of alpha is {:.2g}",
                      p_text(channel.decision.log_p_claimed), outcome.place.share.alpha);
 }
@@ -110,7 +117,7 @@ std::string found_in_cell(const ChannelOutcome& channel) {
 std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& channel) {
   if (channel.evidence.exact) return "as claimed: what never varies needs no test";
   if (!channel.regions.has_forbidden()) {
-    const std::string text = "no evidence against the claim";
+    const std::string text = no_evidence(channel);
     if (channel.finds_nothing) {
       return fmt::format(
           "{}, nor could there be: in {} observations no difference that the range allows is found "

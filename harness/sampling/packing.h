@@ -42,6 +42,9 @@ template <>
 inline constexpr bool is_plain<stats::JointMoments> = true;
 template <>
 inline constexpr bool is_plain<ChannelSummary> = true;
+static_assert(sizeof(Cost) == 4 * 8 && sizeof(stats::Moments) == 9 * 8 &&
+              sizeof(stats::JointMoments) == (2 + 2 * 4 + 25) * 8 &&
+              sizeof(ChannelSummary) == (9 + 2) * 8);
 
 template <class T>
 concept Plain = is_plain<T> && std::is_trivially_copyable_v<T>;

@@ -41,7 +41,7 @@ std::string sentence_of(const Fault& fault, const std::string& estimator,
 /// The words of an exception, never empty. An InputError's place stands before them.
 std::string words_of(const std::exception_ptr& thrown);
 
-/// Observed images, and the channels that follow each.
+/// Observed images, and the channels that follow each. Images without elements are empty.
 struct KeptObservations {
   std::vector<std::vector<float>> images = {};
   std::vector<std::vector<double>> values = {};

@@ -1,8 +1,8 @@
 #pragma once
 
-// From the data's evidence about theta, the number that a claim is about, to p-values of the
-// claimed and the forbidden region, and a verdict. Evidence is tests of every value in both
-// directions, and an interval. Verdicts are made of nothing else.
+// Evidence about theta, the number that a claim is about, is a test of every value in both
+// directions, and an interval. From it come p-values of the claimed and of the forbidden region,
+// and from these alone the verdict.
 //
 //   relation  claimed region C        forbidden region F
 //   ==        abs(theta) <= allow     abs(theta) >= detect     alarm
@@ -119,19 +119,5 @@ struct ChannelDecision {
 };
 reports::Verdict decide(const std::vector<ChannelDecision>& channels, const Regions& regions,
                         double beta);
-
-/// A test's place in its suite's family.
-struct FamilyPlace {
-  bool inside = true;       ///< False for mutants and expected failures.
-  double weight = 0;        ///< Weight of one channel; a family's weights sum to 1.
-  ErrorShare share = {};    ///< Share of one channel.
-  bool in_seconds = false;  ///< A budget in seconds, the test's or the suite's, bounds it.
-};
-
-/// Places of a suite's questions, in order. Inside the family alpha is split by weight, then evenly
-/// over a claim's channels. A test outside has the smallest share in the suite, and beta over the
-/// number of tests outside. A suite of mutants only shares out alpha among them. A test without a
-/// question keeps its part.
-std::vector<FamilyPlace> places(const Suite& suite, const std::vector<Question>& questions);
 
 }  // namespace assay::harness

@@ -82,7 +82,7 @@ const std::vector<std::string>& method_names() {
 std::vector<Method> methods_for(const Question& question) {
   std::vector<Method> methods;
   for (const Method& row : question.theta->methods) {
-    if (row.answers(question)) methods.push_back({row});
+    if (row.answers(question)) methods.push_back(row);
   }
   return methods;
 }

@@ -34,7 +34,7 @@ struct ChannelData {
   std::vector<stats::JointMoments> joint = {};  ///< The channel's ChannelDetails::joint.
   stats::Moments group_variances = {};
   /// The cells that a method of Keeps::points counts in; null if the pilots gave none.
-  std::shared_ptr<const stats::SampledCells> sampled = {};
+  std::shared_ptr<const stats::SampledCells> sampled_cells = {};
   ImageViews images = {};  ///< The subject's elements of each observation.
   std::vector<Replicate> replicates = {};
 };
@@ -67,13 +67,6 @@ inline Powers powers_of(Keeps keeps) {
 /// Replicates of a method that keeps blocks: enough for Student's t to have near-normal tails.
 inline constexpr std::uint64_t replicate_count = 32;
 
-/// Factor on the variance of the mean of a recorded channel's rows.
-struct RowAllowance {
-  std::size_t subject;
-  std::size_t channel;
-  double factor;
-};
-
 /// Other properties of a method.
 struct MethodTraits {
   bool exact = false;               ///< The level holds at every sample size.
@@ -88,6 +81,7 @@ struct MethodTraits {
 };
 
 inline constexpr MethodTraits exact_at_any_size{.exact = true};
+/// Scores add up over looks (stats/planning/looks.h).
 inline constexpr MethodTraits of_scores{.over_looks = stats::LookLaw::independent_increments};
 
 /// A row of the method table (methods.h). Rows of different families of claims may share a name.

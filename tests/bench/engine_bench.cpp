@@ -44,7 +44,10 @@ double by_harness(const std::shared_ptr<const Setup>& setup, std::uint64_t total
   }
   pool->request(total / primaries);
   harness::draw_all({pool}, *harness::threads(threads), "sampling", harness::silence);
-  return std::get<harness::Drawn>(pool->sample(total / primaries)).summary().channels[0].moments.mean;
+  return std::get<harness::Drawn>(pool->sample(total / primaries))
+      .summary()
+      .channels[0]
+      .moments.mean;
 }
 
 void report(const char* plugin, std::uint64_t total) {

@@ -15,7 +15,7 @@ FamilyMember judged_by_p(double p, double weight, Verdict verdict, bool inside =
   outcome.question.subjects = {Subject{.channels = {0, 1, 1}}};
   outcome.place = {.inside = inside, .weight = weight};
   outcome.channels.emplace_back().decision.log_p_claimed = std::log(p);
-  return {{.verdict = verdict, .channels = {{}}}, member_of(outcome, of_one_test)};
+  return {{.verdict = verdict, .channels = {{}}}, place_in_family(outcome, of_one_test)};
 }
 
 std::vector<double> adjusted(std::vector<FamilyMember> tests) {
@@ -48,7 +48,7 @@ TEST(Holm, CountsATestWithoutNumbersAsNotRejected) {
   none.question.theta = &theta_of_means();
   none.question.subjects = {Subject{.channels = {0, 1, 1}}};
   none.place = {.inside = true, .weight = 0.5};
-  const FamilyMember without{{.verdict = Verdict::error}, member_of(none, of_one_test)};
+  const FamilyMember without{{.verdict = Verdict::error}, place_in_family(none, of_one_test)};
   EXPECT_THAT(adjusted({without, judged_by_p(0.03, 0.5, Verdict::pass)}),
               Pointwise(DoubleNear(1e-15), {0.06}));
 }

@@ -105,7 +105,8 @@ TEST(ImageEquivalence, ANormWithoutErrorLeavesTheBiasAlone) {
   Philox random(871);
   const OwnedStack a = image(random, 0.05, 1);
   const OwnedStack b = image(random, 0, 1);
-  const ImageDistance plain = relative_to(image_distance({a.view(), b.view()}), {.squared_bias = 144});
+  const ImageDistance plain =
+      relative_to(image_distance({a.view(), b.view()}), {.squared_bias = 144});
   EXPECT_EQ(plain.norm_variance, 0);
   const TestResult at = squared_margin_test(plain, plain.squared_bias / 144);
   EXPECT_NEAR(at.statistic, 0, 1e-9);

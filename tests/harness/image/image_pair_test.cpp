@@ -1,6 +1,7 @@
 // Pixels of images that never varied, and those of which one half of the images saw nothing.
 
 #include "harness/image/image_pair.h"
+
 #include "harness/question/question.h"
 #include "tests/harness/questions.h"
 #include "tests/prelude.h"

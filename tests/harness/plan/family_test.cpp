@@ -1,4 +1,4 @@
-#include "harness/theta/decision.h"
+#include "harness/plan/plan.h"
 #include "tests/harness/questions.h"
 #include "tests/prelude.h"
 
