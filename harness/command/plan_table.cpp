@@ -141,7 +141,10 @@ Row row_of(const TestOutcome& test, const Pilots& pilots) {
                effect_text(test, expected)};
   if (plan.invalid.empty()) {
     if (expected.if_off) {
-      row.notes.insert(row.notes.begin(), outlook_text("if off by the effect", *expected.if_off));
+      row.notes.insert(row.notes.begin(),
+                       outlook_text(test.plan.regions[0].proof() ? "if it is just wrong"
+                                                                 : "if off by the effect",
+                                    *expected.if_off));
     }
     if (expected.if_true) {
       row.notes.insert(row.notes.begin(), outlook_text("if it holds", *expected.if_true));

@@ -277,12 +277,13 @@ std::uint64_t most_available(const TestOutcome& test, const Pilots& pilots) {
 }
 
 /// Throws InputError if somebody chose the size of a claim in seconds.
-void require_free_size(const TestOutcome& test) {
+void require_no_budget(const TestOutcome& test) {
   const TestEntry& entry = *test.question.test;
-  if (test.plan.method.keeps != Keeps::blocks || (!entry.secondaries && !entry.budget)) return;
-  refuse(entry.place_of(entry.secondaries ? "secondaries" : "budget"),
-         "a claim in seconds is timed on whole replicates: `secondaries` and `budget` cannot be "
-         "chosen; leave them out");
+  if (test.plan.method.keeps != Keeps::blocks || !entry.budget) return;
+  refuse(
+      entry.place_of("budget"),
+      "a claim in seconds is timed on whole replicates, which no `budget` ends: leave it out, or "
+      "give `secondaries`, which are rounded up");
 }
 
 /// Looks that grow from the fewest meaningful up to what `detect` needs at the last look's levels.
@@ -295,7 +296,8 @@ stats::LookSchedule plan_looks(const TestOutcome& test, const Pilots& pilots,
   const TestEntry& entry = *question.test;
   const ErrorShare& whole = test.place.share;
   if (test.plan.method.keeps == Keeps::blocks) {
-    const auto planned = question.theta->secondaries(test, whole, pilots);
+    const auto planned =
+        entry.secondaries ? entry.secondaries : question.theta->secondaries(test, whole, pilots);
     if (planned) require_possible(test, *planned);
     return timed_look(test, std::max(first, planned.value_or(usual_secondaries)));
   }
@@ -437,7 +439,7 @@ TestOutcome plan_test(Question asked, const FamilyPlace& place, const Pilots& pi
   plan.error = where_pilots_stopped(question, pilots);
   if (plan.error.empty()) plan.error = misdeclared(question, pilots);
   if (!plan.error.empty()) return test;
-  require_free_size(test);
+  require_no_budget(test);
   try {
     question.theta->require_density(question);
     const std::uint64_t most = most_available(test, pilots);

@@ -76,8 +76,7 @@ bool holds_no_effect(const ChannelOutcome& channel) {
 /// An image's interval is that of the difference's size, and does not decide.
 const char* no_evidence(const ChannelOutcome& channel) {
   return channel.image && channel.effect.low.value_or(0) > 0
-             ? "no place differs beyond noise, but all pixels together do, by small differences of "
-               "either sign"
+             ? "no place differs beyond noise, but all pixels together do"
              : "no evidence against the claim";
 }
 
