@@ -148,17 +148,18 @@ Reason what_would_help(const TestOutcome& outcome) {
   if (says_it_all) return {};
   // A sample that one observation makes up tells no more.
   constexpr double most = 100;
-  factor = std::min(factor, most);
   const bool rows = has_rows(outcome.question);
   // If the tail's moment does not exist, more observations only make the gate redder.
-  if (heavy) {
+  if (heavy || (rows && factor > most)) {
     return fmt::format(
         "; the values are heavy-tailed, and more of them may only show more of the tail: {}claim a "
         "quantile, as `quantile({}, 0.5) == …`",
-        rows ? "" : "clamp the estimator or take another, declare its range, or ",
+        rows ? "give " + std::string(rows_noun(outcome.question)) + " that each average many, or "
+             : "clamp the estimator or take another, declare its range, or ",
         to_string(outcome.question.test->claim.left.source));
   }
-  const bool known = factor > 1 && std::isfinite(factor);
+  const bool known = factor > 1;
+  factor = std::min(factor, most);
   if (rows) {
     return Reason::advising(": ",
                             fmt::format("give {0} {1}, or {1} that each average several",

@@ -7,15 +7,17 @@ namespace {
 
 const Suite of_one_test{.tests = {TestEntry{}}};
 
-/// A test of one channel with this p-value.
-FamilyMember judged_by_p(double p, double weight, Verdict verdict, bool inside = true) {
+/// A test of one channel, with this p-value if it has numbers.
+FamilyMember judged_by_p(std::optional<double> p, double weight, Verdict verdict,
+                         bool inside = true) {
   TestOutcome outcome;
   outcome.question.test = &of_one_test.tests[0];
   outcome.question.theta = &theta_of_means();
   outcome.question.subjects = {Subject{.channels = {0, 1, 1}}};
   outcome.place = {.inside = inside, .weight = weight};
-  outcome.channels.emplace_back().decision.log_p_claimed = std::log(p);
-  return {{.verdict = verdict, .channels = {{}}}, place_in_family(outcome, of_one_test)};
+  if (p) outcome.channels.emplace_back().decision.log_p_claimed = std::log(*p);
+  return {{.verdict = verdict, .channels = std::vector<reports::Channel>(p ? 1 : 0)},
+          place_in_family(outcome, of_one_test)};
 }
 
 std::vector<double> adjusted(std::vector<FamilyMember> tests) {
@@ -43,14 +45,9 @@ TEST(Holm, AdjustsByTheSharesThatSmallerPValuesFree) {
 }
 
 TEST(Holm, CountsATestWithoutNumbersAsNotRejected) {
-  TestOutcome none;
-  none.question.test = &of_one_test.tests[0];
-  none.question.theta = &theta_of_means();
-  none.question.subjects = {Subject{.channels = {0, 1, 1}}};
-  none.place = {.inside = true, .weight = 0.5};
-  const FamilyMember without{{.verdict = Verdict::error}, place_in_family(none, of_one_test)};
-  EXPECT_THAT(adjusted({without, judged_by_p(0.03, 0.5, Verdict::pass)}),
-              Pointwise(DoubleNear(1e-15), {0.06}));
+  EXPECT_THAT(
+      adjusted({judged_by_p({}, 0.5, Verdict::error), judged_by_p(0.03, 0.5, Verdict::pass)}),
+      Pointwise(DoubleNear(1e-15), {0.06}));
 }
 
 TEST(Holm, IsNotForTestsOutsideTheFamily) {

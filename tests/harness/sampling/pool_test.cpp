@@ -66,9 +66,8 @@ std::shared_ptr<Pool> drawn(const Wanted& wanted) {
 /// The first observations of a pool that has drawn them.
 Drawn sample_of(const Pool& pool, std::uint64_t count) {
   const Sample sample = pool.sample(count);
-  if (const Fault* fault = std::get_if<Fault>(&sample)) {
+  if (const Fault* fault = std::get_if<Fault>(&sample))
     throw std::runtime_error(sentence_of(*fault, "lamp"));
-  }
   return std::get<Drawn>(sample);
 }
 
