@@ -228,6 +228,36 @@ for side, mean in ("a", 1), ("b", 2):
     "$source_folder/reports/record/record.schema.json" run.json || fail 'not its schema'
 }
 
+# The reference has noise of its own, which no place shows.
+test_a_pass_says_if_all_pixels_together_differ() {
+  /usr/bin/python3 -c '
+import random, struct
+def picture(name, noise):
+    numbers = [random.Random(f"{name}{k}").gauss(1, noise) for k in range(3072)]
+    open(f"{name}.pfm", "wb").write(b"PF\n32 32\n-1\n" + struct.pack("<3072f", *numbers))
+for i in range(32):
+    picture(f"a{i}", 0.3)
+picture("exact", 0)
+picture("noisy", 0.025)'
+  expect 0 images --candidate 'a*.pfm' --reference noisy.pfm
+  contains out 'no place differs beyond noise, but all pixels together do'
+  contains out ' 32 pictures'
+  expect 0 images --candidate 'a*.pfm' --reference exact.pfm
+  contains out 'no evidence against the claim'
+}
+
+# A hundred times as many rows would show a hundred times as much of the tail.
+test_rows_that_few_values_make_up_are_sent_to_quantiles() {
+  /usr/bin/python3 -c '
+import random
+for side in "ab":
+    draw = random.Random(side).lognormvariate
+    open(f"{side}.txt", "w").writelines(f"{draw(0, 2)}\n" for _ in range(1000))'
+  expect 3 check 'variance(a) < variance(b)' --estimator a=recorded,file=a.txt \
+    --estimator b=recorded,file=b.txt
+  contains out 'give rows that each average many, or claim a quantile'
+}
+
 test_sampled_file_is_checked_as_recorded() {
   expect 0 sample analytic/normal --secondaries 2000
   cp out data.txt
