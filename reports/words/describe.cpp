@@ -208,11 +208,15 @@ Channel deciding_channel(const Test& test) {
   return least != nullptr ? *least : worst_channel(test);
 }
 
+bool is_told_by_place(const Test& test) {
+  return test.image && test.verdict == Verdict::fail && !test.image->winner.place.empty() &&
+         !is_proof(test);
+}
+
 Effect effect_in_sentence(const Test& test) {
   if (!is_evidence(test)) return {};
-  const bool at_place =
-      test.image && test.verdict == Verdict::fail && !test.image->winner.place.empty();
-  return at_place ? test.image->winner.effect.value_or(Effect{}) : deciding_channel(test).effect;
+  if (is_told_by_place(test)) return test.image->winner.effect.value_or(Effect{});
+  return deciding_channel(test).effect;
 }
 
 Sides sides_of(const std::string& claim) {

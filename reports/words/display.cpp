@@ -58,7 +58,6 @@ std::string found(const Test& test, const Effect& effect) {
 
 std::string found_in_image(const Image& image) {
   const ImageFinding& winner = image.winner;
-  if (winner.place.empty()) return {};
   if (winner.effect && winner.effect->estimate) {
     Effect size = *winner.effect;
     const bool dark = *size.estimate < 0;
@@ -104,8 +103,7 @@ std::string without_advice(std::string words, const Test& test) {
 std::string sentence_of(const Test& test, const Effect& effect, const std::string& margin) {
   if (test.verdict == Verdict::skipped) return "It was not run.";
   if (!is_evidence(test)) return without_advice(headline(test), test);
-  const bool differs = test.image && test.verdict == Verdict::fail;
-  std::string text = differs ? found_in_image(*test.image) : std::string();
+  std::string text = is_told_by_place(test) ? found_in_image(*test.image) : std::string();
   if (text.empty() && effect.estimate) text = found(test, effect);
   if (text.empty()) return headline(test);
   if (test.channels.size() > 1) text += " in channel " + deciding_channel(test).name;

@@ -242,6 +242,8 @@ picture("noisy", 0.025)'
   expect 0 images --candidate 'a*.pfm' --reference noisy.pfm
   contains out 'no place differs beyond noise, but all pixels together do'
   contains out ' 32 pictures'
+  expect 1 images --candidate 'a*.pfm' --reference noisy.pfm --within 1%
+  contains out 'relative root mean square difference of the images is +2'
   expect 0 images --candidate 'a*.pfm' --reference exact.pfm
   contains out 'no evidence against the claim'
 }
