@@ -69,36 +69,36 @@ using SharedStack = std::shared_ptr<SeenStack>;
 
 class Picture final : public Estimator {
  public:
-  explicit Picture(SharedStack pictures) : pictures_(std::move(pictures)) {}
+  explicit Picture(SharedStack shared) : shared_(std::move(shared)) {}
 
   void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
                  Cost& cost) override {
     if (primaries != 1) throw std::invalid_argument("recorded: `primaries` must be 1");
     texels_.resize(out.size() - 1);
-    pictures_->read(random.observation(), texels_, cost);
+    shared_->read(random.observation(), texels_, cost);
     write_observation(texels_, out);
   }
 
  private:
-  SharedStack pictures_;
+  SharedStack shared_;
   std::vector<float> texels_;  // scratch
 };
 
 class StackRows final : public PictureRows {
  public:
-  explicit StackRows(SharedStack pictures)
-      : pictures_(std::move(pictures)),
-        readings_(pictures_->stack().files.size(), {nullptr, PictureDigest(pictures_->row()), 0}) {}
+  explicit StackRows(SharedStack shared)
+      : shared_(std::move(shared)),
+        readings_(shared_->stack().files.size(), {nullptr, PictureDigest(shared_->row()), 0}) {}
 
   void read(std::uint64_t index, std::span<float> texels) override {
-    const PictureStack& stack = pictures_->stack();
+    const PictureStack& stack = shared_->stack();
     Reading& picture = readings_.at(index);
     if (!picture.file) picture.file = stack.open(index);
     stack.view.read(*picture.file, texels, picture.rows);
     picture.digest.add(texels);
-    picture.rows += texels.size() / pictures_->row();
+    picture.rows += texels.size() / shared_->row();
     const bool last = picture.rows == stack.view.window.height;
-    if (last) pictures_->refuse_a_copy(index, picture.digest);
+    if (last) shared_->refuse_a_copy(index, picture.digest);
     if (last || readings_.size() > most_open) picture.file.reset();
   }
 
@@ -112,52 +112,52 @@ class StackRows final : public PictureRows {
     std::size_t rows = 0;
   };
 
-  SharedStack pictures_;
+  SharedStack shared_;
   std::vector<Reading> readings_;
 };
 
 class PictureSetup final : public Setup, public Pictures {
  public:
   PictureSetup(PictureStack stack, bool independent, std::string data_file)
-      : pictures_(std::make_shared<SeenStack>(std::move(stack))),
-        shape_(pictures_->stack().view.shape(independent)),
+      : shared_(std::make_shared<SeenStack>(std::move(stack))),
+        shape_(shared_->stack().view.shape(independent)),
         data_file_(std::move(data_file)) {}
 
   std::size_t channel_count() const override { return shape_.elements() + 1; }
   Channel channel(std::size_t place) const override { return picture_channel(shape_, place); }
   std::optional<ImageShape> image() const override { return shape_; }
-  std::unique_ptr<Estimator> make() const override { return std::make_unique<Picture>(pictures_); }
+  std::unique_ptr<Estimator> make() const override { return std::make_unique<Picture>(shared_); }
   std::optional<std::uint64_t> observations() const override {
-    return pictures_->stack().files.size();
+    return shared_->stack().files.size();
   }
   std::string data_file() const override { return data_file_; }
   std::string place_of(const WhichObservation& which) const override { return file(which.index); }
   const Pictures* pictures() const override { return this; }
 
   void read(std::uint64_t index, std::span<float> texels, Cost& cost) const override {
-    pictures_->read(index, texels, cost);
+    shared_->read(index, texels, cost);
   }
   std::unique_ptr<PictureRows> rows() const override {
-    return std::make_unique<StackRows>(pictures_);
+    return std::make_unique<StackRows>(shared_);
   }
   std::optional<std::pair<std::string, std::string>> shared_with(
       const Pictures& others, std::uint64_t count) const override {
     const auto& other = dynamic_cast<const PictureSetup&>(others);
     // One render in two precisions is no copy: rounding has made it so.
-    const bool alike = pictures_->stack().view.of_files == other.pictures_->stack().view.of_files;
-    if (pictures_ == other.pictures_ || !alike) return {};
-    const auto indices = pictures_->seen().shared_with(other.pictures_->seen(), count);
+    const bool alike = shared_->stack().view.of_files == other.shared_->stack().view.of_files;
+    if (shared_ == other.shared_ || !alike) return {};
+    const auto indices = shared_->seen().shared_with(other.shared_->seen(), count);
     if (!indices) return {};
     return std::pair(file(indices->first), other.file(indices->second));
   }
 
  private:
   std::string file(std::uint64_t index) const {
-    const std::vector<std::string>& files = pictures_->stack().files;
+    const std::vector<std::string>& files = shared_->stack().files;
     return index < files.size() ? files[index] : "";
   }
 
-  SharedStack pictures_;
+  SharedStack shared_;
   ImageShape shape_;
   std::string data_file_;
 };

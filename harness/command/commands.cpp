@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <set>
 
 #include "estimators/catalogue.h"
 #include "harness/base/interrupt.h"

@@ -73,7 +73,7 @@ std::string key_number(const Test&);
 
 /// "1.05 M rays", or samples where no ray was traced.
 std::string cost_text(const Cost&);
-/// That of a claim on images that no ray tells of is the number of pictures.
+/// A claim on images without rays costs its number of pictures.
 std::string cost_text(const Test&);
 std::uint64_t rays(const Cost&);
 
