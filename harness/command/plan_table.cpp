@@ -71,7 +71,8 @@ std::string effect_text(const TestOutcome& test, const Forecast& forecast) {
   const Regions& regions = test.plan.regions[0];
   std::optional<double> effect = regions.detect;
   // Given data may find less than `detect` asks for.
-  if (!effect || test.question.test->secondaries || test.question.test->budget) {
+  const TestEntry& entry = *test.question.test;
+  if (!effect || entry.secondaries || entry.budget || has_rows(test.question)) {
     effect = forecast.detectable;
   }
   if (!effect) return unknown;
@@ -143,7 +144,7 @@ Row row_of(const TestOutcome& test, const Pilots& pilots) {
     if (expected.if_off) {
       row.notes.insert(row.notes.begin(),
                        outlook_text(test.plan.regions[0].proof() ? "if it is just wrong"
-                                                                 : "if off by the effect",
+                                                                 : "if off by `detect`",
                                     *expected.if_off));
     }
     if (expected.if_true) {

@@ -65,14 +65,20 @@ Evidence from_distance(const stats::OneSampleDistance& measured, double error) {
 Evidence from_distance(std::span<const double> x, std::span<const double> y) {
   const stats::TwoSampleDistance distance = stats::ks_distance(x, y);
   const stats::TwoLawsTest at_none = stats::two_part_ks(x, y, distance);
-  Evidence evidence{
-      .estimate = distance.distance(),
-      .at = [distance, at_none = at_none.result](
-                double theta) { return theta <= 0 ? at_none : stats::ks_margin(distance, theta); },
-      .interval =
-          [distance](double confidence) { return stats::ks_interval(distance, confidence); },
-      .quantity = distance_of_laws,
-      .distance = true};
+  const auto at = [distance, none = at_none.result](double theta) {
+    return theta <= 0 ? none : stats::ks_margin(distance, theta);
+  };
+  // The bound of a margin may reach 0 where the exact test rejects it.
+  const auto interval = [distance, at](double confidence) {
+    stats::Interval found = stats::ks_interval(distance, confidence);
+    if (found.low == 0 && at(0).log_p_upper < std::log((1 - confidence) / 2)) found.low = -HUGE_VAL;
+    return found;
+  };
+  Evidence evidence{.estimate = distance.distance(),
+                    .at = at,
+                    .interval = interval,
+                    .quantity = distance_of_laws,
+                    .distance = true};
   if (at_none.common && at_none.common->decides) {
     const std::string of_value = p_is_of(fmt::format("the values at {:.6g}", at_none.common->value),
                                          at_none.common->difference);

@@ -777,7 +777,7 @@ class MeanTheta : public Theta {
       const std::uint64_t seen = outcome.secondaries(side) * outcome.plan.primaries[side];
       if (std::isfinite(upwards ? range.high : range.low) || seen >= many) continue;
       const bool rows = is_recorded(question.subjects[side]);
-      return fmt::format("values rarer than one in {} may explain it{}",
+      return fmt::format("values rarer than one in {} may be missing, which would explain it{}",
                          std::max<std::uint64_t>(1, seen / 3),
                          rows ? "" : "; a declared range helps");
     }

@@ -16,6 +16,9 @@ set(data ${CMAKE_INSTALL_DATADIR})
 install(FILES ${scripts}/assay.bash DESTINATION ${data}/bash-completion/completions RENAME assay)
 install(FILES ${scripts}/assay.zsh DESTINATION ${data}/zsh/site-functions RENAME _assay)
 install(FILES ${scripts}/assay.fish DESTINATION ${data}/fish/vendor_completions.d)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/estimators/foreign/python/ DESTINATION ${data}/assay/python
+        PATTERN README.md EXCLUDE PATTERN __pycache__ EXCLUDE PATTERN build EXCLUDE
+        PATTERN *.egg-info EXCLUDE)
 # The interface of shared libraries: a plugin is compiled against it and linked against nothing.
 install(FILES ${PROJECT_SOURCE_DIR}/estimators/plugin_abi.h
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/assay)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "harness/plan/independence.h"
 #include "harness/plan/sizes.h"
 #include "harness/theta/theta.h"
 #include "stats/planning/boundary.h"
@@ -26,8 +27,8 @@ stats::Moments scaled(const stats::Moments& pilot, double averaged, std::uint64_
 }
 
 /// Data that the pilots predict for a channel at this many secondaries: moments scaled to the
-/// plan's primaries. Returns nullopt if an estimator has no pilot, or no spread in it. Recorded
-/// data take the mean of what they are compared with.
+/// plan's primaries, or rows of a file as they are tested. Returns nullopt if an estimator has no
+/// pilot, or no spread in it.
 std::optional<std::vector<ChannelData>> expected_data(const TestOutcome& test, std::size_t channel,
                                                       const Pilots& pilots,
                                                       std::uint64_t secondaries) {
@@ -35,25 +36,18 @@ std::optional<std::vector<ChannelData>> expected_data(const TestOutcome& test, s
   // An estimator's pilot says nothing of a sampler's draws.
   if (!question.is().of_moments) return std::nullopt;
   std::vector<ChannelData> data(question.subjects.size());
-  std::optional<std::size_t> known;
   for (std::size_t i = 0; i < data.size(); ++i) {
     const Subject& side = question.subjects[i];
-    if (is_recorded(side)) continue;
-    const Pilot* const known_pilot = pilot_of(side, pilots);
-    if (known_pilot == nullptr) return std::nullopt;
-    const stats::Moments pilot = known_pilot->moments(side.channels[channel]);
-    if (is_constant(question, i, channel, pilot)) return std::nullopt;
+    const Pilot* const pilot = pilot_of(side, pilots);
+    if (pilot == nullptr) return std::nullopt;
+    const PilotChannel seen = pilot_channel(side, *pilot, channel);
+    if (is_constant(question, i, channel, seen.moments)) return std::nullopt;
     const double averaged = side.averaged(test.plan.primaries[i]);
     data[i] = {.primaries = test.plan.primaries[i],
-               .moments = scaled(pilot, averaged, secondaries)};
-    if (averaged == 1) data[i].values = pilot_channel(question, i, channel, pilots).values;
-    known = i;
-  }
-  if (!known) return std::nullopt;
-  for (std::size_t i = 0; i < data.size(); ++i) {
-    if (!is_recorded(question.subjects[i])) continue;
-    data[i].primaries = data[*known].primaries;
-    data[i].moments = data[*known].moments;
+               .moments = is_recorded(side)
+                              ? as_tested(test.plan, i, channel, seen.values, seen.moments)
+                              : scaled(seen.moments, averaged, secondaries)};
+    if (averaged == 1) data[i].values = seen.values;
   }
   return data;
 }
@@ -86,9 +80,9 @@ std::optional<StoppingLooks> stopping_looks(const TestOutcome& test, std::size_t
     const auto data = expected_data(test, channel, pilots, test.plan.looks.sizes[k]);
     if (!data) return std::nullopt;
     const auto error = test.question.theta->error({test.question, channel, *data});
-    if (!error || !(error->drawn > 0)) return std::nullopt;
-    looks.push_back(stopping_look(test.plan.regions[channel],
-                                  std::hypot(error->drawn, error->fixed), test.share_at(k)));
+    const double size = error ? std::hypot(error->drawn, error->fixed) : 0;
+    if (!(size > 0)) return std::nullopt;
+    looks.push_back(stopping_look(test.plan.regions[channel], size, test.share_at(k)));
   }
   return looks;
 }
@@ -154,7 +148,6 @@ std::optional<PlannedChannel> expected_channel(const TestOutcome& test, std::siz
   if (!question.is().of_moments) {
     return question.theta->planned(test, regions, pilots);
   }
-  if (has_rows(question)) return std::nullopt;
   const auto data = expected_data(test, channel, pilots, secondaries);
   if (!data) return std::nullopt;
   return question.theta->observed({question, channel, *data}, regions);

@@ -515,11 +515,12 @@ reports::Test record_of_untested(const Untested& untested, const SuiteRun& run) 
   return test;
 }
 
-reports::ShardTest place_in_family(const TestOutcome& outcome, const Suite& suite) {
-  reports::ShardTest member{.position = position_of(*outcome.question.test, suite),
-                            .inside = outcome.place.inside,
-                            .weight = outcome.place.weight,
-                            .untested = outcome.question.channel_count() - outcome.channels.size()};
+reports::PlaceInFamily place_in_family(const TestOutcome& outcome, const Suite& suite) {
+  reports::PlaceInFamily member{
+      .position = position_of(*outcome.question.test, suite),
+      .inside = outcome.place.inside,
+      .weight = outcome.place.weight,
+      .untested = outcome.question.channel_count() - outcome.channels.size()};
   for (const ChannelOutcome& channel : outcome.channels) {
     member.log_p.push_back(channel.decision.log_p_claimed);
   }

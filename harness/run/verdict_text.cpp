@@ -64,6 +64,7 @@ double excluded_beyond(const TestOutcome& outcome, const ChannelOutcome& channel
   // A missing end lies at infinity.
   const double low = channel.effect.low.value_or(-HUGE_VAL);
   const double high = channel.effect.high.value_or(HUGE_VAL);
+  if (channel.evidence.distance) return high;
   if (channel.regions.two_sided()) return farther(low, high, outcome.question.is().logarithm);
   return channel.regions.bounds_above() ? high : low;
 }
@@ -257,7 +258,11 @@ Reason what_would_decide(const TestOutcome& outcome, const ChannelOutcome& chann
         "the estimate is less than a standard error from what is to be shown; ",
         channel.regions.within()
             ? "give a larger margin"
-            : "if both sides may be equal, claim that they are `within` a margin");
+            : fmt::format("if both sides may be equal, claim that they are `within` a margin; "
+                          "otherwise give more {}",
+                          has_rows(outcome.question)      ? rows_noun(outcome.question)
+                          : outcome.question.test->budget ? "`budget`"
+                                                          : "observations"));
   }
   const double sampled = error * error - fixed * fixed;
   const double wanted = std::pow(room.size / room.standard_errors, 2) - fixed * fixed;

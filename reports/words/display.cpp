@@ -89,7 +89,8 @@ std::string exclusion_of_claim(const Test& test, const Effect& effect, const std
     return "";
   if (lies_above(effect, -detect) && lies_below(effect, detect))
     return fmt::format(" It is off, but by less than {}.", margin);
-  return " Its range leaves the claim out, which at this test's level is no rejection.";
+  return test.image ? " No place differs beyond noise, but all pixels together do."
+                    : " That is not enough evidence against the claim.";
 }
 
 /// Words without the advice in them, which is a step of its own.
@@ -209,11 +210,12 @@ std::string tally_sentence(Standings count) {
 }
 
 std::string run_sentence(const Record& record) {
-  if (record.shard && tests_of(record).empty()) return "This shard, which has no claim, ended";
   const auto alarm_count = static_cast<std::uint64_t>(alarms(record.ledger));
   const std::string nights =
       alarm_count > 0 ? counted(alarm_count, "ledger alarm", "ledger alarms") + ". " : "";
-  return nights + tally_sentence(standings(record));
+  const std::string shard =
+      record.shard ? fmt::format("Shard {} of {}: ", record.shard->index, record.shard->count) : "";
+  return shard + nights + tally_sentence(standings(record));
 }
 
 std::string false_alarms(double alpha) {

@@ -569,7 +569,7 @@ test_environment_asks_for_a_shard() {
   [ "$(shown run.json '[t["name"] for t in r["suites"][0]["tests"]]')" = "['good']" ] ||
     fail 'not its test'
   GTEST_SHARD_INDEX=2 expect 0 run many.yaml
-  contains out 'This shard, which has no claim, ended'
+  contains out 'Shard 3 of 3: No claim was tested'
   expect 0 run many.yaml --shard 1/2 --report json=run.json
   [ "$(shown run.json '[r["shard"]["index"], r["shard"]["count"]]')" = '[1, 2]' ] ||
     fail 'the flag did not win'

@@ -21,7 +21,7 @@ run cmake --install "$build" --prefix "$work/first" || fail 'the installation fa
 mv "$work/first" "$work/prefix"
 [ -z "$(grep -rlF "$work/first" "$work/prefix/lib")" ] || fail 'a path of the installation is fixed'
 for file in man/man1/assay.1 bash-completion/completions/assay zsh/site-functions/_assay \
-            fish/vendor_completions.d/assay.fish; do
+            fish/vendor_completions.d/assay.fish assay/python/pyproject.toml; do
   [ -s "$work/prefix/share/$file" ] || fail "share/$file is not installed"
 done
 cp -r "$source_folder/tests/consumer" "$work/project"

@@ -23,7 +23,8 @@ Record with_one_test() {
 TEST(Console, TheLastLineIsTheVerdict) {
   EXPECT_EQ(lines(console(Record{})).back(), "– No claim was tested.");
   EXPECT_EQ(lines(console(with_one_test(), {.width = 100})).back(),
-            "✓ The claim is as it should be in 1 min 23 s. False alarms: at most 1 run in 100.");
+            "✓ Shard 2 of 4: The claim is as it should be in 1 min 23 s. False alarms: at most 1 "
+            "run in 100.");
 }
 
 TEST(Console, ThePathOfTheReportStandsBelowTheVerdict) {
@@ -41,7 +42,8 @@ TEST(Console, ClaimsThatWereNotRunTakeTheTickAway) {
   Record record = first_suite();
   std::erase_if(record.suites[0].tests, [](const reports::Test& test) { return !test.ok; });
   record.suites[0].tests.back().verdict = Verdict::skipped;
-  EXPECT_THAT(console(record), HasSubstr("– 3 of 4 claims as they should be, 1 not tested"));
+  EXPECT_THAT(console(record),
+              HasSubstr("– Shard 2 of 4: 3 of 4 claims as they should be, 1 not tested"));
 }
 
 TEST(Console, ABrokenClaimIsToldOnce) {

@@ -46,7 +46,7 @@ TEST(Display, APassWhoseRangeLeavesTheClaimOutSaysSo) {
   reports::Test test = claim_of("mean(a) == analytic", Verdict::pass, mean_effect(-0.002, 0.001));
   EXPECT_THAT(display(test).sentence, HasSubstr("It is off, but by less than 0.5\u00A0%."));
   test.detect.reset();
-  EXPECT_THAT(display(test).sentence, HasSubstr("at this test's level is no rejection."));
+  EXPECT_THAT(display(test).sentence, HasSubstr("That is not enough evidence against the claim."));
   test.allow = 0.0015;
   EXPECT_THAT(display(test).sentence, testing::Not(HasSubstr("no rejection")));
 }

@@ -4,6 +4,7 @@
 #include "reports/words/number.h"
 #include "reports/words/text.h"
 #include "tests/harness/prelude.h"
+#include "tests/harness/recorded_rows.h"
 
 namespace assay::harness {
 namespace {
@@ -105,11 +106,15 @@ TEST_F(PlanTable, SaysTheMostThatCanBeDrawn) {
 
 // A plan foretells the effect that a fixed number of observations finds, and the run finds it in
 // its data. Pilots of 8192 primaries give the spreads of logarithms, so both agree to a tenth. A
-// forgotten second source would make them differ by the square root of two.
-TEST_F(PlanTable, ForetellsTheEffectThatRatiosFind) {
+// forgotten second source would make them differ by the square root of two. Rows are all there.
+TEST_F(PlanTable, ForetellsTheEffectThatTheDataFind) {
+  place.write("rows.txt", file_of("lognormal(0.5, 2000, 5)"));
   const std::string text =
       "suite: ratios\nestimators:\n  a: {plugin: luminaire/area, scene: triangle}\n"
-      "  h: {plugin: luminaire/hemisphere, scene: triangle}\ntests:\n"
+      "  h: {plugin: luminaire/hemisphere, scene: triangle}\n"
+      "  r: {plugin: recorded, file: rows.txt}\ntests:\n"
+      "  - {claim: mean(r) == 1.13, detect: 0.1%}\n"
+      "  - {claim: variance(r) <= variance(a)}\n"
       "  - {claim: efficiency(a) > efficiency(h), secondaries: 4000}\n"
       "  - {claim: efficiency(a) == 14, secondaries: 4000}\n"
       "  - {claim: total_variance(a) <= total_variance(h), secondaries: 4000}\n"
@@ -163,7 +168,7 @@ TEST_F(PlanTable, ShowsEveryTestInEightyColumns) {
   const std::string text = plan_text(planned);
   for (const TestEntry& test : suites[0].tests) EXPECT_THAT(text, HasSubstr("\n  " + test.name));
   for (const char* heading : {"method", "primaries", "looks", "CPU time", "effect",
-                              "if it holds: pass", "if off by the effect: pass"}) {
+                              "if it holds: pass", "if off by `detect`: pass"}) {
     EXPECT_THAT(text, HasSubstr(heading));
   }
   EXPECT_THAT(text, HasSubstr("0.5 %"));
