@@ -55,16 +55,31 @@ void offer(BestCell& best, const Candidate& candidate, const NoisePyramid& noise
 }
 
 void WelchCells::start(std::size_t cells) {
-  for (std::vector<double>* each : {&squares, &effect, &variance[0], &variance[1], &of_half[0],
-                                    &of_half[1], &reciprocal_degrees}) {
+  for (std::vector<double>* each : {&inverse, &squares, &effect, &weight, &third, &variance[0],
+                                    &variance[1], &of_half[0], &of_half[1], &reciprocal_degrees}) {
     each->assign(cells, 0.0);
+  }
+}
+
+void WelchCells::start_half(std::size_t first, std::span<const double> weights) {
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    inverse[first + i] = weights[i] > 0 ? 1 / weights[i] : 0;
+  }
+}
+
+void WelchCells::add(std::vector<double>& to, std::size_t first, std::span<const double> sums,
+                     int power) const {
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    double part = factor_of_half * sums[i];
+    for (int k = 0; k < power; ++k) part *= inverse[first + i];
+    to[first + i] += part;
   }
 }
 
 void WelchCells::finish_part(std::size_t half, std::size_t side, double count) {
   const double scale = factor_of_half * factor_of_half / (count * (count - 1));
   for (std::size_t i = 0; i < squares.size(); ++i) {
-    const double part = scale * squares[i];
+    const double part = scale * squares[i] * inverse[i] * inverse[i];
     variance[side][i] += part;
     of_half[half][i] += part;
     reciprocal_degrees[i] += part * part / (count - 1);
@@ -80,11 +95,14 @@ void WelchCells::statistics(std::size_t first, std::span<double> t) const {
   }
 }
 
-void WelchCells::put(std::size_t cell, CellNoise& noise) const {
-  noise.effect = effect[cell];
-  noise.variance = {variance[0][cell], variance[1][cell]};
-  const double total = noise.variance[0] + noise.variance[1];
-  noise.degrees = total * total / reciprocal_degrees[cell];
+CellNoise WelchCells::noise(std::size_t cell) const {
+  const std::array<double, sides_of_pair> own{variance[0][cell], variance[1][cell]};
+  const double total = own[0] + own[1];
+  return {.effect = effect[cell],
+          .variance = own,
+          .degrees = total * total / reciprocal_degrees[cell],
+          .third = third[cell],
+          .weight = weight[cell]};
 }
 
 }  // namespace assay::stats

@@ -21,18 +21,28 @@ namespace assay::stats {
 // Half of the difference of a half counts in the mean of both halves.
 inline constexpr double factor_of_half = 1.0 / halves;
 
-// Welch's statistic of the mean difference of many cells. Replicates come in parts, the halves of
-// either side, each with variances of its own.
+// Welch's statistic of many cells, whose effect is the mean of both halves' weighted means of
+// a - b. Replicates come in parts, the halves of either side, each with variances of its own.
 struct WelchCells {
+  // The current half: 1 / the sum of each cell's weights.
+  std::vector<double> inverse;
   // The current part: sums over replicates of squared deviations of each cell's sum from its mean.
   std::vector<double> squares;
-  std::vector<double> effect;  // Estimate of a - b, which the caller adds up.
+  // The halves so far, which the caller adds up.
+  std::vector<double> effect;
+  std::vector<double> weight;  // CellNoise has the meaning of these two.
+  std::vector<double> third;
   // The parts that are done.
   std::array<std::vector<double>, sides_of_pair> variance;  // Squared error of effect, by side.
   std::array<std::vector<double>, halves> of_half;          // The same, by half.
   std::vector<double> reciprocal_degrees;  // Sum of variance_g^2 / (n_g - 1) over the parts.
 
   void start(std::size_t cells);
+  // A half begins: sums of the weights of cells from this one on.
+  void start_half(std::size_t first, std::span<const double> weights);
+  // Adds the half's sums of cells from this one on, divided by the sum of the weights to `power`.
+  void add(std::vector<double>& to, std::size_t first, std::span<const double> sums,
+           int power) const;
   // The replicates since the last call are a part of that half and side.
   void finish_part(std::size_t half, std::size_t side, double count);
 
@@ -40,8 +50,7 @@ struct WelchCells {
   bool varied(std::size_t cell) const { return of_half[0][cell] > 0 && of_half[1][cell] > 0; }
   // The statistic of cells from this one on, not a number of those that did not vary.
   void statistics(std::size_t first, std::span<double> t) const;
-  // Sets effect, variance and degrees.
-  void put(std::size_t cell, CellNoise& noise) const;
+  CellNoise noise(std::size_t cell) const;
 };
 
 // A cell whose neighbours are not known yet. finding.z is its own.
@@ -107,17 +116,21 @@ struct BlockSums {
   std::vector<double> alternating;
 };
 
+struct CoarseHalf {
+  // [side][replicate of the half]: weighted deviations from the mean of the half. They only serve
+  // variances, so single precision does.
+  std::array<std::vector<BlockSums<float>>, sides_of_pair> images;
+  BlockSums<double> effect;  // Weighted differences of the means.
+  BlockSums<double> varied;  // Number of elements that vary and have a weight.
+  BlockSums<double> weights;
+  BlockSums<double> squared_weights;
+  BlockSums<double> squared_error;  // Of a reference, weighted; empty if it has none.
+  BlockSums<double> third;          // Third cumulants of the effects; none with alternating signs.
+};
+
 struct CoarseImages {
   ImageExtent extent;  // In blocks.
-  // [half][side][replicate of the half]: weighted deviations from the mean of the half. They only
-  // serve variances, so single precision does.
-  std::array<std::array<std::vector<BlockSums<float>>, sides_of_pair>, halves> images;
-  std::array<BlockSums<double>, halves> effect;  // Weighted differences of the means.
-  std::array<BlockSums<double>, halves> varied;  // Number of elements that vary and have a weight.
-  BlockSums<double> squared_error;               // Of a reference, weighted; empty if it has none.
-  BlockSums<double> weights;                     // The elements', averaged over the halves.
-  BlockSums<double> squared_weights;
-  BlockSums<double> third;  // Third cumulants of the effects; none with alternating signs.
+  std::array<CoarseHalf, halves> half;
 };
 
 struct ElementCounts {

@@ -70,13 +70,24 @@ WelchCells window_moments(const CoarseImages& coarse, const Groups& groups, std:
   WelchCells moments;
   moments.start(count);
   CoarseSums sums(coarse.extent, channel);
-  for (std::size_t h = 0; h < halves; ++h) {
-    sums.load(coarse.effect[h]);
+  // Adds a half's sums, divided by those of its weights to this power.
+  const auto add = [&](std::vector<double>& to, const BlockSums<double>& half, int power) {
+    sums.load(half);
     for_each_window(groups, [&](const WindowGroup& group, std::size_t i, std::size_t window) {
-      moments.effect[window] += factor_of_half * sums.of(group, i);
+      moments.add(to, window, {{sums.of(group, i)}}, power);
     });
+  };
+  for (std::size_t h = 0; h < halves; ++h) {
+    const CoarseHalf& half = coarse.half[h];
+    sums.load(half.weights);
+    for_each_window(groups, [&](const WindowGroup& group, std::size_t i, std::size_t window) {
+      moments.start_half(window, {{sums.total_of(group, i)}});
+    });
+    add(moments.effect, half.effect, 1);
+    add(moments.weight, half.squared_weights, 2);
+    add(moments.third, half.third, 3);
     for (std::size_t side = 0; side < sides_of_pair; ++side) {
-      const std::vector<BlockSums<float>>& images = coarse.images[h][side];
+      const std::vector<BlockSums<float>>& images = half.images[side];
       if (images.empty()) continue;
       for (const BlockSums<float>& image : images) {
         sums.load(image);
@@ -85,7 +96,7 @@ WelchCells window_moments(const CoarseImages& coarse, const Groups& groups, std:
           moments.squares[window] += deviation * deviation;
         });
       }
-      sums.load(coarse.varied[h]);
+      sums.load(half.varied);
       for_each_window(groups, [&](const WindowGroup& group, std::size_t i, std::size_t window) {
         // The sum did not vary. The value is only the rounding of the larger sums it was taken
         // from.
@@ -93,13 +104,12 @@ WelchCells window_moments(const CoarseImages& coarse, const Groups& groups, std:
       });
       moments.finish_part(h, side, static_cast<double>(images.size()));
     }
+    if (half.squared_error.blocks.empty()) continue;
+    sums.load(half.squared_error);
+    for_each_window(groups, [&](const WindowGroup& group, std::size_t i, std::size_t window) {
+      moments.add(moments.variance[1], window, {{std::max(sums.total_of(group, i), 0.0)}}, 2);
+    });
   }
-  if (coarse.squared_error.blocks.empty()) return moments;
-  sums.load(coarse.squared_error);
-  for_each_window(groups, [&](const WindowGroup& group, std::size_t i, std::size_t window) {
-    if (moments.variance[0][window] == 0) return;
-    moments.variance[1][window] += std::max(sums.total_of(group, i), 0.0);
-  });
   return moments;
 }
 
@@ -112,14 +122,13 @@ double median_of(std::vector<double>& values) {
 
 class TypicalNoise {
  public:
-  // A cell with the sum of its weights.
-  void add(const Candidate& cell, const NoisePyramid& noise, double weights) {
+  void add(const Candidate& cell, const NoisePyramid& noise) {
     static_assert(typical_side >= coarse_size);
     const auto growth = [&](double sign) {
       return noise.growth(cell.noise, sign, cell.finding.window, cell.finding.channel);
     };
-    variances_.push_back((cell.noise.variance[0] + cell.noise.variance[1]) / (weights * weights));
-    growths_.push_back(std::max(growth(1), growth(-1)) / weights);
+    variances_.push_back(cell.noise.variance[0] + cell.noise.variance[1]);
+    growths_.push_back(std::max(growth(1), growth(-1)));
   }
   CellNoiseOfMean median() { return {median_of(variances_), median_of(growths_)}; }
 
@@ -135,26 +144,17 @@ CellNoiseOfMean offer_coarse_cells(const CoarseImages& coarse, const Groups& gro
                                    std::vector<BestCell>& best) {
   const Groups in_blocks = coarse_groups(groups);
   const WelchCells moments = window_moments(coarse, in_blocks, channel);
-  CoarseSums third(coarse.extent, channel);
-  CoarseSums weights(coarse.extent, channel);
-  CoarseSums squares(coarse.extent, channel);
-  third.load(coarse.third);
-  weights.load(coarse.weights);
-  squares.load(coarse.squared_weights);
   TypicalNoise typical;
   for_each_window(in_blocks, [&](const WindowGroup& group, std::size_t i, std::size_t window) {
     // Different constants of two images were found before.
     if (!moments.varied(window)) return;
     const bool alternating = group.grid == Grid::alternating;
     const auto g = static_cast<std::size_t>(&group - in_blocks.data());
-    Candidate candidate;
+    Candidate candidate{.finding = {}, .noise = moments.noise(window)};
     candidate.finding.size = group.size;
     candidate.finding.window = groups[g].windows[i];
     candidate.finding.channel = channel;
     if (alternating) candidate.finding.alternation = static_cast<Alternation>(i);
-    moments.put(window, candidate.noise);
-    candidate.noise.weight = squares.of(group, i) / weights.total_of(group, i);
-    candidate.noise.third = third.of(group, i);
     const StudentValue value = own_value(candidate.noise);
     candidate.finding.z = t_to_z(value);
     ++best[g].windows;
@@ -162,7 +162,7 @@ CellNoiseOfMean offer_coarse_cells(const CoarseImages& coarse, const Groups& gro
     // A thousand cells tell a median. An odd step meets every column.
     const std::size_t step = group.windows.size() / 1024 | 1U;
     if (group.size == typical_side && group.grid == Grid::aligned && i % step == 0) {
-      typical.add(candidate, noise, weights.of(group, i));
+      typical.add(candidate, noise);
     }
   });
   return typical.median();

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "stats/basics/vector_copies.h"
 #include "stats/pyramids/image_cells.h"
@@ -139,7 +140,7 @@ ASSAY_VECTOR_COPIES bool add_powers(const double* deviation, const double* limit
   return beyond != 0;
 }
 
-// What a part adds to an element.
+// A part adds to these of an element; the third cumulant is that of its weighted effect.
 struct PartSums {
   double* variance;
   double* reciprocal_degrees;
@@ -158,13 +159,13 @@ ASSAY_VECTOR_COPIES void finish_row(const RowPowers& powers, const double* weigh
   const double n = std::abs(count);
   const double factor = factor_of_half * factor_of_half;
   for (std::size_t i = 0; i < size; ++i) {
-    const double part = factor * squares[i] / (n * (n - 1));
-    variance[i] += part;
-    reciprocal_degrees[i] += part * part / (n - 1);
-    third[i] += factor * factor_of_half / (count * count * count) * cubes[i];
+    third[i] += factor / (count * count * count) * cubes[i];
     const double inverse = weight[i] > 0 ? 1 / weight[i] : 0.0;
     squares[i] *= inverse * inverse * n / (n - 1);
     cubes[i] *= inverse * inverse * inverse;
+    const double part = factor * squares[i] / (n * n);
+    variance[i] += part;
+    reciprocal_degrees[i] += part * part / (n - 1);
   }
 }
 
@@ -215,13 +216,14 @@ class FineTiles {
     for (WelchCells& moments : moments_) moments.start(size);
     find_light(tile);
     for (std::size_t h = 0; h < halves; ++h) {
+      add_weights(tile, h);
       take_part(tile, cells_.pair.a, {h, 0});
       if (cells_.pair.b != nullptr) take_part(tile, *cells_.pair.b, {h, 1});
       add_effect(tile, h);
+      add_third(tile, h);
       count_varied(tile, h);
+      if (!coarse_.half[h].squared_error.blocks.empty()) add_reference_error(tile, h);
     }
-    if (!coarse_.squared_error.blocks.empty()) add_reference_error(tile);
-    add_weights(tile, size);
     offer_elements(tile);
     for (std::size_t k = 0; k < fine_squares.size(); ++k) offer_squares(tile, k);
     found_.tiles[tile.y / Tile::rows * tiles_across(extent_) + tile.x / Tile::columns] =
@@ -238,7 +240,7 @@ class FineTiles {
   struct Elements {
     void start(std::size_t size) {
       for (std::vector<double>* each :
-           {&effect, &variance[0], &variance[1], &reciprocal_degrees, &third, &light}) {
+           {&variance[0], &variance[1], &reciprocal_degrees, &third, &light}) {
         each->assign(size, 0.0);
       }
     }
@@ -250,11 +252,10 @@ class FineTiles {
     std::vector<double> squares;
     std::vector<double> cubes;
     std::vector<double> limit;  // Weighted deviations beyond are rare.
+    std::vector<double> third;  // This is of the current half, and weighted.
     // These add up the parts that are done.
-    std::vector<double> effect;
     std::array<std::vector<double>, sides_of_pair> variance;
     std::vector<double> reciprocal_degrees;
-    std::vector<double> third;
   };
 
   // Calls visit(index here, element of the image, x, y, channel).
@@ -312,7 +313,7 @@ class FineTiles {
           note_rare(tile, y, part, values, out);
         }
       };
-      add_up(tile, coarse_.images[part.half][part.side][count++], fill,
+      add_up(tile, coarse_.half[part.half].images[part.side][count++], fill,
              [&](std::size_t k, std::size_t y, const double* sums) {
                add_squares(sums, moments_[k].squares.data() + y * tile.stride(), tile.size());
              });
@@ -332,15 +333,20 @@ class FineTiles {
     });
   }
 
+  // A deviation is rare in its element beyond twice the spread that the sides have there.
   void note_rare(const Tile& tile, std::size_t y, Part part, const float* values,
                  std::span<const double> weighted) {
     const double* const limit = elements_.limit.data() + y * tile.stride();
-    const double* const mean =
-        cells_.half[part.half].mean[part.side].data() + (tile.first(y) - cells_.half[0].first);
+    const Half& own = cells_.half[part.half];
+    const std::size_t here = tile.first(y) - own.first;
+    const double* const mean = own.mean[part.side].data() + here;
+    const auto& images = coarse_.half[part.half].images[part.side];
     for (std::size_t i = 0; i < tile.size(); ++i) {
       if (!(std::abs(weighted[i]) > limit[i])) continue;
+      const double deviation = static_cast<double>(values[i]) - mean[i];
+      const double spread = static_cast<double>(images.size()) * own.variance[here + i] / 2;
       found_.noise.at(part.side, tile.x + i / extent_.channels, tile.y + y, i % extent_.channels)
-          .add_rare(static_cast<double>(values[i]) - mean[i]);
+          .add_rare(deviation, deviation * deviation > 4 * spread);
     }
   }
 
@@ -375,24 +381,21 @@ class FineTiles {
     Elements& all = elements_;
     for_each_element(
         tile, [&](std::size_t i, std::size_t element, std::size_t x, std::size_t y, std::size_t c) {
-          const std::size_t block =
-              (y / block_side * coarse_.extent.width + x / block_side) * extent_.channels + c;
-          coarse_.third.blocks[block] += all.third[i];
-          const double weight = weight_of(element);
           const std::size_t vary = halves_that_vary(element);
-          const double difference = cells_.half[0].difference[element - cells_.half[0].first];
+          const std::size_t here = element - cells_.half[0].first;
+          const double difference = cells_.half[0].difference[here];
           // An element that is equal and never varies tells no size of a difference.
           const bool tells = vary > 0 || difference != 0;
-          found_.weights[element] = tells ? static_cast<float>(weight) : 0;
+          found_.weights[element] = tells ? static_cast<float>(weight_of(element)) : 0;
           if (vary < halves) {
             note_constant(element, vary == 0 && cells_.constants_decide ? difference : 0);
             return;
           }
           ++counts_.tested;
           note_noisier(i, element, x, y, c);
-          CellNoise noise{.effect = all.effect[i],
+          CellNoise noise{.effect = std::midpoint(difference, cells_.half[1].difference[here]),
                           .variance = {all.variance[0][i], all.variance[1][i] + error_of(element)},
-                          .weight = weight};
+                          .weight = 1};
           const double total = noise.variance[0] + noise.variance[1];
           noise.degrees = total * total / all.reciprocal_degrees[i];
           const StudentValue value = own_value(noise);
@@ -419,9 +422,12 @@ class FineTiles {
     if (cells_.pair.b != nullptr) found_.noise.at(1, x, y, c).add_element(noise(1) > noise(0));
   }
 
+  // The weight in this half, which the other gives.
+  double weight_in(std::size_t h, std::size_t element) const {
+    return cells_.half[1 - h].weight[element - cells_.half[0].first];
+  }
   double weight_of(std::size_t element) const {
-    const std::size_t here = element - cells_.half[0].first;
-    return (cells_.half[0].weight[here] + cells_.half[1].weight[here]) / 2;
+    return std::midpoint(weight_in(0, element), weight_in(1, element));
   }
 
   // The mean of the brighter side, or its error where that is larger.
@@ -462,26 +468,24 @@ class FineTiles {
   }
 
   // Sums of the weights and of their squares.
-  void add_weights(const Tile& tile, std::size_t size) {
-    const auto keep_in = [&](std::array<std::vector<double>, fine_squares.size()>& kept) {
-      for (std::vector<double>& each : kept) each.resize(size);
-      return [&](std::size_t k, std::size_t y, const double* sums) {
-        std::copy_n(sums, tile.size(), kept[k].data() + y * tile.stride());
-      };
-    };
-    const auto weight = [&](std::size_t element) { return weight_of(element); };
-    const auto square = [&](std::size_t element) {
-      return weight_of(element) * weight_of(element);
-    };
-    add_up(tile, coarse_.weights, each(weight), keep_in(weights_));
-    add_up(tile, coarse_.squared_weights, each(square), keep_in(squared_weights_));
+  void add_weights(const Tile& tile, std::size_t h) {
+    add_up(tile, coarse_.half[h].weights,
+           each([=, this](std::size_t element) { return weight_in(h, element); }),
+           [&](std::size_t k, std::size_t y, const double* sums) {
+             moments_[k].start_half(y * tile.stride(), {sums, tile.size()});
+           });
+    add_up(tile, coarse_.half[h].squared_weights, each([=, this](std::size_t element) {
+             return weight_in(h, element) * weight_in(h, element);
+           }),
+           [&](std::size_t k, std::size_t y, const double* sums) {
+             moments_[k].add(moments_[k].weight, y * tile.stride(), {sums, tile.size()}, 2);
+           });
   }
 
-  // A reference's squared error, weighted as the element is.
+  // A reference's squared error.
   double error_of(std::size_t element) const {
-    if (coarse_.squared_error.blocks.empty()) return 0;
-    const double error = weight_of(element) * cells_.pair.reference.standard_error[element];
-    return error * error;
+    const auto& error = cells_.pair.reference.standard_error;
+    return error.empty() ? 0 : error[element] * error[element];
   }
 
   std::size_t halves_that_vary(std::size_t element) const {
@@ -533,21 +537,20 @@ class FineTiles {
   // Differences of the means of a half.
   void add_effect(const Tile& tile, std::size_t h) {
     const Half& own = cells_.half[h];
-    const Half& other = cells_.half[1 - h];
-    add_up(
-        tile, coarse_.effect[h],
-        [&](std::size_t y, std::size_t first, std::span<double> out) {
-          const std::size_t here = first - own.first;
-          for (std::size_t i = 0; i < out.size(); ++i) {
-            out[i] = other.weight[here + i] * own.difference[here + i];
-          }
-          if (y >= tile.height()) return;
-          add_scaled(out.data(), factor_of_half, elements_.effect.data() + y * tile.stride(),
-                     tile.size());
-        },
-        [&](std::size_t k, std::size_t y, const double* sums) {
-          add_scaled(sums, factor_of_half, moments_[k].effect.data() + y * tile.stride(),
-                     tile.size());
+    add_up(tile, coarse_.half[h].effect, each([&](std::size_t element) {
+             return weight_in(h, element) * own.difference[element - own.first];
+           }),
+           [&](std::size_t k, std::size_t y, const double* sums) {
+             moments_[k].add(moments_[k].effect, y * tile.stride(), {sums, tile.size()}, 1);
+           });
+  }
+
+  void add_third(const Tile& tile, std::size_t h) {
+    for_each_element(
+        tile, [&](std::size_t i, std::size_t, std::size_t x, std::size_t y, std::size_t c) {
+          const std::size_t block =
+              (y / block_side * coarse_.extent.width + x / block_side) * extent_.channels + c;
+          coarse_.half[h].third.blocks[block] += std::exchange(elements_.third[i], 0);
         });
   }
 
@@ -555,25 +558,20 @@ class FineTiles {
   // every replicate, to the last bit. Sums of larger cells need the count.
   void count_varied(const Tile& tile, std::size_t h) {
     const Half& own = cells_.half[h];
-    const Half& other = cells_.half[1 - h];
     const auto varies = [&](std::size_t element) {
-      const std::size_t here = element - own.first;
-      return other.weight[here] > 0 && own.varied[here] > 0 ? 1 : 0;
+      return weight_in(h, element) > 0 && own.varied[element - own.first] > 0 ? 1 : 0;
     };
-    add_up(tile, coarse_.varied[h], each(varies), [](auto...) {});
+    add_up(tile, coarse_.half[h].varied, each(varies), [](auto...) {});
   }
 
   // A reference's error is one for both halves, independent between elements, and known without
-  // degrees of freedom. A sum that did not vary stays untested, without variance. The error says
-  // nothing of values never seen.
-  void add_reference_error(const Tile& tile) {
-    add_up(tile, coarse_.squared_error,
-           each([&](std::size_t element) { return error_of(element); }),
+  // degrees of freedom. It says nothing of values never seen.
+  void add_reference_error(const Tile& tile, std::size_t h) {
+    add_up(tile, coarse_.half[h].squared_error, each([&](std::size_t element) {
+             return weight_in(h, element) * weight_in(h, element) * error_of(element);
+           }),
            [&](std::size_t k, std::size_t y, const double* sums) {
-             for (std::size_t i = 0; i < tile.size(); ++i) {
-               const std::size_t cell = y * tile.stride() + i;
-               if (moments_[k].variance[0][cell] > 0) moments_[k].variance[1][cell] += sums[i];
-             }
+             moments_[k].add(moments_[k].variance[1], y * tile.stride(), {sums, tile.size()}, 2);
            });
   }
 
@@ -606,11 +604,9 @@ class FineTiles {
     square.height = std::min(high, height - square.y);
     for (std::size_t c = 0; c < extent_.channels; ++c) {
       if (std::isnan(t[c]) || !candidates_[*group].wants(t[c])) continue;
-      const std::size_t cell = first + c;
       Candidate candidate{
           .finding = {.size = cells_.groups[*group].size, .window = square, .channel = c},
-          .noise = {.weight = squared_weights_[k][cell] / weights_[k][cell]}};
-      moments_[k].put(cell, candidate.noise);
+          .noise = moments_[k].noise(first + c)};
       candidate.finding.z = t_to_z(own_value(candidate.noise));
       candidates_[*group].keep(candidate);
     }
@@ -629,8 +625,6 @@ class FineTiles {
   std::array<GroupsOfSide, fine_squares.size()> groups_;
   // These are of the squares that begin in the tile.
   std::array<WelchCells, fine_squares.size()> moments_;
-  std::array<std::vector<double>, fine_squares.size()> weights_;
-  std::array<std::vector<double>, fine_squares.size()> squared_weights_;
   Elements elements_;
 };
 
@@ -644,17 +638,14 @@ CoarseImages empty_blocks(const ImagePair& pair) {
       std::vector<double>(coarse.extent.elements()),
       std::vector<double>(tiles_across(extent) * extent.channels * alternations)};
   const BlockSums<float> no_image{std::vector<float>(none.blocks.size()), none.alternating};
-  coarse.third = none;
-  coarse.weights = none;
-  coarse.squared_weights = none;
   for (std::size_t h = 0; h < halves; ++h) {
-    coarse.images[h][0].assign(half_count(pair.a.images.size(), h), no_image);
-    if (pair.b != nullptr)
-      coarse.images[h][1].assign(half_count(pair.b->images.size(), h), no_image);
-    coarse.effect[h] = none;
-    coarse.varied[h] = none;
+    CoarseHalf& half = coarse.half[h];
+    half = {
+        .effect = none, .varied = none, .weights = none, .squared_weights = none, .third = none};
+    half.images[0].assign(half_count(pair.a.images.size(), h), no_image);
+    if (pair.b != nullptr) half.images[1].assign(half_count(pair.b->images.size(), h), no_image);
+    if (!pair.reference.standard_error.empty()) half.squared_error = none;
   }
-  if (!pair.reference.standard_error.empty()) coarse.squared_error = none;
   return coarse;
 }
 
@@ -709,11 +700,11 @@ void add_up_alternating(CoarseImages& coarse) {
     }
     image.alternating.resize(size);
   };
-  for (std::size_t h = 0; h < halves; ++h) {
-    add_up(coarse.effect[h]);
-    for (auto& side : coarse.images[h]) std::ranges::for_each(side, add_up);
+  for (CoarseHalf& half : coarse.half) {
+    add_up(half.effect);
+    add_up(half.squared_weights);
+    for (auto& side : half.images) std::ranges::for_each(side, add_up);
   }
-  add_up(coarse.squared_weights);
 }
 
 }  // namespace assay::stats

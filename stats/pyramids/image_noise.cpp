@@ -41,15 +41,19 @@ void PooledNoise::raise(int top) {
     std::shift_right(tail.begin(), tail.end(), rise);
     std::fill_n(tail.begin(), rise, Bin{});
   }
+  std::shift_right(in_elements_.begin(), in_elements_.end(), rise);
+  std::fill_n(in_elements_.begin(), rise, 0.0F);
   top_ = top;
 }
 
-void PooledNoise::add_rare(double deviation) {
+void PooledNoise::add_rare(double deviation, bool in_element) {
   const double size = std::abs(deviation);
   const int octave = std::ilogb(size) + 1;
   raise(octave);
   if (top_ - octave >= octaves) return;
-  Bin& bin = rare_[deviation > 0 ? 0 : 1][static_cast<std::size_t>(top_ - octave)];
+  const auto below = static_cast<std::size_t>(top_ - octave);
+  if (in_element) in_elements_[below] += 1;
+  Bin& bin = rare_[deviation > 0 ? 0 : 1][below];
   bin.count += 1;
   bin.sum += static_cast<float>(size);
   add(stats::powers_of(deviation, -1));
@@ -61,6 +65,10 @@ void PooledNoise::merge(const PooledNoise& other) {
   noisier_ += other.noisier_;
   if (other.top_ == no_octave) return;
   raise(other.top_);
+  for (int i = 0; i + top_ - other.top_ < octaves; ++i) {
+    in_elements_[static_cast<std::size_t>(i + top_ - other.top_)] +=
+        other.in_elements_[static_cast<std::size_t>(i)];
+  }
   for (std::size_t d = 0; d < rare_.size(); ++d) {
     for (int i = 0; i < octaves; ++i) {
       const Bin& from = other.rare_[d][static_cast<std::size_t>(i)];
@@ -95,8 +103,7 @@ PooledNoise::Moments PooledNoise::cut_off(int octave) const {
 double PooledNoise::rare(int octave) const {
   const int i = top_ - octave;
   if (i < 0 || i >= octaves) return 0;
-  const auto bin = static_cast<std::size_t>(i);
-  return static_cast<double>(rare_[0][bin].count) + static_cast<double>(rare_[1][bin].count);
+  return static_cast<double>(in_elements_[static_cast<std::size_t>(i)]);
 }
 
 double PooledNoise::hidden_squares(double replicates) const {
@@ -169,7 +176,7 @@ double NoisePyramid::inverse(std::size_t side) const {
 
 bool NoisePyramid::of_one_law(const Around& near, double toward) const {
   constexpr double errors_of_signs = 6;
-  constexpr double errors_of_rates = 3.5;
+  constexpr double errors_of_rates = 2.25;
   if (replicates_[1] == 0) return false;
   return std::ranges::all_of(near.blocks, [&](const Sides& here) {
     const double more = std::abs(here[0]->noisier() - here[1]->noisier());
@@ -177,10 +184,10 @@ bool NoisePyramid::of_one_law(const Around& near, double toward) const {
     std::array<double, sides_of_pair> beyond = {};
     for (int octave = near.last; octave >= near.first; --octave) {
       for (std::size_t s = 0; s < sides_of_pair; ++s) beyond[s] += here[s]->rare(octave);
-      const double a = beyond[0] * inverse(0);
-      const double b = beyond[1] * inverse(1);
-      const double error = std::sqrt(a * inverse(0) + b * inverse(1));
-      if (toward * (a - b) > errors_of_rates * error) return false;
+      // The root of a count plus 3/8 has the standard error 1/2 (Anscombe 1948).
+      const auto root = [&](std::size_t s) { return std::sqrt((beyond[s] + 0.375) * inverse(s)); };
+      const double error = std::sqrt(inverse(0) + inverse(1)) / 2;
+      if (toward * (root(0) - root(1)) > errors_of_rates * error) return false;
     }
     return true;
   });

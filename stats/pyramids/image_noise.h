@@ -29,8 +29,9 @@ class PooledNoise {
     double cubes = 0;
   };
   void add(const Powers& powers);
-  // Takes a deviation, not 0, that is among those that are added.
-  void add_rare(double deviation);
+  // Takes a deviation, not 0, that is among those that are added. It may be rare in its element,
+  // or beyond what the other elements mostly have.
+  void add_rare(double deviation, bool in_element);
   // Takes an element that varies; `noisier` if it has more relative variance than the other side's.
   void add_element(bool noisier);
   void merge(const PooledNoise& other);
@@ -45,7 +46,7 @@ class PooledNoise {
   static constexpr int no_octave = -100'000;  // top() without any.
   int top() const { return top_; }            // No rare deviation is beyond +-2^top.
   double noisier() const { return noisier_; }
-  // Number of rare deviations in this octave.
+  // Number of deviations in this octave that are rare in their elements.
   double rare(int octave) const;
 
   // The square, summed over the elements, of the mean that each lacks if it missed the values that
@@ -68,15 +69,18 @@ class PooledNoise {
   double noisier_ = 0;
   int top_ = no_octave;
   std::array<Tail, 2> rare_ = {};  // Upward, downward; from the top down.
+  std::array<float, octaves> in_elements_ = {};
 };
 
-// A cell's sums, averaged over the halves.
+// A cell's effect is the mean over the halves of its weighted mean of a - b.
 struct CellNoise {
-  double effect = 0;                                // Estimate of the sum of a - b.
+  double effect = 0;
   std::array<double, sides_of_pair> variance = {};  // What either side adds to its squared error.
   double degrees = 1;
   double third = 0;  // Third cumulant of the effect, of independent elements; 0 of few.
-  // The sum of the squared weights, with the signs in turn, over that of the weights.
+  // The sum of the squared weights, with the signs in turn, over the square of the weights' sum. It
+  // is the mean of this over the halves, as is a reference's squared error. Both are exact where
+  // the halves' weights are in proportion, and else too large.
   double weight = 0;
 };
 
@@ -102,8 +106,9 @@ class NoisePyramid {
   // rarest do not drown the others.
   //
   // Two sides of one law have k3 = 0. So the blocks count only where the sides have different laws
-  // in one of them: one is noisier for its mean in too many elements (sign test), or the darker has
-  // too many rare values beyond an octave. A reference has a law of its own.
+  // in one of them. That is where one is noisier for its mean in too many elements (sign test). It
+  // is also where the darker has too many values beyond an octave that are rare in their elements.
+  // A reference has a law of its own.
   ImageEffect kept(const CellNoise& cell, const Rectangle& window, std::size_t channel) const;
   // The k3 / k2 of an effect of this sign.
   double growth(const CellNoise& cell, double sign, const Rectangle& window,

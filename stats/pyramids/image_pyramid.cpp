@@ -35,20 +35,6 @@ Rectangle around(const Rectangle& window, std::size_t channel, const ImageExtent
   return right == 0 ? window : Rectangle{left, top, right - left, bottom - top};
 }
 
-// Turns a sum of weighted differences into their mean. Elements without weight tell nothing, so the
-// window shrinks around the others.
-void divide_by_weights(ImageFinding& finding, const std::vector<float>& weights,
-                       const ImageExtent& extent) {
-  double sum = 0;
-  finding.window = around(finding.window, finding.channel, extent, [&](std::size_t element) {
-    sum += weights[element];
-    return weights[element] > 0;
-  });
-  if (!(sum > 0)) return;
-  finding.effect.estimate /= sum;
-  finding.effect.standard_error /= sum;
-}
-
 }  // namespace
 
 RowPyramid::RowPyramid(const ImagePair& pair, const PyramidOptions& options)
@@ -108,7 +94,9 @@ void RowPyramid::add_best(ImageFamily& family) const {
       finding.log_p = log_p_two_sided(tails_of(finding.effect));
       finding.adjusted_log_p = adjusted(finding.log_p, size);
       finding.group = size;
-      divide_by_weights(finding, found_.weights, extent_);
+      // Elements without weight tell nothing.
+      finding.window = around(finding.window, finding.channel, extent_,
+                              [&](std::size_t element) { return found_.weights[element] > 0; });
       findings.push_back(finding);
     };
     add(*best.finding, family.groups);

@@ -21,10 +21,11 @@ namespace assay::stats {
 //
 // The replicates are dealt to two halves. Each half gives the other its weights w ~ 1 /
 // sqrt(va + vb), from variances steadied by those of 5 x 5 neighbours. A constant element has
-// weight 0. A replicate's cell value is its weighted sum. T is the Welch statistic of the cell
+// weight 0. A replicate's cell value is its weighted mean. T is the Welch statistic of the cell
 // values over replicates, averaged over the halves. Weights and values are independent, so the
-// numerator has mean zero for any law of the elements. Correlation between elements is in the
-// variance. Adding up the elements' own z would fail at both (measurements.md).
+// numerator has mean zero for any law of the elements. Of one element T is Welch's. Correlation
+// between elements is in the variance. Adding up the elements' own z would fail at both
+// (measurements.md).
 //
 // Rare bright values (fireflies) make T too large where one image has them and missed them. So a
 // cell's T is only as large as its neighbours allow (image_noise.h). What no replicate of the whole

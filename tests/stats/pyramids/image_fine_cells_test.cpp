@@ -23,32 +23,39 @@ struct Cell {
   std::size_t channel;
 };
 
-// Mean and squared error of one cell's weighted sum over one half of a stack.
-Moments cell_moments(const ImageStack& stack, std::size_t half, const std::vector<double>& weight,
-                     const Cell& cell) {
+// The elements of one cell, each with its sign.
+void for_each_element(const ImageExtent& extent, const Cell& cell, const auto& visit) {
   const Rectangle& window = cell.group.windows[cell.index];
-  Moments moments;
-  for (std::size_t r = half; r < stack.images.size(); r += halves) {
-    double sum = 0;
-    for (std::size_t y = window.y; y < window.y + window.height; ++y) {
-      for (std::size_t x = window.x; x < window.x + window.width; ++x) {
-        const std::size_t e = (y * stack.extent.width + x) * stack.extent.channels + cell.channel;
-        sum += sign_of(cell.group, cell.index, x, y) * weight[e] *
-               static_cast<double>(stack.images[r][e]);
-      }
+  for (std::size_t y = window.y; y < window.y + window.height; ++y) {
+    for (std::size_t x = window.x; x < window.x + window.width; ++x) {
+      visit((y * extent.width + x) * extent.channels + cell.channel,
+            sign_of(cell.group, cell.index, x, y));
     }
-    moments.add(sum);
   }
-  return moments;
 }
 
-// What a cell's own sums and elements say, by loops over its rectangle.
+// Loops over its rectangle give a cell's own weighted means.
 CellNoise noise_of(const ImagePair& pair, const std::array<Half, halves>& half, const Cell& cell) {
   CellNoise noise;
   double reciprocal_degrees = 0;
   for (std::size_t h = 0; h < halves; ++h) {
+    const auto& weight = half[1 - h].weight;
+    double weights = 0, squares = 0;
+    for_each_element(pair.a.extent, cell, [&](std::size_t e, double) {
+      weights += weight[e];
+      squares += weight[e] * weight[e];
+    });
+    noise.weight += squares / (weights * weights) / 2;
     for (std::size_t s = 0; s < sides_of_pair; ++s) {
-      const Moments moments = cell_moments(s == 0 ? pair.a : *pair.b, h, half[1 - h].weight, cell);
+      const ImageStack& stack = s == 0 ? pair.a : *pair.b;
+      Moments moments;
+      for (std::size_t r = h; r < stack.images.size(); r += halves) {
+        double sum = 0;
+        for_each_element(stack.extent, cell, [&](std::size_t e, double sign) {
+          sum += sign * weight[e] * static_cast<double>(stack.images[r][e]);
+        });
+        moments.add(sum / weights);
+      }
       const double part = std::pow(moments.standard_error() / 2, 2);
       noise.effect += (s == 0 ? 0.5 : -0.5) * moments.mean;
       noise.variance[s] += part;
@@ -56,18 +63,6 @@ CellNoise noise_of(const ImagePair& pair, const std::array<Half, halves>& half, 
     }
   }
   noise.degrees = std::pow(noise.variance[0] + noise.variance[1], 2) / reciprocal_degrees;
-  const Rectangle& window = cell.group.windows[cell.index];
-  double weights = 0;
-  double squares = 0;
-  for (std::size_t y = window.y; y < window.y + window.height; ++y) {
-    for (std::size_t x = window.x; x < window.x + window.width; ++x) {
-      const std::size_t e = (y * pair.a.extent.width + x) * pair.a.extent.channels + cell.channel;
-      const double weight = (half[0].weight[e] + half[1].weight[e]) / 2;
-      weights += weight;
-      squares += weight * weight;
-    }
-  }
-  noise.weight = squares / weights;
   return noise;
 }
 
