@@ -101,7 +101,7 @@ bool Children::examine_first(Respondent& dialogue, const Question& wanted) {
   const std::size_t width = hello_.width();
   FirstObservations mine{.question = {.key = wanted.key,
                                       .first = 0,
-                                      .count = asked_twice(width),
+                                      .count = asked_twice(width, wanted.primaries),
                                       .primaries = wanted.primaries},
                          .width = width};
   const auto spent = [&] { return thread_seconds() + dialogue.cpu_seconds(); };

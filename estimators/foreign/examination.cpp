@@ -141,7 +141,10 @@ std::optional<std::vector<double>> FirstObservations::usual() const {
   return row(0);
 }
 
-std::uint64_t asked_twice(std::size_t width) { return holding(numbers_twice, width, least_twice); }
+std::uint64_t asked_twice(std::size_t width, std::uint64_t primaries) {
+  return holding(numbers_twice, width * std::clamp<std::uint64_t>(primaries, 1, numbers_twice),
+                 least_twice);
+}
 
 std::string why_not_repeated(const Asking& ask, const FirstObservations& first,
                              const std::string& name) {

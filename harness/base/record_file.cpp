@@ -1,6 +1,7 @@
 #include "harness/base/record_file.h"
 
 #include <algorithm>
+#include <iterator>
 #include <filesystem>
 #include <fstream>
 #include <span>
@@ -76,6 +77,11 @@ Recorded find_test(const reports::Record& record, const std::string& file,
     }
   }
   if (named.size() == 1) return named.front();
+  // Without a name it is the one that broke.
+  std::vector<Recorded> broken;
+  std::ranges::copy_if(parts, std::back_inserter(broken),
+                       [](const Recorded& each) { return !each.test.ok; });
+  if (name.empty() && !broken.empty()) parts.swap(broken);
   const Location where{.file = file};
   if (!named.empty()) {
     refuse(where, "{} tests have the name `{}`; give the id of one: {}", named.size(), name,

@@ -142,10 +142,10 @@ Row row_of(const TestOutcome& test, const Pilots& pilots) {
                effect_text(test, expected)};
   if (plan.invalid.empty()) {
     if (expected.if_off) {
-      row.notes.insert(row.notes.begin(),
-                       outlook_text(test.plan.regions[0].proof() ? "if it is just wrong"
-                                                                 : "if off by `detect`",
-                                    *expected.if_off));
+      row.notes.insert(
+          row.notes.begin(),
+          outlook_text(test.plan.regions[0].proof() ? "if it is just wrong" : "if off by `detect`",
+                       *expected.if_off));
     }
     if (expected.if_true) {
       row.notes.insert(row.notes.begin(), outlook_text("if it holds", *expected.if_true));
@@ -264,10 +264,13 @@ void write_totals(std::string& page, const PlannedRun& planned) {
     const std::vector<std::uint64_t>& postponed = test.plan.postponed;
     return postponed.empty() ? test.plan.most_secondaries() : postponed.back();
   };
+  double of_pilots = 0;
+  for (const auto& run : planned.suites) of_pilots += run->pilots.primaries();
   page += on_page(fmt::format(
       "Tests of one estimator share observations: the run draws about {} if every claim holds "
-      "exactly. Heavy tails may raise this to {}.",
-      total_text(total_of(planned, expected_secondaries)), total_text(total_of(planned, most))));
+      "exactly. Heavy tails may raise this to {}. Its pilots draw {} primaries before.",
+      total_text(total_of(planned, expected_secondaries)), total_text(total_of(planned, most)),
+      count_of(of_pilots)));
   page += on_page(
       "last: the observations of each source at the last look. in all, rays, CPU time: what all "
       "sources draw up to it, by the pilot. effect: what it finds, or shows of `within`, `<` and "

@@ -392,7 +392,9 @@ class ImageTheta : public Theta {
         question.references, [](const Constant& each) { return each.standard_error == 0; });
     if (!exact) return "";
     return fmt::format(
-        "`{}` is one picture, taken as exact: noise of its own would count as a difference",
+        "`{}` is one picture, taken as exact; if it was rendered, its noise counts as a "
+        "difference: "
+        "give 16 or more of its renders",
         other->quantity.source.estimator);
   }
 };

@@ -34,7 +34,7 @@ constexpr const char* distance_of_laws = "largest distance of distribution funct
 
 /// Says which part p belongs to: the estimate may be another's.
 std::string p_is_of(const std::string& part, double difference) {
-  return fmt::format("p is that of {}, {:.4g} apart", part, difference);
+  return fmt::format("{} decide: their shares are {:.4g} apart", part, difference);
 }
 
 /// Evidence from a sup distance that the law's table leaves uncertain by `error`.
@@ -200,7 +200,10 @@ std::string worst_of(const stats::ChiSquareFit& fit, const DrawCells& cells) {
   const auto worst = std::ranges::max_element(fit.cells, {}, part);
   const auto describe = [&](std::size_t cell) { return cells.describe(cell); };
   std::string text;
-  if (fit.impossible > 0) text = fmt::format("{} draws in cells of density 0; ", fit.impossible);
+  if (fit.impossible > 0)
+    text =
+        fmt::format("{} draws that the density rules out (it is 0 there, or they have no point); ",
+                    fit.impossible);
   return text + fmt::format("farthest off in {}, {} draws where {:.4g} are expected",
                             pool_text(worst->members, describe), worst->observed, worst->expected);
 }

@@ -17,6 +17,7 @@
 #include "harness/theta/decision.h"
 #include "harness/theta/methods.h"
 #include "harness/theta/theta.h"
+#include "reports/words/number.h"
 #include "stats/basics/moments.h"
 #include "stats/gates/assumption_gates.h"
 #include "stats/means/betting_mean.h"
@@ -770,16 +771,19 @@ class MeanTheta : public Theta {
     constexpr std::uint64_t many = 16 * floor_of_evidence;
     const Question& question = outcome.question;
     if (outcome.plan.method.is.exact || outcome.verdict != reports::Verdict::fail) return "";
-    const bool below = outcome.channels[0].effect.estimate.value_or(0) < 0;
+    const reports::Effect& effect = outcome.channels[0].effect;
+    const bool below = effect.estimate.value_or(0) < 0;
     for (std::size_t side = 0; side < question.compared(); ++side) {
       const stats::Range range = range_of(question, side, outcome.channels[0].index, {});
       const bool upwards = below == (side == 0 || question.factor < 0);
       const std::uint64_t seen = outcome.secondaries(side) * outcome.plan.primaries[side];
       if (std::isfinite(upwards ? range.high : range.low) || seen >= many) continue;
-      const bool rows = is_recorded(question.subjects[side]);
-      return fmt::format("values rarer than one in {} may be missing, which would explain it{}",
-                         std::max<std::uint64_t>(1, seen / 3),
-                         rows ? "" : "; a declared range helps");
+      const double rarer = std::floor(static_cast<double>(std::max<std::uint64_t>(3, seen)) / 3);
+      return fmt::format(
+          "values rarer than one in {:.0f} that lie {}{} or more from the mean would explain it{}",
+          rarer, reports::human(rarer * std::abs(effect.estimate.value_or(0)), 2),
+          effect.relative ? " times its size" : "",
+          is_recorded(question.subjects[side]) ? "" : "; a declared range excludes them");
     }
     return "";
   }

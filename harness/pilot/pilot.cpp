@@ -55,8 +55,9 @@ std::uint64_t usual_observations(const PreparedEstimator& estimator, std::uint64
 std::uint64_t paid_by(const Question& question, const Subject& side) {
   const Budget budget = question.test->budget.value_or(Budget{});
   std::uint64_t most = unlimited;
-  if (budget.seconds && !side.estimator->nature().averages)
-    most = few_observations * side.estimator->primaries.value_or(1);
+  const bool averages = side.estimator->nature().averages;
+  if (budget.seconds)
+    most = few_observations * (averages ? 1 : side.estimator->primaries.value_or(1));
   if (!budget.primaries) return most;
   const std::uint64_t pools = most_pools * question.subjects.size();
   const double paid = pilots_part * static_cast<double>(*budget.primaries);
@@ -166,6 +167,17 @@ std::string pilot_name(const Subject& subject) {
 const Pilot* averaged_pilot_of(const Subject& subject, const Pilots& pilots) {
   if (!subject.purpose.empty()) return nullptr;
   return pilots.find(pilot_name_of(subject.estimator->name, averages_purpose));
+}
+
+double Pilots::primaries() const {
+  double sum = 0;
+  for (const auto& [name, either] : all_) {
+    const auto* const pilot = std::get_if<Pilot>(&either);
+    if (pilot == nullptr || !pilot->pool || pilot->pool->setup()->observations()) continue;
+    sum += static_cast<double>(pilot->sums->count *
+                               primaries_of_observation(*pilot->pool->setup(), pilot->primaries));
+  }
+  return sum;
 }
 
 void Pilots::drop_drawn() {

@@ -55,6 +55,8 @@ class Pilots {
     all_.emplace(name, std::move(pilot));
   }
   void merge(Pilots others) { all_.merge(others.all_); }
+  /// All primaries that were drawn for them.
+  double primaries() const;
   /// Frees what was drawn for the plans alone. Ready-made data stay: they are also the tests'.
   void drop_drawn();
 

@@ -68,9 +68,12 @@ reports::Advice setting(const TestOutcome& outcome, double factor) {
   }
   const bool in_primaries = budget && budget->primaries;
   const std::uint64_t secondaries = outcome.secondaries();
-  const double now = in_primaries ? static_cast<double>(primaries_of_look(outcome, secondaries)) /
-                                        (1 - pilots_part)
-                                  : static_cast<double>(secondaries);
+  // The pilots of a small budget have more than their part.
+  const double now = in_primaries
+                         ? std::max(static_cast<double>(primaries_of_look(outcome, secondaries)) /
+                                        (1 - pilots_part),
+                                    static_cast<double>(*budget->primaries))
+                         : static_cast<double>(secondaries);
   const double step = std::pow(10, std::max(0.0, std::floor(std::log10(factor * now)) - 1));
   return {.key = in_primaries ? "budget" : "secondaries",
           .value = fmt::format("{:.0f}", std::ceil(factor * now / step) * step)};

@@ -23,6 +23,8 @@ using stats::GateState;
 constexpr std::size_t fewest_in_order_to_tell = 100;
 // No method of means keeps its level with fewer rows: nobody is told to force one.
 constexpr std::size_t fewest_to_force = 20;
+// Rows of two files are no pairs if their rank correlation has fewer standard errors.
+constexpr double most_errors_of_pairs = 6;
 // Student's t on fewer batch means is off (Glynn and Iglehart 1990).
 constexpr std::size_t fewest_batches = 20;
 
@@ -64,12 +66,16 @@ std::string enough_of_a_chain(const Question& question, std::size_t rows, double
   if (!question.is().batches_serve) {
     return fmt::format("keep one row in {}, {} of them at least", apart, fewest_in_order_to_tell);
   }
-  if (question.test->method) return "leave `test` out: batches of enough rows are then averaged";
+  const std::optional<std::string>& forced = question.test->method;
+  if (forced && !find_method(question, *forced).is.of_batches) {
+    return "leave `test` out: batches of enough rows are then averaged";
+  }
   if (question.test->claim.relation == Relation::within) {
     return fmt::format("means of {} successive rows each, {} of them at least", apart,
                        fewest_in_order_to_tell);
   }
-  const std::size_t enough = fewest_batches * std::max(apart, fewest_batches);
+  // A half more: the next rows have another estimate.
+  const std::size_t enough = fewest_batches * std::max(apart, fewest_batches) * 3 / 2;
   if (rows >= enough) return "";
   return fmt::format("{} rows at least, of which batches are then averaged", enough);
 }
@@ -125,13 +131,14 @@ Reason repeated(const Rows& rows, const stats::RepeatedRun& again) {
 
 [[noreturn]] void refuse_pair(const Question& question, const Subject& first, const Subject& second,
                               const std::string& why) {
-  refuse(question.test->claim.left.where,
-         "`{}` and `{}` are no independent samples: {}, bit for bit; give the two sides seeds of "
-         "their own, none of them twice{}",
-         first.estimator->name, second.estimator->name, why,
-         question.theta->of_pairs() == nullptr ? ""
-                                               : ", or compare pairs of one seed with " +
-                                                     written_key(*question.test, "paired", "true"));
+  refuse(
+      question.test->claim.left.where,
+      "`{}` and `{}` are no independent samples: {}; give the two sides seeds of their own, none "
+      "of them twice{}",
+      first.estimator->name, second.estimator->name, why,
+      question.theta->of_pairs() == nullptr
+          ? ""
+          : ", or compare pairs of one seed with " + written_key(*question.test, "paired", "true"));
 }
 
 void refuse_shared_pictures(const Question& question, std::uint64_t count) {
@@ -142,7 +149,8 @@ void refuse_shared_pictures(const Question& question, std::uint64_t count) {
       if (!one || !two) continue;
       if (const auto files = one->shared_with(*two, count)) {
         refuse_pair(question, first, second,
-                    fmt::format("`{}` and `{}` are the same picture", files->first, files->second));
+                    fmt::format("`{}` and `{}` are the same picture, bit for bit", files->first,
+                                files->second));
       }
     }
   }
@@ -153,10 +161,28 @@ void refuse_shared_rows(const Question& question, const Rows& one, const Rows& t
   const Subject& second = question.subjects[two.subject];
   if (const auto run = stats::common_run(one.values, two.values)) {
     refuse_pair(question, first, second,
-                fmt::format("rows {} of `{}` are rows {} of `{}`", from_to(run->first, run->length),
-                            first.setup->data_file(), from_to(run->second, run->length),
-                            second.setup->data_file()));
+                fmt::format("rows {} of `{}` are rows {} of `{}`, bit for bit",
+                            from_to(run->first, run->length), first.setup->data_file(),
+                            from_to(run->second, run->length), second.setup->data_file()));
   }
+  if (one.values.size() != two.values.size()) return;
+  // The variance of two independent chains' correlation grows by the sum of their autocorrelations'
+  // products (Bartlett 1935), which is at most this root.
+  const auto squares = [](const Rows& rows) {
+    double sum = 1;
+    for (const stats::LaggedCorrelation& each : stats::lagged_correlations(rows.values, 1)) {
+      sum += 2 * each.correlation * each.correlation;
+    }
+    return sum;
+  };
+  const double values =
+      static_cast<double>(one.values.size()) / std::sqrt(squares(one) * squares(two));
+  const double r = stats::rank_correlation(one.values, two.values);
+  if (std::abs(r) * std::sqrt(values) < most_errors_of_pairs) return;
+  refuse_pair(question, first, second,
+              fmt::format("row by row they have a rank correlation of {:.2g}, as from the same "
+                          "seeds, whose differences can be tested in one file",
+                          r));
 }
 
 /// Why rows are too few to show their independence; "" if they are enough.
@@ -178,7 +204,7 @@ Reason too_few_to_tell(TestOutcome& test, const Pilots& pilots, std::uint64_t co
     const std::string forced =
         rows < fewest_to_force
             ? ""
-            : fmt::format("; if they are independent, add {}",
+            : fmt::format("; if they are independent and near normal, add {}",
                           written_key(*test.question.test, "test", test.plan.method.name));
     const std::uint64_t there = side.setup->observations().value_or(rows);
     const char* const key = test.question.test->budget ? "budget" : "secondaries";

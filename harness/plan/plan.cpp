@@ -9,6 +9,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "harness/plan/forecast.h"
 #include "harness/plan/gate_text.h"
 #include "harness/plan/independence.h"
 #include "harness/plan/pilot_shape.h"
@@ -276,6 +277,22 @@ std::uint64_t most_available(const TestOutcome& test, const Pilots& pilots) {
                   paid_for(test, *budget->primaries, primaries_of_pilots(test.question, pilots)));
 }
 
+/// The most secondaries where a budget in seconds does not pay for the fewest meaningful ones at
+/// the pilot's speed. It is a power of two, as clocks differ, and two at least.
+std::uint64_t most_in_seconds(const TestOutcome& test, const Pilots& pilots,
+                              const stats::LookRange& range) {
+  const std::optional<Budget>& budget = test.question.test->budget;
+  if (!budget || !budget->seconds) return range.last;
+  double each = 0;
+  for (std::size_t i = 0; i < test.plan.primaries.size(); ++i) {
+    const auto cost = observation_cost(test.question.subjects[i], test.plan.primaries[i], pilots);
+    each += cost ? cost->seconds : 0;
+  }
+  const double paid = std::max(2.0, *budget->seconds / each);
+  if (!(paid < static_cast<double>(range.first))) return range.last;
+  return std::min(range.last, std::bit_floor(static_cast<std::uint64_t>(paid)));
+}
+
 /// Throws InputError if somebody chose the size of a claim in seconds.
 void require_no_budget(const TestOutcome& test) {
   const TestEntry& entry = *test.question.test;
@@ -442,8 +459,9 @@ TestOutcome plan_test(Question asked, const FamilyPlace& place, const Pilots& pi
   require_no_budget(test);
   try {
     question.theta->require_density(question);
-    const std::uint64_t most = most_available(test, pilots);
+    std::uint64_t most = most_available(test, pilots);
     const std::uint64_t least = choose_method(test, pilots, most);
+    most = most_in_seconds(test, pilots, {.first = least, .last = most});
     plan.looks = plan_looks(test, pilots, {.first = least, .last = most});
     if (plan.invalid.empty()) plan.invalid = question.theta->too_few(test);
     if (plan.invalid.empty()) {

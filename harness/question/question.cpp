@@ -141,6 +141,11 @@ Subject draws(const Source& source, const Estimators& estimators, Draws what) {
            source.estimator, parts_of(estimator));
   }
   const NamedSampler* named = sampler_named(samplers, source.part, rest);
+  if (named == nullptr && !source.part.empty()) {
+    refuse(source.where, "`{}.{}` is no sampler; those of `{}` are {}", source.estimator,
+           source.part, source.estimator,
+           fmt::join(samplers | std::views::transform(&NamedSampler::name), ", "));
+  }
   if (named == nullptr) no_such_part(source, estimator);
   Subject subject{.estimator = &estimator,
                   .setup = sampler_setup(*named, source.where),

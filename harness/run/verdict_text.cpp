@@ -254,15 +254,16 @@ Reason what_would_decide(const TestOutcome& outcome, const ChannelOutcome& chann
   const double fixed = reference_error(outcome, channel);
   const double error = half / interval_errors(channel, beta);
   if (channel.regions.proof() && room.size < error) {
+    const std::string more = has_rows(outcome.question)      ? rows_noun(outcome.question)
+                             : outcome.question.test->budget ? "`budget`"
+                                                             : "observations";
     return Reason::advising(
         "the estimate is less than a standard error from what is to be shown; ",
         channel.regions.within()
-            ? "give a larger margin"
-            : fmt::format("if both sides may be equal, claim that they are `within` a margin; "
-                          "otherwise give more {}",
-                          has_rows(outcome.question)      ? rows_noun(outcome.question)
-                          : outcome.question.test->budget ? "`budget`"
-                                                          : "observations"));
+            ? "give a larger margin, or more " + more
+            : "if both sides may be equal, claim that they are `within` a margin; otherwise give "
+              "more " +
+                  more);
   }
   const double sampled = error * error - fixed * fixed;
   const double wanted = std::pow(room.size / room.standard_errors, 2) - fixed * fixed;

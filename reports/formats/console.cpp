@@ -115,8 +115,12 @@ class Screen {
       const bool again =
           test.verdict == Verdict::fail && !test.replay.empty() && all[i].paste == test.replay;
       const std::vector<std::string> more = step_lines(all[i]);
-      if ((all[i].label == "or" || again) && room() >= static_cast<int>(text.size() + more.size()))
+      if (all[i].label != "or" && !again) continue;
+      if (room() >= static_cast<int>(text.size() + more.size())) {
         next.insert(next.end(), more.begin(), more.end());
+      } else if (again) {
+        next = more;
+      }
     }
     indented(text, room());
     put(next);

@@ -65,9 +65,7 @@ std::string explain(const Suite& suite, const Test& test, int width) {
   text += fact_of(words, "observations", "These observations were drawn: ");
   say(text);
   if (is_evidence(test) && test.verdict != Verdict::skipped && suite.alpha > 0) {
-    say(false_alarms(suite.alpha) + " They are counted over all claims of the suite." +
-        (test.verdict == Verdict::fail ? " Means of infinite variance fail falsely more often."
-                                       : ""));
+    say(false_alarms(suite.alpha) + " They are counted over all claims of the suite.");
   }
   const std::vector<Step> next = steps(test);
   if (next.empty()) return out;

@@ -131,6 +131,12 @@ std::vector<LaggedCorrelation> lagged_correlations(std::span<const double> value
   return all;
 }
 
+double rank_correlation(std::span<const double> x, std::span<const double> y) {
+  const std::vector<double> a = centred_ranks(x), b = centred_ranks(y);
+  const double squares = sum_of_products(a, a) * sum_of_products(b, b);
+  return squares > 0 ? sum_of_products(a, b) / std::sqrt(squares) : 0;
+}
+
 LaggedCorrelation worst_of(std::span<const LaggedCorrelation> all) {
   LaggedCorrelation worst;
   for (const LaggedCorrelation& each : all) {

@@ -418,13 +418,17 @@ test_explain_tells_of_the_last_run() {
   contains out 'The last run from this folder began'
   contains out 'secondaries: '
   expect 2 explain
-  contains err '3 tests; give the id of one'
+  contains err '2 tests; give the id of one'
   expect 0 explain run.json mixed/wrong
   contains out 'The claim is wrong.'
   expect 2 explain mixed/
   contains err '3 tests have `mixed/` in their id'
   expect 2 explain mixed/wrnog
   contains err 'mixed/wrong'
+  write_suite broken.yaml "$good" "$wrong"
+  expect 1 run broken.yaml
+  expect 0 explain
+  contains out 'broken/wrong'
   write_suite single.yaml "$good"
   expect 0 run single.yaml --report json=single.json
   expect 0 explain

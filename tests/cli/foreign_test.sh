@@ -390,4 +390,36 @@ SUITE
   [ "$(wc -l <waits)" = 2 ] || fail "$(wc -l <waits) waits"
 }
 
+# Either budget let the pilots and the first look make 16,384 calls each.
+test_budgets_bound_what_a_program_draws() {
+  cat >count.py <<'END'
+import os
+import time
+
+import assay
+
+calls = os.open("calls", os.O_WRONLY | os.O_APPEND | os.O_CREAT)
+
+
+def mine(rng):
+    os.write(calls, b".")
+    end = time.process_time() + 0.001
+    while time.process_time() < end:
+        pass
+    return rng.random()
+
+
+assay.serve(mine)
+END
+  local budget
+  for budget in 300 0.5s; do
+    rm -f calls
+    expect 3 check 'mean(m) == 0.5' --detect 2% --budget $budget \
+      --estimator 'm=process,command=[/usr/bin/python3, count.py]'
+    [ "$(stat -c %s calls)" -lt 3000 ] || fail "$(stat -c %s calls) calls for a budget of $budget"
+    [ "$budget" != 300 ] || [ "$(tr -d '\n' <out | grep -oE '`--budget [0-9]+' | grep -oE '[0-9]+')" -gt 300 ] ||
+      fail 'the advice is less than the budget'
+  done
+}
+
 "$3"

@@ -24,13 +24,13 @@ runs_at_once() {
 
 test_init_suite_runs_at_once() { runs_at_once 'All 2 claims are as they should be' suite; }
 test_init_plugin_runs_at_once() {
-  runs_at_once 'All 2 claims are as they should be' plugin
+  runs_at_once 'All 3 claims are as they should be' plugin
   ctest --test-dir 'a folder/build' >out 2>err || fail 'ctest fails'
-  contains out '100% tests passed, 0 tests failed out of 2'
+  contains out '100% tests passed, 0 tests failed out of 3'
 }
-test_init_process_python_runs_at_once() { runs_at_once 'All 2 claims are as they should be' process python; }
-test_init_process_cpp_runs_at_once() { runs_at_once 'All 2 claims are as they should be' process c++; }
-test_init_gtest_runs_at_once() { runs_at_once '2 tests' gtest; }
+test_init_process_python_runs_at_once() { runs_at_once 'All 3 claims are as they should be' process python; }
+test_init_process_cpp_runs_at_once() { runs_at_once 'All 3 claims are as they should be' process c++; }
+test_init_gtest_runs_at_once() { runs_at_once '3 tests' gtest; }
 test_init_gtest_says_how_to_build_its_library() {
   expect 0 init gtest mine
   cp -rL "$(dirname "$assay")/../prefix/lib" lib

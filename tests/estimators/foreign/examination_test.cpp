@@ -70,11 +70,16 @@ std::string verdict_on(const Asking& ask, std::uint64_t key, std::uint64_t offse
     question.first += offset;
     return ask(question);
   };
-  FirstObservations first{.question = {.key = key, .count = asked_twice(1)}};
+  FirstObservations first{.question = {.key = key, .count = asked_twice(1, 1)}};
   for (Question one = first.question; one.first < first.question.count; ++one.first) {
     first.numbers.push_back(shifted(one)[0]);
   }
   return why_unfit(shifted, first, "coin", 0);
+}
+
+TEST(AskedTwice, IsSoManyNumbersAndPrimaries) {
+  EXPECT_EQ((std::array{asked_twice(1, 1), asked_twice(4, 2), asked_twice(1, 64)}),
+            (std::array<std::uint64_t, 3>{32, 4, 2}));
 }
 
 // Each of the 6000 is refused with a probability below 1e-6.

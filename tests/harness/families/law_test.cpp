@@ -51,7 +51,7 @@ TEST(LawEvidence, SaysOfWhichPartThePIsAtTheMarginThatIsTested) {
   for (double& x : points.sorted) x = std::pow(x, 1.2);
   const Evidence evidence = points_against_law(points, uniform_law(0.01));
   EXPECT_THAT(evidence.most_against(0),
-              testing::HasSubstr("the masses without a point, 0.03 apart"));
+              testing::HasSubstr("the masses without a point decide: their shares are 0.03 apart"));
   EXPECT_EQ(evidence.most_against(0.05), "");
 }
 
