@@ -1,9 +1,9 @@
 #include "harness/base/record_file.h"
 
 #include <algorithm>
-#include <iterator>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <span>
 #include <vector>
 
@@ -77,7 +77,7 @@ Recorded find_test(const reports::Record& record, const std::string& file,
     }
   }
   if (named.size() == 1) return named.front();
-  // Without a name it is the one that broke.
+  // Without a name it is the one that is not as it should be.
   std::vector<Recorded> broken;
   std::ranges::copy_if(parts, std::back_inserter(broken),
                        [](const Recorded& each) { return !each.test.ok; });
@@ -89,7 +89,7 @@ Recorded find_test(const reports::Record& record, const std::string& file,
   }
   if (parts.size() == 1) return parts.front();
   if (!parts.empty() && name.empty()) {
-    refuse(where, "{} tests; give the id of one, or a part of it: {}", parts.size(),
+    refuse(where, "{} tests may be meant; give the id of one, or a part of it: {}", parts.size(),
            some_ids(parts));
   }
   if (!parts.empty()) {

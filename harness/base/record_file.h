@@ -15,8 +15,8 @@ struct Recorded {
   const reports::Test& test;
 };
 
-/// The test with this id, part of an id or name in the record of a file. InputError if there is
-/// none or several, with suggestions.
+/// The test with this id, part of an id or name in the record of a file. Without a name it is the
+/// one that is not as it should be. InputError if there is none or several, with suggestions.
 Recorded find_test(const reports::Record& record, const std::string& file, const std::string& name);
 
 }  // namespace assay::harness

@@ -109,7 +109,7 @@ std::string outlook_text(const char* when, const Outlook& outlook) {
 }
 
 /// Probability that the test ends otherwise than the suite expects: the claim holds, or is off by
-/// its effect where it is expected to fail. Without an outlook it errs as often as planned.
+/// its `detect` where it is expected to fail. Without an outlook it errs as often as planned.
 double not_ok(const TestOutcome& test, const Forecast& foreseen) {
   const bool fails = test.question.test->expect == reports::Verdict::fail;
   const std::optional<Outlook>& outlook = fails ? foreseen.if_off : foreseen.if_true;
@@ -222,7 +222,7 @@ void write(std::string& page, const SuiteRun& run) {
   page += "\n";
   page += on_page(fmt::format(
       "The run ends with a fail or an undecided claim with probability about {} if every claim "
-      "holds exactly and every planted bug is as large as its effect. A test without a forecast "
+      "holds exactly and every planted bug is as large as its `detect`. A test without a forecast "
       "counts with its alpha and beta.",
       per_cent(std::min(1.0, not_ok))));
   page += "\n";

@@ -71,10 +71,12 @@ Loaded recorded_run(const Recorded& recorded, const ReplayArguments& arguments) 
   Loaded run = loaded(parse_command_line(words));
   run.options.shard.reset();
   for (Suite& suite : run.suites) {
-    if (suite.budget) suite.budget->seconds.reset();
-    for (TestEntry& each : suite.tests) {
-      if (each.budget) each.budget->seconds.reset();
-    }
+    // A budget in seconds sizes pilots and looks; here it ends none.
+    const auto unbounded = [](std::optional<Budget>& budget) {
+      if (budget && budget->seconds) budget->seconds = HUGE_VAL;
+    };
+    unbounded(suite.budget);
+    for (TestEntry& each : suite.tests) unbounded(each.budget);
   }
   return run;
 }

@@ -33,7 +33,7 @@ using stats::TestResult;
 constexpr const char* distance_of_laws = "largest distance of distribution functions";
 
 /// Says which part p belongs to: the estimate may be another's.
-std::string p_is_of(const std::string& part, double difference) {
+std::string decisive_part(const std::string& part, double difference) {
   return fmt::format("{} decide: their shares are {:.4g} apart", part, difference);
 }
 
@@ -68,10 +68,11 @@ Evidence from_distance(std::span<const double> x, std::span<const double> y) {
   const auto at = [distance, none = at_none.result](double theta) {
     return theta <= 0 ? none : stats::ks_margin(distance, theta);
   };
-  // The bound of a margin may reach 0 where the exact test rejects it.
+  // The bound of a margin may reach 0 where the exact test rejects it. The interval is open there.
   const auto interval = [distance, at](double confidence) {
     stats::Interval found = stats::ks_interval(distance, confidence);
-    if (found.low == 0 && at(0).log_p_upper < std::log((1 - confidence) / 2)) found.low = -HUGE_VAL;
+    if (found.low == 0 && at(0).log_p_upper < std::log((1 - confidence) / 2))
+      found.low = std::numeric_limits<double>::min();
     return found;
   };
   Evidence evidence{.estimate = distance.distance(),
@@ -80,8 +81,8 @@ Evidence from_distance(std::span<const double> x, std::span<const double> y) {
                     .quantity = distance_of_laws,
                     .distance = true};
   if (at_none.common && at_none.common->decides) {
-    const std::string of_value = p_is_of(fmt::format("the values at {:.6g}", at_none.common->value),
-                                         at_none.common->difference);
+    const std::string of_value = decisive_part(
+        fmt::format("the values at {:.6g}", at_none.common->value), at_none.common->difference);
     evidence.most_against = [of_value](double theta) { return theta <= 0 ? of_value : ""; };
   }
   return evidence;
@@ -151,7 +152,7 @@ Evidence larger_of(const Evidence& points, const Evidence& missing) {
       .most_against = [points, missing](double theta) -> std::string {
         const double of_masses = missing.at(theta).log_p_upper;
         return of_masses < points.at(theta).log_p_upper
-                   ? p_is_of("the masses without a point", missing.estimate)
+                   ? decisive_part("the masses without a point", missing.estimate)
                    : "";
       },
       .quantity = "largest distance of distribution functions, or of the masses without a point",

@@ -779,10 +779,11 @@ class MeanTheta : public Theta {
       const std::uint64_t seen = outcome.secondaries(side) * outcome.plan.primaries[side];
       if (std::isfinite(upwards ? range.high : range.low) || seen >= many) continue;
       const double rarer = std::floor(static_cast<double>(std::max<std::uint64_t>(3, seen)) / 3);
+      const double away =
+          rarer * std::abs(effect.estimate.value_or(0)) / std::abs(question.factor_of(side));
       return fmt::format(
-          "values rarer than one in {:.0f} that lie {}{} or more from the mean would explain it{}",
-          rarer, reports::human(rarer * std::abs(effect.estimate.value_or(0)), 2),
-          effect.relative ? " times its size" : "",
+          "values rarer than one in {:.0f} and at least {} away from the mean would explain it{}",
+          rarer, reports::human(away, 2) + (effect.relative ? " times the mean" : ""),
           is_recorded(question.subjects[side]) ? "" : "; a declared range excludes them");
     }
     return "";

@@ -51,7 +51,7 @@ std::uint64_t usual_observations(const PreparedEstimator& estimator, std::uint64
 }
 
 /// Primaries that a test pays for each pool. No clock may decide what a pilot draws: with a budget
-/// in seconds it is the smallest that a pilot without a budget is.
+/// in seconds it has the fewest observations.
 std::uint64_t paid_by(const Question& question, const Subject& side) {
   const Budget budget = question.test->budget.value_or(Budget{});
   std::uint64_t most = unlimited;

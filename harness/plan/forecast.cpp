@@ -34,7 +34,7 @@ std::optional<std::vector<ChannelData>> expected_data(const TestOutcome& test, s
                                                       std::uint64_t secondaries) {
   const Question& question = test.question;
   // An estimator's pilot says nothing of a sampler's draws.
-  if (!question.is().of_moments) return std::nullopt;
+  if (!question.is().of_moments || test.plan.method.is.of_batches) return std::nullopt;
   std::vector<ChannelData> data(question.subjects.size());
   for (std::size_t i = 0; i < data.size(); ++i) {
     const Subject& side = question.subjects[i];
@@ -43,10 +43,16 @@ std::optional<std::vector<ChannelData>> expected_data(const TestOutcome& test, s
     const PilotChannel seen = pilot_channel(side, *pilot, channel);
     if (is_constant(question, i, channel, seen.moments)) return std::nullopt;
     const double averaged = side.averaged(test.plan.primaries[i]);
+    const std::uint64_t count = side.secondaries(secondaries);
     data[i] = {.primaries = test.plan.primaries[i],
-               .moments = is_recorded(side)
-                              ? as_tested(test.plan, i, channel, seen.values, seen.moments)
-                              : scaled(seen.moments, averaged, secondaries)};
+               .moments = scaled(seen.moments, averaged, count)};
+    if (is_recorded(side) && !seen.values.empty()) {
+      const auto rows = seen.values.first(std::min<std::size_t>(count, seen.values.size()));
+      data[i].moments = {};
+      for (const double value : rows) data[i].moments.add(value);
+      data[i].moments = as_tested(test.plan, i, channel, rows, data[i].moments);
+    }
+    if (!std::isfinite(data[i].moments.m2)) return std::nullopt;
     if (averaged == 1) data[i].values = seen.values;
   }
   return data;
@@ -193,7 +199,7 @@ std::optional<PilotedCost> observation_cost(const Subject& subject, std::uint64_
 
 std::uint64_t expected_secondaries(const TestOutcome& test, const Pilots& pilots) {
   Forecast found;
-  foresee(test, pilots, found);
+  if (test.plan.invalid.empty()) foresee(test, pilots, found);
   const double drawn = found.if_true ? found.if_true->drawn : 1;
   return static_cast<std::uint64_t>(
       std::ceil(drawn * static_cast<double>(test.plan.most_secondaries())));

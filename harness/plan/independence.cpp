@@ -74,7 +74,7 @@ std::string enough_of_a_chain(const Question& question, std::size_t rows, double
     return fmt::format("means of {} successive rows each, {} of them at least", apart,
                        fewest_in_order_to_tell);
   }
-  // A half more: the next rows have another estimate.
+  // A half more: another sample's estimate may be larger.
   const std::size_t enough = fewest_batches * std::max(apart, fewest_batches) * 3 / 2;
   if (rows >= enough) return "";
   return fmt::format("{} rows at least, of which batches are then averaged", enough);
@@ -166,23 +166,26 @@ void refuse_shared_rows(const Question& question, const Rows& one, const Rows& t
                             from_to(run->second, run->length), second.setup->data_file()));
   }
   if (one.values.size() != two.values.size()) return;
-  // The variance of two independent chains' correlation grows by the sum of their autocorrelations'
-  // products (Bartlett 1935), which is at most this root.
-  const auto squares = [](const Rows& rows) {
-    double sum = 1;
-    for (const stats::LaggedCorrelation& each : stats::lagged_correlations(rows.values, 1)) {
-      sum += 2 * each.correlation * each.correlation;
-    }
-    return sum;
-  };
-  const double values =
-      static_cast<double>(one.values.size()) / std::sqrt(squares(one) * squares(two));
   const double r = stats::rank_correlation(one.values, two.values);
-  if (std::abs(r) * std::sqrt(values) < most_errors_of_pairs) return;
-  refuse_pair(question, first, second,
-              fmt::format("row by row they have a rank correlation of {:.2g}, as from the same "
-                          "seeds, whose differences can be tested in one file",
-                          r));
+  const double errors = std::abs(r) * std::sqrt(static_cast<double>(one.values.size()));
+  if (errors < most_errors_of_pairs) return;
+  // The variance of two independent chains' correlation grows by the sum of their autocorrelations'
+  // products (Bartlett 1935), which is at most this root. What still correlates at the last lag has
+  // no such sum.
+  const auto squares = [](const Rows& rows) {
+    double sum = 1, last = 0;
+    for (const stats::LaggedCorrelation& each : stats::lagged_correlations(rows.values, 1)) {
+      last = each.correlation;
+      sum += 2 * last * last;
+    }
+    return std::abs(last) > 0.2 ? HUGE_VAL : sum;
+  };
+  if (errors < most_errors_of_pairs * std::pow(squares(one) * squares(two), 0.25)) return;
+  refuse_pair(
+      question, first, second,
+      fmt::format("row by row they have a rank correlation of {:.2g}; if their seeds are the "
+                  "same, write the differences to one file and claim that their mean is 0",
+                  r));
 }
 
 /// Why rows are too few to show their independence; "" if they are enough.
@@ -204,7 +207,8 @@ Reason too_few_to_tell(TestOutcome& test, const Pilots& pilots, std::uint64_t co
     const std::string forced =
         rows < fewest_to_force
             ? ""
-            : fmt::format("; if they are independent and near normal, add {}",
+            : fmt::format("; if they are independent{}, add {}",
+                          test.question.is().batches_serve ? " and near normal" : "",
                           written_key(*test.question.test, "test", test.plan.method.name));
     const std::uint64_t there = side.setup->observations().value_or(rows);
     const char* const key = test.question.test->budget ? "budget" : "secondaries";

@@ -282,7 +282,7 @@ std::uint64_t most_available(const TestOutcome& test, const Pilots& pilots) {
 std::uint64_t most_in_seconds(const TestOutcome& test, const Pilots& pilots,
                               const stats::LookRange& range) {
   const std::optional<Budget>& budget = test.question.test->budget;
-  if (!budget || !budget->seconds) return range.last;
+  if (!budget || !budget->seconds || test.question.subjects[0].image) return range.last;
   double each = 0;
   for (std::size_t i = 0; i < test.plan.primaries.size(); ++i) {
     const auto cost = observation_cost(test.question.subjects[i], test.plan.primaries[i], pilots);

@@ -155,7 +155,7 @@ void check_whole(const ShardFile& shard) {
            "is a whole run, not a shard; shards are made by `assay run … --shard I/N --report "
            "json=SHARD.json`");
   }
-  const auto fits = [](const reports::PlaceInFamily& result, const reports::Test& test) {
+  const auto fits = [](const reports::FamilyResult& result, const reports::Test& test) {
     return result.log_p.size() == test.channels.size() && (!result.inside || result.weight > 0);
   };
   const bool sound =
@@ -250,7 +250,7 @@ void add_shard(const SuiteRuns& runs, const RunOptions& options, reports::Record
       suite.results.push_back({.position = position_of(*each.test, run->suite)});
     }
     // The record has its tests in this order.
-    std::ranges::sort(suite.results, {}, &reports::PlaceInFamily::position);
+    std::ranges::sort(suite.results, {}, &reports::FamilyResult::position);
     shard.suites.push_back(std::move(suite));
   }
   record.shard = std::move(shard);

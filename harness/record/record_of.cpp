@@ -515,8 +515,8 @@ reports::Test record_of_untested(const Untested& untested, const SuiteRun& run) 
   return test;
 }
 
-reports::PlaceInFamily place_in_family(const TestOutcome& outcome, const Suite& suite) {
-  reports::PlaceInFamily member{
+reports::FamilyResult place_in_family(const TestOutcome& outcome, const Suite& suite) {
+  reports::FamilyResult member{
       .position = position_of(*outcome.question.test, suite),
       .inside = outcome.place.inside,
       .weight = outcome.place.weight,

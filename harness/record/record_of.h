@@ -34,11 +34,11 @@ reports::Test record_of_untested(const Untested& untested, const SuiteRun& run);
 /// A test in its suite's family, with the p-values that Holm's method takes.
 struct FamilyMember {
   reports::Test test;
-  reports::PlaceInFamily place;
+  reports::FamilyResult place;
 };
 
 /// A test's place and p-values. Channels without a p-value are counted.
-reports::PlaceInFamily place_in_family(const TestOutcome& outcome, const Suite& suite);
+reports::FamilyResult place_in_family(const TestOutcome& outcome, const Suite& suite);
 
 /// Fills in Holm's adjusted p-values over a suite's family, run together or in shards. They decide
 /// nothing: a verdict rests on its test's own share of alpha. Invalid and error count as p = 1, and

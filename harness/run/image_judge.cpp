@@ -166,15 +166,11 @@ std::optional<PlaceEffect> effect_at_place(const DrawnTest& test) {
                       stats::student_t_quantile({stats::Tail::upper, log_level - std::numbers::ln2},
                                                 effect.degrees);
   const double base = other_mean(test, elements, family.weights);
-  // Halves that weigh a single pixel differently are nothing to its reader.
-  const double plain = elements.size() == 1 ? mean_over(test, 0, elements, {}) - base : 0;
-  const double scale = plain * effect.estimate != 0 ? plain / effect.estimate : 1;
-  const double estimate = scale * effect.estimate;
-  const double reach = std::abs(scale) * half;
-  return PlaceEffect{.estimate = estimate,
-                     .interval = {estimate - reach, estimate + reach, stats::confidence_at_place},
-                     .other = base,
-                     .elements = std::move(elements)};
+  return PlaceEffect{
+      .estimate = effect.estimate,
+      .interval = {effect.estimate - half, effect.estimate + half, stats::confidence_at_place},
+      .other = base,
+      .elements = std::move(elements)};
 }
 
 std::string others_at(const DrawnTest& test, const PlaceEffect& place) {

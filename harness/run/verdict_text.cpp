@@ -64,7 +64,6 @@ double excluded_beyond(const TestOutcome& outcome, const ChannelOutcome& channel
   // A missing end lies at infinity.
   const double low = channel.effect.low.value_or(-HUGE_VAL);
   const double high = channel.effect.high.value_or(HUGE_VAL);
-  if (channel.evidence.distance) return high;
   if (channel.regions.two_sided()) return farther(low, high, outcome.question.is().logarithm);
   return channel.regions.bounds_above() ? high : low;
 }

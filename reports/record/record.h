@@ -415,13 +415,13 @@ struct Suite {
 
 /// The part that Holm's method over the whole suite needs of the test at the same place in
 /// `Suite::tests`.
-struct PlaceInFamily {
+struct FamilyResult {
   std::uint64_t position = 0;  ///< Place in the suite's file.
   bool inside = false;         ///< In the family; mutants and expected failures are not.
   double weight = 0;           ///< One channel's; the family's weights sum to 1.
   std::uint64_t untested = 0;  ///< Channels without a p-value.
   std::vector<double> log_p;   ///< Natural logarithms, one a channel of the test.
-  ASSAY_FIELDS(PlaceInFamily, position, inside, weight, untested, log_p)
+  ASSAY_FIELDS(FamilyResult, position, inside, weight, untested, log_p)
 };
 
 /// A selected test of another shard.
@@ -438,7 +438,7 @@ struct ShardElsewhere {
 struct ShardSuite {
   std::string digest;       ///< of the suite's file and the data files it names
   std::uint64_t tests = 0;  ///< in the suite's file
-  std::vector<PlaceInFamily> results;
+  std::vector<FamilyResult> results;
   std::vector<ShardElsewhere> elsewhere;
   ASSAY_FIELDS(ShardSuite, digest, tests, results, elsewhere)
 };

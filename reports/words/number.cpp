@@ -170,7 +170,9 @@ bool lies_below(const Effect& effect, double theta) {
 std::string range_text(const Effect& effect) {
   const auto end = [&](const Number& value) { return theta_text(*value, effect); };
   if (is_finite(effect.low) && is_finite(effect.high)) {
-    const std::string low = end(effect.low), high = end(effect.high);
+    // An interval that is open at 0 begins with the least double.
+    const bool open = *effect.low > 0 && *effect.low < 1e-300;
+    const std::string low = open ? "above 0" : end(effect.low), high = end(effect.high);
     return low == high ? low : fmt::format("{} to {}", low, high);
   }
   if (is_finite(effect.low)) return "at least " + end(effect.low);

@@ -1,6 +1,7 @@
 #include "stats/basics/search.h"
 
 #include <algorithm>
+#include <boost/math/tools/minima.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cstdint>
 #include <numeric>
@@ -14,6 +15,16 @@ std::pair<double, double> root_bracket(const Curve& f, double low, double high, 
   const auto finite = [&](double x) { return std::clamp(f(x), -most, most); };
   return boost::math::tools::toms748_solve(
       finite, low, high, boost::math::tools::eps_tolerance<double>(digits), iterations);
+}
+
+Maximum maximum(const Curve& f, double low, double high, int digits) {
+  const auto [place, least] =
+      boost::math::tools::brent_find_minima([&](double x) { return -f(x); }, low, high, digits);
+  Maximum found{place, -least};
+  for (const double end : {low, high}) {
+    if (const double value = f(end); value > found.value) found = {end, value};
+  }
+  return found;
 }
 
 double root(const Curve& f, std::pair<double, double> ends, unsigned digits) {

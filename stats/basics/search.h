@@ -11,42 +11,6 @@ namespace assay::stats {
 
 // Internal. Searches on an interval.
 
-// The largest value of f seen on [low, high], and the remaining interval.
-struct GoldenSection {
-  double low = 0;
-  double high = 0;
-  double largest = 0;
-};
-
-// Searches a function with one maximum on [low, high], ends included, by golden sections (Kiefer
-// 1953). It stops at `width` or where no point lies between the ends. 90 sections leave 1e-19.
-template <class Function>
-GoldenSection golden_section(const Function& f, double low, double high, double width = 0) {
-  constexpr double ratio = 0.6180339887498949;
-  double left = high - ratio * (high - low);
-  double right = low + ratio * (high - low);
-  double at_left = f(left);
-  double at_right = f(right);
-  double largest = std::max({f(low), f(high), at_left, at_right});
-  for (int step = 0; step < 90 && high - low > width && low < left && right < high; ++step) {
-    if (at_left < at_right) {
-      low = left;
-      left = right;
-      at_left = at_right;
-      right = low + ratio * (high - low);
-      at_right = f(right);
-    } else {
-      high = right;
-      right = left;
-      at_right = at_left;
-      left = high - ratio * (high - low);
-      at_left = f(left);
-    }
-    largest = std::max({largest, at_left, at_right});
-  }
-  return {low, high, largest};
-}
-
 // The smallest whole number in [low, high) that is enough, or `high`. All above it must be enough.
 template <class Enough>
 std::uint64_t smallest_whole(std::uint64_t low, std::uint64_t high, const Enough& enough) {
@@ -69,6 +33,14 @@ Halved halved_between(double inside, double outside, const IsOutside& is_outside
 }
 
 using Curve = std::function<double(double)>;
+
+// The maximum on [low, high], ends included, of a function that has one (Brent 1973). Its place is
+// known to so many binary digits, half of a double's at most.
+struct Maximum {
+  double place = 0;
+  double value = 0;
+};
+Maximum maximum(const Curve& f, double low, double high, int digits = 26);
 
 // The bracket to which so many binary digits narrow [low, high], at whose ends f has different
 // signs (Alefeld, Potra & Shi 1995).

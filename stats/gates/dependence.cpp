@@ -132,9 +132,14 @@ std::vector<LaggedCorrelation> lagged_correlations(std::span<const double> value
 }
 
 double rank_correlation(std::span<const double> x, std::span<const double> y) {
-  const std::vector<double> a = centred_ranks(x), b = centred_ranks(y);
-  const double squares = sum_of_products(a, a) * sum_of_products(b, b);
-  return squares > 0 ? sum_of_products(a, b) / std::sqrt(squares) : 0;
+  std::vector<Placed<double>> order;
+  std::array<std::vector<double>, 2> ranks;
+  midranks(x, order, ranks[0]);
+  midranks(y, order, ranks[1]);
+  for (std::vector<double>& each : ranks) {
+    if (!standardise(each)) return 0;
+  }
+  return sum_of_products(ranks[0], ranks[1]) / static_cast<double>(x.size());
 }
 
 LaggedCorrelation worst_of(std::span<const LaggedCorrelation> all) {

@@ -59,8 +59,8 @@ struct LaggedCorrelation {
 std::vector<LaggedCorrelation> lagged_correlations(std::span<const double> values,
                                                    std::size_t first = 2);
 
-// Spearman's rank correlation of values side by side; 0 if either are all equal. Of independent
-// samples its variance is 1 / (n - 1). The samples must have one size.
+// Spearman's correlation of the midranks of values side by side; 0 if either are all equal. Of
+// independent samples its variance is 1 / (n - 1). The samples must have one size.
 double rank_correlation(std::span<const double> x, std::span<const double> y);
 
 // The one whose z is farthest from 0. Its lag is 0 if there is none.

@@ -42,30 +42,23 @@ std::vector<double> steadied(const ImageExtent& extent, const std::vector<double
   return steady;
 }
 
-// Sets means, difference, variance and `varied` of these elements.
+// Sets means, variances and difference of these elements.
 void take(const ImagePair& pair, std::size_t which, ElementRange range, Half& half) {
   const std::size_t here = range.first - half.first;
   const std::size_t size = range.size();
   const auto part = [&](std::vector<double>& all) { return std::span(all).subspan(here, size); };
-  const std::span<double> variance = part(half.variance);
-  const std::span<double> difference = part(half.difference);
-  const auto squared_errors = [&](const ImageStack& stack, std::size_t side,
-                                  std::span<double> errors) {
+  const auto take_side = [&](const ImageStack& stack, std::size_t side) {
+    const std::span<double> errors = part(half.variance[side]);
     moments_of_range(stack, range.first, {part(half.mean[side]), errors}, {which, halves});
     const double n = static_cast<double>(half_count(stack.images.size(), which));
     for (double& m2 : errors) m2 /= n * (n - 1);
   };
-  squared_errors(pair.a, 0, variance);
-  if (pair.b != nullptr) {
-    std::vector<double> errors(size);
-    squared_errors(*pair.b, 1, errors);
-    for (std::size_t i = 0; i < size; ++i) variance[i] += errors[i];
-  }
-  for (std::size_t i = 0; i < size; ++i) {
-    difference[i] =
-        half.mean[0][here + i] -
-        (pair.b != nullptr ? half.mean[1][here + i] : pair.reference.value[range.first + i]);
-    half.varied[here + i] = variance[i] > 0;
+  take_side(pair.a, 0);
+  if (pair.b != nullptr) take_side(*pair.b, 1);
+  for (std::size_t i = here; i < here + size; ++i) {
+    half.difference[i] =
+        half.mean[0][i] -
+        (pair.b != nullptr ? half.mean[1][i] : pair.reference.value[half.first + i]);
   }
 }
 
@@ -75,25 +68,27 @@ void take(const ImagePair& pair, std::size_t which, ElementRange range, Half& ha
 void advance(const ImagePair& pair, std::size_t which, ElementRange range, Half& half,
              const ForEach& for_each) {
   constexpr std::size_t at_a_time = std::size_t{1} << 12;
-  const std::size_t gone = std::min(range.first - half.first, half.variance.size());
-  const std::size_t kept = half.variance.size() - gone;
+  const std::size_t gone = std::min(range.first - half.first, half.difference.size());
+  const std::size_t kept = half.difference.size() - gone;
   half.first = range.first;
   const auto move = [&](auto& all) {
     all.erase(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(gone));
     all.resize(range.size());
   };
-  move(half.mean[0]);
-  if (pair.b != nullptr) move(half.mean[1]);
+  for (std::size_t side = 0; side < (pair.b != nullptr ? 2U : 1U); ++side) {
+    move(half.mean[side]);
+    move(half.variance[side]);
+  }
   move(half.difference);
-  move(half.variance);
-  move(half.varied);
   for_each((range.size() - kept + at_a_time - 1) / at_a_time, [&](std::size_t i) {
     const std::size_t first = range.first + kept + i * at_a_time;
     take(pair, which, {first, std::min(first + at_a_time, range.last)}, half);
   });
   const std::size_t row = pair.a.extent.row();
+  std::vector<double> variance(range.size());
+  for (std::size_t i = 0; i < variance.size(); ++i) variance[i] = half.variance_at(i);
   half.weight =
-      steadied({pair.a.extent.width, range.size() / row, pair.a.extent.channels}, half.variance);
+      steadied({pair.a.extent.width, range.size() / row, pair.a.extent.channels}, variance);
   for (double& weight : half.weight) weight = weight > 0 ? 1 / std::sqrt(weight) : 0;
 }
 

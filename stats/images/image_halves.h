@@ -24,12 +24,18 @@ inline std::size_t half_count(std::size_t replicates, std::size_t half) {
 // D. So an element that is constant within the half, which rare values make too dark, keeps the
 // weight that its neighbours give it.
 struct Half {
-  std::size_t first = 0;                    // The element that they begin with.
-  std::array<std::vector<double>, 2> mean;  // Of either side; a reference has none.
+  std::size_t first = 0;  // The element that they begin with.
+  // Either side's means and their squared errors, which are 0 exactly where none of its replicates
+  // differs from another. A reference has neither.
+  std::array<std::vector<double>, 2> mean;
+  std::array<std::vector<double>, 2> variance;
   std::vector<double> difference;
-  std::vector<double> variance;       // Without a reference's error.
-  std::vector<unsigned char> varied;  // Nonzero if any replicate of the half differs from another.
   std::vector<double> weight;
+
+  // The squared error of the difference, without that of a reference.
+  double variance_at(std::size_t here) const {
+    return variance[0][here] + (variance[1].empty() ? 0 : variance[1][here]);
+  }
 };
 
 // Steadying needs the variances of rows so far away.

@@ -90,30 +90,13 @@ class FitPower {
         critical_(noncentral_chi_square_quantile({Tail::upper, std::log(plan.rates.alpha)},
                                                  noncentral(plan.allow))) {}
 
-  double at(double effect) const { return std::exp(tails(effect).upper); }
-
-  // The effect with a power of nearly 1 - beta. The power's normal score is almost linear in it.
-  // That is as if X2 were normal with mean nu + l and variance 2 nu + 4 l at noncentrality l.
-  double about() const {
-    const double z = upper_normal_quantile(plan_.rates.beta);
-    const double nu = plan_.degrees_of_freedom;
-    const double beyond = critical_ - nu;
-    const double wanted = beyond + 2 * z * z + z * std::sqrt(2 * nu + 4 * beyond + 4 * z * z);
-    const double guess = std::sqrt(wanted / n_);
-    const double spread = std::sqrt(2 * nu + 4 * wanted);
-    const auto score = [&](double effect) {
-      return planning::score_of_miss(std::exp(tails(effect).lower)) - z;
-    };
-    return planning::secant_root(
-        score, {.root = guess, .slope = 2 * n_ * guess * (1 - 2 * z / spread) / spread});
+  double at(double effect) const {
+    return std::exp(noncentral_chi_square_tails(critical_, noncentral(effect)).upper);
   }
 
  private:
   Noncentral noncentral(double effect) const {
     return {plan_.degrees_of_freedom, n_ * effect * effect};
-  }
-  LogTails tails(double effect) const {
-    return noncentral_chi_square_tails(critical_, noncentral(effect));
   }
 
   FitPlan plan_;
@@ -167,8 +150,8 @@ double chi_square_fit_detectable(const FitPlan& plan, double n) {
   check_plan("chi_square_fit_detectable", plan);
   check_size("chi_square_fit_detectable", n);
   const FitPower power(plan, n);
-  const auto enough = [&](double effect) { return power.at(effect) >= 1 - plan.rates.beta; };
-  return planning::smallest_effect(enough, plan.allow, 1 / std::sqrt(n), power.about());
+  return planning::smallest_effect([&](double effect) { return power.at(effect); },
+                                   1 - plan.rates.beta, plan.allow, 1 / std::sqrt(n));
 }
 
 std::optional<std::uint64_t> chi_square_fit_sample_size(const FitPlan& plan, double detect) {

@@ -84,8 +84,7 @@ double log_p_lower(const TwoValued& x, const TwoValued& y, Contrast null_value) 
   const NullLine line = null_line(x, y, null_value);
   if (line.empty()) return line.start > 0 ? special::lowest_log() : 0;
   // Concave on the line. A maximum missed by 1e-9 of it is missed by second order.
-  const double log_w =
-      golden_section(LogProduct{x.high, y.high, line}, line.first, line.last).largest;
+  const double log_w = maximum(LogProduct{x.high, y.high, line}, line.first, line.last).value;
   return special::clamp_log(log_w + std::log1p(-log_w));
 }
 

@@ -49,7 +49,7 @@ struct Difference {
 double largest_log_p(const Difference& difference) {
   const double least = std::max(0.0, (difference.size - difference.reach) / difference.error);
   const auto log_p = [&](double errors) { return difference.log_p(errors); };
-  return golden_section(log_p, least, difference.size / difference.error).largest;
+  return maximum(log_p, least, difference.size / difference.error).value;
 }
 
 }  // namespace

@@ -22,22 +22,7 @@ class Power {
         rates_(rates),
         critical_(student_t_quantile(critical_tail(rates), scale.degrees)) {}
 
-  double at(EffectPlan effect) const { return with_far(near(effect), effect); }
-
-  // True if the power is at least 1 - beta.
-  bool suffices_at(EffectPlan effect) const { return at(effect) >= 1 - rates_.beta; }
-
-  // The effect with a power of nearly 1 - beta. Its normal score at noncentrality d is almost
-  // linear (Johnson & Welch 1940).
-  //   Score: (d - t (1 - 1 / 4 nu)) / sqrt(1 + t^2 / 2 nu).
-  double about(double allow) const {
-    const double z = upper_normal_quantile(rates_.beta);
-    const double spread = std::sqrt(1 + critical_ * critical_ / (2 * scale_.degrees));
-    const double noncentrality = critical_ * (1 - 1 / (4 * scale_.degrees)) + z * spread;
-    const auto score = [&](double effect) { return score_at({allow, effect}) - z; };
-    return planning::secant_root(score, {.root = allow + noncentrality * scale_.standard_error,
-                                         .slope = 1 / (spread * scale_.standard_error)});
-  }
+  double at(EffectPlan effect) const { return std::min(near(effect) + far(effect), 1.0); }
 
  private:
   // Power is monotone in it, and 1 to the last digit a hundred critical values away. Farther out
@@ -54,14 +39,6 @@ class Power {
     if (!rates_.two_sided) return 0;
     const double down = noncentrality(effect.detect + effect.allow);
     return std::exp(noncentral_t_tails(-critical_, {scale_.degrees, down}).lower);
-  }
-  double with_far(double power, EffectPlan effect) const {
-    return std::min(power + far(effect), 1.0);
-  }
-  double score_at(EffectPlan effect) const {
-    const double up = noncentrality(effect.detect - effect.allow);
-    const double near = noncentral_t_tails(critical_, {scale_.degrees, up}).lower;
-    return planning::score_of_miss(std::exp(near) - far(effect));
   }
 
   Studentised scale_;
@@ -128,9 +105,11 @@ double student_t_detectable(const MeanPlan& plan, double n) {
   check_size("student_t_detectable", std::min(n, n * plan.allocation));
   const Studentised scale = scale_of(plan, n);
   const Power power(scale, plan.rates);
-  const auto enough = [&](double effect) { return power.suffices_at({plan.allow, effect}); };
-  return planning::smallest_effect(enough, plan.allow, scale.standard_error,
-                                   power.about(plan.allow));
+  return planning::smallest_effect(
+      [&](double effect) {
+        return power.at({plan.allow, effect});
+      },
+      1 - plan.rates.beta, plan.allow, scale.standard_error);
 }
 
 std::optional<std::uint64_t> student_t_sample_size(const MeanPlan& plan, double detect) {
@@ -147,7 +126,7 @@ std::optional<std::uint64_t> student_t_sample_size(const MeanPlan& plan, double 
   const double guess = spread * spread / left;
   if (guess > planning::most_samples) return std::nullopt;
   const auto enough = [&](double n) {
-    return Power(scale_of(plan, n), plan.rates).suffices_at({plan.allow, detect});
+    return Power(scale_of(plan, n), plan.rates).at({plan.allow, detect}) >= 1 - plan.rates.beta;
   };
   const double minimum = std::max(2.0, std::ceil(2 / plan.allocation));
   return planning::smallest_sample(enough, guess + beyond_normal(plan.rates), minimum);

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "stats/basics/check.h"
-#include "stats/planning/planning.h"
 #include "stats/tails/special.h"
 #include "stats/tails/tails.h"
 
@@ -229,11 +229,21 @@ double WangTsiatis::log_crossing(double constant) const {
 double WangTsiatis::constant(double level) const {
   check::inside_unit({"WangTsiatis::constant", "level"}, level);
   if (times_.size() == 1) return upper_normal_quantile(level);
+  const auto excess = [&](double constant) { return std::log(level) - log_crossing(constant); };
   // Times that grow by sqrt 2 count as so many independent ones.
   const double guess = upper_normal_quantile(level / (1 + std::pow(level, 0.2)));
-  return planning::secant_root(
-      [&](double constant) { return std::log(level) - log_crossing(constant); },
-      {.root = guess, .slope = density(guess) / upper_tail(guess)});
+  double old = excess(guess);
+  double step = -old * upper_tail(guess) / density(guess);
+  double at = guess + step;
+  double before = 1e-3 * at;
+  // Secants: each error is a small part of the product of the last two steps.
+  for (int round = 0; round < 8 && !(std::abs(step * before) <= 1e-13 * at * at); ++round) {
+    const double value = excess(at);
+    before = std::exchange(step, -value * step / (value - old));
+    old = value;
+    at += step;
+  }
+  return at;
 }
 
 }  // namespace assay::stats

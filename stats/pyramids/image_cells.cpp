@@ -48,6 +48,7 @@ void offer(BestCell& best, const Candidate& candidate, const NoisePyramid& noise
   const double clearest = best.clearest ? std::abs(best.clearest->effect.t()) : 0;
   if (!may_win && !(std::abs(own_value(candidate.noise).t) > clearest)) return;
   ImageFinding finding = candidate.finding;
+  finding.weights = candidate.noise.weights;
   finding.effect = noise.kept(candidate.noise, finding.window, finding.channel);
   finding.z = t_to_z({finding.effect.t(), finding.effect.degrees});
   if (std::abs(finding.effect.t()) > clearest) best.clearest = finding;
@@ -55,15 +56,17 @@ void offer(BestCell& best, const Candidate& candidate, const NoisePyramid& noise
 }
 
 void WelchCells::start(std::size_t cells) {
-  for (std::vector<double>* each : {&inverse, &squares, &effect, &weight, &third, &variance[0],
-                                    &variance[1], &of_half[0], &of_half[1], &reciprocal_degrees}) {
+  for (std::vector<double>* each :
+       {&inverse, &squares, &effect, &weights, &weight, &third, &variance[0], &variance[1],
+        &of_half[0], &of_half[1], &reciprocal_degrees}) {
     each->assign(cells, 0.0);
   }
 }
 
-void WelchCells::start_half(std::size_t first, std::span<const double> weights) {
-  for (std::size_t i = 0; i < weights.size(); ++i) {
-    inverse[first + i] = weights[i] > 0 ? 1 / weights[i] : 0;
+void WelchCells::start_half(std::size_t first, std::span<const double> sums) {
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    inverse[first + i] = sums[i] > 0 ? 1 / sums[i] : 0;
+    weights[first + i] += factor_of_half * sums[i];
   }
 }
 
@@ -102,6 +105,7 @@ CellNoise WelchCells::noise(std::size_t cell) const {
           .variance = own,
           .degrees = total * total / reciprocal_degrees[cell],
           .third = third[cell],
+          .weights = weights[cell],
           .weight = weight[cell]};
 }
 

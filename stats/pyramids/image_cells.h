@@ -30,7 +30,8 @@ struct WelchCells {
   std::vector<double> squares;
   // The halves so far, which the caller adds up.
   std::vector<double> effect;
-  std::vector<double> weight;  // CellNoise has the meaning of these two.
+  std::vector<double> weights;  // CellNoise has the meaning of these three.
+  std::vector<double> weight;
   std::vector<double> third;
   // The parts that are done.
   std::array<std::vector<double>, sides_of_pair> variance;  // Squared error of effect, by side.
@@ -39,7 +40,7 @@ struct WelchCells {
 
   void start(std::size_t cells);
   // A half begins: sums of the weights of cells from this one on.
-  void start_half(std::size_t first, std::span<const double> weights);
+  void start_half(std::size_t first, std::span<const double> sums);
   // Adds the half's sums of cells from this one on, divided by the sum of the weights to `power`.
   void add(std::vector<double>& to, std::size_t first, std::span<const double> sums,
            int power) const;

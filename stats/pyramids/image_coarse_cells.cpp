@@ -50,6 +50,16 @@ class CoarseSums {
   double of(const WindowGroup& group, std::size_t index) const {
     return group.grid == Grid::alternating ? alternating_[index] : sums_.of(group.windows[index]);
   }
+  // Its sum of numbers of one sign, term by term: differences of table entries would lose a small
+  // one beside large ones.
+  double direct_of(const Rectangle& window, std::size_t width) const {
+    double sum = 0;
+    for (std::size_t y = window.y; y < window.y + window.height; ++y) {
+      for (std::size_t x = window.x; x < window.x + window.width; ++x)
+        sum += values_[y * width + x];
+    }
+    return sum;
+  }
   // Sum over all elements in the window, also for those that alternate.
   double total_of(const WindowGroup& group, std::size_t index) const {
     return group.grid == Grid::alternating ? sums_.of_all() : sums_.of(group.windows[index]);
@@ -81,7 +91,10 @@ WelchCells window_moments(const CoarseImages& coarse, const Groups& groups, std:
     const CoarseHalf& half = coarse.half[h];
     sums.load(half.weights);
     for_each_window(groups, [&](const WindowGroup& group, std::size_t i, std::size_t window) {
-      moments.start_half(window, {{sums.total_of(group, i)}});
+      const double weights = group.grid == Grid::alternating
+                                 ? sums.total_of(group, i)
+                                 : sums.direct_of(group.windows[i], coarse.extent.width);
+      moments.start_half(window, {{weights}});
     });
     add(moments.effect, half.effect, 1);
     add(moments.weight, half.squared_weights, 2);

@@ -140,32 +140,20 @@ ASSAY_VECTOR_COPIES bool add_powers(const double* deviation, const double* limit
   return beyond != 0;
 }
 
-// A part adds to these of an element; the third cumulant is that of its weighted effect.
-struct PartSums {
-  double* variance;
-  double* reciprocal_degrees;
-  double* third;
-};
-
-// Adds a part's sums over `count` replicates, which is below 0 of the second side. Makes powers of
-// weighted deviations those of plain ones, the squares without bias.
+// Adds a part's third cumulants of the weighted effect, of `count` replicates, which is below 0 of
+// the second side. Makes powers of weighted deviations those of plain ones, the squares without
+// bias.
 ASSAY_VECTOR_COPIES void finish_row(const RowPowers& powers, const double* weight, double count,
-                                    const PartSums& to, std::size_t size) {
+                                    double* to_third, std::size_t size) {
   double* const __restrict squares = powers.squares;
   double* const __restrict cubes = powers.cubes;
-  double* const __restrict variance = to.variance;
-  double* const __restrict reciprocal_degrees = to.reciprocal_degrees;
-  double* const __restrict third = to.third;
+  double* const __restrict third = to_third;
   const double n = std::abs(count);
-  const double factor = factor_of_half * factor_of_half;
   for (std::size_t i = 0; i < size; ++i) {
-    third[i] += factor / (count * count * count) * cubes[i];
+    third[i] += factor_of_half * factor_of_half / (count * count * count) * cubes[i];
     const double inverse = weight[i] > 0 ? 1 / weight[i] : 0.0;
     squares[i] *= inverse * inverse * n / (n - 1);
     cubes[i] *= inverse * inverse * inverse;
-    const double part = factor * squares[i] / (n * n);
-    variance[i] += part;
-    reciprocal_degrees[i] += part * part / (n - 1);
   }
 }
 
@@ -239,10 +227,8 @@ class FineTiles {
   // Elements that begin in a tile, rows as far apart as the tile's.
   struct Elements {
     void start(std::size_t size) {
-      for (std::vector<double>* each :
-           {&variance[0], &variance[1], &reciprocal_degrees, &third, &light}) {
-        each->assign(size, 0.0);
-      }
+      third.assign(size, 0.0);
+      light.assign(size, 0.0);
     }
     void start_part(std::size_t size) {
       for (std::vector<double>* each : {&squares, &cubes, &limit}) each->assign(size, 0.0);
@@ -253,9 +239,6 @@ class FineTiles {
     std::vector<double> cubes;
     std::vector<double> limit;  // Weighted deviations beyond are rare.
     std::vector<double> third;  // This is of the current half, and weighted.
-    // These add up the parts that are done.
-    std::array<std::vector<double>, sides_of_pair> variance;
-    std::vector<double> reciprocal_degrees;
   };
 
   // Calls visit(index here, element of the image, x, y, channel).
@@ -340,13 +323,15 @@ class FineTiles {
     const Half& own = cells_.half[part.half];
     const std::size_t here = tile.first(y) - own.first;
     const double* const mean = own.mean[part.side].data() + here;
-    const auto& images = coarse_.half[part.half].images[part.side];
+    double shares = 0;  // of the squared spread in the squared error
+    for (const auto& images : coarse_.half[part.half].images) {
+      if (!images.empty()) shares += 1 / static_cast<double>(images.size());
+    }
     for (std::size_t i = 0; i < tile.size(); ++i) {
       if (!(std::abs(weighted[i]) > limit[i])) continue;
       const double deviation = static_cast<double>(values[i]) - mean[i];
-      const double spread = static_cast<double>(images.size()) * own.variance[here + i] / 2;
       found_.noise.at(part.side, tile.x + i / extent_.channels, tile.y + y, i % extent_.channels)
-          .add_rare(deviation, deviation * deviation > 4 * spread);
+          .add_rare(deviation, shares * deviation * deviation > 4 * own.variance_at(here + i));
     }
   }
 
@@ -358,8 +343,7 @@ class FineTiles {
       const std::size_t i = y * tile.stride();
       const double* const weight =
           cells_.half[1 - part.half].weight.data() + (tile.first(y) - cells_.half[0].first);
-      finish_row({&all.squares[i], &all.cubes[i]}, weight, sign * count,
-                 {&all.variance[part.side][i], &all.reciprocal_degrees[i], &all.third[i]},
+      finish_row({&all.squares[i], &all.cubes[i]}, weight, sign * count, &all.third[i],
                  tile.size());
       for (std::size_t x = 0; x < tile.width(); x += block) {
         const std::size_t end = std::min(x + block, tile.width()) * extent_.channels;
@@ -378,12 +362,10 @@ class FineTiles {
 
   // Tests each element.
   void offer_elements(const Tile& tile) {
-    Elements& all = elements_;
     for_each_element(
-        tile, [&](std::size_t i, std::size_t element, std::size_t x, std::size_t y, std::size_t c) {
+        tile, [&](std::size_t, std::size_t element, std::size_t x, std::size_t y, std::size_t c) {
           const std::size_t vary = halves_that_vary(element);
-          const std::size_t here = element - cells_.half[0].first;
-          const double difference = cells_.half[0].difference[here];
+          const double difference = cells_.half[0].difference[element - cells_.half[0].first];
           // An element that is equal and never varies tells no size of a difference.
           const bool tells = vary > 0 || difference != 0;
           found_.weights[element] = tells ? static_cast<float>(weight_of(element)) : 0;
@@ -392,18 +374,35 @@ class FineTiles {
             return;
           }
           ++counts_.tested;
-          note_noisier(i, element, x, y, c);
-          CellNoise noise{.effect = std::midpoint(difference, cells_.half[1].difference[here]),
-                          .variance = {all.variance[0][i], all.variance[1][i] + error_of(element)},
-                          .weight = 1};
-          const double total = noise.variance[0] + noise.variance[1];
-          noise.degrees = total * total / all.reciprocal_degrees[i];
+          const CellNoise noise = noise_of(element);
+          note_noisier(noise, element, x, y, c);
           const StudentValue value = own_value(noise);
           found_.z[element] = t_to_z(value);
           if (!candidates_[0].wants(value.t)) return;
           const Rectangle place{static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 1, 1};
           candidates_[0].keep({{.window = place, .channel = c, .z = found_.z[element]}, noise});
         });
+  }
+
+  // The halves' own moments tell of an element alone.
+  CellNoise noise_of(std::size_t element) const {
+    const std::size_t here = element - cells_.half[0].first;
+    CellNoise noise{.variance = {0, error_of(element)}, .weights = weight_of(element), .weight = 1};
+    double reciprocal_degrees = 0;
+    for (std::size_t h = 0; h < halves; ++h) {
+      const Half& half = cells_.half[h];
+      noise.effect += factor_of_half * half.difference[here];
+      for (std::size_t side = 0; side < sides_of_pair; ++side) {
+        if (half.variance[side].empty()) continue;
+        const double part = factor_of_half * factor_of_half * half.variance[side][here];
+        const auto count = static_cast<double>(coarse_.half[h].images[side].size());
+        noise.variance[side] += part;
+        reciprocal_degrees += part * part / (count - 1);
+      }
+    }
+    const double total = noise.variance[0] + noise.variance[1];
+    noise.degrees = total * total / reciprocal_degrees;
+    return noise;
   }
 
   double mean_of(std::size_t side, std::size_t element) const {
@@ -413,10 +412,10 @@ class FineTiles {
   }
 
   // Which side has the larger variance over its squared mean?
-  void note_noisier(std::size_t i, std::size_t element, std::size_t x, std::size_t y,
+  void note_noisier(const CellNoise& cell, std::size_t element, std::size_t x, std::size_t y,
                     std::size_t c) {
     const auto noise = [&](std::size_t side) {
-      return elements_.variance[side][i] * std::pow(mean_of(1 - side, element), 2);
+      return cell.variance[side] * std::pow(mean_of(1 - side, element), 2);
     };
     found_.noise.at(0, x, y, c).add_element(noise(0) > noise(1));
     if (cells_.pair.b != nullptr) found_.noise.at(1, x, y, c).add_element(noise(1) > noise(0));
@@ -491,7 +490,7 @@ class FineTiles {
   std::size_t halves_that_vary(std::size_t element) const {
     const std::size_t here = element - cells_.half[0].first;
     return static_cast<std::size_t>(std::ranges::count_if(
-        cells_.half, [here](const Half& half) { return half.varied[here] > 0; }));
+        cells_.half, [here](const Half& half) { return half.variance_at(here) > 0; }));
   }
 
   // An element that varied in one half alone is in sums only.
@@ -559,7 +558,7 @@ class FineTiles {
   void count_varied(const Tile& tile, std::size_t h) {
     const Half& own = cells_.half[h];
     const auto varies = [&](std::size_t element) {
-      return weight_in(h, element) > 0 && own.varied[element - own.first] > 0 ? 1 : 0;
+      return weight_in(h, element) > 0 && own.variance_at(element - own.first) > 0 ? 1 : 0;
     };
     add_up(tile, coarse_.half[h].varied, each(varies), [](auto...) {});
   }

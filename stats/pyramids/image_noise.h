@@ -77,7 +77,8 @@ struct CellNoise {
   double effect = 0;
   std::array<double, sides_of_pair> variance = {};  // What either side adds to its squared error.
   double degrees = 1;
-  double third = 0;  // Third cumulant of the effect, of independent elements; 0 of few.
+  double third = 0;    // Third cumulant of the effect, of independent elements; 0 of few.
+  double weights = 0;  // The mean over the halves of the weights' sum.
   // The sum of the squared weights, with the signs in turn, over the square of the weights' sum. It
   // is the mean of this over the halves, as is a reference's squared error. Both are exact where
   // the halves' weights are in proportion, and else too large.

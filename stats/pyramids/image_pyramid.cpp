@@ -55,13 +55,12 @@ void RowPyramid::take(const ImagePair& pair, RowRange rows) {
   const RowRange reached{rows.first, std::min(rows.last + fine_rows_ahead, extent_.height)};
   half_ = halves_of(pair, reached, for_each_, std::move(half_));
   for (const Half& each : half_) {
-    const auto wrong = std::ranges::find_if_not(
-        each.variance, [](double variance) { return std::isfinite(variance); });
-    if (wrong == each.variance.end()) continue;
-    check::fail({function_name,
-                 "element " + std::to_string(each.first + static_cast<std::size_t>(
-                                                              wrong - each.variance.begin()))},
-                *wrong, "a finite difference with a finite variance");
+    for (std::size_t i = 0; i < each.difference.size(); ++i) {
+      if (const double variance = each.variance_at(i); !std::isfinite(variance)) {
+        check::fail({function_name, "element " + std::to_string(each.first + i)}, variance,
+                    "a finite difference with a finite variance");
+      }
+    }
   }
   offer_fine_cells({pair, half_, groups_, constants_decide_}, rows, found_, for_each_);
 }
@@ -94,9 +93,14 @@ void RowPyramid::add_best(ImageFamily& family) const {
       finding.log_p = log_p_two_sided(tails_of(finding.effect));
       finding.adjusted_log_p = adjusted(finding.log_p, size);
       finding.group = size;
-      // Elements without weight tell nothing.
-      finding.window = around(finding.window, finding.channel, extent_,
-                              [&](std::size_t element) { return found_.weights[element] > 0; });
+      // The effect is that of the elements that tell something.
+      double weights = 0;
+      finding.window = around(finding.window, finding.channel, extent_, [&](std::size_t element) {
+        weights += static_cast<double>(found_.weights[element]);
+        return found_.weights[element] > 0;
+      });
+      finding.effect.estimate *= finding.weights / weights;
+      finding.effect.standard_error *= finding.weights / weights;
       findings.push_back(finding);
     };
     add(*best.finding, family.groups);

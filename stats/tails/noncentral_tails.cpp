@@ -122,10 +122,8 @@ double scale_at(const UpperIntegrand& f, double u) {
 double maximise(const UpperIntegrand& f, double low, double high) {
   const double rising = 0.1 / std::sqrt(f.parameters.degrees);
   while (f(high) > f(high - rising)) high += high - low;
-  const GoldenSection about = golden_section(f, low, high, rising);
-  const GoldenSection left =
-      golden_section(f, about.low, about.high, 0.1 * scale_at(f, about.high));
-  return std::midpoint(left.low, left.high);
+  const double digits = std::clamp(std::log2(10 / scale_at(f, high)), 8.0, 26.0);
+  return maximum(f, low, high, static_cast<int>(digits)).place;
 }
 
 double support_edge(const UpperIntegrand& f, double centre, double direction) {

@@ -1,7 +1,6 @@
 #include "stats/variances/slope.h"
 
 #include <algorithm>
-#include <boost/math/tools/minima.hpp>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -132,10 +131,6 @@ struct Node {
   double misfit;
 };
 
-double minimum_between(const Misfit& misfit, double low, double high) {
-  return boost::math::tools::brent_find_minima(misfit, low, high, 50).first;
-}
-
 // Slopes from the steepest fall to the steepest rise, with every local minimum of Q among them.
 // Around zero the steps are a hundredth of the scale 1 / ln(largest / smallest size). Further out
 // they are relative.
@@ -150,8 +145,9 @@ std::vector<Node> scan(const Misfit& misfit) {
   const std::size_t grid = nodes.size();
   for (std::size_t i = 1; i + 1 < grid; ++i) {
     if (nodes[i].misfit > nodes[i - 1].misfit || nodes[i].misfit > nodes[i + 1].misfit) continue;
-    const double at = minimum_between(misfit, nodes[i - 1].slope, nodes[i + 1].slope);
-    nodes.push_back({at, misfit(at)});
+    const Maximum least = maximum([&](double slope) { return -misfit(slope); }, nodes[i - 1].slope,
+                                  nodes[i + 1].slope);
+    nodes.push_back({least.place, -least.value});
   }
   std::ranges::sort(nodes, {}, &Node::slope);
   return nodes;
@@ -241,13 +237,13 @@ std::optional<double> slope_sample_factor(const SlopeData& expected, double null
   check::inside_unit({"slope_sample_factor", "beta"}, rates.beta);
   const double alpha = rates.two_sided ? rates.alpha / 2 : rates.alpha;
   constexpr double most = 0x1p60;
-  const auto enough = [&](double factor) {
-    if (factor >= most) return true;
+  const auto power = [&](double factor) {
+    if (factor >= most) return 1.0;
     SlopeData larger = expected;
     for (SlopePoint& point : larger.points) point.standard_error /= std::sqrt(factor);
-    return slope_power(larger, null_slope, alpha) >= 1 - rates.beta;
+    return slope_power(larger, null_slope, alpha);
   };
-  const double found = planning::smallest_effect(enough, 0, 0x1p-40);
+  const double found = planning::smallest_effect(power, 1 - rates.beta, 0, 0x1p-40);
   return found < most ? std::optional(found) : std::nullopt;
 }
 

@@ -418,7 +418,7 @@ test_explain_tells_of_the_last_run() {
   contains out 'The last run from this folder began'
   contains out 'secondaries: '
   expect 2 explain
-  contains err '2 tests; give the id of one'
+  contains err '2 tests may be meant; give the id of one'
   expect 0 explain run.json mixed/wrong
   contains out 'The claim is wrong.'
   expect 2 explain mixed/

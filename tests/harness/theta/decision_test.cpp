@@ -217,7 +217,6 @@ TEST(Inversion, OfStudentTIsItsInterval) {
   }
 }
 
-// The reference's own error enters the closed form as well.
 TEST(Inversion, OfStudentTAgainstAnUncertainReferenceIsItsInterval) {
   const stats::Moments x = tests::moments_of(tests::golden_x);
   const stats::Interval closed = stats::student_t_interval(x, {.5, .3}, .95);

@@ -77,5 +77,11 @@ CAUGHT(Dependence, TheBiasOfTheFirstAutocorrelationLeftInIsNoticed, 541, 40000) 
   return normal_tails(std::sqrt(50) * autocorrelation(x, 1)).lower;
 }
 
+TEST(RankCorrelation, IsThatOfMidranks) {
+  const std::vector<double> x{1, 2, 2, 4, 5, 5, 5, 9}, y{3, 1, 4, 1, 5, 9, 2, 6};
+  EXPECT_NEAR(rank_correlation(x, y), 0.5495502618648208, 1e-14);  // scipy 1.10: spearmanr
+  EXPECT_EQ(rank_correlation(x, std::vector<double>(8, 3.0)), 0);
+}
+
 }  // namespace
 }  // namespace assay::stats

@@ -115,24 +115,12 @@ TEST(Power, DetectableDistancesAreThoseOfTheirOwnPlan) {
   EXPECT_GT(ks_detectable({.two_samples = true, .allow = 1e-9, .rates = rates}, 1000), 1.01 * two);
 }
 
-// A guess saves questions and changes no bit, right or wrong.
-TEST(Power, AGuessChangesNoBitOfTheSmallestEffect) {
-  constexpr double smallest = 0.7364916731037085;
+TEST(Power, TheSmallestEffectIsWhereThePowerIsReached) {
   int asked = 0;
-  const auto enough = [&](double x) {
-    ++asked;
-    return x >= smallest;
-  };
-  const double plain = planning::smallest_effect(enough, 0.1, 0.03);
-  EXPECT_GE(plain, smallest);
-  EXPECT_LT(plain, smallest * (1 + 2e-12));
-  EXPECT_GT(std::exchange(asked, 0), 30);
-  EXPECT_EQ(planning::smallest_effect(enough, 0.1, 0.03, smallest * (1 + 1e-15)), plain);
-  EXPECT_EQ(asked, 2);
-  for (const double wrong : {smallest * (1 - 1e-9), smallest * (1 + 1e-9), -1.0, 0.0, 1e308,
-                             std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_EQ(planning::smallest_effect(enough, 0.1, 0.03, wrong), plain) << wrong;
-  }
+  const auto power = [&](double x) { return ++asked, -std::expm1(-x); };
+  EXPECT_NEAR(planning::smallest_effect(power, .9, .1, .03), std::log(10), 1e-11);
+  EXPECT_LT(asked, 25);
+  EXPECT_EQ(planning::smallest_effect([](double) { return .5; }, .9, 0, 1), HUGE_VAL);
 }
 
 TEST(Power, AReferenceThatIsTooPoorAnswersNothing) {

@@ -23,7 +23,6 @@ struct Cell {
   std::size_t channel;
 };
 
-// The elements of one cell, each with its sign.
 void for_each_element(const ImageExtent& extent, const Cell& cell, const auto& visit) {
   const Rectangle& window = cell.group.windows[cell.index];
   for (std::size_t y = window.y; y < window.y + window.height; ++y) {

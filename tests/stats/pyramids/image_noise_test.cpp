@@ -71,6 +71,7 @@ TEST(PooledNoise, IsTheSameInOnePieceOrTwo) {
   for (int octave = whole.top(); octave > whole.top() - PooledNoise::octaves; --octave) {
     EXPECT_NEAR(first.cut_off(octave).third / whole.cut_off(octave).third, 1, 1e-5);
     EXPECT_NEAR(first.cut_off(octave).second / whole.cut_off(octave).second, 1, 1e-5);
+    EXPECT_EQ(first.rare(octave), whole.rare(octave));
   }
 }
 

@@ -347,6 +347,16 @@ TEST(ImagePyramid, TheWinnerSaysWhereTheDefectIs) {
   EXPECT_LT(family.winner.z, -10);
 }
 
+TEST(ImagePyramid, PixelsThatNeverVaryTellNoSize) {
+  Philox random(868);
+  const auto draw = [&](double mean) {
+    const auto pixel = [&](std::size_t e) { return e % 2 == 0 ? 0 : mean + random.normal(); };
+    return draw_stack({8, 8, 1}, 32, pixel);
+  };
+  const OwnedStack a = draw(2), b = draw(1);
+  EXPECT_NEAR(image_pyramid({a.view(), b.view()}).winner.effect.estimate, 1, .2);
+}
+
 // A tile is brighter. The interval of the winner's window holds its true mean difference where this
 // p-value is above 1 - confidence.
 double log_p_of_the_true_effect(Philox& random, bool adjust) {
