@@ -782,8 +782,9 @@ class MeanTheta : public Theta {
       const double away =
           rarer * std::abs(effect.estimate.value_or(0)) / std::abs(question.factor_of(side));
       return fmt::format(
-          "values rarer than one in {:.0f} and at least {} away from the mean would explain it{}",
-          rarer, reports::human(away, 2) + (effect.relative ? " times the mean" : ""),
+          "values rarer than one in {:.0f} and at least {} away from {} would explain it{}", rarer,
+          reports::human(away, 2) + (effect.relative ? " times the mean" : ""),
+          effect.relative ? "it" : "the mean",
           is_recorded(question.subjects[side]) ? "" : "; a declared range excludes them");
     }
     return "";
