@@ -29,8 +29,7 @@ struct Terms {
   /// Who prints the line `ready`, and when.
   std::string who_is_ready =
       "a Python program ends with `assay.serve(FUNCTION)`, which prints it (the package `assay` is "
-      "in "
-      "share/assay/python or estimators/foreign/python), and buffers must be flushed";
+      "in share/assay/python or estimators/foreign/python), and buffers must be flushed";
 };
 
 /// Why a program did not answer: a sentence with the program's name, how it ended and the end of

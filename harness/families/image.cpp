@@ -393,8 +393,7 @@ class ImageTheta : public Theta {
     if (!exact) return "";
     return fmt::format(
         "`{}` is one picture, taken as exact; if it was rendered, its noise counts as a "
-        "difference: "
-        "give 16 or more of its renders",
+        "difference: give 16 or more of its renders",
         other->quantity.source.estimator);
   }
 };

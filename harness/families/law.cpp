@@ -32,7 +32,7 @@ using stats::TestResult;
 
 constexpr const char* distance_of_laws = "largest distance of distribution functions";
 
-/// Says which part p belongs to: the estimate may be another's.
+/// Says which part decides: the estimate may be another's.
 std::string decisive_part(const std::string& part, double difference) {
   return fmt::format("{} decide: their shares are {:.4g} apart", part, difference);
 }

@@ -27,8 +27,8 @@ stats::Moments scaled(const stats::Moments& pilot, double averaged, std::uint64_
 }
 
 /// Data that the pilots predict for a channel at this many secondaries: moments scaled to the
-/// plan's primaries, or rows of a file as they are tested. Returns nullopt if an estimator has no
-/// pilot, or no spread in it.
+/// plan's primaries, with what rows are allowed. Returns nullopt if an estimator has no pilot, or
+/// no spread in it.
 std::optional<std::vector<ChannelData>> expected_data(const TestOutcome& test, std::size_t channel,
                                                       const Pilots& pilots,
                                                       std::uint64_t secondaries) {
@@ -43,15 +43,9 @@ std::optional<std::vector<ChannelData>> expected_data(const TestOutcome& test, s
     const PilotChannel seen = pilot_channel(side, *pilot, channel);
     if (is_constant(question, i, channel, seen.moments)) return std::nullopt;
     const double averaged = side.averaged(test.plan.primaries[i]);
-    const std::uint64_t count = side.secondaries(secondaries);
+    const stats::Moments moments = scaled(seen.moments, averaged, side.secondaries(secondaries));
     data[i] = {.primaries = test.plan.primaries[i],
-               .moments = scaled(seen.moments, averaged, count)};
-    if (is_recorded(side) && !seen.values.empty()) {
-      const auto rows = seen.values.first(std::min<std::size_t>(count, seen.values.size()));
-      data[i].moments = {};
-      for (const double value : rows) data[i].moments.add(value);
-      data[i].moments = as_tested(test.plan, i, channel, rows, data[i].moments);
-    }
+               .moments = as_tested(test.plan, i, channel, seen.values, moments)};
     if (!std::isfinite(data[i].moments.m2)) return std::nullopt;
     if (averaged == 1) data[i].values = seen.values;
   }

@@ -68,7 +68,7 @@ double excluded_beyond(const TestOutcome& outcome, const ChannelOutcome& channel
   return channel.regions.bounds_above() ? high : low;
 }
 
-/// A distance's interval reaches 0, unless even 0 is too large for these data.
+/// A distance's interval has ends, unless even 0 is too large for these data.
 bool holds_no_effect(const ChannelOutcome& channel) {
   return channel.evidence.distance && !channel.effect.low && !channel.effect.high;
 }

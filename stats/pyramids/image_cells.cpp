@@ -57,7 +57,7 @@ void offer(BestCell& best, const Candidate& candidate, const NoisePyramid& noise
 
 void WelchCells::start(std::size_t cells) {
   for (std::vector<double>* each :
-       {&inverse, &squares, &effect, &weights, &weight, &third, &variance[0], &variance[1],
+       {&inverse, &squares, &effect, &weights, &concentration, &third, &variance[0], &variance[1],
         &of_half[0], &of_half[1], &reciprocal_degrees}) {
     each->assign(cells, 0.0);
   }
@@ -106,7 +106,7 @@ CellNoise WelchCells::noise(std::size_t cell) const {
           .degrees = total * total / reciprocal_degrees[cell],
           .third = third[cell],
           .weights = weights[cell],
-          .weight = weight[cell]};
+          .concentration = concentration[cell]};
 }
 
 }  // namespace assay::stats

@@ -31,7 +31,7 @@ struct WelchCells {
   // The halves so far, which the caller adds up.
   std::vector<double> effect;
   std::vector<double> weights;  // CellNoise has the meaning of these three.
-  std::vector<double> weight;
+  std::vector<double> concentration;
   std::vector<double> third;
   // The parts that are done.
   std::array<std::vector<double>, sides_of_pair> variance;  // Squared error of effect, by side.

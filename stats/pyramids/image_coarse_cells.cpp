@@ -97,7 +97,7 @@ WelchCells window_moments(const CoarseImages& coarse, const Groups& groups, std:
       moments.start_half(window, {{weights}});
     });
     add(moments.effect, half.effect, 1);
-    add(moments.weight, half.squared_weights, 2);
+    add(moments.concentration, half.squared_weights, 2);
     add(moments.third, half.third, 3);
     for (std::size_t side = 0; side < sides_of_pair; ++side) {
       const std::vector<BlockSums<float>>& images = half.images[side];

@@ -112,10 +112,9 @@ ASSAY_VECTOR_COPIES void add_squares(const double* from, double* to, std::size_t
   for (std::size_t i = 0; i < size; ++i) squares[i] += from[i] * from[i];
 }
 
-ASSAY_VECTOR_COPIES void add_scaled(const double* from, double factor, double* to,
-                                    std::size_t size) {
+ASSAY_VECTOR_COPIES void add_row(const double* from, double* to, std::size_t size) {
   double* const __restrict sum = to;
-  for (std::size_t i = 0; i < size; ++i) sum[i] += factor * from[i];
+  for (std::size_t i = 0; i < size; ++i) sum[i] += from[i];
 }
 
 // Sums of powers of a row of elements' weighted deviations.
@@ -265,7 +264,7 @@ class FineTiles {
       const bool there = tile.y + y < extent_.height;
       if (there) fill(y, tile.first(y), std::span(numbers, size));
       std::fill(numbers + (there ? size : 0), numbers + tile.stride(), 0.0);
-      if (y < tile.height()) add_scaled(numbers, 1, column_sums_[y % 2].data(), tile.size());
+      if (y < tile.height()) add_row(numbers, column_sums_[y % 2].data(), tile.size());
     };
     sums_.add_up(tile, fill_row, [&](std::size_t k, std::size_t y, const double* sums) {
       if (fine_squares[k].side == block_side && y % block_side == 0) {
@@ -387,7 +386,8 @@ class FineTiles {
   // The halves' own moments tell of an element alone.
   CellNoise noise_of(std::size_t element) const {
     const std::size_t here = element - cells_.half[0].first;
-    CellNoise noise{.variance = {0, error_of(element)}, .weights = weight_of(element), .weight = 1};
+    CellNoise noise{
+        .variance = {0, error_of(element)}, .weights = weight_of(element), .concentration = 1};
     double reciprocal_degrees = 0;
     for (std::size_t h = 0; h < halves; ++h) {
       const Half& half = cells_.half[h];
@@ -477,7 +477,7 @@ class FineTiles {
              return weight_in(h, element) * weight_in(h, element);
            }),
            [&](std::size_t k, std::size_t y, const double* sums) {
-             moments_[k].add(moments_[k].weight, y * tile.stride(), {sums, tile.size()}, 2);
+             moments_[k].add(moments_[k].concentration, y * tile.stride(), {sums, tile.size()}, 2);
            });
   }
 

@@ -204,7 +204,7 @@ double NoisePyramid::growth(const Sides& here, int octave, double toward) const 
 double NoisePyramid::growth(const CellNoise& cell, double sign, const Rectangle& window,
                             std::size_t channel) const {
   const double direction = sign < 0 ? 1 : -1;
-  const double toward = cell.weight < 0 ? -direction : direction;
+  const double toward = cell.concentration < 0 ? -direction : direction;
   const Around near = around(window, channel);
   double largest = 0;
   // Nothing is left of the octaves if there is one law.
@@ -213,7 +213,7 @@ double NoisePyramid::growth(const CellNoise& cell, double sign, const Rectangle&
     for (const Sides& here : near.blocks) largest = std::max(largest, growth(here, octave, toward));
   }
   const double own = direction * cell.third / (cell.variance[0] + cell.variance[1]);
-  return std::max(std::abs(cell.weight) * largest, own);
+  return std::max(std::abs(cell.concentration) * largest, own);
 }
 
 ImageEffect NoisePyramid::kept(const CellNoise& cell, const Rectangle& window,

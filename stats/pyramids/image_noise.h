@@ -82,7 +82,7 @@ struct CellNoise {
   // The sum of the squared weights, with the signs in turn, over the square of the weights' sum. It
   // is the mean of this over the halves, as is a reference's squared error. Both are exact where
   // the halves' weights are in proportion, and else too large.
-  double weight = 0;
+  double concentration = 0;
 };
 
 // The noise of blocks of 8 x 8 elements, and of 2 x 2 blocks each up to the whole image.

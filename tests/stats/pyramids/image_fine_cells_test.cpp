@@ -44,7 +44,7 @@ CellNoise noise_of(const ImagePair& pair, const std::array<Half, halves>& half, 
       weights += weight[e];
       squares += weight[e] * weight[e];
     });
-    noise.weight += squares / (weights * weights) / 2;
+    noise.concentration += squares / (weights * weights) / 2;
     for (std::size_t s = 0; s < sides_of_pair; ++s) {
       const ImageStack& stack = s == 0 ? pair.a : *pair.b;
       Moments moments;
@@ -133,7 +133,7 @@ void expect_cells_of(const ImageExtent& extent, std::uint32_t test_case) {
     for (const std::size_t s : {0U, 1U}) {
       EXPECT_NEAR(best[g].noise.variance[s], expected.noise.variance[s], 1e-9);
     }
-    EXPECT_NEAR(best[g].noise.weight, expected.noise.weight, 1e-9);
+    EXPECT_NEAR(best[g].noise.concentration, expected.noise.concentration, 1e-9);
     EXPECT_NEAR(best[g].noise.degrees, expected.noise.degrees, 1e-7);
   }
 }

@@ -90,7 +90,7 @@ NoisePyramid pyramid_of(const std::array<std::vector<double>, sides_of_pair>& va
 }
 
 constexpr Rectangle pixel{3, 3, 1, 1};
-const CellNoise dark{.effect = -3, .variance = {1.0 / 16, 1.0 / 16}, .degrees = 30, .weight = 1};
+const CellNoise dark{.effect = -3, .variance = {.0625, .0625}, .degrees = 30, .concentration = 1};
 
 // A darker cell that showed none of the bright values which its neighbours on the same side showed.
 TEST(NoisePyramid, HasTheVarianceOfEqualMeans) {
@@ -139,11 +139,11 @@ TEST(NoisePyramid, HasTheVarianceOfEqualMeans) {
 
 TEST(NoisePyramid, TakesACellsOwnThirdCumulant) {
   const NoisePyramid none({8, 8, 1}, {16, 16});
-  CellNoise cell{.effect = -4, .variance = {0.5, 0.5}, .degrees = 30, .third = 0.3, .weight = 1};
+  CellNoise one{.effect = -4, .variance = {.5, .5}, .degrees = 30, .third = .3, .concentration = 1};
   const Rectangle whole{0, 0, 8, 8};
-  EXPECT_NEAR(none.kept(cell, whole, 0).t(), -4 / std::sqrt(1 + 4 * 0.3), 1e-12);
-  cell.third = -0.3;
-  EXPECT_NEAR(none.kept(cell, whole, 0).t(), -4, 1e-12);
+  EXPECT_NEAR(none.kept(one, whole, 0).t(), -4 / std::sqrt(1 + 4 * 0.3), 1e-12);
+  one.third = -0.3;
+  EXPECT_NEAR(none.kept(one, whole, 0).t(), -4, 1e-12);
 }
 
 // Values of 0 and 10 at probability .05: an element lacks .5 if 16 replicates missed all.
