@@ -249,11 +249,14 @@ PictureLook look_at(const Question& question, const ImageTest& test, ImagePair p
   look.z.resize(pair.first.extent.elements());
   const bool of_two = pair.second.has_value();
   ImageConstants constants = pair.settle(question);
-  require_spread(question, constants.count < pair.first.extent.elements() ||
-                               (pair.subtracted && varies(*pair.subtracted)));
-  const stats::PyramidOptions options{.z = look.z,
-                                      .for_each = on_all_threads,
-                                      .constants_decide = of_two || question.is().of_pairs};
+  const bool has_noise = constants.count < pair.first.extent.elements() ||
+                         (pair.subtracted && varies(*pair.subtracted));
+  require_spread(question, has_noise);
+  // Beside noise, an element that never varied may have missed rare values.
+  const stats::PyramidOptions options{
+      .z = look.z,
+      .for_each = on_all_threads,
+      .constants_decide = of_two || question.is().of_pairs || !has_noise};
   look.family = stats::image_pyramid(pair.pair(), options);
   unseen = std::move(constants.unseen);
   for (const UnseenElement& element : unseen) look.z[element.element] = z_of(element);
@@ -447,8 +450,10 @@ ChannelEvidence evidence_of_images(const Seen& seen, const ImageTest& test) {
       .log_p_lower = 0,
       .log_p_upper = family.log_p,
       .exactness = stats::Exactness::asymptotic};
-  const double estimate = std::sqrt(std::max(0.0, distance.squared_bias / distance.squared_norm));
-  const bool exact = !(distance.bias_variance > 0);
+  const double ratio = distance.squared_bias / distance.squared_norm;
+  const double estimate = std::sqrt(std::max(0.0, ratio));
+  // So it is without noise, and beside an image of zeros.
+  const bool exact = !(stats::variance_at(distance, ratio) > 0);
   Evidence evidence{.estimate = estimate,
                     .at =
                         [=](double theta) {

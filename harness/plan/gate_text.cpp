@@ -152,22 +152,36 @@ Reason what_would_help(const TestOutcome& outcome) {
   // A sample that one observation makes up tells no more.
   constexpr double most = 100;
   const bool rows = has_rows(outcome.question);
+  // An average has another variance than what it averages.
+  const bool averages = rows && !outcome.question.is().of_spread;
   // If the tail's moment does not exist, more observations only make the gate redder.
   if (heavy || (rows && factor > most)) {
     return fmt::format(
         "; the values are heavy-tailed, and more of them may only show more of the tail: {}claim a "
         "quantile, as `quantile({}, 0.5) == …`",
-        rows ? "give " + std::string(rows_noun(outcome.question)) + " that each average many, or "
-             : "clamp the estimator or take another, declare its range, or ",
+        averages
+            ? "give " + std::string(rows_noun(outcome.question)) + " that each average many, or "
+        : rows ? ""
+               : "clamp the estimator or take another, declare its range, or ",
         to_string(outcome.question.test->claim.left.source));
   }
   const bool known = factor > 1;
   factor = std::min(factor, most);
   if (rows) {
-    return Reason::advising(": ",
-                            fmt::format("give {0} {1}, or {1} that each average several",
-                                        known ? "about " + sizes_text(outcome, factor) : "more",
-                                        rows_noun(outcome.question)));
+    const auto methods = methods_for(outcome.question);
+    const auto exact = std::ranges::find_if(
+        methods, [](const Method& method) { return method.is.of_normal_values; });
+    const std::string noun = rows_noun(outcome.question);
+    std::string instead;
+    if (averages) {
+      instead = fmt::format(", or {} that each average several", noun);
+    } else if (exact != methods.end()) {
+      instead = fmt::format(", or, of near normal values, {}",
+                            written_key(*outcome.question.test, "test", exact->name));
+    }
+    return Reason::advising(
+        ": ", fmt::format("give {} {}{}", known ? "about " + sizes_text(outcome, factor) : "more",
+                          noun, instead));
   }
   Reason help = known ? more_drawn(outcome, factor, "may do") : Reason("more observations may do");
   help.text = fmt::format(

@@ -274,9 +274,13 @@ ImageDistance with_reference_error(ImageDistance distance, const ImagePair& pair
   return distance;
 }
 
+double variance_at(const ImageDistance& distance, double squared_margin) {
+  return distance.bias_variance - 2 * squared_margin * distance.covariance +
+         squared_margin * squared_margin * distance.norm_variance;
+}
+
 TestResult squared_margin_test(const ImageDistance& distance, double squared_margin) {
-  const double variance = distance.bias_variance - 2 * squared_margin * distance.covariance +
-                          squared_margin * squared_margin * distance.norm_variance;
+  const double variance = variance_at(distance, squared_margin);
   if (!(variance > 0)) throw ZeroVariance("image_equivalence: zero standard error");
   const double t =
       (distance.squared_bias - squared_margin * distance.squared_norm) / std::sqrt(variance);

@@ -76,6 +76,9 @@ enum class ElementErrors { independent, unknown };
 ImageDistance with_reference_error(ImageDistance distance, const ImagePair& pair,
                                    ElementErrors errors);
 
+// The squared standard error of U - squared_margin N.
+double variance_at(const ImageDistance& distance, double squared_margin);
+
 // Null hypothesis: ||E a - E b||^2 >= squared_margin N. Statistic: (U - squared_margin N) / its
 // jackknife standard error; Student's t. log_p_lower is the p-value, small when the images are
 // equivalent within the margin. log_p_upper tests ||E a - E b||^2 <= squared_margin N. Asymptotic.

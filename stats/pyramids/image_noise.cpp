@@ -34,15 +34,14 @@ void PooledNoise::raise(int top) {
   if (top <= top_) return;
   const int rise = std::min(top - top_, octaves);
   for (std::size_t d = 0; d < rare_.size(); ++d) {
-    Tail& tail = rare_[d];
-    for (auto bin = tail.end() - rise; bin != tail.end(); ++bin) {
+    for (auto bin = rare_[d].end() - rise; bin != rare_[d].end(); ++bin) {
       if (bin->count > 0) add(powers_of(d, *bin));
     }
-    std::shift_right(tail.begin(), tail.end(), rise);
-    std::fill_n(tail.begin(), rise, Bin{});
+    for (Tail* tail : {&rare_[d], &in_elements_[d]}) {
+      std::shift_right(tail->begin(), tail->end(), rise);
+      std::fill_n(tail->begin(), rise, Bin{});
+    }
   }
-  std::shift_right(in_elements_.begin(), in_elements_.end(), rise);
-  std::fill_n(in_elements_.begin(), rise, 0.0F);
   top_ = top;
 }
 
@@ -52,10 +51,12 @@ void PooledNoise::add_rare(double deviation, bool in_element) {
   raise(octave);
   if (top_ - octave >= octaves) return;
   const auto below = static_cast<std::size_t>(top_ - octave);
-  if (in_element) in_elements_[below] += 1;
-  Bin& bin = rare_[deviation > 0 ? 0 : 1][below];
-  bin.count += 1;
-  bin.sum += static_cast<float>(size);
+  for (Tails* tails : {&rare_, &in_elements_}) {
+    if (tails == &in_elements_ && !in_element) continue;
+    Bin& bin = (*tails)[deviation > 0 ? 0 : 1][below];
+    bin.count += 1;
+    bin.sum += static_cast<float>(size);
+  }
   add(stats::powers_of(deviation, -1));
 }
 
@@ -65,31 +66,28 @@ void PooledNoise::merge(const PooledNoise& other) {
   noisier_ += other.noisier_;
   if (other.top_ == no_octave) return;
   raise(other.top_);
-  for (int i = 0; i + top_ - other.top_ < octaves; ++i) {
-    in_elements_[static_cast<std::size_t>(i + top_ - other.top_)] +=
-        other.in_elements_[static_cast<std::size_t>(i)];
-  }
   for (std::size_t d = 0; d < rare_.size(); ++d) {
     for (int i = 0; i < octaves; ++i) {
-      const Bin& from = other.rare_[d][static_cast<std::size_t>(i)];
-      if (from.count == 0) continue;
+      const auto below = static_cast<std::size_t>(i);
       const int to = i + top_ - other.top_;
       if (to >= octaves) {
-        add(powers_of(d, from));
+        if (other.rare_[d][below].count > 0) add(powers_of(d, other.rare_[d][below]));
         continue;
       }
-      rare_[d][static_cast<std::size_t>(to)].count += from.count;
-      rare_[d][static_cast<std::size_t>(to)].sum += from.sum;
+      for (Tails PooledNoise::*tails : {&PooledNoise::rare_, &PooledNoise::in_elements_}) {
+        const Bin& from = (other.*tails)[d][below];
+        (this->*tails)[d][static_cast<std::size_t>(to)].count += from.count;
+        (this->*tails)[d][static_cast<std::size_t>(to)].sum += from.sum;
+      }
     }
   }
 }
 
-PooledNoise::Moments PooledNoise::cut_off(int octave) const {
-  if (!(common_.count > 0)) return {};
+PooledNoise::Moments PooledNoise::moments_of(Powers all, const Tails& tails, int octave) {
+  if (!(all.count > 0)) return {};
   const double c = std::ldexp(1, octave);
-  Powers all = common_;
-  for (std::size_t d = 0; d < rare_.size(); ++d) {
-    for (const Bin& bin : rare_[d]) {
+  for (std::size_t d = 0; d < tails.size(); ++d) {
+    for (const Bin& bin : tails[d]) {
       if (bin.count == 0) continue;
       const double x = std::min(c, static_cast<double>(bin.sum) / bin.count);
       const Powers powers = stats::powers_of(d == 0 ? x : -x, bin.count);
@@ -100,10 +98,19 @@ PooledNoise::Moments PooledNoise::cut_off(int octave) const {
   return {.second = all.squares / all.count, .third = all.cubes / all.count};
 }
 
+PooledNoise::Moments PooledNoise::cut_off(int octave) const {
+  return moments_of(common_, rare_, octave);
+}
+
+PooledNoise::Moments PooledNoise::rare_cut_off(int octave) const {
+  return moments_of({.count = common_.count}, in_elements_, octave);
+}
+
 double PooledNoise::rare(int octave) const {
   const int i = top_ - octave;
   if (i < 0 || i >= octaves) return 0;
-  return static_cast<double>(in_elements_[static_cast<std::size_t>(i)]);
+  const auto below = static_cast<std::size_t>(i);
+  return static_cast<double>(in_elements_[0][below].count + in_elements_[1][below].count);
 }
 
 double PooledNoise::hidden_squares(double replicates) const {
@@ -193,12 +200,12 @@ bool NoisePyramid::of_one_law(const Around& near, double toward) const {
   });
 }
 
-double NoisePyramid::growth(const Sides& here, int octave, double toward) const {
-  const PooledNoise::Moments a = here[0]->cut_off(octave);
-  const PooledNoise::Moments b = here[1]->cut_off(octave);
-  const double second = a.second * inverse(0) + b.second * inverse(1);
-  if (!(second > 0)) return 0;
-  return toward * (a.third * square(inverse(0)) - b.third * square(inverse(1))) / second;
+double NoisePyramid::growth(const std::array<PooledNoise::Moments, sides_of_pair>& here,
+                            double toward) const {
+  const auto& [a, b] = here;
+  const double third = toward * (a.third * square(inverse(0)) - b.third * square(inverse(1)));
+  const double second = toward > 0 ? a.second * inverse(0) : b.second * inverse(1);
+  return second > 0 ? third / second : 0;
 }
 
 double NoisePyramid::growth(const CellNoise& cell, double sign, const Rectangle& window,
@@ -207,10 +214,18 @@ double NoisePyramid::growth(const CellNoise& cell, double sign, const Rectangle&
   const double toward = cell.concentration < 0 ? -direction : direction;
   const Around near = around(window, channel);
   double largest = 0;
-  // Nothing is left of the octaves if there is one law.
-  const int last = of_one_law(near, toward) ? near.first - 1 : near.last;
-  for (int octave = near.first; octave <= last; ++octave) {
-    for (const Sides& here : near.blocks) largest = std::max(largest, growth(here, octave, toward));
+  constexpr double fewest = 2;
+  if (!of_one_law(near, toward)) {
+    for (const auto& [a, b] : near.blocks) {
+      double beyond = 0;
+      for (int octave = near.last; octave >= near.first; --octave) {
+        beyond += (toward > 0 ? a : b)->rare(octave);
+        largest = std::max(largest, growth({a->cut_off(octave), b->cut_off(octave)}, toward));
+        if (beyond < fewest) continue;
+        largest =
+            std::max(largest, growth({a->rare_cut_off(octave), b->rare_cut_off(octave)}, toward));
+      }
+    }
   }
   const double own = direction * cell.third / (cell.variance[0] + cell.variance[1]);
   return std::max(std::abs(cell.concentration) * largest, own);

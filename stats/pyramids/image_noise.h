@@ -14,7 +14,8 @@ namespace assay::stats {
 // A mean and its variance move together where noise is skewed. A cell that missed the rare bright
 // values that carry part of its mean is too dark, and its variance says that it is exact. Let k2
 // and k3 be the second and third cumulants of its noise. Were its mean larger by d, its variance
-// would be larger by d k3 / k2. Its neighbours saw such values, and tell k3 / k2.
+// would be larger by d k3 / k2. Its neighbours saw such values, and tell k3 / k2. Of two sides, k2
+// is that of the one that may have missed them.
 
 inline constexpr std::size_t sides_of_pair = 2;
 
@@ -36,12 +37,13 @@ class PooledNoise {
   void add_element(bool noisier);
   void merge(const PooledNoise& other);
 
-  // Mean square and mean cube of the deviations cut off at +-2^octave.
+  // Mean square and mean cube of the deviations cut off at +-2^octave, and of the rare ones alone.
   struct Moments {
     double second = 0;
     double third = 0;
   };
   Moments cut_off(int octave) const;
+  Moments rare_cut_off(int octave) const;
   static constexpr int octaves = 16;
   static constexpr int no_octave = -100'000;  // top() without any.
   int top() const { return top_; }            // No rare deviation is beyond +-2^top.
@@ -61,15 +63,18 @@ class PooledNoise {
   };
   using Tail = std::array<Bin, octaves>;
   void raise(int top);
+  using Tails = std::array<Tail, 2>;  // Upward, downward; from the top down.
   // The powers of a bin's values, as if each were their mean.
   static Powers powers_of(std::size_t direction, const Bin& bin);
+  // The moments of a tail cut off, and of other deviations.
+  static Moments moments_of(Powers all, const Tails& tails, int octave);
 
   Powers common_;  // Without the rare, but for their count.
   double elements_ = 0;
   double noisier_ = 0;
   int top_ = no_octave;
-  std::array<Tail, 2> rare_ = {};  // Upward, downward; from the top down.
-  std::array<float, octaves> in_elements_ = {};
+  Tails rare_ = {};
+  Tails in_elements_ = {};  // Those that are rare in their elements.
 };
 
 // A cell's effect is the mean over the halves of its weighted mean of a - b.
@@ -104,7 +109,8 @@ class NoisePyramid {
   // For an effect of size d that is v + d k3 / k2, where k3 counts in the direction that makes the
   // effect smaller. The largest k3 / k2 counts, of the cell itself and of every block of four times
   // its side up to the whole image. A block's deviations are cut off at every octave, so that the
-  // rarest do not drown the others.
+  // rarest do not drown the others. Its rare ones count by themselves too, so that the edge of a
+  // lamp does not drown them. That is in octaves that two of the darker side reach.
   //
   // Two sides of one law have k3 = 0. So the blocks count only where the sides have different laws
   // in one of them. That is where one is noisier for its mean in too many elements (sign test). It
@@ -140,7 +146,7 @@ class NoisePyramid {
   Around around(const Rectangle& window, std::size_t channel) const;
   double inverse(std::size_t side) const;  // 1 / replicates_, 0 of a reference.
   bool of_one_law(const Around& near, double toward) const;
-  double growth(const Sides& here, int octave, double toward) const;
+  double growth(const std::array<PooledNoise::Moments, sides_of_pair>& here, double toward) const;
 
   std::array<double, sides_of_pair> replicates_ = {};  // 0: no side, but a reference.
   std::vector<Level> levels_;

@@ -23,38 +23,26 @@ PooledNoise pooled(const std::vector<double>& values, double unit = 1, bool in_e
   return noise;
 }
 
-std::vector<double> normal_values(Philox& random) {
-  std::vector<double> values(1024);
-  for (double& x : values) x = random.normal();
-  return values;
-}
-
-// Value by value. An octave's values count as its mean. By Jensen that is too little, for values at
-// the ends of the octave by a factor (1 + p)^2 / (1 + 3 p) at least 8/9, or (1 + p)^3 / (1 + 7 p)
-// at least .72.
+// Value by value. An octave's values count as its mean. By Jensen's inequality that is too little,
+// by (1 + p)^2 / (1 + 3 p) >= 8/9, or (1 + p)^3 / (1 + 7 p) >= .72, for values at its ends.
 TEST(PooledNoise, HasTheMomentsOfTheValuesCutOff) {
   Philox random(850);
-  std::vector<double> values;
-  for (int i = 0; i < 2000; ++i) values.push_back(random.normal() * (i % 50 == 0 ? 20 : 1));
-  for (const double unit : {1.0, 1e-9, 1e9}) {
+  std::vector<double> values(2000);
+  for (std::size_t i = 0; i < 2000; ++i) values[i] = std::abs(random.normal() * (i % 50 ? 1 : 20));
+  for (const double unit : {1.0, 1e-9, -1e9}) {
     const PooledNoise noise = pooled(values, unit);
     for (int octave = noise.top(); octave > noise.top() - 4; --octave) {
-      double squares = 0, cubes = 0;
-      for (const double value : values) {
-        const double c = std::ldexp(1, octave);
-        const double x = std::clamp(unit * value, -c, c);
-        squares += x * x;
-        cubes += std::abs(x * x * x);
+      for (const bool rare : {false, true}) {
+        double squares = 0, cubes = 0;
+        for (const double value : values) {
+          const double x = std::min(std::abs(unit) * value, std::ldexp(1, octave));
+          squares += rare && value <= least_rare ? 0 : x * x / 2000;
+          cubes += rare && value <= least_rare ? 0 : std::copysign(x * x * x / 2000, unit);
+        }
+        const auto [second, third] = rare ? noise.rare_cut_off(octave) : noise.cut_off(octave);
+        EXPECT_THAT(second / squares, AllOf(Ge(8.0 / 9), Le(1 + 1e-6))) << octave;
+        EXPECT_THAT(third / cubes, AllOf(Ge(0.72), Le(1 + 1e-6))) << octave;
       }
-      const PooledNoise::Moments moments = noise.cut_off(octave);
-      EXPECT_LE(moments.second, squares / 2000 * (1 + 1e-6)) << octave;
-      EXPECT_GE(moments.second, squares / 2000 * 8 / 9) << octave;
-      // All upward: the third moment of |x|.
-      std::vector<double> sizes = values;
-      for (double& x : sizes) x = std::abs(x);
-      const double third = pooled(sizes, unit).cut_off(octave).third;
-      EXPECT_LE(third, cubes / 2000 * (1 + 1e-6)) << octave;
-      EXPECT_GE(third, cubes / 2000 * 0.72) << octave;
     }
   }
 }
@@ -72,6 +60,7 @@ TEST(PooledNoise, IsTheSameInOnePieceOrTwo) {
     EXPECT_NEAR(first.cut_off(octave).third / whole.cut_off(octave).third, 1, 1e-5);
     EXPECT_NEAR(first.cut_off(octave).second / whole.cut_off(octave).second, 1, 1e-5);
     EXPECT_EQ(first.rare(octave), whole.rare(octave));
+    EXPECT_NEAR(first.rare_cut_off(octave).third / whole.rare_cut_off(octave).third, 1, 1e-5);
   }
 }
 
@@ -94,47 +83,38 @@ const CellNoise dark{.effect = -3, .variance = {.0625, .0625}, .degrees = 30, .c
 
 // A darker cell that showed none of the bright values which its neighbours on the same side showed.
 TEST(NoisePyramid, HasTheVarianceOfEqualMeans) {
-  Philox random(852);
-  const std::vector<double> clean = normal_values(random);
-  const auto with_rare = [&](std::size_t count) {
+  // No value of these is rare.
+  const std::vector<double> clean(1024, 1.0);
+  const auto with_rare = [&](std::size_t count, double size = 50) {
     std::vector<double> values = clean;
-    std::fill_n(values.begin(), count, 50);
+    std::fill_n(values.begin(), count, size);
     return values;
   };
   const std::vector<double> rare = with_rare(40);
-  const double alone = -3 / std::sqrt(2.0 / 16);
-  EXPECT_NEAR(pyramid_of({clean, normal_values(random)}).kept(dark, pixel, 0).t(), alone, 0.3);
-  // One side has `more` values of 50 among its 1024, the other `fewer`. Their squares and those of
-  // the normal values make k2, in means of 16.
-  const auto t = [](double more, double fewer, double k3_values) {
-    const double k3 = k3_values / 1024 * 125000;
-    const double k2 = (more + fewer) / 1024 * 2499 + 2;
-    return -3 / std::sqrt(2.0 / 16 + 3 * k3 / (16 * k2));
-  };
-  // Counts that may be of one law: the roots of 6.4 and 1.4 are 1.9 standard errors apart.
-  EXPECT_NEAR(pyramid_of({with_rare(6), with_rare(1)}).kept(dark, pixel, 0).t(), alone, 1e-9);
-  EXPECT_NEAR(pyramid_of({with_rare(18), with_rare(1)}).kept(dark, pixel, 0).t(), t(18, 1, 17),
-              0.02);
+  const auto t_of = [](double growth) { return -3 / std::sqrt(2.0 / 16 + 3 * growth / 16); };
+  const double alone = t_of(0);
+  const auto t = [](const NoisePyramid& noise) { return noise.kept(dark, pixel, 0).t(); };
+  EXPECT_NEAR(t(pyramid_of({clean, clean})), alone, 1e-9);
+  // Of values of 50 the darker side has 6 or 18, the other 1. The roots of 6.4 and 1.4 are 1.9
+  // standard errors apart: that may be one law.
+  EXPECT_NEAR(t(pyramid_of({with_rare(6), with_rare(1)})), alone, 1e-9);
+  EXPECT_NEAR(t(pyramid_of({with_rare(18), with_rare(1)})), t_of(50 * 17.0 / 18), 1e-9);
   // Sides of different laws: by their rare values, or as 60 of 64 elements are noisier.
-  EXPECT_NEAR(pyramid_of({rare, clean}).kept(dark, pixel, 0).t(), t(40, 0, 40), 0.02);
-  EXPECT_NEAR(pyramid_of({with_rare(8), with_rare(1)}, {16, 16}, 60).kept(dark, pixel, 0).t(),
-              t(8, 1, 7), 0.02);
-  EXPECT_NEAR(pyramid_of({with_rare(8), with_rare(1)}, {16, 16}, 4).kept(dark, pixel, 0).t(),
-              t(8, 1, 7), 0.02);
-  // Values that are common in their elements tell no laws apart, nor does a giant.
-  EXPECT_NEAR(pyramid_of({rare, clean}, {16, 16}, 32, false).kept(dark, pixel, 0).t(), alone, 0.3);
-  std::vector<double> giant = clean;
-  giant[999] = 1e5;
-  EXPECT_NEAR(pyramid_of({giant, clean}).kept(dark, pixel, 0).t(), alone, 0.3);
-  // A reference is of another law than the pictures.
-  EXPECT_NEAR(pyramid_of({giant, {}}, {16, 0}).kept(dark, pixel, 0).t(),
-              -3 / std::sqrt(2.0 / 16 + 3 * 1e5 / 16), 0.02);
-  // The brighter side misses the same.
-  EXPECT_NEAR(pyramid_of({rare, rare}).kept(dark, pixel, 0).t(), alone, 0.3);
-  // A brighter cell misses no bright values.
+  EXPECT_NEAR(t(pyramid_of({rare, clean})), t_of(50), 1e-9);
+  EXPECT_NEAR(t(pyramid_of({with_rare(8), with_rare(1)}, {16, 16}, 60)), t_of(50 * 7 / 8.), 1e-9);
+  EXPECT_NEAR(t(pyramid_of({with_rare(8), with_rare(1)}, {16, 16}, 4)), t_of(50 * 7 / 8.), 1e-9);
+  // Values that are common in their elements tell no laws apart, and count with all others.
+  EXPECT_NEAR(t(pyramid_of({rare, clean}, {16, 16}, 32, false)), alone, 1e-9);
+  EXPECT_NEAR(t(pyramid_of({rare, clean}, {16, 16}, 60, false)),
+              t_of((40 * 125000.0 - 40) / (40 * 2500 + 984)), 1e-6);
+  // A giant tells no laws apart. A reference is of another law than the pictures.
+  EXPECT_NEAR(t(pyramid_of({with_rare(1, 1e5), clean})), alone, 1e-9);
+  EXPECT_NEAR(t(pyramid_of({with_rare(2, 1e5), {}}, {16, 0})), t_of(1e5), 1e-9);
+  // The brighter side misses the same. A brighter cell misses no bright values.
+  EXPECT_NEAR(t(pyramid_of({rare, rare})), alone, 1e-9);
   CellNoise bright = dark;
   bright.effect = 3;
-  EXPECT_NEAR(pyramid_of({rare, clean}).kept(bright, pixel, 0).t(), -alone, 0.3);
+  EXPECT_NEAR(pyramid_of({rare, clean}).kept(bright, pixel, 0).t(), -alone, 1e-9);
 }
 
 TEST(NoisePyramid, TakesACellsOwnThirdCumulant) {

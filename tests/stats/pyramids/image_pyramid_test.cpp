@@ -183,6 +183,26 @@ CALIBRATED(ImagePyramid, RareHighlightsOfOneSideKeepTheLevel, 850, tests::repeti
   return image_pyramid({a.view(), highlight_stack(random, false).view()}).log_p;
 }
 
+// The edge of a lamp of 50 varies much, and its values are common in their pixels. They tell
+// nothing of the floor, whose light one side has in part in one of fifty values.
+OwnedStack lamp_stack(Philox& random, bool rare) {
+  return draw_stack(lit, 16, [&](std::size_t e) {
+    if (e >= 6 * lit.width) {
+      const double light = 0.2 * (1 + 0.02 * random.normal());
+      if (!rare) return light + 0.05;
+      return random.uniform() < 0.02 ? light - 2.5 * std::log(random.uniform()) : light;
+    }
+    const double radius = std::hypot(int(e % lit.width) - 17, int(e / lit.width) - 3);
+    double lamp = 0;
+    for (int path = 0; path < 4; ++path) lamp += random.uniform() < 3.5 - radius ? 12.5 : 0;
+    return lamp;
+  });
+}
+CALIBRATED(ImagePyramid, RareLightBesideALampKeepsTheLevel, 851, tests::repetitions(500),
+           Shape::at_most_uniform) {
+  return image_pyramid({lamp_stack(random, true).view(), lamp_stack(random, false).view()}).log_p;
+}
+
 // Welch's test of every element, which knows no neighbours.
 CAUGHT(ImagePyramid, ElementsWithoutTheirNeighboursAreCaughtOnRareLight, 846, 200,
        Shape::at_most_uniform) {
