@@ -74,7 +74,7 @@ class PooledNoise {
   double noisier_ = 0;
   int top_ = no_octave;
   Tails rare_ = {};
-  Tails in_elements_ = {};  // Those that are rare in their elements.
+  Tails in_elements_ = {};  // These are rare in their elements.
 };
 
 // A cell's effect is the mean over the halves of its weighted mean of a - b.

@@ -23,8 +23,8 @@ PooledNoise pooled(const std::vector<double>& values, double unit = 1, bool in_e
   return noise;
 }
 
-// Value by value. An octave's values count as its mean. By Jensen's inequality that is too little,
-// by (1 + p)^2 / (1 + 3 p) >= 8/9, or (1 + p)^3 / (1 + 7 p) >= .72, for values at its ends.
+// Value by value. An octave's values count as its mean. That is too little (Jensen's inequality):
+// at its ends by (1 + p)^2 / (1 + 3 p) >= 8/9. Cubes are by (1 + p)^3 / (1 + 7 p) >= .72.
 TEST(PooledNoise, HasTheMomentsOfTheValuesCutOff) {
   Philox random(850);
   std::vector<double> values(2000);
