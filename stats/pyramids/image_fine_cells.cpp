@@ -236,7 +236,7 @@ class FineTiles {
     // These are of the current part.
     std::vector<double> squares;
     std::vector<double> cubes;
-    std::vector<double> limit;  // Weighted deviations beyond are rare.
+    std::vector<double> limit;  // Weighted deviations beyond are large.
     std::vector<double> third;  // This is of the current half, and weighted.
   };
 
@@ -292,7 +292,7 @@ class FineTiles {
         const std::size_t i = y * tile.stride();
         const RowPowers powers{&all.squares[i], &all.cubes[i]};
         if (add_powers(out.data(), &all.limit[i], powers, tile.size())) {
-          note_rare(tile, y, part, values, out);
+          note_large(tile, y, part, values, out);
         }
       };
       add_up(tile, coarse_.half[part.half].images[part.side][count++], fill,
@@ -306,18 +306,18 @@ class FineTiles {
     finish_elements(tile, part, static_cast<double>(count));
   }
 
-  // Deviations beyond twice the light of the block are rare.
+  // Deviations beyond twice the light of the block are large.
   void start_part(const Tile& tile, const double* weights) {
-    constexpr double rare = 2;
+    constexpr double large = 2;
     elements_.start_part(Tile::rows * tile.stride());
     for_each_element(tile, [&](std::size_t i, std::size_t element, auto...) {
-      elements_.limit[i] = rare * elements_.light[i] * weights[element - cells_.half[0].first];
+      elements_.limit[i] = large * elements_.light[i] * weights[element - cells_.half[0].first];
     });
   }
 
   // A deviation is rare in its element beyond twice the spread that the sides have there.
-  void note_rare(const Tile& tile, std::size_t y, Part part, const float* values,
-                 std::span<const double> weighted) {
+  void note_large(const Tile& tile, std::size_t y, Part part, const float* values,
+                  std::span<const double> weighted) {
     const double* const limit = elements_.limit.data() + y * tile.stride();
     const Half& own = cells_.half[part.half];
     const std::size_t here = tile.first(y) - own.first;
@@ -330,7 +330,7 @@ class FineTiles {
       if (!(std::abs(weighted[i]) > limit[i])) continue;
       const double deviation = static_cast<double>(values[i]) - mean[i];
       found_.noise.at(part.side, tile.x + i / extent_.channels, tile.y + y, i % extent_.channels)
-          .add_rare(deviation, shares * deviation * deviation > 4 * own.variance_at(here + i));
+          .add_large(deviation, shares * deviation * deviation > 4 * own.variance_at(here + i));
     }
   }
 

@@ -25,38 +25,33 @@ void PooledNoise::add_element(bool noisier) {
   noisier_ += noisier ? 1 : 0;
 }
 
-PooledNoise::Powers PooledNoise::powers_of(std::size_t direction, const Bin& bin) {
-  return stats::powers_of((direction == 0 ? 1.0 : -1.0) * bin.sum / bin.count, bin.count);
+PooledNoise::Powers PooledNoise::powers_of(std::size_t direction, const Pile& pile) {
+  return stats::powers_of((direction == 0 ? 1.0 : -1.0) * pile.sum / pile.count, pile.count);
 }
 
 // Octaves that fall off the end join the common values.
 void PooledNoise::raise(int top) {
   if (top <= top_) return;
   const int rise = std::min(top - top_, octaves);
-  for (std::size_t d = 0; d < rare_.size(); ++d) {
-    for (auto bin = rare_[d].end() - rise; bin != rare_[d].end(); ++bin) {
-      if (bin->count > 0) add(powers_of(d, *bin));
+  for (std::size_t d = 0; d < tails_.size(); ++d) {
+    Tail& tail = tails_[d];
+    for (auto bin = tail.end() - rise; bin != tail.end(); ++bin) {
+      if (bin->large.count > 0) add(powers_of(d, bin->large));
     }
-    for (Tail* tail : {&rare_[d], &in_elements_[d]}) {
-      std::shift_right(tail->begin(), tail->end(), rise);
-      std::fill_n(tail->begin(), rise, Bin{});
-    }
+    std::shift_right(tail.begin(), tail.end(), rise);
+    std::fill_n(tail.begin(), rise, Bin{});
   }
   top_ = top;
 }
 
-void PooledNoise::add_rare(double deviation, bool in_element) {
+void PooledNoise::add_large(double deviation, bool rare) {
   const double size = std::abs(deviation);
   const int octave = std::ilogb(size) + 1;
   raise(octave);
   if (top_ - octave >= octaves) return;
-  const auto below = static_cast<std::size_t>(top_ - octave);
-  for (Tails* tails : {&rare_, &in_elements_}) {
-    if (tails == &in_elements_ && !in_element) continue;
-    Bin& bin = (*tails)[deviation > 0 ? 0 : 1][below];
-    bin.count += 1;
-    bin.sum += static_cast<float>(size);
-  }
+  const Pile one{1, static_cast<float>(size)};
+  tails_[deviation > 0 ? 0 : 1][static_cast<std::size_t>(top_ - octave)].add(
+      {one, rare ? one : Pile{}});
   add(stats::powers_of(deviation, -1));
 }
 
@@ -66,51 +61,49 @@ void PooledNoise::merge(const PooledNoise& other) {
   noisier_ += other.noisier_;
   if (other.top_ == no_octave) return;
   raise(other.top_);
-  for (std::size_t d = 0; d < rare_.size(); ++d) {
+  for (std::size_t d = 0; d < tails_.size(); ++d) {
     for (int i = 0; i < octaves; ++i) {
-      const auto below = static_cast<std::size_t>(i);
+      const Bin& from = other.tails_[d][static_cast<std::size_t>(i)];
+      if (from.large.count == 0) continue;
       const int to = i + top_ - other.top_;
       if (to >= octaves) {
-        if (other.rare_[d][below].count > 0) add(powers_of(d, other.rare_[d][below]));
+        add(powers_of(d, from.large));
         continue;
       }
-      for (Tails PooledNoise::*tails : {&PooledNoise::rare_, &PooledNoise::in_elements_}) {
-        const Bin& from = (other.*tails)[d][below];
-        (this->*tails)[d][static_cast<std::size_t>(to)].count += from.count;
-        (this->*tails)[d][static_cast<std::size_t>(to)].sum += from.sum;
-      }
+      tails_[d][static_cast<std::size_t>(to)].add(from);
     }
   }
 }
 
-PooledNoise::Moments PooledNoise::moments_of(Powers all, const Tails& tails, int octave) {
-  if (!(all.count > 0)) return {};
+PooledNoise::Moments PooledNoise::moments_of(Powers others, Pile Bin::*pile, int octave) const {
+  if (!(others.count > 0)) return {};
   const double c = std::ldexp(1, octave);
-  for (std::size_t d = 0; d < tails.size(); ++d) {
-    for (const Bin& bin : tails[d]) {
-      if (bin.count == 0) continue;
-      const double x = std::min(c, static_cast<double>(bin.sum) / bin.count);
-      const Powers powers = stats::powers_of(d == 0 ? x : -x, bin.count);
-      all.squares += powers.squares;
-      all.cubes += powers.cubes;
+  for (std::size_t d = 0; d < tails_.size(); ++d) {
+    for (const Bin& bin : tails_[d]) {
+      const auto& [count, sum] = bin.*pile;
+      if (count == 0) continue;
+      const double x = std::min(c, static_cast<double>(sum) / count);
+      const Powers powers = stats::powers_of(d == 0 ? x : -x, count);
+      others.squares += powers.squares;
+      others.cubes += powers.cubes;
     }
   }
-  return {.second = all.squares / all.count, .third = all.cubes / all.count};
+  return {.second = others.squares / others.count, .third = others.cubes / others.count};
 }
 
 PooledNoise::Moments PooledNoise::cut_off(int octave) const {
-  return moments_of(common_, rare_, octave);
+  return moments_of(common_, &Bin::large, octave);
 }
 
 PooledNoise::Moments PooledNoise::rare_cut_off(int octave) const {
-  return moments_of({.count = common_.count}, in_elements_, octave);
+  return moments_of({.count = common_.count}, &Bin::rare, octave);
 }
 
 double PooledNoise::rare(int octave) const {
   const int i = top_ - octave;
   if (i < 0 || i >= octaves) return 0;
   const auto below = static_cast<std::size_t>(i);
-  return static_cast<double>(in_elements_[0][below].count + in_elements_[1][below].count);
+  return static_cast<double>(tails_[0][below].rare.count + tails_[1][below].rare.count);
 }
 
 double PooledNoise::hidden_squares(double replicates) const {
@@ -172,7 +165,7 @@ NoisePyramid::Around NoisePyramid::around(const Rectangle& window, std::size_t c
       found.first = std::min(found.first, side->top() - PooledNoise::octaves + 1);
     }
   }
-  // Without rare values every octave is the same.
+  // Without large values every octave is the same.
   if (found.last == PooledNoise::no_octave) found.first = found.last;
   return found;
 }
@@ -214,7 +207,7 @@ double NoisePyramid::growth(const CellNoise& cell, double sign, const Rectangle&
   const double toward = cell.concentration < 0 ? -direction : direction;
   const Around near = around(window, channel);
   double largest = 0;
-  constexpr double fewest = 2;
+  constexpr double fewest = 2;  // One giant tells no size of the rare.
   if (!of_one_law(near, toward)) {
     for (const auto& [a, b] : near.blocks) {
       double beyond = 0;

@@ -19,8 +19,8 @@ namespace assay::stats {
 
 inline constexpr std::size_t sides_of_pair = 2;
 
-// Deviations of single elements of single replicates from the element's mean. Rare ones are counted
-// in octaves, the 16 up to the largest.
+// Deviations of single elements of single replicates from the element's mean. Large ones are
+// counted in octaves, the 16 up to the largest. Some of them are rare in their element.
 class PooledNoise {
  public:
   // Sums of powers of the deviations of some values.
@@ -30,9 +30,9 @@ class PooledNoise {
     double cubes = 0;
   };
   void add(const Powers& powers);
-  // Takes a deviation, not 0, that is among those that are added. It may be rare in its element,
-  // or beyond what the other elements mostly have.
-  void add_rare(double deviation, bool in_element);
+  // Takes a deviation, not 0, that is among those that are added. It is large beside what the other
+  // elements mostly have.
+  void add_large(double deviation, bool rare);
   // Takes an element that varies; `noisier` if it has more relative variance than the other side's.
   void add_element(bool noisier);
   void merge(const PooledNoise& other);
@@ -46,9 +46,9 @@ class PooledNoise {
   Moments rare_cut_off(int octave) const;
   static constexpr int octaves = 16;
   static constexpr int no_octave = -100'000;  // top() without any.
-  int top() const { return top_; }            // No rare deviation is beyond +-2^top.
+  int top() const { return top_; }            // No large deviation is beyond +-2^top.
   double noisier() const { return noisier_; }
-  // Number of deviations in this octave that are rare in their elements.
+  // Number of rare deviations in this octave.
   double rare(int octave) const;
 
   // The square, summed over the elements, of the mean that each lacks if it missed the values that
@@ -57,24 +57,36 @@ class PooledNoise {
   double hidden_squares(double replicates) const;
 
  private:
-  struct Bin {
+  // Number and sum of the sizes of some deviations.
+  struct Pile {
     float count = 0;
     float sum = 0;
+    void add(const Pile& other) {
+      count += other.count;
+      sum += other.sum;
+    }
+  };
+  // Those of an octave.
+  struct Bin {
+    Pile large;
+    Pile rare;
+    void add(const Bin& other) {
+      large.add(other.large);
+      rare.add(other.rare);
+    }
   };
   using Tail = std::array<Bin, octaves>;
   void raise(int top);
-  using Tails = std::array<Tail, 2>;  // Upward, downward; from the top down.
-  // The powers of a bin's values, as if each were their mean.
-  static Powers powers_of(std::size_t direction, const Bin& bin);
-  // The moments of a tail cut off, and of other deviations.
-  static Moments moments_of(Powers all, const Tails& tails, int octave);
+  // The powers of a pile's deviations, as if each were their mean.
+  static Powers powers_of(std::size_t direction, const Pile& pile);
+  // The moments of piles cut off, and of other deviations.
+  Moments moments_of(Powers others, Pile Bin::*pile, int octave) const;
 
-  Powers common_;  // Without the rare, but for their count.
+  Powers common_;  // Without the large, but for their count.
   double elements_ = 0;
   double noisier_ = 0;
   int top_ = no_octave;
-  Tails rare_ = {};
-  Tails in_elements_ = {};  // These are rare in their elements.
+  std::array<Tail, 2> tails_ = {};  // Upward, downward; from the top down.
 };
 
 // A cell's effect is the mean over the halves of its weighted mean of a - b.
@@ -114,7 +126,7 @@ class NoisePyramid {
   //
   // Two sides of one law have k3 = 0. So the blocks count only where the sides have different laws
   // in one of them. That is where one is noisier for its mean in too many elements (sign test). It
-  // is also where the darker has too many values beyond an octave that are rare in their elements.
+  // is also where the darker has too many rare values beyond an octave.
   // A reference has a law of its own.
   ImageEffect kept(const CellNoise& cell, const Rectangle& window, std::size_t channel) const;
   // The k3 / k2 of an effect of this sign.

@@ -50,8 +50,7 @@ OwnedStack correlated_stack(Philox& random, std::size_t replicates) {
 // Every calibration below raises a false alarm with probability 1e-5.
 
 CALIBRATED(ImagePyramid, TwoStacksOfSixteenKeepTheirLevel, 821, 4000, Shape::at_most_uniform) {
-  const OwnedStack a = normal_stack(random, 16, 3);
-  return image_pyramid({a.view(), normal_stack(random, 16).view()}).log_p;
+  return image_pyramid({normal_stack(random, 16, 3).view(), normal_stack(random, 16).view()}).log_p;
 }
 
 CALIBRATED(ImagePyramid, SkewedStacksOfUnequalVarianceKeepTheirLevel, 822, 2000,
@@ -150,8 +149,7 @@ CALIBRATED(ImagePyramid, RarelyLitElementsAgainstTheirMeansKeepTheLevel, 848, 80
 
 CALIBRATED(ImagePyramid, RareLightOfOneSideKeepsTheLevel, 846, tests::repetitions(2000),
            Shape::at_most_uniform) {
-  const OwnedStack a = lit_stack(random, {});
-  return image_pyramid({a.view(), smooth_stack(random).view()}).log_p;
+  return image_pyramid({lit_stack(random, {}).view(), smooth_stack(random).view()}).log_p;
 }
 
 // Half of the mean is in a fiftieth of the values: a cell often misses all of them.
