@@ -85,6 +85,43 @@ struct Missing : stats::ConstantSample {
   }
 };
 
+/// How far a value that an element missed may lie from its constant, where no range is declared.
+class SizesAround {
+ public:
+  explicit SizesAround(const stats::ImageStack& stack)
+      : extent_(stack.extent), elements_(extent_.elements()) {
+    on_all_threads(extent_.height, [&](std::size_t y) {
+      const std::size_t first = y * extent_.row();
+      stats::element_moments(stack, first, std::span(elements_).subspan(first, extent_.row()));
+    });
+  }
+
+  /// As the values around the element show it. Infinite beside others that never varied: what makes
+  /// constants is common there.
+  double about(double constant, std::size_t element) const {
+    constexpr std::size_t reach = 4;
+    const std::size_t column = element / extent_.channels % extent_.width;
+    const std::size_t row = element / extent_.row();
+    stats::Moments all;
+    std::size_t constants = 0;
+    for (std::size_t y = row - std::min(row, reach); y <= row + reach && y < extent_.height; ++y) {
+      const std::size_t begin = column - std::min(column, reach);
+      for (std::size_t x = begin; x <= column + reach && x < extent_.width; ++x) {
+        const std::size_t channel = element % extent_.channels;
+        const stats::Moments& other = elements_[y * extent_.row() + x * extent_.channels + channel];
+        constants += other.m2 == 0 ? 1 : 0;
+        all.merge(other);
+      }
+    }
+    if (constants > 1) return std::numeric_limits<double>::infinity();
+    return stats::size_about(constant, all);
+  }
+
+ private:
+  stats::ImageExtent extent_;
+  std::vector<stats::Moments> elements_;
+};
+
 /// The second side's declarations of factor x + offset.
 Declarations mapped_by(const Question& question) {
   Declarations all = declared_by(question.subjects[1]);
@@ -125,6 +162,16 @@ class ScannedSide {
   Missing missing(std::size_t element) const {
     return {{value(element), declared(element).low, declared(element).high, stack_.images.size()}};
   }
+  /// An end that is not declared is as far away as other values are.
+  Missing missing_beside_others(std::size_t element) {
+    Missing missing = this->missing(element);
+    if (std::isfinite(missing.low) && std::isfinite(missing.high)) return missing;
+    if (!sizes_) sizes_.emplace(stack_);
+    const double size = sizes_->about(missing.value, element);
+    if (!std::isfinite(missing.low)) missing.low = missing.value - size;
+    if (!std::isfinite(missing.high)) missing.high = missing.value + size;
+    return missing;
+  }
   Constant mean(std::size_t element) const {
     stats::Moments moments;
     for (const std::span<const float> image : stack_.images) moments.add(image[element]);
@@ -147,6 +194,7 @@ class ScannedSide {
   stats::ImageStack& stack_;
   Declarations declarations_;
   Span span_{};
+  std::optional<SizesAround> sizes_;
   std::vector<std::pair<std::size_t, double>> settled_;
 };
 
@@ -271,7 +319,7 @@ ImageConstants ImagePair::settle_against_reference(const Question& question) {
     ++constants.count;
     if (side.span().low < side.span().high) side.settle(i, constant);
     if (differs) {
-      const Missing missing = side.missing(i);
+      const Missing missing = side.missing_beside_others(i);
       constants.unseen.push_back({i, missing.sign(expected), missing.log_p(expected)});
       continue;
     }

@@ -203,16 +203,18 @@ std::string others_at(const DrawnTest& test, const PlaceEffect& place) {
 }
 
 std::string means_where_it_differs(const DrawnTest& test) {
-  if (test.outcome.verdict != reports::Verdict::fail) return "";
+  const bool fails = test.outcome.verdict == reports::Verdict::fail;
   const std::vector<ChannelOutcome>& channels = test.outcome.channels;
   if (channels.empty() || !channels[0].image) return "";
-  if (const std::string& seen = channels[0].image->seen; !seen.empty()) return "; there " + seen;
+  const std::string& seen = channels[0].image->seen;
+  if (fails && !seen.empty()) return "; there " + seen;
   std::string constants;
   if (const std::size_t count = channels[0].image->unseen.size(); count > 0) {
     constants = fmt::format(
-        "; {} other values never vary and differ from the reference, of which no test can tell",
-        count);
+        "; {}{} values never vary and differ from the reference: rare light may be unseen there",
+        count, fails ? " other" : "");
   }
+  if (!fails) return constants;
   const std::optional<PlaceEffect> effect = effect_at_place(test);
   if (!effect) return constants;
   const bool relative = effect->other != 0;

@@ -67,4 +67,11 @@ double log_p_constant(const ConstantSample& sample, const Reference& reference) 
   return difference.error > 0 ? largest_log_p(difference) : difference.log_unseen(size);
 }
 
+double size_about(double constant, const Moments& others) {
+  check::at_least({"size_about", "count"}, others.count, 1);
+  const double distance = std::abs(others.mean_less(constant));
+  if (distance == 0) return std::numeric_limits<double>::infinity();
+  return distance + others.m2 / static_cast<double>(others.count) / distance;
+}
+
 }  // namespace assay::stats

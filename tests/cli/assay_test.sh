@@ -272,6 +272,32 @@ for side in "ab":
   done
 }
 
+# Against one picture: neighbours show how large values may be that a pixel never showed. All of a
+# lamp is alike, and is held against the whole image. A pixel that is lit once in 400 pictures tells
+# nothing.
+test_a_pixel_that_never_varies_is_held_against_other_pixels() {
+  /usr/bin/python3 -c '
+import random, struct
+def write(name, values):
+    open(name, "wb").write(b"Pf\n40 40\n-1.0\n" + struct.pack("<1600f", *values))
+lamp = {x + 40 * y for x in range(20, 40) for y in range(20, 40)}
+random.seed(1)
+write("exact.pfm", [20.0 if i in lamp else 1.0 for i in range(1600)])
+write("seldom.pfm", [20.0 if i in lamp else 0.01 if i == 205 else 1.0 for i in range(1600)])
+for i in range(24):
+    drawn = [20.0 if i in lamp else random.lognormvariate(-.08, .4) for i in range(1600)]
+    write(f"good{i}.pfm", drawn)
+    dead = [0.0 if i == 205 else x for i, x in enumerate(drawn)]
+    write(f"dead{i}.pfm", dead)
+    write(f"off{i}.pfm", [0.0 if i in lamp else x for i, x in enumerate(drawn)])'
+  expect 0 images --candidate 'good*.pfm' --reference exact.pfm
+  expect 0 images --candidate 'dead*.pfm' --reference seldom.pfm
+  expect 1 images --candidate 'dead*.pfm' --reference exact.pfm
+  contains out 'x 5, y 5'
+  expect 1 images --candidate 'off*.pfm' --reference exact.pfm
+  contains out 'too dark'
+}
+
 # A hundred times as many rows would show a hundred times as much of the tail.
 test_rows_that_few_values_make_up_are_sent_to_quantiles() {
   /usr/bin/python3 -c '

@@ -48,5 +48,16 @@ TEST(ConstantSample, TheErrorTakesTheGreatestOfAllDivisions) {
   }
 }
 
+TEST(ConstantSample, OtherValuesCountByTheirSizeForOneThatWasMissed) {
+  Moments others;
+  for (const double value : {2.0, 2.0, 3.0, 5.0}) others.add(value);
+  EXPECT_NEAR(size_about(2, others), (1.0 + 9) / (1 + 3), 1e-12);
+  EXPECT_EQ(size_about(3, others), infinity);  // as many above as below
+  Moments alike;
+  alike.add(0.1F);
+  alike.merge(alike);
+  EXPECT_EQ(size_about(0.1F, alike), infinity);
+}
+
 }  // namespace
 }  // namespace assay::stats
