@@ -27,6 +27,11 @@ std::string seconds_text(double seconds) {
   return std::string(buffer.data()) + (seconds == 1 ? " second" : " seconds");
 }
 
+Deadline after(double seconds) {
+  return steady_clock::now() +
+         std::chrono::duration_cast<steady_clock::duration>(duration<double>(seconds));
+}
+
 }  // namespace
 
 Dialogue::Dialogue(const Terms& terms) : terms_(terms), child_(terms.launch) {
@@ -42,9 +47,12 @@ Dialogue::Dialogue(const Terms& terms) : terms_(terms), child_(terms.launch) {
   }
 }
 
-Deadline Dialogue::deadline() const {
-  return steady_clock::now() +
-         std::chrono::duration_cast<steady_clock::duration>(duration<double>(terms_.timeout));
+/// Seconds that a reply may take. After several that were overdue, each is asked for alone, which
+/// takes far less than `pleasant_seconds` unless it is the one that hangs.
+double Dialogue::patience() const {
+  constexpr double least = 0.5, part = 0.1;
+  const double whole = terms_.timeout;
+  return terms_.was_overdue->test() ? std::min(whole, std::max(least, part * whole)) : whole;
 }
 
 /// Waits for bytes of its standard output. Where none come for a while the user is asked, once.
@@ -65,7 +73,7 @@ std::size_t Dialogue::listen(std::span<char> into, Deadline end) {
 }
 
 void Dialogue::hear_hello() {
-  const Deadline end = deadline();
+  const Deadline end = after(terms_.timeout);
   std::string text;
   std::array<char, 4096> buffer{};
   while (!is_whole_hello(text)) {
@@ -111,7 +119,7 @@ std::vector<double> Dialogue::reply_to(const Question& question, std::string_vie
   const std::size_t width =
       question.is_to_sampler() ? numbers_of(question.asked()) : hello_.width();
   Reply reply(question, width, hello_.numbers);
-  Deadline end = deadline();
+  Deadline end = after(patience());
   bool reads = true;
   if (child_.has_output()) {
     std::array<char, 64> early{};
@@ -135,6 +143,7 @@ std::vector<double> Dialogue::reply_to(const Question& question, std::string_vie
       if (const std::string why = reply.ends_early(); !why.empty()) throw ProtocolError(why);
     }
   } catch (const TimeOut&) {
+    if (question.count > 1) terms_.was_overdue->test_and_set();
     if (!reads) give_up("closed its standard input instead of answering for " + to_text(question));
     give_up("did not answer for " + to_text(question) + " within " + seconds_text(terms_.timeout) +
                 (terms_.asked_whether_it_flushes ? " (parameter `timeout`; does it flush its "

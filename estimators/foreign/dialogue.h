@@ -26,6 +26,8 @@ struct Terms {
   /// Set once a program of the set-up that said nothing for 3 s was asked if it flushes its output.
   /// Null if output cannot wait in a buffer.
   std::shared_ptr<std::atomic_flag> asked_whether_it_flushes = {};
+  /// Set once the reply to a question for several took longer. Which of them hangs is seen sooner.
+  std::shared_ptr<std::atomic_flag> was_overdue = std::make_shared<std::atomic_flag>();
   /// Who prints the line `ready`, and when.
   std::string who_is_ready =
       "a Python program ends with `assay.serve(FUNCTION)`, which prints it (the package `assay` is "
@@ -94,7 +96,7 @@ class Dialogue final : public Respondent {
   void ends_by(Deadline end) override { child_.ends_by(end); }
 
  private:
-  Deadline deadline() const;
+  double patience() const;
   void hear_hello();
   std::size_t listen(std::span<char> into, Deadline end);
   std::vector<double> hear(const Question& question, std::string_view items) override;

@@ -95,9 +95,10 @@ class ForeignEstimator final : public Estimator {
       const double seconds = seconds_elsewhere() + thread_seconds();
       const bool runs = children_->examine(*dialogue_, wanted);
       seconds_ -= seconds_elsewhere() + thread_seconds() - seconds;
+      // Another worker's observation may have failed meanwhile.
+      children_->refuse_after_failure(wanted);
       if (runs) return;
       drop();
-      children_->refuse_after_failure(wanted);
     }
   }
 
