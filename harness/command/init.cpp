@@ -7,6 +7,7 @@
 
 #include "estimators/core/quoting.h"
 #include "estimators/core/value.h"
+#include "harness/base/text_file.h"
 #include "harness/base/whole_file.h"
 #include "harness/suite/yaml.h"
 
@@ -25,6 +26,10 @@ std::vector<CarriedFile> files_of(const std::string& kind) {
     files.push_back({file.path.substr(folder.size()), file.text});
   }
   return files;
+}
+
+bool is_there(const CarriedFile& file, const std::filesystem::path& path) {
+  return bytes_of(path.string()) == file.text;
 }
 
 std::string with_place(std::string_view steps, const std::string& folder) {
@@ -71,7 +76,7 @@ int write_example(const InitArguments& arguments) {
   const std::vector<CarriedFile> files = files_of(arguments.kind);
   for (const CarriedFile& file : files) {
     const std::filesystem::path path = folder / file.path;
-    if (file.path == next_steps || !std::filesystem::exists(path)) continue;
+    if (file.path == next_steps || !std::filesystem::exists(path) || is_there(file, path)) continue;
     refuse({}, "`{}` exists already, so nothing is written; name another folder", path.string());
   }
   std::string steps;
@@ -81,9 +86,11 @@ int write_example(const InitArguments& arguments) {
       continue;
     }
     const std::filesystem::path path = folder / file.path;
+    const bool kept = is_there(file, path);
     std::filesystem::create_directories(path.parent_path());
-    write_whole(path, file.text);
-    fmt::print("wrote {}\n", (arguments.folder == "." ? path.lexically_normal() : path).string());
+    if (!kept) write_whole(path, file.text);
+    fmt::print("{} {}\n", kept ? "kept" : "wrote",
+               (arguments.folder == "." ? path.lexically_normal() : path).string());
   }
   fmt::print("{}", steps);
   return 0;
