@@ -1,6 +1,7 @@
 #include "harness/googletest/claims.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -26,6 +27,7 @@
 #include "harness/theta/ask.h"
 #include "reports/words/describe.h"
 #include "reports/words/number.h"
+#include "reports/words/text.h"
 
 namespace assay::googletest {
 namespace {
@@ -190,17 +192,28 @@ void record(const reports::Test& test, std::uint64_t claim) {
   record("secondaries", claim, std::to_string(test.samples[0].secondaries));
 }
 
+/// The text in lines of 80 columns, the first as GoogleTest shows it.
+std::string in_lines(const std::string& text) {
+  const std::string lead = "  Actual: false (";
+  return harness::wrapped_message(lead + text, "").substr(lead.size());
+}
+
+testing::AssertionResult refused(const std::string& why) {
+  return testing::AssertionFailure() << in_lines(why);
+}
+
 testing::AssertionResult judged(const std::string& claim, const std::vector<Part>& parts) {
   Spent& state = spent();
   if (!state.budget) {
-    return testing::AssertionFailure()
-           << "no budget of errors: declare how many claims the binary makes, as in `const "
-              "assay::googletest::DeclaredClaims budget{{.claims = 5}};`";
+    return refused(
+        "no budget of errors: declare how many claims the binary makes, as in `const "
+        "assay::googletest::DeclaredClaims budget{{.claims = 5}};`");
   }
   if (++state.claims > state.budget->claims) {
-    return testing::AssertionFailure()
-           << "this is claim " << state.claims << " of a binary that declared "
-           << state.budget->claims << ": raise `claims` of its DeclaredClaims";
+    return refused(
+        fmt::format("this is claim {} of a binary that declared {}: raise `claims` of its "
+                    "DeclaredClaims",
+                    state.claims, state.budget->claims));
   }
   const std::uint64_t number = ordinal();
   record("claim", number, claim);
@@ -208,13 +221,16 @@ testing::AssertionResult judged(const std::string& claim, const std::vector<Part
   reports::Test test = tested(claim, sources, *state.budget);
   record(test, number);
   const bool holds = test.verdict == reports::Verdict::pass;
-  test.replay = fmt::format("{} --gtest_filter={}", shell_quoted(program_invocation_name),
-                            shell_quoted(current_test()));
   std::string whole = reports::plain_text(test);  // "message: …" and further facts
   whole.replace(0, whole.find(':'), reports::to_string(test.verdict));
   std::string text;
   std::istringstream lines(whole);
-  for (std::string line; std::getline(lines, line);) text += harness::wrapped_message(line, "");
+  for (std::string line; std::getline(lines, line);) {
+    text += text.empty() ? in_lines(line) : harness::wrapped_message(line, "");
+  }
+  const std::string again = fmt::format(
+      "{} --gtest_filter={}", shell_quoted(program_invocation_name), shell_quoted(current_test()));
+  text += fmt::format("replay: {}\n", fmt::join(reports::wrap_command(again, 72), "\n        "));
   return (holds ? testing::AssertionSuccess() : testing::AssertionFailure()) << text;
 }
 
@@ -246,7 +262,7 @@ testing::AssertionResult claim_holds(const std::string& claim, const std::vector
   try {
     return judged(claim, parts);
   } catch (const InputError& error) {
-    return testing::AssertionFailure() << claim << ": " << error.message();
+    return refused(claim + ": " + error.message());
   }
 }
 

@@ -36,6 +36,7 @@ TEST(Claims, SayWhatWasFoundWhereTheyAreNot) {
   const std::string said = message("mean(mine) == 0.3", {primary("mine", cube)});
   EXPECT_THAT(said, testing::StartsWith("fails: fail: relative difference from the reference"));
   EXPECT_THAT(said, HasSubstr("null hypothesis: mean(mine) = 0.3"));
+  EXPECT_THAT(said, testing::ContainsRegex("\nreplay: [^\n]+( \\\\\n  *)?--gtest_filter=Claims"));
 }
 
 TEST(Claims, OfPrimariesMayTakeSeveralAnObservation) {
@@ -70,9 +71,8 @@ TEST(Claims, ThatCannotBeReadAreFailures) {
 }
 
 TEST(Claims, SayTheKeyThatWouldDecide) {
-  const std::string few =
-      message("mean(mine) == 0.25", {primary("mine", cube), detect("0.1%"), secondaries(200)});
-  EXPECT_THAT(few, testing::ContainsRegex("`secondaries: [0-9]+`"));
+  EXPECT_THAT(message("mean(it) == 0.25", {primary("it", cube), detect("0.1%"), secondaries(200)}),
+              testing::ContainsRegex("`secondaries: [0-9]+`"));
   const auto nan = [](Stream&) { return std::nan(""); };
   EXPECT_THAT(message("mean(mine) == 0.25", {primary("mine", nan)}),
               testing::Not(HasSubstr("assay replay")));
