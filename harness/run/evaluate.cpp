@@ -345,7 +345,11 @@ void take_sound_look(TestWork& work, const DrawnTest& test, bool may_go_on) {
     note_sizes(outcome, test);
     if (outcome.message.empty()) {
       Reason reason = narrate(outcome);
-      outcome.message = reason.text + outcome.question.theta->where_it_differs(test);
+      const std::string where = outcome.question.theta->where_it_differs(test);
+      outcome.message = reason.text + where;
+      // Its first part, without the command after it. A picture's record has the place.
+      if (!where.empty() && !reason.advice && !outcome.channels[0].image)
+        reason.advice = reports::Advice{.words = where.substr(2, where.find(';', 2) - 2)};
       outcome.advice = std::move(reason.advice);
       if (is_doubted(outcome)) add_caveat(outcome);
     }

@@ -330,7 +330,7 @@ class Screen {
     if (const Standing how = standing(test); is_trouble(how) || how == Standing::not_run) return;
     rows(suite);
     out_.erase(out_.size() - 1);  // no empty line between
-    indented(test.message, block_lines);
+    if (!test.message.empty()) indented(trouble(test));
     for (const Step& step : steps(test)) put(step_lines(step));
   }
 
