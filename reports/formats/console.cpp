@@ -106,21 +106,18 @@ class Screen {
                      : test.verdict == Verdict::error ? error_lines
                                                       : block_lines;
     const auto room = [&] { return std::max(1, most - used - static_cast<int>(next.size())); };
+    const auto fits = [&](std::size_t lines) { return room() >= static_cast<int>(lines); };
     // What a user is asked for is a step of its own.
-    const bool asked =
-        !all.empty() && all[0].paste != test.replay && all[0].words != test.no_replay;
-    if (room() < static_cast<int>(text.size()) && test.verdict != Verdict::fail && !asked)
-      next = step_lines(explanation(test));
-    for (std::size_t i = 1; i < all.size(); ++i) {
-      const bool again =
-          test.verdict == Verdict::fail && !test.replay.empty() && all[i].paste == test.replay;
-      const std::vector<std::string> more = step_lines(all[i]);
-      if (all[i].label != "or" && !again) continue;
-      if (room() >= static_cast<int>(text.size() + more.size())) {
-        next.insert(next.end(), more.begin(), more.end());
-      } else if (again) {
-        next = more;
-      }
+    const bool asked = !all.empty() && all[0].label != "again";
+    const auto repeat = std::ranges::find(all, "again", &Step::label);
+    if (test.verdict != Verdict::fail && !fits(text.size())) {
+      const std::vector<std::string> more = step_lines(explanation(test));
+      if (!asked) next.clear();
+      if (fits(1 + more.size())) next.insert(next.end(), more.begin(), more.end());
+    } else if (test.verdict == Verdict::fail && asked && !test.replay.empty()) {
+      const std::vector<std::string> more = step_lines(*repeat);
+      if (!fits(text.size() + more.size())) next.clear();
+      next.insert(next.end(), more.begin(), more.end());
     }
     indented(text, room());
     put(next);

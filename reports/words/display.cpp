@@ -391,8 +391,12 @@ std::vector<Step> steps(const Test& test) {
         {.label = test.verdict == Verdict::fail ? "mind" : "to decide", .words = advice->words});
   const Effect effect = deciding_channel(test).effect;
   if (is_missed(test)) {
-    if (test.detect && effect.relative) set("detect", fmt::format("{:.2g}%", 50 * *test.detect));
-    all.push_back({.label = "or", .words = "leave `expect` out, if there is no bug"});
+    std::string words = "leave `expect` out, if there is no bug";
+    if (test.detect && effect.relative)
+      words = fmt::format(
+          "write `detect: {:.2g}%`; if it passes again, there is no bug: leave `expect` out",
+          50 * *test.detect);
+    all.push_back({.label = "to decide", .words = words});
   }
   if (!test.no_replay.empty()) all.push_back({.label = "again", .words = test.no_replay});
   if (test.replay.empty()) return all;

@@ -77,6 +77,21 @@ test_undecided_is_3_or_as_asked() {
   [ -z "$(grep -e '--secondaries' out)" ] || fail 'the advice sets the budget aside'
 }
 
+test_advice_stands_below_a_reason_that_is_cut() {
+  printf '%s\n' 'suite: h' 'estimators: {h: {plugin: analytic/heavy_tail, index: 2, primaries: 1}}' \
+    'tests: [{claim: variance(h) <= 3, secondaries: 20000}]' >heavy.yaml
+  expect 3 run heavy.yaml
+  contains out '…'
+  contains out 'write into the test: secondaries: 2000000'
+  contains out "more: assay explain 'heavy/variance(h) <= 3'"
+}
+
+test_a_planted_bug_that_passes_twice_is_none() {
+  write_suite missed.yaml '  - {claim: mean(normal) == 2, detect: 20%, expect: fail}'
+  expect 1 run missed.yaml
+  contains out 'write `detect: 10%`; if it passes again, there is no bug: leave `expect` out'
+}
+
 test_filter_that_matches_nothing_is_4() {
   write_suite good.yaml "$good"
   expect 4 run good.yaml --filter 'good/nothing' --report html=run.html
