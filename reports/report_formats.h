@@ -81,8 +81,8 @@ std::string metrics(const Record&);
 std::string html(const Record&);
 
 /// Tells what happened to a test, in sentences for a reader without a course in statistics, and
-/// what to do next, as lines to paste.
-std::string explain(const Suite&, const Test&, int width);
+/// what to do next, as lines to paste. An alarm of the test in the ledger is told too.
+std::string explain(const Suite&, const Test&, int width, const Ledger& = {});
 
 /// A new kind of report is a row and a file.
 struct ReportFormat {

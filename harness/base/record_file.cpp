@@ -78,9 +78,14 @@ Recorded find_test(const reports::Record& record, const std::string& file,
   }
   if (named.size() == 1) return named.front();
   // Without a name it is the one that is not as it should be.
+  const auto has_alarm = [&](const reports::Test& test) {
+    return std::ranges::any_of(record.ledger.series, [&](const reports::LedgerSeries& series) {
+      return series.alarm && series.test == test.id;
+    });
+  };
   std::vector<Recorded> broken;
   std::ranges::copy_if(parts, std::back_inserter(broken),
-                       [](const Recorded& each) { return !each.test.ok; });
+                       [&](const Recorded& each) { return !each.test.ok || has_alarm(each.test); });
   if (name.empty() && !broken.empty()) parts.swap(broken);
   const Location where{.file = file};
   if (!named.empty()) {

@@ -133,8 +133,8 @@ int explain(const ExplainArguments& arguments) {
   const reports::Record record = read_record(file);
   const Recorded found = find_test(record, file, words.size() > saved ? words.back() : "");
   if (!saved) fmt::print("The last run from this folder began at {}.\n\n", record.started);
-  fmt::print("{}",
-             reports::explain(found.suite, found.test, std::min(terminal_width(stdout), 100)));
+  fmt::print("{}", reports::explain(found.suite, found.test, std::min(terminal_width(stdout), 100),
+                                    record.ledger));
   return 0;
 }
 

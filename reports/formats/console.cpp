@@ -348,9 +348,10 @@ class Screen {
   void write(const Ledger& ledger) {
     for (const LedgerSeries& series : ledger.series) {
       if (!series.alarm) continue;
-      head(fmt::format("{} ledger alarm: {}", mark(Standing::broken), series_name(ledger, series)),
-           ledger.file, Standing::broken);
-      indented(alarm_sentence(series), in_full() ? unlimited : block_lines - 2);
+      const int used = head(
+          fmt::format("{} ledger alarm: {}", mark(Standing::broken), series_name(ledger, series)),
+          ledger.file, Standing::broken);
+      indented(alarm_sentence(series), in_full() ? unlimited : block_lines - used);
       if (in_full()) indented(series_sentence(series));
       blank();
     }

@@ -5,6 +5,7 @@
 #include "reports/report_formats.h"
 #include "reports/words/describe.h"
 #include "reports/words/display.h"
+#include "reports/words/ledger.h"
 #include "reports/words/number.h"
 #include "reports/words/text.h"
 
@@ -44,7 +45,7 @@ std::string fact_of(const TestDisplay& words, const std::string& label, const st
 
 }  // namespace
 
-std::string explain(const Suite& suite, const Test& test, int width) {
+std::string explain(const Suite& suite, const Test& test, int width, const Ledger& ledger) {
   const TestDisplay words = display(test);
   std::string out;
   const auto say = [&](const std::string& text) {
@@ -67,7 +68,16 @@ std::string explain(const Suite& suite, const Test& test, int width) {
   if (is_evidence(test) && test.verdict != Verdict::skipped && suite.alpha > 0) {
     say(false_alarms(suite.alpha) + " They are counted over all claims of the suite.");
   }
-  const std::vector<Step> next = steps(test);
+  std::vector<Step> next = steps(test);
+  for (const LedgerSeries& series : ledger.series) {
+    if (!series.alarm || series.test != test.id) continue;
+    out += "\n";
+    say(fmt::format("Ledger {} alarms of {}. {} It has {}.", ledger.file,
+                    one_line(series_name(ledger, series)), alarm_sentence(series),
+                    series_sentence(series)));
+    if (const std::string log = changes(series); !log.empty())
+      next.push_back({.label = "what changed before that night", .paste = log});
+  }
   if (next.empty()) return out;
   out += "\nWhat to do next\n";
   for (const Step& step : next) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 
 #include "reports/words/number.h"
@@ -29,6 +30,19 @@ std::string theta_sentence(const LedgerSeries& series) {
                      shared > 0 ? fmt::format(" of the nights and {} of the reference",
                                               magnitude(shared, series.relative))
                                 : "");
+}
+
+/// Theta by some of the nights, each with the weight of its own precision.
+Number average(const LedgerSeries& series, const std::function<bool(const LedgerNight&)>& counts) {
+  double weights = 0, sum = 0;
+  for (const LedgerNight& night : series.nights) {
+    if (!counts(night) || !is_finite(night.estimate) || !night.low || !night.high) continue;
+    const double width = *night.high - *night.low;
+    if (!(width > 0)) continue;
+    weights += 1 / (width * width);
+    sum += *night.estimate / (width * width);
+  }
+  return weights > 0 ? sum / weights : Number();
 }
 
 double distance(const LedgerSeries& series) {
@@ -71,11 +85,17 @@ std::string alarm_sentence(const LedgerSeries& series) {
                                 : fmt::format(" (90\u00A0%: {} to {})", minute(series.moved_from),
                                               minute(series.moved_to));
   const bool always = !series.nights.empty() && series.moved == series.nights.front().date;
-  return fmt::format("The nights together refute the claim since {}. {}{}.", minute(series.since),
-                     always ? "Most likely it was so from the first night on"
-                            : fmt::format("It moved most likely on the night of {}, by Assay {}",
-                                          minute(series.moved), series.moved_commit),
-                     range);
+  const Effect effect{.quantity = series.quantity, .relative = series.relative};
+  const auto is_before = [&](const LedgerNight& night) { return night.date < series.moved; };
+  const Number now = average(series, std::not_fn(is_before)), before = average(series, is_before);
+  return fmt::format(
+      "{}{}{}. The nights together refute the claim since {}.",
+      now ? fmt::format("The {} is about {}. ", effect_name(effect), theta_text(*now, effect)) : "",
+      always ? "Most likely it was so from the first night on"
+             : fmt::format("It moved {}most likely on the night of {}, by Assay {}",
+                           before ? fmt::format("from {} ", theta_text(*before, effect)) : "",
+                           minute(series.moved), series.moved_commit),
+      range, minute(series.since));
 }
 
 std::string changes(const LedgerSeries& series) {

@@ -124,6 +124,9 @@ test_ledger_alarm_is_1() {
   [ "$code" -eq 1 ] || fail "ended with $code, not 1"
   contains out '✗ ledger alarm: nights/off'
   contains out '✗ 1 ledger alarm. The claim is as it should be in'
+  contains out 'The relative difference from the reference is about -1'
+  expect 0 explain
+  contains out 'Ledger n.ledger alarms of nights/off. The relative difference from the reference is about -1'
 }
 
 test_ledger_keeps_nights_and_refuses_changed_lines() {
