@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <chrono>
 
+#include "estimators/core/waiting.h"
 #include "harness/base/interrupt.h"
 #include "harness/base/parallel.h"
 #include "harness/command/commands.h"
 #include "harness/ledger/ledger.h"
+#include "harness/plan/plan.h"
 #include "harness/record/record_of.h"
 #include "harness/run/evaluate.h"
 #include "harness/run/looks.h"
@@ -21,6 +23,23 @@ void note_whether_whole(SuiteRun& run, const RunOptions& options) {
   const bool early =
       std::ranges::any_of(run.tests, [](const TestWork& work) { return !work.outcome.decided; });
   run.adjusted = all && !early && !options.shard;
+}
+
+/// Tells of the first doubtful margin. A single test tells it with its verdict.
+void note_margins(const PlannedRun& planned) {
+  std::vector<std::string> doubts;
+  std::size_t tests = 0;
+  for (const auto& run : planned.suites) {
+    tests += run->tests.size();
+    for (const TestWork& work : run->tests) {
+      const std::string doubt = doubtful_margin(work.outcome.question, run->pilots);
+      if (doubt.empty()) continue;
+      doubts.push_back(fmt::format("`{}`: {}", work.outcome.question.test->id, doubt));
+    }
+  }
+  if (doubts.empty() || tests == 1) return;
+  const std::size_t others = doubts.size() - 1;
+  notice(doubts[0] + (others > 0 ? fmt::format(" ({} more like it)", others) : ""));
 }
 
 void add_note(reports::Record& record, const std::string& note) {
@@ -108,6 +127,7 @@ reports::Record run_in_arena(const std::vector<Suite>& suites, const RunOptions&
   }
   const PlannedRun planned = plan_run(suites, options, progress);
   stop_if_interrupted();
+  note_margins(planned);
   std::vector<TestWork*> tests;
   for (auto& run : planned.suites) {
     run->pilots.drop_drawn();

@@ -476,10 +476,7 @@ TestOutcome plan_test(Question asked, const FamilyPlace& place, const Pilots& pi
       caution(fmt::format("`detect` is {}, the default of claims about laws",
                           question.test->detect->value));
     }
-    if (const double part = part_of_size(question, pilots); part > 0.1) {
-      caution(
-          fmt::format("errors below `detect`, {:.0f} % of what is claimed, may pass", 100 * part));
-    }
+    if (const std::string doubt = doubtful_margin(question, pilots); !doubt.empty()) caution(doubt);
     const std::optional<ImageShape>& image = question.subjects[0].image;
     if (image && image->left_out) {
       caution(fmt::format("{} of {} pixels are left out",
@@ -493,6 +490,18 @@ TestOutcome plan_test(Question asked, const FamilyPlace& place, const Pilots& pi
     plan.error = mistake.message();
   }
   return test;
+}
+
+std::string doubtful_margin(const Question& question, const Pilots& pilots) {
+  constexpr double large = 0.1, small = 1e-4;
+  const double part = part_of_size(question, pilots);
+  if (part == 0 || (part >= small && part <= large)) return "";
+  return fmt::format(
+      fmt::runtime(part > large ? "errors below `detect`, {:.3g} % of what is claimed, may "
+                                  "pass; a part of it is written `{:g}%`"
+                                : "`detect` is {:.3g} % of what is claimed; a part of it is "
+                                  "written `{:g}%`"),
+      100 * part, 100 * question.test->detect->value);
 }
 
 TestOutcome plan_alone(const Suite& suite, const Question& question, const Pilots& pilots) {

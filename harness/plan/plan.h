@@ -34,6 +34,10 @@ TestOutcome plan_test(Question asked, const FamilyPlace& place, const Pilots& pi
 /// The same as a suite of its own, drawn by itself.
 TestOutcome plan_alone(const Suite& suite, const Question& question, const Pilots& pilots);
 
+/// A sentence on a `detect` without per cent that is nearly all of what is claimed, or next to
+/// nothing of it; "" for another.
+std::string doubtful_margin(const Question& question, const Pilots& pilots);
+
 /// The message of a test whose claim needs a density that cannot be had.
 std::string lack_of_density(const Question& question, const NoDensity& why);
 

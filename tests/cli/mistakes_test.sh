@@ -153,6 +153,15 @@ test_mistakes_in_a_check_say_what_to_write() {
   contains out 'to decide: give a larger `budget`'
   expect 0 check --help
   contains out 'the most it may cost: 1e7 are primaries, those of'
+  printf '%s\n' 'suite: parts' 'estimators: {a: {plugin: analytic/normal, mean: 0.02, primaries: 1},' \
+    ' b: {plugin: analytic/normal, mean: 5000, primaries: 1}}' 'tests: ' \
+    '  - {name: large, claim: mean(a) == 0.02, detect: 0.01}' \
+    '  - {name: small, claim: mean(b) == 5000, detect: 0.1}' >parts.yaml
+  expect 0 run parts.yaml
+  contains err '`parts/large`: errors below `detect`, 50 % of what is claimed, may pass; a part of it is written `1%` (1 more like it)'
+  expect 0 run parts.yaml --filter '*/small'
+  empty err
+  contains out '`detect` is 0.002 % of what is claimed; a part of it is written `10%`'
   printf '%s\n' 'suite: idle' 'estimators: {a: {plugin: luminaire/area}, idle: {plugin: luminaire/area}}' \
     'tests: [{claim: mean(a) == analytic, secondaries: 100}]' >idle.yaml
   expect 0 run idle.yaml
