@@ -606,7 +606,7 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
   if (arguments == Texts{"help", "claims"}) {
     const auto& files = carried_files();
     const auto file = std::ranges::find(files, "claims.md", &CarriedFile::path);
-    return TextCommand{std::string(file->text)};
+    return TextCommand{help_of_claims(file->text)};
   }
   return parsed(arguments, command_rows());
 }

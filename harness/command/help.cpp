@@ -6,6 +6,7 @@
 #include <array>
 #include <utility>
 
+#include "harness/base/text_file.h"
 #include "harness/base/version.h"
 #include "harness/command/describe.h"
 
@@ -169,6 +170,43 @@ Options:
   -h, --help   this text
   --version    version and commit
 )";
+  return text;
+}
+
+std::string help_of_claims(std::string_view markdown) {
+  constexpr std::size_t column = 24;  // of what stands beside the first cell of a row
+  std::string text;
+  std::string paragraph;
+  const auto end_paragraph = [&] {
+    const bool is_item = paragraph.starts_with("- ");
+    if (!paragraph.empty())
+      text += is_item ? beside("-", paragraph.substr(2), 2) : wrapped(paragraph);
+    paragraph.clear();
+  };
+  bool in_code = false;
+  for (const std::string_view line : lines_of(markdown)) {
+    const bool is_fence = line.starts_with("```");
+    const bool is_row = line.starts_with("| ") && !in_code;
+    const bool stands_alone = in_code || is_fence || line.empty() || line.starts_with('#');
+    if (stands_alone || line.starts_with('|') || line.starts_with("- ")) end_paragraph();
+    if (is_fence) in_code = !in_code;
+    const std::size_t sign = line.find(" = ");
+    if (in_code && line.size() > page_width && sign != line.npos) {
+      text += beside(std::string(line.substr(0, sign + 2)), std::string(line.substr(sign + 3)),
+                     sign + 3);
+    } else if (stands_alone) {
+      text += std::string(line) + "\n";
+    } else if (is_row) {
+      const std::size_t cell = std::min(line.find(" | "), line.size());
+      const std::string rest(line.substr(std::min(cell + 3, line.size())));
+      text += beside(std::string(line.substr(0, cell)).replace(0, 1, " "),
+                     rest.substr(0, rest.rfind(" |")), column);
+    } else if (!line.starts_with('|')) {
+      const std::size_t begin = line.find_first_not_of(' ');
+      paragraph += (paragraph.empty() ? "" : " ") + std::string(line.substr(begin));
+    }
+  }
+  end_paragraph();
   return text;
 }
 

@@ -168,8 +168,9 @@ bool print_observation(const Question& question, const Recorded& recorded, std::
       }
     }
     if (const auto* draws = dynamic_cast<const SamplerSetup*>(side.setup.get())) {
-      fmt::print("  draw of `{}`: {}\n", draws->name(),
-                 draw_text(draws->sampler(), pool.key(), index));
+      fmt::print("{}", wrapped(fmt::format("draw of `{}`: {}", draws->name(),
+                                           draw_text(draws->sampler(), pool.key(), index)),
+                               2));
     }
   }
   return same;

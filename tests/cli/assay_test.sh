@@ -687,8 +687,9 @@ test_check_points_at_the_option_that_is_wrong() {
 
 test_help_is_a_command() {
   expect 0 help claims
-  contains out '| `detect` | effect that must not pass'
+  contains out '`detect` effect that must not pass'
   lacks out 'How to add'
+  [ "$(LC_ALL=C.UTF-8 wc -L <out)" -le 80 ] || fail 'a line of `help claims` is wider than 80 columns'
   expect 0 help all
   contains out 'Exit codes:'
   local command
