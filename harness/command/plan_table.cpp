@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "harness/command/commands.h"
 #include "harness/command/describe.h"
@@ -76,9 +77,11 @@ std::string effect_text(const TestOutcome& test, const Forecast& forecast) {
     effect = forecast.detectable;
   }
   if (!effect) return unknown;
-  return reports::plain_spaces(reports::margin_text(
+  const std::string text = reports::plain_spaces(reports::margin_text(
       *effect, {.quantity = test.question.is().logarithm ? "ln(ratio)" : "",
                 .relative = test.question.theta->is_relative(test.question, 0)}));
+  constexpr std::string_view factor = "a factor of ";
+  return text.starts_with(factor) ? "×" + text.substr(factor.size()) : text;
 }
 
 /// The gates that are not green.
@@ -173,10 +176,15 @@ std::array<int, column_count> widths_of(const std::vector<Row>& rows) {
   return widths;
 }
 
+/// True if lines with such gaps between the columns fit the page.
+bool fit(const std::array<int, column_count>& widths, int gap) {
+  int wide = 4 - gap;
+  for (const int width : widths) wide += width + gap;
+  return wide <= static_cast<int>(page_width);
+}
+
 std::string line_of(const Cells& cells, const std::array<int, column_count>& widths) {
-  int wide = 4;
-  for (const int width : widths) wide += width + 2;
-  const std::string gap = wide - 2 <= static_cast<int>(page_width) ? "  " : " ";
+  const std::string gap = fit(widths, 2) ? "  " : " ";
   std::string line = "    " + reports::pad_right(cells[0], widths[0]);
   for (std::size_t c = 1; c < column_count; ++c) {
     const auto blanks = static_cast<std::size_t>(widths[c] - reports::columns(cells[c]));
@@ -210,8 +218,14 @@ void write(std::string& page, const SuiteRun& run) {
   }
   std::vector<Row> rows;
   for (const TestWork& work : run.tests) rows.push_back(row_of(work.outcome, run.pilots));
-  const auto widths = widths_of(rows);
-  page += line_of(headings, widths);
+  auto widths = widths_of(rows);
+  Cells heads = headings;
+  if (!fit(widths, 1)) {
+    for (Row& row : rows) row.name += ", by " + std::exchange(row.cells[0], "");
+    heads[0].clear();
+    widths[0] = 0;
+  }
+  page += line_of(heads, widths);
   for (const Row& row : rows) {
     page += on_page(row.name, 2);
     page += line_of(row.cells, widths);

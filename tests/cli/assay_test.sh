@@ -107,7 +107,12 @@ test_plan_prints_and_draws_no_test() {
   contains out '  long'
   contains out 'share observations'
   empty err
-  ! grep -qE '^.{101,}$' out || fail 'a line is wider than 100 columns'
+  printf '%s\n' 'suite: wide' 'estimators:' '  heavy: {plugin: analytic/heavy_tail, index: 3, primaries: 16}' \
+    '  normal: {plugin: analytic/normal, primaries: 50000}' 'tests:' \
+    '  - {claim: variance(heavy) <= 9, detect: 250%}' '  - {claim: mean(heavy) == mean(normal), secondaries: 123456}' \
+    '  - {claim: distribution(heavy) == distribution(normal), test: chi-square-two-sample}' >wide.yaml
+  expect 0 plan good.yaml wide.yaml --quiet
+  [ "$(LC_ALL=C.UTF-8 wc -L <out)" -le 80 ] || fail 'a line is wider than 80 columns'
   expect 4 plan good.yaml --filter 'good/nothing'
   expect 2 plan no-such-suite.yaml
 }
