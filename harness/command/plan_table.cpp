@@ -280,10 +280,13 @@ void write_totals(std::string& page, const PlannedRun& planned) {
   };
   double of_pilots = 0;
   for (const auto& run : planned.suites) of_pilots += run->pilots.primaries();
+  const std::string expected = total_text(total_of(planned, expected_secondaries));
+  const std::string highest = total_text(total_of(planned, most));
   page += on_page(fmt::format(
       "Tests of one estimator share observations: the run draws about {} if every claim holds "
-      "exactly. Heavy tails may raise this to {}. Its pilots draw {} primaries before.",
-      total_text(total_of(planned, expected_secondaries)), total_text(total_of(planned, most)),
+      "exactly.{} Its pilots draw {} primaries before.",
+      expected,
+      highest == expected ? "" : fmt::format(" Heavy tails may raise this to {}.", highest),
       count_of(of_pilots)));
   page += on_page(
       "last: the observations of each source at the last look. in all, rays, CPU time: what all "
