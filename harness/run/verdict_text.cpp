@@ -10,6 +10,7 @@
 #include "harness/plan/sizes.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/theta.h"
+#include "reports/words/describe.h"
 #include "reports/words/number.h"
 #include "reports/words/text.h"
 #include "stats/images/image_family.h"
@@ -21,7 +22,7 @@ namespace {
 using reports::Verdict;
 
 std::string p_text(double log_p) {
-  return "p = " + reports::p_text(std::exp(log_p), log_p / std::log(10.0));
+  return reports::NamedP{"p", std::exp(log_p), log_p / std::log(10.0)}.text();
 }
 
 /// "difference from the reference is +0.31 % (99 % interval: +0.12 % to +0.5 %)".

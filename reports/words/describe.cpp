@@ -27,12 +27,22 @@ const Channel* least_excluded(const Test& test) {
   return &*std::ranges::max_element(test.channels, {}, order);
 }
 
+/// True if red gates left no look to take a p-value of.
+bool has_no_look(const Test& test) {
+  return test.verdict == Verdict::inconclusive && !test.looks.empty() &&
+         std::ranges::none_of(test.looks,
+                              [](const Look& look) { return look.effect.has_value(); }) &&
+         std::ranges::count(test.gates, "red", &Gate::state) > 0;
+}
+
 NamedP p_of_claim(const Test& test) {
+  if (has_no_look(test)) return {};
   const Channel channel = worst_channel(test);
   return {is_proof(test) ? "p(claim)" : "p", channel.p_value, channel.log10_p};
 }
 
 NamedP p_of_contrary(const Test& test) {
+  if (has_no_look(test)) return {};
   const Channel* least = least_excluded(test);
   const char* const name = is_proof(test) ? "p(contrary)" : "p";
   return least ? NamedP{name, least->p_pass, least->log10_p_pass} : NamedP{name, {}, {}};
@@ -90,9 +100,11 @@ std::string image_fact(const Test& test) {
   std::vector<std::string> parts{
       fmt::format("{} of {} x {} pixels{}{}", counted_images(test), image.width, image.height,
                   image.components.empty() ? "" : " of ", boost::join(image.components, ", "))};
-  if (!image.winner.place.empty())
-    parts.push_back(fmt::format("differs most at {}, p = {} in all", image.winner.place,
-                                p_text({}, image.winner.log10_p_adjusted)));
+  if (!image.winner.place.empty()) {
+    const NamedP p{"p", {}, image.winner.log10_p_adjusted};
+    parts.push_back(fmt::format("differs most at {}{}", image.winner.place,
+                                p.exists() ? fmt::format(", {} in all", p.text()) : ""));
+  }
   if (image.constant > 0) parts.push_back(fmt::format("constant elements: {}", image.constant));
   if (image.unseen > 0)
     parts.push_back(fmt::format(
@@ -154,8 +166,9 @@ std::string channels_fact(const Test& test) {
   int named = 0;
   for (const Channel& channel : test.channels) {
     if (channel.name == deciding || ++named > 3) continue;
-    text += fmt::format("; {} {} (p = {})", channel.name, effect_text(channel.effect),
-                        p_text(channel.p_value, channel.log10_p));
+    text += fmt::format("; {} {}", channel.name, effect_text(channel.effect));
+    const NamedP p{"p", channel.p_value, channel.log10_p};
+    if (p.exists() && !has_no_look(test)) text += fmt::format(" ({})", p.text());
   }
   return text;
 }

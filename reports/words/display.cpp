@@ -317,7 +317,7 @@ TestDisplay display(const Test& test) {
     words.effect = theta_text(*shown.estimate, shown);
     words.interval = wider_range(shown);
   }
-  if (is_evidence(test) && !is_proof(test)) words.chance = one_in(worst_channel(test).log10_p);
+  if (is_evidence(test) && !is_proof(test)) words.chance = one_in(headline_p(test).log10_p);
   return words;
 }
 

@@ -84,6 +84,8 @@ test_advice_stands_below_a_reason_that_is_cut() {
   contains out '…'
   contains out 'write into the test: secondaries: 2000000'
   contains out "more: assay explain 'heavy/variance(h) <= 3'"
+  expect 3 run heavy.yaml -vv
+  ! grep -q 'p = 1' out || fail 'a p-value of no look'
 }
 
 test_a_planted_bug_that_passes_twice_is_none() {
