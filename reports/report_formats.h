@@ -19,6 +19,7 @@ struct ConsoleOptions {
   int detail = 0;             ///< 0: a line a suite. 1: a line a test. 2: all numbers.
   std::uint64_t slowest = 0;  ///< Names so many of the slowest tests.
   std::string report = "";    ///< Path of a report that shows more; "": none.
+  std::string ending = "";    ///< A sentence after the verdict; "": none.
 };
 
 /// A broken claim in 5 lines at most, and an empty line. It may be told before the run ends.

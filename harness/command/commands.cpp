@@ -142,7 +142,7 @@ int report_saved_run(const std::string& file, const Output& output) {
   require_writable(output, {file});
   reports::Record record = read_record(file);
   Output quiet = output;
-  quiet.github = false;  // the run has told it
+  quiet.github = quiet.tells_code = false;  // the run has told it
   write_run(record, quiet);
   return 0;
 }

@@ -288,8 +288,10 @@ int merge_shards(const std::vector<std::string>& records, const Output& output) 
   std::vector<ShardFile> shards;
   for (const std::string& file : records) shards.push_back({file, read_record(file)});
   reports::Record record = merge(shards);
-  write_run(record, output);
   const std::string missing = missing_shards(shards);
+  Output told = output;
+  told.tells_code = missing.empty();
+  write_run(record, told);
   if (missing.empty()) return exit_code(record, output.inconclusive);
   fmt::print(stderr, "{}", in_lines(missing));
   return 1;

@@ -54,6 +54,17 @@ reports::ConsoleOptions console_options(const Output& output, std::FILE* stream)
   return options;
 }
 
+/// The exit code of a run without a fail that is not wholly decided; "" of any other.
+std::string code_text(const reports::Record& record, InconclusivePolicy policy) {
+  constexpr int undecided = 3;
+  if (exit_code(record, InconclusivePolicy::report) != undecided) return "";
+  const int code = exit_code(record, policy);
+  return fmt::format("Exit code {}: {}.", code,
+                     code == undecided ? "nothing failed, but not all is decided"
+                     : code == 0       ? "undecided claims count as passed"
+                                       : "undecided claims count as failed");
+}
+
 // Less room would hold no readable summary.
 constexpr std::size_t least_summary = 2048;
 
@@ -147,7 +158,9 @@ bool tell_broken(const reports::Test& test, const Output& output) {
 void write_run(reports::Record& record, const Output& output, const std::set<std::string>& told) {
   write_reports(output, [&](const ReportRequest& request, const reports::ConsoleOptions& options) {
     if (request.kind == "console" && request.path == "-") {
-      return reports::console(record, options, told);
+      reports::ConsoleOptions with_code = options;
+      if (output.tells_code) with_code.ending = code_text(record, output.inconclusive);
+      return reports::console(record, with_code, told);
     }
     if (request.kind == "json" && request.path != "-") write_maps(record, request.path);
     return reports::report_format(request.kind).of_record(record, options);

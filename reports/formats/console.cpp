@@ -135,7 +135,8 @@ class Screen {
     if (record.seconds > 0) text += " in " + time(record.seconds);
     text += ".";
     const std::string rates = in_full() ? error_rates(record) : false_alarms(record);
-    if (!rates.empty()) text += " " + rates;
+    for (const std::string& more : {rates, options_.ending})
+      text += (more.empty() ? "" : " ") + more;
     paragraph(text, colour_of(how));
     if (!options_.report.empty()) out_ += "  " + plain(options_.report) + "\n";
   }

@@ -69,8 +69,13 @@ test_undecided_is_3_or_as_asked() {
   write_suite open.yaml "$good" "$open"
   expect 3 run open.yaml
   contains out '? 1 of 2 claims undecided in'
+  contains out 'Exit code 3: nothing failed, but not all is decided.'
   expect 1 run open.yaml --inconclusive fail
-  expect 0 run open.yaml --inconclusive pass
+  contains out 'Exit code 1: undecided claims count as failed.'
+  expect 0 run open.yaml --inconclusive pass --report json=open.json
+  contains out 'Exit code 0: undecided claims count as passed.'
+  expect 0 report open.json
+  ! tr '\n' ' ' <out | grep -q 'Exit code' || fail 'an exit code of another command'
   # More of a budget in seconds decides, not a size that sets the budget aside.
   expect 3 check 'mean(luminaire/area) == analytic' --detect 1e-4 --budget 0.3s
   contains out "to decide: assay check 'mean(luminaire/area) == analytic' --detect 1e-4"
