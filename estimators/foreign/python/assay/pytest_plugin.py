@@ -232,11 +232,22 @@ def _words(test: dict[str, typing.Any], in_full: bool) -> str:
     if in_full:
         facts = [(fact["label"], fact["text"]) for fact in display["facts"] if fact["text"] != display["sentence"]]
         lines += [_wrapped(f"  {label:<16} {text}", " " * 19) for label, text in facts]
-        lines += [f"  {'replay':<16} {test['replay']}"] if test["replay"] else []
+        lines += [_command(f"  {'replay':<16} ", test["replay"])] if test["replay"] else []
     else:
-        lines += [f"  {step['label']}: {step['paste']}" if step["paste"] else
+        lines += [_command(f"  {step['label']}: ", step["paste"]) if step["paste"] else
                   _wrapped(f"  {step['label']}: {step['words']}", " " * 4) for step in display["steps"]]
     return "\n".join(lines).replace("\N{NO-BREAK SPACE}", " ")
+
+
+def _command(lead: str, command: str) -> str:
+    """The command in lines that a shell takes as one."""
+    lines = [""]
+    for word in re.findall(r"""(?:'[^']*'|"[^"]*"|\\.|[^\s'"\\])+""", command):
+        if lines[-1] and len(lead) + len(lines[-1]) + 1 + len(word) > 78:
+            lines[-1] += " \\"
+            lines.append("")
+        lines[-1] += (" " if lines[-1] else "") + word
+    return lead + ("\n" + " " * len(lead)).join(lines)
 
 
 def _wrapped(text: str, indent: str) -> str:
