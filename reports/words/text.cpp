@@ -78,23 +78,45 @@ std::size_t joint(std::string_view text, std::size_t end) {
   return end;
 }
 
-// Takes the next line off the front of `rest`.
-std::string take_line(std::string_view& rest, int width) {
+/// What a blank parts: words, the words of a command in backticks, or nothing.
+enum class Blank { words, command, nothing };
+
+Blank blank_at(std::string_view text, std::size_t at) {
+  if (text[at] != ' ' || text.substr(at).starts_with(" %")) return Blank::nothing;
+  const std::size_t begin = text.rfind("`assay ", at);
+  const std::size_t end = begin == text.npos ? begin : text.find('`', begin + 1);
+  if (end == text.npos || end < at) return Blank::words;
+  bool in_quotes = false;
+  for (std::size_t i = begin + 1; i < at; ++i) {
+    if (text[i] == '\'' && text[i - 1] != '\\') in_quotes = !in_quotes;
+  }
+  return in_quotes ? Blank::nothing : Blank::command;
+}
+
+// Takes the next line off the front of `rest`, the end of `text`. A line that ends within a command
+// says so as a shell wants it.
+std::string take_line(std::string_view text, std::string_view& rest, int width) {
   std::size_t end = fitting(rest, width);
   std::size_t next = end;
-  const auto breaks = [&](std::size_t at) {
-    return rest[at] == ' ' && !rest.substr(at).starts_with(" %");
+  bool goes_on = false;
+  const std::size_t start = text.size() - rest.size();
+  const auto last = [&](std::size_t at, Blank kind) {
+    while (at > 0 && blank_at(text, start + at) != kind) --at;
+    return at;
   };
-  if (end < rest.size() && !breaks(end)) {
-    std::size_t space = end;
-    while (space > 0 && !breaks(space)) --space;
+  if (end < rest.size() && blank_at(text, start + end) != Blank::words) {
+    std::size_t space = last(end, Blank::words);
+    if (space == 0) {
+      space = last(fitting(rest, width - 2), Blank::command);
+      goes_on = space > 0;
+    }
     end = next = space > 0 ? space : joint(rest, end);
   }
   while (next < rest.size() && rest[next] == ' ') ++next;
   std::string line(rest.substr(0, end));
   rest.remove_prefix(next);
   while (!line.empty() && line.back() == ' ') line.pop_back();
-  return line;
+  return goes_on ? line + " \\" : line;
 }
 
 std::vector<std::string> words_outside_quotes(std::string_view command) {
@@ -217,7 +239,7 @@ std::vector<std::string> wrap(std::string_view text, int width) {
     std::string paragraph(text.substr(start, end - start));
     std::replace(paragraph.begin(), paragraph.end(), '\t', ' ');
     std::string_view rest = paragraph;
-    do lines.push_back(take_line(rest, width));
+    do lines.push_back(take_line(paragraph, rest, width));
     while (!rest.empty());
     start = end + 1;
   }
