@@ -83,7 +83,8 @@ std::string roff_section(const CommandText& command) {
   std::string text =
       fmt::format(".SS {}\n{}", roff(usage(command)), paragraph(command.about.substr(0, examples)));
   if (examples < command.about.size()) {
-    text += fmt::format(".PP\n.nf\n{}.fi\n", roff(command.about.substr(examples + 1)));
+    text +=
+        fmt::format(".PP\n.in -6n\n.nf\n{}.fi\n.in\n", roff(command.about.substr(examples + 1)));
   }
   for (const OptionText& option : command.options) {
     std::string value = option.is_argument() ? "" : option.value;

@@ -80,6 +80,7 @@ test_the_manual_page_has_no_fault() {
   mandoc -T ascii out | col -b >page
   contains page 'assay check [OPTIONS] CLAIM'
   contains page '--report KIND=PATH ...'
+  [ "$(LC_ALL=C.UTF-8 wc -L <page)" -le 80 ] || fail 'a line of the page is wider than 80 columns'
 }
 
 "$3"
