@@ -42,7 +42,8 @@ bool has_direction(const Effect& effect) {
   return is_ratio(effect) || effect.quantity.find("difference") != std::string::npos;
 }
 
-/// Where a refuted law differs most, which its distance does not tell; "" of another claim.
+/// The place where a refuted law differs most, which its distance does not tell; "" of another
+/// claim.
 std::string place_of_distance(const Test& test) {
   const bool is_distance = !test.image && !has_direction(deciding_channel(test).effect);
   return test.verdict == Verdict::fail && test.advice && is_distance ? test.advice->words : "";

@@ -82,8 +82,8 @@ std::string alarm_sentence(const LedgerSeries& series) {
   if (!series.alarm) return {};
   const std::string range = series.moved_from == series.moved_to
                                 ? std::string()
-                                : fmt::format(" (90\u00A0%: {} to {})", minute(series.moved_from),
-                                              minute(series.moved_to));
+                                : fmt::format(" (90\u00A0%: {:.16} to {})",
+                                              minute(series.moved_from), minute(series.moved_to));
   const bool always = !series.nights.empty() && series.moved == series.nights.front().date;
   const Effect effect{.quantity = series.quantity, .relative = series.relative};
   const auto is_before = [&](const LedgerNight& night) { return night.date < series.moved; };

@@ -78,7 +78,7 @@ std::size_t joint(std::string_view text, std::size_t end) {
   return end;
 }
 
-/// What a blank parts: words, the words of a command in backticks, or nothing.
+/// A blank parts words, the words of a command in backticks, or nothing.
 enum class Blank { words, command, nothing };
 
 Blank blank_at(std::string_view text, std::size_t at) {
