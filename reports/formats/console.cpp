@@ -341,7 +341,7 @@ class Screen {
     for (const auto& [reason, count] : why) {
       head(fmt::format("{} {} not run", mark(Standing::not_run), counted(count, "claim", "claims")),
            "", Standing::not_run);
-      indented(reason, block_lines - 1);
+      indented(reason);
       blank();
     }
   }

@@ -87,7 +87,8 @@ std::string alarm_sentence(const LedgerSeries& series) {
   const bool always = !series.nights.empty() && series.moved == series.nights.front().date;
   const Effect effect{.quantity = series.quantity, .relative = series.relative};
   const auto is_before = [&](const LedgerNight& night) { return night.date < series.moved; };
-  const Number now = average(series, std::not_fn(is_before)), before = average(series, is_before);
+  const Number before = average(series, is_before);
+  const Number now = always ? series.estimate : average(series, std::not_fn(is_before));
   return fmt::format(
       "{}{}{}. The nights together refute the claim since {}.",
       now ? fmt::format("The {} is about {}. ", effect_name(effect), theta_text(*now, effect)) : "",
