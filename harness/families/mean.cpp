@@ -37,71 +37,54 @@ using stats::TestResult;
 
 // ---- Evidence
 
-/// Tests "E x = value".
-using OneMeanTest = std::function<TestResult(const stats::Reference&)>;
-/// Tests "E x - scale E y = offset".
-using ContrastTest = std::function<TestResult(const stats::Contrast&)>;
-
+/// One subject's data as tests of means take them.
 struct Side {
-  const ChannelData& data;
+  Moments moments;
   stats::Range range;
   double rounding = 0;
+  std::shared_ptr<const stats::ValueCells> cells = nullptr;  ///< The values, for bets.
 };
 
-/// A test of one mean and of two. Without closed intervals, `at` is inverted.
+/// Tests "E x = value", and "E x - scale E y = offset". Without closed intervals, they are
+/// inverted.
 struct MeanTest {
-  OneMeanTest (*of_one)(const Side& x);
-  ContrastTest (*of_two)(const Side& x, const Side& y);
+  TestResult (*of_one)(const Side& x, const stats::Reference& null);
+  TestResult (*of_two)(const Side& x, const Side& y, const stats::Contrast& null);
   bool closed_interval = false;
+  bool bets = false;
 };
 
-OneMeanTest t_of_one(const Side& x) {
-  return [x = x.data.moments](const stats::Reference& null) { return stats::student_t(x, null); };
+TestResult t_of_one(const Side& x, const stats::Reference& null) {
+  return stats::student_t(x.moments, null);
 }
 
-ContrastTest t_of_two(const Side& x, const Side& y) {
-  return [x = x.data.moments, y = y.data.moments](const stats::Contrast& null) {
-    return stats::welch_t(x, y, null);
-  };
+TestResult t_of_two(const Side& x, const Side& y, const stats::Contrast& null) {
+  return stats::welch_t(x.moments, y.moments, null);
 }
 
-OneMeanTest corrected_of_one(const Side& x) {
-  return [x = x.data.moments](const stats::Reference& null) {
-    return stats::skewness_corrected_t(x, null);
-  };
+TestResult corrected_of_one(const Side& x, const stats::Reference& null) {
+  return stats::skewness_corrected_t(x.moments, null);
 }
 
-ContrastTest corrected_of_two(const Side& x, const Side& y) {
-  return [x = x.data.moments, y = y.data.moments](const stats::Contrast& null) {
-    return stats::skewness_corrected_welch(x, y, null);
-  };
+TestResult corrected_of_two(const Side& x, const Side& y, const stats::Contrast& null) {
+  return stats::skewness_corrected_welch(x.moments, y.moments, null);
 }
 
 /// An exact test of "E x = value" where the value is known up to an error.
-OneMeanTest over_reference(std::function<TestResult(double)> at) {
-  return [at = std::move(at)](const stats::Reference& null) {
-    const std::array<stats::UncertainReference, 1> references{{{null, null.value}}};
-    return stats::test_over_references([&](auto values) { return at(values[0]); }, references);
-  };
+TestResult over_reference(const stats::Reference& null,
+                          const std::function<TestResult(double)>& at) {
+  const std::array<stats::UncertainReference, 1> references{{{null, null.value}}};
+  return stats::test_over_references([&](auto values) { return at(values[0]); }, references);
 }
 
-OneMeanTest binomial_of_one(const Side& x) {
-  return over_reference([x = stats::two_valued(x.data.moments, x.range)](double value) {
-    return stats::two_valued_mean(x, value);
-  });
+TestResult binomial_of_one(const Side& x, const stats::Reference& null) {
+  const stats::TwoValued counts = stats::two_valued(x.moments, x.range);
+  return over_reference(null, [&](double value) { return stats::two_valued_mean(counts, value); });
 }
 
-ContrastTest binomial_of_two(const Side& x, const Side& y) {
-  return [x = stats::two_valued(x.data.moments, x.range),
-          y = stats::two_valued(y.data.moments, y.range)](const stats::Contrast& null) {
-    return stats::two_valued_contrast(x, y, null);
-  };
-}
-
-using Cells = std::shared_ptr<const stats::ValueCells>;
-
-Cells cells_of(const Side& side) {
-  return std::make_shared<const stats::ValueCells>(side.data.values);
+TestResult binomial_of_two(const Side& x, const Side& y, const stats::Contrast& null) {
+  return stats::two_valued_contrast(stats::two_valued(x.moments, x.range),
+                                    stats::two_valued(y.moments, y.range), null);
 }
 
 /// Values are exact to `rounding`: each tail is that of the nearest null.
@@ -112,38 +95,39 @@ TestResult within_rounding(const std::function<TestResult(double)>& at, double r
   return result;
 }
 
-OneMeanTest bets_of_one(const Side& x) {
-  return over_reference([cells = cells_of(x), range = x.range,
-                         rounding = x.rounding](double value) {
-    return within_rounding(
-        [&](double shift) { return stats::betting_mean(*cells, range, value + shift); }, rounding);
+TestResult bets_of_one(const Side& x, const stats::Reference& null) {
+  return over_reference(null, [&](double value) {
+    const auto at = [&](double shift) {
+      return stats::betting_mean(*x.cells, x.range, value + shift);
+    };
+    return within_rounding(at, x.rounding);
   });
 }
 
-ContrastTest bets_of_two(const Side& x, const Side& y) {
-  return [cells_of_x = cells_of(x), cells_of_y = cells_of(y), of_x = x.range, of_y = y.range,
-          rounding = x.rounding, other = y.rounding](const stats::Contrast& null) {
-    const auto at = [&](double shift) {
-      return stats::betting_contrast(*cells_of_x, of_x, *cells_of_y, of_y,
-                                     {null.scale, null.offset + shift});
-    };
-    return within_rounding(at, rounding + std::abs(null.scale) * other);
+TestResult bets_of_two(const Side& x, const Side& y, const stats::Contrast& null) {
+  const auto at = [&](double shift) {
+    return stats::betting_contrast(*x.cells, x.range, *y.cells, y.range,
+                                   {null.scale, null.offset + shift});
   };
+  return within_rounding(at, x.rounding + std::abs(null.scale) * y.rounding);
 }
 
-constexpr MeanTest by_t{t_of_one, t_of_two, true};
-constexpr MeanTest by_corrected_t{corrected_of_one, corrected_of_two};
-constexpr MeanTest by_counts{binomial_of_one, binomial_of_two};
-constexpr MeanTest by_bets{bets_of_one, bets_of_two};
+constexpr MeanTest by_t{.of_one = t_of_one, .of_two = t_of_two, .closed_interval = true};
+constexpr MeanTest by_corrected_t{.of_one = corrected_of_one, .of_two = corrected_of_two};
+constexpr MeanTest by_counts{.of_one = binomial_of_one, .of_two = binomial_of_two};
+constexpr MeanTest by_bets{.of_one = bets_of_one, .of_two = bets_of_two, .bets = true};
 
-Side side_of(const Seen& seen, std::size_t subject) {
-  return {seen.data[subject], range_of(seen.question, subject, seen.channel, seen.moments(subject)),
-          rounding_of(seen.question, subject, seen.channel)};
+Side side_of(const MeanTest& mean, const Seen& seen, std::size_t subject) {
+  const Moments& moments = seen.moments(subject);
+  Side side{moments, range_of(seen.question, subject, seen.channel, moments),
+            rounding_of(seen.question, subject, seen.channel)};
+  if (mean.bets) side.cells = std::make_shared<const stats::ValueCells>(seen.data[subject].values);
+  return side;
 }
 
 /// A first step from an estimate of theta. Without a spread it is what one more value could add.
 double step_of(const Side& side, double factor) {
-  const Moments& x = side.data.moments;
+  const Moments& x = side.moments;
   const double count = static_cast<double>(x.count);
   double step = std::sqrt(x.variance() / count);
   for (const double end : {side.range.low, side.range.high}) {
@@ -153,20 +137,23 @@ double step_of(const Side& side, double factor) {
 }
 
 /// Natural logarithm of the p-value of "E y = 0"; a constant y shows its sign.
-double log_p_of_no_sign(const Moments& y, const OneMeanTest& test) {
-  if (y.m2 == 0) return y.mean == 0 ? 0 : -std::numeric_limits<double>::infinity();
-  return stats::log_p_two_sided(test({.value = 0}));
+double log_p_of_no_sign(const Side& y, const MeanTest& mean) {
+  if (y.moments.m2 == 0) {
+    return y.moments.mean == 0 ? 0 : -std::numeric_limits<double>::infinity();
+  }
+  return stats::log_p_two_sided(mean.of_one(y, {.value = 0}));
 }
 
 Evidence difference_of_means(const MeanTest& mean, const Question& question, const Side& first,
                              const Side& second) {
-  const ContrastTest test = mean.of_two(first, second);
-  const Moments x = first.data.moments;
-  const Moments y = second.data.moments;
+  const Moments x = first.moments;
+  const Moments y = second.moments;
   const double factor = question.factor;
   const double offset = question.offset;
   const double estimate = stats::contrast_of_means(x, y, {.scale = factor, .offset = offset});
-  const auto at = [=](double theta) { return test({.scale = factor, .offset = offset + theta}); };
+  const auto at = [=](double theta) {
+    return mean.of_two(first, second, {.scale = factor, .offset = offset + theta});
+  };
   const double step = std::hypot(step_of(first, 1), step_of(second, factor));
   const auto interval = [=](double confidence) {
     if (!mean.closed_interval) {
@@ -186,24 +173,20 @@ Evidence difference_of_means(const MeanTest& mean, const Question& question, con
 
 Evidence ratio_of_means(const MeanTest& mean, const Question& question, const Side& first,
                         const Side& second) {
-  const ContrastTest test = mean.of_two(first, second);
-  const OneMeanTest test_of_y = mean.of_one(second);
-  const Moments x = first.data.moments;
-  const Moments y = second.data.moments;
+  const Moments x = first.moments;
+  const Moments y = second.moments;
   const double factor = question.factor;
   const double offset = question.offset;
   const double other = factor * y.mean;
   const double sign = std::copysign(1, other);
   const double estimate =
       stats::contrast_of_means(x, y, {.scale = factor, .offset = offset}) / std::abs(other);
-  const auto contrast = [=](double theta) {
-    return test({.scale = factor * (1 + sign * theta), .offset = offset});
-  };
   const auto at = [=](double theta) {
-    TestResult result = contrast(theta);
+    TestResult result =
+        mean.of_two(first, second, {.scale = factor * (1 + sign * theta), .offset = offset});
     if (theta == 0) return result;
     // The sign of E y decides which contrast a relative margin is, so y must show it too.
-    const double log_p_sign = log_p_of_no_sign(y, test_of_y);
+    const double log_p_sign = log_p_of_no_sign(second, mean);
     result.log_p_lower = std::max(result.log_p_lower, log_p_sign);
     result.log_p_upper = std::max(result.log_p_upper, log_p_sign);
     return result;
@@ -224,18 +207,18 @@ Evidence ratio_of_means(const MeanTest& mean, const Question& question, const Si
 }
 
 Evidence mean_against_number(const MeanTest& mean, const Seen& seen) {
-  const Side side = side_of(seen, 0);
-  const Moments x = side.data.moments;
+  const Side side = side_of(mean, seen, 0);
+  const Moments x = side.moments;
   const Constant& reference = seen.reference();
   const bool relative = seen.relative();
   const double unit = relative ? std::abs(reference.value) : 1;
   const double slope = relative ? std::copysign(1, reference.value) : 0;
   const double null = reference.value + seen.question.offset;
   const double estimate = x.mean_less(null) / unit;
-  const OneMeanTest test = mean.of_one(side);
   const auto at = [=](double theta) {
-    return test({.value = null + theta * unit,
-                 .standard_error = reference.standard_error * std::abs(1 + slope * theta)});
+    return mean.of_one(side,
+                       {.value = null + theta * unit,
+                        .standard_error = reference.standard_error * std::abs(1 + slope * theta)});
   };
   const double step = std::hypot(step_of(side, 1), reference.standard_error) / unit;
   const auto interval = [=](double confidence) {
@@ -258,7 +241,7 @@ template <const MeanTest& mean>
 Evidence evidence_of_means(const Seen& seen) {
   if (!seen.question.of_two()) return mean_against_number(mean, seen);
   return (seen.relative() ? ratio_of_means : difference_of_means)(
-      mean, seen.question, side_of(seen, 0), side_of(seen, 1));
+      mean, seen.question, side_of(mean, seen, 0), side_of(mean, seen, 1));
 }
 
 // A shift of so many standard errors moves a tail of one per cent by a third at most.
