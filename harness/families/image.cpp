@@ -349,7 +349,7 @@ class ImageTheta : public Theta {
     const stats::ImageStack stack{extent_of(*second.image), views.images()};
     const ChannelMeans means = look != nullptr ? look->means[1] : channel_means(stack);
     const bool is_known = std::ranges::any_of(means, [](const Constant& mean) {
-      return exceeds_its_error(mean.value, mean.standard_error);
+      return size_beyond_error(mean.value, mean.standard_error) > 0;
     });
     if (!is_known) return 0;
     const double sum =

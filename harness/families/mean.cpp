@@ -609,12 +609,11 @@ class MeanTheta : public Theta {
 
   double known_size(const Question& question) const override {
     double largest = Theta::known_size(question);
-    if (question.of_two()) {
-      for (const Channel& channel : question.subjects[1].declared()) {
-        const double mean = question.factor * channel.mean.value_or(0);
-        const double error = std::abs(question.factor) * channel.rounding;
-        if (exceeds_its_error(mean, error)) largest = std::max(largest, std::abs(mean));
-      }
+    if (!question.of_two()) return largest;
+    for (const Channel& channel : question.subjects[1].declared()) {
+      const double mean = question.factor * channel.mean.value_or(0);
+      const double error = std::abs(question.factor) * channel.rounding;
+      largest = std::max(largest, size_beyond_error(mean, error));
     }
     return largest;
   }
@@ -695,11 +694,10 @@ class MeanTheta : public Theta {
     double size = 0;
     for (std::size_t channel = 0; channel < second.channels.size(); ++channel) {
       const Moments moments = pilot_channel(second, *pilot, channel).moments;
-      if (moments.count > 1 && exceeds_its_error(moments.mean, moments.standard_error())) {
-        size = std::max(size, std::abs(question.factor * moments.mean));
-      }
+      if (moments.count <= 1) continue;
+      size = std::max(size, size_beyond_error(moments.mean, moments.standard_error()));
     }
-    return size;
+    return std::abs(question.factor) * size;
   }
 
   PlannedChannel observed(const Seen& seen, const Regions& regions) const override {

@@ -53,13 +53,11 @@ void Theta::check_margin(const Question& question, const Margin& margin) const {
 
 double Theta::known_size(const Question& question) const {
   double largest = 0;
-  if (question.references.empty()) return 0;
   for (std::size_t i = 0; i < question.references.size(); ++i) {
     const Constant& reference = question.references[i];
     const double rounding = question.subjects[0].declared(is.joins_channels ? 0 : i).rounding;
-    if (exceeds_its_error(reference.value, std::max(reference.standard_error, rounding))) {
-      largest = std::max(largest, std::abs(reference.value));
-    }
+    const double error = std::max(reference.standard_error, rounding);
+    largest = std::max(largest, size_beyond_error(reference.value, error));
   }
   return largest;
 }

@@ -32,10 +32,10 @@ Question ask_as_written(TestEntry& test, const Estimators& estimators, std::uint
 /// A key of the test as its user writes it: "`test: t`", or "`--test t`" of the command line.
 std::string written_key(const TestEntry& test, const std::string& key, const std::string& value);
 
-/// True if the number is at least 8 standard errors from 0. Margins cannot be relative to a mean
-/// near 0.
-inline bool exceeds_its_error(double value, double standard_error) {
-  return std::abs(value) > 8 * standard_error;
+/// The size of a number that is at least 8 standard errors from 0, else 0. Margins cannot be
+/// relative to a mean near 0.
+inline double size_beyond_error(double value, double standard_error) {
+  return std::abs(value) > 8 * standard_error ? std::abs(value) : 0;
 }
 
 /// Suggests the per cent spelling of an absolute margin larger than its reference `size`; "" for
