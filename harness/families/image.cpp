@@ -23,26 +23,6 @@ namespace {
 
 const Location& place_of(const Question& question) { return question.test->claim.left.where; }
 
-std::string size_text(const Subject& subject) {
-  if (!subject.image) return fmt::format("`{}` is no image", subject.estimator->name);
-  return fmt::format("`{}` has {} x {} pixels of {}", subject.estimator->name, subject.image->width,
-                     subject.image->height, fmt::join(subject.image->components, ", "));
-}
-
-void require_one_size(const Question& question) {
-  const Subject& first = question.subjects[0];
-  for (const Subject& other : question.subjects) {
-    const bool same = first.image && other.image && first.image->width == other.image->width &&
-                      first.image->height == other.image->height &&
-                      first.image->components.size() == other.image->components.size();
-    if (same) continue;
-    refuse(place_of(question),
-           "{}, and {}: only images of one size and as many channels can be compared, element by "
-           "element",
-           size_text(first), size_text(other));
-  }
-}
-
 void require_tested_relation(const Question& question) {
   const Relation relation = question.test->claim.relation;
   if (is_two_sided(relation)) return;
@@ -286,7 +266,7 @@ class ImageTheta : public Theta {
   /// InputError for inequalities, images of unequal sizes, an image against something else, a
   /// number with an error, and a relative margin of a zero image.
   void check(const Question& question) const override {
-    require_one_size(question);
+    for (const Subject& other : question.subjects) require_one_size(question, other);
     require_tested_relation(question);
     require_exact_number(question);
     require_all_pixels(question);

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -273,27 +272,9 @@ std::string lost_to_rounding(const Seen& seen) {
 
 // ---- Binding
 
-std::string size_of(const Subject& subject) {
-  if (subject.image) {
-    return fmt::format("{} x {} pixels of {}", subject.image->width, subject.image->height,
-                       fmt::join(subject.image->components, ", "));
-  }
-  return fmt::format("{} channels", subject.channels.size());
-}
-
 std::vector<Constant> recorded_means(const Question& question, const Subject& reference) {
-  const Subject& subject = question.subjects[0];
-  const bool one_size = subject.channels.size() == reference.channels.size() &&
-                        (!subject.image || !reference.image ||
-                         (subject.image->width == reference.image->width &&
-                          subject.image->components.size() == reference.image->components.size()));
-  if (!one_size) {
-    refuse(
-        question.test->claim.left.where,
-        "`{}` has {} and `{}` has {}: only what is of one size can be compared, element by element",
-        subject.estimator->name, size_of(subject), reference.estimator->name, size_of(reference));
-  }
-  if (subject.image && reference.image) require_equal_pixels(question, reference);
+  require_one_size(question, reference);
+  if (reference.image) require_equal_pixels(question, reference);
   std::vector<Constant> means;
   for (const Channel& channel : reference.declared()) {
     means.push_back({question.factor * channel.mean.value_or(0),

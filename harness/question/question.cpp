@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "harness/draws/consistency_setup.h"
 #include "harness/draws/sampler_setup.h"
@@ -85,6 +86,16 @@ const NamedSampler* sampler_named(const std::vector<NamedSampler>& samplers,
   }
   rest = part;
   return samplers.size() == 1 ? &samplers[0] : nullptr;
+}
+
+std::string size_text(const Subject& subject) {
+  const std::size_t channels = subject.channels.size();
+  return fmt::format(
+      "`{}` {}", subject.estimator->name,
+      subject.image
+          ? fmt::format("has {} x {} pixels of {}", subject.image->width, subject.image->height,
+                        fmt::join(subject.image->components, ", "))
+          : fmt::format("is no image and has {} channel{}", channels, channels == 1 ? "" : "s"));
 }
 
 }  // namespace
@@ -199,6 +210,18 @@ std::vector<Constant> references_of(const Claim& claim, const Subject& subject) 
 
 std::string image_name(const ImageShape& shape) {
   return fmt::format("{} x {} {}", shape.width, shape.height, fmt::join(shape.components, ", "));
+}
+
+void require_one_size(const Question& question, const Subject& other) {
+  const Subject& first = question.subjects[0];
+  const auto size = [](const Subject& each) {
+    const ImageShape shape = each.image.value_or(ImageShape{});
+    return std::tuple(shape.width, shape.height, each.channels.size());
+  };
+  if (size(first) == size(other)) return;
+  refuse(question.test->claim.left.where,
+         "{}, and {}: only what is of one size can be compared, element by element",
+         size_text(first), size_text(other));
 }
 
 void require_equal_pixels(const Question& question, const Subject& other) {
