@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "harness/pilot/pilot.h"
+#include "harness/plan/outcome.h"
 #include "harness/theta/theta.h"
 #include "stats/variances/influence.h"
 
@@ -36,6 +38,22 @@ Constant truth_of(const Seen& seen, std::size_t subject);
 std::string reference_text(const Question& question);
 /// ", red" if the question has several channels.
 std::string channel_suffix(const Question& question, std::size_t channel);
+
+/// Prior knowledge of one channel of one subject.
+struct Known {
+  std::size_t subject;
+  std::size_t channel;
+  PilotChannel pilot;
+  double averaged;  ///< The pilot's values in a secondary.
+  bool rows;        ///< The test's own data, not a pilot's.
+  std::string label;
+};
+
+/// The channels that pilots or rows show, without those that never vary.
+std::vector<Known> known_channels(const TestOutcome& test, const Pilots& pilots);
+
+/// Notes a gate of the pilot, but none of rows: they are judged with the test's own data.
+void note(Plan& plan, const Known& known, const stats::Gate& gate);
 
 inline bool is_within(const Question& question) {
   return question.test->claim.relation == Relation::within;

@@ -14,7 +14,6 @@
 #include "harness/families/families.h"
 #include "harness/language/laws.h"
 #include "harness/language/quantities.h"
-#include "harness/plan/pilot_shape.h"
 #include "harness/plan/sizes.h"
 #include "harness/run/evaluate.h"
 #include "stats/basics/sorted.h"

@@ -8,7 +8,6 @@
 #include <memory>
 
 #include "harness/families/families.h"
-#include "harness/plan/pilot_shape.h"
 #include "harness/plan/sizes.h"
 #include "harness/question/question.h"
 #include "harness/run/evaluate.h"
@@ -281,6 +280,53 @@ std::vector<Constant> recorded_means(const Question& question, const Subject& re
                      std::abs(question.factor) * channel.mean_error});
   }
   return means;
+}
+
+// ---- Ranges
+
+// So few values beyond half the way to an end may be none in the test.
+constexpr std::ptrdiff_t few_values = 32;
+
+/// True if the values beyond half the way from their mean to an end are few: there may be more.
+bool hides(std::span<const double> values, double mean, double end) {
+  const double half = mean + (end - mean) / 2;
+  return std::ranges::count_if(values, [&](double value) {
+           return end > mean ? value >= half : value <= half;
+         }) < few_values;
+}
+
+/// True if a claim on means rests on the range that its channels declare: bets are its method.
+/// Every end that a decision needs is finite, and a pilot saw few values in the outer half before
+/// one, or none that vary. Two means are bet on only if both are constant.
+bool bets_on_range(const Question& question, const Pilots& pilots) {
+  if (question.test->method) return find_method(question, *question.test->method).is.in_range;
+  // To reject "too much" takes the low end.
+  const Regions regions{.relation = question.test->claim.relation};
+  const bool both =
+      question.of_two() || regions.two_sided() || (!regions.proof() && question.test->detect);
+  const bool needs_high = both || regions.bounds_above() == regions.proof();
+  const bool needs_low = both || !needs_high;
+  bool hidden = false;
+  for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
+    const Subject& side = question.subjects[subject];
+    const Pilot* const pilot = pilot_of(side, pilots);
+    if (pilot == nullptr || !side.purpose.empty() || is_recorded(side)) return false;
+    for (std::size_t channel = 0; channel < side.channels.size(); ++channel) {
+      const PilotChannel seen = pilot_channel(question, subject, channel, pilots);
+      const stats::Range range = range_of(question, subject, channel, seen.moments);
+      const bool low = needs_low && !std::isfinite(range.low);
+      const bool high = needs_high && !std::isfinite(range.high);
+      const bool constant = is_constant(question, subject, channel, seen.moments);
+      if (low || high || !(range.low < range.high)) return false;
+      // A pilot without finite values shows no mean.
+      if (seen.moments.count == 0 || (seen.values.empty() && !constant)) return false;
+      if (question.of_two() && !constant) return false;
+      const double mean = seen.moments.mean;
+      hidden = hidden || constant || (needs_low && hides(seen.values, mean, range.low)) ||
+               (needs_high && hides(seen.values, mean, range.high));
+    }
+  }
+  return hidden;
 }
 
 // ---- Sizes
@@ -628,6 +674,11 @@ class MeanTheta : public Theta {
       error.estimate = stats::contrast_of_means(seen.moments(0), seen.moments(1), null) / unit;
     }
     return error;
+  }
+
+  /// Bets take single values: what a rare one loses, they win back from each.
+  bool takes_single_primaries(const Question& question, const Pilots& pilots) const override {
+    return bets_on_range(question, pilots);
   }
 
   std::uint64_t choose(TestOutcome& test, const Pilots& pilots) const override {

@@ -14,7 +14,6 @@
 
 #include "harness/families/families.h"
 #include "harness/plan/outcome.h"
-#include "harness/plan/pilot_shape.h"
 #include "harness/plan/sizes.h"
 #include "harness/question/question.h"
 #include "harness/run/evaluate.h"

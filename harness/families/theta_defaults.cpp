@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "harness/families/families.h"
 #include "harness/plan/sizes.h"
 #include "harness/question/question.h"
 #include "harness/run/evaluate.h"
@@ -116,6 +117,31 @@ std::string Theta::lack_of_numbers(const TestOutcome&, const Seen& seen) const {
 
 ChannelEvidence Theta::evidence(const DrawnTest& test, const Seen& seen) const {
   return {.evidence = test.outcome.plan.method.evidence(seen)};
+}
+
+std::vector<Known> known_channels(const TestOutcome& test, const Pilots& pilots) {
+  const Question& question = test.question;
+  std::vector<Known> all;
+  for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
+    const Subject& side = question.subjects[subject];
+    const Pilot* pilot = pilot_of(side, pilots);
+    if (pilot == nullptr || !side.purpose.empty()) continue;
+    for (std::size_t channel = 0; channel < side.channels.size(); ++channel) {
+      const PilotChannel data = pilot_channel(side, *pilot, channel);
+      if (is_constant(question, subject, channel, data.moments)) continue;
+      all.push_back({.subject = subject,
+                     .channel = channel,
+                     .pilot = data,
+                     .averaged = side.averaged(test.plan.primaries[subject]),
+                     .rows = side.setup->observations().has_value(),
+                     .label = ", pilot of " + side.name_of(channel)});
+    }
+  }
+  return all;
+}
+
+void note(Plan& plan, const Known& known, const stats::Gate& gate) {
+  if (!known.rows) plan.gates.push_back(gate_of(gate, known.label));
 }
 
 }  // namespace assay::harness

@@ -237,6 +237,18 @@ PilotChannel pilot_channel(const Question& question, std::size_t subject, std::s
   return pilot_channel(side, *pilot_of(side, pilots), channel);
 }
 
+std::vector<double> as_secondaries(const Subject& side, std::span<const double> values,
+                                   std::uint64_t primaries) {
+  const std::uint64_t each = side.averages && !is_recorded(side) ? primaries : 1;
+  std::vector<double> means;
+  for (std::size_t i = 0; i + each <= values.size(); i += each) {
+    double sum = 0;
+    for (std::uint64_t k = 0; k < each; ++k) sum += values[i + k];
+    means.push_back(sum / static_cast<double>(each));
+  }
+  return means;
+}
+
 std::vector<std::pair<std::string, std::shared_ptr<Pool>>> pilot_pools(
     const std::vector<const PreparedEstimator*>& estimators, const std::vector<Question>& questions,
     std::uint64_t seed) {

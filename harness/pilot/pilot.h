@@ -100,6 +100,11 @@ PilotChannel pilot_channel(const Subject& subject, const Pilot& pilot, std::size
 PilotChannel pilot_channel(const Question& question, std::size_t subject, std::size_t channel,
                            const Pilots& pilots);
 
+/// The pilot's values of one channel as secondaries of so many primaries. They stay as they are if
+/// the subject does not average, or has rows of a file.
+std::vector<double> as_secondaries(const Subject& side, std::span<const double> values,
+                                   std::uint64_t primaries);
+
 // Demands of a suite's claims on the pilots of its estimators. All questions decide what a pilot
 // keeps, so a selection does not change it. The chosen ones decide whether a sampler's draws are
 // piloted.

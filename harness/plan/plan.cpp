@@ -12,7 +12,6 @@
 #include "harness/plan/forecast.h"
 #include "harness/plan/gate_text.h"
 #include "harness/plan/independence.h"
-#include "harness/plan/pilot_shape.h"
 #include "harness/plan/sizes.h"
 #include "harness/question/question.h"
 #include "harness/sampling/pool.h"
@@ -178,13 +177,6 @@ std::uint64_t primaries_of(const Subject& subject, const Primaries& chosen) {
   if (subject.estimator->primaries) return *subject.estimator->primaries;
   const auto found = chosen.find(subject.estimator->name);
   return found != chosen.end() ? found->second : 1;
-}
-
-/// True if an observation of the claim is a single primary. Bets take single values: what a rare
-/// one loses, they win back from each.
-bool takes_single_primaries(const Question& question, const Pilots& pilots) {
-  if (question.is().of_single_values) return true;
-  return question.is().of_moments && !question.is().of_spread && bets_on_range(question, pilots);
 }
 
 /// `detect`, if it is not in per cent, as a part of the claimed number or image; 0 of another.
@@ -444,7 +436,7 @@ TestOutcome plan_test(Question asked, const FamilyPlace& place, const Pilots& pi
   plan = {.method = forced ? find_method(question, *forced) : methods_for(question).front(),
           .regions = regions_of(question),
           .gates_invalidate = !forced};
-  const bool single = takes_single_primaries(question, pilots);
+  const bool single = question.theta->takes_single_primaries(question, pilots);
   for (const Subject& subject : question.subjects) {
     const bool chosen = !single || subject.estimator->primaries;
     plan.primaries.push_back(chosen ? primaries_of(subject, primaries) : 1);
@@ -514,7 +506,7 @@ Primaries choose_primaries(const std::vector<Question>& questions,
   Primaries chosen;
   for (std::size_t i = 0; i < questions.size(); ++i) {
     const Question& question = questions[i];
-    if (takes_single_primaries(question, pilots)) continue;
+    if (question.theta->takes_single_primaries(question, pilots)) continue;
     for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
       const Subject& side = question.subjects[subject];
       if (!chooses_primaries(side) || pilot_of(side, pilots) == nullptr) continue;

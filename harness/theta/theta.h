@@ -124,6 +124,10 @@ class Theta {
 
   /// Throws NoDensity before any draw if a density that the claim needs cannot be had.
   virtual void require_density(const Question&) const {}
+  /// True if an observation of the claim is a single primary.
+  virtual bool takes_single_primaries(const Question&, const Pilots&) const {
+    return is.of_single_values;
+  }
   /// Chooses among the methods by the pilots, and notes their gates. Returns the fewest secondaries
   /// that the method takes.
   virtual std::uint64_t choose(TestOutcome&, const Pilots&) const;
