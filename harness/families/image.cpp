@@ -278,10 +278,8 @@ class ImageTheta : public Theta {
     return image_name(*question.subjects[0].image);
   }
   std::string claimed_value(const Question& question, std::size_t channel) const override {
-    const Claim& claim = question.test->claim;
-    if (other_side(claim) != nullptr) return Theta::claimed_value(question, channel);
-    const auto* const number = std::get_if<Constant>(&claim.right);
-    return number != nullptr ? fmt::format("{}", number->value) : "analytic";
+    const bool analytic = std::holds_alternative<Analytic>(question.test->claim.right);
+    return analytic ? "analytic" : Theta::claimed_value(question, channel);
   }
   std::string circumstances(const Question&) const override { return " in every pixel"; }
 
