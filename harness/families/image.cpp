@@ -379,9 +379,6 @@ class ImageTheta : public Theta {
 class BiasImageTheta final : public ImageTheta {
  public:
   const Theta* of_pairs() const override { return nullptr; }
-  std::string claimed_value(const Question& question, std::size_t) const override {
-    return fmt::format("{}", question.offset);
-  }
   std::string circumstances(const Question& question) const override {
     return reference_text(question) + ImageTheta::circumstances(question);
   }

@@ -903,9 +903,6 @@ class BiasTheta final : public MeanTheta {
   bool is_relative(const Question& question, std::size_t) const override {
     return has_margin(*question.test, true);
   }
-  std::string claimed_value(const Question& question, std::size_t) const override {
-    return fmt::format("{}", question.offset);
-  }
   std::string circumstances(const Question& question) const override {
     return reference_text(question);
   }

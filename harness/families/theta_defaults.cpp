@@ -43,7 +43,8 @@ std::string Theta::claimed_value(const Question& question, std::size_t channel) 
     return (other->factor == 1 ? "" : fmt::format("{} * ", other->factor)) +
            to_string(other->quantity);
   }
-  return fmt::format("{}", question.references[channel].value);
+  const auto* const number = std::get_if<Constant>(&claim.right);
+  return fmt::format("{}", number != nullptr ? number->value : question.references[channel].value);
 }
 
 void Theta::check_margin(const Question& question, const Margin& margin) const {
