@@ -26,7 +26,7 @@ requires(sizeof...(Parts) > 0)
 
 /// One text of each row, such as the names that a message offers.
 template <class Rows, class Text>
-std::vector<std::string> names_of(const Rows& rows, Text text) {
+std::vector<std::string> names_of(Rows&& rows, Text text) {
   std::vector<std::string> names;
   for (const auto& row : rows) names.push_back(std::invoke(text, row));
   return names;

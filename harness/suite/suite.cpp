@@ -7,6 +7,7 @@
 #include <boost/algorithm/string.hpp>
 #include <cmath>
 #include <filesystem>
+#include <ranges>
 
 #include "estimators/catalogue.h"
 #include "estimators/core/text_pattern.h"
@@ -126,11 +127,8 @@ void read_reference(const Value& value, TestEntry& test) {
 
 /// The quantities that have a trait, as "`bias` and `efficiency`".
 std::string quantities_with(bool QuantityRow::*trait) {
-  std::vector<std::string> words;
-  for (const QuantityRow& row : quantities()) {
-    if (row.*trait) words.push_back("`" + row.word + "`");
-  }
-  return fmt::format("{}", fmt::join(words, " and "));
+  auto rows = quantities() | std::views::filter(trait);
+  return fmt::format("`{}`", fmt::join(names_of(rows, &QuantityRow::word), "` and `"));
 }
 
 void check_margins(const TestEntry& test) {

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <ranges>
 
 #include "harness/draws/sampler_setup.h"
 #include "harness/sampling/recorded_run.h"
@@ -157,14 +158,9 @@ void require_observations(const Question& question) {
 
 /// InputError, with the quantities that have a slope.
 [[noreturn]] void refuse_slope(const Quantity& quantity) {
-  std::vector<std::string> words;
-  for (const QuantityRow& row : quantities()) {
-    if (row.slope != nullptr) words.push_back(row.word);
-  }
-  const std::string last = words.back();
-  words.pop_back();
-  refuse(quantity.where, "`slope` takes a {} or {}, not `{}`", fmt::join(words, ", "), last,
-         quantity.row->word);
+  auto sloped = quantities() | std::views::filter(&QuantityRow::slope);
+  refuse(quantity.where, "`slope` takes a {}, not `{}`",
+         fmt::join(names_of(sloped, &QuantityRow::word), ", "), quantity.row->word);
 }
 
 void ask_of_images(Question& question) {
