@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <regex>
 
 #include "harness/pilot/pilot.h"
 #include "harness/plan/sizes.h"
@@ -94,15 +95,10 @@ std::string red_gates(const std::vector<Gate>& gates) {
 }
 
 std::string in_words(const std::exception& error) {
-  const std::string text = error.what();
-  const std::size_t colon = text.find(": ");
-  const std::string_view name = std::string_view(text).substr(0, colon);
-  const bool is_name =
-      colon != std::string::npos &&
-      name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_:") ==
-          std::string_view::npos;
-  if (!is_name) return text;
-  return "there is no test of these numbers: " + text.substr(colon + 2);
+  static const std::regex function("^[a-zA-Z0-9_:]*: ");
+  return std::regex_replace(
+      std::string(error.what()), function,
+      "there is no test of these numbers: ", std::regex_constants::format_first_only);
 }
 
 const char* rows_noun(const Question& question) {
