@@ -59,14 +59,6 @@ void require_all_pixels(const Question& question) {
          first.estimator->name);
 }
 
-void require_something(const Question& question) {
-  if (is_against_darkness(question) && has_margin(*question.test, true)) {
-    refuse(question.test->where,
-           "a margin in per cent has no meaning here: the reference is zero in every pixel; give "
-           "an absolute number");
-  }
-}
-
 /// Only images of as many primaries have one law, or share their random numbers.
 void require_equal_primaries(const Question& question) {
   std::vector<std::string> words;
@@ -262,16 +254,18 @@ class ImageTheta : public Theta {
 
   const Theta* of_images() const override { return this; }
   const Theta* of_pairs() const override;
-  /// InputError for inequalities, images of unequal sizes, an image against something else, a
-  /// number with an error, and a relative margin of a zero image.
+  /// InputError for inequalities, images of unequal sizes, an image against something else, and a
+  /// number with an error.
   void check(const Question& question) const override {
     for (const Subject& other : question.subjects) require_one_size(question, other);
     require_tested_relation(question);
     require_exact_number(question);
     require_all_pixels(question);
-    require_something(question);
   }
-  void check_margin(const Question&, const Margin&) const override {}
+  void check_margin(const Question& question, const Margin& margin) const override {
+    if (!is_against_darkness(question)) return;
+    require_absolute(margin, "the reference is zero in every pixel");
+  }
 
   std::string channel_name(const Question& question, std::size_t) const override {
     return image_name(*question.subjects[0].image);
