@@ -7,6 +7,7 @@
 #include <boost/algorithm/string/trim.hpp>
 #include <charconv>
 #include <cmath>
+#include <ranges>
 
 #include "harness/language/laws.h"
 
@@ -443,10 +444,11 @@ void check_quantity(const Quantity& q) {
     refuse(q.source.where, "`{}` is over all channels; name the estimator alone, or use `variance`",
            q.row->word);
   }
-  if (q.slope && q.row->of_a_sampler) {
-    refuse(q.where, "`{}` is about a sampler, which has no slope", q.row->word);
+  if (q.slope && q.row->slope == nullptr) {
+    auto sloped = quantities() | std::views::filter(&QuantityRow::slope);
+    refuse(q.where, "`slope` takes a {}, not `{}`", listed(names_of(sloped, &QuantityRow::word)),
+           q.row->word);
   }
-  if (q.slope && q.row->of_a_law) refuse(q.where, "a distribution has no slope");
 }
 
 void check_side(const Claim& claim, const ScaledQuantity& side) {

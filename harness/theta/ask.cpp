@@ -1,10 +1,8 @@
 #include "harness/theta/ask.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <ranges>
 
 #include "harness/draws/sampler_setup.h"
 #include "harness/sampling/recorded_run.h"
@@ -156,13 +154,6 @@ void require_observations(const Question& question) {
   }
 }
 
-/// InputError, with the quantities that have a slope.
-[[noreturn]] void refuse_slope(const Quantity& quantity) {
-  auto sloped = quantities() | std::views::filter(&QuantityRow::slope);
-  refuse(quantity.where, "`slope` takes a {}, not `{}`",
-         fmt::join(names_of(sloped, &QuantityRow::word), ", "), quantity.row->word);
-}
-
 void ask_of_images(Question& question) {
   if (const Theta* const theta = question.theta->of_images()) {
     question.theta = theta;
@@ -194,7 +185,6 @@ bool has_image(const Question& question) {
 
 Question ask(const TestEntry& test, const Estimators& estimators, std::uint64_t seed) {
   const Quantity& left = test.claim.left;
-  if (left.slope && left.row->slope == nullptr) refuse_slope(left);
   Question question = (left.slope ? left.row->slope : left.row->theta)->bind(test, estimators);
   require_observations(question);
   for (const Subject& other : question.subjects) {
