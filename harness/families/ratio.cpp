@@ -88,22 +88,6 @@ TestResult test(const LogRatio& ratio, std::span<const double> truths, double th
   return result;
 }
 
-/// Why a channel's variance cannot be tested: a sample without spread; "" if it can.
-std::string lack_of_variance(const Seen& seen) {
-  const Question& question = seen.question;
-  for (std::size_t subject = 0; subject < question.compared(); ++subject) {
-    if (is_constant(seen, subject)) {
-      return fmt::format(
-          "every observation of `{}` is {:.10g} but for rounding: a sample without spread says "
-          "nothing of a variance, and a rare value may be unseen; {}",
-          question.subjects[subject].estimator->name, seen.moments(subject).mean,
-          question.of_two() ? "compare the other with a number, or take more observations"
-                            : "see that it uses its random numbers, or take more observations");
-    }
-  }
-  return "";
-}
-
 // ---- Plans
 
 /// The variance of one observation's influence values of a variance, over its square. It is 2 for a
@@ -170,7 +154,7 @@ class LogTheta : public Theta {
   std::string lack_of_numbers(const TestOutcome& test, const Seen& seen) const override {
     const std::string reason = Theta::lack_of_numbers(test, seen);
     const bool of_one_variance = is.of_spread && !is.joins_channels;
-    return reason.empty() && of_one_variance ? lack_of_variance(seen) : reason;
+    return reason.empty() && of_one_variance ? lack_of_spread(seen) : reason;
   }
 
   std::vector<Gate> gates(const TestOutcome& outcome, const Seen& seen,
@@ -688,6 +672,21 @@ void require_primaries(const Subject& subject) {
 }
 
 }  // namespace
+
+std::string lack_of_spread(const Seen& seen) {
+  const Question& question = seen.question;
+  for (std::size_t subject = 0; subject < question.compared(); ++subject) {
+    if (is_constant(seen, subject)) {
+      return fmt::format(
+          "every observation of `{}` is {:.10g} but for rounding: a sample without spread says "
+          "nothing of a variance, and a rare value may be unseen; {}",
+          question.subjects[subject].estimator->name, seen.moments(subject).mean,
+          question.of_two() ? "compare the other with a number, or take more observations"
+                            : "see that it uses its random numbers, or take more observations");
+    }
+  }
+  return "";
+}
 
 JointMoments powers_of_values(const ChannelData& data) {
   return data.joint.empty() ? stats::joint_of_four(data.moments) : data.joint.front();

@@ -181,20 +181,6 @@ Gate power_law_gate(const Seen& seen, double level) {
                  log_p <= std::log(limit) ? "red" : "green");
 }
 
-/// Why the points of a sweep cannot be fitted: one has no spread, so its error is unknown. Empty if
-/// all have. Costs that never vary are exact.
-std::string point_without_spread(const Seen& seen) {
-  if (of_costs(seen.question)) return "";
-  for (std::size_t i = 0; i < seen.question.compared(); ++i) {
-    if (!is_constant(seen, i)) continue;
-    return fmt::format(
-        "every observation of `{}` is {:.10g} but for rounding: of a point without spread no error "
-        "is known, and a rare value may be unseen, so that no exponent is fitted",
-        seen.question.subjects[i].estimator->name, seen.moments(i).mean);
-  }
-  return "";
-}
-
 // ---- Sizes
 
 // Standard errors that the fitted constant must exceed: a fainter power law cannot be planned.
@@ -304,7 +290,8 @@ class SlopeTheta final : public Theta {
 
   std::string lack_of_numbers(const TestOutcome& test, const Seen& seen) const override {
     const std::string reason = Theta::lack_of_numbers(test, seen);
-    return reason.empty() ? point_without_spread(seen) : reason;
+    // Costs that never vary are exact.
+    return reason.empty() && !of_costs(seen.question) ? lack_of_spread(seen) : reason;
   }
 
   std::vector<Gate> gates(const TestOutcome& outcome, const Seen& seen, double x) const override {
