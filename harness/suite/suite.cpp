@@ -262,12 +262,8 @@ void check(const reports::Statement& statement, const Location& where) {
 
 reports::Statement read_statement(const Document& document, const Value& value,
                                   const Tests& tests) {
-  if (value.kind() != Value::Kind::map) {
-    refuse(value.where(),
-           "a statement is a map of keys and values, as in `{text: they agree, source: a talk, "
-           "holds: [a test]}`");
-  }
   const Keys keys(document, value, "a statement",
+                  "{text: they agree, source: a talk, holds: [a test]}",
                   {"text", "source", "holds", "fails", "condition"});
   reports::Statement statement{
       .text = one_line(keys.require("text", "text: the variance is reduced"), "`text`"),
@@ -283,7 +279,8 @@ reports::Statement read_statement(const Document& document, const Value& value,
 /// `budget: 1e7`, `budget: 30s` or a map of both.
 Budget read_budget(const Document& document, const Value& value) {
   if (value.kind() == Value::Kind::scalar) return read_short_budget(value);
-  const Keys keys(document, value, "a budget", {"primaries", "seconds"});
+  const Keys keys(document, value, "a budget", "{primaries: 1e7, seconds: 60}",
+                  {"primaries", "seconds"});
   Budget budget;
   if (const Value* v = keys.find("primaries")) {
     budget.primaries = count_from(*v, "the primaries of `budget`", 1);
@@ -331,7 +328,7 @@ EstimatorEntry read_estimator(const Document& document, const std::string& name,
   const Entry& entry = find_plugin(plugin->string("`plugin`"), plugin->where());
   std::vector<std::string> known = settable_names(entry);
   known.insert(known.begin(), "plugin");
-  const Keys keys(document, value, fmt::format("`{}` ({})", name, plugin->text()), known);
+  const Keys keys(document, value, fmt::format("`{}` ({})", name, plugin->text()), "", known);
   EstimatorEntry estimator{.name = name,
                            .plugin = plugin->text(),
                            .parameters = Value::map({}, value.where()),
@@ -344,12 +341,8 @@ EstimatorEntry read_estimator(const Document& document, const std::string& name,
 
 /// Reads an entry of `tests:`, without its id and without looking up estimators.
 TestEntry read_test(const Document& document, const Value& value) {
-  if (value.kind() != Value::Kind::map) {
-    refuse(value.where(),
-           "a test is a map of keys and values, as in `- claim: mean(area) == analytic`");
-  }
   refuse_levels(document, value);
-  const Keys keys(document, value, "a test",
+  const Keys keys(document, value, "a test", "- claim: mean(area) == analytic",
                   {"claim", "name", "detect", "allow", "weight", "test", "secondaries", "budget",
                    "over", "reference", "cost", "paired", "expect", "tags"});
   TestEntry test{
@@ -571,7 +564,7 @@ std::vector<Source> sources_of(const TestEntry& test) {
 Suite load_suite(const std::string& file) {
   const std::string text = read_text_file(file);
   const Document document(file, text);
-  const Keys keys(document, document.root(), "a suite",
+  const Keys keys(document, document.root(), "a suite", "suite: my first suite",
                   {"suite", "about", "alpha", "beta", "seed", "needs", "budget", "scenes",
                    "estimators", "tests", "statements"});
   Suite suite;

@@ -317,11 +317,11 @@ std::string suggestion(std::string_view name, const std::vector<std::string>& ca
                       candidates.empty() ? "there is none" : "there is: " + listed(candidates));
 }
 
-Keys::Keys(const Document& document, const Value& map, std::string what,
+Keys::Keys(const Document& document, const Value& map, std::string what, std::string_view example,
            const std::vector<std::string>& known)
     : map_(map), what_(std::move(what)) {
   if (map.kind() != Value::Kind::map) {
-    refuse(map.where(), "{} must be a map of keys and values", what_);
+    refuse(map.where(), "{} must be a map of keys and values, as in `{}`", what_, example);
   }
   for (const auto& [key, value] : map.members()) {
     if (std::ranges::find(known, key) == known.end()) {

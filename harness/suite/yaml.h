@@ -54,8 +54,9 @@ std::vector<std::string> split_outside_brackets(std::string_view text);
 /// A map of a suite file. The constructor refuses unknown keys.
 class Keys {
  public:
-  /// `what` names the map in messages: "a suite", "a test". Messages offer the known keys.
-  Keys(const Document& document, const Value& map, std::string what,
+  /// `what` names the map in messages: "a suite", "a test". Messages offer the known keys, or the
+  /// example if it is no map.
+  Keys(const Document& document, const Value& map, std::string what, std::string_view example,
        const std::vector<std::string>& known);
 
   const Value* find(std::string_view key) const { return map_.find(key); }
