@@ -316,10 +316,6 @@ EstimatorEntry read_estimator(const Document& document, const std::string& name,
     refuse(document.key(value), "a `: ` is missing before the `{{` of `{}`", name);
   }
   require_estimator_name(name, document.key(value));
-  if (value.kind() != Value::Kind::map) {
-    refuse(value.where(), "the estimator `{}` must be a map, as in `{{plugin: family/name}}`",
-           name);
-  }
   const Value* plugin = value.find("plugin");
   if (!plugin) {
     refuse(value.where(), "`{0}` needs the key `plugin`, as in `{0}: {{plugin: luminaire/area}}`",
