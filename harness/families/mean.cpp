@@ -142,44 +142,21 @@ double log_p_of_no_sign(const Side& y, const MeanTest& mean) {
   return stats::log_p_two_sided(mean.of_one(y, {.value = 0}));
 }
 
-Evidence difference_of_means(const MeanTest& mean, const Question& question, const Side& first,
-                             const Side& second) {
-  const Moments x = first.moments;
-  const Moments y = second.moments;
-  const double factor = question.factor;
-  const double offset = question.offset;
-  const double estimate = stats::contrast_of_means(x, y, {.scale = factor, .offset = offset});
-  const auto at = [=](double theta) {
-    return mean.of_two(first, second, {.scale = factor, .offset = offset + theta});
-  };
-  const double step = std::hypot(step_of(first, 1), step_of(second, factor));
-  const auto interval = [=](double confidence) {
-    if (!mean.closed_interval) {
-      return interval_by_inversion(at, {.estimate = estimate, .step = step}, confidence);
-    }
-    // Only count, mean and m2 enter. The difference stands for x, with y's mean at 0.
-    Moments moved = x;
-    moved.mean = estimate;
-    Moments scaled = y;
-    scaled.mean = 0;
-    scaled.m2 *= factor * factor;
-    moved.rest = scaled.rest = 0;
-    return stats::welch_t_interval(moved, scaled, confidence);
-  };
-  return {.estimate = estimate, .at = at, .interval = interval, .quantity = "difference of means"};
-}
-
-Evidence ratio_of_means(const MeanTest& mean, const Question& question, const Side& first,
-                        const Side& second) {
-  const Moments x = first.moments;
-  const Moments y = second.moments;
-  const double factor = question.factor;
-  const double offset = question.offset;
-  const double other = factor * y.mean;
-  const double sign = std::copysign(1, other);
+Evidence mean_against_mean(const MeanTest& mean, const Seen& seen) {
+  const Side first = side_of(mean, seen, 0);
+  const Side second = side_of(mean, seen, 1);
+  const Moments& y = second.moments;
+  const double factor = seen.question.factor;
+  const double offset = seen.question.offset;
+  const bool relative = seen.relative();
+  const double unit = relative ? std::abs(factor * y.mean) : 1;
+  const double sign = std::copysign(1, factor * y.mean);
   const double estimate =
-      stats::contrast_of_means(x, y, {.scale = factor, .offset = offset}) / std::abs(other);
+      stats::contrast_of_means(first.moments, y, {.scale = factor, .offset = offset}) / unit;
   const auto at = [=](double theta) {
+    if (!relative) {
+      return mean.of_two(first, second, {.scale = factor, .offset = offset + theta});
+    }
     TestResult result =
         mean.of_two(first, second, {.scale = factor * (1 + sign * theta), .offset = offset});
     if (theta == 0) return result;
@@ -189,19 +166,29 @@ Evidence ratio_of_means(const MeanTest& mean, const Question& question, const Si
     result.log_p_upper = std::max(result.log_p_upper, log_p_sign);
     return result;
   };
-  const double step = std::hypot(step_of(first, 1), step_of(second, factor)) / std::abs(other);
+  const double step = std::hypot(step_of(first, 1), step_of(second, factor)) / unit;
   const auto interval = [=](double confidence) {
-    if (!mean.closed_interval || offset != 0) {
+    if (!mean.closed_interval || (relative && offset != 0)) {
       return interval_by_inversion(at, {.estimate = estimate, .step = step}, confidence);
     }
-    return map_ends(stats::welch_ratio_interval(x, y, confidence),
-                    [=](double ratio) { return sign * ((1 + ratio) / factor - 1); });
+    if (relative) {
+      return map_ends(stats::welch_ratio_interval(first.moments, second.moments, confidence),
+                      [=](double ratio) { return sign * ((1 + ratio) / factor - 1); });
+    }
+    // Only count, mean and m2 enter. The difference stands for x, with y's mean at 0.
+    Moments moved = first.moments;
+    moved.mean = estimate;
+    Moments scaled = second.moments;
+    scaled.mean = 0;
+    scaled.m2 *= factor * factor;
+    moved.rest = scaled.rest = 0;
+    return stats::welch_t_interval(moved, scaled, confidence);
   };
   return {.estimate = estimate,
           .at = at,
           .interval = interval,
-          .quantity = "relative difference of means",
-          .relative = true};
+          .quantity = relative ? "relative difference of means" : "difference of means",
+          .relative = relative};
 }
 
 Evidence mean_against_number(const MeanTest& mean, const Seen& seen) {
@@ -237,9 +224,7 @@ Evidence mean_against_number(const MeanTest& mean, const Seen& seen) {
 
 template <const MeanTest& mean>
 Evidence evidence_of_means(const Seen& seen) {
-  if (!seen.question.of_two()) return mean_against_number(mean, seen);
-  return (seen.relative() ? ratio_of_means : difference_of_means)(
-      mean, seen.question, side_of(mean, seen, 0), side_of(mean, seen, 1));
+  return seen.question.of_two() ? mean_against_mean(mean, seen) : mean_against_number(mean, seen);
 }
 
 // A shift of so many standard errors moves a tail of one per cent by a third at most.
