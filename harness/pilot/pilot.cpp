@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <set>
 
 #include "harness/base/interrupt.h"
 #include "harness/sampling/recorded_run.h"
@@ -133,25 +132,27 @@ std::variant<Pilot, Fault> read(const std::shared_ptr<const Pool>& pool) {
                .images = drawn.images(images)};
 }
 
-std::set<std::string> costly(const std::vector<Question>& questions) {
-  std::set<std::string> names;
-  for (const Question& question : questions) {
-    if (methods_for(question).front().keeps != Keeps::costs) continue;
-    for (const Subject& subject : question.subjects) names.insert(subject.estimator->name);
-  }
-  return names;
+/// True if a claim on the estimator compares costs.
+bool is_costly(const PreparedEstimator& estimator, const std::vector<Question>& questions) {
+  return std::ranges::any_of(questions, [&](const Question& question) {
+    return methods_for(question).front().keeps == Keeps::costs &&
+           std::ranges::any_of(question.subjects, [&](const Subject& side) {
+             return side.estimator->name == estimator.name;
+           });
+  });
 }
 
-/// The most primaries of a pilot's pool that any claim pays for, by the estimators' listed names.
-std::map<std::string, std::uint64_t> most_primaries(const std::vector<Question>& questions) {
-  std::map<std::string, std::uint64_t> most;
+/// The most primaries of a pilot's pool that any claim on the estimator pays for.
+std::uint64_t most_primaries(const PreparedEstimator& estimator,
+                             const std::vector<Question>& questions) {
+  std::optional<std::uint64_t> most;
   for (const Question& question : questions) {
     for (const Subject& side : question.subjects) {
-      std::uint64_t& paid = most[side.estimator->listed];
-      paid = std::max(paid, paid_by(question, side));
+      if (side.estimator->listed != estimator.listed) continue;
+      most = std::max(most.value_or(0), paid_by(question, side));
     }
   }
-  return most;
+  return most.value_or(unlimited);
 }
 
 std::string pilot_name_of(const std::string& estimator, const std::string& purpose) {
@@ -252,20 +253,15 @@ std::vector<double> as_secondaries(const Subject& side, std::span<const double> 
 std::vector<std::pair<std::string, std::shared_ptr<Pool>>> pilot_pools(
     const std::vector<const PreparedEstimator*>& estimators, const std::vector<Question>& questions,
     std::uint64_t seed) {
-  const std::set<std::string> with_cost = costly(questions);
-  const auto paid = most_primaries(questions);
-  const auto most_of = [&](const PreparedEstimator& estimator) {
-    const auto found = paid.find(estimator.listed);
-    return found == paid.end() ? unlimited : found->second;
-  };
   std::vector<std::pair<std::string, std::shared_ptr<Pool>>> pools;
   for (const PreparedEstimator* estimator : estimators) {
     const bool averages = estimator->nature().averages;
     const std::uint64_t primaries = averages ? 1 : estimator->primaries.value_or(1);
     pools.emplace_back(estimator->name,
                        pilot_pool(estimator->setup, key_of(*estimator, seed, 0, "pilot"), primaries,
-                                  usual_observations(*estimator, primaries), most_of(*estimator)));
-    if (with_cost.contains(estimator->name)) {
+                                  usual_observations(*estimator, primaries),
+                                  most_primaries(*estimator, questions)));
+    if (is_costly(*estimator, questions)) {
       for (ChannelPlan& channel : pools.back().second->plans()) channel.powers = Powers::with_costs;
     }
   }
@@ -275,7 +271,7 @@ std::vector<std::pair<std::string, std::shared_ptr<Pool>>> pilot_pools(
     const StreamKey key = key_of(*estimator, seed, 0, averages_purpose + " pilot");
     pools.emplace_back(pilot_name_of(estimator->name, averages_purpose),
                        pilot_pool(estimator->setup, key, primaries, many_observations / primaries,
-                                  most_of(*estimator)));
+                                  most_primaries(*estimator, questions)));
   }
   for (const Question& question : questions) {
     if (!question.chosen || methods_for(question).front().keeps != Keeps::points) continue;
@@ -283,7 +279,7 @@ std::vector<std::pair<std::string, std::shared_ptr<Pool>>> pilot_pools(
       if (side.purpose.empty()) continue;
       const StreamKey key = key_of(*side.estimator, seed, 0, side.purpose + " pilot");
       pools.emplace_back(pilot_name(side), pilot_pool(side.setup, key, 1, many_observations,
-                                                      most_of(*side.estimator)));
+                                                      most_primaries(*side.estimator, questions)));
     }
   }
   return pools;
