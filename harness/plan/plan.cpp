@@ -385,27 +385,25 @@ std::vector<FamilyPlace> places(const Suite& suite, const std::vector<Question>&
   double inside_weight = 0;
   double all_weight = 0;
   int outside = 0;
+  const auto count = [&](const TestEntry& test, bool inside) {
+    all_weight += test.weight;
+    inside_weight += inside ? test.weight : 0;
+    outside += inside ? 0 : 1;
+  };
   const auto timed = [](const std::optional<Budget>& budget) { return budget && budget->seconds; };
   for (const Question& question : questions) {
-    const bool inside = inside_family(question);
-    all.push_back(
-        {.inside = inside, .in_seconds = timed(suite.budget) || timed(question.test->budget)});
-    all_weight += question.test->weight;
-    if (inside) inside_weight += question.test->weight;
-    if (!inside) ++outside;
+    all.push_back({.inside = inside_family(question),
+                   .in_seconds = timed(suite.budget) || timed(question.test->budget)});
+    count(*question.test, all.back().inside);
   }
   // A test whose source died keeps its part: the others' numbers do not change.
   double least_untested = std::numeric_limits<double>::infinity();
   for (const TestEntry& test : suite.tests) {
     const auto asks = [&](const Question& question) { return question.test == &test; };
     if (std::ranges::any_of(questions, asks)) continue;
-    all_weight += test.weight;
-    if (test.expect != reports::Verdict::pass) {
-      ++outside;
-      continue;
-    }
-    inside_weight += test.weight;
-    least_untested = std::min(least_untested, test.weight);
+    const bool inside = test.expect == reports::Verdict::pass;
+    count(test, inside);
+    if (inside) least_untested = std::min(least_untested, test.weight);
   }
   const double total = inside_weight > 0 ? inside_weight : all_weight;
   double smallest = suite.alpha * least_untested / total;
