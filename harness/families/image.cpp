@@ -89,19 +89,14 @@ std::string counts_text(const Question& question) {
 
 bool is_digit(char c) { return '0' <= c && c <= '9'; }
 
-/// Characters at the beginning that all names have in common, without part of a number.
-std::size_t common_beginning(const std::vector<std::string>& names) {
+/// Takes off what all names begin with, without part of a number, and turns them around.
+void remove_beginnings(std::vector<std::string>& names) {
   const auto [first, last] = std::ranges::minmax(names);
   auto length = static_cast<std::size_t>(std::ranges::mismatch(first, last).in1 - first.begin());
   const bool in_number = std::ranges::any_of(names, [&](const std::string& name) {
     return length < name.size() && is_digit(name[length]);
   });
   while (in_number && length > 0 && is_digit(names[0][length - 1])) --length;
-  return length;
-}
-
-void remove_beginnings(std::vector<std::string>& names) {
-  const std::size_t length = common_beginning(names);
   for (std::string& name : names) {
     name.erase(0, length);
     std::ranges::reverse(name);
