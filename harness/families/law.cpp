@@ -257,11 +257,8 @@ Evidence cells_against_cells(const Seen& seen) {
           .distance = true};
 }
 
-Evidence law_against_law(const Seen& seen) {
-  return points_against_points(points_of(seen, 0), points_of(seen, 1));
-}
-
-Evidence values_against_law(const Seen& seen) {
+Evidence by_distance(const Seen& seen) {
+  if (seen.question.of_two()) return points_against_points(points_of(seen, 0), points_of(seen, 1));
   return points_against_law(points_of(seen, 0), declared_law(seen.question, seen.channel));
 }
 
@@ -388,10 +385,10 @@ class LawTheta : public Theta {
   explicit LawTheta(const ThetaTraits& traits)
       : Theta(traits,
               {{"ks", "Kolmogorov-Smirnov: values against a law", of_one_law, Keeps::values,
-                values_against_law, of_distinct_values},
+                by_distance, of_distinct_values},
                {"ks", "Kolmogorov-Smirnov: values of two, a frequent one apart",
                 [](const Question& q) { return q.of_two() && !q.is().joins_channels; },
-                Keeps::values, law_against_law},
+                Keeps::values, by_distance},
                {"chi-square-two-sample",
                 "chi-square of two: one or two coordinates together, in cells", of_two,
                 Keeps::points, cells_against_cells},
