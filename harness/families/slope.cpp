@@ -46,13 +46,20 @@ bool reference_is_shared(const Question& question) {
          question.test->over->parameter == "primaries";
 }
 
-SlopeData biases(const Seen& seen) {
+SlopeData points_of(const Seen& seen) {
   const Question& question = seen.question;
-  SlopeData slope;
+  const bool logarithms = of_logarithms(question);
+  SlopeData slope{.scale = logarithms ? stats::SlopeScale::logarithms : stats::SlopeScale::values};
   for (std::size_t i = 0; i < question.compared(); ++i) {
-    const Moments& x = seen.moments(i);
-    SlopePoint point{
-        .size = question.sizes[i], .estimate = x.mean, .standard_error = x.standard_error()};
+    SlopePoint point{.size = question.sizes[i]};
+    if (logarithms) {
+      const stats::Influence influence = influence_of(seen, i);
+      point.estimate = influence.log_value;
+      point.standard_error = influence.relative.standard_error();
+    } else {
+      point.estimate = seen.moments(i).mean;
+      point.standard_error = seen.moments(i).standard_error();
+    }
     if (!question.truths.empty()) {  // each point of a bias has one
       const Constant truth = truth_of(seen, i);
       point.estimate -= truth.value;
@@ -63,18 +70,6 @@ SlopeData biases(const Seen& seen) {
       }
     }
     slope.points.push_back(point);
-  }
-  return slope;
-}
-
-SlopeData points_of(const Seen& seen) {
-  if (!of_logarithms(seen.question)) return biases(seen);
-  SlopeData slope{.scale = stats::SlopeScale::logarithms};
-  for (std::size_t i = 0; i < seen.question.compared(); ++i) {
-    const stats::Influence influence = influence_of(seen, i);
-    slope.points.push_back({.size = seen.question.sizes[i],
-                            .estimate = influence.log_value,
-                            .standard_error = influence.relative.standard_error()});
   }
   return slope;
 }
