@@ -72,8 +72,8 @@ class Lexer {
     while (is_blank(ahead(0))) ++at_;
     if (at_ == text_.size()) return taken(Token::Kind::end, 0);
     if (is_letter(ahead(0))) return word();
-    if (number_begins()) return number();
-    return symbol();
+    const ScannedNumber found = scan_number(rest());
+    return found.length > 0 ? number(found) : symbol();
   }
 
   /// The next token, without taking it.
@@ -95,18 +95,10 @@ class Lexer {
     return taken(Token::Kind::word, length);
   }
 
-  bool number_begins() const {
-    std::size_t i = ahead(0) == '-' || ahead(0) == '+' ? 1 : 0;
-    if (ahead(i) == '.') ++i;
-    return is_digit(ahead(i));
-  }
-
-  Token number() {
-    const ScannedNumber found = scan_number(rest());
-    const Location where = place();
+  Token number(const ScannedNumber& found) {
     Token token = taken(Token::Kind::number, found.length);
     token.number = found.value;
-    if (found.overflows) refuse(where, "the number `{}` does not fit a double", token.text);
+    if (found.overflows) refuse(token.where, "the number `{}` does not fit a double", token.text);
     refuse_quotient(token);
     return token;
   }
