@@ -199,7 +199,6 @@ Constant analytic_variance(const Channel& channel, const Source& source) {
 
 std::vector<Constant> references_of(const Claim& claim, const Subject& subject) {
   std::vector<Constant> numbers;
-  numbers.reserve(subject.channels.size());
   for (const Channel& channel : subject.declared()) {
     const auto* const number = std::get_if<Constant>(&claim.right);
     numbers.push_back(number != nullptr ? *number
@@ -250,18 +249,18 @@ const ScaledQuantity* other_side(const Claim& claim) {
 
 std::vector<Constant> truths_of(const TestEntry& test, const Subject& subject,
                                 const Source& source) {
-  if (test.reference) return std::vector<Constant>(subject.channels.size());
+  if (test.reference || test.reference_number) {
+    return std::vector(subject.channels.size(), test.reference_number.value_or(Constant{}));
+  }
   std::vector<Constant> truths;
-  truths.reserve(subject.channels.size());
   for (const Channel& channel : subject.declared()) {
-    if (!test.reference_number && !channel.mean) {
+    if (!channel.mean) {
       refuse(source.where,
              "the true mean of `{}` is not known to its plugin; give the test a `reference:`, a "
              "number or an estimator",
              to_string(source));
     }
-    truths.push_back(test.reference_number ? *test.reference_number
-                                           : analytic_mean(channel, source));
+    truths.push_back({*channel.mean, channel.mean_error});
   }
   return truths;
 }

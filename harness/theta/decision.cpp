@@ -27,7 +27,7 @@ double end_of(const stats::Curve& curve, const Whereabouts& around, double direc
   double outside = around.step;
   for (int doublings = 0; at(outside) > 0; outside *= 2) {
     inside = outside;
-    if (++doublings == most_doublings) return direction * std::numeric_limits<double>::infinity();
+    if (++doublings == most_doublings) return direction * infinity;
   }
   if (!(inside > 0 || at(inside) > 0)) return around.estimate;
   return around.estimate +
@@ -117,8 +117,7 @@ double log_p_claimed(const Evidence& evidence, const Regions& regions) {
   const double above = regions.bounds_above() ? evidence.at(claimed.high).log_p_upper : 0;
   const double below = regions.bounds_below() ? evidence.at(claimed.low).log_p_lower : 0;
   if (regions.two_sided()) return std::min(0.0, std::log(2.0) + std::min(above, below));
-  constexpr double impossible = std::numeric_limits<double>::lowest();
-  return regions.proof() && is_exactly_0(evidence) ? impossible : std::min(above, below);
+  return regions.proof() && is_exactly_0(evidence) ? log_of_impossible : std::min(above, below);
 }
 
 double log_p_forbidden(const Evidence& evidence, const Regions& regions) {
