@@ -170,54 +170,35 @@ void check_whole(const ShardFile& shard) {
   }
 }
 
-struct Property {
-  const char* name;
-  std::string (*of)(const reports::Record&);
-  const char* mend;
-};
-
 /// Joins what is told of each item by blanks.
 template <class List, class Tell>
 std::string all_of(const List& list, Tell tell) {
   return fmt::format("{}", fmt::join(list | std::views::transform(tell), " "));
 }
 
-const Property properties[] = {
-    {"the number of shards",
-     [](const reports::Record& r) { return std::to_string(r.shard->count); },
-     "run all of them as --shard I/N with one N"},
-    {"the program's version",
-     [](const reports::Record& r) { return r.tool.version + " " + r.tool.commit; },
-     "run all shards by one version of assay"},
-    {"the options", [](const reports::Record& r) { return r.shard->options; },
-     "run all shards by one command, but for --shard and --report"},
-    {"the seed", [](const reports::Record& r) { return all_of(r.suites, &reports::Suite::seed); },
-     "give all shards one --seed"},
-    {"alpha and beta",
-     [](const reports::Record& r) {
-       return all_of(r.suites, [](const auto& suite) {
-         return fmt::format("{} {}", suite.alpha, suite.beta);
-       });
-     },
-     "run all shards with one --alpha"},
-    {"the digest of the suites and the data they name",
-     [](const reports::Record& r) { return all_of(r.shard->suites, &reports::ShardSuite::digest); },
-     "run all shards on the same files"},
-    {"the compiler", [](const reports::Record& r) { return r.environment.compiler; },
-     "run all shards by one build"},
-    {"the instruction set that rays are traced with",
-     [](const reports::Record& r) { return r.environment.isa; },
-     "run all shards on machines of one kind"}};
+/// What the shards of one run have in common.
+Identity identity_of(const reports::Record& record) {
+  const auto rates = [](const reports::Suite& suite) {
+    return fmt::format("{} {}", suite.alpha, suite.beta);
+  };
+  return {{"the number of shards", std::to_string(record.shard->count)},
+          {"the program's version", record.tool.version + " " + record.tool.commit},
+          {"the options", record.shard->options},
+          {"the seed", all_of(record.suites, &reports::Suite::seed)},
+          {"alpha and beta", all_of(record.suites, rates)},
+          {"the digest of the suites and the data they name",
+           all_of(record.shard->suites, &reports::ShardSuite::digest)},
+          {"the compiler", record.environment.compiler},
+          {"the instruction set that rays are traced with", record.environment.isa}};
+}
 
 void check_same(const ShardFile& first, const ShardFile& other) {
-  for (const Property& property : properties) {
-    const std::string here = property.of(other.record);
-    const std::string there = property.of(first.record);
-    if (here == there) continue;
-    refuse({.file = other.file},
-           "is no part of the run that `{}` is of: {} is `{}` here and `{}` there; {}", first.file,
-           property.name, here, there, property.mend);
-  }
+  const auto found = difference(identity_of(other.record), identity_of(first.record));
+  if (!found) return;
+  refuse({.file = other.file},
+         "is no part of the run that `{}` is of: {} is `{}` here and `{}` there; run all shards by "
+         "one build and one command, but for --shard and --report, on the same files",
+         first.file, found->name, found->ours, found->theirs);
 }
 
 /// InputError unless the records are shards of one run, each at most once.
