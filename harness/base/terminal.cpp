@@ -94,48 +94,41 @@ std::string progress_text(const Phase& phase, std::uint64_t done) {
   return fmt::format("{}{} %", name, static_cast<int>(100 * fraction(phase, done)));
 }
 
-ProgressBar::ProgressBar(std::ostream& out, Clock now, std::function<int()> width)
-    : out_(out), now_(std::move(now)), width_(std::move(width)), first_(now_()) {}
+std::string ProgressLines::text(std::uint64_t done) const {
+  const double seconds = std::chrono::duration<double>(shown_ - first_).count();
+  return fmt::format("{}  {:.0f} s", progress_text(phase_, done), seconds);
+}
+
+void ProgressLines::advance(std::uint64_t done) {
+  if (now_() - shown_ < 1min) return;
+  shown_ = now_();
+  say_beside_progress(text(done), out_);
+}
 
 void ProgressBar::begin(const Phase& phase) {
   phase_ = phase;
-  done_ = 0;
-  draw();
+  draw(0);
 }
 
 void ProgressBar::advance(std::uint64_t done) {
-  done_ = done;
-  if (now_() - drawn_ >= bar_period) draw();
+  if (now_() - shown_ >= bar_period) draw(done);
 }
 
-void ProgressBar::draw() {
+void ProgressBar::draw(std::uint64_t done) {
   constexpr int widest = 30;
   const std::scoped_lock lock(terminal);
   bar_on = &out_;
-  drawn_ = now_();
+  shown_ = now_();
   // The last column stays free: some terminals begin a line after it.
   const int width = width_() - 1;
-  const double seconds = std::chrono::duration<double>(drawn_ - first_).count();
-  out_ << wipe
-       << reports::shorten(fmt::format("{} {}  {:.0f} s",
-                                       bar(fraction(phase_, done_), std::min(widest, width / 3)),
-                                       progress_text(phase_, done_), seconds),
-                           width)
-       << std::flush;
+  const std::string filled = bar(fraction(phase_, done), std::min(widest, width / 3));
+  out_ << wipe << reports::shorten(filled + " " + text(done), width) << std::flush;
 }
 
 void ProgressBar::end() {
   const std::scoped_lock lock(terminal);
   wipe_bar();
   bar_on = nullptr;
-}
-
-void ProgressLines::advance(std::uint64_t done) {
-  const auto now = now_();
-  if (now - said_ < 1min) return;
-  said_ = now;
-  const double seconds = std::chrono::duration<double>(now - first_).count();
-  say_beside_progress(fmt::format("{}  {:.0f} s", progress_text(phase_, done), seconds), out_);
 }
 
 void say_beside_progress(const std::string& sentence, std::ostream& out) {

@@ -34,43 +34,41 @@ std::string in_lines(const std::string& sentence);
 
 using Clock = std::function<std::chrono::steady_clock::time_point()>;
 
+/// A line a minute, for what does not redraw lines: "assay: pilot  43 %  60 s".
+class ProgressLines : public Progress {
+ public:
+  explicit ProgressLines(std::ostream& out, Clock now = std::chrono::steady_clock::now)
+      : out_(out), now_(std::move(now)), first_(now_()), shown_(first_) {}
+  void begin(const Phase& phase) override { phase_ = phase; }
+  void advance(std::uint64_t done) override;
+
+ protected:
+  /// "pilot  43 %  60 s", with the time shown of all phases.
+  std::string text(std::uint64_t done) const;
+
+  std::ostream& out_;
+  Clock now_;
+  Phase phase_ = {};
+  std::chrono::steady_clock::time_point first_;  ///< start of all phases
+  std::chrono::steady_clock::time_point shown_;
+};
+
 /// A line on standard error that redraws itself, ten times a second at most. It never scrolls.
-class ProgressBar final : public Progress {
+class ProgressBar final : public ProgressLines {
  public:
   explicit ProgressBar(
       std::ostream& out, Clock now = std::chrono::steady_clock::now,
-      std::function<int()> width = [] { return terminal_width(stderr); });
+      std::function<int()> width = [] { return terminal_width(stderr); })
+      : ProgressLines(out, std::move(now)), width_(std::move(width)) {}
   ~ProgressBar() override { ProgressBar::end(); }
   void begin(const Phase& phase) override;
   void advance(std::uint64_t done) override;
   void end() override;  ///< wipes the line
 
  private:
-  void draw();
+  void draw(std::uint64_t done);
 
-  std::ostream& out_;
-  Clock now_;
   std::function<int()> width_;
-  Phase phase_ = {};
-  std::uint64_t done_ = 0;
-  std::chrono::steady_clock::time_point first_;  ///< start of all phases
-  std::chrono::steady_clock::time_point drawn_;
-};
-
-/// A line a minute, for what does not redraw lines: "assay: pilot  43 %  60 s".
-class ProgressLines final : public Progress {
- public:
-  explicit ProgressLines(std::ostream& out, Clock now = std::chrono::steady_clock::now)
-      : out_(out), now_(std::move(now)), first_(now_()), said_(first_) {}
-  void begin(const Phase& phase) override { phase_ = phase; }
-  void advance(std::uint64_t done) override;
-
- private:
-  std::ostream& out_;
-  Clock now_;
-  Phase phase_ = {};
-  std::chrono::steady_clock::time_point first_;
-  std::chrono::steady_clock::time_point said_;
 };
 
 /// Writes a line "assay: …" to standard error. A progress line is wiped first and drawn again
