@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
@@ -26,9 +25,7 @@ bool use_colour(Colour colour, std::FILE* stream) {
   if (colour != Colour::automatic) return colour == Colour::always;
   if (is_set("NO_COLOR")) return false;
   if (is_set("FORCE_COLOR") || is_set("CLICOLOR_FORCE")) return true;
-  const char* terminal = std::getenv("TERM");
-  const bool dumb = terminal == nullptr || std::string(terminal) == "dumb";
-  return !dumb && isatty(fileno(stream)) != 0;
+  return is_set("TERM") && system_environment("TERM") != "dumb" && isatty(fileno(stream)) != 0;
 }
 
 /// The stream that the console goes to; null if a file has it.

@@ -1,9 +1,9 @@
 #include "harness/record/record_of.h"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <ctime>
 #include <filesystem>
@@ -217,9 +217,7 @@ std::string cost_text(const TestEntry& test) {
 
 /// True if the clock affects the numbers.
 bool is_timed(const TestWork& work) {
-  const std::optional<Budget>& budget = work.outcome.question.test->budget;
-  const bool of_suite = work.suite_budget != nullptr && work.suite_budget->seconds;
-  return work.outcome.plan.method.keeps == Keeps::blocks || (budget && budget->seconds) || of_suite;
+  return work.outcome.plan.method.keeps == Keeps::blocks || work.outcome.place.in_seconds;
 }
 
 std::vector<reports::Statement> statements_of(const Suite& suite,
@@ -419,14 +417,7 @@ reports::Environment this_environment(unsigned threads) {
           .threads = static_cast<int>(threads_of(threads))};
 }
 
-std::string utc_now() {
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  char text[sizeof "2000-01-01T00:00:00Z"];
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return text;
-}
+std::string utc_now() { return fmt::format("{:%FT%TZ}", fmt::gmtime(std::time(nullptr))); }
 
 reports::Test record_of_test(const TestWork& work, const std::string& file) {
   const TestOutcome& outcome = work.outcome;
