@@ -51,15 +51,26 @@ class ImageViews {
  public:
   ImageViews() = default;
   /// The images must outlive it.
-  ImageViews(Images images, const ChannelList& channels);
+  ImageViews(Images images, const ChannelList& channels) {
+    for (const std::vector<float>& image : images) {
+      if (channels.side_by_side()) {
+        images_.push_back(std::span(image).subspan(channels[0], channels.size()));
+        continue;
+      }
+      std::vector<float>& copy = copies_.emplace_back();
+      std::ranges::transform(channels.all(), std::back_inserter(copy),
+                             [&](std::size_t channel) { return image[channel]; });
+      images_.emplace_back(copy);
+    }
+  }
   /// Owns the images.
-  explicit ImageViews(std::vector<std::vector<float>> images);
+  explicit ImageViews(std::vector<std::vector<float>> images)
+      : copies_(std::move(images)), images_(copies_.begin(), copies_.end()) {}
   ImageViews(const ImageViews&) = delete;  // views point into copies
   ImageViews& operator=(const ImageViews&) = delete;
   // Moving a vector does not move its elements.
   ImageViews(ImageViews&&) noexcept = default;
   ImageViews& operator=(ImageViews&&) noexcept = default;
-  ~ImageViews() = default;
 
   const std::vector<std::span<const float>>& images() const { return images_; }
 
