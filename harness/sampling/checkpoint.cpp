@@ -24,9 +24,9 @@ constexpr std::size_t most_numbers = std::size_t{1} << 21;
 template <>
 inline constexpr bool is_plain<KeptPart> = true;
 
-template <class Archive, maybe_const<DrawnPool> T>
-void parts(Archive& a, T& drawn) {
-  a(drawn.sums, drawn.kept);
+template <class Archive, maybe_const<WrittenPool> T>
+void parts(Archive& a, T& written) {
+  a(written.sums, written.kept);
 }
 
 Checkpoint::Checkpoint(std::string file, std::chrono::duration<double> pause, Identity identity,
@@ -46,7 +46,7 @@ Checkpoint::Checkpoint(std::string file, std::chrono::duration<double> pause, Id
 void Checkpoint::read() {
   const std::string bytes = bytes_of(file_).value_or("");
   Identity identity;
-  std::vector<std::pair<std::string, DrawnPool>> entries;
+  std::vector<std::pair<std::string, WrittenPool>> entries;
   try {
     unpack(bytes, identity, entries);
   } catch (const Unpackable& refusal) {
@@ -57,7 +57,7 @@ void Checkpoint::read() {
            "is the checkpoint of another run: {} was {} and is {}; remove it, or name another file",
            other->name, other->theirs, other->ours);
   }
-  for (auto& [recipe, drawn] : entries) pools_[recipe].drawn = std::move(drawn);
+  pools_.insert(entries.begin(), entries.end());
 }
 
 /// Drops what was added when FILE was not written any more.
@@ -65,8 +65,8 @@ void Checkpoint::open_kept(bool is_resumed) {
   kept_ = std::make_unique<GrowingFile>(kept_file(file_));
   const Location where{.file = kept_->path()};
   std::uint64_t end = 0;
-  for (const auto& [recipe, known] : pools_) {
-    for (const KeptPart& part : known.drawn.kept) end = std::max(end, part.place + part.size);
+  for (const auto& [recipe, written] : pools_) {
+    for (const KeptPart& part : written.kept) end = std::max(end, part.place + part.size);
   }
   if (kept_->size() < end) refuse(where, "is shorter than {} says; remove both", file_);
   if (!is_resumed && kept_->size() > 0 && kept_->read(0, magic.size()) != magic) {
@@ -77,32 +77,31 @@ void Checkpoint::open_kept(bool is_resumed) {
 
 void Checkpoint::write() {
   std::uint64_t count = 0;
-  for (auto& [recipe, known] : pools_) {
-    const std::shared_ptr<Pool> pool = known.pool.lock();
-    if (pool && pool->drawn() > known.count && !pool->fault()) update(recipe, known, *pool);
-    count += known.drawn.sums.empty() ? 0U : 1U;
+  for (auto& [recipe, written] : pools_) {
+    const std::shared_ptr<Pool> pool = written.pool.lock();
+    if (pool && pool->drawn() > written.count && !pool->fault()) update(recipe, written, *pool);
+    count += written.sums.empty() ? 0U : 1U;
   }
   kept_->flush();
   Packer pack;
   pack(identity_, count);  // A list of pairs follows, without a copy of their sums.
-  for (const auto& [recipe, known] : pools_) {
-    if (!known.drawn.sums.empty()) pack(recipe, known.drawn);
+  for (const auto& [recipe, written] : pools_) {
+    if (!written.sums.empty()) pack(recipe, written);
   }
   write_whole(file_, framed(std::move(pack).bytes()));
 }
 
-void Checkpoint::update(const std::string& recipe, Known& known, const Pool& pool) {
+void Checkpoint::update(const std::string& recipe, WrittenPool& written, const Pool& pool) {
   const std::uint64_t most = std::max<std::uint64_t>(1, most_numbers / pool.kept_width());
-  DrawnPool drawn{.sums = packed_sums(pool.drawn_sums()), .kept = known.drawn.kept};
-  for (std::uint64_t first = known.count; first < pool.kept_end(); first += most) {
+  WrittenPool next{packed_sums(pool.drawn_sums()), written.kept, pool.drawn(), written.pool};
+  for (std::uint64_t first = written.count; first < pool.kept_end(); first += most) {
     const std::uint64_t last = std::min(first + most, pool.kept_end());
     const std::string part =
         packed(text_hash(recipe), first, packed_kept(pool.kept_block(first, last)));
-    drawn.kept.push_back({first, kept_->size(), part.size()});
+    next.kept.push_back({first, kept_->size(), part.size()});
     kept_->append(part);
   }
-  known.drawn = std::move(drawn);
-  known.count = pool.drawn();
+  written = std::move(next);
 }
 
 bool Checkpoint::try_to_write() {
@@ -134,17 +133,17 @@ void Checkpoint::recall(const SomePools& pools) {
       continue;
     }
     const std::string recipe = packed(name->second, pool->recipe());
-    Known& known = pools_[recipe];
-    if (!known.pool.expired()) continue;
-    known.pool = pool;
-    if (!known.drawn.sums.empty()) resume(recipe, known, *pool);
+    WrittenPool& written = pools_[recipe];
+    if (!written.pool.expired()) continue;
+    written.pool = pool;
+    if (!written.sums.empty()) resume(recipe, written, *pool);
   }
 }
 
-void Checkpoint::resume(const std::string& recipe, Known& known, Pool& pool) const {
+void Checkpoint::resume(const std::string& recipe, WrittenPool& written, Pool& pool) const {
   Pool::Block block;
   try {
-    for (const KeptPart& part : known.drawn.kept) {
+    for (const KeptPart& part : written.kept) {
       std::uint64_t hash = 0;
       std::uint64_t observation = 0;
       std::string_view kept;
@@ -154,11 +153,11 @@ void Checkpoint::resume(const std::string& recipe, Known& known, Pool& pool) con
                         "it holds other observations");
       add_kept(kept, block);
     }
-    pool.fold(unpacked_drawn(known.drawn.sums, std::move(block), pool));
+    pool.fold(unpacked_drawn(written.sums, std::move(block), pool));
   } catch (const Unpackable& refusal) {
     refuse({.file = kept_->path()}, "does not go with {}: {}; remove both", file_, refusal.what());
   }
-  known.count = pool.drawn();
+  written.count = pool.drawn();
 }
 
 void Checkpoint::draw(Round& round) {

@@ -22,9 +22,11 @@ struct KeptPart {
 };
 
 /// A pool's observations when it was last written.
-struct DrawnPool {
-  std::string sums = "";
+struct WrittenPool {
+  std::string sums = "";  ///< "": it was not written yet
   std::vector<KeptPart> kept = {};
+  std::uint64_t count = 0;        ///< how many they are; not in the file
+  std::weak_ptr<Pool> pool = {};  ///< The pool lives as long as this run needs it.
 };
 
 /// Draws by another executor. Now and then, at the end of a round and when the user interrupts, it
@@ -52,19 +54,14 @@ class Checkpoint final : public Executor {
 
  private:
   using Clock = std::chrono::steady_clock;
-  struct Known {
-    DrawnPool drawn = {};
-    std::uint64_t count = 0;        ///< The number of observations in `drawn`.
-    std::weak_ptr<Pool> pool = {};  ///< The pool lives as long as this run needs it.
-  };
 
   void read();
   void open_kept(bool is_resumed);
   void write();
-  void update(const std::string& recipe, Known& known, const Pool& pool);
+  void update(const std::string& recipe, WrittenPool& written, const Pool& pool);
   /// False if it fails, which is said: a full disk must not end a long run.
   bool try_to_write();
-  void resume(const std::string& recipe, Known& known, Pool& pool) const;
+  void resume(const std::string& recipe, WrittenPool& written, Pool& pool) const;
 
   std::string file_;
   Clock::duration pause_;
@@ -72,8 +69,8 @@ class Checkpoint final : public Executor {
   std::shared_ptr<Executor> inner_;
   std::map<std::shared_ptr<const Setup>, std::string> names_;
   std::unique_ptr<GrowingFile> kept_;
-  std::map<std::string, Known> pools_;  ///< By packed recipe.
-  Clock::time_point soonest_;           ///< Writing again may begin.
+  std::map<std::string, WrittenPool> pools_;  ///< By packed recipe.
+  Clock::time_point soonest_;                 ///< Writing again may begin.
   Clock::time_point due_;
 };
 
