@@ -57,38 +57,36 @@ void remove_left_overs(const fs::path& folder) {
   }
 }
 
-// An open file; a temporary one is locked, and removed unless it was kept.
-class Output {
+// A name that no other process takes.
+fs::path temporary_beside(const fs::path& target) {
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  remove_left_overs(folder);
+  return folder / fmt::format("{}{}{}", temporary_begin, ::getpid(), temporary_end);
+}
+
+// A new file beside the target, locked, and removed unless it takes the target's place.
+class Temporary {
  public:
-  Output(fs::path file, int flags, fs::path target)
-      : file_(std::move(file)), target_(std::move(target)), temporary_((flags & O_EXCL) != 0) {
+  explicit Temporary(const fs::path& target) : file_(temporary_beside(target)), target_(target) {
     do {
       if (descriptor_ >= 0) ::close(descriptor_);
-      if (temporary_) ::unlink(file_.c_str());
-      descriptor_ = ::open(file_.c_str(), flags | O_WRONLY | O_CLOEXEC, 0666);
+      ::unlink(file_.c_str());
+      descriptor_ = ::open(file_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
       if (descriptor_ < 0) fail("write", target_, errno);
-    } while (temporary_ && !is_ours());
-    if (temporary_) lock_ = ::dup(descriptor_);
+    } while (!is_ours());
   }
-  Output(const Output&) = delete;
-  Output& operator=(const Output&) = delete;
-  ~Output() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-    if (temporary_) ::unlink(file_.c_str());
-    if (lock_ >= 0) ::close(lock_);
+  Temporary(const Temporary&) = delete;
+  Temporary& operator=(const Temporary&) = delete;
+  ~Temporary() {
+    if (!is_renamed_) ::unlink(file_.c_str());
+    ::close(descriptor_);
   }
 
-  void write(std::string_view text) { write_all(descriptor_, text, target_); }
-
-  void close() {
-    if (temporary_ && ::fsync(descriptor_) != 0) fail("write", target_, errno);
-    // A network file system may report only here that the disk is full.
-    if (::close(std::exchange(descriptor_, -1)) != 0) fail("write", target_, errno);
-  }
-
-  void rename() {
+  void become_target(std::string_view text) {
+    write_all(descriptor_, text, target_);
+    if (::fsync(descriptor_) != 0) fail("write", target_, errno);
     if (::rename(file_.c_str(), target_.c_str()) != 0) fail("write", target_, errno);
-    temporary_ = false;
+    is_renamed_ = true;
   }
 
  private:
@@ -101,16 +99,13 @@ class Output {
   fs::path file_;
   fs::path target_;
   int descriptor_ = -1;
-  int lock_ = -1;  // shares the lock, which outlives the descriptor until the file is renamed
-  bool temporary_;
+  bool is_renamed_ = false;
 };
 
-// A name that no other process takes.
-fs::path temporary_beside(const fs::path& target) {
-  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
-  remove_left_overs(folder);
-  return folder / fmt::format("{}{}{}", temporary_begin, ::getpid(), temporary_end);
-}
+struct Open {
+  int descriptor;
+  ~Open() { ::close(descriptor); }
+};
 
 fs::path behind_links(const fs::path& path) {
   std::error_code ignored;
@@ -165,15 +160,12 @@ void write_whole(const fs::path& path, std::string_view text) {
   const fs::file_status status = fs::status(target, ignored);
   if (fs::is_directory(status)) fail("write", path, EISDIR);
   if (fs::exists(status) && !fs::is_regular_file(status)) {
-    Output direct(target, 0, path);
-    direct.write(text);
-    direct.close();
+    const Open direct{::open(target.c_str(), O_WRONLY | O_CLOEXEC)};
+    if (direct.descriptor < 0) fail("write", path, errno);
+    write_all(direct.descriptor, text, path);
     return;
   }
-  Output output(temporary_beside(target), O_CREAT | O_EXCL, target);
-  output.write(text);
-  output.close();
-  output.rename();
+  Temporary(target).become_target(text);
 }
 
 GrowingFile::GrowingFile(fs::path path)
