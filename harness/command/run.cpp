@@ -42,10 +42,6 @@ void note_margins(const PlannedRun& planned) {
   notice(doubts[0] + (others > 0 ? fmt::format(" ({} more like it)", others) : ""));
 }
 
-void add_note(reports::Record& record, const std::string& note) {
-  record.note += (record.note.empty() ? "" : "; ") + note;
-}
-
 /// Adds remarks on the ledger.
 void note_ledger(reports::Record& record, const SuiteRuns& runs, const RunOptions& options) {
   std::size_t outside = 0;

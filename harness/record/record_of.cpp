@@ -456,20 +456,22 @@ reports::Test record_of_test(const TestWork& work, const std::string& file) {
   return test;
 }
 
+void add_note(reports::Record& record, const std::string& note) {
+  record.note += (record.note.empty() ? "" : "; ") + note;
+}
+
 void note_retries(reports::Record& record) {
-  std::size_t count = 0;
-  std::string names;
+  std::vector<std::string> seeds;
   for (const reports::Suite& suite : record.suites) {
-    count += suite.retries.size();
     for (const reports::Retry& each : suite.retries) {
-      names +=
-          fmt::format("{}seed {} of `{}`", names.empty() ? "" : ", ", each.seed, each.estimator);
+      seeds.push_back(fmt::format("seed {} of `{}`", each.seed, each.estimator));
     }
   }
-  if (count == 0) return;
-  record.note += fmt::format("{}{} {} and {} started again: {}", record.note.empty() ? "" : "; ",
-                             count, count == 1 ? "program failed" : "programs failed",
-                             count == 1 ? "was" : "were", names);
+  if (seeds.empty()) return;
+  add_note(record,
+           fmt::format("{} {} started again: {}", seeds.size(),
+                       seeds.size() == 1 ? "program failed and was" : "programs failed and were",
+                       listed(seeds)));
 }
 
 void add_replay(const TestEntry& entry, const SuiteRun& run, const SuiteRuns& runs,

@@ -14,6 +14,7 @@ reports::Environment this_environment(unsigned threads);
 /// The time now as "2000-01-01T00:00:00Z".
 std::string utc_now();
 
+void add_note(reports::Record& record, const std::string& note);
 /// Adds a note on the programs that were started again.
 void note_retries(reports::Record& record);
 
