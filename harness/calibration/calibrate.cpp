@@ -330,10 +330,7 @@ std::string calibration_law(const std::string& named) {
 void require_calibrated(const std::string& method) {
   std::set<std::string> known;
   for (const Draft& draft : all_drafts()) known.insert(draft.method);
-  if (known.contains(method)) return;
-  const std::string near = nearest(method, {known.begin(), known.end()});
-  refuse({}, "no method `{}` can be calibrated{}; there is {}", method,
-         near.empty() ? "" : fmt::format(" (did you mean `{}`?)", near), fmt::join(known, ", "));
+  choice(Value::scalar(method), "a method to calibrate", {known.begin(), known.end()});
 }
 
 // ---- Runs
