@@ -111,7 +111,6 @@ void add_running(Options& options, SamplingCommand& command, const Running& abou
   add_sampling(options, command, about);
   add_inconclusive(options, command.output);
   add_output(options, command.output);
-  command.output.kept = true;
   options.repeat_by(command.options.command);
 }
 

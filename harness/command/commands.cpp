@@ -79,7 +79,7 @@ int run_suites(const std::vector<Suite>& suites, const RunOptions& options, cons
   };
   reports::Record record = run(suites, drawn, *progress, broken, &ledger_fault);
   write_run(record, output, told);
-  if (output.kept) keep_last_run(record, output.detail > 0);
+  keep_last_run(record, output.detail > 0);
   if (ranks && output.detail > 1) say_beside_progress(ranks->window_text());
   if (checkpoint && !interrupted()) checkpoint->remove();
   if (!ledger_fault.empty()) throw std::runtime_error(ledger_fault);

@@ -26,7 +26,8 @@ using Broken = std::function<void(const reports::Test&)>;
 reports::Record run(const std::vector<Suite>& suites, const RunOptions& options, Progress& progress,
                     const Broken& broken = {}, std::string* ledger_fault = nullptr);
 
-/// Runs the suites and writes the reports. Returns 4 without a report if no test is selected.
+/// Runs the suites, writes the reports and keeps the run for `assay explain` and `assay replay`.
+/// Returns 4 without a report if no test is selected.
 int run_suites(const std::vector<Suite>& suites, const RunOptions& options, const Output& output);
 /// Threads of each rank: as given, else one, since launchers start a rank for each core.
 unsigned threads_of_rank(const RunOptions& options);

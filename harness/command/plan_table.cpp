@@ -134,7 +134,7 @@ Row row_of(const TestOutcome& test, const Pilots& pilots) {
     total.add(side, plan.primaries[i], side.secondaries(plan.most_secondaries()), pilots);
   }
   const Forecast expected = forecast(test, pilots);
-  Row row{.name = test.question.test->name, .notes = gate_notes(plan.gates)};
+  Row row{.name = test.question.test->name, .not_ok = not_ok(test, expected)};
   row.cells = {plan.method.name,
                primaries_text(plan),
                fmt::format("{}", plan.looks.sizes.size()),
@@ -143,18 +143,14 @@ Row row_of(const TestOutcome& test, const Pilots& pilots) {
                total.known ? count_of(total.rays) : unknown,
                total.known ? reports::plain_spaces(reports::duration(total.seconds)) : unknown,
                effect_text(test, expected)};
-  if (plan.invalid.empty()) {
-    if (expected.if_off) {
-      row.notes.insert(
-          row.notes.begin(),
-          outlook_text(test.plan.regions[0].proof() ? "if it is just wrong" : "if off by `detect`",
-                       *expected.if_off));
-    }
-    if (expected.if_true) {
-      row.notes.insert(row.notes.begin(), outlook_text("if it holds", *expected.if_true));
-    }
+  if (plan.invalid.empty() && expected.if_true) {
+    row.notes.push_back(outlook_text("if it holds", *expected.if_true));
   }
-  row.not_ok = not_ok(test, expected);
+  if (plan.invalid.empty() && expected.if_off) {
+    const char* off = plan.regions[0].proof() ? "if it is just wrong" : "if off by `detect`";
+    row.notes.push_back(outlook_text(off, *expected.if_off));
+  }
+  std::ranges::copy(gate_notes(plan.gates), std::back_inserter(row.notes));
   if (!plan.caution.empty()) row.notes.push_back(plan.caution);
   if (!plan.invalid.empty()) row.notes.push_back("invalid: " + plan.invalid.text);
   if (const std::string trouble = trouble_of(test); !trouble.empty()) {
@@ -203,16 +199,16 @@ void write(std::string& page, const SuiteRun& run) {
   page += on_page(suite.name + (suite.file.empty() ? "" : " (" + suite.file + ")"));
   page += on_page(fmt::format("alpha {}, beta {}, seed {}", suite.alpha, suite.beta, run.seed));
   page += "\n";
+  if (is_skipped(run)) {
+    page += on_page("Its tests will be skipped: " + run.untested.front().message + ".") + "\n";
+    return;
+  }
   for (const Untested& each : run.untested) {
-    if (is_skipped(run)) break;
     page += on_page(each.test->name, 2);
     page += on_page("error: " + each.message, 6);
   }
   if (run.tests.empty()) {
     if (run.untested.empty()) page += on_page("No test of this suite is selected.");
-    if (is_skipped(run)) {
-      page += on_page("Its tests will be skipped: " + run.untested.front().message + ".");
-    }
     page += "\n";
     return;
   }

@@ -33,7 +33,6 @@ struct Output {
   bool quiet = false;  ///< No progress.
   int detail = 0;      ///< Of the console: reports::ConsoleOptions.
   std::uint64_t slowest = 0;
-  bool kept = false;       ///< The run is kept for `assay explain` and `assay replay`.
   bool github = true;      ///< Tells GitHub Actions what is not ok (tell_github).
   bool tells_code = true;  ///< The console says what exit code undecided claims make.
 };
