@@ -15,10 +15,6 @@
 #include "harness/sampling/packing.h"
 
 namespace assay::harness {
-
-template <>
-inline constexpr bool is_plain<Task> = true;
-
 namespace {
 
 using Clock = std::chrono::steady_clock;

@@ -21,9 +21,6 @@ constexpr std::size_t most_numbers = std::size_t{1} << 21;
 
 }  // namespace
 
-template <>
-inline constexpr bool is_plain<KeptPart> = true;
-
 template <class Archive, maybe_const<WrittenPool> T>
 void parts(Archive& a, T& written) {
   a(written.sums, written.kept);

@@ -6,7 +6,7 @@
 namespace assay::harness {
 namespace {
 
-constexpr char format = '6';  // Another one for each change of what is packed.
+constexpr char format = '7';  // Another one for each change of what is packed.
 
 struct Head {
   std::array<char, 8> name{'a', 's', 's', 'a', 'y', ' ', format, '\n'};

@@ -33,21 +33,11 @@ concept maybe_const = std::same_as<std::remove_const_t<T>, Struct>;
 
 /// Numbers, and structs of numbers of 8 bytes, go by their bits.
 template <class T>
-inline constexpr bool is_plain = std::is_arithmetic_v<T> || std::is_enum_v<T>;
-template <>
-inline constexpr bool is_plain<Cost> = true;
-template <>
-inline constexpr bool is_plain<stats::Moments> = true;
-template <>
-inline constexpr bool is_plain<stats::JointMoments> = true;
-template <>
-inline constexpr bool is_plain<ChannelSummary> = true;
+concept Plain = std::is_arithmetic_v<T> || std::is_enum_v<T> ||
+    (alignof(T) == 8 && std::conjunction_v<std::is_aggregate<T>, std::is_trivially_copyable<T>>);
 static_assert(sizeof(Cost) == 4 * 8 && sizeof(stats::Moments) == 9 * 8 &&
               sizeof(stats::JointMoments) == (2 + 2 * 4 + 25) * 8 &&
-              sizeof(ChannelSummary) == (9 + 2) * 8);
-
-template <class T>
-concept Plain = is_plain<T> && std::is_trivially_copyable_v<T>;
+              sizeof(ChannelSummary) == (9 + 2) * 8 && sizeof(ChannelPlan) == 5 * 8);
 
 /// Appends values to bytes. A type of its own has a function parts(archive, value), which calls the
 /// archive with its members; Unpacker takes the same function.
@@ -204,15 +194,10 @@ void unpack(std::string_view frame, T&... values) {
   unpacker.end();
 }
 
-template <class Archive, maybe_const<ChannelPlan> T>
-void parts(Archive& a, T& plan) {
-  a(plan.histogram_low, plan.histogram_high, plan.keep, plan.cells, plan.powers);
-}
-
 template <class Archive, maybe_const<Recipe> T>
 void parts(Archive& a, T& recipe) {
-  a(recipe.key.bits, recipe.primaries, recipe.plan, recipe.grouped_channels,
-    recipe.kept_observations, recipe.marks);
+  a(recipe.key, recipe.primaries, recipe.plan, recipe.grouped_channels, recipe.kept_observations,
+    recipe.marks);
 }
 
 /// A pool that draws by the recipe. Throws Unpackable if the set-up cannot.

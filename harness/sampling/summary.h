@@ -46,7 +46,7 @@ struct Histogram : reports::Histogram {
 };
 
 /// Joint moments that a channel keeps: of its values alone, or with each counted cost.
-enum class Powers { none, of_values, with_costs };
+enum class Powers : std::uint64_t { none, of_values, with_costs };
 
 struct ChannelPlan {
   double histogram_low = 0;  ///< Equal bounds: no histogram.
