@@ -6,21 +6,10 @@
 #include <charconv>
 #include <filesystem>
 #include <fstream>
-#include <limits>
 
-#include "harness/base/refuse.h"
-#include "harness/suite/yaml.h"
+#include "harness/command/options.h"
 
 namespace assay::harness {
-namespace {
-
-unsigned number(const Environment& environment, const std::string& name, std::uint64_t least) {
-  const std::uint64_t value = count_from(Value::scalar(environment(name)), name, least);
-  if (value >= std::numeric_limits<unsigned>::max()) refuse({}, "{} is too large", name);
-  return static_cast<unsigned>(value);
-}
-
-}  // namespace
 
 void take_shard_from(const Environment& environment, RunOptions& options) {
   if (options.shard) return;
@@ -34,8 +23,8 @@ void take_shard_from(const Environment& environment, RunOptions& options) {
              has_total ? total_name : index_name, has_total ? index_name : total_name);
     }
     if (has_total && !options.shard) {
-      const unsigned total = number(environment, total_name, 1);
-      const unsigned index = number(environment, index_name, 0);
+      const unsigned total = read_part(environment(total_name), total_name, 1);
+      const unsigned index = read_part(environment(index_name), index_name, 0);
       if (index >= total) {
         refuse({}, "{} is {}, but of {} shards the last is {}", index_name, index, total,
                total - 1);

@@ -272,6 +272,12 @@ Command parsed(const Texts& arguments, const std::vector<CommandRow>& commands) 
   return made.at(sub.get_name())();
 }
 
+unsigned read_part(const std::string& text, const std::string& what, std::uint64_t least) {
+  const std::uint64_t read = at_least(least)(text, what);
+  if (read < std::numeric_limits<unsigned>::max()) return static_cast<unsigned>(read);
+  refuse({}, what + " is too large");
+}
+
 unsigned read_threads(const std::string& text, const std::string& option) {
   constexpr std::uint64_t most = 4096;
   return static_cast<unsigned>(std::min(at_least(1)(text, option), most));
@@ -292,13 +298,9 @@ std::pair<unsigned, unsigned> read_shard(const std::string& text, const std::str
   if (slash == std::string::npos) {
     refuse({}, "{} must be I/N, as in 2/5, but it is `{}`", option, text);
   }
-  const auto number = [&](const std::string& digits) {
-    const std::uint64_t read = at_least(1)(digits, fmt::format("each number of {} I/N", option));
-    if (read <= std::numeric_limits<unsigned>::max()) return static_cast<unsigned>(read);
-    refuse({}, option + " is too large");
-  };
-  const unsigned index = number(text.substr(0, slash));
-  const unsigned shards = number(text.substr(slash + 1));
+  const std::string each = fmt::format("each number of {} I/N", option);
+  const unsigned index = read_part(text.substr(0, slash), each, 1);
+  const unsigned shards = read_part(text.substr(slash + 1), each, 1);
   if (index <= shards) return {index, shards};
   refuse({}, "{} {}: there is no shard {} of {}", option, text, index, shards);
 }

@@ -110,6 +110,9 @@ inline auto at_least(std::uint64_t least) {
   };
 }
 
+/// The number of a shard, or of all shards, `least` or more.
+unsigned read_part(const std::string& text, const std::string& what, std::uint64_t least);
+
 unsigned read_threads(const std::string& text, const std::string& option);
 /// A number, as a reader of suites takes it.
 template <double (*read)(const Value&, std::string_view)>
