@@ -12,7 +12,6 @@
 #include "harness/plan/sizes.h"
 #include "harness/run/image_judge.h"
 #include "harness/run/observation_faults.h"
-#include "harness/run/verdict_text.h"
 #include "harness/theta/theta.h"
 #include "reports/words/number.h"
 

@@ -41,4 +41,11 @@ void take_look(TestWork& work, bool may_go_on = true);
 
 std::vector<ChannelData> data_of(const DrawnTest& test, std::size_t channel);
 
+/// A tested claim's verdict in one or two sentences. They say what was found, what is excluded, and
+/// what could be missed or how many more samples would decide.
+Reason narrate(const TestOutcome& outcome);
+
+/// Says that these observations exclude no `what` ("exponent"), and what to do.
+Reason excludes_no(const std::string& what, const TestOutcome& outcome);
+
 }  // namespace assay::harness

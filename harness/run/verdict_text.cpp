@@ -1,5 +1,3 @@
-#include "harness/run/verdict_text.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 
 #include "harness/plan/gate_text.h"
 #include "harness/plan/sizes.h"
+#include "harness/run/evaluate.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/theta.h"
 #include "reports/words/describe.h"

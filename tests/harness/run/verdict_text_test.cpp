@@ -1,4 +1,4 @@
-#include "harness/run/verdict_text.h"
+#include "harness/run/evaluate.h"
 
 #include <fmt/format.h>
 
