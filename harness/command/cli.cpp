@@ -53,8 +53,8 @@ void add_report(Options& options, Output& output, const std::string& kinds) {
       {"--report", "KIND=PATH", Replay::nowhere, "", words}, output.reports,
       report_beside(output.reports),
       kinds +
-          " to a file, - is standard output; one or more; default console=-, which goes to "
-          "standard error where another report has standard output; console=/dev/null silences it");
+          ", to a file or, as -, to standard output; repeatable; default console=-, which moves to "
+          "standard error if another report takes standard output; console=/dev/null silences it");
 }
 
 void add_output(Options& options, Output& output) {
@@ -63,10 +63,10 @@ void add_output(Options& options, Output& output) {
       {"--color", "WHEN", Replay::nowhere}, output.colour,
       OneOf<Colour>{
           {{"auto", Colour::automatic}, {"always", Colour::always}, {"never", Colour::never}}},
-      "auto, always or never; default auto: on a terminal, as NO_COLOR and FORCE_COLOR say");
+      "auto, always or never; default auto: on a terminal, unless NO_COLOR or FORCE_COLOR is set");
   options.flag({"-v", "", Replay::nowhere},
-               "a line a test on the console; -vv, or -v of a single test, all numbers of those "
-               "that need a look; default a line a suite",
+               "print a line for each test; -vv, or -v of a single test, prints all numbers of "
+               "tests that need attention; default a line for each suite",
                [&output] { ++output.detail; });
   options.add({"--durations", "N", Replay::nowhere}, output.slowest, at_least(1),
               "name the N slowest tests at the end; default none");
@@ -79,8 +79,8 @@ void add_inconclusive(Options& options, Output& output) {
               "count undecided tests as failed or as passed; default neither: exit code 3");
   options.add({"--github", "auto|never", Replay::nowhere}, output.github,
               OneOf<bool>{{{"auto", true}, {"never", false}}},
-              "annotations and the step's summary for a job of GitHub Actions; default auto: where "
-              "GITHUB_ACTIONS is true");
+              "annotations and job summary of GitHub Actions; default auto: if GITHUB_ACTIONS is "
+              "true");
 }
 
 void add_threads(Options& options, unsigned& threads) {
@@ -121,10 +121,10 @@ void add_estimators(Options& options, Texts& estimators) {
 
 void add_selection(Options& options, Selection& selection) {
   options.add({"--filter", "GLOB", Replay::nowhere}, selection.filters,
-              "only tests whose id, suite/name, matches, or with '-GLOB' all but these; * and ? "
-              "are wild; repeatable; default all");
+              "only tests whose id, suite/name, matches; '-GLOB' leaves out those that match; * "
+              "and ? are wildcards; repeatable; default all");
   options.add({"--tag", "TAG", Replay::nowhere}, selection.tags,
-              "only tests that have this tag; repeatable, any of them; default all");
+              "only tests with this tag; repeatable: tests with any of them; default all");
 }
 
 void add_suites(Options& options, SuitesCommand& command) {
@@ -133,16 +133,16 @@ void add_suites(Options& options, SuitesCommand& command) {
       command.suites, read_suite, "suite files");
   add_selection(options, command.options.selection);
   options.add({"--coarsen", "F", Replay::last}, command.options.coarsen, read_positive,
-              "multiply every `detect` by F, above 0, those of laws to .5 at most; default 1");
+              "multiply every `detect` by F, above 0; that of a law is at most 0.5; default 1");
   options.add({"--set", "estimator.key=value", Replay::first}, command.assignments,
-              "set a parameter; repeatable; default as in the suite");
+              "set a parameter of an estimator; repeatable; default as in the suite");
 }
 
 constexpr Running of_suites{
-    .seed = "seed of all streams, or a fresh one; default the suite's, else 1",
+    .seed = "seed of all random numbers; random: a fresh one; default the suite's, else 1",
     .alpha =
-        "probability that a suite whose claims hold fails, in [1e-9, 0.5]; default the suite's, "
-        "else 0.01"};
+        "greatest probability that a suite of true claims fails, in [1e-9, 0.5]; default the "
+        "suite's, else 0.01"};
 
 // The commands.
 
@@ -155,34 +155,34 @@ Examples:
   assay run suites/*.yaml --tag bias --filter '-*slope*'    without slopes
   assay run suites/luminaire.yaml --report json=run.json html=run.html
   assay run suites/luminaire.yaml --set triangle_area.scene=rectangle --seed 7
-  assay run suites/luminaire.yaml --coarsen 4    a quick look
+  assay run suites/luminaire.yaml --coarsen 4    faster and coarser
   assay run suites/luminaire.yaml --seed random --ledger nightly.ledger
-  assay run suites/luminaire.yaml --checkpoint run.ckpt    goes on after a kill
+  assay run suites/luminaire.yaml --checkpoint run.ckpt    survives a kill
   assay run suites/luminaire.yaml --shard 2/4 --report json=2.json
 )");
   add_suites(options, command);
-  options.add({"--shard", "I/N", Replay::nowhere}, command.options.shard, read_shard,
-              "only the I-th of N parts of the tests, each on its fixed share of alpha, for `assay "
-              "merge`; default all, or what GTEST_TOTAL_SHARDS or TEST_TOTAL_SHARDS says");
-  options.flag({"--fail-fast", "", Replay::nowhere},
-               "draw no more once a claim is broken, the others are not run; default all are",
-               [&command] { command.options.fail_fast = true; });
   options.add(
-      {"--checkpoint", "FILE", Replay::nowhere, "", {"*"}}, command.options.checkpoint,
-      "keep what was drawn in FILE and FILE.kept, from which the same command goes on after "
-      "a kill or Ctrl-C; removed at the end; default none");
+      {"--shard", "I/N", Replay::nowhere}, command.options.shard, read_shard,
+      "only the I-th of N parts of the tests, which `assay merge` joins; default all, or as "
+      "GTEST_TOTAL_SHARDS or TEST_TOTAL_SHARDS says");
+  options.flag({"--fail-fast", "", Replay::nowhere},
+               "stop at the first broken claim; default run all claims",
+               [&command] { command.options.fail_fast = true; });
+  options.add({"--checkpoint", "FILE", Replay::nowhere, "", {"*"}}, command.options.checkpoint,
+              "keep what was drawn in FILE and FILE.kept; after a kill or Ctrl-C the same command "
+              "continues from them; removed at the end; default none");
   options.add({"--checkpoint-every", "S", Replay::nowhere}, command.options.checkpoint_every,
-              read_positive, "seconds between two writes of it; default 60");
+              read_positive, "seconds between two writes of the checkpoint; default 60");
   options.add({"--ledger", "FILE", Replay::nowhere, "", {"*"}}, command.options.ledger,
-              "add the run's evidence to a file of nights with fresh seeds and alarm at what they "
-              "say together; default none");
+              "add the run's evidence to that of earlier runs with fresh seeds; fail if all "
+              "together refute a claim; default none");
   add_running(options, command, of_suites);
 }
 
 void define_plan(Options& options, PlanCommand& command) {
   options.about(
-      R"(Prints what a run of suites would do: of each test its method, sample sizes,
-expected cost and the effect it finds. Runs the pilots only.
+      R"(Prints what a run of suites would do: the method, sample sizes, expected cost
+and detectable effect of each test. It draws only the pilots.
 
 Examples:
   assay plan suites/luminaire.yaml
@@ -191,14 +191,14 @@ Examples:
 )");
   add_suites(options, command);
   options.flag({"--list-renders", "", Replay::nowhere},
-               "print the renders that are missing instead, one a line: command, seed and file "
-               "with tabs between; the pilots' first, then the tests'; default the plan",
+               "print the missing renders instead of the plan, one a line: command, seed and "
+               "file, separated by tabs; first of the pilots, then of the tests; default the plan",
                [&command] { command.list_renders = true; });
   add_sampling(options, command, of_suites);
 }
 
 void define_check(Options& options, CheckCommand& command) {
-  options.about(R"(Tests one claim. The names in it are plugins, or names given with --estimator.
+  options.about(R"(Tests one claim. Its names are plugins, or names given by --estimator.
 
 Examples:
   assay check 'mean(luminaire/area) == analytic' --detect 0.5%
@@ -213,45 +213,48 @@ Examples:
   options.add_key(
       {"--detect", "X"}, given.keys,
       "the effect that must not pass, as 0.5% or 0.002; default none: 1000 observations; "
-      "of drawn laws 0.05");
+      "for laws 0.05");
   options.add_key({"--allow", "X"}, given.keys,
-                  "the effect that may be there, as 0.5% or 0.002; default 0");
+                  "the tolerated effect, as 0.5% or 0.002; default 0");
   options.add_key(
       {"--test", "METHOD", Replay::middle, "", method_names()}, given.keys,
       "force a method, one of " + listed(method_names()) + "; default chosen from the pilot");
   options.add_key(
       {"--over", "SWEEP"}, given.keys,
-      "of a slope: a parameter and its values, as '{primaries: [8, 16, 32]}'; default none");
-  options.add_key({"--reference", "R"}, given.keys,
-                  "of a bias or an efficiency: the truth, as 6.36, '6.36 +- 0.01' or an estimator; "
-                  "default what the plugin knows");
+      "for a slope: a parameter and its values, as '{primaries: [8, 16, 32]}'; default none");
+  options.add_key(
+      {"--reference", "R"}, given.keys,
+      "for a bias or an efficiency: the truth, as 6.36, '6.36 +- 0.01' or an estimator; "
+      "default what the plugin knows");
   options.add_key({"--cost", "KIND"}, given.keys, "rays, samples or seconds; default rays");
   options.choice("--paired",
-                 "of the means of two images: both draw the same random numbers, and their "
-                 "differences are tested; default their own",
+                 "for means of two images: draw both with the same random numbers and test their "
+                 "differences; default independent draws",
                  [&given] { given.keys["paired"] = "true"; });
-  options.add_key({"--budget", "B"}, given.keys,
-                  "the most it may cost: 1e7 are primaries, those of the pilot too; 30s are CPU "
-                  "time of the test, which a program that waits does not spend; default none");
+  options.add_key(
+      {"--budget", "B"}, given.keys,
+      "the most it may cost: 1e7 primaries with those of the pilot, or 30s of CPU time, "
+      "which does not count waiting programs; default none");
   add_estimators(options, given.estimators);
   options.add({"--primaries", "N"}, given.primaries, at_least(1),
               "primary estimates of an observation; default chosen from the pilot");
   options.add_key({"--secondaries", "M"}, given.keys,
                   "number of observations, 2 or more; default what --detect needs");
-  add_running(options, command,
-              {.seed = "seed of all streams, or a fresh one; default 1",
-               .alpha = "probability that a claim that holds fails, in [1e-9, 0.5]; default 0.01"});
+  add_running(
+      options, command,
+      {.seed = "seed of all random numbers; random: a fresh one; default 1",
+       .alpha = "greatest probability that a true claim fails, in [1e-9, 0.5]; default 0.01"});
 }
 
 void define_images(Options& options, ImagesCommand& command) {
   options.about(
-      R"(Holds pictures of one scene against each other, pixel by pixel and on every
-larger scale: are their means equal, and if not, where? Every file is one
+      R"(Compares pictures of one scene, pixel by pixel and on every larger scale. Are
+their means equal, and if not, where do they differ? Every file is one
 observation and needs a seed of its own.
 
-Files are OpenEXR, PFM or PNG. PNG is taken from sRGB to linear light, clipped
-to [0, 1] as it is. Both sides are rounded as the coarser is, half or PNG. Crops
-are compared where both sides have pixels. A depth Z may be infinite. With
+Files are OpenEXR, PFM or PNG. PNG is converted from sRGB to linear light. Both
+sides are rounded to the coarser format, half or PNG; PNG also clips to [0, 1].
+Crops are compared where both sides have pixels. A depth Z may be infinite. With
 --channels, each layer has a claim of its own.
 
 Examples:
@@ -270,53 +273,51 @@ Examples:
                .needed = "--candidate, a pattern of pictures",
                .words = {"*"}},
               given.candidate,
-              "the pictures in question, 16 or more, each rendered with a seed of its own");
+              "the pictures to test, 16 or more, each rendered with a seed of its own");
   options.add({.name = "--reference",
                .value = "GLOB",
                .needed = "--reference, a pattern of pictures or one file",
                .words = {"*"}},
               given.reference,
-              "what they are held against: as many again, or one picture, with its variance "
-              "(channels `Variance.*` or `m2_*`) or exact");
+              "the pictures to compare with: 16 or more, or one that is exact or has its variance "
+              "(channels `Variance.*` or `m2_*`)");
   options.add({"--channels", "GLOB"}, given.channels,
-              "the channels to test, as 'ViewLayer.DiffInd.*'; commas between several; default R, "
+              "the channels to test, as 'ViewLayer.DiffInd.*'; commas separate several; default R, "
               "G and B, or what stands for them, and an alpha that is not 1");
-  options.add(
-      {"--ignore", "KIND"}, given.ignores_nonfinite, OneOf<bool>{{{"nonfinite", true}}},
-      "nonfinite: leave out pixels that are no number in one of the pictures; default an error");
+  options.add({"--ignore", "KIND"}, given.ignores_nonfinite, OneOf<bool>{{{"nonfinite", true}}},
+              "nonfinite: leave out pixels that are not finite in some picture; default an error");
   options.add({"--mask", "FILE", Replay::middle, "", {"*"}}, given.mask,
               "a picture; pixels where it is 0 are left out; default none");
   options.add({"--pixels", "KIND"}, given.independent_pixels,
               OneOf<bool>{{{"dependent", false}, {"independent", true}}},
               "independent, as under a box filter one pixel wide, or dependent; default dependent");
   options.add({"--samples", "N"}, given.samples,
-              "of how many samples the means of one picture with its variance are, or the channel "
-              "that counts them; default its own word");
+              "samples in a single reference with its variance, or the channel that counts them; "
+              "default what its file says");
   const auto ask = [&given](ImageQuestion question) {
     return [&given, question] { given.question = question; };
   };
-  options.choice("--means", "are the means equal? the default", ask(ImageQuestion::means));
+  options.choice("--means", "test if the means are equal; the default", ask(ImageQuestion::means));
   options.choice("--paired",
-                 "are the means of differences 0? finds much less; two pictures have one seed if "
-                 "their names say the same where the names of a side differ",
+                 "test differences of pictures with equal seeds, which finds far smaller effects; "
+                 "a pair's names agree in the parts that vary within a side",
                  ask(ImageQuestion::paired));
-  options.choice(
-      "--law", "do pictures have one law, as of one renderer with other seeds? exact for any noise",
-      ask(ImageQuestion::law));
+  options.choice("--law",
+                 "test if the sides have one law, as from one renderer; exact for any noise",
+                 ask(ImageQuestion::law));
   options.add_key(
       {"--detect", "X"}, given.keys,
-      "the root mean square difference of all pixels that must not pass, as 0.5% or 0.002; default "
-      "none");
+      "the root mean square difference over all pixels that must not pass, as 0.5% or 0.002; "
+      "default none");
   options.add_key({"--allow", "X"}, given.keys,
-                  "the root mean square difference that may be there, of which a wrong pixel is "
-                  "little, as 0.5% or 0.002; default 0");
-  options.add(
-      {"--within", "X"}, given.within,
-      "prove that the pictures differ by less, as 1% or 0.002; default test that they are equal");
+                  "the tolerated root mean square difference over all pixels, as 0.5% or 0.002; it "
+                  "also tolerates a wrong pixel; default 0");
+  options.add({"--within", "X"}, given.within,
+              "prove that the pictures differ by less, as 1% or 0.002; default test for equality");
   add_running(
       options, command,
-      {.seed = "seed of the signs that are flipped where pixels depend on each other; default 1",
-       .alpha = "probability that equal pictures fail, in [1e-9, 0.5]; default 0.01"});
+      {.seed = "seed of the random signs in tests of dependent pixels; default 1",
+       .alpha = "greatest probability that equal pictures fail, in [1e-9, 0.5]; default 0.01"});
 }
 
 void define_sample(Options& options, SampleArguments& given) {
@@ -339,10 +340,10 @@ Examples:
 
 void define_calibrate(Options& options, CalibrateCommand& command) {
   options.about(
-      R"(Counts the verdicts pass, fail, inconclusive and invalid on laws whose truth is
-known: of claims that hold exactly and of claims that are off by `detect`. The
-whole procedure judges them, with its pilot, gates and looks, and beside it the
-method alone. Exit code 1 where a cell errs too often.
+      R"(Measures how often methods err. On known laws it tests true claims and claims
+that are wrong by `detect`, and counts the verdicts. It does so for the whole
+procedure, with pilot, gates and looks, and for the method alone. Exit code 1:
+some cell errs too often.
 
 Examples:
   assay calibrate
@@ -353,16 +354,17 @@ Examples:
   CalibrateArguments& given = command.arguments;
   Output& output = command.output;
   options.add({.name = "METHOD", .words = method_names()}, given.methods, "methods; default all");
-  options.add({"--law", "LAW"}, given.laws,
-              "what is drawn, as exponential or 'student_t(3)'; repeatable; default eight laws");
+  options.add(
+      {"--law", "LAW"}, given.laws,
+      "a law to draw from, as exponential or 'student_t(3)'; repeatable; default eight laws");
   options.add({"--alpha", "A"}, given.alphas, read_error_rate,
               "nominal level, in [1e-9, 0.5]; repeatable; default 0.05, 0.01 and 0.001");
-  options.add({"--runs", "N"}, given.runs, at_least(1), "runs a cell; default 1000");
+  options.add({"--runs", "N"}, given.runs, at_least(1), "runs of each cell; default 1000");
   options.add({"--samples", "N"}, given.samples, at_least(2),
-              "observations of every test, in one look, 2 or more; default planned, in looks, and "
-              "1000 or 64 images of a method alone");
+              "observations of every test, in one look, 2 or more; default planned with looks; for "
+              "a method alone 1000, or 64 images");
   options.add({"--seed", "N|random", Replay::middle, "", {"random"}}, given.seed, read_seed,
-              "seed of the first run, the next ones follow; default 1");
+              "seed of the first run, from which the others count on; default 1");
   add_threads(options, given.threads);
   add_quiet(options, output);
   add_report(options, output, "console, json, markdown or html");
@@ -376,8 +378,7 @@ Examples:
 
 void define_list(Options& options, ListCommand& command) {
   options.about(
-      R"(Prints what there is: plugins and tests one id a line, the tables with a word on
-each row.
+      R"(Prints plugins or tests, one a line, or a table with a sentence on each row.
 
 Examples:
   assay list plugins
@@ -393,7 +394,7 @@ Examples:
       },
       "plugins, tests, methods, quantities, laws, gates or reports");
   options.add({.name = "SUITE", .words = {"*.yaml"}}, command.suites,
-              "suite files, of which the tests are listed");
+              "suite files whose tests are listed");
   add_selection(options, command.selection);
   options.afterwards([&command] {
     const std::string list = "`assay list " + command.what + "`";
@@ -410,8 +411,7 @@ Examples:
 void define_describe(Options& options, DescribeCommand& command) {
   options.about(
       R"(Prints the manual of a plugin: parameters, channels, references, samplers,
-mutants. Of a method, a quantity, a law or a report it prints what the tables
-say.
+mutants. It also describes a method, a quantity, a law, a gate or a report.
 
 Examples:
   assay describe luminaire/area
@@ -420,9 +420,10 @@ Examples:
   Texts words = plugin_names();
   for (const Table& table : tables())
     std::ranges::copy(names_of(table.rows, &TableRow::name), std::back_inserter(words));
-  options.add({.name = "NAME", .needed = "a plugin, a method, a quantity or a law", .words = words},
-              command.name,
-              "a plugin, a method, a quantity, a law or a report, as `assay list` prints them");
+  options.add(
+      {.name = "NAME", .needed = "a plugin, a method, a quantity or a law", .words = words},
+      command.name,
+      "a plugin, a method, a quantity, a law, a gate or a report, as `assay list` prints them");
 }
 
 /// "[RUN.json] TEST [OBSERVATION]".
@@ -439,8 +440,8 @@ void read_words(Texts words, ReplayArguments& given) {
 
 void define_replay(Options& options, ReplayArguments& given) {
   options.about(
-      R"(Draws the numbers of a recorded test again, or one observation of it alone.
-Without a saved run it is that of the last run from this folder.
+      R"(Draws the numbers of a recorded test again, or only one of its observations.
+Without RUN.json it takes the last run from this folder.
 
 Examples:
   assay replay 'luminaire/mean(triangle_area) == analytic'
@@ -452,15 +453,15 @@ Examples:
                .needed = "a test, as `assay list tests SUITE` prints them",
                .words = {"*.json"}},
               *words,
-              "a saved run, if not the last one; a test's id or name; one observation, from 0, "
-              "default all");
+              "a saved run, default the last one; a test's id or name; an observation, counted "
+              "from 0, default all");
   options.afterwards([words, &given] { read_words(*words, given); });
 }
 
 void define_explain(Options& options, ExplainArguments& given) {
   options.about(
-      R"(Explains a test in a few sentences, and says what to do next. Without a saved
-run it is that of the last run from this folder.
+      R"(Explains a test in a few sentences, and says what to do next. Without RUN.json
+it takes the last run from this folder.
 
 Examples:
   assay explain 'luminaire/mean(triangle_area) == analytic'
@@ -468,14 +469,14 @@ Examples:
 )");
   options.add(
       {.name = "TEST", .value = "[RUN.json] TEST"}, given.words,
-      "a saved run, if not the last one, and a test's id or a part of it, if it has several");
+      "a saved run, default the last one; a test's id or a part of it, if the run has several");
 }
 
 void define_merge(Options& options, MergeCommand& command) {
   options.about(
-      R"(Joins the records of all shards of a run, in any order, to the record of the
-whole, with Holm's adjusted p-values, and reports it. Nothing is sampled. The
-tests of a missing shard are skipped, and the exit code is 1.
+      R"(Joins the records of all shards into the record of the whole run, with Holm's
+adjusted p-values, and reports it. It samples nothing. The tests of a missing
+shard are skipped, and the exit code is 1.
 
 Examples:
   assay run suites/luminaire.yaml --shard 1/2 --report json=1.json
@@ -489,7 +490,7 @@ Examples:
 }
 
 void define_report(Options& options, ReportCommand& command) {
-  options.about(R"(Makes reports from a saved run; nothing is sampled.
+  options.about(R"(Makes reports from a saved run. It samples nothing.
 
 Examples:
   assay report run.json --report html=run.html
@@ -565,21 +566,19 @@ const std::vector<CommandRow>& command_rows() {
       command("init", "write a small example: a suite, a plugin, a program, a job of CI",
               define_init),
       command("run", "test the claims of suite files", define_run),
-      command("plan", "what a run would do and cost; only the pilots are drawn", define_plan),
+      command("plan", "print what a run would do and cost; draws only the pilots", define_plan),
       command("check", "test one claim", define_check),
-      command("images", "hold rendered pictures against each other, without a suite",
-              define_images),
-      command("calibrate", "how often the methods err, and how much they find, on known laws",
-              define_calibrate),
+      command("images", "compare rendered pictures, without a suite", define_images),
+      command("calibrate", "measure how often the methods err on known laws", define_calibrate),
       command("sample", "print observations of an estimator", define_sample),
       command("list", "list plugins, tests of suites, methods, quantities, laws, gates, reports",
               define_list),
-      command("describe", "print the manual of a plugin, a method, a quantity or a law",
+      command("describe", "print the manual of a plugin, a method, a quantity, a law or a gate",
               define_describe),
       command("replay", "draw the numbers of a recorded test again", define_replay),
-      command("explain", "explain a test of this folder's last run, or of a saved one",
+      command("explain", "explain a test of the last run from this folder, or of a saved run",
               define_explain),
-      command("merge", "join the records of shards to that of one run", define_merge),
+      command("merge", "join the records of shards into one", define_merge),
       command("report", "make reports from a saved run", define_report),
       command("completion", "print a script that completes commands in a shell", define_completion),
       command("man", "print the manual page", define_man)};

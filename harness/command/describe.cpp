@@ -33,7 +33,7 @@ const char* bias_text(const Information& information) {
   // A mutant's bias is its defect's; the class is its original's.
   if (!information.original.empty()) return "that of its defect";
   if (information.name == "recorded") return "unknown: the observations were made elsewhere";
-  if (information.says_nature) return "what the program says of it; unknown where it says nothing";
+  if (information.says_nature) return "as the program declares it; unknown if it declares none";
   constexpr const char* classes[] = {"unbiased", "falls like 1 / primaries",
                                      "falls like 1 / bootstrap",
                                      "start-up: the chain has not forgotten where it began",
@@ -42,7 +42,7 @@ const char* bias_text(const Information& information) {
 }
 
 const char* primaries_text(const Information& information) {
-  if (information.says_nature) return "averaged where the program says so; else 1 unless given";
+  if (information.says_nature) return "averaged if the program declares it; else 1 unless given";
   return information.averages ? "averaged: a secondary estimate is the mean of its primaries"
                               : "not averaged; 1 unless given";
 }
@@ -144,7 +144,7 @@ std::string mutants_text(const Information& information, const std::vector<Entry
     if (entry.information.original != information.name) continue;
     out += row_text(entry.information.name + ": " + entry.information.defect);
   }
-  return out.empty() ? "" : "\nmutants of it\n" + out;
+  return out.empty() ? "" : "\nmutants\n" + out;
 }
 
 /// A sentence for each property that a user may have to know.
@@ -155,13 +155,13 @@ std::string page_of(const Method& row) {
   };
   say(true, fmt::format("Force it by `test: {0}` in a suite, or by `--test {0}`.", row.name));
   say(row.is.exact, "Its level holds at every sample size.");
-  say(!row.is.exact, "Its level is asymptotic; gates refuse data of too unusual a shape.");
+  say(!row.is.exact, "Its level is asymptotic. Gates refuse data on which it would err.");
   say(row.is.in_range, "The channel must declare the range of its values.");
-  say(row.is.of_observations, "The moments of an earlier run are not enough for it.");
-  say(row.is.of_batches, "It takes means of consecutive observations for independent.");
+  say(row.is.of_observations, "It needs observations: moments of an earlier run do not suffice.");
+  say(row.is.of_batches, "It assumes that means of consecutive observations are independent.");
   say(row.is.corrects_skewness, "It estimates the skewness from the data.");
-  say(row.is.of_normal_values, "It takes the values for nearly normal.");
-  say(row.is.of_distinct_values, "Coarsely rounded values are refused.");
+  say(row.is.of_normal_values, "It assumes that the values are nearly normal.");
+  say(row.is.of_distinct_values, "It refuses coarsely rounded values.");
   say(row.is.over_looks == stats::LookLaw::anytime_valid, "Its p-value is valid at every look.");
   return page;
 }
@@ -171,8 +171,8 @@ TableRow row_of(const Method& method) { return {method.name, method.summary, pag
 TableRow row_of(const QuantityRow& quantity) {
   std::string page = wrapped(fmt::format("Claim: {}", quantity.example), 2);
   if (quantity.of_a_sampler) page += "  It is about a sampler of an estimator.\n";
-  if (quantity.over_all_channels) page += "  It is over all channels of an estimator.\n";
-  page += "  `assay help claims` explains margins and further keys.\n";
+  if (quantity.over_all_channels) page += "  It covers all channels of an estimator.\n";
+  page += "  `assay help claims` explains margins and other keys.\n";
   return {quantity.word, quantity.summary, page};
 }
 
@@ -185,7 +185,9 @@ TableRow row_of(const LawInformation& law) {
 }
 
 TableRow row_of(const GateKind& gate) {
-  std::string page = "  A red gate makes the test invalid, unless `test` forces the method.\n";
+  std::string page = gate.needs_more() ? "  If it is red, the test needs more observations.\n"
+                                       : "  If it is red, the test is invalid.\n";
+  page += "  A forced method only shows it; dependence makes any method invalid.\n";
   if (gate.heavy_tail) page += "  More observations may only show more of the tail.\n";
   return {gate.name, fmt::format(fmt::runtime(gate.sentence), "VALUE", "LIMIT"), page};
 }

@@ -25,10 +25,10 @@ constexpr std::array<std::pair<const char*, const char*>, 7> exit_codes{{
     {"0", "every test came out as expected"},
     {"1",
      "at least one did not: it failed, was invalid or could not be tested; or the ledger alarms"},
-    {"2", "a mistake in what was asked for, or trouble"},
-    {"3", "none of these, but at least one is inconclusive"},
+    {"2", "the input is wrong, or Assay could not finish"},
+    {"3", "no test went wrong, but at least one is inconclusive"},
     {"4",
-     "no test ran: --filter, --tag or --shard selected none (0 where the environment asked for a "
+     "no test ran: --filter, --tag or --shard selected none (0 if the environment asked for the "
      "shard)"},
     {"77", "all tests were skipped"},
     {"130", "interrupted"},
@@ -137,7 +137,7 @@ Offers offers_of(const std::vector<CommandText>& commands, std::vector<std::stri
   if (words.size() == 1 || is_help) {
     for (const CommandText& command : commands) offers.emplace_back(command.name, command.summary);
     if (is_help) {
-      offers.insert(offers.end(), {{"all", "every command"}, {"claims", "how claims are written"}});
+      offers.insert(offers.end(), {{"all", "every command"}, {"claims", "the language of claims"}});
       return offers;
     }
     offers.insert(offers.end(), {{"help", "explain a command"}, {"--help", ""}, {"--version", ""}});
@@ -156,16 +156,16 @@ std::string overview(const std::vector<CommandText>& commands) {
   assay check 'mean(luminaire/area) == analytic' --detect 0.5%
   assay images --candidate 'new/*.exr' --reference 'old/*.exr'
 
-Commands of the first hour:
+First commands:
 )";
   for (const char* name : of_the_first_hour) {
     text += entry(*std::ranges::find(commands, name, &CommandText::name));
   }
   text += R"(
-`assay COMMAND --help` explains a command; `assay help claims` says how claims
-and suites are written; `assay help all` lists all commands and exit codes.
+`assay COMMAND --help` explains a command, `assay help claims` the language of
+claims and suites. `assay help all` lists all commands and exit codes.
 `assay man` prints a manual page of all commands.
-`assay completion bash|zsh|fish` prints what completes commands in a shell.
+`assay completion bash|zsh|fish` prints a script that completes commands.
 
 Options:
   -h, --help   this text
@@ -214,7 +214,8 @@ std::string help_of_claims(std::string_view markdown) {
 std::string help_of_all(const std::vector<CommandText>& commands) {
   std::string text = "Commands (each has its own --help, with examples and defaults):\n";
   for (const CommandText& command : commands) text += entry(command);
-  text += beside("  help", "the first page, or that of a command: `assay help run`", list_column);
+  text +=
+      beside("  help", "print the first page, or help on a command: `assay help run`", list_column);
   text += "\nExit codes:\n";
   for (const auto& [code, meaning] : exit_codes) {
     text += beside(fmt::format("  {}", code), meaning, 7);

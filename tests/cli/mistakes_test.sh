@@ -152,7 +152,7 @@ test_mistakes_in_a_check_say_what_to_write() {
   expect 1 check 'mean(x) == 1' --estimator x=recorded,file=many.txt --budget 10
   contains out 'to decide: give a larger `budget`'
   expect 0 check --help
-  contains out 'the most it may cost: 1e7 are primaries, those of'
+  contains out 'the most it may cost: 1e7 primaries with those of the'
   printf '%s\n' 'suite: parts' 'estimators: {a: {plugin: analytic/normal, mean: 0.02, primaries: 1},' \
     ' b: {plugin: analytic/normal, mean: 5000, primaries: 1}}' 'tests: ' \
     '  - {name: large, claim: mean(a) == 0.02, detect: 0.01}' \
