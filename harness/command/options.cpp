@@ -40,7 +40,7 @@ std::string key_of_a_suite(const CLI::App& sub, const std::string& option) {
   return "";
 }
 
-/// What to write in place of an argument too many.
+/// Says what to write in place of an argument too many.
 std::string mend_of_extra(const std::string& command, const std::string& extra) {
   if (command == "images") {
     const std::filesystem::path file = extra;

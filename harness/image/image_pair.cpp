@@ -85,43 +85,6 @@ struct Missing : stats::ConstantSample {
   }
 };
 
-/// How far a value that an element missed may lie from its constant, where no range is declared.
-class SizesAround {
- public:
-  explicit SizesAround(const stats::ImageStack& stack)
-      : extent_(stack.extent), elements_(extent_.elements()) {
-    on_all_threads(extent_.height, [&](std::size_t y) {
-      const std::size_t first = y * extent_.row();
-      stats::element_moments(stack, first, std::span(elements_).subspan(first, extent_.row()));
-    });
-  }
-
-  /// As the values around the element show it. Infinite beside others that never varied: what makes
-  /// constants is common there.
-  double about(double constant, std::size_t element) const {
-    constexpr std::size_t reach = 4;
-    const std::size_t column = element / extent_.channels % extent_.width;
-    const std::size_t row = element / extent_.row();
-    stats::Moments all;
-    std::size_t constants = 0;
-    for (std::size_t y = row - std::min(row, reach); y <= row + reach && y < extent_.height; ++y) {
-      const std::size_t begin = column - std::min(column, reach);
-      for (std::size_t x = begin; x <= column + reach && x < extent_.width; ++x) {
-        const std::size_t channel = element % extent_.channels;
-        const stats::Moments& other = elements_[y * extent_.row() + x * extent_.channels + channel];
-        constants += other.m2 == 0 ? 1 : 0;
-        all.merge(other);
-      }
-    }
-    if (constants > 1) return std::numeric_limits<double>::infinity();
-    return stats::size_about(constant, all);
-  }
-
- private:
-  stats::ImageExtent extent_;
-  std::vector<stats::Moments> elements_;
-};
-
 /// The second side's declarations of factor x + offset.
 Declarations mapped_by(const Question& question) {
   Declarations all = declared_by(question.subjects[1]);
@@ -162,12 +125,11 @@ class ScannedSide {
   Missing missing(std::size_t element) const {
     return {{value(element), declared(element).low, declared(element).high, stack_.images.size()}};
   }
-  /// An end that is not declared is as far away as other values are.
+  /// An end that is not declared is as far away as the values of the elements around.
   Missing missing_beside_others(std::size_t element) {
     Missing missing = this->missing(element);
     if (std::isfinite(missing.low) && std::isfinite(missing.high)) return missing;
-    if (!sizes_) sizes_.emplace(stack_);
-    const double size = sizes_->about(missing.value, element);
+    const double size = size_around(element);
     if (!std::isfinite(missing.low)) missing.low = missing.value - size;
     if (!std::isfinite(missing.high)) missing.high = missing.value + size;
     return missing;
@@ -191,10 +153,28 @@ class ScannedSide {
   }
 
  private:
+  /// It is infinite beside others that never varied: what makes constants is common there.
+  double size_around(std::size_t element) {
+    constexpr std::size_t reach = 4;
+    const stats::ImageExtent& extent = stack_.extent;
+    const std::size_t column = element % extent.row() / extent.channels;
+    const std::size_t row = element / extent.row();
+    stats::Moments around;
+    for (std::size_t y = row - std::min(row, reach); y <= row + reach && y < extent.height; ++y) {
+      const std::size_t first = column - std::min(column, reach);
+      for (std::size_t x = first; x <= column + reach && x < extent.width; ++x) {
+        const std::size_t other =
+            y * extent.row() + x * extent.channels + element % extent.channels;
+        if (other != element && is_constant(other)) return std::numeric_limits<double>::infinity();
+        for (const std::span<const float> image : stack_.images) around.add(image[other]);
+      }
+    }
+    return stats::size_about(value(element), around);
+  }
+
   stats::ImageStack& stack_;
   Declarations declarations_;
   Span span_{};
-  std::optional<SizesAround> sizes_;
   std::vector<std::pair<std::size_t, double>> settled_;
 };
 
