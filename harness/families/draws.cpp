@@ -35,7 +35,7 @@ Evidence integral(const Seen& seen) {
       from_probability({.successes = cells.in_cells(counts).back(), .trials = sum(counts)},
                        cells.mass.total - seen.reference().value, cells.tolerance());
   evidence.quantity = fmt::format(
-      "integral of the density ({:.10g} +- {:.1g}) with the share of draws without a point, less "
+      "integral of the density ({:.10g} +- {:.1g}) plus the share of draws without a point, minus "
       "{:g},",
       cells.mass.total, cells.tolerance(), seen.reference().value);
   return evidence;
@@ -126,7 +126,7 @@ class DrawsTheta : public Theta {
 class IntegralTheta final : public DrawsTheta {
  public:
   IntegralTheta()
-      : DrawsTheta(Draws::cells, "exact: what a sampler's density integrates to", integral) {}
+      : DrawsTheta(Draws::cells, "exact: the integral of a sampler's density", integral) {}
 
   void require_density(const Question& question) const override { density_of(question); }
   std::string why_impossible(const Question& question) const override {

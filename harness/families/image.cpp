@@ -38,7 +38,7 @@ void require_exact_number(const Question& question) {
   if ((number != nullptr && number->standard_error > 0) ||
       (question.test->reference_number && question.test->reference_number->standard_error > 0)) {
     refuse(place_of(question),
-           "the error of one number is common to all pixels: `+-` has no method for images");
+           "the error of one number is common to all pixels: no method takes `+-` for images");
   }
 }
 
@@ -55,7 +55,8 @@ void require_all_pixels(const Question& question) {
   const bool number = std::holds_alternative<Constant>(question.test->claim.right);
   if (!number || is_against_darkness(question) || !first.image->left_out) return;
   refuse(place_of(question),
-         "`{}` leaves out pixels, which a number is held against too: take a `crop` for the `mask`",
+         "`{}` leaves out pixels, but a number is claimed of all pixels: use a `crop` instead of "
+         "the `mask`",
          first.estimator->name);
 }
 
@@ -70,7 +71,7 @@ void require_equal_primaries(const Question& question) {
   }
   if (words[0] == words[1]) return;
   refuse(place_of(question),
-         "`{}` has `primaries: {}` and `{}` has `primaries: {}`; give both as many",
+         "`{}` has `primaries: {}` and `{}` has `primaries: {}`; give both the same",
          question.subjects[0].estimator->name, words[0], question.subjects[1].estimator->name,
          words[1]);
 }
@@ -129,8 +130,8 @@ void require_partners(const Question& question) {
   for (std::uint64_t i = 0; i < keys.size(); ++i) {
     if (keys[i] == others[i] && std::ranges::count(keys, keys[i]) == 1) continue;
     refuse(place_of(question),
-           "`{}` and `{}` are no pair of one seed: their names say `{}` and `{}`; name both "
-           "pictures of a seed alike, and those of two seeds differently",
+           "`{}` and `{}` are not a pair of one seed: their names say `{}` and `{}`; name both "
+           "pictures of a seed alike, and pictures of two seeds differently",
            first.place_of({.index = i}), second.place_of({.index = i}), keys[i], others[i]);
   }
 }
@@ -241,10 +242,10 @@ double squared_unit(const Question& question, const PlannedImage& last) {
 /// numbers (image_evidence.h).
 class ImageTheta : public Theta {
  public:
-  explicit ImageTheta(const ThetaTraits& traits = {.joins_channels = true, .of_images = true},
-                      const Method& row = {"image",
-                                           "cells of every size, and alternating sums: images",
-                                           any_question, Keeps::images, nullptr})
+  explicit ImageTheta(
+      const ThetaTraits& traits = {.joins_channels = true, .of_images = true},
+      const Method& row = {"image", "cells of every size, and alternating sums, of two images",
+                           any_question, Keeps::images, nullptr})
       : Theta(traits, {row}) {}
 
   const Theta* of_images() const override { return this; }
@@ -331,13 +332,13 @@ class ImageTheta : public Theta {
     if (fewest >= stats::least_replicates) return "";
     const std::string mend =
         question.test->budget
-            ? "give a larger `budget`, of which every pixel and component takes its `primaries`, "
-              "or fewer of these"
+            ? "give a larger `budget`, which pays `primaries` for every pixel and component, or "
+              "fewer `primaries`"
             : fmt::format("take {} `secondaries` or more, with fewer `primaries` if need be",
                           stats::least_replicates);
     return fmt::format(
-        "{} images are too few: each pixel's variance comes from them alone, and it takes {} of "
-        "them to tell any pixel among {} from its reference; {}",
+        "{} images are too few: each pixel's variance comes from them alone, and {} are needed to "
+        "tell one pixel of {} from its reference; {}",
         fewest, stats::least_replicates, question.subjects[0].channels.size(), mend);
   }
 
@@ -392,8 +393,7 @@ class PairedImageTheta final : public ImageTheta {
     require_equal_primaries(question);
     if (question.subjects[0].estimator == question.subjects[1].estimator) {
       refuse(place_of(question),
-             "both sides of the pairs are `{}`, which equals itself; name another estimator, or "
-             "leave `paired` out",
+             "both sides of the pairs are `{}`; name another estimator, or leave `paired` out",
              question.subjects[0].estimator->name);
     }
   }
@@ -423,16 +423,15 @@ class ImageLawTheta final : public ImageTheta {
     const double alpha = test.place.share.alpha;
     if (alpha < least_alpha && test.plan.invalid.empty()) {
       test.plan.invalid = fmt::format(
-          "its share of alpha is {:.2g}, for which 1 / alpha labels would be drawn, and a test of "
-          "laws takes a share of {:g} or more: give it more `weight`, or the suite a larger "
-          "`alpha`",
+          "its share of alpha is {:.2g}, and a test of laws needs {:g} or more, as it draws 1 / "
+          "alpha permutations: give it more `weight`, or the suite a larger `alpha`",
           alpha, least_alpha);
     }
     return ImageTheta::choose(test, pilots);
   }
   void check_margin(const Question&, const Margin& margin) const override {
     refuse(margin.where,
-           "laws of images are the same or not: no margin has a meaning here; leave it out");
+           "laws of images are the same or not, so a margin has no meaning here; leave it out");
   }
   ChannelEvidence evidence(const DrawnTest& test, const Seen& seen) const override {
     return evidence_of_image_laws(seen, image_test(test));

@@ -29,7 +29,7 @@ namespace {
 using stats::Interval;
 using stats::TestResult;
 
-constexpr const char* distance_of_laws = "largest distance of distribution functions";
+constexpr const char* distance_of_laws = "largest distance between distribution functions";
 
 /// Says which part decides: the estimate may be another's.
 std::string decisive_part(const std::string& part, double difference) {
@@ -144,18 +144,18 @@ Evidence larger_of(const Evidence& points, const Evidence& missing) {
     }
     return both;
   };
-  return {
-      .estimate = std::max(points.estimate, missing.estimate),
-      .at = at,
-      .interval = interval,
-      .most_against = [points, missing](double theta) -> std::string {
-        const double of_masses = missing.at(theta).log_p_upper;
-        return of_masses < points.at(theta).log_p_upper
-                   ? decisive_part("the masses without a point", missing.estimate)
-                   : "";
-      },
-      .quantity = "largest distance of distribution functions, or of the masses without a point",
-      .distance = true};
+  return {.estimate = std::max(points.estimate, missing.estimate),
+          .at = at,
+          .interval = interval,
+          .most_against = [points, missing](double theta) -> std::string {
+            const double of_masses = missing.at(theta).log_p_upper;
+            return of_masses < points.at(theta).log_p_upper
+                       ? decisive_part("the masses without a point", missing.estimate)
+                       : "";
+          },
+          .quantity =
+              "largest distance between distribution functions, or of the masses without a point",
+          .distance = true};
 }
 
 void require_points(const Points& points) {
@@ -390,9 +390,10 @@ class LawTheta : public Theta {
                 [](const Question& q) { return q.of_two() && !q.is().joins_channels; },
                 Keeps::values, by_distance},
                {"chi-square-two-sample",
-                "chi-square of two: one or two coordinates together, in cells", of_two,
+                "chi-square: two laws, counted in cells of one or two coordinates", of_two,
                 Keeps::points, cells_against_cells},
-               {"chi-square-fit", "chi-square: draws against their declared density, in cells",
+               {"chi-square-fit",
+                "chi-square: draws against their declared density, counted in cells",
                 [](const Question& q) { return !q.of_two() && !of_one_law(q); }, Keeps::cells,
                 cells_against_density}}) {}
 
@@ -489,8 +490,8 @@ class DensityTheta final : public LawTheta {
     const auto most = static_cast<std::size_t>(std::ranges::max_element(counts) - counts.begin());
     return ConstantVerdict{
         reports::Verdict::fail,
-        fmt::format("{} of {} draws lie where the declared density is 0, {} of "
-                    "them in {}: no sampler of this density draws there",
+        fmt::format("{} of {} draws lie where the declared density is 0, {} of them in {}: a "
+                    "sampler of this density never draws there",
                     all, seen.moments(0).count, counts[most], density.cells.describe(most))};
   }
 
@@ -514,8 +515,8 @@ void require_plane(const Question& question) {
   const std::size_t second = question.subjects[1].channels.size();
   if (first == second && first <= 2) return;
   refuse(question.test->place_of("test"),
-         "`{}` counts in cells of one or two coordinates, the same of both sides, which have {} "
-         "and {}; name one channel of each",
+         "`{}` counts in cells of one or two coordinates, equal on both sides, which have {} and "
+         "{}; name one channel of each",
          *question.test->method, first, second);
 }
 
@@ -538,7 +539,7 @@ void require_same_marginals(const Question& question, const Location& where) {
   if (names == others) return;
   refuse(where,
          "the first sampler's points are {}, the second's {}: name one marginal of each to compare "
-         "them all the same",
+         "them",
          names, others);
 }
 

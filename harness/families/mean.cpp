@@ -249,8 +249,8 @@ std::string lost_to_rounding(const Seen& seen) {
   if (!(rounding > tolerated_shift * error)) return "";
   return fmt::format(
       "the mean of `{}` is {:.6g}: numbers of that size are rounded so coarsely that their mean is "
-      "off by about {:.2g} where the standard error is {:.2g}; take a constant near the mean off "
-      "the observations",
+      "off by about {:.2g}, and the standard error is {:.2g}; subtract a constant near the mean "
+      "from the observations",
       seen.question.subjects[worst].estimator->name, seen.moments(worst).mean, rounding, error);
 }
 
@@ -479,11 +479,11 @@ std::string unseen_could_decide(const TestOutcome& outcome, const Seen& seen) {
         "every observation of `{}` is {:.10g}, and {}", question.subjects[subject].estimator->name,
         seen.moments(subject).mean,
         std::isfinite(shift)
-            ? fmt::format("values never seen could move its mean by {:.3g} where the comparison's "
+            ? fmt::format("unseen values could move its mean by {:.3g}, and the comparison's "
                           "standard error is {:.3g}; take more observations",
                           shift, error)
-            : "no declared range bounds how far values never seen could move its mean; declare "
-              "both ends of the range, or compare the other mean with a number");
+            : "no declared range bounds how far unseen values could move its mean; declare both "
+              "ends of the range, or compare the other mean with a number");
   }
   return "";
 }
@@ -516,7 +516,7 @@ bool meets_claimed(const stats::Range& theta, const Regions& regions) {
 /// Hint at the commonest cause of constant observations.
 std::string seeds(const Question& question) {
   for (const Subject& subject : question.subjects) {
-    if (is_recorded(subject)) return "if they should vary, has each a seed of its own? ";
+    if (is_recorded(subject)) return "if they should vary, does each have its own seed? ";
     if (subject.estimator->entry->information.says_nature) {
       return "if they should vary, does each draw its own random numbers? ";
     }
@@ -544,20 +544,18 @@ std::optional<ConstantVerdict> judge_constant(const Seen& seen, const Regions& r
     if (!regions.has_forbidden()) {
       return ConstantVerdict{
           reports::Verdict::pass,
-          "every observation is the same and as claimed; values never seen are not ruled out"};
+          "every observation is the same and as claimed; unseen values are not ruled out"};
     }
-    return ConstantVerdict{
-        reports::Verdict::inconclusive,
-        "every observation is the same and as claimed, but what values never seen could add is "
-        "bounded by no number of observations; " +
-            range_advice(seen.question)};
+    return ConstantVerdict{reports::Verdict::inconclusive,
+                           "every observation is the same and as claimed, but no number of "
+                           "observations bounds what unseen values could add; " +
+                               range_advice(seen.question)};
   }
-  return ConstantVerdict{
-      reports::Verdict::invalid,
-      fmt::format("every observation is {:.10g}, off by {:.3g}: {}rare other values may be unseen, "
-                  "and could make up for it; {}",
-                  seen.moments(0).mean, difference, seeds(seen.question),
-                  range_advice(seen.question))};
+  return ConstantVerdict{reports::Verdict::invalid,
+                         fmt::format("every observation is {:.10g}, off by {:.3g}: {}rare other "
+                                     "values may be unseen and could balance this; {}",
+                                     seen.moments(0).mean, difference, seeds(seen.question),
+                                     range_advice(seen.question))};
 }
 
 stats::Gate skewness_gate(const Seen& seen, double x) {
@@ -780,10 +778,10 @@ class MeanTheta : public Theta {
       const double away =
           rarer * std::abs(effect.estimate.value_or(0)) / std::abs(question.factor_of(side));
       return fmt::format(
-          "values rarer than one in {:.0f} and at least {} away from {} would explain it{}", rarer,
-          reports::human(away, 2) + (effect.relative ? " times the mean" : ""),
+          "values rarer than one in {:.0f}, at least {} away from {}, could also explain this{}",
+          rarer, reports::human(away, 2) + (effect.relative ? " times the mean" : ""),
           effect.relative ? "it" : "the mean",
-          is_recorded(question.subjects[side]) ? "" : "; a declared range excludes them");
+          is_recorded(question.subjects[side]) ? "" : "; declare a range to exclude them");
     }
     return "";
   }
@@ -937,7 +935,7 @@ Question BiasTheta::bind(const TestEntry& test, const Estimators& estimators) co
     return question;
   }
   if (number.standard_error > 0) {
-    refuse(claim.left.where, "with a `reference` that is sampled, `+-` has no method");
+    refuse(claim.left.where, "no method takes `+-` beside a `reference` that is sampled");
   }
   question.subjects.push_back(estimates(*test.reference, estimators));
   return question;

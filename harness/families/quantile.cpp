@@ -169,8 +169,8 @@ class QuantileTheta final : public Theta {
       : Theta({.of_single_values = true, .may_be_unbounded = true},
               {{"binomial", "exact: a quantile against a number", of_one, Keeps::values, quantile,
                 exact_at_any_size},
-               {"quantile", "exact: two quantiles, by the counts on both sides", of_two,
-                Keeps::values, quantile, exact_at_any_size}}) {}
+               {"quantile", "exact: two quantiles", of_two, Keeps::values, quantile,
+                exact_at_any_size}}) {}
 
   Question bind(const TestEntry& test, const Estimators& estimators) const override {
     Question question = Theta::bind(test, estimators);

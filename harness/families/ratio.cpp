@@ -358,8 +358,8 @@ std::string rows_beside_primaries(const Question& question) {
     const Subject& other = question.subjects[1 - i];
     if (!is_recorded(rows) || !other.averages) continue;
     return fmt::format(
-        "a row of `{}` is held against a single primary of `{}`: rows that are means of n have a "
-        "variance n times less, and the claim on them a factor n",
+        "a row of `{}` is compared with a single primary of `{}`: if a row is a mean of n, its "
+        "variance is n times less, and the claim needs a factor n",
         rows.estimator->name, other.estimator->name);
   }
   return "";
@@ -383,8 +383,8 @@ std::optional<ConstantVerdict> judge_constant_variance(const Seen& seen, const R
   const double hidden = hidden_deviation(seen);
   if (hidden * hidden > seen.reference().value) return {};
   return ConstantVerdict{reports::Verdict::pass,
-                         fmt::format("every observation is {:.10g}, so that no variance was seen "
-                                     "that could be too large; values never seen are not ruled out",
+                         fmt::format("every observation is {:.10g}, so the variance seen is 0, "
+                                     "which is not too large; unseen values are not ruled out",
                                      seen.moments(0).mean)};
 }
 
@@ -461,8 +461,7 @@ class WorstVarianceTheta final : public VarianceTheta {
       return VarianceTheta::bind(test, estimators);
     }
     refuse(claim.left.where,
-           "`worst_variance` of {} channels is bounded by a number from above (`<=` or `<`): that "
-           "every channel's variance is; there is no method for another claim",
+           "`worst_variance` of {} channels can only be claimed to be below a number (`<=` or `<`)",
            channels);
   }
 };
@@ -495,7 +494,7 @@ Moments logarithms(const Seen& seen, std::size_t subject) {
     }
   }
   if (!std::isfinite(logs.mean)) {
-    throw std::domain_error("a replicate took no measurable time or has no spread");
+    throw std::domain_error("a replicate took no measurable time or did not vary");
   }
   return logs;
 }
@@ -584,9 +583,8 @@ class CostTheta final : public RatioTheta {
 const JointMoments& counted_cost(const Question& question, const ChannelData& data) {
   const JointMoments& sample = by_its_cost(question, data.joint);
   if (sample.of_cost.mean > 0) return sample;
-  throw std::domain_error(
-      "no cost was counted: an estimator that traces no rays counts its `samples`; write " +
-      written_key(*question.test, "cost", "samples"));
+  throw std::domain_error("no cost was counted: the estimator traces no rays; write " +
+                          written_key(*question.test, "cost", "samples"));
 }
 
 class EfficiencyTheta final : public RatioTheta {
@@ -666,8 +664,8 @@ bool is_biased(const Subject& subject) {
 void require_primaries(const Subject& subject) {
   if (!subject.averages || subject.estimator->primaries) return;
   refuse(subject.estimator->where,
-         "the mean squared error of `{0}` depends on how many primaries it averages: give them, "
-         "as in `{0}: {{…, primaries: 16}}`",
+         "the mean squared error of `{0}` depends on how many primaries it averages: give the "
+         "number, as in `{0}: {{…, primaries: 16}}`",
          subject.estimator->name);
 }
 

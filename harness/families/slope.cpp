@@ -242,13 +242,13 @@ std::optional<SlopeData> expected_points(const TestOutcome& test, std::size_t ch
 class SlopeTheta final : public Theta {
  public:
   explicit SlopeTheta(bool of_spread)
-      : Theta({.of_spread = of_spread, .fit_decides = true, .may_be_unbounded = true},
-              {{"slope", "weighted fit of a power law: costs over a parameter", of_costs,
-                Keeps::costs, slope},
-               {"slope", "weighted fit of a power law: variances over a parameter",
-                [](const Question& q) { return q.is().of_spread; }, Keeps::powers, slope},
-               {"slope", "weighted fit of a power law: means or biases over a parameter",
-                [](const Question& q) { return !of_logarithms(q); }, Keeps::moments, slope}}) {}
+      : Theta(
+            {.of_spread = of_spread, .fit_decides = true, .may_be_unbounded = true},
+            {{"slope", "fit of a power law: costs over a parameter", of_costs, Keeps::costs, slope},
+             {"slope", "fit of a power law: variances over a parameter",
+              [](const Question& q) { return q.is().of_spread; }, Keeps::powers, slope},
+             {"slope", "fit of a power law: means or biases over a parameter",
+              [](const Question& q) { return !of_logarithms(q); }, Keeps::moments, slope}}) {}
 
   Question bind(const TestEntry& test, const Estimators& estimators) const override;
 
@@ -302,7 +302,7 @@ class SlopeTheta final : public Theta {
     return !channel.effect.low && !channel.effect.high ? "exponent" : "";
   }
   const char* how_to_exclude() const override {
-    return "sweep values where it is larger: what is 0 has no slope";
+    return "sweep values where it is larger: 0 has no slope";
   }
 };
 
@@ -334,7 +334,7 @@ void require_slope_of_something(const TestEntry& test, const Subject& subject) {
   if (!of_one || !subject.averages || test.over->parameter != "primaries") return;
   refuse(test.claim.left.where,
          "`{}` is that of one primary of `{}`, which averages: it does not change with "
-         "`primaries`, and its slope is 0; sweep a parameter",
+         "`primaries`, so its slope is 0; sweep another parameter",
          quantity.word, test.claim.left.source.estimator);
 }
 

@@ -54,8 +54,8 @@ stats::ImageDistance in_units_of_margin(const stats::ImageDistance& distance,
   }
   if (!(distance.squared_norm > 0)) {
     throw std::domain_error(
-        "the image that it is held against is zero within its noise, and nothing is a per cent of "
-        "it; with `detect` or `within` as a number differences are in its own unit");
+        "the reference image is zero within its noise, so per cent of it have no meaning; give "
+        "`detect` or `within` as a number, in the image's unit");
   }
   return distance;
 }
@@ -221,10 +221,10 @@ std::string all_alike(const Question& question) {
 /// What is drawn should vary.
 void require_spread(const Question& question, bool varies) {
   if (varies || std::ranges::all_of(question.subjects, is_recorded)) return;
-  throw stats::ZeroVariance(fmt::format(
-      "{}: without spread nothing can be said of what was never seen; see that the seed changes "
-      "the image, take fewer `primaries`, or more observations",
-      all_alike(question)));
+  throw stats::ZeroVariance(
+      fmt::format("{}: values without spread say nothing about unseen values; check that the seed "
+                  "changes the image, take fewer `primaries`, or more observations",
+                  all_alike(question)));
 }
 
 bool varies(const stats::ImageStack& stack) {

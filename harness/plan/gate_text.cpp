@@ -153,8 +153,8 @@ Reason what_would_help(const TestOutcome& outcome) {
   // If the tail's moment does not exist, more observations only make the gate redder.
   if (heavy || (rows && factor > most)) {
     return fmt::format(
-        "; the values are heavy-tailed, and more of them may only show more of the tail: {}claim a "
-        "quantile, as `quantile({}, 0.5) == …`",
+        "; the values are heavy-tailed, and more observations may only show more of the tail: "
+        "{}claim a quantile, as `quantile({}, 0.5) == …`",
         averages
             ? "give " + std::string(rows_noun(outcome.question)) + " that each average many, or "
         : rows ? ""
@@ -181,8 +181,8 @@ Reason what_would_help(const TestOutcome& outcome) {
   }
   Reason help = known ? more_drawn(outcome, factor, "may do") : Reason("more observations may do");
   help.text = fmt::format(
-      "; {}. Without a declared range no test decides on fewer than {} primaries: it knows nothing "
-      "of a rare bright value that it never drew",
+      "; {}. Without a declared range a test needs at least {} primaries: it cannot know of a rare "
+      "bright value that it never drew",
       help.text, floor_of_evidence);
   return help;
 }

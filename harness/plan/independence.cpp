@@ -68,7 +68,7 @@ std::string enough_of_a_chain(const Question& question, std::size_t rows, double
   }
   const std::optional<std::string>& forced = question.test->method;
   if (forced && !find_method(question, *forced).is.of_batches) {
-    return "leave `test` out: batches of enough rows are then averaged";
+    return "leave `test` out: Assay then averages batches of enough rows";
   }
   if (question.test->claim.relation == Relation::within) {
     return fmt::format("means of {} successive rows each, {} of them at least", apart,
@@ -77,7 +77,7 @@ std::string enough_of_a_chain(const Question& question, std::size_t rows, double
   // A half more: another sample's estimate may be larger.
   const std::size_t enough = fewest_batches * std::max(apart, fewest_batches) * 3 / 2;
   if (rows >= enough) return "";
-  return fmt::format("{} rows at least, of which batches are then averaged", enough);
+  return fmt::format("at least {} rows, which Assay then averages in batches", enough);
 }
 
 /// `at_a_lag`: values some steps apart show the dependence, not neighbours.
@@ -87,9 +87,9 @@ Reason dependent(const Question& question, const Rows& rows, bool at_a_lag) {
   if (at_a_lag && worst.correlation > 0 && static_cast<double>(worst.lag) > time) {
     return Reason::advising(
         fmt::format("the {} are not independent: those {} apart have a rank correlation of {:.2g}, "
-                    "as where so many chains take turns; ",
+                    "as if that many chains took turns; ",
                     rows.label, worst.lag, worst.correlation),
-        "give one row a chain");
+        "give one row per chain");
   }
   if (!(time > 1)) {
     const stats::LaggedCorrelation any =
@@ -108,12 +108,12 @@ Reason dependent(const Question& question, const Rows& rows, bool at_a_lag) {
   if (worth < fewest_of_a_chain) {
     const bool several = question.subjects[0].channels.size() > 1;
     return Reason::advising(
-        why, std::string(several ? "name another column, if this one counts the rows; " : "") +
-                 "give sorted ones in the order drawn; of a slow chain they are too few");
+        why, std::string(several ? "if this column counts the rows, name another; " : "") +
+                 "give sorted rows in the order drawn; a slow chain needs more rows");
   }
   const std::string or_enough = enough_of_a_chain(question, rows.values.size(), time);
-  return Reason::advising(why,
-                          "give one row a chain" + (or_enough.empty() ? "" : ", or " + or_enough));
+  return Reason::advising(
+      why, "give one row per chain" + (or_enough.empty() ? "" : ", or " + or_enough));
 }
 
 std::string from_to(std::size_t first, std::size_t length) {
@@ -121,20 +121,18 @@ std::string from_to(std::size_t first, std::size_t length) {
 }
 
 Reason repeated(const Rows& rows, const stats::RepeatedRun& again) {
-  return Reason::advising(
-      fmt::format("of the {} those from {} are those from {} again, bit for bit: they are no "
-                  "observations of their own; ",
-                  rows.label, from_to(again.second, again.length),
-                  from_to(again.first, again.length)),
-      "give each run of the program that writes them a seed of its own");
+  return Reason::advising(fmt::format("of the {} those from {} repeat those from {} bit for bit: "
+                                      "they are not new observations; ",
+                                      rows.label, from_to(again.second, again.length),
+                                      from_to(again.first, again.length)),
+                          "give each run of the program that writes them a seed of its own");
 }
 
 [[noreturn]] void refuse_pair(const Question& question, const Subject& first, const Subject& second,
                               const std::string& why) {
   refuse(
       question.test->claim.left.where,
-      "`{}` and `{}` are no independent samples: {}; give the two sides seeds of their own, none "
-      "of them twice{}",
+      "`{}` and `{}` are not independent samples: {}; give every run of either side its own seed{}",
       first.estimator->name, second.estimator->name, why,
       question.theta->of_pairs() == nullptr
           ? ""
@@ -199,9 +197,9 @@ Reason too_few_to_tell(TestOutcome& test, const Pilots& pilots, std::uint64_t co
     const bool constant = first.values.size() > 1 && !(first.moments.m2 > 0);
     if (first.values.empty() || constant) continue;
     const std::uint64_t rows = std::min<std::uint64_t>(first.values.size(), count);
-    test.plan.gates.push_back(gate_of(
-        "rows that show their independence of " + side.estimator->name, static_cast<double>(rows),
-        fewest_in_order_to_tell, rows < fewest_in_order_to_tell ? "red" : "green"));
+    test.plan.gates.push_back(gate_of("rows to show independence of " + side.estimator->name,
+                                      static_cast<double>(rows), fewest_in_order_to_tell,
+                                      rows < fewest_in_order_to_tell ? "red" : "green"));
     if (rows >= fewest_in_order_to_tell || !reason.empty()) continue;
     // A forced method runs unchecked.
     const std::string forced =
@@ -215,8 +213,7 @@ Reason too_few_to_tell(TestOutcome& test, const Pilots& pilots, std::uint64_t co
     const bool limited = rows < there;
     const std::string mend = limited ? fmt::format("give a larger `{}`", key)
                                      : fmt::format("give {} rows", fewest_in_order_to_tell);
-    reason = {fmt::format("`{}` has {} row{}{}, and it takes {} to see that they do not depend on "
-                          "each other: {}{}",
+    reason = {fmt::format("`{}` has {} row{}{}, and a check of independence needs {}: {}{}",
                           side.estimator->name, there, there == 1 ? "" : "s",
                           limited ? fmt::format(", of which `{}` allows {}", key, rows) : "",
                           fewest_in_order_to_tell, mend, forced),
@@ -294,7 +291,7 @@ void judge_independence(TestOutcome& test, const Pilots& pilots, std::uint64_t c
     return;
   } else if (answered) {
     plan.method = find_method(question, "batch-means");
-    plan.caution = "successive rows are correlated: the interval is that of means of batches";
+    plan.caution = "successive rows are correlated: the interval is from means of batches";
     // Batches answer what spoke against single rows; it still speaks against a drawn side.
     if (std::ranges::all_of(question.subjects, is_recorded)) {
       plan.invalid = {};
@@ -331,7 +328,7 @@ void judge_order(const Subject& subject, const Drawn& drawn, std::vector<Gate>& 
       gates.push_back(gate_of(gate, ", " + subject.estimator->name));
       if (!invalid.empty()) continue;
       invalid = fmt::format(
-          "the observations of `{}` are not independent: {}; an observation may rest on its own "
+          "the observations of `{}` are not independent: {}; an observation must depend on its own "
           "random numbers alone, not on what was drawn before it or beside it",
           subject.estimator->name, red_gates({gates.back()}));
     }

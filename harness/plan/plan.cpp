@@ -214,12 +214,11 @@ std::uint64_t paid_for(const TestOutcome& test, std::uint64_t whole, std::uint64
     if (next == spent || next > budget) return paid;
     paid += (budget - spent) / (next - spent);
   }
-  refuse(
-      test.question.test->place_of("budget"),
-      "its budget (or its share of the suite's) of {} primaries does not pay for a pilot and two "
-      "observations, the fewest that can be tested: the two take {}; give a larger budget, or "
-      "fewer `primaries`",
-      whole, fewest_tested * each);
+  refuse(test.question.test->place_of("budget"),
+         "its budget (or its share of the suite's) of {} primaries is too small for a pilot and "
+         "two observations, the fewest that can be tested: these take {}; give a larger budget, or "
+         "fewer `primaries`",
+         whole, fewest_tested * each);
 }
 
 /// Throws InputError before hours are spent on what was hardly meant.
@@ -233,8 +232,8 @@ void require_possible(const TestOutcome& test, std::uint64_t secondaries) {
       static_cast<double>(secondaries) * static_cast<double>(primaries_of_look(test, 1));
   if (total <= most_planned_primaries) return;
   refuse(where,
-         "this claim would take about {:.1e} primaries; give a larger margin, or a `budget` to "
-         "spend on it all the same",
+         "this claim would take about {:.1e} primaries; give a larger margin, or the `budget` that "
+         "it may spend",
          total);
 }
 
@@ -289,10 +288,9 @@ std::uint64_t most_in_seconds(const TestOutcome& test, const Pilots& pilots,
 void require_no_budget(const TestOutcome& test) {
   const TestEntry& entry = *test.question.test;
   if (test.plan.method.keeps != Keeps::blocks || !entry.budget) return;
-  refuse(
-      entry.place_of("budget"),
-      "a claim in seconds is timed on whole replicates, which no `budget` ends: leave it out, or "
-      "give `secondaries`, which are rounded up");
+  refuse(entry.place_of("budget"),
+         "a claim in seconds times whole replicates, which a `budget` cannot end: leave it out, or "
+         "give `secondaries`, which are rounded up");
 }
 
 /// Looks that grow from the fewest meaningful up to what `detect` needs at the last look's levels.
@@ -421,7 +419,7 @@ std::vector<FamilyPlace> places(const Suite& suite, const std::vector<Question>&
 }
 
 std::string lack_of_density(const Question& question, const NoDensity& why) {
-  return fmt::format("the density that `{}` declares cannot be had: {}",
+  return fmt::format("the density that `{}` declares cannot be computed: {}",
                      question.subjects[0].estimator->name, why.what());
 }
 

@@ -130,11 +130,10 @@ Subject estimates(const Source& source, const PreparedEstimator& estimator) {
     no_such_part(source, estimator);
   }
   if (masked && !subject.image) {
-    refuse(
-        source.where,
-        "`{}` counts pixels as 0 that `mask` or `finite` leaves out: claim the whole picture, or "
-        "take a `crop`",
-        to_string(source));
+    refuse(source.where,
+           "`{}` counts pixels that `mask` or `finite` leaves out as 0: claim the whole picture, "
+           "or use a `crop`",
+           to_string(source));
   }
   return subject;
 }
@@ -186,7 +185,7 @@ Constant analytic_mean(const Channel& channel, const Source& source) {
   if (channel.mean) return {*channel.mean, channel.mean_error};
   refuse(source.where,
          "`{}` knows no analytic mean of `{}` with these parameters; give the number, or compare "
-         "with an estimator you trust",
+         "with an estimator that you trust",
          source.estimator, channel.name);
 }
 
@@ -275,13 +274,13 @@ void require_drawn(const Question& question) {
   if (question.test->cost != CostKind::seconds) return;
   for (const Subject& subject : question.subjects) {
     if (is_recorded(subject)) {
-      refuse(question.test->place_of("cost"), "`{}` is not drawn but read: its seconds say nothing",
+      refuse(question.test->place_of("cost"), "`{}` is read, not drawn: its seconds mean nothing",
              subject.estimator->name);
     }
     if (subject.setup->keeps_files()) {
       refuse(question.test->place_of("cost"),
-             "`{}` keeps what it made: the seconds of a file that is there say nothing; let "
-             "`process` answer, or write the seconds as a number of the observation",
+             "`{}` keeps its files, and seconds of a kept file mean nothing; let `process` answer, "
+             "or write the seconds as a number of the observation",
              subject.estimator->name);
     }
   }

@@ -82,7 +82,7 @@ std::string name_of(const DrawnTest& test, const stats::WhichImage& which) {
 std::string mend_of(const DrawnTest& test, bool across) {
   const Question& question = test.outcome.question;
   if (!across) {
-    return fmt::format("give each {} a seed of its own, and see that all its bits count",
+    return fmt::format("give each {} a seed of its own, and check that all its bits are used",
                        question.is().of_pairs ? "pair" : "image");
   }
   const bool pairs = question.theta->of_pairs() != nullptr;

@@ -423,13 +423,12 @@ void require_memory(const std::map<std::string, PreparedEstimator>& estimators,
   const PreparedEstimator& estimator = largest->second;
   const ImageShape shape = *estimator.setup->image();
   const std::string why = fault.empty() ? "" : fault + ", so that all are to be kept: ";
-  refuse(
-      estimator.where,
-      "{}{} pictures of {} x {} pixels of {} components and those beside them take about {:.1f} "
-      "GB to test, and {:.1f} GB are free; take fewer pictures (16 a side or more), one of their "
-      "channels at a time, or smaller pictures",
-      why, *estimator.setup->observations(), shape.width, shape.height, shape.components.size(),
-      needed / gigabyte, available / gigabyte);
+  refuse(estimator.where,
+         "{}{} pictures of {} x {} pixels of {} components and the other side take about {:.1f} GB "
+         "to test, and {:.1f} GB are free; take fewer pictures (16 a side or more), one of their "
+         "channels at a time, or smaller pictures",
+         why, *estimator.setup->observations(), shape.width, shape.height, shape.components.size(),
+         needed / gigabyte, available / gigabyte);
 }
 
 }  // namespace assay::harness

@@ -108,19 +108,19 @@ std::string found_in_cell(const ChannelOutcome& channel) {
       stats::typical_side, reports::margin_text(*channel.image->detectable_in_cell, channel.effect),
       channel.effect.relative ? " of the image's mean" : "",
       channel.effect.relative && *channel.image->detectable_in_cell > 1
-          ? "; so much noise may be that of a few bright samples: test the `distribution` too "
+          ? "; so much noise may come from a few bright samples: test the `distribution` too "
             "(--law)"
           : "");
 }
 
 std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& channel) {
-  if (channel.evidence.exact) return "as claimed: what never varies needs no test";
+  if (channel.evidence.exact) return "as claimed: values that never vary need no test";
   if (!channel.regions.has_forbidden()) {
     const std::string text = no_evidence(channel);
     if (channel.finds_nothing) {
       return fmt::format(
-          "{}, nor could there be: in {} observations no difference that the range allows is found "
-          "with probability {:g}",
+          "{}, nor could there be: {} observations are too few to find any difference that the "
+          "range allows with probability {:g}",
           text, outcome.secondaries(), 1 - outcome.place.share.beta);
     }
     if (const std::string all = outcome.question.theta->not_excluded(channel); !all.empty()) {
@@ -133,8 +133,9 @@ std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& chann
                          1 - outcome.place.share.beta, found_in_cell(channel));
     }
     if (reports::range_text(channel.effect).empty()) return text;
-    return fmt::format("{}, nor is it shown: {}; say with `detect` how far off it must not be",
-                       text, finding(channel));
+    return fmt::format(
+        "{}, nor proof of it: {}; say with `detect` how large an error must not pass", text,
+        finding(channel));
   }
   if (holds_no_effect(channel)) return passed_by_empty_interval(channel);
   const double excluded = excluded_beyond(outcome, channel);
@@ -243,7 +244,7 @@ Reason what_would_decide(const TestOutcome& outcome, const ChannelOutcome& chann
   const double half = (interval.high - interval.low) / 2;
   const Room room = room_of(outcome, channel);
   if (outcome.plan.method.is.in_range && !std::isfinite(half)) {
-    return "no number of observations would decide: what rare values could add is not bounded; " +
+    return "no number of observations would decide: nothing bounds what rare values could add; " +
            range_advice(outcome.question);
   }
   if (!(half > 0) || !std::isfinite(half) || !(room.size > 0)) {
@@ -257,7 +258,7 @@ Reason what_would_decide(const TestOutcome& outcome, const ChannelOutcome& chann
                              : outcome.question.test->budget ? "`budget`"
                                                              : "observations";
     return Reason::advising(
-        "the estimate is less than a standard error from what is to be shown; ",
+        "the estimate is less than a standard error from what must be proved; ",
         channel.regions.within()
             ? "give a larger margin, or more " + more
             : "if both sides may be equal, claim that they are `within` a margin; otherwise give "
@@ -267,7 +268,7 @@ Reason what_would_decide(const TestOutcome& outcome, const ChannelOutcome& chann
   const double sampled = error * error - fixed * fixed;
   const double wanted = std::pow(room.size / room.standard_errors, 2) - fixed * fixed;
   if (!(wanted > 0)) {
-    return Reason("no number of observations would decide: the reference's own error forbids it");
+    return Reason("no number of observations would decide: the reference's own error is too large");
   }
   return with_more(outcome, channel, std::max(1.1, std::max(0.0, sampled) / wanted));
 }
@@ -302,7 +303,7 @@ Reason told(const TestOutcome& outcome) {
 }  // namespace
 
 Reason excludes_no(const std::string& what, const TestOutcome& outcome) {
-  return Reason::advising(fmt::format("these observations exclude no {} at all: ", what),
+  return Reason::advising(fmt::format("these observations rule out no {} at all: ", what),
                           outcome.question.theta->how_to_exclude());
 }
 

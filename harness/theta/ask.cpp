@@ -33,12 +33,11 @@ void require_different_data(const Question& question, const Claim& claim) {
   }
   if (question.subjects[0].setup->image()) {
     refuse(claim.left.where,
-           "both sides are the pictures `{}`; give one of them pictures of seeds of their own",
-           first);
+           "both sides are the pictures `{}`; give one side pictures of other seeds", first);
   }
   refuse(claim.left.where,
-         "both sides are read from `{}`: its rows belong together and are no independent samples; "
-         "record the difference as a column of its own and claim that its mean is 0",
+         "both sides are read from `{}`: its rows belong together and are not independent samples; "
+         "record the difference as another column and claim that its mean is 0",
          first);
 }
 
@@ -47,8 +46,8 @@ bool separate_pair(Subject& first, Subject& second, const Claim& claim, std::uin
   if (!(stream_of(first, seed) == stream_of(second, seed))) return false;
   if (first.setup->data_stream() && second.setup->data_stream()) {
     refuse(claim.left.where,
-           "both sides say that they were drawn from the same stream: they are not independent; "
-           "draw one of them with another `--seed`");
+           "both sides were drawn from the same stream, so they are not independent; draw one of "
+           "them with another `--seed`");
   }
   ++(second.setup->data_stream() ? first : second).copy;
   return true;
@@ -88,15 +87,15 @@ void require_moments_suffice(const Question& question) {
     const bool costs = quantity.row->counts_cost && !quantity.slope;
     if (!reference && !costs && !question.is().of_moments) {
       refuse(question.test->where,
-             "`{}` has the moments of a run, not its observations: they tell of mean, bias, "
-             "variance, cost and efficiency, not of this; keep observations with `assay sample` "
-             "and give them as `file`",
+             "`{}` has the moments of a run, not its observations: these suffice for mean, bias, "
+             "variance, cost and efficiency, but not for this; write observations with `assay "
+             "sample` and give them as `file`",
              name);
     }
     if (costs && !reference && !run->knows_cost(question.test->cost)) {
       refuse(question.test->where,
-             "the run that `{}` is of does not tell how its costs vary: claim something of its "
-             "efficiency there",
+             "the run of `{}` did not record how its costs vary: add a claim about its efficiency "
+             "to that run",
              name);
     }
     if (question.test->secondaries && *question.test->secondaries != run->summary().count) {
@@ -122,8 +121,8 @@ void refuse_missing_per_cent(const Question& question) {
   for (const Margin& margin : margins_of(*question.test)) {
     if (quantity.is_a_probability() && margin.value >= 1) {
       refuse(margin.where,
-             "no difference of probabilities is {:g}, they lie below 1; here {:g} per cent is "
-             "written `{:g}`",
+             "a difference of probabilities is below 1, so it cannot be {:g}; write {:g} per cent "
+             "as `{:g}`",
              margin.value, margin.value, margin.value / 100);
     }
     const std::string per_cent = missing_per_cent(margin, size);
@@ -148,7 +147,7 @@ void require_observations(const Question& question) {
   for (const Subject& subject : question.subjects) {
     if (!subject.setup->is_reference()) continue;
     refuse(question.test->claim.left.where,
-           "`{0}` is a reference, a mean without observations: it can stand on the right of a "
+           "`{0}` is a reference, a mean without observations: it can only stand on the right of a "
            "mean, as in `mean(x) == mean({0})`",
            subject.estimator->name);
   }
@@ -171,7 +170,7 @@ void ask_of_pairs(Question& question) {
   const Theta* const theta = question.theta->of_pairs();
   if (theta == nullptr || !question.of_two()) {
     refuse(question.test->place_of("paired"),
-           "`paired` has a method for the means of two images alone; leave it out");
+           "`paired` is only for the means of two images; leave it out");
   }
   question.theta = theta;
 }
@@ -214,8 +213,8 @@ std::string written_key(const TestEntry& test, const std::string& key, const std
 std::string missing_per_cent(const Margin& margin, double size) {
   if (margin.relative || !(size > 0) || margin.value <= size) return "";
   return fmt::format(
-      "{0:g} is larger than the reference, {1:.3g}: for {0:g} per cent write `{0:g}%`; if so much "
-      "is meant, `{2:.0f}%`",
+      "{0:g} is larger than the reference, {1:.3g}: for {0:g} per cent write `{0:g}%`; for so "
+      "large a margin, `{2:.0f}%`",
       margin.value, size, std::ceil(100 * margin.value / size));
 }
 

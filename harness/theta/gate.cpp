@@ -26,25 +26,25 @@ const std::vector<GateKind>& gate_kinds() {
                    "excess kurtosis is {0}, limit {1}",
        .heavy_tail = true},
       {.name = "p of a power law",
-       .sentence = "the points lie on no power law: p {0} of the best one, limit {1}; let `over` "
-                   "begin where one holds, often at larger values",
+       .sentence = "the points lie on no power law: the best one has p {0}, limit {1}; begin "
+                   "`over` where one holds, often at larger values",
        .says_what_helps = true},
       {.name = "rounding",
-       .sentence = "the values are rounded too coarsely to be held against a continuous law: a "
-                   "step is {0} of the distance that is rejected, limit {1}; write more digits",
+       .sentence = "the values are rounded too coarsely for a continuous law: a step is {0} of the "
+                   "distance that is rejected, limit {1}; write more digits",
        .says_what_helps = true},
       {.name = "correlation of successive values",
        .sentence = "each value depends on the one before: correlation {0}, limit {1}"},
       {.name = "variance of batch means",
-       .sentence =
-           "means of consecutive values vary too much for independent ones: ratio {0}, limit {1}"},
+       .sentence = "means of consecutive values vary too much for independent values: ratio {0}, "
+                   "limit {1}"},
       {.name = "correlation of values some steps apart",
        .sentence = "values some steps apart depend on each other: correlation {0}, limit {1}"},
       {.name = "rank correlation of drawn observations",
-       .sentence = "those some steps apart have a rank correlation of {0}, limit {1}"},
+       .sentence = "observations some steps apart have a rank correlation of {0}, limit {1}"},
       {.name = "variance of batch ranks of drawn observations",
-       .sentence =
-           "means of neighbours vary {0} times as much as those of independent ones, limit {1}"},
+       .sentence = "means of neighbours vary {0} times as much as means of independent "
+                   "observations, limit {1}"},
       {.name = "longest repetition", .sentence = "a run of {0} values occurs twice"},
   };
   return table;

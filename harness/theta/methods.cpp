@@ -38,9 +38,8 @@ void require_data(const Method& method, const Question& question) {
     if (!method.is.in_range || !subject.setup->observations()) continue;
     refuse_method(
         question, method.name,
-        fmt::format(
-            "needs a range that is declared, and the rows of `{}` declare none; leave `test` out",
-            subject.estimator->name));
+        fmt::format("needs a declared range, and the rows of `{}` declare none; leave `test` out",
+                    subject.estimator->name));
   }
 }
 

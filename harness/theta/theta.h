@@ -190,7 +190,7 @@ class Theta {
   virtual std::string not_excluded(const ChannelOutcome&) const { return ""; }
   /// The step that lets the interval exclude it.
   virtual const char* how_to_exclude() const {
-    return "take more of them, or say with `detect` how far off it must not be";
+    return "take more of them, or say with `detect` how large an error must not pass";
   }
   /// How far a detectable theta reaches.
   virtual const char* detectable_text() const { return " or more"; }

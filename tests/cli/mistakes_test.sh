@@ -39,9 +39,9 @@ claim: 0.4 < mean(area) < 0.5|12: a claim begins with a quantity, as in `mean(ar
 claim: distribution(area) == gaussian(0, 1)|34: `gaussian` is nothing that a quantity can be compared with; did you mean `normal(0, 1)`?
 claim: mean(area) within 5 of analytic|30: the margin 5 is larger than the reference, 0.481: for 5 per cent write `5%`
 {claim: quantile(area, 0.5) == 0.4}|28: inside {…} a comma ends the value of `claim`; quote the claim: `claim: "quantile(area, 0.5) == 0.4"`
-{claim: mean(area) == analytic, detect: 5}|45: the margin 5 is larger than the reference, 0.481: for 5 per cent write `5%`; if so much is meant, `1040%`
+{claim: mean(area) == analytic, detect: 5}|45: the margin 5 is larger than the reference, 0.481: for 5 per cent write `5%`; for so large a margin, `1040%`
 {claim: mean(area) == analytic, detect: 0}|37: `detect` must be above 0: it is the effect that must not pass, as `1%`
-{claim: distribution(area.point) == density, detect: 5}|58: no difference of probabilities is 5, they lie below 1; here 5 per cent is written `0.05`
+{claim: distribution(area.point) == density, detect: 5}|58: a difference of probabilities is below 1, so it cannot be 5; write 5 per cent as `0.05`
 {claim: mean(area) == analytic, expect: failed}|45: `expect` cannot be `failed`; did you mean `fail`?
 {claim: mean(area) == analytic, tags: slow}|43: `tags` must be a list: `tags: [slow, images]`
 {claim: mean(area) == analytic, test: F}|37: `test: F` does not answer this claim; there is `t`
@@ -74,8 +74,8 @@ PROGRAM
   done <<'TABLE'
 mean(a) == mean(b)|`a` and `b` do not leave out the same pixels
 total_variance(a) <= total_variance(b)|`a` and `b` do not leave out the same pixels
-mean(a) == 1|`a` leaves out pixels, which a number is held against too
-mean(a.average) == 1|`a.average` counts pixels as 0 that `mask` or `finite` leaves out
+mean(a) == 1|`a` leaves out pixels, but a number is claimed of all pixels
+mean(a.average) == 1|`a.average` counts pixels that `mask` or `finite` leaves out as 0
 TABLE
   local sides=(--candidate 'a*.pfm' --reference 'b*.pfm')
   answers 2 'parameter `mask` is `large.pfm`: it has 10 x 4 pixels, and the pictures have 8 x 4' \
@@ -147,7 +147,7 @@ test_mistakes_in_a_check_say_what_to_write() {
   expect 1 check "$claim" --detect 1e-5%
   contains out 'this claim would take about'
   expect 1 check 'mean(x) == 1' --estimator x=recorded,file=one.txt
-  contains out '`x` has 1 row, and it takes 100 to see that they do not depend on each other'
+  contains out '`x` has 1 row, and a check of independence needs 100'
   seq 500 >many.txt
   expect 1 check 'mean(x) == 1' --estimator x=recorded,file=many.txt --budget 10
   contains out 'to decide: give a larger `budget`'

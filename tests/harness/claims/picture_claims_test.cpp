@@ -76,7 +76,7 @@ TEST_F(PictureClaims, WhoseNoiseAFewBrightSamplesMakeSaySo) {
                 });
   }
   expect_said(tested(), Verdict::pass,
-              {"; so much noise may be that of a few bright samples: test the"});
+              {"; so much noise may come from a few bright samples: test the"});
 }
 
 // Two stacks of 24 exclude about a hundredth of the mean. A hundredth of that takes 10^4 times as
@@ -125,11 +125,11 @@ TEST_F(PictureClaims, CopiesOnTheOtherSideAreErrorsWithTheirNames) {
                              std::filesystem::copy_options::overwrite_existing);
   for (const char* claim : {"mean(a) == mean(b)", "mean(a.average) == mean(b.average)"}) {
     expect_said(tested(claim), Verdict::error,
-                {"`a` and `b` are no independent samples: `", "a03.exr` and `",
+                {"`a` and `b` are not independent samples: `", "a03.exr` and `",
                  "b23.exr` are the same picture"});
   }
   EXPECT_THAT(refused("mean(a) == mean(b)", "file: 'a*.exr', pixels: independent"),
-              HasSubstr("a*.exr`; give one of them pictures of seeds of their own"));
+              HasSubstr("a*.exr`; give one side pictures of other seeds"));
   // A copy that no test takes is no matter.
   std::filesystem::rename(place.file("b23.exr"), place.file("b24.exr"));
   expect_said(tested("mean(a) == mean(b)\n    secondaries: 20"), Verdict::pass);
@@ -315,7 +315,7 @@ TEST_F(PictureClaims, AReferenceStandsOnTheRightOfAMeanAlone) {
   EXPECT_THAT(refused("mean(b) == mean(a)", exact), HasSubstr("`b` is a reference"));
   EXPECT_THAT(refused("total_variance(a) <= total_variance(b)", exact),
               HasSubstr("is a reference"));
-  EXPECT_THAT(refused("mean(a.R) == mean(b)", exact), HasSubstr("only what is of one size"));
+  EXPECT_THAT(refused("mean(a.R) == mean(b)", exact), HasSubstr("only equal sizes"));
 }
 
 }  // namespace

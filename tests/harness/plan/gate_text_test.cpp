@@ -34,7 +34,7 @@ TEST(GateText, OfHeavyTailsAdvisesNoMoreObservations) {
 TEST(GateText, OfSkewnessSaysHowManyObservationsWouldHelp) {
   const std::string help = help_for(red("level factor by skewness"));
   EXPECT_THAT(help,
-              HasSubstr("`secondaries: 39000` may do. Without a declared range no test decides"));
+              HasSubstr("`secondaries: 39000` may do. Without a declared range a test needs"));
   EXPECT_THAT(help, Not(HasSubstr("heavy-tailed")));
 }
 

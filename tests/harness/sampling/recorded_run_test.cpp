@@ -212,7 +212,7 @@ TEST_F(RecordedRunTest, RefusesWhatMomentsDoNotTell) {
         << claim;
   }
   EXPECT_THAT(refused(both, "claim: efficiency(new) >= efficiency(old), cost: seconds"),
-              HasSubstr("is not drawn but read: its seconds say nothing"));
+              HasSubstr("is read, not drawn: its seconds mean nothing"));
   EXPECT_THAT(refused(both, "claim: mean(new) == mean(old), secondaries: 100"),
               HasSubstr("moments of 20000 observations together; leave `secondaries` out"));
   EXPECT_THAT(refused(both, "claim: mean(old) == 2, test: batch-means"),
@@ -225,7 +225,7 @@ TEST_F(RecordedRunTest, RefusesCostsThatTheRunDoesNotTell) {
   write_whole(place_.file("run.json"), reports::json(uneven));
   EXPECT_THAT(refused(old("normal") + new_normal,
                       "claim: efficiency(new) >= efficiency(old), cost: samples"),
-              HasSubstr("does not tell how its costs vary"));
+              HasSubstr("did not record how its costs vary"));
 }
 
 TEST_F(RecordedRunTest, NamesWhatIsWrongWithTheRunOrTheEstimator) {
