@@ -37,8 +37,7 @@ TEST(Display, FactorsAndQuantitiesWithoutASideKeepTheirWords) {
   const Effect factor{"ln(ratio of variances)", 2.302585092994046, 2, 2.5, 0.99, false};
   EXPECT_THAT(sentence("variance(a) == variance(b)", factor),
               HasSubstr("variance(a) is 10 times variance(b) (×7.39 to ×12.2)"));
-  const Effect distance{
-      "largest distance between distribution functions", 0.2, 0.1, {}, 0.99, false};
+  const Effect distance{"largest distance between distribution functions", .2, .1, {}, .99, false};
   EXPECT_THAT(sentence("distribution(a.x) == distribution(b.x)", distance),
               HasSubstr("largest distance between distribution functions is +0.2 (at least +0.1)"));
 }
