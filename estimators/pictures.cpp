@@ -69,8 +69,7 @@ std::vector<std::string> usual_channels(const PictureFile& file) {
   }
   if (names.size() == 1) return names;
   refuse(file.name(),
-         "it is not plain which channels are meant; choose them with `channels`, as in "
-         "`channels: \"" +
+         "it is not clear which channels to use; choose them with `channels`, as in `channels: \"" +
              (names.empty() ? "R" : layer_of(names[0]) + ".*") + "\"`; it has " + quoted(names));
 }
 
@@ -185,7 +184,7 @@ std::vector<double> read_counts(const PictureFile& file, const MomentChannels& e
   if (text.empty()) {
     if (const auto count = file.samples_per_pixel()) return everywhere(static_cast<double>(*count));
     refuse(file.name(),
-           "it does not say of how many samples its means are; give `samples`, a number or the "
+           "it does not say how many samples its means average; give `samples`, a number or the "
            "name of the channel that counts them");
   }
   std::vector<double> counts;
@@ -276,7 +275,7 @@ void apply_mask(const std::string& name, const PictureFile& of, const PictureVie
     mask.window = mask.whole;
   } else if (mask.whole != view.whole && file->canvas() != of.canvas()) {
     refuse(name, "it has " + size_text(mask.whole) + " pixels, and the pictures have " +
-                     size_text(view.whole) + "; a mask has as many as they");
+                     size_text(view.whole) + "; a mask must have as many");
   }
   const std::vector<bool> lit = pixels_with(*file, mask, [](float x) { return x != 0; });
   for (std::size_t i = 0; i < lit.size(); ++i) left_out[i] = left_out[i] || !lit[i];
@@ -309,7 +308,7 @@ PictureView view_of(const PictureFile& file, const std::string& patterns,
   if (!treatment.finite.empty()) apply_finite(treatment.finite, patterns, view, left_out);
   const auto count = static_cast<std::size_t>(std::ranges::count(left_out, true));
   if (count == left_out.size()) {
-    refuse(file.name(), "all its pixels are left out; see that the mask is not black");
+    refuse(file.name(), "all its pixels are left out; check that the mask is not black");
   }
   if (count > 0) view.left_out = std::make_shared<const std::vector<bool>>(std::move(left_out));
   return view;

@@ -39,7 +39,7 @@ std::unique_ptr<Respondent> Children::take() {
   }
   std::unique_ptr<Respondent> dialogue = start_();
   if (to_text(dialogue->hello()) == to_text(hello_)) return dialogue;
-  throw NoAnswer("`" + name_ + "` said another hello when it was started again");
+  throw NoAnswer("`" + name_ + "` printed a different hello when it was started again");
 }
 
 void Children::give_back(std::unique_ptr<Respondent> dialogue) {

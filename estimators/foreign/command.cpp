@@ -24,8 +24,8 @@ struct Contents {
 };
 
 [[noreturn]] void throw_useless(const InputError& error) {
-  throw std::runtime_error("what the program wrote is of no use: " + to_string(error.where()) +
-                           ": " + error.message() + "; mend the program and delete the file");
+  throw std::runtime_error("the program wrote an unusable file: " + to_string(error.where()) +
+                           ": " + error.message() + "; correct the program and delete the file");
 }
 
 /// One observation from its file. A file that cannot be read is the program's failure.
@@ -63,8 +63,8 @@ class Command final : public Estimator {
                  Cost& cost) override {
     if (primaries != 1 && !renderings_->takes_samples()) {
       throw std::runtime_error(
-          "its command has no place `{samples}`: `primaries: " + std::to_string(primaries) +
-          "` would change nothing; give it the place, or leave it out");
+          "its command lacks `{samples}`: `primaries: " + std::to_string(primaries) +
+          "` would change nothing; add `{samples}`, or leave `primaries` out");
     }
     const std::uint64_t index = random.observation();
     const std::uint64_t last = announced_.end_from(random.key(), index);
@@ -169,18 +169,17 @@ void check_command(const Parameters& parameters, const std::vector<std::string>&
                       "names no program; as in `[render, --seed, \"{seed}\", \"{out}\"]`");
   }
   if (!foreign::has_place(command, "{seed}") && !foreign::has_place(command, "{seeds}")) {
-    parameters.refuse("command", "has no place `{seed}`: every observation would be the same");
+    parameters.refuse("command", "lacks `{seed}`: every observation would be the same");
   }
   if (foreign::has_place(command, "{seed}") && foreign::has_place(command, "{seeds}")) {
-    parameters.refuse("command", "has `{seed}` and `{seeds}`: one picture a program, or several");
+    parameters.refuse("command", "has `{seed}` and `{seeds}`; use one of them");
   }
   if (!foreign::has_place(command, "{out}")) {
-    parameters.refuse("command", "has no place `{out}` for the file to write");
+    parameters.refuse("command", "lacks `{out}`, the file to write");
   }
   for (const std::string& word : command) check_places(parameters, word);
   if (program_path(command[0], parameters.folder()).empty()) {
-    parameters.refuse("command", "names the program `" + command[0] +
-                                     "`, which cannot be started: there is none" +
+    parameters.refuse("command", "names the program `" + command[0] + "`, which does not exist" +
                                      foreign::mend_of_program(command[0]));
   }
 }
@@ -228,53 +227,53 @@ std::shared_ptr<const Setup> prepare(Parameters& parameters) {
 std::vector<Entry> foreign_command() {
   return {
       {{.name = "command",
-        .summary = "A renderer run once an observation, its pictures kept on disk.",
+        .summary = "A renderer that runs once for each observation; its pictures stay on disk.",
         .description =
-            "In the words of `command` `{seed}`, `{samples}` and `{out}` stand for a seed, the "
-            "number of `primaries` and the file to write; it runs in the suite's folder. The file "
-            "is a picture, an image, or a text of one row. With `{seeds}` one program makes "
-            "several: it gets seeds with commas between and writes SEED.exr, or SEED.pfm, in the "
-            "folder `{out}`.\n"
-            "A seed is 1 + 630360016 (key + observation) mod (2^31 - 1), key the stream's: no two "
-            "observations of a stream have the same, and where two streams of a run would meet, "
-            "that is an error.\n"
-            "What was made is kept in `cache`, in a folder for each command, number of samples "
-            "and contents of the files that the command or `depends` names: an interrupted run "
-            "goes on where it stopped. A file counts once its program has ended with status 0. "
-            "A program that fails, takes too long or writes nothing, and so at each of its "
-            "`retries`, is an error with its exit status and the end of its standard error. The "
-            "size is learnt from one picture of one sample. A test is planned on a pilot of 32 "
-            "pictures or 512 texts, which it does not judge.",
+            "In `command`, `{seed}`, `{samples}` and `{out}` stand for a seed, the number of "
+            "`primaries` and the file to write. The command runs in the suite's folder. The file "
+            "is a picture, which makes the observation an image, or a text of one row. With "
+            "`{seeds}` a program makes several pictures: it gets seeds separated by commas and "
+            "writes SEED.exr, or SEED.pfm, into the folder `{out}`.\n"
+            "A seed is 1 + 630360016 (key + observation) mod (2^31 - 1), where the key is the "
+            "stream's. No two observations of a stream have the same seed. A seed that two streams "
+            "of a run share is an error.\n"
+            "The files stay in `cache`. It has a folder for each command, number of samples, and "
+            "contents of the files that the command or `depends` names. So an interrupted run "
+            "continues where it stopped. A file counts once its program has ended with status 0. A "
+            "program that fails, takes too long or writes nothing, also at each of its `retries`, "
+            "is an error with its exit status and the end of its standard error. Assay learns the "
+            "size from one picture of one sample. A pilot of 32 pictures or 512 texts plans a "
+            "test, which does not judge them.",
         .parameters =
             {{.name = "command",
               .type = ParameterType::texts,
-              .summary = "the program and its arguments, with the places `{seed}` or `{seeds}`, "
-                         "`{samples}` and `{out}`"},
-             text_parameter("output", "what it writes: a picture of this kind, or text", "exr",
-                            {"exr", "pfm", "png", "text"}),
-             text_parameter(
-                 "channels",
-                 "of pictures: the channels to use, patterns with commas between; R, G and "
-                 "B, or what stands for them, when absent",
-                 "usual"),
+              .summary = "the program and its arguments, with `{seed}` or `{seeds}`, `{samples}` "
+                         "and `{out}`"},
+             text_parameter("output", "what the program writes: a picture of this kind, or text",
+                            "exr", {"exr", "pfm", "png", "text"}),
+             text_parameter("channels",
+                            "the channels of pictures to use, as patterns separated by commas; "
+                            "without it R, G and B, or what stands for them",
+                            "usual"),
              text_parameter("pixels",
-                            "of pictures: whether the pixels of one are independent, as they are "
-                            "under a box filter one pixel wide",
+                            "whether the pixels of a picture are independent, as under a box "
+                            "filter one pixel wide",
                             "dependent", {"dependent", "independent"}),
              {.name = "depends",
               .type = ParameterType::texts,
-              .summary = "files that change the pictures, beside those that the command names",
+              .summary = "files that change the pictures, besides those that the command names",
               .fallback = "[]"},
              beside_draws(text_parameter(
-                 "cache", "the folder of what was made, relative to the suite", ".assay-cache")),
-             beside_draws(count_parameter("jobs", "programs at a time; 0 for one each core", "0",
+                 "cache", "the folder that keeps the files; its path starts at the suite's folder",
+                 ".assay-cache")),
+             beside_draws(count_parameter("jobs", "programs at a time; 0 is one for each core", "0",
                                           {.high = 1024})),
              foreign::timeout_parameter(
                  "how long one picture may take, from the start of its program", "600"),
              beside_draws(count_parameter(
                  "retries",
-                 "how many times a program that fails, takes too long or writes nothing is "
-                 "started again, with the same seed; each is told on standard error",
+                 "how often to restart a program that fails, takes too long or writes nothing, "
+                 "with the same seed; standard error shows each restart",
                  "0", {.high = 100})),
              foreign::memory_parameter()},
         .averages = false},

@@ -65,7 +65,7 @@ std::size_t Dialogue::listen(std::span<char> into, Deadline end) {
   } catch (const TimeOut&) {
     if (!asked->test_and_set()) {
       notice("`" + terms_.name + "` has not replied for " + std::to_string(silent_seconds) +
-             " s; does it flush its output (print(..., flush=True))? A slow one is waited for: " +
+             " s; does it flush its output (print(..., flush=True))? Assay waits for it: " +
              seconds_text(terms_.timeout) + " (`timeout`)");
     }
     return child_.receive(into, end);
@@ -145,11 +145,12 @@ std::vector<double> Dialogue::reply_to(const Question& question, std::string_vie
   } catch (const TimeOut&) {
     if (question.count > 1) terms_.was_overdue->test_and_set();
     if (!reads) give_up("closed its standard input instead of answering for " + to_text(question));
-    give_up("did not answer for " + to_text(question) + " within " + seconds_text(terms_.timeout) +
-                (terms_.asked_whether_it_flushes ? " (parameter `timeout`; does it flush its "
-                                                   "output after each reply, or run for ever?)"
-                                                 : " (parameter `timeout`)"),
-            reply.so_far());
+    give_up(
+        "did not answer for " + to_text(question) + " within " + seconds_text(terms_.timeout) +
+            (terms_.asked_whether_it_flushes ? " (parameter `timeout`; does it flush its output "
+                                               "after each reply, or does it run for ever?)"
+                                             : " (parameter `timeout`)"),
+        reply.so_far());
   }
   return reply.numbers();
 }

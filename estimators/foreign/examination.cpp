@@ -120,10 +120,10 @@ bool ignores_index(const Source& source, const Others& others, std::size_t numbe
 const std::string seeding =
     "take random numbers only from a generator seeded with key and index (in Python: from `rng`)";
 const std::string rule =
-    "an observation must be a function of key and index alone (a run's seed makes the key): " +
+    "an observation must be a function of key and index alone (the run's seed sets the key): " +
     seeding + ", and add in one order whatever the threads do";
 constexpr const char* rule_of_samplers =
-    "a draw must be a function of its stream alone, a density and an evaluation of their point";
+    "a draw must depend on its stream alone, a density or an evaluation on its point alone";
 
 std::string gave_other_numbers(const std::string& name, const std::string& asked_for) {
   return "`" + name + "` gave other numbers when it was asked for " + asked_for;

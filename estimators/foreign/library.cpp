@@ -97,12 +97,11 @@ std::vector<ParameterInformation> parameters() {
   return joined(
       {{.name = "file",
         .type = ParameterType::string,
-        .summary = "the library, relative to the suite"},
-       text_parameter("estimator", "which of its estimators; where it has one, that", "only"),
-       structure_parameter("parameters", "what the library declares, `{rate: 2}`", "{}"),
+        .summary = "the library; its path starts at the suite's folder"},
+       text_parameter("estimator", "which of its estimators to use, if it has several", "only"),
+       structure_parameter("parameters", "parameters that the library declares, `{rate: 2}`", "{}"),
        beside_draws(boolean_parameter(
-           "isolated",
-           "run in a process of its own; if false a crash of the library ends the whole run",
+           "isolated", "run the library in another process; if false, its crash ends the whole run",
            true))},
       foreign::terms_parameters());
 }
@@ -114,18 +113,17 @@ std::vector<Entry> foreign_library() {
       {{.name = "library",
         .summary = "Observations of an estimator in a shared library.",
         .description =
-            "The library exports assay_library(), as the header plugin_abi.h (C11, linked "
-            "against nothing) declares it, and is compiled by `gcc -std=c11 -O2 -fPIC -shared`. "
-            "Its random numbers are Assay's own streams: a C copy of an estimator draws the very "
-            "numbers of the original under the same key.\n"
-            "It runs in a process of its own, one a worker, with `timeout` and `memory` as those "
-            "of `process`. A crash, a time-out, an error that it reports, a number that is not "
-            "finite and a word on standard output are then errors of the tests that use it, with "
-            "the index of the observation, and all other tests go on. With `isolated: false` it "
-            "is called in the run's own process: faster for estimators that cost nothing, the "
-            "same numbers to the last bit, but a crash ends the run, nothing times out, and "
-            "secondary() is called by several threads at a time. All this is "
-            "true of its samplers too; a message then names the draw, or the point of a density.",
+            "The library exports assay_library(), which the header plugin_abi.h (C11, linked "
+            "against nothing) declares. Compile it by `gcc -std=c11 -O2 -fPIC -shared`. Its random "
+            "numbers are Assay's own streams: a C copy of an estimator draws the numbers of the "
+            "original under the same key.\n"
+            "Each worker runs the library in another process, with `timeout` and `memory` as for "
+            "`process`. A crash, a time-out, a reported error, a number that is not finite and a "
+            "word on standard output are then errors of its tests alone, with the index of the "
+            "observation. With `isolated: false` the run calls the library directly. That is "
+            "faster for estimators that cost nothing and gives the same bits. But a crash ends the "
+            "run, nothing times out, and several threads call secondary() at a time. The same "
+            "holds for its samplers; a message then names the draw, or the point of a density.",
         .parameters = parameters(),
         .averages = false,
         .says_nature = true},

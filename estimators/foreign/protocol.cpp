@@ -68,7 +68,7 @@ class Reader {
   bool ready() const { return ready_; }
 
   Hello finish() {
-    if (!greeted_) throw ProtocolError("it says nothing; the first line is `assay 1 text`");
+    if (!greeted_) throw ProtocolError("it printed nothing; the first line is `assay 1 text`");
     if (!ready_) throw ProtocolError("its hello does not end with `ready`");
     refuse_double_components();
     if (!hello_.image && !needs_image_.empty()) wrong(needs_image_, "there is no `image`");
@@ -84,7 +84,8 @@ class Reader {
   void greet(std::string_view text, const Words& words) {
     if (words[0] != "assay" || words.size() != 3) {
       wrong(text,
-            "the first is `assay 1 text` or `assay 1 binary`; print all else to standard error");
+            "the first line is `assay 1 text` or `assay 1 binary`; print everything else to "
+            "standard error");
     }
     if (whole_of(words[1]) != protocol_version) {
       wrong(text, "it speaks version " + std::string(words[1]) +

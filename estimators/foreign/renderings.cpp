@@ -110,8 +110,8 @@ std::string stamp_of(const Rendering& rendering) {
   for (const std::string& file : rendering.depends) {
     const fs::path path = fs::path(rendering.folder) / file;
     if (!fs::is_regular_file(path, ignored)) {
-      throw RenderingError("depends",
-                           "there is no file `" + file + "`; it is sought from the suite's folder");
+      throw RenderingError(
+          "depends", "there is no file `" + file + "`; the path starts at the suite's folder");
     }
     hash.add(stamp_of(path, false));
   }
@@ -289,7 +289,7 @@ std::string Renderings::attempt(Task& task, const std::string& part, double& cpu
     return !error;
   });
   if (task.seeds.empty()) return "";
-  return "`" + joined(rendering_.command) + "` ended well and wrote no file for the seed " +
+  return "`" + joined(rendering_.command) + "` succeeded but wrote no file for the seed " +
          std::to_string(task.seeds.front()) +
          (several ? ": it must write SEED." + rendering_.ending + " in the folder `{out}`"
                   : ": it must write the file `{out}`");

@@ -443,7 +443,7 @@ std::string mend_of_program(const std::string& program) {
   }
   return program.find('/') == std::string::npos
              ? "; a program in the suite's folder is written `./" + program + "`"
-             : "; it is sought from the suite's folder";
+             : "; the path starts at the suite's folder";
 }
 
 std::shared_ptr<const Setup> start(Terms terms, const Parameters& parameters,
@@ -468,13 +468,13 @@ ParameterInformation timeout_parameter(const std::string& summary, const std::st
 
 ParameterInformation memory_parameter() {
   return beside_draws(
-      number_parameter("memory", "the most address space that the program may take; 0 is no limit",
+      number_parameter("memory", "the most address space that the program may use; 0 sets no limit",
                        "0", {0, 1e9}, "MiB"));
 }
 
 std::vector<ParameterInformation> terms_parameters() {
-  return {timeout_parameter("how long a hello or a reply may take; Assay asks for as many "
-                            "observations at once as take some hundredths of a second",
+  return {timeout_parameter("how long a hello or a reply may take; Assay asks for about 20 ms of "
+                            "observations at once",
                             "60"),
           memory_parameter()};
 }

@@ -15,7 +15,7 @@ namespace assay::foreign {
 /// key and its index: what is answered for them. Nothing is drawn from the stream itself.
 std::shared_ptr<const Setup> setup_of(std::shared_ptr<Children> children);
 
-/// Advice on a program that cannot be started: "; it is sought from the suite's folder".
+/// Advice on a program that cannot be started: "; the path starts at the suite's folder".
 std::string mend_of_program(const std::string& program);
 
 /// Starts the program. InputError at the parameter `name`, whose value says which program it is,

@@ -63,7 +63,7 @@ std::shared_ptr<void> opened(const std::string& file) {
   struct stat status {};
   if (stat(file.c_str(), &status) != 0) {
     refuse(file, std::string("cannot be opened: ") + std::strerror(errno) +
-                     "; a file is sought in the suite's folder");
+                     "; the path starts at the suite's folder");
   }
   // With a slash the name is a file, not one to be sought in the system's folders.
   const std::string path = file.find('/') == std::string::npos ? "./" + file : file;

@@ -143,8 +143,9 @@ TriangleMesh read_mesh(const Value& value, const std::string& what, const std::s
     // A file that is not there is a mistake of the scene, what stands in it one of the file.
     if (error.where().line != 0) throw;
     const bool is_there = std::filesystem::exists(file);
-    throw InputError(value.where(), what + " `" + error.where().file + "`: " + error.message() +
-                                        (is_there ? "" : "; it is sought from the suite's folder"));
+    throw InputError(value.where(),
+                     what + " `" + error.where().file + "`: " + error.message() +
+                         (is_there ? "" : "; the path starts at the suite's folder"));
   }
 }
 

@@ -198,10 +198,10 @@ std::shared_ptr<const Setup> prepare_reference(const Parameters& parameters,
   const recorded::MomentChannels& errors = request.errors;
   if (files.size() > 1) {
     parameters.refuse("file", "names " + std::to_string(files.size()) +
-                                  " files, and a mean with its error is one file");
+                                  " files, but a mean with its error must be one file");
   }
   if (!errors.variance.empty() && !errors.second_moment.empty()) {
-    parameters.refuse("second_moment", "is given beside `variance`; one of them tells the error");
+    parameters.refuse("second_moment", "is given beside `variance`; leave one of them out");
   }
   if (request.exact && errors.any()) {
     parameters.refuse("exact", "is given beside a variance: a mean is exact or has an error");
@@ -214,7 +214,7 @@ std::shared_ptr<const Setup> prepare_reference(const Parameters& parameters,
 std::shared_ptr<const Setup> prepare_pictures(const Parameters& parameters,
                                               const PictureRequest& request) {
   if (parameters.given("column")) {
-    parameters.refuse("column", "is of text files; of pictures choose `channels`");
+    parameters.refuse("column", "is for text files; for pictures use `channels`");
   }
   std::vector<std::string> files =
       reading(parameters, request, [&] { return recorded::files_of(request.pattern); });
@@ -233,7 +233,7 @@ std::shared_ptr<const Setup> prepare_text(Parameters& parameters) {
   for (const char* const name : {"channels", "pixels", "exact", "variance", "second_moment",
                                  "samples", "rounded", "crop", "mask", "finite"}) {
     if (parameters.given(name)) {
-      parameters.refuse(name, "is of pictures, and `file` names none");
+      parameters.refuse(name, "is for pictures, and `file` names none");
     }
   }
   const Reading reading = read(parameters);
@@ -244,7 +244,7 @@ std::shared_ptr<const Setup> prepare(Parameters& parameters) {
   for (const char* of_run : {"run", "estimator"}) {
     parameters.string(of_run);
     if (parameters.given(of_run)) {
-      parameters.refuse(of_run, "is of moments of a run, which have no rows");
+      parameters.refuse(of_run, "is for moments of a run, which have no rows");
     }
   }
   if (!parameters.given("file")) {
@@ -261,83 +261,78 @@ std::shared_ptr<const Setup> prepare(Parameters& parameters) {
 std::vector<Entry> recorded_recorded() {
   return {
       {{.name = "recorded",
-        .summary = "Observations from rows of text or an array of numpy, from pictures, "
-                   "or moments of a saved run.",
+        .summary = "Observations from rows of text, an array of numpy or pictures, or moments of a "
+                   "saved run.",
         .description =
-            "Observation i is row i of `file`: a text, a CSV, or an array that numpy saved "
-            "(.npy), any of them also packed by gzip. `-` is standard input, and a pipe, "
-            "`<(program)`, or a device will do; they are read once, for all estimators that name "
-            "them, and cannot be replayed. Each column is a channel unless `column` picks one. "
-            "Files of unequal length are compared whole, and an estimator beside a file takes as "
-            "many observations as that has rows. What an observation was made from is not known "
-            "here: `primaries` stays 1.\n\n"
-            "In a text numbers are separated by `;`, commas, tabs or white space. Where `;` "
-            "separates, a comma is a decimal point. Columns are named by a first line without "
-            "numbers, or by `# columns: a b c`; a first column of words names the rows and is "
-            "left out. `#` begins a comment. Every row needs the same number of "
-            "numbers; `nan` and `inf` are read as such. An array has one dimension or two, of "
-            "float32, float64 or whole numbers.\n\n"
-            "Or `file` is a pattern, `out/*.exr`, and observation i is the i-th picture by name, "
-            "an image: OpenEXR of one part or several, scan lines or tiles, PFM or PNG. "
-            "`channels` chooses among its channels; a layer, or a part, stands before a dot. PNG "
-            "is taken from sRGB to linear light. A depth `Z` that is infinite counts as 0, and as "
-            "1 in a component of its own, `Z_infinite`. A picture of a mean "
-            "that carries its error, or is `exact`, is a reference: it can stand on the right "
-            "of `mean(x) ==`. Its error is sqrt(variance / samples), with the channels that "
-            "`variance` names (`Variance.*` of pbrt), or of `second_moment` (`m2_*` of "
-            "Mitsuba).\n\n"
-            "With `run`, a saved run's record, and `estimator` nothing is drawn: the source is "
-            "the moments that a test of the run kept of that estimator, with its primaries. "
-            "They answer claims on mean, bias, variance, cost and efficiency, so that a run is "
-            "the reference of the next one. The other side takes as many observations as the "
-            "run has, from a stream that the run has not used.",
+            "Observation i is row i of `file`: a text, a CSV, or an array that numpy saved (.npy), "
+            "also packed by gzip. `-` is standard input. A pipe, `<(program)`, or a device works "
+            "too. These are read once, for all estimators that name them, and cannot be replayed. "
+            "Each column is a channel unless `column` chooses one. Files of unequal length are "
+            "compared whole. An estimator beside a file takes as many observations as the file has "
+            "rows. `primaries` stays 1, as Assay does not know how an observation was made.\n"
+            "\n"
+            "In a text `;`, commas, tabs or white space separate numbers. If `;` separates, a "
+            "comma is a decimal point. A first line without numbers names the columns, and so does "
+            "`# columns: a b c`. A first column of words names the rows and is left out. `#` "
+            "begins a comment. Every row needs the same number of numbers, which may be `nan` and "
+            "`inf`. An array has one or two dimensions, of float32, float64 or whole numbers.\n"
+            "\n"
+            "If `file` is a pattern, `out/*.exr`, observation i is the i-th picture by name, an "
+            "image: OpenEXR of one part or several, scan lines or tiles, PFM or PNG. `channels` "
+            "chooses among its channels; a layer or a part stands before a dot. PNG is converted "
+            "from sRGB to linear light. Where a depth `Z` is infinite it counts as 0, and as 1 in "
+            "a component `Z_infinite`. A picture of a mean that has its error, or is `exact`, is a "
+            "reference: it can stand on the right of `mean(x) ==`. Its error is sqrt(variance / "
+            "samples), from the channels that `variance` names (`Variance.*` of pbrt), or "
+            "`second_moment` (`m2_*` of Mitsuba).\n"
+            "\n"
+            "With `run`, a saved run's record, and `estimator` nothing is drawn. The source is the "
+            "moments that a test of the run kept of that estimator, with its primaries. They "
+            "suffice for claims on mean, bias, variance, cost and efficiency, so a run can be the "
+            "reference of the next one. The other side takes as many observations as the run has, "
+            "from a stream that the run has not used.",
         .parameters =
             {text_parameter("file",
-                            "the file of rows, `-` for standard input, or a pattern of "
-                            "pictures; relative to the suite",
+                            "the file of rows, `-` for standard input, or a pattern of pictures; "
+                            "its path starts at the suite's folder",
                             "none"),
-             text_parameter("column", "the one column to use; all of them when absent", "all"),
+             text_parameter("column", "the column to use; without it all columns", "all"),
              text_parameter("channels",
-                            "of pictures: the channels to use, patterns with commas "
-                            "between; R, G and B, or what stands for them, when absent",
+                            "the channels of pictures to use, as patterns separated by commas; "
+                            "without it R, G and B, or what stands for them",
                             "usual"),
              text_parameter("pixels",
-                            "of pictures: whether the pixels of one are independent, as "
-                            "they are under a box filter one pixel wide",
+                            "whether the pixels of a picture are independent, as under a box "
+                            "filter one pixel wide",
                             "dependent", {"dependent", "independent"}),
-             boolean_parameter("exact", "the picture is a reference without error", false),
+             boolean_parameter("exact", "the picture is a reference that has no error", false),
              text_parameter("variance",
-                            "of a reference: its channels of the variance of a sample, "
-                            "`*` standing for the channel's name",
+                            "the channels of a reference that hold the variance of a sample; `*` "
+                            "stands for the channel's name",
                             "none"),
-             text_parameter("second_moment", "the same of second moments", "none"),
+             text_parameter("second_moment", "the channels of a reference that hold second moments",
+                            "none"),
              text_parameter("samples",
-                            "how many samples the mean is of, a number or the channel "
-                            "that counts them; the file's own word when absent",
+                            "how many samples a reference averages, a number or the channel that "
+                            "counts them; without it what the file says",
                             "none"),
              text_parameter("rounded",
-                            "of pictures: round their numbers as files do that they are "
-                            "compared with; PNG clips to [0, 1] too",
+                            "round the numbers of pictures like the files that they are compared "
+                            "with; PNG also clips to [0, 1]",
                             "none", {"none", "half", "png16", "png8"}),
              text_parameter("crop",
-                            "of pictures: left, top, width and height of the part to use, "
-                            "in pixels of the whole",
+                            "left, top, width and height of the part of pictures to use, in pixels "
+                            "of the whole",
                             "none"),
              text_parameter("mask",
-                            "of pictures: a picture of the pixels to use; where it is 0, "
-                            "they are left out",
+                            "a picture of the pixels to use; where it is 0, pixels are left out",
                             "none"),
              text_parameter("finite",
-                            "of pictures: patterns of files, commas between; pixels that "
-                            "are not finite in one of them are left out",
+                            "patterns of picture files, separated by commas; pixels that are not "
+                            "finite in one of them are left out",
                             "none"),
-             text_parameter("run",
-                            "instead of a file of rows: a saved run, whose moments are "
-                            "used",
-                            "none"),
-             text_parameter("estimator",
-                            "which of the run's estimators; may be left out where it "
-                            "has one",
+             text_parameter("run", "a saved run whose moments are used, instead of a file", "none"),
+             text_parameter("estimator", "which of the run's estimators to use, if it has several",
                             "the only one")},
         .averages = false},
        prepare}};

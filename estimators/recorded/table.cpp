@@ -162,10 +162,10 @@ struct Format {
 };
 
 constexpr std::string_view as_exr =
-    "a mean of pixels needs them unrounded: render to OpenEXR (.exr)";
+    "a mean of pixels needs unrounded numbers: render to OpenEXR (.exr)";
 
 constexpr std::string_view as_file =
-    "name the file of the picture itself: it is not read from pipes or packed";
+    "name the file of the picture itself: a picture cannot come from a pipe or an archive";
 
 constexpr std::array formats{
     Format{"\x76\x2f\x31\x01"sv, "an OpenEXR picture", as_file},

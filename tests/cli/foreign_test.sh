@@ -175,7 +175,7 @@ test_a_program_that_says_no_hello_is_an_error_of_its_tests() {
   tells err '`ended` cannot be prepared: `sh none.sh` ended with exit status'
   tells err 'before it printed the line `ready`'
   message run.json greets
-  tells err 'the first is `assay 1 text`'
+  tells err 'the first line is `assay 1 text`'
   none_left
 }
 
@@ -360,7 +360,7 @@ test_manuals_tell_all() {
   tells out 'timeout: number, (0, 1000000], s, default 60'
   expect 0 describe library
   tells out 'gcc -std=c11 -O2 -fPIC -shared'
-  tells out 'a crash of the library ends the whole run'
+  tells out 'its crash ends the whole run'
 }
 
 # A block of observations is waited for, and then for a moment the one that hangs.

@@ -179,7 +179,7 @@ TEST_F(Pictures, AreRefusedWhereTheyMakeNoSense) {
   write_texel("b.exr", {"Y"}, {std::nanf("")});
   draws::write_bytes(file("t.txt"), "1\n");
   for (const auto& [given, said] :
-       {std::array{"a.exr, channels: Y, variance: Variance.*", "does not say of how many samples"},
+       {std::array{"a.exr, channels: Y, variance: Variance.*", "does not say how many samples"},
         {"a.exr, channels: Y, samples: 4, variance: Variance.*",
          "the variance is negative at pixel x 0, y 0 of Y"},
         {"a.exr, channels: Y, samples: 1, second_moment: m2_*", "`samples` must be 2 or more"},
@@ -189,7 +189,7 @@ TEST_F(Pictures, AreRefusedWhereTheyMakeNoSense) {
         {"a.exr, channels: Y, exact: true, variance: Variance.*, samples: 4",
          "exact or has an error"},
         {"a.exr, channels: Y, samples: 4", "needs `variance`"},
-        {"a.exr, column: Y", "choose `channels`"},
+        {"a.exr, column: Y", "use `channels`"},
         {"t.txt, channels: R", "`file` names none"},
         {"x*.exr", "no file matches"},
         {"x.exr", "there is no such file"}}) {

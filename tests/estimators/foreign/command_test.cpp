@@ -199,15 +199,15 @@ TEST_F(Commands, RefuseChannelsThatThePictureDoesNotHave) {
       refusal({{"channels", Value::scalar("oen.*", {"s.yaml", 4, 7})}}),
       AllOf(HasSubstr("s.yaml:4:7: command: parameter `channels` does not fit the picture `" +
                       file(".assay-cache")),
-            HasSubstr("no channel matches `oen.*`"), Not(HasSubstr("mend the program"))));
+            HasSubstr("no channel matches `oen.*`"), Not(HasSubstr("correct the program"))));
   EXPECT_THAT(refusal({{"pixels", Value::scalar("dependent")}}),
               AllOf(HasSubstr("command: parameter `channels` must choose from the picture"),
-                    HasSubstr("it is not plain which channels are meant"),
-                    Not(HasSubstr("mend the program"))));
+                    HasSubstr("it is not clear which channels to use"),
+                    Not(HasSubstr("correct the program"))));
   write_program("head -c 40 made.exr >$3");
   EXPECT_THAT(refusal({{"channels", Value::scalar("R")}}),
-              Says("no mistake of the suite: what the program wrote is of no use",
-                   "mend the program and delete the file"));
+              Says("no mistake of the suite: the program wrote an unusable file",
+                   "correct the program and delete the file"));
 }
 
 // The observation fails, the others stand, and what was half written is not taken the next time.
@@ -283,14 +283,14 @@ TEST_F(Commands, NeedAPlaceForSamplesToTakeOtherThanOne) {
   std::ofstream(file("render.sh")) << "echo 1 >$2\n";
   const draws::Prepared plugin = prepare_command({"sh", "render.sh", "{seed}", "{out}"}, {as_text});
   EXPECT_EQ(draws::observe(plugin, 1)[0].values[0], 1);
-  EXPECT_THAT(thrown([&] { draws::observe(plugin, 1, 4); }), HasSubstr("no place `{samples}`"));
+  EXPECT_THAT(thrown([&] { draws::observe(plugin, 1, 4); }), HasSubstr("lacks `{samples}`"));
 }
 
 TEST_F(Commands, NeedPlacesForSeedAndFile) {
   for (const auto& [words, why] : std::map<std::vector<std::string>, const char*>{
-           {{"render", "{out}"}, "has no place `{seed}`"},
-           {{"render", "{seed}"}, "has no place `{out}`"},
-           {{"render", "{seed}", "{seeds}", "{out}"}, "one picture a program"},
+           {{"render", "{out}"}, "lacks `{seed}`"},
+           {{"render", "{seed}"}, "lacks `{out}`"},
+           {{"render", "{seed}", "{seeds}", "{out}"}, "use one of them"},
            {{"render", "{seed}", "{sample}", "{out}"}, "did you mean `{samples}`?"},
            {{"no_such_program_anywhere", "{seed}", "{out}"},
             "written `./no_such_program_anywhere`"},

@@ -109,8 +109,8 @@ TEST_F(Examination, WhoseSamplersDriftIsRefused) {
       EXPECT_THAT(
           thrown<std::runtime_error>(ask),
           Says("sampler `ramp`", what + ".so` gave other numbers when it was asked for 1 " + what +
-                                     " again: a draw must be a function of its stream alone, a "
-                                     "density and an evaluation of their point"));
+                                     " again: a draw must depend on its stream alone, a density or "
+                                     "an evaluation on its point alone"));
     }
   };
   const Point point{.25, 0, 0};

@@ -163,7 +163,7 @@ TEST_F(IsolatedSampler, TellsTheFailureOfAllWhereEachCanBeHad) {
 }
 
 TEST_F(IsolatedSampler, MustAnswerTheSameAgain) {
-  const std::string words = "a draw must be a function of its stream alone";
+  const std::string words = "a draw must depend on its stream alone";
   const auto counts = ramp_that("density = lambda point: asked");
   EXPECT_THAT(failure_at(*counts, points(10)), HasSubstr(words));
   // Each program by itself always says the same.

@@ -353,7 +353,7 @@ TEST_F(Process, RefusesProgramsThatCannotBeStarted) {
               Says("process: parameter `command` names the program "
                    "`no_such_program_here`, which cannot be started: No such file",
                    "`./no_such_program_here`"));
-  EXPECT_THAT(refusal({"./mine.sh"}), HasSubstr("sought from the suite's folder"));
+  EXPECT_THAT(refusal({"./mine.sh"}), HasSubstr("starts at the suite's folder"));
   EXPECT_THAT(refusal({"python3 ok.py  uniform"}),
               HasSubstr("put commas between the words: `[python3, ok.py, uniform]`"));
   write("mine.sh", "#!/bin/sh\n");
