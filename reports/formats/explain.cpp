@@ -62,7 +62,8 @@ std::string explain(const Suite& suite, const Test& test, int width, const Ledge
     if (!part.empty()) text += part + " ";
   }
   text += how_sure(test, words, found);
-  if (test.verdict == Verdict::invalid) text += fact_of(words, "assumptions", "Assumptions ") + " ";
+  const std::string broken = fact_of(words, "assumptions", "Assumptions ");
+  if (test.verdict == Verdict::invalid && !broken.empty()) text += broken + " ";
   text += fact_of(words, "observations", "These observations were drawn: ");
   say(text);
   if (is_evidence(test) && test.verdict != Verdict::skipped && suite.alpha > 0) {

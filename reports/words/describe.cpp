@@ -82,7 +82,7 @@ std::string about_the_claim(const Test& test) {
 }
 
 std::string about_the_contrary(const Test& test) {
-  return test.beta ? fmt::format("; a pass takes beta, {}, or less", human(test.beta, 3)) : "";
+  return test.beta ? fmt::format("; a pass needs at most beta, {}", human(test.beta, 3)) : "";
 }
 
 /// "24 images", or "24 and 32 images" where the sides have not as many.

@@ -247,7 +247,7 @@ std::string error_rates(const Record& record) {
     for (const Test& test : suite.tests) beta = std::max(beta, test.detect ? suite.beta : 0);
   }
   if (!(beta > 0 && beta < 1)) return false_alarms(record);
-  return fmt::format("{} Misses: at most {} of those that are off by what must be caught.",
+  return fmt::format("{} Misses: at most {} of those that are wrong by `detect`.",
                      false_alarms(record), in_many(beta, "claim"));
 }
 
@@ -297,7 +297,7 @@ std::string meaning(const Test& test) {
       "Nothing speaks against the claim.",
       "The claim is wrong.",
       "The observations do not suffice to say whether the claim holds.",
-      "Nothing was decided, because the data break what the test relies on.",
+      "Nothing was decided, because an assumption of the test does not hold.",
       "Nothing was decided, because drawing failed.",
       "The claim was not tested."};
   return meanings[static_cast<int>(test.verdict)];

@@ -20,7 +20,7 @@ std::string false_alarms(double alpha);
 /// The same of all suites with tests.
 std::string false_alarms(const Record&);
 
-/// The same, and how often a claim passes that is off by what must be caught.
+/// The same, and how often a claim passes that is wrong by `detect`.
 std::string error_rates(const Record&);
 
 /// "broken", "no verdict", "undecided", "holds", "caught", "not run".

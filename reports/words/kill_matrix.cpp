@@ -19,11 +19,11 @@ namespace {
 constexpr std::array textbook = {"t", "Welch", "chi-square", "F", "KS", "fit", "image"};
 
 constexpr const char* legend =
-    "A number: killed by so many samples (primary estimates drawn of the mutant; of an image, a "
-    "pixel). < x: it survives, and an effect of x or more would have been found. Empty: not "
-    "tested by that method. t and Welch compare means with a number and with another estimator, "
-    "chi-square and F variances, KS laws of one coordinate, fit counts in cells, image all "
-    "pixels; the pilot may put a method in their place that keeps its level.";
+    "A number: this many samples kill the mutant (its primary estimates; for an image, per pixel). "
+    "< x: it survives, and an effect of x or more would have been found. Empty: not tested by this "
+    "method. t compares a mean with a number, Welch two means, chi-square and F variances, KS laws "
+    "of one coordinate, fit counts in cells, image all pixels. The pilot may replace a method by "
+    "one that keeps its level.";
 
 /// The column of a test, by what it claims and of how many sources.
 std::string method_of(const Test& test) {

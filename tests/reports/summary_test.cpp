@@ -18,8 +18,8 @@ TEST(Verdicts, TheErrorRatesOfARunAreThoseOfItsSuitesTogether) {
   EXPECT_EQ(error_rates(record), "False alarms: at most 2 runs in 100.");
   record.suites[0].tests[0].detect = 0.1;
   EXPECT_EQ(error_rates(record), false_alarms(record) +
-                                     " Misses: at most 2 claims in 100 of those that are off by "
-                                     "what must be caught.");
+                                     " Misses: at most 2 claims in 100 of those that are wrong by "
+                                     "`detect`.");
   record.suites[0].alpha = 1.5;
   EXPECT_THAT(error_rates(record), HasSubstr("False alarms: in any run"));
   EXPECT_EQ(counts_text({}) + false_alarms(Record{}), "");
