@@ -16,14 +16,13 @@ namespace assay::harness {
 reports::Record read_record(const std::string& file) {
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) {
-    refuse({.file = file},
-           "there is no such file; `--report json=FILE` saves a run that can be read");
+    refuse({.file = file}, "there is no such file; `--report json=FILE` saves a run");
   }
   for (const char* extension : {".yaml", ".yml"}) {
     if (!file.ends_with(extension)) continue;
     refuse({.file = file},
-           "this is no saved run but a suite, it seems: `assay run {} --report json=run.json` "
-           "saves one",
+           "this looks like a suite, not a saved run: `assay run {} --report json=run.json` saves "
+           "a run",
            shell_quoted(file));
   }
   const std::optional<std::string> text = bytes_of(file);
@@ -93,7 +92,7 @@ Recorded find_test(const reports::Record& record, const std::string& file,
   }
   if (parts.size() == 1) return parts.front();
   if (!parts.empty() && name.empty()) {
-    refuse(where, "{} tests may be meant; give the id of one, or a part of it: {}", parts.size(),
+    refuse(where, "{} tests match; give the id of one, or a part of it: {}", parts.size(),
            some_ids(parts));
   }
   if (!parts.empty()) {

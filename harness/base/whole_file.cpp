@@ -129,7 +129,7 @@ int locked(const std::string& path) {
     if (error == EINTR) continue;
     if (error == EWOULDBLOCK && !interrupted()) {
       if (waited > told_after && !std::exchange(told, true)) {
-        say_beside_progress(fmt::format("waiting for {}, to which another run is adding", path));
+        say_beside_progress(fmt::format("waiting for another run that writes {}", path));
       }
       const auto pause = std::clamp(waited, std::chrono::milliseconds(1), longest_pause);
       std::this_thread::sleep_for(pause);

@@ -111,7 +111,7 @@ Facts facts_of(const std::string& law) {
   const PreparedEstimator x = prepare(drawn_from(law, "x"), ".");
   const Channel channel = x.setup->channel(0);
   if (!channel.mean || !channel.variance) {
-    refuse({}, "`{}` has no variance: nothing is promised on it", law);
+    refuse({}, "`{}` has no variance, so no method promises anything", law);
   }
   return {.law = law,
           .mean = *channel.mean,
@@ -530,7 +530,7 @@ reports::Calibration calibration(const CalibrateArguments& arguments, Progress& 
   }
   progress.end();
   if (all.empty()) {
-    refuse({}, "no question suits `{}` on these laws", fmt::join(arguments.methods, "`, `"));
+    refuse({}, "no claim suits `{}` on these laws", fmt::join(arguments.methods, "`, `"));
   }
   group(all, options.alphas);
   const double error = result.error / static_cast<double>(all.size());

@@ -58,7 +58,7 @@ std::string mend_of_extra(const std::string& command, const std::string& extra) 
     return fmt::format("give each estimator an option of its own: `--estimator {}`",
                        shell_quoted(extra));
   }
-  return "quote the claim and what has blanks: `assay check 'mean(a) == 3'`, `--estimator "
+  return "quote the claim and other words with blanks: `assay check 'mean(a) == 3'`, `--estimator "
          "'a=process,command=[python3, a.py]'`";
 }
 
@@ -92,7 +92,7 @@ std::string command_meant(const std::string& word, const CLI::App& app) {
 const CLI::App& chosen(const CLI::App& app) {
   for (const std::string& extra : app.remaining()) {
     if (extra.starts_with("-")) {
-      refuse({}, "unknown option `{}`; options stand after the command, see `assay --help`", extra);
+      refuse({}, "unknown option `{}`; options follow the command, see `assay --help`", extra);
     }
     refuse({}, "unknown command `{}`{}", extra, command_meant(extra, app));
   }
@@ -320,8 +320,8 @@ ReportRequest read_report(const std::string& text, const std::string& option) {
   for (const std::string& other : kinds) {
     const std::size_t comma = text.find("," + other + "=");
     if (comma == std::string::npos) continue;
-    refuse({}, "a blank stands between two reports: write `{} {} {}`", option,
-           text.substr(0, comma), text.substr(comma + 1));
+    refuse({}, "put a blank between two reports: write `{} {} {}`", option, text.substr(0, comma),
+           text.substr(comma + 1));
   }
   return {kind, text.substr(equals + 1)};
 }

@@ -230,11 +230,11 @@ void write(std::string& page, const SuiteRun& run) {
   double not_ok = 0;
   for (const Row& row : rows) not_ok += row.not_ok;
   page += "\n";
-  page += on_page(fmt::format(
-      "The run ends with a fail or an undecided claim with probability about {} if every claim "
-      "holds exactly and every planted bug is as large as its `detect`. A test without a forecast "
-      "counts with its alpha and beta.",
-      per_cent(std::min(1.0, not_ok))));
+  page +=
+      on_page(fmt::format("If every claim holds exactly and every planted bug is as large as its "
+                          "`detect`, some claim fails or stays undecided with probability about "
+                          "{}. A test without a forecast counts with its alpha and beta.",
+                          per_cent(std::min(1.0, not_ok))));
   page += "\n";
 }
 
@@ -285,10 +285,10 @@ void write_totals(std::string& page, const PlannedRun& planned) {
       highest == expected ? "" : fmt::format(" Heavy tails may raise this to {}.", highest),
       count_of(of_pilots)));
   page += on_page(
-      "last: the observations of each source at the last look. in all, rays, CPU time: what all "
-      "sources draw up to it, by the pilot. effect: what it finds, or shows of `within`, `<` and "
-      "`>`, with probability 1 - beta. draws: the mean part of it that is drawn. These take "
-      "the pilot's spread for the true one, and no data for invalid.");
+      "last: observations of each source at the last look. in all, rays, CPU time: what all "
+      "sources draw up to it, estimated from the pilot. effect: what the test finds, or proves for "
+      "`within`, `<` and `>`, with probability 1 - beta. draws: the mean part that is drawn. All "
+      "this assumes that the pilot's spread is true and that no test becomes invalid.");
 }
 
 }  // namespace

@@ -50,13 +50,13 @@ void note_ledger(reports::Record& record, const SuiteRuns& runs, const RunOption
   }
   if (outside > 0) {
     add_note(record,
-             fmt::format("{} of the tests {} outside the ledger: mutants and expected failures",
+             fmt::format("{} of the tests {} not in the ledger: mutants and expected failures",
                          outside, outside == 1 ? "stands" : "stand"));
   }
   if (!options.seed) {
     add_note(record,
-             "no seed was given: a night with the suite's own seed is the same every time and "
-             "counts once; run nights with --seed random");
+             "no --seed was given: nights with the suite's own seed are all the same and count "
+             "once; run nights with --seed random");
   }
 }
 
@@ -116,7 +116,7 @@ reports::Record run_in_arena(const std::vector<Suite>& suites, const RunOptions&
   const std::string started = utc_now();
   if (!options.ledger.empty()) require_ledger(options.ledger);
   if (!options.ledger.empty() && options.shard) {
-    refuse({}, "--ledger takes whole runs: leave --shard and the environment's shards out");
+    refuse({}, "--ledger needs whole runs: leave out --shard and the environment's shards");
   }
   if (options.fail_fast && (!options.ledger.empty() || options.shard)) {
     refuse({}, "--fail-fast ends a run early: leave --ledger and --shard out");
@@ -158,7 +158,7 @@ reports::Record run_in_arena(const std::vector<Suite>& suites, const RunOptions&
   } catch (const std::runtime_error& error) {
     if (ledger_fault == nullptr) throw;
     *ledger_fault = error.what();
-    add_note(record, fmt::format("nothing was added to the ledger: {}", error.what()));
+    add_note(record, fmt::format("the ledger got no evidence: {}", error.what()));
   }
   return record;
 }

@@ -138,7 +138,7 @@ std::string unrepeated(const TestWork& work) {
         if (harness::same_number(before, again[channel])) continue;
         return fmt::format(
             "`{}` gave {} for observation {}, and {} when it was drawn again: take all random "
-            "numbers from the stream that it is given",
+            "numbers from its argument, the stream",
             name, reports::round_trip(before), i, reports::round_trip(again[channel]));
       }
     }

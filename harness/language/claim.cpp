@@ -464,7 +464,7 @@ void check_side(const Claim& claim, const Constant& side) {
     refuse(left.where, "a distribution is compared with `density`, a law or another distribution");
   }
   if (side.standard_error > 0 && (left.slope || !left.row->takes_standard_error)) {
-    refuse(left.where, "`{}` is held against an exact number: `+-` has no method here",
+    refuse(left.where, "`{}` is compared with an exact number: no method takes `+-` here",
            left.slope ? "slope" : left.row->word);
   }
   if (left.row->never_negative() && !left.slope && side.value < 0) {

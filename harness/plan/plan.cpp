@@ -461,7 +461,7 @@ TestOutcome plan_test(Question asked, const FamilyPlace& place, const Pilots& pi
       plan.caution += (plan.caution.empty() ? "" : "; ") + words;
     };
     if (question.test->detect_by_default) {
-      caution(fmt::format("`detect` is {}, the default of claims about laws",
+      caution(fmt::format("`detect` is {}, the default for claims about laws",
                           question.test->detect->value));
     }
     if (const std::string doubt = doubtful_margin(question, pilots); !doubt.empty()) caution(doubt);

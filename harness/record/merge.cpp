@@ -52,7 +52,7 @@ std::string missing_shards(const std::vector<ShardFile>& shards) {
   }
   if (missing.empty()) return "";
   return fmt::format(
-      "of {} shards these are missing, and their tests are skipped: {}; run them with --shard "
+      "of {} shards these are missing, so their tests are skipped: {}; run them with --shard "
       "{}/{}{} and merge all records",
       count, fmt::join(missing, ", "), missing.front(), count, missing.size() > 1 ? ", …" : "");
 }
@@ -133,7 +133,7 @@ reports::Suite merge_suite(const std::vector<ShardFile>& shards, std::size_t ind
     if (complete) adjust_p_values(parts);
   } catch (const std::domain_error& error) {
     refuse({},
-           "the shards' shares of alpha do not fit together: {}; was a record edited? Run the "
+           "the shards' parts of alpha do not fit together: {}; was a record edited? Run the "
            "shards again",
            error.what());
   }

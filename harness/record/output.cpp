@@ -195,7 +195,7 @@ std::string last_run() {
   if (std::filesystem::exists(file)) return file;
   refuse({},
          "there is no last run from this folder; `assay run SUITE` makes one, or give a saved run "
-         "before the test");
+         "first");
 }
 
 void keep_last_run(reports::Record record, bool says_failure) {
@@ -209,7 +209,7 @@ void keep_last_run(reports::Record record, bool says_failure) {
     write_whole(file, reports::compact_json(record));
   } catch (...) {
     if (says_failure) {
-      say_beside_progress("the run is not kept for `assay explain`: " +
+      say_beside_progress("`assay explain` will not have this run: " +
                           words_of(std::current_exception()));
     }
   }

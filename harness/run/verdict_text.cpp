@@ -248,7 +248,7 @@ Reason what_would_decide(const TestOutcome& outcome, const ChannelOutcome& chann
            range_advice(outcome.question);
   }
   if (!(half > 0) || !std::isfinite(half) || !(room.size > 0)) {
-    return Reason("these observations do not tell how many would decide");
+    return Reason("these observations do not show how many would decide");
   }
   // The samples' standard errors must shrink to the room that the reference's leaves.
   const double fixed = reference_error(outcome, channel);
@@ -261,9 +261,7 @@ Reason what_would_decide(const TestOutcome& outcome, const ChannelOutcome& chann
         "the estimate is less than a standard error from what must be proved; ",
         channel.regions.within()
             ? "give a larger margin, or more " + more
-            : "if both sides may be equal, claim that they are `within` a margin; otherwise give "
-              "more " +
-                  more);
+            : "if both sides may be equal, claim `within` a margin; otherwise give more " + more);
   }
   const double sampled = error * error - fixed * fixed;
   const double wanted = std::pow(room.size / room.standard_errors, 2) - fixed * fixed;

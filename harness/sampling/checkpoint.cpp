@@ -47,7 +47,7 @@ void Checkpoint::read() {
   try {
     unpack(bytes, identity, entries);
   } catch (const Unpackable& refusal) {
-    refuse({.file = file_}, "is no checkpoint to go on from: {}; remove it", refusal.what());
+    refuse({.file = file_}, "is no usable checkpoint: {}; remove it", refusal.what());
   }
   if (const auto other = difference(identity_, identity)) {
     refuse({.file = file_},
@@ -67,7 +67,7 @@ void Checkpoint::open_kept(bool is_resumed) {
   }
   if (kept_->size() < end) refuse(where, "is shorter than {} says; remove both", file_);
   if (!is_resumed && kept_->size() > 0 && kept_->read(0, magic.size()) != magic) {
-    refuse(where, "is nothing that Assay packed, and would be lost; name another checkpoint");
+    refuse(where, "was not written by Assay and would be lost; name another checkpoint");
   }
   kept_->cut(end);
 }
@@ -152,7 +152,7 @@ void Checkpoint::resume(const std::string& recipe, WrittenPool& written, Pool& p
     }
     pool.fold(unpacked_drawn(written.sums, std::move(block), pool));
   } catch (const Unpackable& refusal) {
-    refuse({.file = kept_->path()}, "does not go with {}: {}; remove both", file_, refusal.what());
+    refuse({.file = kept_->path()}, "does not fit {}: {}; remove both", file_, refusal.what());
   }
   written.count = pool.drawn();
 }
@@ -165,8 +165,9 @@ void Checkpoint::draw(Round& round) {
   if (!interrupted()) {
     if (Clock::now() >= soonest_) try_to_write();
   } else if (try_to_write()) {
-    say_beside_progress(fmt::format("what was drawn is kept in {} and {}; the same command goes on",
-                                    file_, kept_->path().string()));
+    say_beside_progress(
+        fmt::format("what was drawn is kept in {} and {}; the same command continues", file_,
+                    kept_->path().string()));
   }
 }
 

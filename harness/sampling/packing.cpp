@@ -97,7 +97,7 @@ std::string framed(std::string_view bytes) {
 std::string_view unframed(std::string_view frame) {
   Head head;
   if (!frame.starts_with(magic) || frame.size() < sizeof head) {
-    throw Unpackable("it is nothing that Assay packed");
+    throw Unpackable("it was not written by Assay");
   }
   std::memcpy(&head, frame.data(), sizeof head);
   if (head.name != Head().name) {

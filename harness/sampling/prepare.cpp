@@ -69,8 +69,7 @@ PreparedEstimator prepare(const EstimatorEntry& entry, const std::string& folder
     }
     prepared.primaries = run->primaries();
   } else if (prepared.setup->observations() && entry.primaries.value_or(1) != 1) {
-    refuse(entry.where, "`{}` has its observations ready made: leave `primaries` out",
-           entry.plugin);
+    refuse(entry.where, "`{}` reads finished observations: leave `primaries` out", entry.plugin);
   }
   if (!plugin.information.original.empty()) {
     const Entry& original = find_plugin(plugin.information.original, entry.where);

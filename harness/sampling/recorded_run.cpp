@@ -158,7 +158,7 @@ std::shared_ptr<const RecordedRun> read_recorded_run(Parameters& parameters) {
     if (other == "run" || other == "estimator") continue;
     parameters.string(other);
     if (parameters.given(other)) {
-      parameters.refuse(other, "is of rows of a file: give it, or `run`, not both");
+      parameters.refuse(other, "is for rows of a file: give it or `run`, not both");
     }
   }
   const reports::Record record = read(parameters);
@@ -170,9 +170,10 @@ std::shared_ptr<const RecordedRun> read_recorded_run(Parameters& parameters) {
       Kept kept = kept_in(test, name);
       if (kept.empty()) continue;
       if (of != nullptr && of != &suite) {
-        parameters.refuse("estimator", fmt::format("`{}` stands in two suites of the run, `{}` and "
-                                                   "`{}`; record them apart",
-                                                   name, of->name, suite.name));
+        parameters.refuse(
+            "estimator",
+            fmt::format("`{}` is in two suites of the run, `{}` and `{}`; record them separately",
+                        name, of->name, suite.name));
       }
       of = &suite;
       if (best.empty() || worth(best) < worth(kept)) best = std::move(kept);
@@ -180,10 +181,10 @@ std::shared_ptr<const RecordedRun> read_recorded_run(Parameters& parameters) {
   }
   if (best.empty()) {
     parameters.refuse(
-        "estimator", fmt::format("`{}` has no moments in the run: they are kept by tests of a "
-                                 "claim on its mean, variance, cost or efficiency, unless it is an "
-                                 "image or not all its values were finite",
-                                 name));
+        "estimator",
+        fmt::format("`{}` has no moments in the run: only a claim on its mean, variance, cost or "
+                    "efficiency keeps them, not of an image and not if some value was not finite",
+                    name));
   }
   RecordedRun::Contents contents = contents_of(best, *of);
   contents.file = parameters.file("run");

@@ -39,8 +39,8 @@ constexpr double least =
 
 std::string refusal(const std::string& name, double spread, const char* power) {
   return fmt::format(
-      "the observations of `{}` spread over {:.3g}, whose {} power is beyond the numbers that "
-      "a computer holds; give them in another unit",
+      "the observations of `{}` spread over {:.3g}, whose {} power is too large for a double; give "
+      "them in another unit",
       name, spread, power);
 }
 

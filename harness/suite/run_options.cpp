@@ -71,7 +71,7 @@ std::string unmatched_filter(const std::vector<Suite>& suites, const std::string
   std::string text = fmt::format("--filter {} matches no test\n", shell_quoted(filter));
   std::vector<std::string> near = matched("*" + filter + "*");
   if (near.empty() && !nearest(filter, ids).empty()) near = {nearest(filter, ids)};
-  text += "  it must match a whole id, suite/name, where * and ? are wild; ";
+  text += "  it must match a whole id, suite/name, where * and ? are wildcards; ";
   return text + (near.empty() ? "ids here:\n" + few_of(ids) : "near it:\n" + few_of(near));
 }
 

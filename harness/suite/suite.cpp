@@ -138,12 +138,10 @@ void check_margins(const TestEntry& test) {
   }
   if (test.detect && test.claim.relation == Relation::within) {
     refuse(test.place_of("detect"),
-           "`within` says how far off the claim must not be: `detect` has no meaning beside it; "
-           "leave it out");
+           "`within` already says which error must not pass: leave `detect` out");
   }
   if (test.allow && is_proof(test.claim.relation)) {
-    refuse(test.place_of("allow"),
-           "`allow` has no meaning with `{}`: what is claimed must be shown in full",
+    refuse(test.place_of("allow"), "`allow` has no meaning with `{}`, which must be proved in full",
            to_string(test.claim.relation));
   }
   const bool comparable =
@@ -168,10 +166,10 @@ void check_test(const TestEntry& test) {
     refuse(test.place_of("claim"), "a slope needs `over`: `over: {primaries: [8, 16, 32]}`");
   }
   if (!claim.left.slope && test.over)
-    refuse(test.place_of("over"), "`over` has no meaning but for `slope(…)`");
+    refuse(test.place_of("over"), "`over` is only for `slope(…)`");
   const auto refuse_but_for = [&](const char* key, bool QuantityRow::*trait) {
     if (claim.left.row->*trait) return;
-    refuse(test.place_of(key), "`{}` has no meaning but for {}", key, quantities_with(trait));
+    refuse(test.place_of(key), "`{}` is only for {}", key, quantities_with(trait));
   };
   if (test.reference || test.reference_number) {
     refuse_but_for("reference", &QuantityRow::takes_reference);
@@ -189,8 +187,7 @@ void refuse_levels(const Document& document, const Value& test) {
     const Value* found = test.find(key);
     if (!found) continue;
     refuse(document.key(*found),
-           "`{}` is the suite's, so that no test can choose its own; put it at the top of the file",
-           key);
+           "`{}` belongs to the suite, not to a test; put it at the top of the file", key);
   }
 }
 
@@ -220,7 +217,7 @@ void require_tests(const std::vector<const TestEntry*>& found, const Value& name
 
 void require_an_answer(const TestEntry& test, const Location& where) {
   if (test.expect == reports::Verdict::pass || test.expect == reports::Verdict::fail) return;
-  refuse(where, "`{}` expects that it cannot be decided: it answers nothing", test.name);
+  refuse(where, "`{}` expects no decision, so it answers nothing", test.name);
 }
 
 std::vector<std::string> read_names(const Keys& keys, const char* key, const Tests& tests) {
@@ -248,15 +245,13 @@ void check(const reports::Statement& statement, const Location& where) {
   }
   for (const std::string& name : statement.fails) {
     if (!is_in(statement.holds, name)) continue;
-    refuse(where, "`{}` cannot stand under `holds` and under `fails`", name);
+    refuse(where, "`{}` cannot be under both `holds` and `fails`", name);
   }
   if (both && statement.condition.empty()) {
-    refuse(where,
-           "a statement with `holds` and `fails` needs a `condition` that tells the one from the "
-           "other");
+    refuse(where, "a statement with `holds` and `fails` needs a `condition` that separates them");
   }
   if (!both && !statement.condition.empty()) {
-    refuse(where, "a `condition` needs tests on both of its sides: `holds` and `fails`");
+    refuse(where, "a `condition` needs both `holds` and `fails`");
   }
 }
 
@@ -365,7 +360,7 @@ std::vector<reports::Statement> read_statements(const Document& document, const 
 std::uint64_t seed_of(const Value& value) {
   if (value.kind() == Value::Kind::scalar && value.text() == "random") {
     refuse(value.where(),
-           "a suite's seed is a number, so that its runs repeat; `assay run --seed random` draws a "
+           "a suite's seed is a number, so that its runs repeat; `assay run --seed random` takes a "
            "fresh one");
   }
   return value.count("`seed`");
@@ -384,8 +379,7 @@ void read_head(const Document& document, const Keys& keys, Suite& suite) {
     suite.beta = error_rate(*v, "`beta`");
     if (suite.beta == 0.5) {
       refuse(v->where(),
-             "`beta` must be below 0.5: what a pass excludes is the interval of confidence 1 - 2 "
-             "beta");
+             "`beta` must be below 0.5: a pass uses the interval of confidence 1 - 2 beta");
     }
   }
   if (const Value* v = keys.find("seed")) suite.seed = seed_of(*v);
@@ -615,9 +609,9 @@ void refuse_overwriting(const std::string& report, const std::vector<std::string
   const bool overwrites = std::ranges::any_of(
       kept, [&](const std::string& file) { return is_same_file(report, file); });
   if (!overwrites) return;
-  refuse({.file = report},
-         "is read or kept by this very command, and a report would replace it; name another file "
-         "for the report");
+  refuse(
+      {.file = report},
+      "is a file of this command, which a report would replace; name another file for the report");
 }
 
 }  // namespace assay::harness

@@ -27,7 +27,7 @@ void assign(std::vector<Suite>& suites, const std::string& assignment) {
   const auto sides = cut(assignment, '=');
   const auto path = sides ? cut(sides->first, '.') : std::nullopt;
   if (!path || path->first.empty() || path->second.empty()) {
-    refuse(where, "expected estimator.key=value; a value with commas stands in brackets or quotes");
+    refuse(where, "expected estimator.key=value; put a value with commas in brackets or quotes");
   }
   const auto& [name, key] = *path;
   const Value value = read_flow(sides->second, where);
@@ -129,7 +129,7 @@ EstimatorEntry parse_estimator_option(const std::string& text) {
   for (std::size_t i = 1; i < pieces.size(); ++i) {
     const auto sides = cut(pieces[i], '=');
     if (!sides) {
-      refuse(where, "`{}` is not key=value; a value with commas stands in brackets or quotes",
+      refuse(where, "`{}` is not key=value; put a value with commas in brackets or quotes",
              pieces[i]);
     }
     if (std::ranges::find(seen, sides->first) != seen.end()) {

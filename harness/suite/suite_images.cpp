@@ -40,8 +40,8 @@ void require_enough(const Pictures& side) {
   const std::size_t count = side.files.size();
   if (count >= stats::least_replicates) return;
   refuse(side.where,
-         "{} {}, and the test takes {} or more: how much a pixel varies is known from them alone; "
-         "render more, each with a seed of its own",
+         "{} {}, and the test needs {} or more to know how much a pixel varies; render more, each "
+         "with a seed of its own",
          count, count == 1 ? "picture matches" : "pictures match", stats::least_replicates);
 }
 
@@ -81,7 +81,7 @@ std::string usual_with_alpha(const Pictures& candidate, const Pictures& referenc
     if (side->first->has({alpha})) continue;
     refuse(
         side->where,
-        "its pictures have no alpha, and that of the other side is not 1 everywhere; --channels '" +
+        "its pictures have no alpha, and the other side's alpha is not 1 everywhere; --channels '" +
             names + "' compares without it");
   }
   return names + "," + alpha;
@@ -183,8 +183,8 @@ void add_error(std::vector<Value::Member>& members, const ImagesArguments& argum
   if (errors.any()) {
     if (!arguments.samples && !picture.samples_per_pixel()) {
       refuse(where,
-             "the picture carries its variance and not of how many samples its means are; give "
-             "--samples, a number or the channel that counts them");
+             "the picture has its variance but not its number of samples; give --samples, a number "
+             "or the channel that counts them");
     }
     if (!errors.variance.empty()) members.push_back(member("variance", errors.variance, where));
     if (!errors.second_moment.empty()) {
@@ -194,7 +194,7 @@ void add_error(std::vector<Value::Member>& members, const ImagesArguments& argum
   } else {
     if (arguments.samples) {
       refuse(place("--samples", *arguments.samples),
-             "the reference has no channels `Variance.*` or `m2_*` that it could be for");
+             "the reference has no channels `Variance.*` or `m2_*`, which it would be for");
     }
     members.push_back(member("exact", "true", where));
   }
@@ -212,7 +212,7 @@ std::string claim_of(const ImagesArguments& arguments, const std::string& suffix
   within(arguments);
   for (const auto& [key, text] : arguments.keys) {
     refuse(place("--" + key, text),
-           "is of a claim that the pictures are equal; --within says itself what must not pass");
+           "is for a claim that the pictures are equal; --within already says what must not pass");
   }
   return fmt::format("mean(candidate{1}) within {0} of mean(reference{1})", *arguments.within,
                      suffix);
@@ -244,13 +244,13 @@ Suite suite_of_images(const ImagesArguments& arguments) {
   const bool one = reference.files.size() == 1;
   if (!one && arguments.samples) {
     refuse(place("--samples", *arguments.samples),
-           "is of a reference that is one picture with its variance; several tell it themselves");
+           "is for a single reference picture with its variance; several pictures show their own");
   }
   if (!one) require_enough(reference);
   if (one && arguments.question != ImageQuestion::means) {
     refuse(reference.where,
-           "one picture is a mean: its pairs and its law are unknown; give as many as of the "
-           "candidate");
+           "a single picture is a mean, so its pairs and its law are unknown; give as many "
+           "pictures as of the candidate");
   }
   if (arguments.mask) opened(*arguments.mask, place("--mask", *arguments.mask));
   for (Pictures* side : {&candidate, &reference}) side->first = opened(side->files[0], side->where);

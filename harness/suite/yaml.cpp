@@ -26,8 +26,8 @@ std::string readable(const std::string& message) {
       {YAML::ErrorMsg::END_OF_MAP_FLOW, "a `{` is not closed, or a comma is missing before this"},
       {YAML::ErrorMsg::END_OF_SEQ_FLOW, "a `[` is not closed, or a comma is missing before this"},
       {YAML::ErrorMsg::END_OF_MAP,
-       "expected a key of the map here; is the indentation that of the other keys, and "
-       "the line `key: value`?"},
+       "expected a key of the map here; is it indented like the other keys, and the line `key: "
+       "value`?"},
       {YAML::ErrorMsg::END_OF_SEQ,
        "expected another `- ` item here; indent all items alike, and all keys of an item"},
       {YAML::ErrorMsg::MAP_VALUE,

@@ -501,7 +501,7 @@ test_explain_tells_of_the_last_run() {
   contains out 'The last run from this folder began'
   contains out 'secondaries: '
   expect 2 explain
-  contains err '2 tests may be meant; give the id of one'
+  contains err '2 tests match; give the id of one'
   expect 0 explain run.json mixed/wrong
   contains out 'The claim is wrong.'
   expect 2 explain mixed/
@@ -598,7 +598,7 @@ test_calibration_tells_what_errs_and_writes_its_reports() {
   expect 2 calibrate --law cauchy
   contains err 'student_t(5)'
   expect 2 calibrate --law 'pareto(1, 1.5)'
-  contains err '`pareto(1, 1.5)` has no variance: nothing is promised on it'
+  contains err '`pareto(1, 1.5)` has no variance, so no method promises anything'
   expect 0 calibrate t --law 'pareto(1, 4.5)' --alpha 0.05 --runs 2 --quiet
   [ -z "$(awk 'length > 80' out)" ] || fail 'a line of more than 80 columns'
   expect 2 calibrate --report junit=c.xml
@@ -633,7 +633,7 @@ test_shards_of_four_processes_merge_to_one_run() {
   contains out '✗ 1 of 5 claims broken'
   diff <(timeless run.json) <(timeless merged/run.json) || fail 'the merged record is another'
   expect 1 merge shards/2.json shards/4.json shards/1.json --report json=merged/part.json --report console=-
-  contains err 'of 4 shards these are missing, and their tests are skipped: 3; run them with --shard 3/4'
+  contains err 'of 4 shards these are missing, so their tests are skipped: 3; run them with --shard 3/4'
   contains merged/part.json '"message": "shard 3 of 4 is missing"'
   [ "$(shown merged/part.json 'sorted(t["name"] for t in r["suites"][0]["tests"])')" = \
     "$(shown run.json 'sorted(t["name"] for t in r["suites"][0]["tests"])')" ] || fail 'a test is lost'
@@ -642,7 +642,7 @@ test_shards_of_four_processes_merge_to_one_run() {
   expect 2 merge
   contains err 'needs the records of all shards'
   expect 2 merge many.yaml
-  contains err 'no saved run but a suite'
+  contains err 'looks like a suite, not a saved run'
 }
 
 # Tests of one stream stay together, so the two are of two.

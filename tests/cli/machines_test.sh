@@ -42,7 +42,7 @@ test_interrupted_run_goes_on() {
   kill -TERM $!
   wait $!
   [ $? -eq 130 ] || fail 'not interrupted'
-  contains err 'what was drawn is kept in kept and kept.kept; the same command goes on'
+  contains err 'what was drawn is kept in kept and kept.kept; the same command continues'
   expect 2 run "$suite" --coarsen 4 --seed 7 --checkpoint kept
   contains err "kept: is the checkpoint of another run: the seed was the suite's and is 7; remove it, or name another file"
   "$assay" run "$suite" --coarsen 4 --quiet --checkpoint kept --report json=other/run.json >/dev/null 2>err
@@ -53,14 +53,14 @@ test_checkpoint_cannot_be_a_report_or_a_suite() {
   local report
   for report in a a.kept; do
     expect 2 run "$source_folder/suites/luminaire.yaml" --checkpoint a --report json=$report
-    contains err 'a report would replace it'
+    contains err 'which a report would replace'
   done
   echo mine >b.kept
   expect 2 run "$source_folder/suites/luminaire.yaml" --checkpoint b
-  contains err 'b.kept: is nothing that Assay packed, and would be lost; name another checkpoint'
+  contains err 'b.kept: was not written by Assay and would be lost; name another checkpoint'
   [ "$(cat b.kept)" = mine ] || fail 'a file of the user is lost'
   expect 2 run "$source_folder/suites/luminaire.yaml" --checkpoint "$source_folder/suites/luminaire.yaml"
-  contains err 'it is nothing that Assay packed'
+  contains err 'it was not written by Assay'
 }
 
 # test_ranks_… skip where MPI is missing: ranks N ARGUMENT…

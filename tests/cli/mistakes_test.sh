@@ -91,7 +91,7 @@ test_mistakes_at_the_head_of_a_suite_say_what_to_write() {
     answers 2 "s.yaml:$message" run s.yaml
   done <<'TABLE'
 estimators: {a: {plugin: luminaire/area}}|1:1: a suite needs the key `suite`, as in `suite: my first suite`
-suite: s\nseed: random|2:7: a suite's seed is a number, so that its runs repeat; `assay run --seed random` draws a fresh one
+suite: s\nseed: random|2:7: a suite's seed is a number, so that its runs repeat; `assay run --seed random` takes a fresh one
 suite: s\nalpha: 5%|2:8: `alpha` must be a number from 1e-9 to 0.5 (5 % is 0.05), but it is `5%`
 suite: s\nestimators:\n  - a: {plugin: luminaire/area}|3:3: `estimators` is a map of names, not a list: leave the `- ` out
 suite: s\nestimators:\n\ta: {plugin: luminaire/area}|3:1: indent with spaces, not with a tab
@@ -118,14 +118,14 @@ test_mistakes_on_the_command_line_say_what_to_write() {
   answers 2 '--coarsen needs a value: `--coarsen F`' run s.yaml --coarsen
   answers 2 'it is `html`; write `--report html=run.html`' run s.yaml --report html
   answers 2 'it is `out/a.xml`; write `--report junit=out/a.xml`' run s.yaml --report out/a.xml
-  answers 2 'a blank stands between two reports: write `--report html=a.html json=a.json`' \
+  answers 2 'put a blank between two reports: write `--report html=a.html json=a.json`' \
     run s.yaml --report html=a.html,json=a.json
   answers 2 'the kind of --report cannot be `pdf`; there is: console, json' \
     run s.yaml --report json=a pdf=b
   answers 2 'no/where/a.html: its folder does not exist; make it by `mkdir -p no/where`' \
     run s.yaml --report html=no/where/a.html
   answers 4 '--tag maen: no test has this tag; did you mean `mean`?' run s.yaml --tag maen
-  answers 4 'it must match a whole id, suite/name, where * and ? are wild; near it: s/first' \
+  answers 4 'it must match a whole id, suite/name, where * and ? are wildcards; near it: s/first' \
     run s.yaml --filter first
   answers 4 "no test is left by --filter '-*'" list tests s.yaml --filter '-*'
 }
@@ -133,7 +133,7 @@ test_mistakes_on_the_command_line_say_what_to_write() {
 test_mistakes_in_a_check_say_what_to_write() {
   local claim='mean(luminaire/area) == analytic'
   echo 3 >one.txt
-  answers 2 '`==` is one argument too many; quote the claim and what has blanks: `assay check' check 'mean(a)' == 3
+  answers 2 '`==` is one argument too many; quote the claim and other words with blanks: `assay check' check 'mean(a)' == 3
   answers 2 'claim:1:6: there is no plugin `luminare/area`; did you mean `luminaire/area`?' \
     check 'mean(luminare/area) == analytic'
   answers 2 '--detect 5: the margin 5 is larger than the reference' \

@@ -245,13 +245,13 @@ TEST_F(Forecasts, OfProofsHoldsByTheAdvantageOrStandsAtTheBorder) {
 TEST_F(PlanTable, BoundsTheProbabilityThatASuiteIsNotOk) {
   EXPECT_THAT(plan_text(planned("  - {name: a, claim: mean(normal) == 2, detect: 0.01}\n"
                                 "  - {name: b, claim: mean(normal) <= 2, detect: 0.01}\n")),
-              HasSubstr("a fail or an undecided claim with probability about 0.9"));
+              HasSubstr("some claim fails or stays undecided with probability about 0.9"));
 }
 
 TEST_F(PlanTable, SaysWhereTheDetectOfALawIsTheDefault) {
   const std::string law = "  - {claim: 'distribution(normal) == normal(2, 1)'}\n";
   EXPECT_THAT(plan_text(planned(law)),
-              HasSubstr("      `detect` is 0.05, the default of claims about laws\n"));
+              HasSubstr("      `detect` is 0.05, the default for claims about laws\n"));
   EXPECT_THAT(plan_text(planned(law, {.coarsen = 2})), HasSubstr("`detect` is 0.1, the default"));
 }
 

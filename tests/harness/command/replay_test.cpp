@@ -236,7 +236,7 @@ tests:
 
 TEST_F(Replays, NamesTestsWhereNoneIsNear) {
   EXPECT_EQ(refusal([] { replay({.record = "none.json", .test = "suite/mean"}); }),
-            "there is no such file; `--report json=FILE` saves a run that can be read");
+            "there is no such file; `--report json=FILE` saves a run");
   const std::string file = recorded(place);
   const auto refused = [&](const std::string& test) {
     return refusal([&] { replay({.record = file, .test = test}); });

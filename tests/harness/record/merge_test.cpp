@@ -228,7 +228,7 @@ TEST(Shards, DoNotAddToALedger) {
   EXPECT_THAT(refusal([&] {
                 run_files({file}, {.shard = std::pair(1U, 2U), .ledger = place.file("nights")});
               }),
-              HasSubstr("--ledger takes whole runs"));
+              HasSubstr("--ledger needs whole runs"));
 }
 
 }  // namespace

@@ -99,7 +99,7 @@ TEST(Checkpoint, ThatIsNoneOrCutShortIsRefused) {
   std::filesystem::resize_file(place.file("kept"), 30);
   EXPECT_THAT(refusal([&] { checkpoint(place.file("kept")); }), HasSubstr("cut short"));
   EXPECT_THAT(refusal([&] { checkpoint(place.write("text", "hello")); }),
-              HasSubstr("is nothing that Assay packed; remove it"));
+              HasSubstr("was not written by Assay; remove it"));
 }
 
 }  // namespace

@@ -233,7 +233,7 @@ TEST_F(RecordedRunTest, NamesWhatIsWrongWithTheRunOrTheEstimator) {
     return refused("  old: {plugin: recorded, " + parameters + "}\n", "claim: mean(old) == 2");
   };
   EXPECT_THAT(refused_as("run: none.json"), HasSubstr("there is no such file"));
-  EXPECT_THAT(refused_as("run: suite.yaml"), HasSubstr("no saved run but a suite"));
+  EXPECT_THAT(refused_as("run: suite.yaml"), HasSubstr("looks like a suite, not a saved run"));
   EXPECT_THAT(refused_as("run: run.json"), HasSubstr("has several estimators"));
   EXPECT_THAT(refused_as("run: run.json, estimator: norml"), HasSubstr("did you mean `normal`?"));
   EXPECT_THAT(refused_as("run: run.json, estimator: roulette"), HasSubstr("has no moments in the"));
@@ -241,7 +241,7 @@ TEST_F(RecordedRunTest, NamesWhatIsWrongWithTheRunOrTheEstimator) {
   EXPECT_THAT(refused_as("run: run.json, estimator: normal, primaries: 8"),
               HasSubstr("leave `primaries` out"));
   EXPECT_THAT(refused_as("run: run.json, estimator: normal, file: x.txt"),
-              HasSubstr("give it, or `run`, not both"));
+              HasSubstr("give it or `run`, not both"));
   EXPECT_THAT(refused_as("file: x.txt, estimator: normal"), HasSubstr("estimator"));
   EXPECT_THAT(refused_as("column: x"), HasSubstr("give it, or `run` and `estimator`"));
   place_.write("cut.json", "{\"schema\": 1");

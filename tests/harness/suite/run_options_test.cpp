@@ -73,21 +73,15 @@ TEST_F(SelectionOfTests, SaysWhichTagsThereAre) {
 TEST_F(SelectionOfTests, SaysHowIdsLook) {
   EXPECT_EQ(said({.filters = {"s/*mean"}}), "");
   EXPECT_EQ(said({.filters = {"mean"}}),
-            "--filter mean matches no test\n"
-            "  it must match a whole id, suite/name, where * and ? are wild; near it:\n"
-            "    s/first mean\n"
-            "    s/second mean\n");
+            "--filter mean matches no test\n  it must match a whole id, suite/name, where * and ? "
+            "are wildcards; near it:\n    s/first mean\n    s/second mean\n");
   EXPECT_EQ(said({.filters = {"s/varaince"}}),
-            "--filter s/varaince matches no test\n"
-            "  it must match a whole id, suite/name, where * and ? are wild; near it:\n"
-            "    s/variance\n");
+            "--filter s/varaince matches no test\n  it must match a whole id, suite/name, where * "
+            "and ? are wildcards; near it:\n    s/variance\n");
   EXPECT_EQ(said({.filters = {"s/*", "zzz"}}),
-            "--filter zzz matches no test\n"
-            "  it must match a whole id, suite/name, where * and ? are wild; ids here:\n"
-            "    s/first mean\n"
-            "    s/second mean\n"
-            "    s/variance\n"
-            "    s/untagged\n");
+            "--filter zzz matches no test\n  it must match a whole id, suite/name, where * and ? "
+            "are wildcards; ids here:\n    s/first mean\n    s/second mean\n    s/variance\n    "
+            "s/untagged\n");
 }
 
 TEST_F(SelectionOfTests, SaysThatNoTestIsLeft) {

@@ -51,7 +51,7 @@ TEST_F(SuiteImages, AMarginMakesAProof) {
   EXPECT_EQ(suite_of_images(given).tests[0].claim.text,
             "mean(candidate) within 50% of mean(reference)");
   given.keys["detect"] = "1%";
-  EXPECT_THAT(refused(given), HasSubstr("--within says itself"));
+  EXPECT_THAT(refused(given), HasSubstr("--within already says"));
 }
 
 TEST_F(SuiteImages, AMaskThatDoesNotOpenIsNamed) {
@@ -70,13 +70,13 @@ TEST_F(SuiteImages, AMaskThatDoesNotOpenIsNamed) {
 TEST_F(SuiteImages, WhatCannotBeTestedIsRefusedWithTheMend) {
   write_stack(place, "a", {.count = 15}, noisy);
   ImagesArguments given = arguments(place);
-  EXPECT_THAT(refused(given), HasSubstr("15 pictures match, and the test takes 16 or more"));
+  EXPECT_THAT(refused(given), HasSubstr("15 pictures match, and the test needs 16 or more"));
   write_stack(place, "a", {.count = 16}, noisy);
   EXPECT_THAT(refused(given), HasSubstr("no file matches"));
   write_stack(place, "b", {.count = 2}, noisy);
   EXPECT_THAT(refused(given), HasSubstr("2 pictures match"));
   given.samples = "4";
-  EXPECT_THAT(refused(given), HasSubstr("is of a reference that is one"));
+  EXPECT_THAT(refused(given), HasSubstr("is for a single reference"));
 }
 
 TEST_F(SuiteImages, TheCommandLineSaysHowToRunItAgain) {
@@ -206,7 +206,7 @@ TEST_F(PictureFiles, AnAlphaThatDiffersIsFound) {
   EXPECT_EQ(answer(place).verdict, Verdict::pass);
   write_stack(place, "a", rgba, with_alpha(0.5, 0.1));
   EXPECT_THAT(tests::thrown([&] { answer(place); }),
-              testing::HasSubstr("its pictures have no alpha, and that of the other side is not 1 "
+              testing::HasSubstr("its pictures have no alpha, and the other side's alpha is not 1 "
                                  "everywhere; --channels 'R,G,B' compares without it"));
   EXPECT_EQ(answer(place, {"--channels", "R,G,B"}).verdict, Verdict::pass);
 }

@@ -114,7 +114,7 @@ TEST(Suite, AReportReplacesNothingOfAnotherName) {
   const std::string folder(300, 'x');
   refuse_overwriting(folder + "/run.html", {folder + "/run.yaml"});
   EXPECT_THAT(refusal([&] { refuse_overwriting(folder + "/a", {folder + "/./a"}); }),
-              testing::HasSubstr("a report would replace it"));
+              testing::HasSubstr("which a report would replace"));
 }
 
 // Each bad file breaks one rule; its first line is `# expect: ` and the refusal.
