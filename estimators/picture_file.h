@@ -83,11 +83,11 @@ class PictureFile {
 };
 
 /// Opens a file, whose first bytes tell its kind:
-/// - OpenEXR of one part or several, any pixel type and compression. It has scan lines or tiles, of
+/// * OpenEXR of one part or several, any pixel type and compression. It has scan lines or tiles, of
 ///   which the finest level is read.
-/// - PFM, by the ending `.pfm` too. The scale's sign is the order of bytes, and its size is left
+/// * PFM, by the ending `.pfm` too. The scale's sign is the order of bytes, and its size is left
 ///   aside.
-/// - PNG of 8 bits or fewer, or 16, a palette or grey. Colours are taken from sRGB's curve to
+/// * PNG of 8 bits or fewer, or 16, a palette or grey. Colours are taken from sRGB's curve to
 ///   linear light, in [0, 1].
 ///
 /// InputError at the file if it is missing, is none of these or is cut short. The same for a part

@@ -70,7 +70,7 @@ std::shared_ptr<const Setup> control_variate(Parameters& parameters) {
 }
 
 // X = e^(3x) / q(x) at x = (1 + 31 u)^(1/5) - 1. By parts, from t = 1 to 2,
-//   E[X^2] = (31 / 5) e^-6 [-e^(6t) (1 / 3t^3 + 1 / t^2 + 6 / t) + 36 Ei(6t)].
+//  `E[X^2] = (31 / 5) e^-6 [-e^(6t) (1 / 3t^3 + 1 / t^2 + 6 / t) + 36 Ei(6t)]`.
 
 double near_point(Stream& random) {
   // The fifth root may round to 2 and beyond.

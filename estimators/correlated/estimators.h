@@ -66,8 +66,8 @@ SharedPairs area_pairs(const luminaire::SceneDescription& description, const Loc
 /// Reads the parameter `scene`; InputError there when the luminaire is a mesh.
 SharedPairs read_area_pairs(Parameters&);
 
-/// f is the irradiance that arrives from directions of a sky. g is that of an open uniform sky of
-/// the same mean M: f/p = L cos+ V / p, g/p = M cos+ / p and J = pi M. Directions have a density
+/// f is the irradiance that arrives from directions of a sky. An open uniform sky of the same mean
+/// M has g: `f/p = L cos+ V / p`, `g/p = M cos+ / p`, `J = pi M`. Directions have a density
 /// that is positive wherever cos+ is.
 ///
 /// The parameters are those of a sky and `sampling`. It is uniform, cosine, emittance (in
@@ -132,7 +132,7 @@ LambdaRule clamped_lambda(Centre);
 std::shared_ptr<const Setup> fixed(SharedPairs, double lambda);
 
 /// The estimator with lambda from the same samples. With f and g divided by p its bias is
-///   -E[(f - I - lambda* (g - J)) (g - J)^2] / (M Var g)
+///  `-E[(f - I - lambda* (g - J)) (g - J)^2] / (M Var g)`
 /// and terms of higher order. Channels: one a colour, then the diagnostic `lambda` (lambda_r,
 /// lambda_g, lambda_b if there are several colours). Their limit lambda* is stated if it is known.
 std::shared_ptr<const Setup> same_samples(SharedPairs, LambdaRule);

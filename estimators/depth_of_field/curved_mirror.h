@@ -28,7 +28,7 @@ struct CurvedMirror {
   double exact(const Lens& lens, double u, double pixel, double turned) const {
     const double w = pixel - u;
     // The ray from (u, 0) along (w, focus) meets the mirror at t, with
-    //   curvature / 2 (u + w t)^2 - focus t + distance = 0.
+    //  `curvature / 2 (u + w t)^2 - focus t + distance = 0`.
     // The smaller root has no difference of nearly equal numbers here.
     const double a = curvature * w * w / 2;
     const double b = lens.focus - curvature * u * w;

@@ -26,9 +26,9 @@ double disc_response(double z);
 /// Its first zero, beyond which it is below 0.133 in size.
 inline constexpr double first_zero_of_disc_response = 3.8317059702075125;
 
-/// Mean and second moment of m + a cos(k X + p) with X = x + r w, w uniform on the unit disc.
-///   mean           m + a cos(k x + p) j(k r)
-///   second moment  m^2 + 2 m a cos(k x + p) j(k r) + a^2 / 2 (1 + cos(2 (k x + p)) j(2 k r))
+/// Mean and second moment of `m + a cos(k X + p)` with `X = x + r w`, w uniform on the unit disc.
+///  `mean           m + a cos(k x + p) j(k r)
+///   second moment  m^2 + 2 m a cos(k x + p) j(k r) + a^2 / 2 (1 + cos(2 (k x + p)) j(2 k r))`
 Moments sinusoid_moments(const Texture& texture, const Footprint& seen);
 
 /// The moments of a pixel, in closed form where one surface fills the whole lens. Else they are

@@ -51,10 +51,10 @@ struct SceneDescription {
 };
 
 /// Reads a scene: the name of a built-in one (edge, sinusoid, strip, portrait, boards), or a map
-///   lens:       {radius: .2, focus: 2}
+///  `lens:       {radius: .2, focus: 2}
 ///   background: .1                                      0 unless given
 ///   planes:     [{depth: 2, x: [-1, 1], y: [-1, 1], radiance: .6,
-///                 amplitude: .3, wavelength: .15, phase: 0}]   a wave along x; may be left out.
+///                 amplitude: .3, wavelength: .15, phase: 0}]   a wave along x; may be left out`.
 ///
 /// InputError at the offending node: an unknown or missing key, an unknown name, a number that is
 /// not finite, a lens without extent. InputError, too, for a depth or focus that is not positive,

@@ -7,10 +7,10 @@
 // A frequency (Wx, Wv) is a wave cos(Wx x + Wv v + phase). The field is real: one of each pair of
 // opposite frequencies is kept. If light moves by (x, v) -> M (x, v), frequencies move by the
 // inverse transpose of M:
-//   travel over d          x += d v             Wv -= d Wx
+//  `travel over d          x += d v             Wv -= d Wx
 //   reflection, curvature  v += c x             Wx -= c Wv
 //   reflection, lobe       average over slopes  power exp(-(s Wv)^2), s the lobe's deviation
-//   occlusion              times a mask of x    Wx becomes Wx + W and Wx - W for each of its W.
+//   occlusion              times a mask of x    Wx becomes Wx + W and Wx - W for each of its W`.
 // A mirror of curvature k has c = 2 k, with k > 0 if it scatters.
 //
 // The lens is focused at depth f. A pixel sees the point X of the focal plane. It gathers the

@@ -11,10 +11,10 @@ namespace assay::direct_light {
 
 /// Weights that sum to 1, from q_i, the density of a technique times its number of samples. In the
 /// one-sample model q_i is the density times the technique's probability.
-///   balance      w_i = q_i / sum q_k  (eq. 9.8)
+///  `balance      w_i = q_i / sum q_k  (eq. 9.8)
 ///   power        w_i = q_i^e / sum q_k^e
 ///   cutoff       0 where q_i < t max q_k, else q_i / sum of the q_k that are not
-///   maximum      1 where q_i is the largest, else 0.
+///   maximum      1 where q_i is the largest, else 0`.
 /// All are functions of the ratio r of the smaller q to the larger. The technique of the larger has
 /// the weight 1 / (1 + g(r)), with g = r, r^e, r [r >= t], 0.
 class Heuristic {

@@ -158,9 +158,9 @@ double highest_of_brdf(const Techniques& techniques) {
   return techniques.setting().radiance() * techniques.reflectance().weight_bound() * (1 + 0x1p-40);
 }
 
-// The channel of primaries with these weights, in [0, high], with what quadrature knows of smooth
-// weights: the mean, and the variance that `variance_of` takes from the moments. The mean has a
-// closed form of a constant BRDF. The variance is stated if it is known to 1e-8.
+// The channel of primaries with these weights, in [0, high]. Quadrature gives the mean of smooth
+// weights, and the moments from which `variance_of` takes the variance. The mean has a closed form
+// for a constant BRDF. The variance is stated if it is known to 1e-8.
 template <class VarianceOf>
 Channel radiance_channel(const Techniques& techniques, const WeightedByHeuristic& weights,
                          double high, const VarianceOf& variance_of) {

@@ -45,8 +45,8 @@ struct FirstObservations {
   std::optional<std::vector<double>> usual() const;
 };
 
-/// Number of observations of `width` numbers that are asked for twice: 32 / (width * primaries),
-/// but at least two, since an image may take a minute.
+/// Number of observations of `width` numbers that are asked for twice: `32 / (width * primaries)`,
+/// but at least two. An image may take a minute.
 std::uint64_t asked_twice(std::size_t width, std::uint64_t primaries);
 
 /// A sentence if a program or library of this name gives other numbers when it is asked again, else

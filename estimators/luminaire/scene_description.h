@@ -35,10 +35,10 @@ struct SceneDescription {
 };
 
 /// Reads a scene: the name of a built-in one (triangle, cornell_triangle, rectangle), or a map
-///   receiver:  {position: [0, 0, 0], normal: [0, 0, 1]}
+///  `receiver:  {position: [0, 0, 0], normal: [0, 0, 1]}
 ///   light:     {polygon: [[.2, -.4, 1], [1.6, .3, 1.4], [-.3, 1.2, 1.1]], radiance: 1}
 ///   occluders: [{polygon: [...]}, {disc: {center: [0, 0, .4], normal: [0, 0, 1], radius: .1}},
-///               {obj: chair.obj}].
+///               {obj: chair.obj}]`.
 /// A light has `polygon` or `obj`, and file names are relative to `folder`. A polygon emits from
 /// the receiver's side, or from the one that an optional `normal` of the light points from. A mesh
 /// emits from the counter-clockwise side of each triangle.

@@ -91,7 +91,7 @@ TriangleMesh drawn_nearer(TriangleMesh mesh) {
   return mesh;
 }
 
-// What rays can hit: the luminaire, as shape 0, and the occluders. A planar luminaire never shades
+// Rays can hit the luminaire, which is shape 0, and the occluders. A planar luminaire never shades
 // itself.
 std::vector<Shape> shapes_of(const SceneDescription& description, bool with_luminaire) {
   std::vector<Shape> shapes = occluder_shapes(description.occluders, description.receiver);

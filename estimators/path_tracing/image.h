@@ -14,19 +14,19 @@ namespace assay::path_tracing {
 
 /// How light is found at a bounce that is neither mirror nor glass. All three have one expectation.
 enum class Integrator {
-  light,    ///< by a point on an emitter; emitters that the path hits by itself count for nothing
-  bsdf,     ///< by emitters that the path hits
-  multiple  ///< by both, with the balance heuristic (Veach & Guibas 1995)
+  light,    ///< By a point on an emitter. Emitters that the path hits by itself count for nothing.
+  bsdf,     ///< By emitters that the path hits.
+  multiple  ///< By both, with the balance heuristic (Veach & Guibas 1995).
 };
 
 /// The errors of a mutant; by default all is right.
 struct Defects {
-  double light_density = 0;  ///< relative error of the density of points on emitters
-  double weight = 0;         ///< part of the way of the bsdf's weight to 1
-  double roulette = 0;       ///< part of the compensation that is left out
-  double clamp = 0;          ///< largest value of a path's component, if above 0
-  double shadow_offset = 0;  ///< added to the offset of shadow rays
-  double schlick = 0;        ///< part of the way from Fresnel's reflectance to Schlick's
+  double light_density = 0;  ///< Relative error of the density of points on emitters.
+  double weight = 0;         ///< Part of the way of the bsdf's weight to 1.
+  double roulette = 0;       ///< Part of the compensation that is left out.
+  double clamp = 0;          ///< Largest value of a path's component, if above 0.
+  double shadow_offset = 0;  ///< Added to the offset of shadow rays.
+  double schlick = 0;        ///< Part of the way from Fresnel's reflectance to Schlick's.
 };
 
 /// One path from the camera. Russian roulette from the third bounce on.

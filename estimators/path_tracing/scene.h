@@ -98,8 +98,9 @@ class Scene {
   std::size_t bounces_;
 };
 
-/// "box": diffuse walls under a wide light. "glass": a glass sphere and a mirror under a small
-/// light. "plates": four glossy plates under four lights, after Veach (1997, figure 9.2).
+/// Scene "box" has diffuse walls under a wide light. Scene "glass" has a glass sphere and a mirror
+/// under a small light. Scene "plates" has four glossy plates under four lights, after Veach (1997,
+/// figure 9.2).
 std::shared_ptr<const Scene> scene_of(const std::string& name);
 
 }  // namespace assay::path_tracing

@@ -44,11 +44,11 @@ struct SceneDescription {
 
 /// Reads a scene: a built-in name (furnace, sphere, coloured_sphere, box), or a map of `camera` and
 /// one of `zones`, `furnace` and `surfaces`.
-///   camera:   {position: [0, 0, 0], direction: [0, 0, -1]}
+///  `camera:   {position: [0, 0, 0], direction: [0, 0, -1]}
 ///   zones:    [{top: 0.8, emission: 0, albedo: 0.8}, {top: 1, emission: 1, albedo: [.8, .5, .2]}]
 ///   furnace:  {obj: room.obj, emission: 1, albedo: 0.5, mirror: 0}
 ///   surfaces: [{polygon: [...], emission: 0, albedo: 0.5, mirror: 0},
-///              {obj: lamp.obj, emission: 9, albedo: 0}].
+///              {obj: lamp.obj, emission: 9, albedo: 0}]`.
 /// Zones cut the unit sphere at heights z. A furnace is a closed mesh with the camera inside. Rays
 /// that leave surfaces bring nothing. A number may be a list of three colours. Surfaces emit and
 /// reflect alike on both sides. Files are relative to `folder`.

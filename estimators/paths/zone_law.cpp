@@ -31,7 +31,7 @@ ZoneMoments moments(const std::vector<ZoneSteps>& zones) {
     albedo += z.fraction * z.albedo;
   }
   ZoneMoments out{.mean = score / (1 - albedo)};
-  // E[X^2 | z] = (D+e)^2 + 2 (D+e)(a mu - e) + Var D + (a^2 S - 2 a e mu + e^2) / s.
+  //`E[X^2 | z] = (D+e)^2 + 2 (D+e)(a mu - e) + Var D + (a^2 S - 2 a e mu + e^2) / s`.
   double known = 0;
   double factor = 0;
   for (const ZoneSteps& z : zones) {

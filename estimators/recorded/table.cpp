@@ -156,9 +156,9 @@ using namespace std::string_view_literals;
 
 struct Format {
   std::string_view magic;
-  std::string_view what;         ///< behind "it is a binary file, not text: "
-  std::string_view mend;         ///< $ stands for the file as a shell takes it, @ as Python does
-  std::string_view filter = "";  ///< a command that makes text of it, from its input to its output
+  std::string_view what;         ///< Follows "it is a binary file, not text: ".
+  std::string_view mend;         ///< A shell's name of the file replaces $, Python's name @.
+  std::string_view filter = "";  ///< A command that turns its input into text.
 };
 
 constexpr std::string_view as_exr =

@@ -77,11 +77,11 @@ struct Exponents {
 };
 
 /// The specular part of the anisotropic Phong reflectance of Ashikhmin & Shirley (2000), eq. 4:
-///   f = sqrt((nu+1)(nv+1)) / (8 pi) (n.h)^e F(h.w_i) / ((h.w_i) max(cos_i, cos_o)),
-///   e = nu cos^2 phi + nv sin^2 phi,  F(c) = R + (1 - R)(1 - c)^5  (Schlick).
+///  `f = sqrt((nu+1)(nv+1)) / (8 pi) (n.h)^e F(h.w_i) / ((h.w_i) max(cos_i, cos_o)),
+///   e = nu cos^2 phi + nv sin^2 phi,  F(c) = R + (1 - R)(1 - c)^5  (Schlick)`.
 /// It is sampled by their eqs. 9-10: cos d = v^(1/(e+1)), and in the first quadrant phi =
 /// atan(sqrt((nu+1)/(nv+1)) tan(pi u'/2)), mirrored to the others. So
-///   p_h = sqrt((nu+1)(nv+1)) / (2 pi) (n.h)^e  and  f cos_o / p = F cos_o / max(cos_i, cos_o).
+///  `p_h = sqrt((nu+1)(nv+1)) / (2 pi) (n.h)^e  and  f cos_o / p = F cos_o / max(cos_i, cos_o)`.
 class AshikhminShirley : public HalfVectorBrdf {
  public:
   struct Material {
@@ -121,11 +121,11 @@ struct Roughness {
 };
 
 /// The anisotropic Gaussian reflectance of Ward (1992), eq. 5a, with reflectance 1:
-///   f = exp(-tan^2 d (cos^2 phi / ax^2 + sin^2 phi / ay^2)) / (4 pi ax ay sqrt(cos_i cos_o)).
-/// d and phi are the angles of h. f is unbounded where w_o grazes the surface. It is sampled after
-/// Walter (2005), "Notes on the Ward BRDF", eqs. 6-9:
-///   phi = atan((ay / ax) tan 2 pi u),  tan^2 d = -ln v / (cos^2 phi / ax^2 + sin^2 phi / ay^2),
-///   p_h = exp(.) / (pi ax ay cos^3 d),  f cos_o / p = (h . w_i) cos^3 d sqrt(cos_o / cos_i).
+///  `f = exp(-tan^2 d (cos^2 phi / ax^2 + sin^2 phi / ay^2)) / (4 pi ax ay sqrt(cos_i cos_o))`.
+/// Here d and phi are the angles of h. This f is unbounded where w_o grazes the surface. It is
+/// sampled after Walter (2005), "Notes on the Ward BRDF", eqs. 6-9:
+///  `phi = atan((ay / ax) tan 2 pi u),  tan^2 d = -ln v / (cos^2 phi / ax^2 + sin^2 phi / ay^2),
+///   p_h = exp(.) / (pi ax ay cos^3 d),  f cos_o / p = (h . w_i) cos^3 d sqrt(cos_o / cos_i)`.
 /// Bounds are proved for ax, ay <= 1.
 class Ward : public HalfVectorBrdf {
  public:

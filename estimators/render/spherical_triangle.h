@@ -16,7 +16,7 @@ namespace assay::render {
 ///
 /// The first step solves the excess E of a triangle for tan(ac' / 2). The triangle has two sides
 /// and the angle between them (Todhunter 1886, Spherical Trigonometry, article 103).
-///   tan(E / 2) = tan(ab / 2) tan(ac' / 2) sin(alpha) / (1 + tan(ab / 2) tan(ac' / 2) cos(alpha)).
+///  `tan(E / 2) = tan(ab / 2) tan(ac' / 2) sin(alpha) / (1 + tan(ab / 2) tan(ac' / 2) cos(alpha))`.
 /// It is Arvo's map. His equation for cos(ac') has differences that lose half the digits in thin
 /// triangles.
 class SphericalTriangle {

@@ -29,9 +29,9 @@ struct TrianglePoint {
 /// Maps the unit square to the triangle with density 6 weight / sum per unit of du dv (Subr and
 /// Arvo 2007, "Steerable importance sampling"). With u = s (1 - t), v = s t it solves a cubic for
 /// s, then a quadratic for t:
-///   s^2 (3 a (1 - 2 s / 3) + (b + c) s) / (a + b + c) = x,
+///  `s^2 (3 a (1 - 2 s / 3) + (b + c) s) / (a + b + c) = x,
 ///   gamma t^2 + rho t = y,  gamma = s (c - b) / T,  rho = 2 ((1 - s) a + s b) / T,
-///   T = s (c - b) + 2 ((1 - s) a + s b).
+///   T = s (c - b) + 2 ((1 - s) a + s b)`.
 struct LinearTriangle {
   TrianglePoint operator()(const VertexWeights& weights, double x, double y) const;
 };

@@ -20,7 +20,7 @@ class Progress {
   virtual void advance(std::uint64_t /*done*/) {}  ///< units done so far in this phase
   virtual void end() {}
 };
-/// Where nobody listens. It has no state.
+/// Shows nothing. It has no state.
 inline Progress silence;
 
 }  // namespace assay::harness

@@ -1,7 +1,7 @@
 #pragma once
 
-// What the environment asks of the process. A launcher, such as mpirun or srun, has tasks to join
-// to one run. A test runner, such as GoogleTest or Bazel, has shards.
+// The environment may ask something of the process. A launcher, such as mpirun or srun, has tasks
+// to join to one run. A test runner, such as GoogleTest or Bazel, has shards.
 
 #include <string>
 #include <vector>

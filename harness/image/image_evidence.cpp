@@ -155,9 +155,9 @@ stats::TestResult at_margin(const Distances& distances, double margin) {
 }
 
 /// Replicates at which theta would be excluded from `margin` on, a million times as many at most.
-/// It is 0 if the estimate is not below the margin. With f times the replicates the squared bias's
-/// standard error is 1 / f of what it is in noise, and 1 / sqrt f if there is a bias. A hidden bias
-/// falls like exp(-f).
+/// It is 0 if the estimate is not below the margin. In pure noise f times the replicates divide
+/// the standard error of the squared bias by f. They divide it by sqrt f if there is a bias. A
+/// hidden bias falls like exp(-f).
 double wanted_replicates(const Distances& distances, double margin, const ImageTest& test,
                          double replicates) {
   constexpr double least_factor = 1.1;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Evidence about images. theta is the size of their difference over all elements,
-//   theta = ||E a - E b|| / ||E b||, or its root mean square for absolute margins.
+// Evidence about images. theta is the size of their difference over all elements:
+// `||E a - E b|| / ||E b||`, or the root mean square for absolute margins.
 // The family of cells of every size and alternating sums tests theta = 0 (image_pyramid.h).
 // The unbiased squared bias tests other values (image_equivalence.h).
 
@@ -57,7 +57,7 @@ struct PlaceText {
   /// In the whole picture: "x 8-15, y 16-23 of red". If fewer than half of its pixels have a
   /// weight, it is "what varies in x 8-15, …".
   std::string place = "";
-  std::string size = "";  ///< What follows it: " (8 x 8 pixels), z = +6.1".
+  std::string size = "";  ///< Follows the place: " (8 x 8 pixels), z = +6.1".
 };
 PlaceText place_text(const stats::ImageFinding& finding, const ImageShape& shape,
                      std::span<const float> weights);

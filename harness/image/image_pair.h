@@ -31,7 +31,7 @@ double z_of(const UnseenElement& unseen);
 
 /// The elements of an image pair that did not vary.
 struct ImageConstants {
-  std::vector<UnseenElement> unseen = {};  ///< Those that are held against their ranges.
+  std::vector<UnseenElement> unseen = {};  ///< They are tested by their ranges.
   std::size_t count = 0;                   ///< Elements in which nothing varied on either side.
 };
 

@@ -2,13 +2,13 @@
 
 // The claim language: one line that reads as the hypothesis.
 //
-//   claim    = quantity relation side
+//  `claim    = quantity relation side
 //   side     = [ number "*" ] quantity | number [ "+-" number ] | "analytic" | law
 //   quantity = name "(" source { "," number } ")" | "slope" "(" quantity ")"
 //   source   = estimator [ "." part ]
 //   name     = mean | bias | variance | total_variance | worst_variance | quantile | efficiency |
 //              cost | distribution | integral | inconsistency
-//   relation = "==" | "<=" | ">=" | "<" | ">" | "within" margin "of"
+//   relation = "==" | "<=" | ">=" | "<" | ">" | "within" margin "of"`
 
 #include <string>
 #include <string_view>

@@ -25,7 +25,7 @@
 
 namespace assay::harness {
 
-/// What nights can pool, or the obstacle: one of `value` and `obstacle` is set.
+/// A value that nights can pool, or an obstacle: one of `value` and `obstacle` is set.
 struct NightEvidence {
   std::optional<NightValue> value = {};
   std::optional<double> reference_error = {};  ///< Error that all runs share, beside an estimate.

@@ -2,14 +2,14 @@
 
 // The ledger as data and as text: the evidence of nights with fresh seeds on each claim.
 //
-//   assay-ledger 2 budget 0.003
+//  `assay-ledger 2 budget 0.003
 //   series 5f2a… estimates reference 0 weight 0.25 "suite/test" "channel" | 1a2b3c4d
 //   night 2026-11-21T02:00:01Z seed 17 commit 14467a0 series 5f2a… estimate 0.0004 error 0.0012
 //         observations 4096 effective 1365 "suite/test" "channel" | 5d6e7f80   (one line)
 //   night … series 77aa… log-p -0.69 "suite/other" "channel" | …
 //   begin "suite/test"                                      written by hand: a new series
 //   # a comment, by hand, anywhere
-//   end 2                                                   nights in the file
+//   end 2                                                   nights in the file`.
 //
 // The number behind the bar is a checksum of the line and of all series and night lines before it.
 // The first one includes the header. Checksums reveal lines that were changed, removed or moved.

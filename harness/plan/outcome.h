@@ -116,7 +116,7 @@ struct TestOutcome {
   std::optional<double> power = {};           ///< Power at `detect`, with the observed spread.
   reports::Verdict verdict = reports::Verdict::skipped;
   std::string message = "";
-  std::optional<reports::Advice> advice = {};  ///< Of the message.
+  std::optional<reports::Advice> advice = {};  ///< Belongs to the message.
 
   /// Size of this look: the most that any subject takes.
   std::uint64_t secondaries() const { return plan.looks.sizes[look]; }

@@ -293,9 +293,9 @@ void require_no_budget(const TestOutcome& test) {
          "give `secondaries`, which are rounded up");
 }
 
-/// Looks that grow from the fewest meaningful up to what `detect` needs at the last look's levels.
-/// One look if nothing asks for a number or it is given: rows of a file, `secondaries`, the
-/// classical 1000. `range` has the fewest meaningful and the most available.
+/// Looks grow from the fewest meaningful observations to what `detect` needs at the last look's
+/// levels. There is one look without `detect`, and if rows of a file or `secondaries` give the
+/// number. The argument `range` has the fewest meaningful and the most available.
 stats::LookSchedule plan_looks(const TestOutcome& test, const Pilots& pilots,
                                const stats::LookRange& range) {
   const auto [first, most] = range;

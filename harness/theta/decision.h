@@ -4,11 +4,11 @@
 // directions, and an interval. From it come p-values of the claimed and of the forbidden region,
 // and from these alone the verdict.
 //
-//   relation  claimed region C        forbidden region F
+//  `relation  claimed region C        forbidden region F
 //   ==        abs(theta) <= allow     abs(theta) >= detect     alarm
 //   <=        theta <= allow          theta >= detect          alarm   (>= mirrored)
 //   <         theta < 0               theta >= 0               proof   (> mirrored)
-//   within x  abs(theta) < x          abs(theta) >= x          proof
+//   within x  abs(theta) < x          abs(theta) >= x          proof`
 
 #include <functional>
 #include <optional>

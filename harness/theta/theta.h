@@ -30,7 +30,7 @@ struct TestOutcome;
 /// limit, and the unit of margins. A ratio has the deviations of relative influence values.
 struct PlannedChannel {
   Regions regions = {};
-  std::array<double, 2> deviations = {};  ///< Of the subjects, times their factors.
+  std::array<double, 2> deviations = {};  ///< Each subject's, times its factor.
   double unit = 1;                        ///< Theta times this is in the estimator's unit.
   double reference_error = 0;
   bool unseen = false;      ///< The deviation is what a constant pilot may have missed.
@@ -90,7 +90,7 @@ class Theta {
   Theta& operator=(const Theta&) = delete;
 
   const ThetaTraits is;
-  const std::vector<Method> methods;  ///< Of the family, the default first.
+  const std::vector<Method> methods;  ///< The family's; the default is first.
 
   // ---- The claim
 

@@ -246,7 +246,7 @@ class Screen {
     return counts.empty() ? Standing::not_run : counts.begin()->first;
   }
 
-  /// What the ids of its tests begin with.
+  /// The ids of its tests begin with this.
   static std::string name_of(const Suite& suite) {
     const std::string id = suite.tests.empty() ? suite.name : suite.tests[0].id;
     return plain(id.substr(0, id.find('/')));

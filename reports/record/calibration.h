@@ -55,8 +55,8 @@ struct CalibrationCell {
 
   /// The whole procedure: pilot, choice of method, looks, gates. No runs where another method is
   /// the question's default.
-  VerdictRates holds;  ///< on the claim that holds exactly
-  VerdictRates off;    ///< on the claim that is off by `detect`; perhaps no runs
+  VerdictRates holds;  ///< On the claim that holds exactly.
+  VerdictRates off;    ///< On the claim that is off by `detect`. There may be no runs.
   /// The method alone on the claim where it can be mistaken: forced, one look, gates without
   /// effect.
   VerdictRates alone;

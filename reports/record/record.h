@@ -68,9 +68,9 @@ struct ImageFinding {
   std::string component;
   Number z;  ///< positive where the first image is brighter
   Number log10_p;
-  Number log10_p_adjusted;       ///< in the family of everything that was looked at in the image
-  std::optional<Effect> effect;  ///< difference of the means over the rectangle, of the winner
-  std::string others;  ///< "G by -5.1 %, B by -4.9 %": other components there, of the winner
+  Number log10_p_adjusted;       ///< In the family of everything that was looked at in the image.
+  std::optional<Effect> effect;  ///< Difference of the means over the rectangle, of the winner.
+  std::string others;  ///< Other components there, of the winner: "G by -5.1 %, B by -4.9 %".
   ASSAY_FIELDS(ImageFinding, statistic, place, x, y, width, height, component, z, log10_p,
                log10_p_adjusted, effect, others)
 };
@@ -115,8 +115,8 @@ struct LedgerNight {
   std::string commit;
   Number estimate, low, high;  ///< Theta by this night, with its own 95 % interval.
   Number mean;                 ///< Theta by all nights up to it, pooled by their observations.
-  Number log_p;                ///< ln of the p-value of a night without an estimate.
-  Number log_e;                ///< ln of the e-value of all nights up to it.
+  Number log_p;                ///< Logarithm of the p-value of a night without an estimate.
+  Number log_e;                ///< Logarithm of the e-value of all nights up to it.
   ASSAY_FIELDS(LedgerNight, date, commit, estimate, low, high, mean, log_p, log_e)
 };
 
@@ -206,7 +206,7 @@ struct QuantilePoint {
 };
 
 /// The joint variation of the cost c and the value x of an observation. Sums over the observations:
-/// m2 of (c - mean c)^2, m11 of (x - mean x)(c - mean c), m21 of (x - mean x)^2 (c - mean c).
+/// m2 of `(c - mean c)^2`, m11 of `(x - mean x)(c - mean c)`, m21 of `(x - mean x)^2 (c - mean c)`.
 struct CostMoments {
   std::string kind;  ///< rays, samples
   double mean = 0, m2 = 0, m11 = 0, m21 = 0;

@@ -16,8 +16,8 @@ extern const std::string_view viewer_page;
 /// The record and its pictures as bytes: the length of a JSON text in 32 bits, the text, and the
 /// planes that the text names. The text holds the record without its maps, in six digits, and a
 /// list of pictures. A picture above 2 megapixels is reduced to means of squares of pixels. A small
-/// map is kept as 32-bit floats, a larger one as 16-bit codes: of z steps of 1/8, of a mean steps
-/// of 1/24 of a factor of two, so that a value is known to 1.5 %.
+/// map is kept as 32-bit floats, a larger one as 16-bit codes. A step of z is 1/8. A step of a mean
+/// is 1/24 of a factor of two, so that a value is known to 1.5 %.
 std::string packed(Record record);
 
 /// The same of a calibration, which has no pictures: its JSON, its verdict and its tables.

@@ -119,7 +119,7 @@ std::string sentence_of(const Test& test, const Effect& effect, const std::strin
   if (text.empty()) return headline(test);
   if (const std::string where = place_of_distance(test); !where.empty()) text = where + "; " + text;
   if (test.channels.size() > 1) text += " in channel " + deciding_channel(test).name;
-  // What a fail shows was noticed, whatever its size.
+  // A fail was noticed, whatever its size.
   if (!margin.empty() && test.verdict != Verdict::fail)
     text += fmt::format("; {}{} must be caught", margin, test.image ? " over the whole image" : "");
   return text + "." + exclusion_of_claim(test, effect, margin);
@@ -348,7 +348,7 @@ RecordDisplay display(const Record& record) {
   for (const Suite& suite : record.suites) {
     for (Suspect& suspect : suspects(suite)) words.suspects.push_back(std::move(suspect));
   }
-  // What is broken comes first, then what breaks the most.
+  // Broken suspects come first, then those that break the most tests.
   std::ranges::stable_sort(words.suspects, {}, [](const Suspect& suspect) {
     return std::pair(suspect.standing != to_string(Standing::broken),
                      -static_cast<std::ptrdiff_t>(suspect.tests.size()));

@@ -58,10 +58,10 @@ struct TestDisplay {
   std::string verdict;   ///< "pass", "fail (as expected)"
   std::string sentence;  ///< what was found, without a p-value; why there is no verdict
   std::string meaning;
-  std::string effect;    ///< "+1.07 %"; empty where there is none
-  std::string interval;  ///< "+0.06 % to +2.1 %"
-  std::string margin;    ///< "0.5 %": what must be caught
-  std::string chance;    ///< "1 in 17,000": the chance of such data if nothing is wrong
+  std::string effect;    ///< Such as "+1.07 %". Empty if there is none.
+  std::string interval;  ///< Such as "+0.06 % to +2.1 %".
+  std::string margin;    ///< The effect that must be caught, as "0.5 %".
+  std::string chance;    ///< The chance of such data if nothing is wrong, as "1 in 17,000".
   std::string place;
   std::vector<Step> steps;
   std::vector<Fact> facts;

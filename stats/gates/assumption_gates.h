@@ -11,9 +11,9 @@ namespace assay::stats {
 
 // ---- On the pilot's primaries: how many make a secondary
 
-// Smallest m at which means of m primaries have an excess kurtosis of at most the limit: excess / m
-// <= limit (1 for negative excess). At .2 the level of F and chi-square stays below .12 at nominal
-// .10.
+// Smallest m at which means of m primaries have an excess kurtosis of at most the limit:
+// `excess / m <= limit` (1 for negative excess). At .2 the level of F and chi-square stays below
+// .12 at nominal .10.
 std::uint64_t primaries_for_variance(double excess_kurtosis, double limit = 0.2);
 
 // ---- On the test's own data

@@ -34,10 +34,10 @@ Gate lagged_gate(std::span<const double> values);
 // as from seeds that do. Below 8 values there are none.
 //
 // The first has the rank correlation r_k that is farthest from 0, over the lags k = 1 ... K of the
-// first 2048 values (dependence.h). The second has the largest H / B, over batches of
-// L = 8, 16, ... neighbours, B = floor(n / L) >= 8 of them. S_b is the sum of the ranks of batch b,
-// less their mean.
-//   H = 12 / (L n (n + 1)) sum S_b^2
+// first 2048 values (dependence.h). The second has the largest `H / B`, over
+// `B = floor(n / L) >= 8` batches of `L = 8, 16, ...` neighbours. S_b is the sum of the ranks of
+// batch b, less their mean.
+//  `H = 12 / (L n (n + 1)) sum S_b^2`.
 // H is near chi-square of at most B degrees of freedom (Kruskal & Wallis 1952). It sees offsets
 // that neighbours share, and slow chains, which no single lag shows.
 std::vector<Gate> drawn_order_gates(std::span<const double> values);

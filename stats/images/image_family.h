@@ -140,7 +140,7 @@ struct ImageFamily {
 inline constexpr double confidence_at_place = 0.99;
 
 // Sets the family's p-value, the smallest over the groups. The winner is the clearest of the cells
-// that overlap the cell of this p-value, have its root or less, and whose intervals exclude 0,
+// that overlap the cell of this p-value and have its root or less. Their intervals must exclude 0
 // where the family's p-value is as small. If a finer cell in it is as clear, that one wins:
 // elements around it tell nothing. Signs in turn win only where there is no such cell.
 void decide(ImageFamily& family);

@@ -61,7 +61,7 @@ TestResult betting_mean(const ValueCells& x, Range range, double null_mean);
 
 // Null hypothesis: E x - scale E y = offset, for values in declared ranges. Both samples must speak
 // against "E x - scale E y <= d", on either side of one number s:
-//   p = 2 min_s max(p of "E x <= s", p of "scale E y + d >= s").
+//  `p = 2 min_s max(p of "E x <= s", p of "scale E y + d >= s")`.
 // Under the null, one of the two is true for each s. The p of each is smallest at its own truth. So
 // the minimum is no less than the smaller of two valid p-values, at every look. The
 // number s is found to 2^-20 of its range. The statistic is mean x - scale mean y - offset. Throws

@@ -11,8 +11,8 @@ namespace assay::stats {
 // student_t.h, and a is the skewness of the mean over 6. The influence values psi are
 // (x_i - mean x) / nx and -scale (y_i - mean y) / ny. A reference's error adds to the variance
 // only.
-//   a   = sum psi^3 / (6 (sum psi^2 + standard_error^2)^1.5).
-//   T_H = ((1 + 2 a T)^3 - 1) / (6 a) + a = T + a (2 T^2 + 1) + (4/3) a^2 T^3.
+//  `a   = sum psi^3 / (6 (sum psi^2 + standard_error^2)^1.5).
+//   T_H = ((1 + 2 a T)^3 - 1) / (6 a) + a = T + a (2 T^2 + 1) + (4/3) a^2 T^3`.
 // (Hall 1992, "On the removal of skewness by transformation", J. R. Statist. Soc. B 54.) For one
 // sample a = g1 / (6 sqrt n). T_H is referred to Student's t with nu degrees of freedom, not to
 // Hall's normal law. That exceeds the level .001 by a factor 1.9 for 50 normal values. T_H rises
@@ -31,7 +31,7 @@ TestResult skewness_corrected_welch(const Moments& x, const Moments& y, Contrast
 
 // The value is the factor by which the worse tail of T_H may exceed its nominal level at critical
 // value x (measurements.md). Limit 2, green up to 1.25. The factor is
-//   exp(max(0, x^4 (k/4 - 44 a^2 / 3)) + |a| x^3 (1 + x^2 / 24) (16.5 e + 121.5 a^2) + x^6 f / 3).
+//  `exp(max(0, x^4 (k/4 - 44 a^2 / 3)) + |a| x^3 (1 + x^2 / 24) (16.5 e + 121.5 a^2) + x^6 f / 3)`.
 // Each sample has a share p_j of the variance and excess kurtosis kappa_j. Then k = sum p_j^2
 // kappa_j / n_j, e = sum p_j^2 / n_j, f = sum p_j^3 / n_j^2.
 //

@@ -56,9 +56,9 @@ struct NullTheta {
 // Null hypothesis: theta = value. The pooled difference d is then normal with variance A = V + u^2.
 // If theta - value ~ normal(0, tau^2), it has B = A + tau^2. The evidence E is the likelihood
 // ratio,
-//   ln E = ln(A / B) / 2 + (d - value)^2 / 2 (1 / A - 1 / B).
-// tau^2 = t V / 5 for the time t: theta is 0.45 standard errors of a first night. So t fixes E's
-// mixture, and no pilot. Under the null hypothesis E is a martingale with mean 1, also over the
+//  `ln E = ln(A / B) / 2 + (d - value)^2 / 2 (1 / A - 1 / B)`.
+// Here `tau^2 = t V / 5` for the time t: theta is 0.45 standard errors of a first night. So t fixes
+// E's mixture, and no pilot. Under the null hypothesis E is a martingale with mean 1, also over the
 // error of the reference. So P(E ever >= 1 / alpha) <= alpha (Robbins 1970; Ville 1939). Until the
 // nights speak, E = 1. Asymptotic in the observations, because errors are estimated.
 double log_e_value(const PooledNights& nights, const NullTheta& null);

@@ -31,9 +31,9 @@ struct LookSchedule {
 };
 
 // Errors over all looks. With two_sided, alpha is split over both sides. Beta has one side.
-//   unknown                 error / K
+//  `unknown                 error / K
 //   independent_increments  Wang & Tsiatis's boundary with delta 1/4; sizes are the times
-//   anytime_valid           error
+//   anytime_valid           error`
 // Throws std::domain_error: no size, sizes that do not ascend, errors outside (0, 1).
 LookSchedule schedule_looks(std::vector<std::uint64_t> sizes, LookLaw law, ErrorRates errors);
 
@@ -53,9 +53,9 @@ std::vector<std::uint64_t> geometric_sizes(LookRange range, double growth);
 // one of those taken rejects (repeated p-value, Jennison & Turnbull 2000, ch. 9). It is at most an
 // error exactly if a look rejects at that error's nominal level. It is valid wherever sampling
 // stops. K looks are scheduled:
-//   unknown                 K min p_k (Bonferroni 1936)
+//  `unknown                 K min p_k (Bonferroni 1936)
 //   independent_increments  P(some z_k t_k^(1/4) reaches the largest seen)
-//   anytime_valid           min p_k
+//   anytime_valid           min p_k`
 // Throws std::domain_error: no look or more than scheduled, a log p above 0 or NaN.
 double log_p_over_looks(const LookSchedule& schedule, std::span<const double> log_p,
                         bool two_sided);

@@ -125,7 +125,7 @@ struct CoarseHalf {
   BlockSums<double> varied;  // Number of elements that vary and have a weight.
   BlockSums<double> weights;
   BlockSums<double> squared_weights;
-  BlockSums<double> squared_error;  // Of a reference, weighted; empty if it has none.
+  BlockSums<double> squared_error;  // The reference's, weighted; empty without one.
   BlockSums<double> third;          // Third cumulants of the effects; none with alternating signs.
 };
 

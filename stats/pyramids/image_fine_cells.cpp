@@ -619,7 +619,7 @@ class FineTiles {
   CoarseImages& coarse_;
   std::size_t alternating_;  // Index of the column's sums with alternating signs.
   TileSums sums_;
-  std::array<std::vector<double>, 2> column_sums_;  // Of even and of odd rows.
+  std::array<std::vector<double>, 2> column_sums_;  // Even rows, odd rows.
   std::vector<double> t_;                           // Statistics of a row of squares.
   std::array<GroupsOfSide, fine_squares.size()> groups_;
   // These are of the squares that begin in the tile.

@@ -66,7 +66,7 @@ class PooledNoise {
       sum += other.sum;
     }
   };
-  // Those of an octave.
+  // An octave's piles.
   struct Bin {
     Pile large;
     Pile rare;
@@ -92,7 +92,7 @@ class PooledNoise {
 // A cell's effect is the mean over the halves of its weighted mean of a - b.
 struct CellNoise {
   double effect = 0;
-  std::array<double, sides_of_pair> variance = {};  // What either side adds to its squared error.
+  std::array<double, sides_of_pair> variance = {};  // Each side's part of the squared error.
   double degrees = 1;
   double third = 0;    // Third cumulant of the effect, of independent elements; 0 of few.
   double weights = 0;  // The mean over the halves of the weights' sum.

@@ -11,7 +11,7 @@ namespace assay::stats {
 // polynomial through the density at the rule's nodes there.
 struct TabulatedLaw {
   // Legendre coefficients. The integral of the interpolant up to t in [-1, 1] is
-  //   mass / 2 (t + 1) + sum over k >= 1 of slope_(k-1) (P_(k+1)(t) - P_(k-1)(t)).
+  //  `mass / 2 (t + 1) + sum over k >= 1 of slope_(k-1) (P_(k+1)(t) - P_(k-1)(t))`.
   using Slopes = std::array<double, AdaptiveQuadrature::nodes - 1>;
 
   std::vector<double> place;      // Ascending.

@@ -84,8 +84,8 @@ double noncentral_chi_square_quantile(LogTail tail, Noncentral parameters);
 
 // The standard normal z with the tail of Student's t: Phi(z) = F_nu(t). The approximation is Hill's
 // (1970, Algorithm 395, Communications of the ACM 13, 617):
-//   y = (nu - 1/2) ln(1 + t^2 / nu),  b = 48 (nu - 1/2)^2
-//   z = sign(t) sqrt(y) (1 + (y + 3 - (.4 y^3 + 3.3 y^2 + 24 y + 85.5) / (.8 y^2 + 100 + b)) / b)
+//  `y = (nu - 1/2) ln(1 + t^2 / nu),  b = 48 (nu - 1/2)^2
+//   z = sign(t) sqrt(y) (1 + (y + 3 - (.4 y^3 + 3.3 y^2 + 24 y + 85.5) / (.8 y^2 + 100 + b)) / b)`.
 // For |z| <= 6 the error is at most 5e-4 at nu = 7, 9e-7 at 15 and 2e-8 at 30
 // (tests/tables/t_to_z.csv). Use it for maps and for choosing a maximum. A reported p-value comes
 // from the exact law. For an infinite nu z is t, for nu <= 1/2 not a number.

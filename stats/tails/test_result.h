@@ -6,9 +6,9 @@
 namespace assay::stats {
 
 // The law of a statistic under the null hypothesis, by name and parameters.
-//   "normal" {}, "student-t" {nu}, "chi-square" {nu}, "F" {nu1, nu2}, "binomial" {n, p},
+//  `"normal" {}, "student-t" {nu}, "chi-square" {nu}, "F" {nu1, nu2}, "binomial" {n, p},
 //   "noncentral-chi-square" {nu, ncp}, "kolmogorov" {n}, "smirnov" {m, n}, "bound" {},
-//   "image-family" {sums}.
+//   "image-family" {sums}`.
 // A "bound" is a probability inequality: the p-value is an upper bound, the statistic has no law.
 // An "image-family" has the smallest p-value of so many sums over an image.
 struct Distribution {
@@ -35,9 +35,9 @@ struct TestResult {
 // ln p of the point null: min(0, ln 2 + min(log_p_lower, log_p_upper)).
 double log_p_two_sided(const TestResult& result);
 
-// ln p of two one-sided tests (Schuirmann 1987). Null hypothesis: theta <= low or theta >= high. p
-// = max(p of "theta <= low", p of "theta >= high"), from any two results of one method at the two
-// null values. Two tests need no factor: P(p <= a) <= a.
+// The logarithm of the p-value of two one-sided tests (Schuirmann 1987). Null hypothesis: theta <=
+// low or theta >= high. The p is the larger of p of "theta <= low" and p of "theta >= high", from
+// any two results of one method at the two null values. Two tests need no factor: P(p <= a) <= a.
 double log_p_equivalence(const TestResult& at_low, const TestResult& at_high);
 
 // A central interval: each of the two tails carries (1 - confidence) / 2. So two one-sided tests at

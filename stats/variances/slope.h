@@ -39,10 +39,10 @@ struct SlopeData {
   SlopeScale scale = SlopeScale::values;
 };
 
-// Null hypothesis: slope = null. log_p_upper rejects "slope <= null": the largest ln p over all
-// slopes up to null, where p is P(chi-square >= Q). The mirror is log_p_lower. Their smaller one is
-// that of the null if the estimate lies on one side. Doubling it (log_p_two_sided) is valid but
-// wasteful. The statistic is Q(null).
+// Null hypothesis: slope = null. The upper tail, `log_p_upper`, rejects "slope <= null": the
+// largest ln p over all slopes up to null, where p is P(chi-square >= Q). The mirror is
+// log_p_lower. Their smaller one is that of the null if the estimate lies on one side. Doubling it
+// (log_p_two_sided) is valid but wasteful. The statistic is Q(null).
 TestResult slope_test(const SlopeData& data, double null_slope);
 
 // The smallest interval that holds every slope with p > 1 - confidence. Confidence is that of the
