@@ -360,7 +360,7 @@ class ImageTheta : public Theta {
     if (!exact) return "";
     return fmt::format(
         "`{}` is one picture, taken as exact; if it was rendered, its noise counts as a "
-        "difference: give 16 or more of its renders",
+        "difference: render it 16 times or more",
         other->quantity.source.estimator);
   }
 };

@@ -144,18 +144,19 @@ Evidence larger_of(const Evidence& points, const Evidence& missing) {
     }
     return both;
   };
-  return {.estimate = std::max(points.estimate, missing.estimate),
-          .at = at,
-          .interval = interval,
-          .most_against = [points, missing](double theta) -> std::string {
-            const double of_masses = missing.at(theta).log_p_upper;
-            return of_masses < points.at(theta).log_p_upper
-                       ? decisive_part("the masses without a point", missing.estimate)
-                       : "";
-          },
-          .quantity =
-              "largest distance between distribution functions, or of the masses without a point",
-          .distance = true};
+  return {
+      .estimate = std::max(points.estimate, missing.estimate),
+      .at = at,
+      .interval = interval,
+      .most_against = [points, missing](double theta) -> std::string {
+        const double of_masses = missing.at(theta).log_p_upper;
+        return of_masses < points.at(theta).log_p_upper
+                   ? decisive_part("the masses without a point", missing.estimate)
+                   : "";
+      },
+      .quantity =
+          "largest distance between distribution functions, or between the masses without a point",
+      .distance = true};
 }
 
 void require_points(const Points& points) {
@@ -480,7 +481,7 @@ class DensityTheta final : public LawTheta {
       return ConstantVerdict{
           reports::Verdict::fail,
           fmt::format("the declared density integrates to {:.6g} over its domain (quadrature error "
-                      "{:.1g}): more than 1, so no sampler can follow it",
+                      "{:.1g}): more than 1, so no sampler can have it",
                       density.mass.total, density.tolerance())};
     }
     if (!of_whole_draws(seen.question)) return std::nullopt;

@@ -28,9 +28,10 @@ std::string p_text(double log_p) {
 std::string finding(const reports::Effect& effect) {
   // An exponent of which only one point differs from zero.
   if (!effect.estimate) {
-    return fmt::format("{} is {}{}", reports::effect_name(effect),
-                       effect.relative ? "infinite, as it is relative to 0" : "no finite number",
-                       reports::named_range_text(effect));
+    return fmt::format(
+        "{} is {}{}", reports::effect_name(effect),
+        effect.relative ? "infinite, because it is relative to 0" : "no finite number",
+        reports::named_range_text(effect));
   }
   return fmt::format("{} is {}", reports::effect_name(effect), reports::named_effect_text(effect));
 }
@@ -134,8 +135,9 @@ std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& chann
     }
     if (reports::range_text(channel.effect).empty()) return text;
     return fmt::format(
-        "{}, nor proof of it: {}; say with `detect` how large an error must not pass", text,
-        finding(channel));
+        "{}; there is no proof of it either: {}; say with `detect` how large an error must not "
+        "pass",
+        text, finding(channel));
   }
   if (holds_no_effect(channel)) return passed_by_empty_interval(channel);
   const double excluded = excluded_beyond(outcome, channel);

@@ -1,7 +1,7 @@
 """Irradiance from a sky of radiance 1 + cos(theta), by two densities of directions: 5 pi / 3.
 
 Assay starts it as `python3 mine.py uniform` and asks for observations on standard input. This file
-needs no package. Assay's own has the protocol, for functions that draw by `rng.random()`.
+needs no package. With Assay's package `assay` you write only functions that draw by `rng.random()`.
 """
 import math
 import random
