@@ -225,11 +225,11 @@ std::vector<Entry> analytic_exponential() {
         .averages = false},
        ratio},
       {{.name = "analytic/jackknifed_ratio",
-        .summary = "The same, with the first term of the bias taken away.",
-        .description =
-            "analytic/ratio, R, jackknifed: M R - (M - 1) mean of the M ratios with one point left "
-            "out (Quenouille 1956). The bias falls like 1 / M^2 where that of R falls like 1 / M; "
-            "the variance is that of R but for terms 1 / M^2. From one point it is R.",
+        .summary = "Weighted importance sampling without the first term of its bias.",
+        .description = "The jackknife of R, the estimate of analytic/ratio: M R - (M - 1) times "
+                       "the mean of the M ratios with one point left out (Quenouille 1956). Its "
+                       "bias falls like 1 / M^2, that of R like 1 / M. Its variance is that of R "
+                       "up to terms of order 1 / M^2. With one point it is R.",
         .bias = BiasClass::inverse_primaries,
         .averages = false},
        jackknifed}};

@@ -269,12 +269,11 @@ std::vector<Entry> analytic_law() {
             .summary = "A variable of a named law.",
             .description =
                 "Estimates the mean of shift + scale Y, Y of the law: bernoulli(p), "
-                "exponential(rate), lognormal(location, scale), normal(mean, sd), "
-                "pareto(scale, shape), student_t(freedom), uniform(low, high), zero_inflated(p), "
-                "which is exponential(1) "
-                "with probability p and else 0. Mean, variance and range are declared where they "
-                "exist. What has a density can be sampled as `x`, within 6 standard deviations of "
-                "the mean. `assay calibrate` measures the methods on it.",
+                "exponential(rate), lognormal(location, scale), normal(mean, sd), pareto(scale, "
+                "shape), student_t(freedom), uniform(low, high), zero_inflated(p), which is "
+                "exponential(1) with probability p and else 0. Mean, variance and range are "
+                "declared where they exist. A law with a density has the sampler `x`, within 6 "
+                "standard deviations of the mean. `assay calibrate` measures the methods on it.",
             .parameters = {law_parameter(),
                            number_parameter("shift", "what is added", "0", {-1e150, 1e150}),
                            number_parameter("scale", "what Y is multiplied by", "1",

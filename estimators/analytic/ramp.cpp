@@ -53,7 +53,7 @@ ParameterInformation size(const char* name, const char* summary) {
 std::vector<Entry> analytic_ramp() {
   return {
       {{.name = "analytic/ramp",
-        .summary = "An image of known means: a ramp with noise in proportion.",
+        .summary = "An image of known means: a ramp with noise in proportion to the mean.",
         .description = "X = m (1 + spread Z), m growing from 1 to 10 from left to right, Z "
                        "of a law as `analytic/law` names it, brought to mean 0 and variance 1. "
                        "With `shared`, one Z serves all pixels of a primary: they are then fully "
@@ -64,7 +64,8 @@ std::vector<Entry> analytic_ramp() {
                  "colour", "three components, of brightness 1, 0.8 and 0.6, instead of one", false),
              number_parameter("spread", "standard deviation of a primary over its mean", "1",
                               {0, 1e100}),
-             text_parameter("law", "of Z up to mean and scale, as exponential(1)", "normal(0, 1)"),
+             text_parameter("law", "law of Z, before it is shifted and scaled, as exponential(1)",
+                            "normal(0, 1)"),
              boolean_parameter("shared", "whether all pixels get the same random numbers", false)}},
        prepare}};
 }

@@ -48,11 +48,11 @@ std::vector<Entry> analytic_tails() {
   return {
       {{.name = "analytic/heavy_tail",
         .summary = "A Pareto variable: heavy tails, infinite variance up to index 2.",
-        .description = "Estimates a / (a - 1) by u^(-1/a). Variance a / ((a - 1)^2 (a - 2)) "
-                       "for a tail index a > 2 and infinite below; the kurtosis exists for a > "
-                       "4 only. u has 52 bits: the indices are those at which what lies "
-                       "beyond its smallest value is less than 1e-4 of the mean, and the "
-                       "variance is declared from 2.67 on, where that holds for it as well.",
+        .description =
+            "Estimates a / (a - 1) by u^(-1/a). Variance a / ((a - 1)^2 (a - 2)) for a tail index "
+            "a > 2 and infinite below; the kurtosis exists for a > 4 only. u has 52 bits. At the "
+            "allowed indices less than 1e-4 of the mean lies beyond its smallest value. The "
+            "variance is declared from 2.67 on, where it loses as little.",
         .parameters = {number_parameter("index", "a, the tail index", "3", {least_index, 1000})}},
        heavy_tail},
       {{.name = "analytic/rare_spike",

@@ -168,14 +168,14 @@ std::vector<Entry> brdf_albedo() {
       {{.name = "brdf/ashikhmin_shirley",
         .summary = "Directional albedo of the Ashikhmin-Shirley reflectance (specular part).",
         .description =
-            "Estimates the integral of f cos over the upper hemisphere by f cos / p. "
-            "f = sqrt((nu+1)(nv+1)) / (8 pi) (n.h)^e F(h.w_i) / ((h.w_i) max(cos_i, cos_o)), "
-            "e = nu cos^2 phi + nv sin^2 phi, F Schlick's (Ashikhmin & Shirley 2000). The "
-            "published sampler has the density p = sqrt((nu+1)(nv+1)) / (2 pi) (n.h)^e / "
-            "(4 h.w_i) and the weight F cos_o / max(cos_i, cos_o); what falls below the "
-            "horizon is an invalid draw of weight 0. With the default parameters p has the "
-            "mass 0.916369 above the horizon and the albedo is 0.373217. The rejection "
-            "samplers propose cos_o = xi^2 and are normalised by quadrature.",
+            "Estimates the integral of f cos over the upper hemisphere by f cos / p. f = "
+            "sqrt((nu+1)(nv+1)) / (8 pi) (n.h)^e F(h.w_i) / ((h.w_i) max(cos_i, cos_o)), e = nu "
+            "cos^2 phi + nv sin^2 phi, F Schlick's (Ashikhmin & Shirley 2000). The published "
+            "sampler has the density p = sqrt((nu+1)(nv+1)) / (2 pi) (n.h)^e / (4 h.w_i) and the "
+            "weight F cos_o / max(cos_i, cos_o); directions below the horizon are invalid draws of "
+            "weight 0. With the default parameters p has the mass 0.916369 above the horizon and "
+            "the albedo is 0.373217. The rejection samplers propose cos_o = xi^2 and are "
+            "normalised by quadrature.",
         .parameters = joined(brdf::ashikhmin_shirley_parameters(), {brdf::sampler_parameter()})},
        [](Parameters& given) {
          return brdf::prepare_albedo(brdf::ashikhmin_shirley(given), given);
@@ -183,15 +183,14 @@ std::vector<Entry> brdf_albedo() {
       {{.name = "brdf/ward",
         .summary = "Directional albedo of Ward's anisotropic reflectance.",
         .description =
-            "Estimates the integral of f cos over the upper hemisphere by f cos / p. "
-            "f = exp(-tan^2 d (cos^2 phi / ax^2 + sin^2 phi / ay^2)) / "
-            "(4 pi ax ay sqrt(cos_i cos_o)), d and phi the angles of the half vector h (Ward "
-            "1992). The published sampler has the density p = exp(.) / (4 pi ax ay (h . w_i) "
-            "cos^3 d) and the weight (h . w_i) cos^3 d sqrt(cos_o / cos_i) (Walter 2005); what "
-            "falls below the horizon is an invalid draw of weight 0. With the default "
-            "parameters p has the mass 0.980181 above the horizon and the albedo is 0.564185. "
-            "The rejection samplers propose cos_o = xi^2, because f is unbounded where w_o "
-            "grazes the surface, and are normalised by quadrature.",
+            "Estimates the integral of f cos over the upper hemisphere by f cos / p. f = "
+            "exp(-tan^2 d (cos^2 phi / ax^2 + sin^2 phi / ay^2)) / (4 pi ax ay sqrt(cos_i cos_o)), "
+            "d and phi the angles of the half vector h (Ward 1992). The published sampler has the "
+            "density p = exp(.) / (4 pi ax ay (h . w_i) cos^3 d) and the weight (h . w_i) cos^3 d "
+            "sqrt(cos_o / cos_i) (Walter 2005); directions below the horizon are invalid draws of "
+            "weight 0. With the default parameters p has the mass 0.980181 above the horizon and "
+            "the albedo is 0.564185. The rejection samplers propose cos_o = xi^2, because f is "
+            "unbounded where w_o grazes the surface, and are normalised by quadrature.",
         .parameters = joined(brdf::ward_parameters(), {brdf::sampler_parameter()})},
        [](Parameters& given) { return brdf::prepare_albedo(brdf::ward(given), given); }}};
 }

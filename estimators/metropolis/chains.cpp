@@ -367,7 +367,7 @@ Entry independent_points() {
            .description =
                "The plain Monte Carlo estimate of what the chains of this family integrate: the "
                "mean of F over independent uniform points of the primary sample space, each in its "
-               "pixel. Trusted, and what the chains' variance is held against at equal path "
+               "pixel. It is trusted: the chains' variance is compared with it at equal path "
                "evaluations. Channels: the image's elements and the diagnostic `image_mean`.",
            .parameters = target_parameters()},
           [](Parameters& given) { return independent(read_target(given)); }};

@@ -29,7 +29,7 @@ class Claim:
 
 
 def claim(text: str, **keys: typing.Any) -> typing.Callable[[Function], Function]:
-    """Claims something of the decorated function, which `serve` could serve, under the name `it`.
+    """Makes a claim about the decorated function, which the claim calls `it`.
 
     Other functions of the module have their own names: `@claim("variance(it) < variance(plain)")`.
     The keys are those of a test in a suite: detect="1%", allow, weight, expect, …

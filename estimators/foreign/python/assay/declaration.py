@@ -78,13 +78,13 @@ class Image:
 
 @dataclass(frozen=True)
 class Sampler:
-    """A source of points with the density it claims; a claim reaches it as `estimator.name`.
+    """A source of points with the density it claims; a claim names it `estimator.name`.
 
     domain:    interval (from `low` to `high`), square [0, 1]^2, triangle (u, v >= 0, u + v <= 1),
                hemisphere (unit vectors with z >= 0) or sphere; densities are per length, area du dv
                or solid angle
-    draw:      draw(rng) is (point, density, weight), or None if no point came out
-    density:   density(point) integrates to 1 less the probability of no point
+    draw:      draw(rng) is (point, density, weight), or None without a point
+    density:   density(point) integrates to 1 minus the probability of drawing no point
     evaluate:  evaluate(point) = weight * density, the function whose integral the weight estimates;
                without it a draw is (point, density), and its weight is 1
     rounding:  relative rounding of densities and weights; default 1e-9

@@ -77,7 +77,7 @@ _RUN = pytest.StashKey["_Run"]()
 def pytest_addoption(parser: pytest.Parser) -> None:
     group = parser.getgroup("assay", "claims about Monte Carlo estimators")
     group.addoption("--assay-program", metavar="PATH", help="the program `assay`; default $ASSAY, or the one on PATH")
-    group.addoption("--assay-seed", metavar="N|random", help="seed of all streams; default the suite's, else 1")
+    group.addoption("--assay-seed", metavar="N|random", help="seed of all random numbers; default the suite's, else 1")
 
 
 def pytest_configure(config: pytest.Config) -> None:
