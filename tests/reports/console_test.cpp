@@ -166,7 +166,7 @@ TEST(Console, AFailedClaimWithACaveatCanStillBeRepeated) {
   reports::Test& test = record.suites[0].tests[0];
   test.advice = {.words = "the reference is taken as exact"};
   test.replay = "assay run a.yaml";
-  EXPECT_THAT(console(record), HasSubstr("    mind: the reference is taken as exact\n"
+  EXPECT_THAT(console(record), HasSubstr("    note: the reference is taken as exact\n"
                                          "    again: assay run a.yaml\n"));
 }
 
