@@ -68,7 +68,7 @@ std::vector<ParameterInformation> floor_parameters() {
       scene_parameter(), count_parameter("width", "columns of receivers", "32", {2, 1024}),
       count_parameter("height", "rows of receivers", "32", {2, 1024}),
       number_parameter("size", "length of the plane's rectangle along the width", "4", above(0)),
-      boolean_parameter("shared", "whether all receivers look at the same points of the luminaire",
+      boolean_parameter("shared", "whether all receivers use the same points of the luminaire",
                         false)};
 }
 

@@ -157,8 +157,8 @@ ParameterInformation scene_parameter(std::string fallback) {
 ParameterInformation direct_parameter() {
   return text_parameter(
       "direct",
-      "how emitted light is learnt of: by arriving at what emits (hit), in closed form at every "
-      "vertex (exact: spheres and furnaces), by a shadow ray at every vertex (sampled)",
+      "how a path finds emitted light: by arriving at an emitter (hit), in closed form at every "
+      "vertex (exact: spheres and furnaces), or by a shadow ray at every vertex (sampled)",
       "hit", {"hit", "exact", "sampled"});
 }
 

@@ -180,7 +180,7 @@ std::vector<Entry> paths_roulette() {
             "the albedo: max_albedo, mean_albedo, luminance (of a), throughput (sum T a / sum T), "
             "radiance (sum T a L / sum T L, L the scene's mean radiance for each colour); equal in "
             "grey scenes. A mirror is chosen in proportion to the rule's value for it. Unbiased "
-            "for every rule. `direct` says how emitted light is learnt of. Mean exact in spheres "
+            "for every rule. `direct` says how a path finds emitted light. Mean exact in spheres "
             "and furnaces, variance there too where s depends on the surface alone: in a grey "
             "furnace Le^2 a / (1 - a)^2. Diagnostic channels: vertices, bounce_1 to bounce_6. "
             "Cost: a camera ray, a closest-hit ray a bounce, a shadow ray where one is traced. "

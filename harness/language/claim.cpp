@@ -130,7 +130,7 @@ class Lexer {
     static constexpr std::array habits{
         Habit{"!=",
               "a claim cannot be `!=`; claim `==` and expect it to fail, or claim `<` or `>`"},
-        Habit{"~", "write `==`, or `within 1% of` for what need only be close"},
+        Habit{"~", "write `==`, or `within 1% of` for near values"},
         Habit{"=", "a lone `=`; did you mean `==`?"},
         Habit{"±", "write `+-` for `±`"},
         Habit{"≤", "write `<=` for `≤`"},
@@ -225,15 +225,14 @@ class Parser {
     const Token token = lexer_.next();
     if (token.is("*")) refuse(token.where, "a factor stands before its quantity: `0.5 * mean(b)`");
     if (token.is(",")) {
-      refuse(token.where, "{} is over before `,`; decimals stand after a point", what);
+      refuse(token.where, "{} ends before `,`; write decimals after a point", what);
     }
     if (token.is_word("within")) {
       refuse(token.where,
-             "{} is over before `within`, which stands in place of the relation: `mean(a) within "
-             "1% of 0.5`",
+             "{} ends before `within`, which replaces the relation: `mean(a) within 1% of 0.5`",
              what);
     }
-    if (token.kind != Kind::end) refuse(token.where, "{} is over before {}", what, shown(token));
+    if (token.kind != Kind::end) refuse(token.where, "{} ends before {}", what, shown(token));
   }
 
  private:
@@ -283,7 +282,7 @@ class Parser {
       }
     }
     if (token.kind == Kind::end) {
-      refuse(token.where, "the claim says nothing of it yet: add `== analytic`, `<= 0.5`, …");
+      refuse(token.where, "the claim is not complete: add `== analytic`, `<= 0.5`, …");
     }
     if (!token.is_word("within")) {
       const std::string hint = token.kind == Kind::word ? did_you_mean(token.text, {"within"}) : "";
@@ -304,7 +303,7 @@ class Parser {
     lexer_.next();
     if (token.text == "analytic") return Analytic{};
     if (token.text == "density" || find_law(token.text)) return law(token);
-    refuse(token.where, "`{}` is nothing that a quantity can be compared with{}", token.text,
+    refuse(token.where, "a quantity cannot be compared with `{}`{}", token.text,
            side_advice(token));
   }
 
@@ -452,7 +451,8 @@ void check_side(const Claim& claim, const ScaledQuantity& side) {
   }
   if (side.factor == 1) return;
   if (q.row->of_a_law) refuse(q.where, "a distribution cannot be multiplied");
-  if (side.factor == 0) refuse(q.where, "a factor of 0 leaves nothing to compare; give the number");
+  if (side.factor == 0)
+    refuse(q.where, "a factor of 0 leaves nothing to compare; give the number itself");
   if (q.row->never_negative() && side.factor < 0) {
     refuse(q.where, "`{}` is never negative; the factor must be above 0", q.row->word);
   }
@@ -479,7 +479,7 @@ void check_side(const Claim& claim, const Constant& side) {
 void check_side(const Claim& claim, const Analytic&) {
   const Quantity& left = claim.left;
   if (left.slope || left.row->analytic == nullptr) {
-    refuse(left.where, "`analytic` is a mean or a variance; there is none of `{}`{}",
+    refuse(left.where, "`analytic` is a mean or a variance, which `{}` does not have{}",
            left.slope ? "slope" : left.row->word.c_str(),
            left.row->relative_to_0 && !left.slope ? "; claim `bias(…) == 0`" : "");
   }
@@ -501,7 +501,7 @@ void check_claim(const Claim& claim) {
            to_string(claim.relation));
   }
   if (claim.relation == Relation::within && claim.margin.value == 0) {
-    refuse(claim.left.where, "a margin of 0 can never be shown; give one above 0");
+    refuse(claim.left.where, "a margin of 0 can never be proved; give one above 0");
   }
   std::visit([&](const auto& side) { check_side(claim, side); }, claim.right);
 }

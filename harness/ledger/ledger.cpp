@@ -130,7 +130,7 @@ void add_night(LedgerBook& book, const LedgerRun& ledger, const Entry& entry,
                const LedgerSeries& series, const NightValue& value, reports::LedgerSeries& result) {
   if (book.has_seed(series, entry.run.seed)) {
     result.note = fmt::format(
-        "nothing added: seed {} is in the ledger already and its numbers are no news; run with "
+        "nothing added: the ledger already has seed {}, so its numbers are not new; run with "
         "--seed random",
         entry.run.seed);
     return;

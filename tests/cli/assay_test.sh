@@ -153,7 +153,7 @@ test_ledger_keeps_nights_and_refuses_changed_lines() {
   [ "$(tail -n 1 n.ledger)" = 'end 2' ] || fail 'not two nights'
   cp n.ledger before
   expect 0 run good.yaml --seed 2 --ledger n.ledger --quiet
-  contains out 'seed 2 is in the ledger already'
+  contains out 'the ledger already has seed 2'
   cmp n.ledger before || fail 'a seed seen before changed the ledger'
   sed -i 's/seed 1 /seed 3 /' n.ledger
   expect 2 run good.yaml --seed 4 --ledger n.ledger --quiet

@@ -34,9 +34,9 @@ claim: mean(aera) == analytic|17: the suite has no estimator `aera`; did you mea
 claim: mean(area.red) == analytic|17: `area` has no part `red`; it has `irradiance`
 claim: mean(area) == 48%|28: a value has no per cent: write `0.48`, or a margin, as in `mean(a) within 48% of 0.5`
 claim: area == 0.48|12: expected a quantity, as in `mean(area)`, found `area`
-claim: mean(area)|22: the claim says nothing of it yet: add `== analytic`, `<= 0.5`, …
+claim: mean(area)|22: the claim is not complete: add `== analytic`, `<= 0.5`, …
 claim: 0.4 < mean(area) < 0.5|12: a claim begins with a quantity, as in `mean(area) == 0.5`
-claim: distribution(area) == gaussian(0, 1)|34: `gaussian` is nothing that a quantity can be compared with; did you mean `normal(0, 1)`?
+claim: distribution(area) == gaussian(0, 1)|34: a quantity cannot be compared with `gaussian`; did you mean `normal(0, 1)`?
 claim: mean(area) within 5 of analytic|30: the margin 5 is larger than the reference, 0.481: for 5 per cent write `5%`
 {claim: quantile(area, 0.5) == 0.4}|28: inside {…} a comma ends the value of `claim`; quote the claim: `claim: "quantile(area, 0.5) == 0.4"`
 {claim: mean(area) == analytic, detect: 5}|45: the margin 5 is larger than the reference, 0.481: for 5 per cent write `5%`; for so large a margin, `1040%`

@@ -99,7 +99,7 @@ TEST(Source, IsAnEstimatorWithPerhapsAPart) {
   EXPECT_EQ(refusal([] {
               parse_source("a b", {"claim", 1, 1});
             }),
-            "1:3: the source is over before `b`");
+            "1:3: the source ends before `b`");
 }
 
 TEST(EstimatorName, IsWhatAClaimCanName) {

@@ -97,7 +97,7 @@ TEST_F(Ledger, ASeedSeenBeforeAddsNothingAndSaysSo) {
   const reports::Record record = night(two_tests, 11);
   EXPECT_EQ(read_text_file(file()), before);
   EXPECT_FALSE(series_of(record, "nights/one").added);
-  EXPECT_THAT(series_of(record, "nights/one").note, HasSubstr("seed 11 is in the ledger"));
+  EXPECT_THAT(series_of(record, "nights/one").note, HasSubstr("the ledger already has seed 11"));
   EXPECT_EQ(series_of(record, "nights/one").nights.size(), 1U);
 }
 
