@@ -387,7 +387,7 @@ class LawTheta : public Theta {
       : Theta(traits,
               {{"ks", "Kolmogorov-Smirnov: values against a law", of_one_law, Keeps::values,
                 by_distance, of_distinct_values},
-               {"ks", "Kolmogorov-Smirnov: values of two, a frequent one apart",
+               {"ks", "Kolmogorov-Smirnov: two laws; a frequent value is compared by its count",
                 [](const Question& q) { return q.of_two() && !q.is().joins_channels; },
                 Keeps::values, by_distance},
                {"chi-square-two-sample",

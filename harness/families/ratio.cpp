@@ -677,7 +677,7 @@ std::string lack_of_spread(const Seen& seen) {
     if (is_constant(seen, subject)) {
       return fmt::format(
           "every observation of `{}` is {:.10g} but for rounding: a sample without spread says "
-          "nothing of a variance, and a rare value may be unseen; {}",
+          "nothing about a variance, and a rare value may be unseen; {}",
           question.subjects[subject].estimator->name, seen.moments(subject).mean,
           question.of_two() ? "compare the other with a number, or take more observations"
                             : "see that it uses its random numbers, or take more observations");

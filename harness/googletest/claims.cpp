@@ -206,7 +206,7 @@ testing::AssertionResult judged(const std::string& claim, const std::vector<Part
   Spent& state = spent();
   if (!state.budget) {
     return refused(
-        "no budget of errors: declare how many claims the binary makes, as in `const "
+        "no error budget: declare how many claims the binary makes, as in `const "
         "assay::googletest::DeclaredClaims budget{{.claims = 5}};`");
   }
   if (++state.claims > state.budget->claims) {

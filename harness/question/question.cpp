@@ -218,8 +218,8 @@ void require_one_size(const Question& question, const Subject& other) {
   };
   if (size(first) == size(other)) return;
   refuse(question.test->claim.left.where,
-         "{}, and {}: only what is of one size can be compared, element by element",
-         size_text(first), size_text(other));
+         "{}, and {}: only equal sizes can be compared, element by element", size_text(first),
+         size_text(other));
 }
 
 void require_equal_pixels(const Question& question, const Subject& other) {

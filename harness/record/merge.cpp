@@ -189,7 +189,7 @@ Identity identity_of(const reports::Record& record) {
           {"the digest of the suites and the data they name",
            all_of(record.shard->suites, &reports::ShardSuite::digest)},
           {"the compiler", record.environment.compiler},
-          {"the instruction set that rays are traced with", record.environment.isa}};
+          {"the instruction set that traces rays", record.environment.isa}};
 }
 
 void check_same(const ShardFile& first, const ShardFile& other) {
