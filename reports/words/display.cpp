@@ -389,7 +389,7 @@ std::vector<Step> steps(const Test& test) {
     set(advice->key, advice->value);
   else if (advice && place_of_distance(test).empty())
     all.push_back(
-        {.label = test.verdict == Verdict::fail ? "mind" : "to decide", .words = advice->words});
+        {.label = test.verdict == Verdict::fail ? "note" : "to decide", .words = advice->words});
   const Effect effect = deciding_channel(test).effect;
   if (is_missed(test)) {
     std::string words = "leave `expect` out, if there is no bug";
