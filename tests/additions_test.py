@@ -160,6 +160,13 @@ EDITS = {
     "estimators/CMakeLists.txt": (
         "", "", "  analytic/dart_throwing.cpp\n", "  analytic/added.cpp\n"),
 }
+# A file of the build that is compiled as those of a layer are.
+LIKE = {
+    "harness": "harness/families/mean.cpp",
+    "reports": "reports/report_formats.cpp",
+    "estimators": "estimators/analytic/dart_throwing.cpp",
+    "build": "estimators/analytic/dart_throwing.cpp",
+}
 
 
 def run(*words, **options):
@@ -204,25 +211,25 @@ def main():
         for path, edit in EDITS.items():
             (copy / path).write_text(add((copy / path).read_text(), edit, path))
         # The list of estimators is written when the project is configured.
-        run("cmake", "-S", copy, "-B", copy / "build")
+        run("cmake", "-G", "Ninja", "-S", copy, "-B", copy / "build")
         listed = (copy / "build/estimators/catalogue_list.cpp").read_text()
         assert "analytic_added" in listed, listed
-        objects = []
+        joined, objects = {}, []
         for path in [p for p in (*NEW_FILES, *EDITS) if p.endswith(".cpp")] + [
                 "build/estimators/catalogue_list.cpp"]:
-            like = {"harness": "harness/families/mean.cpp",
-                    "reports": "reports/report_formats.cpp",
-                    "estimators": "estimators/analytic/dart_throwing.cpp",
-                    "build": "estimators/analytic/dart_throwing.cpp"}[path.split("/")[0]]
+            joined.setdefault(LIKE[path.split("/")[0]], []).append(f'#include "{copy / path}"\n')
+        # As in the build, the files of a layer are compiled as one.
+        for like, includes in joined.items():
             words = command_of(commands, str(source / like))
             words = [f"-I{copy}" if word == f"-I{source}" else word for word in words]
             words = [f"-I{copy}/estimators" if word == f"-I{source}/estimators" else word
                      for word in words]
             # The build's precompiled headers serve here too: they are all of libraries.
             words = [w for w in words if w != "-Werror"]
-            made = copy / (path.replace("/", "_") + ".o")
-            run(*words, "-o", made, "-c", copy / path, cwd=build)
-            objects.append(made)
+            text = copy / ("joined_" + like.replace("/", "_"))
+            text.write_text("".join(includes))
+            objects.append(text.with_suffix(".o"))
+            run(*words, "-o", objects[-1], "-c", text, cwd=build)
         link = run("ninja", "-C", build, "-t", "commands", "assay").strip().splitlines()[-1]
         assay = copy / "assay"
         link = re.sub(r" -o harness/assay ", f" {' '.join(map(str, objects))} -o {assay} ", link)
