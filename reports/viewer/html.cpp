@@ -139,7 +139,7 @@ std::vector<std::uint8_t> compressed(std::string_view bytes) {
   uLongf length = compressBound(static_cast<uLong>(bytes.size()));
   std::vector<std::uint8_t> out(length);
   if (compress2(out.data(), &length, reinterpret_cast<const Bytef*>(bytes.data()),
-                static_cast<uLong>(bytes.size()), Z_BEST_COMPRESSION) != Z_OK)
+                static_cast<uLong>(bytes.size()), Z_DEFAULT_COMPRESSION) != Z_OK)
     throw std::runtime_error("zlib has no memory to compress the page");
   out.resize(length);
   return out;
