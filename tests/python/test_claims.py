@@ -52,7 +52,7 @@ def folder(pytester, tmp_path, monkeypatch):
 
 
 def run(folder, *words):
-    return folder.runpytest_subprocess("-p", "assay.pytest_plugin", *words)
+    return folder.runpytest_inprocess("-p", "assay.pytest_plugin", *words)
 
 
 def test_twenty_claims_are_tested_by_one_run_a_file_and_the_broken_one_fails(folder):
