@@ -707,7 +707,7 @@ def file_suite(cell):
     if cell.kind == "rows":
         tests += f"  - {{name: variance, claim: variance({cell.name}) < 1}}\n"
     if cell.kind == "streamed":
-        more = '  others: {plugin: recorded, file: "others/*.exr"}\n'
+        more = '  others: {plugin: recorded, file: "../others/*.exr"}\n'
         tests = f"  - {{name: mean, claim: mean({cell.name}) == mean(others)}}\n"
     return (f"suite: {cell.name}\nestimators:\n{first}{second}{more}"
             "  sound: {plugin: analytic/normal}\ntests:\n" + tests +
@@ -727,8 +727,10 @@ def make_files(bench, cell):
     elif cell.kind == "moments":
         shutil.copy(bench.work / "moments.json", folder)
     else:
-        for name in ("pictures", "others"):
-            shutil.copytree(bench.work / name, folder / name)
+        shutil.copytree(bench.work / "pictures", folder / "pictures", copy_function=os.link)
+        victim = FILES[cell.kind]
+        (folder / victim).unlink()
+        shutil.copy(bench.work / victim, folder / victim)
     return folder
 
 
