@@ -176,7 +176,7 @@ std::string all_of(const List& list, Tell tell) {
   return fmt::format("{}", fmt::join(list | std::views::transform(tell), " "));
 }
 
-/// What the shards of one run have in common.
+/// Shards of one run have these names and values in common.
 Identity identity_of(const reports::Record& record) {
   const auto rates = [](const reports::Suite& suite) {
     return fmt::format("{} {}", suite.alpha, suite.beta);
