@@ -27,15 +27,6 @@ namespace fs = std::filesystem;
                                        std::generic_category().message(error)));
 }
 
-void write_all(int descriptor, std::string_view text, const fs::path& path) {
-  while (!text.empty()) {
-    const ssize_t written = ::write(descriptor, text.data(), text.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail("write", path, errno);
-    text.remove_prefix(static_cast<std::size_t>(written));
-  }
-}
-
 constexpr std::string_view temporary_begin = ".assay-";
 constexpr std::string_view temporary_end = ".tmp";
 
@@ -69,22 +60,17 @@ class Temporary {
  public:
   explicit Temporary(const fs::path& target) : file_(temporary_beside(target)), target_(target) {
     do {
-      if (descriptor_ >= 0) ::close(descriptor_);
       ::unlink(file_.c_str());
-      descriptor_ = ::open(file_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
-      if (descriptor_ < 0) fail("write", target_, errno);
+      open_.emplace(file_, O_CREAT | O_EXCL | O_WRONLY, target_);
     } while (!is_ours());
   }
-  Temporary(const Temporary&) = delete;
-  Temporary& operator=(const Temporary&) = delete;
   ~Temporary() {
     if (!is_renamed_) ::unlink(file_.c_str());
-    ::close(descriptor_);
   }
 
   void become_target(std::string_view text) {
-    write_all(descriptor_, text, target_);
-    if (::fsync(descriptor_) != 0) fail("write", target_, errno);
+    open_->write(text);
+    open_->flush();
     if (::rename(file_.c_str(), target_.c_str()) != 0) fail("write", target_, errno);
     is_renamed_ = true;
   }
@@ -93,18 +79,14 @@ class Temporary {
   // False if another process took the new file for a left-over.
   bool is_ours() const {
     struct stat status {};
-    return lock(descriptor_) && ::fstat(descriptor_, &status) == 0 && status.st_nlink > 0;
+    return lock(open_->descriptor()) && ::fstat(open_->descriptor(), &status) == 0 &&
+           status.st_nlink > 0;
   }
 
   fs::path file_;
   fs::path target_;
-  int descriptor_ = -1;
+  std::optional<OpenFile> open_;
   bool is_renamed_ = false;
-};
-
-struct Open {
-  int descriptor;
-  ~Open() { ::close(descriptor); }
 };
 
 fs::path behind_links(const fs::path& path) {
@@ -119,36 +101,29 @@ fs::path behind_links(const fs::path& path) {
 constexpr std::chrono::milliseconds longest_pause(50);
 constexpr std::chrono::milliseconds told_after(3000);
 
-int locked(const std::string& path) {
-  const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (descriptor < 0) fail("lock", path, errno);
+void wait_for_lock(const OpenFile& file) {
+  const std::string path = file.path().string();
   std::chrono::milliseconds waited(0);
   bool told = false;
-  while (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
-    const int error = errno;
-    if (error == EINTR) continue;
-    if (error == EWOULDBLOCK && !interrupted()) {
-      if (waited > told_after && !std::exchange(told, true)) {
-        say_beside_progress(fmt::format("waiting for another run that writes {}", path));
-      }
-      const auto pause = std::clamp(waited, std::chrono::milliseconds(1), longest_pause);
-      std::this_thread::sleep_for(pause);
-      waited += pause;
-      continue;
-    }
-    ::close(descriptor);
+  while (::flock(file.descriptor(), LOCK_EX | LOCK_NB) != 0) {
+    if (errno == EINTR) continue;
+    if (errno != EWOULDBLOCK) fail("lock", path, errno);
     if (interrupted()) {
       throw std::runtime_error(fmt::format("cannot lock {}: the wait was interrupted", path));
     }
-    fail("lock", path, error);
+    if (waited > told_after && !std::exchange(told, true)) {
+      say_beside_progress(fmt::format("waiting for another run that writes {}", path));
+    }
+    const auto pause = std::clamp(waited, std::chrono::milliseconds(1), longest_pause);
+    std::this_thread::sleep_for(pause);
+    waited += pause;
   }
-  return descriptor;
 }
 
-bool is_current(int descriptor, const std::string& path) {
+bool is_current(const OpenFile& file) {
   struct stat open {};
   struct stat named {};
-  return ::fstat(descriptor, &open) == 0 && ::stat(path.c_str(), &named) == 0 &&
+  return ::fstat(file.descriptor(), &open) == 0 && ::stat(file.path().c_str(), &named) == 0 &&
          open.st_dev == named.st_dev && open.st_ino == named.st_ino;
 }
 
@@ -160,51 +135,60 @@ void write_whole(const fs::path& path, std::string_view text) {
   const fs::file_status status = fs::status(target, ignored);
   if (fs::is_directory(status)) fail("write", path, EISDIR);
   if (fs::exists(status) && !fs::is_regular_file(status)) {
-    const Open direct{::open(target.c_str(), O_WRONLY | O_CLOEXEC)};
-    if (direct.descriptor < 0) fail("write", path, errno);
-    write_all(direct.descriptor, text, path);
-    return;
+    return OpenFile(target, O_WRONLY, path).write(text);
   }
   Temporary(target).become_target(text);
 }
 
-GrowingFile::GrowingFile(fs::path path)
-    : path_(std::move(path)),
-      descriptor_(::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
+OpenFile::OpenFile(const fs::path& file, int flags, fs::path named)
+    : path_(std::move(named)), descriptor_(::open(file.c_str(), flags | O_CLOEXEC, 0666)) {
   if (descriptor_ < 0) fail("write", path_, errno);
-  if (!lock(descriptor_)) {
-    ::close(descriptor_);
-    throw std::runtime_error(fmt::format("another run is writing to {}", path_.string()));
-  }
-  size_ = fs::file_size(path_);
 }
 
-GrowingFile::~GrowingFile() { ::close(descriptor_); }
+OpenFile::~OpenFile() { ::close(descriptor_); }
+
+void OpenFile::write(std::string_view bytes) const {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail("write", path_, errno);
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+void OpenFile::flush() const {
+  if (::fsync(descriptor_) != 0) fail("write", path_, errno);
+}
+
+GrowingFile::GrowingFile(const fs::path& path) : file_(path, O_RDWR | O_CREAT, path) {
+  if (!lock(file_.descriptor())) {
+    throw std::runtime_error(fmt::format("another run is writing to {}", path.string()));
+  }
+  size_ = fs::file_size(path);
+}
 
 void GrowingFile::cut(std::uint64_t size) {
-  if (::ftruncate(descriptor_, static_cast<off_t>(size)) != 0) fail("write", path_, errno);
+  if (::ftruncate(file_.descriptor(), static_cast<off_t>(size)) != 0) fail("write", path(), errno);
   size_ = size;
 }
 
 void GrowingFile::append(std::string_view bytes) {
   // An earlier call may have failed half-way.
-  if (::lseek(descriptor_, static_cast<off_t>(size_), SEEK_SET) < 0) fail("write", path_, errno);
-  write_all(descriptor_, bytes, path_);
+  if (::lseek(file_.descriptor(), static_cast<off_t>(size_), SEEK_SET) < 0) {
+    fail("write", path(), errno);
+  }
+  file_.write(bytes);
   size_ += bytes.size();
-}
-
-void GrowingFile::flush() {
-  if (::fsync(descriptor_) != 0) fail("write", path_, errno);
 }
 
 std::string GrowingFile::read(std::uint64_t first, std::uint64_t size) const {
   std::string bytes(size, '\0');
   std::uint64_t there = 0;
   while (there < size) {
-    const ssize_t got =
-        ::pread(descriptor_, bytes.data() + there, size - there, static_cast<off_t>(first + there));
+    const ssize_t got = ::pread(file_.descriptor(), bytes.data() + there, size - there,
+                                static_cast<off_t>(first + there));
     if (got < 0 && errno == EINTR) continue;
-    if (got < 0) fail("read", path_, errno);
+    if (got < 0) fail("read", path(), errno);
     if (got == 0) break;
     there += static_cast<std::uint64_t>(got);
   }
@@ -212,13 +196,11 @@ std::string GrowingFile::read(std::uint64_t first, std::uint64_t size) const {
   return bytes;
 }
 
-LockedFile::LockedFile(const std::string& path) : descriptor_(locked(path)) {
-  while (!is_current(descriptor_, path)) {
-    ::close(descriptor_);
-    descriptor_ = locked(path);
-  }
+LockedFile::LockedFile(const std::string& path) {
+  do {
+    file_.emplace(path, O_RDWR | O_CREAT, path);
+    wait_for_lock(*file_);
+  } while (!is_current(*file_));
 }
-
-LockedFile::~LockedFile() { ::close(descriptor_); }
 
 }  // namespace assay::harness

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -16,29 +17,44 @@ namespace assay::harness {
 /// std::runtime_error that names path and reason, and leaves nothing behind.
 void write_whole(const std::filesystem::path& path, std::string_view text);
 
+/// A file that is open to be written, by open(2) with these flags. Each function throws
+/// std::runtime_error with the reason and the path that messages name.
+class OpenFile {
+ public:
+  OpenFile(const std::filesystem::path& file, int flags, std::filesystem::path named);
+  ~OpenFile();
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  int descriptor() const { return descriptor_; }
+  void write(std::string_view bytes) const;
+  /// Waits until all is on the disk.
+  void flush() const;
+
+ private:
+  std::filesystem::path path_;
+  int descriptor_;
+};
+
 /// A file to which this process adds while the object lives. Made empty if it is missing. Each
 /// function throws std::runtime_error with path and reason; the constructor also if another process
 /// has the file.
 class GrowingFile {
  public:
-  explicit GrowingFile(std::filesystem::path path);
-  ~GrowingFile();
-  GrowingFile(const GrowingFile&) = delete;
-  GrowingFile& operator=(const GrowingFile&) = delete;
+  explicit GrowingFile(const std::filesystem::path& path);
 
-  const std::filesystem::path& path() const { return path_; }
+  const std::filesystem::path& path() const { return file_.path(); }
   std::uint64_t size() const { return size_; }
   /// Drops what follows the first `size` bytes.
   void cut(std::uint64_t size);
   void append(std::string_view bytes);
-  /// Waits until all is on the disk.
-  void flush();
+  void flush() const { file_.flush(); }
   /// Fewer bytes if the file ends.
   std::string read(std::uint64_t first, std::uint64_t size) const;
 
  private:
-  std::filesystem::path path_;
-  int descriptor_;
+  OpenFile file_;
   std::uint64_t size_;
 };
 
@@ -49,12 +65,9 @@ class GrowingFile {
 class LockedFile {
  public:
   explicit LockedFile(const std::string& path);
-  ~LockedFile();
-  LockedFile(const LockedFile&) = delete;
-  LockedFile& operator=(const LockedFile&) = delete;
 
  private:
-  int descriptor_;
+  std::optional<OpenFile> file_;
 };
 
 }  // namespace assay::harness
