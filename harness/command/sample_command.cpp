@@ -27,15 +27,12 @@ std::string in_header(const std::string& name) {
 /// The draws of a sampler by the numbers of their cells, which are computed here.
 Subject cells_of(const Source& sampler, const Estimators& estimators, std::uint64_t seed) {
   Subject sampled = draws(sampler, estimators, Draws::cells);
-  const StreamKey key = stream_of_cells(*sampled.estimator, sampled.purpose, seed);
-  const auto& named = dynamic_cast<const SamplerSetup&>(*sampled.setup).named();
-  const auto setup = sampler_setup(named, sampler.where, key);
+  seed_cells(sampled, sampler.where, seed);
   try {
-    setup->density_cells();
+    dynamic_cast<const SamplerSetup&>(*sampled.setup).density_cells();
   } catch (const std::domain_error& error) {
     refuse(sampler.where, error.what());
   }
-  sampled.setup = setup;
   return sampled;
 }
 

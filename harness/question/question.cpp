@@ -237,9 +237,11 @@ StreamKey stream_of(const Subject& subject, std::uint64_t seed) {
       key_of(*subject.estimator, seed, subject.copy, subject.purpose));
 }
 
-StreamKey stream_of_cells(const PreparedEstimator& estimator, const std::string& sampler,
-                          std::uint64_t seed) {
-  return key_of(estimator, seed, 0, sampler + " cells");
+void seed_cells(Subject& subject, const Location& where, std::uint64_t seed) {
+  const auto* draws = dynamic_cast<const SamplerSetup*>(subject.setup.get());
+  if (draws == nullptr || subject.purpose != draws->name()) return;
+  const StreamKey key = key_of(*subject.estimator, seed, 0, draws->name() + " cells");
+  subject.setup = sampler_setup(draws->named(), where, key);
 }
 
 const ScaledQuantity* other_side(const Claim& claim) {

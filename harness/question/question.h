@@ -154,9 +154,8 @@ void require_equal_pixels(const Question& question, const Subject& other);
 /// The stream of a subject's observations.
 StreamKey stream_of(const Subject& subject, std::uint64_t seed);
 
-/// The stream of a sampler's cells (SamplerSetup): of the suite's seed, and the same in a replay.
-StreamKey stream_of_cells(const PreparedEstimator& estimator, const std::string& sampler,
-                          std::uint64_t seed);
+/// Gives the draws of a sampler cells by the suite's seed (SamplerSetup), the same in a replay.
+void seed_cells(Subject& subject, const Location& where, std::uint64_t seed);
 
 /// The quantity on the right; null if there is another side.
 const ScaledQuantity* other_side(const Claim& claim);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "harness/draws/sampler_setup.h"
 #include "harness/sampling/recorded_run.h"
 #include "harness/theta/theta.h"
 
@@ -63,15 +62,6 @@ void separate_streams(Question& question, const Claim& claim, std::uint64_t seed
         moved = separate_pair(subjects[i], subjects[j], claim, seed) || moved;
       }
     }
-  }
-}
-
-void seed_cells(Question& question, const Claim& claim, std::uint64_t seed) {
-  for (Subject& side : question.subjects) {
-    const auto* draws = dynamic_cast<const SamplerSetup*>(side.setup.get());
-    if (draws == nullptr || side.purpose != draws->name()) continue;
-    const StreamKey key = stream_of_cells(*side.estimator, draws->name(), seed);
-    side.setup = sampler_setup(draws->named(), claim.left.where, key);
   }
 }
 
@@ -197,7 +187,7 @@ Question ask(const TestEntry& test, const Estimators& estimators, std::uint64_t 
     require_different_data(question, test.claim);
     if (!question.is().of_pairs) separate_streams(question, test.claim, seed);
   }
-  seed_cells(question, test.claim, seed);
+  for (Subject& side : question.subjects) seed_cells(side, test.claim.left.where, seed);
   require_moments_suffice(question);
   for (const Margin& margin : margins_of(test)) question.theta->check_margin(question, margin);
   check_sizes(question);
