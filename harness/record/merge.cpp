@@ -36,25 +36,23 @@ std::string digest_of(const SuiteRun& run) {
 
 using reports::Verdict;
 
-std::set<std::uint64_t> indices_of(const std::vector<ShardFile>& shards) {
-  std::set<std::uint64_t> indices;
-  for (const ShardFile& shard : shards) indices.insert(shard.record.shard->index);
-  return indices;
+/// The numbers of the shards that are not there.
+std::set<std::uint64_t> missing_of(const std::vector<ShardFile>& shards) {
+  const auto all = std::views::iota(std::uint64_t{1}, shards.front().record.shard->count + 1);
+  std::set<std::uint64_t> missing(all.begin(), all.end());
+  for (const ShardFile& shard : shards) missing.erase(shard.record.shard->index);
+  return missing;
 }
 
-/// The shards that are not there, in words; "" if all are.
+/// The same in words; "" if all are there.
 std::string missing_shards(const std::vector<ShardFile>& shards) {
-  const std::set<std::uint64_t> there = indices_of(shards);
   const std::uint64_t count = shards.front().record.shard->count;
-  std::vector<std::uint64_t> missing;
-  for (std::uint64_t index = 1; index <= count; ++index) {
-    if (!there.contains(index)) missing.push_back(index);
-  }
+  const std::set<std::uint64_t> missing = missing_of(shards);
   if (missing.empty()) return "";
   return fmt::format(
       "of {} shards these are missing, so their tests are skipped: {}; run them with --shard "
       "{}/{}{} and merge all records",
-      count, fmt::join(missing, ", "), missing.front(), count, missing.size() > 1 ? ", …" : "");
+      count, fmt::join(missing, ", "), *missing.begin(), count, missing.size() > 1 ? ", …" : "");
 }
 
 std::vector<FamilyMember> parts_of(const std::vector<ShardFile>& shards, std::size_t suite) {
@@ -65,10 +63,10 @@ std::vector<FamilyMember> parts_of(const std::vector<ShardFile>& shards, std::si
       parts.push_back({tests[i], shard.record.shard->suites[suite].results[i]});
     }
   }
-  const std::set<std::uint64_t> there = indices_of(shards);
+  const std::set<std::uint64_t> missing = missing_of(shards);
   const reports::Record& any = shards.front().record;
   for (const reports::ShardElsewhere& test : any.shard->suites[suite].elsewhere) {
-    if (there.contains(test.shard)) continue;
+    if (!missing.contains(test.shard)) continue;
     parts.push_back(
         {{.name = test.name,
           .id = test.id,
@@ -128,7 +126,7 @@ reports::Suite merge_suite(const std::vector<ShardFile>& shards, std::size_t ind
       shards, [&](const ShardFile& shard) { return shard.record.suites[index].timed; });
   std::vector<FamilyMember> parts = parts_of(shards, index);
   const bool complete = parts.size() == shards.front().record.shard->suites[index].tests &&
-                        missing_shards(shards).empty();
+                        missing_of(shards).empty();
   try {
     if (complete) adjust_p_values(parts);
   } catch (const std::domain_error& error) {
