@@ -316,23 +316,17 @@ stats::Moments of_fewer(stats::Moments x, double factor) {
   return x;
 }
 
-/// The first `count` rows of one channel; empty if they are not kept.
-std::span<const double> rows_of(const PreparedEstimator& estimator, const SuiteRun& run,
-                                std::size_t channel, std::uint64_t count) {
-  const Pilot* const pilot = run.pilots.find(estimator.name);
-  if (!estimator.setup->observations() || pilot == nullptr) return {};
-  const std::span<const double> all = pilot->values(channel);
-  return count > all.size() ? std::span<const double>() : all.first(count);
-}
-
 /// Moments, which for dependent rows count only as many as independent ones would be worth.
 stats::Moments moments_of(const PreparedEstimator& estimator, const SuiteRun& run,
                           const Drawn& drawn, std::size_t channel) {
   const stats::Moments& moments = drawn.summary().channels[channel].moments;
-  const std::span<const double> rows = rows_of(estimator, run, channel, drawn.summary().count);
-  const bool all = moments.count == rows.size();  // the others are not finite
-  if (!has_spread(moments) || !all || rows.size() < fewest_in_order) return moments;
-  const double factor = stats::allowance_for_dependence(rows);
+  const Pilot* const pilot = run.pilots.find(estimator.name);
+  if (!estimator.setup->observations() || pilot == nullptr || !has_spread(moments)) return moments;
+  const std::uint64_t count = drawn.summary().count;
+  const std::span<const double> rows = pilot->values(channel);
+  const bool all = moments.count == count && count <= rows.size();  // finite, and kept
+  if (!all || count < fewest_in_order) return moments;
+  const double factor = stats::allowance_for_dependence(rows.first(count));
   return factor > 1 ? of_fewer(moments, factor) : moments;
 }
 
