@@ -208,23 +208,15 @@ stats::Interval interval_of(const Distances& distances, double confidence) {
           confidence};
 }
 
-std::string all_alike(const Question& question) {
-  std::string words;
-  for (const Subject& subject : question.subjects) {
-    words += fmt::format("{}`{}`", words.empty() ? "all images of " : " are alike, and all of ",
-                         subject.estimator->name);
-  }
-  return words + " are alike";
-}
-
 /// Pictures of files that are alike and were not refused have no noise, such as a layer of depth.
 /// What is drawn should vary.
 void require_spread(const Question& question, bool varies) {
   if (varies || std::ranges::all_of(question.subjects, is_recorded)) return;
-  throw stats::ZeroVariance(
-      fmt::format("{}: values without spread say nothing about unseen values; check that the seed "
-                  "changes the image, take fewer `primaries`, or more observations",
-                  all_alike(question)));
+  const auto name_of = [](const Subject& subject) { return subject.estimator->name; };
+  throw stats::ZeroVariance(fmt::format(
+      "the images of {} never vary: values without spread say nothing about unseen values; check "
+      "that the seed changes the image, take fewer `primaries`, or more observations",
+      quoted(names_of(question.subjects, name_of))));
 }
 
 bool varies(const stats::ImageStack& stack) {
