@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/replace.hpp>
 #include <filesystem>
 
 #include "estimators/core/quoting.h"
@@ -33,11 +34,8 @@ bool is_there(const CarriedFile& file, const std::filesystem::path& path) {
 }
 
 std::string with_place(std::string_view steps, const std::string& folder) {
-  constexpr std::string_view mark = "@CD@";
-  std::string text(steps);
-  const std::size_t at = text.find(mark);
   const std::string line = folder == "." ? "" : fmt::format("cd {}\n    ", shell_quoted(folder));
-  return at == std::string::npos ? text : text.replace(at, mark.size(), line);
+  return boost::replace_first_copy(std::string(steps), "@CD@", line);
 }
 
 }  // namespace

@@ -36,14 +36,10 @@ std::span<const T> part_of(const std::vector<T>& list, std::uint64_t first, std:
 }
 
 /// Appends the values of observations that follow to those of each channel.
-void append(std::vector<std::vector<double>>& all, std::vector<std::vector<double>>&& next) {
+void append(std::vector<std::vector<double>>& all, const std::vector<std::vector<double>>& next) {
   all.resize(std::max(all.size(), next.size()));
   for (std::size_t c = 0; c < next.size(); ++c) {
-    if (all[c].empty()) {
-      all[c] = std::move(next[c]);
-    } else {
-      all[c].insert(all[c].end(), next[c].begin(), next[c].end());
-    }
+    all[c].insert(all[c].end(), next[c].begin(), next[c].end());
   }
 }
 
@@ -370,7 +366,7 @@ Pool::Block Pool::kept_block(std::uint64_t first, std::uint64_t last) const {
 }
 
 void Pool::Block::append_kept(Block&& next) {
-  append(values, std::move(next.values));
+  append(values, next.values);
   observations->append(std::move(*next.observations));
 }
 
@@ -394,7 +390,7 @@ void Pool::fold(Block&& block) {
   }
   const std::uint64_t before = running_.count;
   running_.append(block.whole);
-  append(values_, std::move(block.values));
+  append(values_, block.values);
   kept_->append(std::move(*block.observations));
   if (keeps_blocks_) keep_block(std::move(block.whole), before);
   fault_ = std::move(block.fault);
