@@ -13,7 +13,7 @@
 #include "harness/command/describe.h"
 #include "harness/command/environment.h"
 #include "harness/command/options.h"
-#include "harness/language/quantities.h"
+#include "harness/language/claim.h"
 #include "reports/report_formats.h"
 
 namespace assay::harness {

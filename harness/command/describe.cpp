@@ -11,7 +11,6 @@
 #include "estimators/catalogue.h"
 #include "harness/command/commands.h"
 #include "harness/language/laws.h"
-#include "harness/language/quantities.h"
 #include "harness/theta/gate.h"
 #include "harness/theta/methods.h"
 #include "reports/report_formats.h"

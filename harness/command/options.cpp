@@ -11,7 +11,7 @@
 
 #include "estimators/core/quoting.h"
 #include "harness/base/version.h"
-#include "harness/language/quantities.h"
+#include "harness/language/claim.h"
 #include "reports/report_formats.h"
 
 namespace assay::harness {

@@ -13,7 +13,6 @@
 #include "harness/draws/sampler_setup.h"
 #include "harness/families/families.h"
 #include "harness/language/laws.h"
-#include "harness/language/quantities.h"
 #include "harness/plan/sizes.h"
 #include "harness/run/evaluate.h"
 #include "stats/basics/sorted.h"

@@ -1,5 +1,3 @@
-#include "harness/language/quantities.h"
-
 #include <algorithm>
 
 #include "harness/families/families.h"

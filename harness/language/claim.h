@@ -17,9 +17,15 @@
 
 #include "estimators/core/value.h"
 #include "harness/base/refuse.h"
-#include "harness/language/quantities.h"
+
+namespace assay {
+struct Channel;
+}
 
 namespace assay::harness {
+
+struct Constant;
+class Theta;
 
 /// An estimator of the suite (in `check` also a plugin's name), and a part of it. A part is a
 /// channel, a sampler, a marginal of the only sampler, or "sampler.marginal"; "" is the whole.
@@ -31,6 +37,36 @@ struct Source {
     return estimator == other.estimator && part == other.part;
   }
 };
+
+/// A row of the table of quantities, which is in families/.
+struct QuantityRow {
+  std::string word;     ///< The word in claims.
+  std::string example;  ///< A claim about it.
+  std::string summary;
+  const Theta* theta;  ///< The theta of a claim about it, unless of images or a slope.
+  /// What `slope(…)` of it is about; null if it has no slope.
+  const Theta* slope = nullptr;
+  bool of_a_sampler = false;
+  bool of_a_law = false;           ///< It is compared with a law by `==`, not with a number.
+  bool of_a_probability = false;   ///< It takes a probability beside the estimator.
+  bool tested_as_a_ratio = false;  ///< The claimed number is above 0 and exact.
+  bool over_all_channels = false;
+  /// Gives what a channel's plugin knows of it, or InputError; null if no plugin knows any.
+  Constant (*analytic)(const Channel&, const Source&) = nullptr;
+  bool takes_standard_error = false;  ///< The claimed number may have one, by `+-`.
+  bool relative_to_0 = false;    ///< The truth, not the claimed number, is what per cent are of.
+  bool told_by_moments = false;  ///< A recorded run of it has moments that other claims can use.
+  bool takes_reference = false;  ///< The test may have `reference`.
+  bool counts_cost = false;      ///< The test may have `cost`.
+
+  bool never_negative() const { return tested_as_a_ratio || of_a_sampler; }
+  /// Its margins are differences of probabilities, so they lie below 1.
+  bool is_a_probability() const { return of_a_law || of_a_sampler; }
+};
+
+const std::vector<QuantityRow>& quantities();
+/// Null if there is none.
+const QuantityRow* find_quantity(std::string_view word);
 
 struct Quantity {
   const QuantityRow* row = nullptr;  ///< Never null in a parsed claim.
@@ -115,5 +151,8 @@ Source parse_source(std::string_view text, const Location& where);
 
 /// True if a claim can use the name: a letter or `_`, then letters, digits, `_`, `-`, `/`.
 bool is_estimator_name(std::string_view name);
+
+/// The names of the method table (theta/methods.h), each once, in its order.
+const std::vector<std::string>& method_names();
 
 }  // namespace assay::harness

@@ -29,13 +29,14 @@ struct PreparedEstimator {
   /// Says whether a secondary is the mean of its primaries, and how it is biased if that is known.
   Nature nature() const;
 };
+using Estimators = std::map<std::string, PreparedEstimator>;  ///< By their names in the suite.
 
 /// InputError with plugin, parameter and place for anything that a plugin refuses.
 PreparedEstimator prepare(const EstimatorEntry& entry, const std::string& folder);
 
 /// Sides of `paired` claims draw the random numbers of the first of those that they are paired
 /// with, directly or through others.
-void share_random_numbers(const Suite& suite, std::map<std::string, PreparedEstimator>& prepared);
+void share_random_numbers(const Suite& suite, Estimators& prepared);
 
 /// The key of an estimator's stream. `copy` is 1 for a claim's second source with the same key.
 /// `purpose` separates the pilot and each sampler.

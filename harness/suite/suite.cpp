@@ -12,7 +12,6 @@
 #include "estimators/catalogue.h"
 #include "estimators/core/text_pattern.h"
 #include "harness/base/text_file.h"
-#include "harness/language/quantities.h"
 
 namespace assay::harness {
 namespace {

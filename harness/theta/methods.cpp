@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "harness/language/quantities.h"
 #include "harness/sampling/recorded_run.h"
 #include "harness/theta/theta.h"
 
