@@ -47,15 +47,6 @@ Margin read_margin(const Value& value, std::string_view what) {
   return parse_margin(value.string(what), value.where(), what);
 }
 
-void require_increasing(const Sweep& sweep) {
-  double last = 0;
-  for (const Value& value : sweep.values) {
-    const double number = positive_number(value, "a value of `over`");
-    if (number <= last) refuse(value.where(), "the values of `over` must ascend");
-    last = number;
-  }
-}
-
 /// The items of a list that has any. InputError with what it must be.
 const std::vector<Value>& items_of(const Value& list, const std::string& otherwise) {
   if (list.kind() == Value::Kind::list && !list.items().empty()) return list.items();
@@ -96,9 +87,12 @@ Sweep read_sweep(const Value& value) {
   if (sweep.values.size() < 2) {
     refuse(values.where(), "a slope needs at least two values in `over`");
   }
-  require_increasing(sweep);
-  if (parameter == "primaries") {
-    for (const Value& count : sweep.values) count_from(count, "a number of primaries", 1);
+  double last = 0;
+  for (const Value& each : sweep.values) {
+    const double number = positive_number(each, "a value of `over`");
+    if (number <= last) refuse(each.where(), "the values of `over` must ascend");
+    if (parameter == "primaries") count_from(each, "a number of primaries", 1);
+    last = number;
   }
   return sweep;
 }
@@ -117,8 +111,7 @@ void read_reference(const Value& value, TestEntry& test) {
   };
   Constant reference{.value = number(text.substr(0, error))};
   if (error != std::string::npos) reference.standard_error = number(text.substr(error + 2));
-  if (!std::isfinite(reference.value) || !(reference.standard_error >= 0) ||
-      std::isinf(reference.standard_error)) {
+  if (!std::isfinite(reference.value + reference.standard_error) || reference.standard_error < 0) {
     refuse(value.where(), "`reference` must be finite, and its error not negative");
   }
   test.reference_number = reference;
