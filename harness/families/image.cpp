@@ -253,7 +253,7 @@ class ImageTheta : public Theta {
   /// InputError for inequalities, images of unequal sizes, an image against something else, and a
   /// number with an error.
   void check(const Question& question) const override {
-    for (const Subject& other : question.subjects) require_one_size(question, other);
+    require_one_size(question);
     require_tested_relation(question);
     require_exact_number(question);
     require_all_pixels(question);

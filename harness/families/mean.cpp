@@ -257,7 +257,7 @@ std::string lost_to_rounding(const Seen& seen) {
 // ---- Binding
 
 std::vector<Constant> recorded_means(const Question& question, const Subject& reference) {
-  require_one_size(question, reference);
+  require_one_size(question);
   if (reference.image) require_equal_pixels(question, reference);
   std::vector<Constant> means;
   for (const Channel& channel : reference.declared()) {

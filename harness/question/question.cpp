@@ -89,13 +89,12 @@ const NamedSampler* sampler_named(const std::vector<NamedSampler>& samplers,
 }
 
 std::string size_text(const Subject& subject) {
+  if (subject.image) {
+    return fmt::format("{} x {} pixels of {}", subject.image->width, subject.image->height,
+                       fmt::join(subject.image->components, ", "));
+  }
   const std::size_t channels = subject.channels.size();
-  return fmt::format(
-      "`{}` {}", subject.estimator->name,
-      subject.image
-          ? fmt::format("has {} x {} pixels of {}", subject.image->width, subject.image->height,
-                        fmt::join(subject.image->components, ", "))
-          : fmt::format("is no image and has {} channel{}", channels, channels == 1 ? "" : "s"));
+  return fmt::format("{} channel{}", channels, channels == 1 ? "" : "s");
 }
 
 }  // namespace
@@ -210,16 +209,19 @@ std::string image_name(const ImageShape& shape) {
   return fmt::format("{} x {} {}", shape.width, shape.height, fmt::join(shape.components, ", "));
 }
 
-void require_one_size(const Question& question, const Subject& other) {
+void require_one_size(const Question& question) {
   const Subject& first = question.subjects[0];
   const auto size = [](const Subject& each) {
     const ImageShape shape = each.image.value_or(ImageShape{});
     return std::tuple(shape.width, shape.height, each.channels.size());
   };
-  if (size(first) == size(other)) return;
-  refuse(question.test->claim.left.where,
-         "{}, and {}: only equal sizes can be compared, element by element", size_text(first),
-         size_text(other));
+  for (const Subject& other : question.subjects) {
+    if (size(first) == size(other)) continue;
+    refuse(question.test->claim.left.where,
+           "`{0}` has {1}, and `{2}` has {3}: only equal sizes can be compared, element by "
+           "element; or name one part of each, as in `{0}.PART`",
+           first.estimator->name, size_text(first), other.estimator->name, size_text(other));
+  }
 }
 
 void require_equal_pixels(const Question& question, const Subject& other) {

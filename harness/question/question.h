@@ -144,9 +144,8 @@ std::vector<Constant> references_of(const Claim& claim, const Subject& subject);
 
 /// "32 x 32 irradiance".
 std::string image_name(const ImageShape& shape);
-/// InputError unless the first subject and the other have as many channels, both or neither as
-/// images of one size.
-void require_one_size(const Question& question, const Subject& other);
+/// InputError unless all subjects have as many channels, and all or none are images of one size.
+void require_one_size(const Question& question);
 /// InputError if the first subject and the other leave out different pixels, which would be 0 on
 /// one side alone. Both are images.
 void require_equal_pixels(const Question& question, const Subject& other);

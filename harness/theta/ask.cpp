@@ -10,17 +10,6 @@
 namespace assay::harness {
 namespace {
 
-void require_pairs(const Question& question, const Claim& claim) {
-  if (question.is().joins_channels) return;
-  const std::size_t first = question.subjects[0].channels.size();
-  for (const Subject& other : question.subjects) {
-    if (other.channels.size() == first) continue;
-    refuse(claim.left.where,
-           "the two sides have {} and {} channels; name one of each, as in `{}.channel`", first,
-           other.channels.size(), claim.left.source.estimator);
-  }
-}
-
 /// Columns of one file are dependent samples.
 void require_different_data(const Question& question, const Claim& claim) {
   // Two estimators of one run have their own streams (`separate_pair`).
@@ -183,7 +172,7 @@ Question ask(const TestEntry& test, const Estimators& estimators, std::uint64_t 
   if (test.paired) ask_of_pairs(question);
   question.theta->check(question);
   if (question.subjects.size() > 1) {
-    require_pairs(question, test.claim);
+    if (!question.is().joins_channels) require_one_size(question);
     require_different_data(question, test.claim);
     if (!question.is().of_pairs) separate_streams(question, test.claim, seed);
   }
