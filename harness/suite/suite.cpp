@@ -78,15 +78,12 @@ Budget read_short_budget(const Value& value) {
 
 Sweep read_sweep(const Value& value) {
   const bool one = value.kind() == Value::Kind::map && value.members().size() == 1;
-  if (!one || value.members()[0].second.kind() != Value::Kind::list) {
+  if (!one || value.members()[0].second.items().size() < 2) {
     refuse(value.where(),
-           "`over` is one parameter and its values: `over: {primaries: [8, 16, 32]}`");
+           "`over` is one parameter and two values or more: `over: {primaries: [8, 16, 32]}`");
   }
   const auto& [parameter, values] = value.members()[0];
   Sweep sweep{.parameter = parameter, .values = values.items()};
-  if (sweep.values.size() < 2) {
-    refuse(values.where(), "a slope needs at least two values in `over`");
-  }
   double last = 0;
   for (const Value& each : sweep.values) {
     const double number = positive_number(each, "a value of `over`");
@@ -136,17 +133,12 @@ void check_margins(const TestEntry& test) {
     refuse(test.place_of("allow"), "`allow` has no meaning with `{}`, which must be proved in full",
            to_string(test.claim.relation));
   }
-  const bool comparable =
-      test.detect && test.allow && test.detect->relative == test.allow->relative;
-  if (test.detect && test.allow && test.allow->value > 0 && !comparable) {
-    refuse(test.place_of("allow"),
-           "`detect` ({}) and `allow` ({}) must both be in per cent or both absolute",
-           to_string(*test.detect), to_string(*test.allow));
-  }
-  if (comparable && test.allow->value >= test.detect->value) {
-    refuse(test.place_of("allow"), "`detect` ({}) must be above `allow` ({})",
-           to_string(*test.detect), to_string(*test.allow));
-  }
+  if (!test.detect || !test.allow || test.allow->value == 0) return;
+  const bool comparable = test.detect->relative == test.allow->relative;
+  if (comparable && test.detect->value > test.allow->value) return;
+  refuse(test.place_of("allow"),
+         "`detect` ({}) must be above `allow` ({}), both in per cent or both absolute",
+         to_string(*test.detect), to_string(*test.allow));
 }
 
 /// Checks a test beyond the types of its keys: `allow` is below `detect`, and the claim uses every
@@ -239,11 +231,9 @@ void check(const reports::Statement& statement, const Location& where) {
     if (!is_in(statement.holds, name)) continue;
     refuse(where, "`{}` cannot be under both `holds` and `fails`", name);
   }
-  if (both && statement.condition.empty()) {
-    refuse(where, "a statement with `holds` and `fails` needs a `condition` that separates them");
-  }
-  if (!both && !statement.condition.empty()) {
-    refuse(where, "a `condition` needs both `holds` and `fails`");
+  if (both == statement.condition.empty()) {
+    refuse(where,
+           "a `condition` separates `holds` from `fails`: give all three, or one without it");
   }
 }
 
@@ -394,15 +384,10 @@ Value read_scenes(const Keys& keys) {
 }
 
 void read_estimators(const Document& document, const Value& map, Suite& suite) {
-  if (map.kind() == Value::Kind::list) {
+  if (map.members().empty()) {
     refuse(map.where(),
-           "`estimators` is a map of names, not a list: leave the `- ` out, as in `area: {plugin: "
-           "luminaire/area}`");
-  }
-  if (map.kind() != Value::Kind::map || map.members().empty()) {
-    refuse(map.where(),
-           "`estimators` must be a map of at least one name to its plugin, as in `area: {plugin: "
-           "luminaire/area}`");
+           "`estimators` must be a map of at least one name to its plugin, without `- `, as in "
+           "`area: {plugin: luminaire/area}`");
   }
   for (const auto& [name, value] : map.members()) {
     suite.estimators.push_back(read_estimator(document, name, value, suite.scenes));

@@ -93,7 +93,7 @@ test_mistakes_at_the_head_of_a_suite_say_what_to_write() {
 estimators: {a: {plugin: luminaire/area}}|1:1: a suite needs the key `suite`, as in `suite: my first suite`
 suite: s\nseed: random|2:7: a suite's seed is a number, so that its runs repeat; `assay run --seed random` takes a fresh one
 suite: s\nalpha: 5%|2:8: `alpha` must be a number from 1e-9 to 0.5 (5 % is 0.05), but it is `5%`
-suite: s\nestimators:\n  - a: {plugin: luminaire/area}|3:3: `estimators` is a map of names, not a list: leave the `- ` out
+suite: s\nestimators:\n  - a: {plugin: luminaire/area}|3:3: `estimators` must be a map of at least one name to its plugin, without `- `
 suite: s\nestimators:\n\ta: {plugin: luminaire/area}|3:1: indent with spaces, not with a tab
 suite: s\nestimators: {a: {plugin: luminare/area}}|2:26: there is no plugin `luminare/area`; did you mean `luminaire/area`?
 suite: s\nestimators: {a: {scene: triangle}}|2:17: `a` needs the key `plugin`, as in `a: {plugin: luminaire/area}`
