@@ -277,16 +277,12 @@ void add_reference(Question& question, const Estimators& estimators) {
 void require_drawn(const Question& question) {
   if (question.test->cost != CostKind::seconds) return;
   for (const Subject& subject : question.subjects) {
-    if (is_recorded(subject)) {
-      refuse(question.test->place_of("cost"), "`{}` is read, not drawn: its seconds mean nothing",
-             subject.estimator->name);
-    }
-    if (subject.setup->keeps_files()) {
-      refuse(question.test->place_of("cost"),
-             "`{}` keeps its files, and seconds of a kept file mean nothing; let `process` answer, "
-             "or write the seconds as a number of the observation",
-             subject.estimator->name);
-    }
+    if (!is_recorded(subject) && !subject.setup->keeps_files()) continue;
+    refuse(
+        question.test->place_of("cost"),
+        "`{}` is not drawn but read: its seconds say nothing; draw it by `process`, or write the "
+        "seconds as a number of the observation",
+        subject.estimator->name);
   }
 }
 
