@@ -280,7 +280,7 @@ void require_drawn(const Question& question) {
     if (!is_recorded(subject) && !subject.setup->keeps_files()) continue;
     refuse(
         question.test->place_of("cost"),
-        "`{}` is not drawn but read: its seconds say nothing; draw it by `process`, or write the "
+        "`{}` is read, not drawn: its seconds mean nothing; draw it by `process`, or write the "
         "seconds as a number of the observation",
         subject.estimator->name);
   }

@@ -146,11 +146,10 @@ void check_margins(const TestEntry& test) {
 void check_test(const TestEntry& test) {
   check_margins(test);
   const Claim& claim = test.claim;
-  if (claim.left.slope && !test.over) {
-    refuse(test.place_of("claim"), "a slope needs `over`: `over: {primaries: [8, 16, 32]}`");
+  if (claim.left.slope != test.over.has_value()) {
+    refuse(test.place_of(test.over ? "over" : "claim"),
+           "a slope needs `over`, and nothing else takes it: `over: {primaries: [8, 16, 32]}`");
   }
-  if (!claim.left.slope && test.over)
-    refuse(test.place_of("over"), "`over` is only for `slope(…)`");
   const auto refuse_but_for = [&](const char* key, bool QuantityRow::*trait) {
     if (claim.left.row->*trait) return;
     refuse(test.place_of(key), "`{}` is only for {}", key, quantities_with(trait));
@@ -159,10 +158,6 @@ void check_test(const TestEntry& test) {
     refuse_but_for("reference", &QuantityRow::takes_reference);
   }
   if (test.cost != CostKind::rays) refuse_but_for("cost", &QuantityRow::counts_cost);
-  if (test.paired && !std::holds_alternative<ScaledQuantity>(claim.right)) {
-    refuse(test.place_of("paired"),
-           "`paired` takes two estimators, as in `mean(new) == mean(old)`");
-  }
 }
 
 /// Error rates and seeds belong to the run.

@@ -149,7 +149,8 @@ void ask_of_pairs(Question& question) {
   const Theta* const theta = question.theta->of_pairs();
   if (theta == nullptr || !question.of_two()) {
     refuse(question.test->place_of("paired"),
-           "`paired` is only for the means of two images; leave it out");
+           "`paired` is only for the means of two images, as in `mean(new) == mean(old)`; leave it "
+           "out");
   }
   question.theta = theta;
 }
