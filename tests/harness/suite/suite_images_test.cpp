@@ -51,7 +51,7 @@ TEST_F(SuiteImages, AMarginMakesAProof) {
   EXPECT_EQ(suite_of_images(given).tests[0].claim.text,
             "mean(candidate) within 50% of mean(reference)");
   given.keys["detect"] = "1%";
-  EXPECT_THAT(refused(given), HasSubstr("--within already says"));
+  EXPECT_THAT(refused(given), HasSubstr("`within` already says which error"));
 }
 
 TEST_F(SuiteImages, AMaskThatDoesNotOpenIsNamed) {
