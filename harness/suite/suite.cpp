@@ -503,9 +503,7 @@ void read_test_keys(const Document& document, const Value& map, TestEntry& test)
   if (const Value* v = map.find("cost")) {
     test.cost = static_cast<CostKind>(choice(*v, "`cost`", {cost_words.begin(), cost_words.end()}));
   }
-  if (const Value* v = map.find("paired")) {
-    test.paired = choice(*v, "`paired`", {"false", "true"}) == 1;
-  }
+  if (const Value* v = map.find("paired")) test.paired = v->boolean("`paired`");
   check_test(test);
 }
 
