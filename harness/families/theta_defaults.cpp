@@ -39,10 +39,7 @@ std::string Theta::channel_name(const Question& question, std::size_t channel) c
 
 std::string Theta::claimed_value(const Question& question, std::size_t channel) const {
   const Claim& claim = question.test->claim;
-  if (const auto* other = std::get_if<ScaledQuantity>(&claim.right)) {
-    return (other->factor == 1 ? "" : fmt::format("{} * ", other->factor)) +
-           to_string(other->quantity);
-  }
+  if (const ScaledQuantity* const other = other_side(claim)) return to_string(*other);
   const auto* const number = std::get_if<Constant>(&claim.right);
   return fmt::format("{}", number != nullptr ? number->value : question.references[channel].value);
 }

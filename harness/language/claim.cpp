@@ -516,11 +516,6 @@ std::string percent_text(double value) {
   return fmt::format("{}e{}", text.substr(0, e), std::stoi(text.substr(e + 1)) + 2);
 }
 
-std::string to_string(const ScaledQuantity& side) {
-  const std::string quantity = to_string(side.quantity);
-  return side.factor == 1 ? quantity : fmt::format("{} * {}", side.factor, quantity);
-}
-
 std::string to_string(const Analytic&) { return "analytic"; }
 
 }  // namespace
@@ -584,6 +579,11 @@ std::string to_string(const Quantity& quantity) {
   std::string text = fmt::format("{}({}", quantity.row->word, to_string(quantity.source));
   for (const double argument : quantity.arguments) text += fmt::format(", {}", argument);
   return quantity.slope ? fmt::format("slope({}))", text) : text + ")";
+}
+
+std::string to_string(const ScaledQuantity& side) {
+  const std::string quantity = to_string(side.quantity);
+  return side.factor == 1 ? quantity : fmt::format("{} * {}", side.factor, quantity);
 }
 
 std::string to_string(const Claim& claim) {

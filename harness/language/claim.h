@@ -141,6 +141,8 @@ std::string to_string(const Source&);
 
 /// "quantile(area.red, 0.5)", "slope(bias(wis))".
 std::string to_string(const Quantity&);
+/// "2 * mean(b)".
+std::string to_string(const ScaledQuantity&);
 
 /// The claim in one spelling: shortest round-trip numbers, one blank around a relation.
 /// parse_claim(to_string(claim)) is the claim again; `text` is ignored.
