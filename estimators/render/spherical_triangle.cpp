@@ -25,6 +25,8 @@ SphericalTriangle::SphericalTriangle(const Vector3& a, const Vector3& b, const V
   const double alpha = angle_between(perpendicular_part(a_, b_), towards_c_);
   cos_alpha_ = std::cos(alpha);
   sin_alpha_ = std::sin(alpha);
+  const double sense = dot(a_, cross(b_, c_)) > 0 ? 1 : -1;
+  inward_ = {sense * cross(a_, b_), sense * cross(b_, c_), sense * cross(c_, a_)};
 }
 
 Vector3 SphericalTriangle::edge_point(double u) const {
@@ -51,11 +53,7 @@ std::array<double, 2> SphericalTriangle::coordinates(const Vector3& w) const {
 }
 
 bool SphericalTriangle::contains(const Vector3& w) const {
-  const double side = dot(a_, cross(b_, c_)) > 0 ? 1 : -1;
-  const auto inside = [&](const Vector3& from, const Vector3& to) {
-    return side * dot(w, cross(from, to)) >= 0;
-  };
-  return inside(a_, b_) && inside(b_, c_) && inside(c_, a_);
+  return std::ranges::all_of(inward_, [&](const Vector3& side) { return dot(w, side) >= 0; });
 }
 
 }  // namespace assay::render

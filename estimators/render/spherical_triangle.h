@@ -51,6 +51,7 @@ class SphericalTriangle {
   double cot_half_ab_;
   double cos_alpha_;
   double sin_alpha_;
+  std::array<Vector3, 3> inward_;  // normals of the sides' planes
 };
 
 }  // namespace assay::render
