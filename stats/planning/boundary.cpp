@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <utility>
 
@@ -35,11 +36,9 @@ Rule gauss_legendre(std::size_t count) {
     for (int round = 0; round < 4; ++round) {
       double before = 1;
       double value = x;
-      for (std::size_t k = 2; k <= count; ++k) {
-        const auto degree = static_cast<double>(k);
+      for (double degree = 2; degree <= n; ++degree) {
         const double next = ((2 * degree - 1) * x * value - (degree - 1) * before) / degree;
-        before = value;
-        value = next;
+        before = std::exchange(value, next);
       }
       slope = n * (x * value - before) / (x * x - 1);
       x -= value / slope;
@@ -134,9 +133,8 @@ void spread(const Paths& from, const Step& step, Paths& to) {
 // and some.
 std::size_t nodes_for(std::span<const StoppingLook> looks) {
   double narrowest = 1;
-  for (std::size_t k = 1; k < looks.size(); ++k) {
+  for (std::size_t k = 1; k < looks.size(); ++k)
     narrowest = std::min(narrowest, std::sqrt(1 - looks[k - 1].time / looks[k].time));
-  }
   const double above = looks.back().above;
   const double width = reach + (std::isfinite(above) ? std::max(reach, above + headroom) : reach);
   return 12 + static_cast<std::size_t>(std::min(500.0, 1.4 * width / narrowest));
@@ -146,9 +144,8 @@ void check_times(const char* function, std::span<const double> times) {
   check::at_least({function, "times"}, times.size(), 1);
   double before = 0;
   for (const double time : times) {
-    if (!(time > before) || std::isinf(time)) {
+    if (!(time > before) || std::isinf(time))
       check::fail({function, "time"}, time, "finite and above the one before");
-    }
     before = time;
   }
 }
@@ -170,7 +167,11 @@ std::vector<StopProbabilities> stop_probabilities(std::span<const StoppingLook> 
                                                   double drift) {
   check_looks(looks, drift);
   const double last_above = looks.back().above;
-  const Rule rule = looks.size() > 1 ? gauss_legendre(nodes_for(looks)) : Rule{};
+  // Who searches for a bound asks for the same few rules.
+  thread_local std::map<std::size_t, Rule> rules;
+  const auto [place, is_new] = rules.try_emplace(looks.size() > 1 ? nodes_for(looks) : 0);
+  const auto& [nodes, rule] = *place;
+  if (is_new) place->second = gauss_legendre(nodes);
   std::vector<StopProbabilities> found{stops(looks[0], drift * std::sqrt(looks[0].time), 1)};
   Paths paths;
   for (std::size_t k = 1; k < looks.size(); ++k) {
