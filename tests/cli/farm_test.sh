@@ -50,7 +50,7 @@ suite: farm
 estimators:
   mine:
     plugin: command
-    command: [/usr/bin/python3, -I, render.py, "{seed}", "{samples}", "{out}"]
+    command: [/usr/bin/python3, -IS, render.py, "{seed}", "{samples}", "{out}"]
     primaries: 4096
     retries: 1
 tests:
@@ -168,7 +168,7 @@ PROGRAM
   cat >pfm.yaml <<'SUITE'
 suite: pfm
 estimators:
-  a: {plugin: command, output: pfm, command: [/usr/bin/python3, -I, render.py, "{seed}", "{out}"]}
+  a: {plugin: command, output: pfm, command: [/usr/bin/python3, -IS, render.py, "{seed}", "{out}"]}
 tests:
   - {claim: mean(a) == 0.5, secondaries: 32}
   - {name: off, claim: mean(a) == 0.6, secondaries: 32, expect: fail}
@@ -179,7 +179,7 @@ SUITE
 test_a_command_that_makes_several_pictures_is_listed_one_by_one() {
   farm
   cat >several.sh <<'PROGRAM'
-for seed in $(echo "$1" | tr , ' '); do /usr/bin/python3 -I render.py "$seed" "$2" "$3/$seed.exr"; done
+for seed in $(echo "$1" | tr , ' '); do /usr/bin/python3 -IS render.py "$seed" "$2" "$3/$seed.exr"; done
 PROGRAM
   sed -i 's|command: .*|command: [sh, several.sh, "{seeds}", "{samples}", "{out}"]|' farm.yaml
   expect 0 plan farm.yaml --list-renders
