@@ -29,7 +29,7 @@ cp "$source_folder/estimators/foreign/examples/darts_library.c" "$work/project"
 cd "$work/project" || exit 1
 sed -n '/^```cpp$/,/^```$/{/^```/!p}' "$source_folder/README.md" >readme_test.cpp
 
-run cmake -S . -B build -DCMAKE_PREFIX_PATH="$work/prefix" || fail 'the project is not configured'
+run cmake -S . -B build -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$work/prefix" || fail 'the project is not configured'
 run cmake --build build || fail 'the project is not built'
 run ctest --test-dir build || true
 contains 'claims/mean(normal) == 2 '
