@@ -31,19 +31,19 @@ struct Sample {
   std::vector<double> values;
 
   double size() const { return static_cast<double>(values.size()); }
-  double mean() const { return moment(0, 1); }
-  double variance() const { return moment(mean(), 2) * size() / (size() - 1); }
+  double mean() const { return std::accumulate(values.begin(), values.end(), 0.0) / size(); }
+  double variance() const { return moment(2) * size() / (size() - 1); }
   double mean_error() const { return std::sqrt(variance() / size()); }
-  /// From the fourth central moment.
-  double variance_error() const {
-    const double square = moment(mean(), 2);
-    return std::sqrt((moment(mean(), 4) - square * square) / size());
-  }
+  double variance_error() const { return std::sqrt((moment(4) - std::pow(moment(2), 2)) / size()); }
 
  private:
-  double moment(double about, int power) const {
+  /// The central moment of power 2 or 4.
+  double moment(int power) const {
     double sum = 0;
-    for (const double x : values) sum += std::pow(x - about, power);
+    for (const double about = mean(); const double x : values) {
+      const double square = (x - about) * (x - about);
+      sum += power == 2 ? square : square * square;
+    }
     return sum / size();
   }
 };
