@@ -197,7 +197,7 @@ test_wrong_value_of_any_option_is_2() {
 test_interrupted_before_any_verdict_is_130_and_leaves_no_report() {
   write_suite long.yaml "$long"
   local code=0
-  timeout --foreground --preserve-status --signal=INT 2 \
+  timeout --foreground --preserve-status --signal=INT 1 \
     "$assay" run long.yaml --report json=run.json --report html=run.html >out 2>err || code=$?
   [ "$code" -eq 130 ] || fail "ended with $code, not 130"
   empty out
