@@ -178,9 +178,8 @@ std::vector<StopProbabilities> stop_probabilities(std::span<const StoppingLook> 
     const double mean = drift * std::sqrt(looks[k - 1].time);
     Paths next = grid_of(looks[k - 1], mean, last_above, rule);
     if (k == 1) {
-      for (std::size_t i = 0; i < next.scores.size(); ++i) {
+      for (std::size_t i = 0; i < next.scores.size(); ++i)
         next.masses[i] *= density(next.scores[i] - mean);
-      }
     } else {
       spread(paths, step_between(looks[k - 2].time, looks[k - 1].time, drift), next);
     }
@@ -219,9 +218,8 @@ double WangTsiatis::log_crossing(double constant) const {
     return special::log_sum_of(logs);
   }
   std::vector<StoppingLook> looks;
-  for (std::size_t k = 0; k < times_.size(); ++k) {
+  for (std::size_t k = 0; k < times_.size(); ++k)
     looks.push_back({.time = times_[k], .above = constant * shape_[k]});
-  }
   double sum = 0;
   for (const StopProbabilities& stop : stop_probabilities(looks)) sum += stop.above;
   return std::min(0.0, std::log(sum));
