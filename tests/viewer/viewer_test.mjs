@@ -1,9 +1,10 @@
 // The page in Chromium: viewer_test.mjs VIEWER_FOLDER CHROMIUM PAGES_FOLDER times | views [SCREENSHOT_FOLDER]
 // PAGES_FOLDER holds what assay_write_example writes. The tests of times want the machine alone.
 import assert from "node:assert/strict";
-import { mkdirSync, readFileSync, statSync } from "node:fs";
+import { mkdirSync, readFileSync, statSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { join, resolve } from "node:path";
+import { deflateSync, inflateSync } from "node:zlib";
 
 const [viewer, chromium_path, pages, part, screenshots] = process.argv.slice(2);
 const require = createRequire(join(resolve(viewer), "package.json"));
@@ -37,6 +38,27 @@ async function opened(name, { size = "wide", scheme = "light", hash = "", script
   await page.goto(`file://${resolve(pages, name)}.html${hash}`);
   if (scripts) await page.waitForFunction(() => document.documentElement.dataset.ready === "yes");
   return page;
+}
+
+/// Writes a page whose record is that of another page after a change, and returns its name.
+function changed(name, as, change) {
+  const page = readFileSync(resolve(pages, `${name}.html`), "utf8");
+  const [, before, held] = page.match(/^([^]*<script[^>]*id="record"[^>]*>)([^<]*)/);
+  const bytes = inflateSync(Buffer.from(held, "base64"));
+  const length = bytes.readUInt32LE(0);
+  const told = JSON.parse(bytes.toString("utf8", 4, 4 + length));
+  change(told.record, (verdict, standing) => {
+    for (const test of told.record.suites.flatMap((suite) => suite.tests)) {
+      test.verdict = verdict;
+      test.display.standing = standing;
+    }
+  });
+  const text = Buffer.from(JSON.stringify(told));
+  const start = Buffer.alloc(4);
+  start.writeUInt32LE(text.length);
+  const packed = deflateSync(Buffer.concat([start, text, bytes.subarray(4 + length)])).toString("base64");
+  writeFileSync(resolve(pages, `${as}.html`), before + packed + page.slice(before.length + held.length));
+  return as;
 }
 
 async function closed(page) {
@@ -334,6 +356,21 @@ const views = {
     });
     assert.ok(found.full > 100, `the pixel covers ${found.full} pixels`);
     assert.ok(Math.abs(found.x - 0.5) < 0.1 && Math.abs(found.y - 0.5) < 0.1, JSON.stringify(found));
+    await closed(page);
+  },
+
+  async "a comparison of images that holds has no finding to zoom to"() {
+    const name = changed("hot", "holds", (record, judge) => {
+      judge("pass", "holds");
+      record.display.suspects = [];
+    });
+    const page = await opened(name);
+    await page.locator(".suite li .row").click();
+    await page.locator(".viewer canvas").waitFor();
+    assert.equal(await page.getByRole("button", { name: "Zoom to finding" }).count(), 0);
+    assert.equal(await page.locator(".frame").count(), 0);
+    assert.doesNotMatch(await page.locator(".viewer canvas").getAttribute("aria-label"), /finding/);
+    await page.locator(".viewer canvas").press("z");
     await closed(page);
   },
 

@@ -64,7 +64,8 @@ function rgb(names: string[]): [number, number, number] {
 class Painter {
   readonly size: Size;
   readonly window: Size;
-  readonly component: number;
+  readonly component: string;
+  private readonly index: number;
   private readonly done = new Map<string, HTMLCanvasElement>();
   private readonly level: number;
 
@@ -72,14 +73,16 @@ class Painter {
     readonly z: Picture,
     readonly fresh: Picture | undefined,
     readonly old: Picture | undefined,
-    readonly finding: Finding,
+    winner: Finding,
+    readonly finding: Finding | null, // null: the images do not differ
   ) {
     this.size = { width: z.about.width, height: z.about.height };
-    this.component = Math.max(0, z.about.components.indexOf(finding.component));
+    this.component = winner.component;
+    this.index = Math.max(0, z.about.components.indexOf(winner.component));
     // A finding all over the image has no size to average over.
-    const local = finding.width * finding.height * 4 <= this.size.width * this.size.height;
+    const local = finding && finding.width * finding.height * 4 <= this.size.width * this.size.height;
     const whole = (extent: number) => Math.max(1, Math.round(extent));
-    this.window = local && finding.width > 0 ? { width: whole(finding.width), height: whole(finding.height) } : { width: 1, height: 1 };
+    this.window = local ? { width: whole(finding.width), height: whole(finding.height) } : { width: 1, height: 1 };
     this.level = this.bright();
   }
 
@@ -114,13 +117,13 @@ class Painter {
   }
 
   private where(rgba: Uint8ClampedArray) {
-    const plane = this.z.components()[this.component]!;
+    const plane = this.z.components()[this.index]!;
     windowed(plane, this.size, this.window, (i, sum, count) => signed(rgba, i, sum / Math.sqrt(count) / 8));
   }
 
   private much(rgba: Uint8ClampedArray) {
-    const fresh = this.fresh?.components()[this.component];
-    const old = this.old?.components()[this.component];
+    const fresh = this.fresh?.components()[this.index];
+    const old = this.old?.components()[this.index];
     if (!fresh || !old) return;
     const sums = new Float64Array(old.length);
     windowed(old, this.size, this.window, (i, sum) => (sums[i] = sum));
@@ -178,9 +181,11 @@ export function ImageViewer({ test, pictures }: { test: Test; pictures: Picture[
     const z = named("z");
     if (!z || !test.image) return null;
     const { reduced } = z.about;
-    const { x, y, width, height, ...rest } = test.image.winner;
-    const finding = { ...rest, x: x / reduced, y: y / reduced, width: width / reduced, height: height / reduced };
-    return new Painter(z, named("mean"), named("other_mean") ?? named("reference"), finding);
+    const { winner } = test.image;
+    const { x, y, width, height } = winner;
+    const found = test.verdict === "fail" && width > 0;
+    const finding = found ? { ...winner, x: x / reduced, y: y / reduced, width: width / reduced, height: height / reduced } : null;
+    return new Painter(z, named("mean"), named("other_mean") ?? named("reference"), winner, finding);
   }, [test, pictures]);
   return painter && <Viewer painter={painter} name={test.name} />;
 }
@@ -222,8 +227,7 @@ function Viewer({ painter, name }: { painter: Painter; name: string }) {
     }
   }, [painter, mode, stops, edge, view]);
 
-  const zoomToFinding = () => {
-    const { x, y, width: w, height: h } = painter.finding;
+  const zoomTo = ({ x, y, width: w, height: h }: Finding) => {
     const scale = Math.max(fit.scale, Math.min(canvasSize.width / (2 * w), canvasSize.height / (2 * h), 40 * pixels));
     setView(kept({
       scale,
@@ -272,7 +276,7 @@ function Viewer({ painter, name }: { painter: Painter; name: string }) {
     const actions: { [key: string]: () => void } = {
       "+": () => zoom(1.5),
       "-": () => zoom(1 / 1.5),
-      z: zoomToFinding,
+      ...(painter.finding && { z: () => zoomTo(painter.finding!) }),
       f: () => setView(fit),
       ArrowLeft: () => pan(-step, 0),
       ArrowRight: () => pan(step, 0),
@@ -294,7 +298,7 @@ function Viewer({ painter, name }: { painter: Painter; name: string }) {
         height={canvasSize.height}
         tabIndex={0}
         role="img"
-        aria-label={`${modes.find((m) => m.mode === mode)?.name}: ${name}. Keys 1 to 5 choose, z zooms to the finding, f fits, arrows pan.`}
+        aria-label={`${modes.find((m) => m.mode === mode)?.name}: ${name}. Keys 1 to 5 choose, ${painter.finding ? "z zooms to the finding, " : ""}f fits, arrows pan.`}
         onPointerDown={(event) => {
           const { px, py } = place(event);
           drag.current = { x: px, y: py, view };
@@ -308,7 +312,7 @@ function Viewer({ painter, name }: { painter: Painter; name: string }) {
           zoom(event.deltaY < 0 ? 1.25 : 0.8, px, py);
         }}
       />
-      <Frame finding={painter.finding} view={view} canvas={canvasSize} />
+      {painter.finding && <Frame finding={painter.finding} view={view} canvas={canvasSize} />}
       </div>
       <div class="controls">
         <div class="buttons">
@@ -319,7 +323,7 @@ function Viewer({ painter, name }: { painter: Painter; name: string }) {
           ))}
         </div>
         <div class="buttons">
-          <button type="button" onClick={zoomToFinding}>Zoom to finding</button>
+          {painter.finding && <button type="button" onClick={() => zoomTo(painter.finding!)}>Zoom to finding</button>}
           <button type="button" onClick={() => setView(fit)}>Fit</button>
         </div>
         {(mode === "new" || mode === "old" || mode === "wipe") && (
@@ -339,7 +343,7 @@ function Viewer({ painter, name }: { painter: Painter; name: string }) {
         <p class="quiet">
           {legends[mode]}
           {scales[mode] && painter.window.width * painter.window.height > 1 && " Averaged over the size of the finding."}
-          {scales[mode] && painter.z.about.components.length > 1 && ` Component ${painter.finding.component}.`}
+          {scales[mode] && painter.z.about.components.length > 1 && ` Component ${painter.component}.`}
           {reduced > 1 && ` Each pixel here is the mean of ${reduced} by ${reduced}. An EXR file beside the record of --report json=FILE has them all.`}
         </p>
         <p class="code pixel">{pixel}</p>
@@ -350,7 +354,6 @@ function Viewer({ painter, name }: { painter: Painter; name: string }) {
 
 /// A frame around the finding that is seen at any zoom and on any screen.
 function Frame({ finding, view, canvas }: { finding: Finding; view: View; canvas: Size }) {
-  if (finding.width === 0) return null;
   const middle = (from: number, extent: number, all: number) => `${(100 * (from + extent / 2) * view.scale) / all}%`;
   const part = (extent: number, all: number) => `${(100 * extent * view.scale) / all}%`;
   const left = middle(finding.x - view.x, finding.width, canvas.width);

@@ -71,6 +71,7 @@ export interface Test {
   name: string;
   id: string;
   claim: string;
+  verdict: "pass" | "fail" | "inconclusive" | "invalid" | "error" | "skipped";
   tags: string[];
   effect: Effect;
   detect: Num;
