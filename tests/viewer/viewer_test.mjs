@@ -193,6 +193,27 @@ const views = {
     await closed(page);
   },
 
+  async "what the console says beside a verdict is on the page"() {
+    const name = changed("example", "notes", (record) => {
+      const [first, second] = record.suites[0].tests.filter((test) => test.verdict === "fail");
+      first.display.steps.unshift({ label: "note", words: "one picture, taken as exact", paste: "" });
+      second.display.steps.unshift({ label: "note", words: "rarer values could also explain this", paste: "" });
+      record.display.suspects.find(({ tests }) => tests.includes(first.id)).tests.push(second.id);
+    });
+    const page = await opened(name);
+    const cards = await plain(page.locator('[aria-label="What broke"]'));
+    assert.match(cards, /note\s+one picture, taken as exact/);
+    assert.match(cards, /note\s+forgetting the receiver's cosine is caught: rarer values could also explain this/);
+    assert.match(cards, /pass, but fail expected: mean\(shared_seed\) is 0\.06 % above analytic/);
+    assert.match(await plain(page.locator("header")), /filtered: verdicts rest on fixed shares/);
+    await open_all(page);
+    const claims = await plain(page.locator(".claims"));
+    for (const part of [/a bias of 0\.31 % or more is excluded/, /It was not run\.\s+belongs to another shard/])
+      assert.match(claims, part);
+    assert.match(await plain(page.locator("main")), /Programs that failed and were started again: 1\./);
+    await closed(page);
+  },
+
   async "an alarm of nights shows when it moved and what changed"() {
     const page = await opened("example");
     const card = page.locator(".card", { hasText: "drifted" });

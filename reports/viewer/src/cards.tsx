@@ -1,7 +1,7 @@
 // Cards show what broke: a card a suspect, and a card a ledger's alarm.
 import { useContext } from "preact/hooks";
 import { NightsChart } from "./charts";
-import { Copy, NoVerdict, Steps } from "./claims";
+import { Advice, Copy, Steps, Told } from "./claims";
 import { ImageViewer } from "./image";
 import { PageContext } from "./page";
 import type { Suspect, Test } from "./record";
@@ -25,7 +25,7 @@ function Card({ suspect }: { suspect: Suspect }) {
           <a href={link({ open: [first.id] })}>Details</a>
         </span>
       </h3>
-      {suspect.standing === "no verdict" ? <NoVerdict test={first} /> : <p class="sentence">{first.display.sentence}</p>}
+      <Told test={first} />
       {first.image && <ImageViewer test={first} pictures={page.pictures.get(first.id) ?? []} />}
       {others.length > 0 && (
         <p class="quiet">
@@ -40,6 +40,11 @@ function Card({ suspect }: { suspect: Suspect }) {
         </p>
       )}
       <Steps test={first} />
+      {others.slice(0, 8).flatMap((test) =>
+        test.display.steps.filter(({ label, words }) => words && label !== "again").map(({ label, words }) => (
+          <Advice key={`${test.id} ${words}`} label={label} words={`${test.name}: ${words}`} />
+        )),
+      )}
     </article>
   );
 }

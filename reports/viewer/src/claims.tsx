@@ -36,6 +36,15 @@ export function Copy({ command, label = "" }: { command: string; label?: string 
   );
 }
 
+export function Advice({ label, words }: { label: string; words: string }) {
+  return (
+    <div class="command">
+      <span class="quiet">{label}</span>
+      <span>{words}</span>
+    </div>
+  );
+}
+
 /// What to do about a claim: words or a line to paste each.
 export function Steps({ test }: { test: Test }) {
   const steps = test.display.steps.filter(({ label }) => label !== "see it"); // this page shows it
@@ -45,10 +54,7 @@ export function Steps({ test }: { test: Test }) {
         paste ? (
           <Copy key={paste} label={label} command={paste} />
         ) : (
-          <div key={words} class="command">
-            <span class="quiet">{label}</span>
-            <span>{words}</span>
-          </div>
+          <Advice key={words} label={label} words={words} />
         ),
       )}
     </>
@@ -79,6 +85,23 @@ export function NoVerdict({ test }: { test: Test }) {
         </div>
       )}
     </dl>
+  );
+}
+
+/// What a claim came to, with what the console says beside its verdict.
+export function Told({ test }: { test: Test }) {
+  const { sentence, standing, steps, verdict } = test.display;
+  if (standing === "no verdict") return <NoVerdict test={test} />;
+  // The sentence has all of a fail. Words that are a step of their own are not repeated.
+  const more = test.verdict === "fail" ? "" : steps.reduce((text, { words }) => (words ? text.replace(`; ${words}`, "") : text), test.message);
+  return (
+    <>
+      <p class="sentence">
+        {standing === "broken" && test.verdict !== "fail" && <b>{verdict}: </b>}
+        {sentence}
+      </p>
+      {more && <p>{more}</p>}
+    </>
   );
 }
 
@@ -142,12 +165,11 @@ export function Detail({ test }: { test: Test }) {
   const pictures = page.pictures.get(test.id) ?? [];
   const channel = test.channels[0];
   const samples = test.samples.filter((sample) => !channel || sample.channel === channel.name || test.samples.length <= 2);
-  const { sentence, chance, standing } = test.display;
+  const { chance } = test.display;
   return (
     <div class="detail">
-      {standing === "no verdict" ? <NoVerdict test={test} /> : <p class="sentence">{sentence}</p>}
-      {standing === "undecided" && <p>{test.message}</p>}
-      {chance && standing !== "holds" && <p class="quiet">Chance of this if nothing is wrong: {chance}.</p>}
+      <Told test={test} />
+      {chance && test.verdict !== "pass" && <p class="quiet">Chance of this if nothing is wrong: {chance}.</p>}
       <Steps test={test} />
       {test.image && <ImageViewer test={test} pictures={pictures} />}
       <div class="charts">

@@ -59,6 +59,7 @@ function App({ page }: { page: Page }) {
     return () => removeEventListener("hashchange", show);
   }, []);
   const environment = record.environment;
+  const retries = record.suites.reduce((sum, suite) => sum + suite.retries.length, 0);
   return (
     <PageContext.Provider value={page}>
       <header>
@@ -87,6 +88,7 @@ function App({ page }: { page: Page }) {
         </div>
         <p class="quiet about">
           seed <b>{record.display.seed}</b> · commit <b>{record.tool.commit || "unknown"}</b> · {record.seconds.toPrecision(3)} s · {record.display.rates.split(/\.(?: |$)/)[0]}
+          {record.note && ` · ${record.note}`}
         </p>
       </header>
       <main>
@@ -118,8 +120,8 @@ function App({ page }: { page: Page }) {
             {() => (
               <>
                 <p>{record.display.counts}.</p>
-                {record.note && <p>{record.note}.</p>}
                 <p>{record.display.rates}</p>
+                {retries > 0 && <p>Programs that failed and were started again: {retries}.</p>}
                 <ul>
                   {record.suites.map((suite) => (
                     <li key={`${suite.name} ${suite.file}`}>

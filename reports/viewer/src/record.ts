@@ -129,6 +129,7 @@ export interface Suite {
   file: string;
   about: string;
   estimators: Estimator[];
+  retries: unknown[];
   tests: Test[];
   statements: { text: string; source: string; holds: string[]; fails: string[] }[];
   display: {
