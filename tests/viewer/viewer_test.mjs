@@ -214,6 +214,35 @@ const views = {
     await closed(page);
   },
 
+  async "an undecided claim has a card on the first screen that says what would decide it"() {
+    const name = changed("many", "undecided", (record, judge) => {
+      judge("pass", "holds");
+      record.display.suspects = [];
+      for (const test of record.suites[3].tests.slice(0, 20)) {
+        Object.assign(test, { verdict: "inconclusive", message: "the budget ended; 5 k more observations would decide" });
+        Object.assign(test.display, { standing: "undecided", verdict: "inconclusive" });
+        test.display.steps = [{ label: "write into the test", words: "", paste: "secondaries: 10000" }];
+      }
+    });
+    for (const size of Object.keys(widths)) {
+      const page = await opened(name, { size });
+      const card = page.locator(".card").first();
+      const box = await card.boundingBox();
+      assert.ok(box.y + box.height <= widths[size][1], `the first card ends at ${box.y + box.height}`);
+      for (const part of [/the budget ended/, /write into the test\s+secondaries: 10000/]) assert.match(await plain(card), part);
+      assert.equal(await page.locator(".card").count(), 12);
+      await page.getByRole("link", { name: "8 more" }).click();
+      assert.equal(await rows(page), 20);
+      await closed(page);
+    }
+    // The cards of broken claims come first.
+    const page = await opened("example");
+    const kinds = await page.locator(".card").evaluateAll((all) => all.map((card) => card.className));
+    assert.deepEqual(kinds.slice(-2), ["card undecided", "card undecided"]);
+    assert.equal(kinds.filter((kind) => kind === "card").length, kinds.length - 2);
+    await closed(page);
+  },
+
   async "an alarm of nights shows when it moved and what changed"() {
     const page = await opened("example");
     const card = page.locator(".card", { hasText: "drifted" });

@@ -1,4 +1,4 @@
-// Cards show what broke: a card a suspect, and a card a ledger's alarm.
+// Cards show what broke: a card a suspect, and a card a ledger's alarm. Undecided claims have cards of their own.
 import { useContext } from "preact/hooks";
 import { NightsChart } from "./charts";
 import { Advice, Copy, Steps, Told } from "./claims";
@@ -76,6 +76,35 @@ export function WhatBroke() {
           <Fold title="Statistics">{() => <p class="quiet">{words?.sentence}</p>}</Fold>
         </article>
       ))}
+    </section>
+  );
+}
+
+/// A card an undecided claim: what it came to, and what would decide it.
+export function WhatIsUndecided() {
+  const { record } = useContext(PageContext);
+  const undecided = record.suites.flatMap((suite) => suite.tests.filter((test) => test.display.standing === "undecided"));
+  if (undecided.length === 0) return null;
+  return (
+    <section aria-label="What is undecided">
+      <h2>What is undecided</h2>
+      {undecided.slice(0, most).map((test, i) => (
+        <article class="card undecided" key={`${i} ${test.id}`}>
+          <h3>
+            {test.name}{" "}
+            <span class="quiet">
+              <a href={link({ open: [test.id] })}>Details</a>
+            </span>
+          </h3>
+          <Told test={test} />
+          <Steps test={test} />
+        </article>
+      ))}
+      {undecided.length > most && (
+        <p>
+          <a href={link({ show: "undecided" })}>{undecided.length - most} more are in the list of undecided claims.</a>
+        </p>
+      )}
     </section>
   );
 }

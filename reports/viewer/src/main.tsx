@@ -1,7 +1,7 @@
 import { render } from "preact";
 import { useEffect, useMemo, useRef } from "preact/hooks";
 import { CalibrationPage, type Calibration } from "./calibration";
-import { WhatBroke } from "./cards";
+import { WhatBroke, WhatIsUndecided } from "./cards";
 import { Claims } from "./claims";
 import { PageContext } from "./page";
 import { unpack, type Page, type Standing } from "./record";
@@ -92,7 +92,12 @@ function App({ page }: { page: Page }) {
         </p>
       </header>
       <main>
-        {state.show === "all" && state.find === "" && <WhatBroke />}
+        {state.show === "all" && state.find === "" && (
+          <>
+            <WhatBroke />
+            <WhatIsUndecided />
+          </>
+        )}
         <Claims suites={record.suites} state={state} change={change} />
         <section aria-label="More" class="more-sections">
           {record.suites.map((suite) => (
