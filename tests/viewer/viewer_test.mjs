@@ -435,6 +435,26 @@ const views = {
     }
   },
 
+  async "names of estimators that are alike do not overlap on the chart of cost against variance"() {
+    const name = changed("example", "alike", ({ suites: [suite] }) => {
+      const [model] = suite.estimators;
+      model.channels[0].variance.value = 0.5;
+      suite.estimators = Array.from({ length: 30 }, (_, i) => ({ ...model, name: `an_estimator_with_a_long_name_${i}` }));
+    });
+    for (const size of Object.keys(widths)) {
+      const page = await opened(name, { size });
+      await page.locator("summary", { hasText: "Estimators: triangle" }).first().click();
+      const names = page.locator('svg[aria-label="Cost against variance"] text', { hasText: "an_" });
+      await names.first().waitFor();
+      const boxes = await names.evaluateAll((all) => all.map((one) => one.getBoundingClientRect().toJSON()));
+      boxes.sort((a, b) => a.top - b.top);
+      assert.equal(boxes.length, 30);
+      boxes.forEach((box, i) => assert.ok(i === 0 || box.top >= boxes[i - 1].bottom - 1, JSON.stringify(boxes.slice(i - 1, i + 1))));
+      assert.ok(boxes.every(({ right }) => right <= widths[size][0]), "names end within the page");
+      await closed(page);
+    }
+  },
+
   async "print shows the summary and failures only"() {
     const page = await opened("example");
     await click_all(page, '.suite h3 button[aria-expanded="false"]');

@@ -1,5 +1,5 @@
 // Charts by Observable Plot, drawn when they are looked at.
-import { areaY, dot, line, plot, rectY, ruleX, ruleY, text, type PlotOptions } from "@observablehq/plot";
+import { areaY, dot, line, link, plot, rectY, ruleX, ruleY, text, type PlotOptions } from "@observablehq/plot";
 import { useEffect, useRef } from "preact/hooks";
 import { finite, type Channel, type Estimator, type Sample, type Series, type Test } from "./record";
 
@@ -184,7 +184,19 @@ export function NightsChart({ series }: { series: Series }) {
   );
 }
 
-/// Cost of a primary estimate against its variance. Lines join equal efficiency.
+/// The places moved apart along a line of this length, in their order, by at least the gap.
+function apart(places: number[], gap: number, length: number): number[] {
+  const order = places.map((_, i) => i).sort((a, b) => places[a]! - places[b]!);
+  const moved = [...places];
+  let least = 0;
+  for (const i of order) least = (moved[i] = Math.max(moved[i]!, least)) + gap;
+  let most = length;
+  for (const i of order.reverse()) most = (moved[i] = Math.min(moved[i]!, most)) - gap;
+  return moved;
+}
+
+/// Cost of a primary estimate against its variance. Lines join equal efficiency. The names stand in
+/// a column at the right, where they have room.
 export function PlaneChart({ estimators }: { estimators: Estimator[] }) {
   const points = estimators.flatMap(({ name, cost, primaries, secondaries, channels }) => {
     const rays = cost.camera_rays + cost.closest_hit_rays + cost.shadow_rays;
@@ -194,22 +206,33 @@ export function PlaneChart({ estimators }: { estimators: Estimator[] }) {
   });
   if (points.length < 2) return null;
   const costs = points.map((p) => p.each);
-  const ends = [Math.min(...costs) / 2, Math.max(...costs) * 2];
+  const variances = points.map((p) => p.variance);
+  const ends: [number, number] = [Math.min(...costs) / 2, Math.max(...costs) * 2];
+  const [low, high] = [Math.min(...variances) / 2, Math.max(...variances) * 2];
+  const column = innerWidth < 640 ? 130 : 190;
+  const gap = 14;
+  const length = Math.max(260, gap * points.length);
+  const logarithm = Math.log(high / low);
+  const places = apart(points.map((p) => (length * Math.log(high / p.variance)) / logarithm), gap, length);
+  const names = points.map((p, i) => ({ ...p, edge: ends[1], at: high * Math.exp((-logarithm * places[i]!) / length) }));
   const lines = points.flatMap((p, z) => ends.map((x) => ({ z, x, y: (p.each * p.variance) / x })));
   return (
     <Chart
       label="Cost against variance"
       caption="Cost of a primary estimate (across) against its variance. Lines of equal efficiency: further down is better."
       options={{
-        width: 640,
-        height: 320,
-        marginRight: 120,
-        x: { type: "log", label: null, ticks: 4, tickFormat: (n: number) => short.format(n) },
-        y: { type: "log", label: null, ticks: 4, tickFormat: (n: number) => short.format(n) },
+        width: 720,
+        height: length + 60,
+        marginTop: 25,
+        marginBottom: 35,
+        marginRight: column,
+        x: { type: "log", label: "cost", labelAnchor: "center", domain: ends, ticks: 4, tickFormat: (n: number) => short.format(n) },
+        y: { type: "log", label: "variance", domain: [low, high], ticks: 4, tickFormat: (n: number) => short.format(n) },
         marks: [
           line(lines, { x: "x", y: "y", z: "z", stroke: "var(--muted)", strokeOpacity: 0.4, clip: true }),
-          dot(points, { x: "each", y: "variance", fill: "var(--mark)", r: 4 }),
-          text(points, { x: "each", y: "variance", text: "name", dx: 7, textAnchor: "start", fill: "var(--ink)" }),
+          link(names, { x1: "each", y1: "variance", x2: "edge", y2: "at", stroke: "var(--mark)", strokeDasharray: "1 3" }),
+          dot(points, { x: "each", y: "variance", fill: "var(--mark)", r: 4, title: "name" }),
+          text(names, { x: "edge", y: "at", text: "name", title: "name", dx: 5, textAnchor: "start", fill: "var(--ink)", lineWidth: column / 12, textOverflow: "ellipsis-middle" }),
         ],
       }}
     />
