@@ -95,12 +95,30 @@ const chosen = (page) => page.locator('nav [aria-pressed="true"]').innerText();
 const rows = (page) => page.locator(".suite li").count();
 const frame = (page) => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
 
+/// How bright a part of the page looks, 0 to 1.
+async function brightness(locator) {
+  const picture = (await locator.screenshot()).toString("base64");
+  return reader.evaluate(async (base64) => {
+    const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+    const image = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
+    const canvas = new OffscreenCanvas(image.width, image.height);
+    const context = canvas.getContext("2d");
+    context.drawImage(image, 0, 0);
+    const { data } = context.getImageData(0, 0, image.width, image.height);
+    let sum = 0;
+    for (let i = 0; i < data.length; ++i) sum += i % 4 === 3 ? 0 : data[i] / 255;
+    return sum / (0.75 * data.length);
+  }, picture);
+}
+
 /// How much colour a canvas shows, 0 to 1, inside and outside a rectangle of its pixels.
 function colour(page, rectangle) {
   return page.locator(".card canvas").first().evaluate((canvas, [x, y, width, height]) => {
     const copy = document.createElement("canvas");
     Object.assign(copy, { width: canvas.width, height: canvas.height });
     const context = copy.getContext("2d", { willReadFrequently: true });
+    context.fillStyle = "#fff";
+    context.fillRect(0, 0, canvas.width, canvas.height);
     context.drawImage(canvas, 0, 0);
     const { data } = context.getImageData(0, 0, canvas.width, canvas.height);
     const sums = { inside: [0, 0], outside: [0, 0] };
@@ -388,6 +406,20 @@ const views = {
     await closed(page);
   },
 
+  async "a map of differences has the page's own colour where nothing differs, light and dark"() {
+    for (const [scheme, least, most] of [["light", 0.8, 1], ["dark", 0, 0.3]]) {
+      const page = await opened("ellipse", { scheme });
+      await frame(page);
+      for (const key of ["1", "2"]) {
+        await page.locator(".card canvas").press(key);
+        await frame(page);
+        const shown = await brightness(page.locator(".card canvas"));
+        assert.ok(shown >= least && shown <= most, `${scheme}, key ${key}: ${shown}`);
+      }
+      await closed(page);
+    }
+  },
+
   async "a single hot pixel is found by zooming to the finding"() {
     const page = await opened("hot");
     await frame(page);
@@ -397,7 +429,7 @@ const views = {
       const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
       let full = 0, x = 0, y = 0;
       for (let i = 0; i < data.length; i += 4) {
-        if (data[i] < 170 || data[i + 2] > 20) continue;
+        if (data[i] < 170 || data[i + 3] < 250) continue;
         full += 1;
         x += (i / 4) % canvas.width;
         y += Math.floor(i / 4 / canvas.width);

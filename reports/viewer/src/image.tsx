@@ -13,12 +13,12 @@ const modes: { mode: Mode; name: string }[] = [
 const orange = [179, 64, 10];
 const blue = [33, 90, 160];
 
-/// White at 0, orange at 1, blue at -1.
+/// Clear at 0, so that the page shows, orange at 1, blue at -1.
 function signed(rgba: Uint8ClampedArray, i: number, value: number) {
   const t = Math.min(1, Math.abs(value));
   const full = value > 0 ? orange : blue;
-  for (let c = 0; c < 3; ++c) rgba[4 * i + c] = 255 + t * ((full[c] ?? 0) - 255);
-  rgba[4 * i + 3] = 255;
+  for (let c = 0; c < 3; ++c) rgba[4 * i + c] = full[c] ?? 0;
+  rgba[4 * i + 3] = 255 * t;
 }
 
 /// Sums over a window around each pixel, cut at the edges, with the number of pixels.
@@ -294,6 +294,7 @@ function Viewer({ painter, name }: { painter: Painter; name: string }) {
       <div class="picture" style={{ width: `min(100%, ${(70 * width) / height}vh)` }}>
       <canvas
         ref={shown}
+        class={scales[mode] && "map"}
         width={canvasSize.width}
         height={canvasSize.height}
         tabIndex={0}
@@ -379,7 +380,7 @@ export function CellMap({ picture }: { picture: Picture }) {
   }, [picture]);
   return (
     <figure>
-      <canvas class="cells" ref={canvas} width={width} height={height} role="img" aria-label={title} />
+      <canvas class="cells map" ref={canvas} width={width} height={height} role="img" aria-label={title} />
       <figcaption>
         {title}. Largest: {Number(most.toPrecision(3))}.
       </figcaption>
