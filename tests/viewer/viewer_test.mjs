@@ -487,6 +487,25 @@ const views = {
     }
   },
 
+  async "print is dark on white, whatever the screen's scheme, and a sound run prints no list"() {
+    const page = await opened("example", { scheme: "dark" });
+    await page.emulateMedia({ media: "print" });
+    const ink = await page.locator(".card .sentence").first().evaluate((one) => getComputedStyle(one).color);
+    assert.equal(ink, "rgb(23, 25, 28)");
+    const high = await page.locator(".card .picture").first().evaluate((one) => one.getBoundingClientRect().height);
+    assert.ok(high <= 320, `the picture is ${high} pixels high`);
+    await closed(page);
+    const sound = changed("many", "sound", (record, judge) => {
+      judge("pass", "holds");
+      record.display.suspects = [];
+    });
+    const other = await opened(sound);
+    await other.emulateMedia({ media: "print" });
+    assert.ok(await other.locator("h1").isVisible());
+    assert.equal(await other.locator("h2:visible, h3:visible").count(), 0);
+    await closed(other);
+  },
+
   async "print shows the summary and failures only"() {
     const page = await opened("example");
     await click_all(page, '.suite h3 button[aria-expanded="false"]');
@@ -495,6 +514,7 @@ const views = {
     assert.ok((await page.locator(".suite li.bad:visible").count()) > 0);
     assert.ok(await page.locator("h1").isVisible());
     assert.equal(await page.locator("nav:visible, input:visible").count(), 0);
+    assert.ok((await page.locator(".suite li.open:visible").count()) > 0, "undecided claims are printed");
     if (screenshots) await page.screenshot({ path: join(screenshots, "print.png"), fullPage: true });
     await closed(page);
   },
