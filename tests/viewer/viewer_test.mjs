@@ -144,6 +144,8 @@ async function parts_open(size) {
   assert.ok(wide <= widths[size][0], `${wide} pixels wide`);
   assert.ok((await page.locator("figure svg").count()) > 10, "charts are drawn");
   assert.equal(await page.locator("svg style").count(), 0);
+  const named = await page.locator(".detail figure svg").evaluateAll((all) => all.map((svg) => (svg.textContent.match(/[↑→]/g) ?? []).length));
+  assert.ok(named.every((names) => names === 2), `names of axes: ${named}`);
   assert.ok((await page.locator(".matrix td").count()) > 0, "the matrix of planted bugs is shown");
   assert.match(await page.locator(".statements").innerText(), /contradicted/);
   const intervals = await page.locator(".detail").allInnerTexts();

@@ -3,7 +3,7 @@ import { areaY, dot, line, link, plot, rectY, ruleX, ruleY, text, type PlotOptio
 import { useEffect, useRef } from "preact/hooks";
 import { finite, type Channel, type Estimator, type Sample, type Series, type Test } from "./record";
 
-const percent = new Intl.NumberFormat("en", { style: "percent", maximumSignificantDigits: 3 });
+const percent = (n: number) => `${Number((100 * n).toPrecision(3))} %`;
 const short = new Intl.NumberFormat("en", { notation: "compact", maximumSignificantDigits: 3 });
 
 export function Chart({ options, label, caption }: { options: PlotOptions; label: string; caption: string }) {
@@ -13,8 +13,10 @@ export function Chart({ options, label, caption }: { options: PlotOptions; label
     const wanted = options.width ?? 340;
     const width = options.marginLeft ? wanted : Math.min(wanted, innerWidth - 70);
     const drawn = plot({
-      height: 190,
-      marginLeft: 52,
+      height: 200,
+      marginTop: 25,
+      marginBottom: 36,
+      marginLeft: 56,
       className: "plot",
       ariaLabel: label,
       ...options,
@@ -51,8 +53,8 @@ export function HistogramChart({ sample, channel }: { sample: Sample; channel: C
       label={`Histogram of ${sample.estimator}`}
       caption={caption}
       options={{
-        x: { label: null, ticks: 4 },
-        y: { label: null, axis: null },
+        x: { label: "value", ticks: 4 },
+        y: { label: "observations", ticks: 3, tickFormat: (n: number) => short.format(n) },
         marks: [
           rectY(bins, { x1: "x1", x2: "x2", y: "count", fill: "var(--mark)", fillOpacity: 0.55, inset: 0.3 }),
           ruleY([0]),
@@ -81,11 +83,11 @@ export function LooksChart({ test }: { test: Test }) {
       label="Estimate after each look"
       caption={`The estimate and its interval after each look, by observations.${unit ? " Band: what need not be caught." : ""}`}
       options={{
-        x: { type: "log", label: null, ticks: 4, tickFormat: (n: number) => short.format(n) },
+        x: { type: "log", label: "observations", ticks: 4, tickFormat: (n: number) => short.format(n) },
         y: {
-          label: null,
+          label: "estimate",
           ticks: 5,
-          tickFormat: test.effect.relative ? (n: number) => percent.format(n) : undefined,
+          tickFormat: test.effect.relative ? percent : undefined,
         },
         marks: [
           ...(unit
@@ -113,8 +115,8 @@ export function QuantileChart({ sample }: { sample: Sample }) {
       label={`Quantiles of ${sample.estimator}`}
       caption={`${sample.estimator}: quantiles against those of a normal law. A straight line is normal.`}
       options={{
-        x: { label: null },
-        y: { label: null },
+        x: { label: "standard deviations of a normal law" },
+        y: { label: "observed value" },
         marks: [dot(points, { x: "x", y: "y", r: 2, fill: "var(--mark)" })],
       }}
     />
@@ -122,9 +124,10 @@ export function QuantileChart({ sample }: { sample: Sample }) {
 }
 
 export function LawsChart({ channel }: { channel: Channel }) {
-  const points = channel.laws.flatMap(({ source, points }) =>
+  const sides = ["mark", "other"]; // both may be one estimator's
+  const points = channel.laws.flatMap(({ points }, i) =>
     points.map((p) => ({
-      source,
+      side: sides[i],
       value: finite(p.value),
       observed: finite(p.observed),
       low: finite(p.low),
@@ -134,17 +137,19 @@ export function LawsChart({ channel }: { channel: Channel }) {
   );
   if (points.length === 0) return null;
   const claimed = points.filter((p) => p.law !== null);
+  const [one, other] = channel.laws.map(({ source }) => source);
+  const colours = other === undefined ? "" : ` Blue: ${one}. Orange: ${other}.`;
   return (
     <Chart
       label="Distribution functions"
-      caption={`Part of the values up to x, with the band that holds the law.${claimed.length ? " Dashed: the claimed law." : ""}`}
+      caption={`Part of the values up to x, with the band that holds the law.${colours}${claimed.length ? " Dashed: the claimed law." : ""}`}
       options={{
-        x: { label: null, ticks: 5 },
-        y: { label: null, domain: [0, 1] },
-        color: { range: ["var(--mark)", "var(--other)"] },
+        x: { label: "x", ticks: 5 },
+        y: { label: "part of the values", domain: [0, 1] },
+        color: { domain: sides, range: ["var(--mark)", "var(--other)"] },
         marks: [
-          areaY(points, { x: "value", y1: "low", y2: "high", fill: "source", fillOpacity: 0.2 }),
-          line(points, { x: "value", y: "observed", stroke: "source" }),
+          areaY(points, { x: "value", y1: "low", y2: "high", fill: "side", fillOpacity: 0.2 }),
+          line(points, { x: "value", y: "observed", stroke: "side" }),
           line(claimed, { x: "value", y: "law", stroke: "var(--ink)", strokeDasharray: "5 3" }),
         ],
       }}
@@ -171,7 +176,7 @@ export function NightsChart({ series }: { series: Series }) {
         width: 900,
         height: 240,
         x: { type: "utc", label: null },
-        y: { label: null, tickFormat: series.relative ? (n: number) => percent.format(n) : undefined },
+        y: { label: "estimate", tickFormat: series.relative ? percent : undefined },
         marks: [
           ruleY([0], { stroke: "var(--muted)" }),
           ruleX(moved, { stroke: "var(--bad)", strokeWidth: 2 }),
@@ -223,8 +228,6 @@ export function PlaneChart({ estimators }: { estimators: Estimator[] }) {
       options={{
         width: 720,
         height: length + 60,
-        marginTop: 25,
-        marginBottom: 35,
         marginRight: column,
         x: { type: "log", label: "cost", labelAnchor: "center", domain: ends, ticks: 4, tickFormat: (n: number) => short.format(n) },
         y: { type: "log", label: "variance", domain: [low, high], ticks: 4, tickFormat: (n: number) => short.format(n) },
