@@ -275,10 +275,10 @@ const views = {
   },
 
   async "the axis is shown where some claim has what must be caught"() {
-    for (const [name, axes] of [["example", 1], ["without-detect", 0]]) {
-      const page = await opened(name);
+    for (const [name, axes, size] of [["example", 1, "wide"], ["example", 1, "phone"], ["without-detect", 0, "wide"]]) {
+      const page = await opened(name, { size });
       assert.equal(await page.locator(".row.head", { hasText: "must be caught" }).count(), axes);
-      assert.equal(await page.locator(".row.head svg.axis").count(), axes);
+      assert.equal(await page.locator(".row.head svg.axis:visible").count(), axes);
       await closed(page);
     }
   },
@@ -406,6 +406,16 @@ const views = {
     const much = await colour(page, [610, 284, 60, 32]);
     assert.ok(much.inside > 3 * much.outside, JSON.stringify(much));
     await closed(page);
+  },
+
+  async "controls stand beside their picture, on a phone below it"() {
+    for (const size of Object.keys(widths)) {
+      const page = await opened("example", { size });
+      const [picture, controls] = await Promise.all([".card .picture", ".card .controls"].map((part) => page.locator(part).first().boundingBox()));
+      const between = size === "phone" ? controls.y - picture.y - picture.height : controls.x - picture.x - picture.width;
+      assert.ok(between >= 8 && between <= 24, `${between} pixels lie between at ${widths[size][0]}`);
+      await closed(page);
+    }
   },
 
   async "a map of differences has the page's own colour where nothing differs, light and dark"() {

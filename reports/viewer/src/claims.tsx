@@ -1,4 +1,5 @@
 // The list of all claims: suites, rows, and what a row opens to.
+import { Fragment } from "preact";
 import { useContext, useState } from "preact/hooks";
 import { Axis, Bar, hasBar } from "./bar";
 import { HistogramChart, LawsChart, LooksChart, QuantileChart } from "./charts";
@@ -28,7 +29,14 @@ export function Copy({ command, label = "" }: { command: string; label?: string 
   return (
     <div class="command">
       {label && <span class="quiet">{label}</span>}
-      <code title={command}>{command}</code>
+      <code title={command}>
+        {command.split(" ").map((word, i) => (
+          <Fragment key={i}>
+            {i > 0 && " "}
+            <span class="word">{word}</span>
+          </Fragment>
+        ))}
+      </code>
       <button type="button" onClick={copy}>
         {done ? "Copied" : "Copy"}
       </button>

@@ -130,12 +130,12 @@ function App({ page }: { page: Page }) {
                 <ul>
                   {record.suites.map((suite) => (
                     <li key={`${suite.name} ${suite.file}`}>
-                      {suite.name} ({suite.file}): {suite.display.levels}. {suite.about}
+                      {suite.name}{suite.file && ` (${suite.file})`}: {suite.display.levels}. {suite.about}
                     </li>
                   ))}
                 </ul>
                 <p>
-                  {record.tool.name} {record.tool.version}, {record.started}, {environment.threads} threads of {environment.cpu}, {environment.isa}, {environment.compiler}
+                  {record.tool.name} {record.tool.version}, {record.started}, {environment.threads} {environment.threads === 1 ? "thread" : "threads"} of {environment.cpu}, {environment.isa}, {environment.compiler}
                 </p>
               </>
             )}
