@@ -469,8 +469,11 @@ const views = {
   },
 
   async "a calibration shows its rates, its verdict and its tables"() {
-    for (const scheme of ["light", "dark"]) {
-      const page = await opened("calibration", { scheme });
+    for (const [scheme, size] of [["light", "wide"], ["dark", "phone"]]) {
+      const page = await opened("calibration", { scheme, size });
+      const letters = await page.locator("figure svg text").first().boundingBox();
+      assert.ok(letters.height > 10, `letters are ${letters.height} pixels high`);
+      assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= widths[size][0]);
       assert.match(await page.locator("h1").innerText(), /Calibration: 1 of 4 cells/);
       assert.equal(await page.locator("figure svg").count(), 2);
       assert.match(await page.locator("pre.code").innerText(), /0\.15 of <means>/);

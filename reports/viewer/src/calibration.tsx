@@ -46,15 +46,16 @@ function Rates({ data, alpha }: { data: Calibration["calibration"]; alpha: numbe
     }));
   if (points.length === 0) return null;
   const places = points.map((point) => point.place);
+  const column = Math.min(430, 20 + 6.5 * Math.max(...places.map((place) => place.length)));
   return (
     <Chart
       label={`Rates of mistakes at alpha ${alpha}`}
       caption={`How often each method errs, as a multiple of the promised rate, with its exact interval cut at 4. 1: as promised. Dashed: tolerated.`}
       options={{
-        width: 900,
-        height: 50 + 18 * points.length,
-        marginLeft: 430,
-        x: { label: null, domain: [0, 4], clamp: true },
+        width: column + 470,
+        height: 70 + 18 * points.length,
+        marginLeft: column,
+        x: { label: "rate of mistakes, over the promised one", domain: [0, 4], clamp: true },
         y: { label: null, domain: places },
         marks: [
           ruleX([1], { stroke: "var(--muted)" }),
@@ -79,7 +80,9 @@ export function CalibrationPage({ calibration: data, title, sound, text }: Calib
       <main>
         {alphas.map((alpha) => (
           <section key={alpha} aria-label={`alpha ${alpha}`}>
-            <h2>Promised: at most {Number((100 * alpha).toPrecision(3))} mistakes in 100</h2>
+            <h2>
+              Promised: at most {Number((100 * alpha).toPrecision(3))} {alpha === 0.01 ? "mistake" : "mistakes"} in 100
+            </h2>
             <div class="scroll" tabIndex={0} role="region" aria-label={`Rates at alpha ${alpha}`}>
               <Rates data={data} alpha={alpha} />
             </div>

@@ -13,9 +13,9 @@ export function Chart({ options, label, caption }: { options: PlotOptions; label
     const wanted = options.width ?? 340;
     const width = options.marginLeft ? wanted : Math.min(wanted, innerWidth - 70);
     const drawn = plot({
-      height: 200,
+      height: 204,
       marginTop: 25,
-      marginBottom: 36,
+      marginBottom: 40,
       marginLeft: 56,
       className: "plot",
       ariaLabel: label,
@@ -227,7 +227,7 @@ export function PlaneChart({ estimators }: { estimators: Estimator[] }) {
       caption="Cost of a primary estimate (across) against its variance. Lines of equal efficiency: further down is better."
       options={{
         width: 720,
-        height: length + 60,
+        height: length + 65,
         marginRight: column,
         x: { type: "log", label: "cost", labelAnchor: "center", domain: ends, ticks: 4, tickFormat: (n: number) => short.format(n) },
         y: { type: "log", label: "variance", domain: [low, high], ticks: 4, tickFormat: (n: number) => short.format(n) },
