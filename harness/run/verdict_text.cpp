@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "harness/plan/gate_text.h"
-#include "harness/plan/sizes.h"
 #include "harness/run/evaluate.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/theta.h"
