@@ -49,9 +49,8 @@ void note_ledger(reports::Record& record, const SuiteRuns& runs, const RunOption
     for (const TestWork& work : run->tests) outside += work.outcome.place.inside ? 0 : 1;
   }
   if (outside > 0) {
-    add_note(record,
-             fmt::format("{} of the tests {} not in the ledger: mutants and expected failures",
-                         outside, outside == 1 ? "stands" : "stand"));
+    add_note(record, fmt::format("{} test{} outside the ledger: mutants and expected failures",
+                                 outside, outside == 1 ? " is" : "s are"));
   }
   if (!options.seed) {
     add_note(record,

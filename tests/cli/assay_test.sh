@@ -227,7 +227,7 @@ test_report_over_what_is_read_is_2() {
   "$assay" sample analytic/normal --secondaries 200 >rows.txt 2>err
   cp rows.txt before
   expect 2 check 'mean(old) == 0' --estimator 'old=recorded,file=rows.txt' --report html=rows.txt
-  contains err 'rows.txt: is read'
+  contains err 'rows.txt: is a file of this command'
   cmp rows.txt before || fail 'the rows were written over'
 }
 
@@ -594,6 +594,7 @@ test_calibration_tells_what_errs_and_writes_its_reports() {
     fail 'no JSON'
   expect 2 calibrate welsh
   contains err 'did you mean `welch`'
+  expect 2 calibrate nothing
   contains err 'influence-t'
   expect 2 calibrate --law cauchy
   contains err 'student_t(5)'

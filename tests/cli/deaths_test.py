@@ -56,9 +56,9 @@ WAYS = {
     "chatter": r"exit status 3.*no light",
     "flood": r"cannot be understood",
     "deaf": r"no light|closed its standard input",
-    "short": r"missing|the line `ready`|of no use|cannot be read",
-    "long": r"should be a line of 1 number|not end with the question|of no use",
-    "garbage": r"cannot be understood|of no use|not a number",
+    "short": r"missing|the line `ready`|unusable|cannot be read",
+    "long": r"should be a line of 1 number|not end with the question|unusable",
+    "garbage": r"cannot be understood|unusable|not a number",
     "nan": r"not finite|nan",
     "inf": r"not finite",
     "beyond": r"above 1|outside|must have length 1",
@@ -66,7 +66,7 @@ WAYS = {
     "print": r"printed `lamp on",
     "refuse": r"no light",
     "nofile": r"wrote no file",
-    "empty": r"of no use|no rows",
+    "empty": r"unusable|no rows",
 }
 WAITING = {"hang", "stop", "orphan", "deaf"}  # may take a time-out each
 ANSWERS = {"nan", "inf", "beyond"}    # are observations, that no hello has

@@ -336,7 +336,7 @@ test_seconds_of_kept_files_are_refused() {
     '  kept: {plugin: command, command: [sh, render.sh, "{seed}", "{out}"], output: text}' \
     'tests:' '  - {claim: efficiency(kept) > 1, cost: seconds}' >kept.yaml
   expect 2 run kept.yaml
-  tells err 'keeps its files'
+  tells err '`kept` is read, not drawn'
 }
 
 test_a_library_does_not_outlive_the_run() {

@@ -119,7 +119,7 @@ test_a_wrong_density_of_a_library_fails() {
   library steeper '' 'return 2 * p[2] * p[2] / PI * .75;' 'return 1.5 * p[2] * p[2];'
   claims wrong.yaml steeper
   expect 1 run wrong.yaml --filter '*cosine*' --report json=run.json
-  contains out 'farthest off in theta'
+  contains out '(the first of them theta'
   contains out 'the first is observation 0; probability of an inconsistent draw is'
   verdict_is run.json 'distribution(mine.cosine) == density' fail
   verdict_is run.json 'distribution(mine.cosine.theta) == density' fail
@@ -234,7 +234,7 @@ test_densities_that_break_are_errors_and_the_others_finish() {
   message run.json exits
   tells err 'ended with exit status 5'
   expect 1 plan broken.yaml --filter '*/crashes'
-  tells out 'error: the density that `crashes` declares cannot be had'
+  tells out 'error: the density that `crashes` declares cannot be computed'
   none_left
 }
 

@@ -77,7 +77,7 @@ Claim some_claim() {
     claim.right = Constant{*positive(), 0};
     return claim;
   }
-  claim.left.slope = *gen::arbitrary<bool>();
+  claim.left.slope = row.slope != nullptr && *gen::arbitrary<bool>();
   const int kind = *gen::inRange(0, 3);
   if (kind == 0 && !claim.left.slope) {
     claim.right = ScaledQuantity{*positive(), quantity(row, *source(), u)};
