@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cstdint>
+#include <exception>
 #include <string>
 
+#include "estimators/core/flow.h"
 #include "estimators/core/value.h"
+#include "estimators/core/value_checks.h"
 
 namespace assay::recorded {
 
@@ -32,100 +34,37 @@ std::string save_it(const std::string& as) {
 }
 
 struct Header {
-  std::string type;  ///< as `<f8`; empty for records
+  std::string type;  ///< as `<f8`
   bool fortran = false;
   std::vector<std::size_t> shape;
 };
 
-/// Python's dictionary of three entries, as numpy writes it.
-class HeaderReader {
- public:
-  HeaderReader(const ByteSource& source, std::string_view text) : source_(source), text_(text) {}
-
-  Header read() {
-    Header header;
-    std::array<bool, 3> seen{};
-    expect('{');
-    while (!accept('}')) {
-      const std::string key = string();
-      expect(':');
-      const std::array<std::string_view, 3> keys{"descr", "fortran_order", "shape"};
-      const auto which = static_cast<std::size_t>(std::ranges::find(keys, key) - keys.begin());
-      if (which == keys.size() || seen[which]) fail();
-      seen[which] = true;
-      if (which == 0) header.type = type();
-      if (which == 1) header.fortran = boolean();
-      if (which == 2) header.shape = shape();
-      if (!accept(',') && next() != '}') fail();
+/// Reads Python's dictionary of three entries. But for quotes and the brackets of its tuple it is a
+/// flow map.
+Header header_of(const ByteSource& source, std::string text) {
+  if (text.find('[') != text.npos) {
+    refuse(source, "it is an array of records, and an observation is a row of numbers;" +
+                       save_it("a[a.dtype.names[0]]"));
+  }
+  if (std::ranges::count(text, '(') != 1) refuse_header(source);
+  std::erase_if(text, [](char c) { return c == '\'' || c == '"' || c == '\n'; });
+  std::ranges::replace(text, '(', '[');
+  std::ranges::replace(text, ')', ']');
+  try {
+    const Value entries = parse_flow(text);
+    require_keys(entries, "a header", {"descr", "fortran_order", "shape"});
+    const std::string order = required_key(entries, "a header", "fortran_order").string("an order");
+    if (order != "True" && order != "False") refuse_header(source);
+    Header header{.type = required_key(entries, "a header", "descr").string("a type"),
+                  .fortran = order == "True"};
+    for (const Value& size : required_key(entries, "a header", "shape").items()) {
+      header.shape.push_back(size.count("a size"));
     }
-    if (next() != '\0' || std::ranges::find(seen, false) != seen.end()) fail();
     return header;
+  } catch (const std::exception&) {
+    refuse_header(source);
   }
-
- private:
-  [[noreturn]] void fail() const { refuse_header(source_); }
-
-  /// The next character that is no blank; '\0' at the end.
-  char next() {
-    const std::size_t first = text_.find_first_not_of(" \t\n");
-    text_.remove_prefix(std::min(first, text_.size()));
-    return text_.empty() ? '\0' : text_.front();
-  }
-  bool accept(char c) {
-    if (next() != c) return false;
-    text_.remove_prefix(1);
-    return true;
-  }
-  void expect(char c) {
-    if (!accept(c)) fail();
-  }
-  bool accept(std::string_view word) {
-    next();
-    if (!text_.starts_with(word)) return false;
-    text_.remove_prefix(word.size());
-    return true;
-  }
-
-  std::string string() {
-    const char quote = next();
-    if (quote != '\'' && quote != '"') fail();
-    const std::size_t end = text_.find(quote, 1);
-    if (end == text_.npos) fail();
-    const std::string_view inside = text_.substr(1, end - 1);
-    text_.remove_prefix(end + 1);
-    return std::string(inside);
-  }
-
-  std::string type() {
-    if (next() != '[') return string();
-    refuse(source_, "it is an array of records, and an observation is a row of numbers;" +
-                        save_it("a[a.dtype.names[0]]"));
-  }
-
-  bool boolean() {
-    if (accept("True")) return true;
-    if (!accept("False")) fail();
-    return false;
-  }
-
-  std::vector<std::size_t> shape() {
-    std::vector<std::size_t> sizes;
-    expect('(');
-    while (!accept(')')) {
-      next();
-      std::size_t size = 0;
-      const auto [end, problem] = std::from_chars(text_.data(), text_.data() + text_.size(), size);
-      if (problem != std::errc{}) fail();
-      text_.remove_prefix(static_cast<std::size_t>(end - text_.data()));
-      sizes.push_back(size);
-      if (!accept(',') && next() != ')') fail();
-    }
-    return sizes;
-  }
-
-  const ByteSource& source_;
-  std::string_view text_;
-};
+}
 
 std::size_t byte_at(std::string_view bytes, std::size_t i) {
   return static_cast<unsigned char>(bytes[i]);
@@ -150,7 +89,7 @@ Header read_header(ByteSource& source) {
   if (length > longest_header) refuse_header(source);
   bytes = source.look(whole);
   if (bytes.size() < whole) refuse_header(source);
-  const Header header = HeaderReader(source, bytes.substr(fixed + digits, length)).read();
+  const Header header = header_of(source, std::string(bytes.substr(fixed + digits, length)));
   source.take(whole);
   return header;
 }
