@@ -120,6 +120,10 @@ const Value* Value::find(std::string_view key) const {
   return member == members_.end() ? nullptr : &member->second;
 }
 
+void Value::require(bool holds, const std::string& why) const {
+  if (!holds) throw InputError(where_, why);
+}
+
 double Value::number(std::string_view what) const {
   if (kind_ != Kind::scalar) wrong_type(*this, what, "a number");
   const std::optional<double> value = parse_number(text_);

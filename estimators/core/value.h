@@ -66,6 +66,9 @@ class Value {
   /// The member of a map, or nullptr.
   const Value* find(std::string_view key) const;
 
+  /// InputError at the node's place, which says why, unless something holds.
+  void require(bool holds, const std::string& why) const;
+
   /// Typed readings; InputError at the node's place when the text is not that. `what` names the
   /// thing in the message ("parameter `radius`"). Numbers are finite unless they say so themselves.
   double number(std::string_view what) const;

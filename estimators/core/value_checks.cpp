@@ -9,19 +9,19 @@ namespace assay {
 
 double finite_number(const Value& value, const std::string& what) {
   const double number = value.number(what);
-  if (!std::isfinite(number)) throw InputError(value.where(), what + " must be finite");
+  value.require(std::isfinite(number), what + " must be finite");
   return number;
 }
 
 double at_least_zero(const Value& value, const std::string& what) {
   const double number = finite_number(value, what);
-  if (number < 0) throw InputError(value.where(), what + " must not be negative");
+  value.require(number >= 0, what + " must not be negative");
   return number;
 }
 
 double above_zero(const Value& value, const std::string& what) {
   const double number = finite_number(value, what);
-  if (!(number > 0)) throw InputError(value.where(), what + " must be above 0");
+  value.require(number > 0, what + " must be above 0");
   return number;
 }
 
@@ -31,7 +31,7 @@ std::string alternatives(std::string_view name, const std::vector<std::string>& 
 
 void require_keys(const Value& value, const std::string& what,
                   const std::vector<std::string>& known) {
-  if (value.kind() != Value::Kind::map) throw InputError(value.where(), what + " must be a map");
+  value.require(value.kind() == Value::Kind::map, what + " must be a map");
   for (const auto& [key, member] : value.members()) {
     if (std::ranges::find(known, key) == known.end()) {
       throw InputError(member.where(),

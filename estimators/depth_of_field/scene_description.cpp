@@ -11,13 +11,9 @@ namespace assay::depth_of_field {
 namespace {
 
 Interval interval(const Value& value, const std::string& what) {
-  if (value.kind() != Value::Kind::list || value.items().size() != 2) {
-    throw InputError(value.where(), what + " must be a list of two numbers, low and high");
-  }
+  value.require(value.items().size() == 2, what + " must be a list of two numbers, low and high");
   const Interval out{finite_number(value.items()[0], what), finite_number(value.items()[1], what)};
-  if (!(out.low < out.high)) {
-    throw InputError(value.where(), what + " must ascend: nothing lies between its ends");
-  }
+  value.require(out.low < out.high, what + " must ascend: nothing lies between its ends");
   return out;
 }
 
@@ -33,17 +29,13 @@ Texture texture(const Value& value) {
   const Value* const amplitude = value.find("amplitude");
   const Value* const wavelength = value.find("wavelength");
   const Value* const phase = value.find("phase");
-  if (!amplitude != !wavelength || (phase && !amplitude)) {
-    throw InputError(value.where(),
-                     "a sinusoid needs `amplitude` and `wavelength`, and may have a `phase`");
-  }
+  value.require(!amplitude == !wavelength && (amplitude || !phase),
+                "a sinusoid needs `amplitude` and `wavelength`, and may have a `phase`");
   if (!amplitude) return out;
   out.amplitude = at_least_zero(*amplitude, "a plane's amplitude");
-  if (out.amplitude > out.mean) {
-    throw InputError(amplitude->where(),
+  amplitude->require(out.amplitude <= out.mean,
                      "a plane's amplitude must not exceed its radiance, or the radiance would be "
                      "negative in its troughs");
-  }
   out.frequency = 2 * std::numbers::pi / above_zero(*wavelength, "a plane's wavelength");
   if (phase) out.phase = finite_number(*phase, "a plane's phase");
   return out;
@@ -67,9 +59,8 @@ void require_apart(const std::vector<Plane>& planes, const Value& blame) {
       const Plane& a = planes[i];
       const Plane& b = planes[j];
       if (std::abs(a.depth - b.depth) > 1e-5 * a.depth) continue;
-      if (overlap(a.x, b.x) && overlap(a.y, b.y)) {
-        throw InputError(blame.where(), "two planes of one depth overlap: which is seen there?");
-      }
+      blame.require(!overlap(a.x, b.x) || !overlap(a.y, b.y),
+                    "two planes of one depth overlap: which is seen there?");
     }
   }
 }
@@ -77,9 +68,7 @@ void require_apart(const std::vector<Plane>& planes, const Value& blame) {
 SceneDescription scene(const Value& value) {
   require_keys(value, "the scene", {"lens", "background", "planes"});
   const Value& planes = required_key(value, "the scene", "planes");
-  if (planes.kind() != Value::Kind::list || planes.items().empty()) {
-    throw InputError(planes.where(), "planes must be a list of one or more");
-  }
+  planes.require(!planes.items().empty(), "planes must be a list of one or more");
   SceneDescription out{.lens = lens(required_key(value, "the scene", "lens"))};
   if (const Value* const background = value.find("background")) {
     out.background = at_least_zero(*background, "the background");

@@ -52,12 +52,10 @@ Heuristic read_heuristic(Parameters& given) {
   const auto& [kind, own] = value.members().front();
   const double number = own.number("the heuristic's " + kind);
   if (kind == "power") {
-    if (!(number >= 1)) throw InputError(own.where(), "the heuristic's power must be 1 or more");
+    own.require(number >= 1, "the heuristic's power must be 1 or more");
     return Heuristic::power(number);
   }
-  if (!(number >= 0 && number <= 1)) {
-    throw InputError(own.where(), "the heuristic's cutoff must be in [0, 1]");
-  }
+  own.require(number >= 0 && number <= 1, "the heuristic's cutoff must be in [0, 1]");
   return Heuristic::cutoff(number);
 }
 

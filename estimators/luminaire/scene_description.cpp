@@ -35,8 +35,9 @@ Light polygon_light(const Value& value, const Receiver& receiver, double radianc
       given ? read_unit_vector(*given, "the light's normal") : receiver.position - vertices[0];
   const double cosine = dot(emitting, render::normalised(render::area_vector(vertices)));
   // The normal only chooses the side, but one that is far off was meant for something else.
-  if (given && std::abs(cosine) < 0.99) {
-    throw InputError(given->where(), "the light's normal must be at right angles to its polygon");
+  if (given) {
+    given->require(std::abs(cosine) >= 0.99,
+                   "the light's normal must be at right angles to its polygon");
   }
   const bool clockwise = dot(render::area_vector(vertices), emitting) < 0;
   return {std::move(vertices), radiance, clockwise};
@@ -44,19 +45,17 @@ Light polygon_light(const Value& value, const Receiver& receiver, double radianc
 
 Light light(const Value& value, const Receiver& receiver, const std::string& folder) {
   require_keys(value, "the light", {"polygon", "obj", "normal", "radiance"});
-  const bool from_file = value.find("obj") != nullptr;
-  if (from_file == (value.find("polygon") != nullptr)) {
-    throw InputError(value.where(), "the light needs either `polygon` or `obj`");
-  }
-  if (from_file && value.find("normal")) {
-    throw InputError(value.find("normal")->where(),
-                     "the light's normal belongs to a polygon; an OBJ file's faces emit from the "
-                     "side on which they are counter-clockwise");
+  const Value* const file = value.find("obj");
+  const Value* const normal = value.find("normal");
+  value.require(!file != !value.find("polygon"), "the light needs either `polygon` or `obj`");
+  if (normal) {
+    normal->require(!file,
+                    "the light's normal belongs to a polygon; an OBJ file's faces emit from the "
+                    "side on which they are counter-clockwise");
   }
   const double radiance =
       at_least_zero(required_key(value, "the light", "radiance"), "the light's radiance");
-  if (from_file)
-    return {read_mesh(*value.find("obj"), "the light's file", folder), radiance, false};
+  if (file) return {read_mesh(*file, "the light's file", folder), radiance, false};
   return polygon_light(value, receiver, radiance);
 }
 
@@ -69,9 +68,8 @@ Disc disc(const Value& value) {
 
 Occluder occluder(const Value& value, const std::string& folder) {
   require_keys(value, "an occluder", {"polygon", "disc", "obj"});
-  if (value.members().size() != 1) {
-    throw InputError(value.where(), "an occluder needs one of `polygon`, `disc` and `obj`");
-  }
+  value.require(value.members().size() == 1,
+                "an occluder needs one of `polygon`, `disc` and `obj`");
   const auto& [key, form] = value.members().front();
   if (key == "polygon") return read_polygon(form, "an occluder's polygon");
   if (key == "disc") return disc(form);
@@ -95,10 +93,8 @@ constexpr NamedScene built_in[] = {
 }  // namespace
 
 Vector3 read_vector(const Value& value, const std::string& what) {
-  if (value.kind() != Value::Kind::list || value.items().size() != 3) {
-    throw InputError(value.where(), what + " must be a list of three numbers");
-  }
   const std::vector<Value>& items = value.items();
+  value.require(items.size() == 3, what + " must be a list of three numbers");
   return {finite_number(items[0], what), finite_number(items[1], what),
           finite_number(items[2], what)};
 }
@@ -106,32 +102,24 @@ Vector3 read_vector(const Value& value, const std::string& what) {
 Vector3 read_unit_vector(const Value& value, const std::string& what) {
   const Vector3 v = read_vector(value, what);
   const double scale = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
-  if (scale == 0) throw InputError(value.where(), what + " must not be the zero vector");
+  value.require(scale != 0, what + " must not be the zero vector");
   return render::normalised(v / scale);
 }
 
 Polygon read_polygon(const Value& value, const std::string& what) {
-  if (value.kind() != Value::Kind::list || value.items().size() < 3) {
-    throw InputError(value.where(), what + " must be a list of three or more vertices");
-  }
+  value.require(value.items().size() >= 3, what + " must be a list of three or more vertices");
   Polygon vertices;
   for (const Value& item : value.items())
     vertices.push_back(read_vector(item, "a vertex of " + what));
   const auto same = std::ranges::adjacent_find(vertices);
-  if (same != vertices.end() || vertices.front() == vertices.back()) {
-    throw InputError(value.where(), what + " has the same vertex twice in a row");
-  }
+  value.require(same == vertices.end() && vertices.front() != vertices.back(),
+                what + " has the same vertex twice in a row");
   // Rounding leaves points on a line an area of about 1e-16 squared diameters.
   const double extent = render::diameter(vertices);
-  if (!(render::area(vertices) > 1e-12 * extent * extent)) {
-    throw InputError(value.where(), what + " has no area");
-  }
-  if (!render::is_planar(vertices, planarity)) {
-    throw InputError(value.where(), what + " is not planar");
-  }
-  if (!render::is_convex(vertices)) {
-    throw InputError(value.where(), what + " is not convex: split it, or give it as an OBJ file");
-  }
+  value.require(render::area(vertices) > 1e-12 * extent * extent, what + " has no area");
+  value.require(render::is_planar(vertices, planarity), what + " is not planar");
+  value.require(render::is_convex(vertices),
+                what + " is not convex: split it, or give it as an OBJ file");
   return vertices;
 }
 
@@ -150,9 +138,7 @@ TriangleMesh read_mesh(const Value& value, const std::string& what, const std::s
 }
 
 std::vector<Occluder> read_occluders(const Value& value, const std::string& folder) {
-  if (value.kind() != Value::Kind::list) {
-    throw InputError(value.where(), "occluders must be a list");
-  }
+  value.require(value.kind() == Value::Kind::list, "occluders must be a list");
   std::vector<Occluder> list;
   for (const Value& item : value.items()) list.push_back(occluder(item, folder));
   return list;

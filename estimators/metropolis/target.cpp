@@ -161,9 +161,7 @@ class SphereTarget final : public Target {
 
 std::size_t dimensions_of(const Value& value) {
   const std::uint64_t count = value.count("`dimensions`");
-  if (count < 1 || count > most_terms) {
-    throw InputError(value.where(), "`dimensions` must be from 1 to 32");
-  }
+  value.require(count >= 1 && count <= most_terms, "`dimensions` must be from 1 to 32");
   return count;
 }
 
@@ -172,10 +170,9 @@ std::vector<double> centre_of(const Value& value, std::size_t dimensions) {
   if (value.kind() != Value::Kind::list) {
     return std::vector<double>(dimensions, finite_number(value, "a lobe's centre"));
   }
-  if (value.items().size() != dimensions) {
-    throw InputError(value.where(), "a lobe's centre must have a number for each of the " +
-                                        std::to_string(dimensions) + " dimensions");
-  }
+  value.require(value.items().size() == dimensions,
+                "a lobe's centre must have a number for each of the " + std::to_string(dimensions) +
+                    " dimensions");
   std::vector<double> centre;
   for (const Value& item : value.items()) centre.push_back(finite_number(item, "a lobe's centre"));
   return centre;
@@ -196,9 +193,8 @@ SharedTarget mixture_of(const Value& value, std::size_t pixels) {
   const std::size_t dimensions = dimensions_of(required_key(value, "the mixture", "dimensions"));
   const Value& base = required_key(value, "the mixture", "base");
   const Value& lobes = required_key(value, "the mixture", "lobes");
-  if (lobes.kind() != Value::Kind::list || lobes.items().size() >= most_terms) {
-    throw InputError(lobes.where(), "`lobes` must be a list of fewer than 32");
-  }
+  lobes.require(lobes.kind() == Value::Kind::list && lobes.items().size() < most_terms,
+                "`lobes` must be a list of fewer than 32");
   std::vector<Product> sum = {
       {at_least_zero(base, "the mixture's base"), std::vector<Factor>(dimensions, Linear{})}};
   double largest = sum[0].height;
@@ -206,7 +202,7 @@ SharedTarget mixture_of(const Value& value, std::size_t pixels) {
     sum.push_back(lobe_of(item, dimensions));
     largest = std::max(largest, sum.back().height);
   }
-  if (largest == 0) throw InputError(base.where(), "the mixture must not be 0 everywhere");
+  base.require(largest != 0, "the mixture must not be 0 everywhere");
   return std::make_shared<ProductTarget>(std::move(sum), pixels, false);
 }
 
@@ -236,7 +232,7 @@ SharedTarget read_sphere(const Value& value, std::size_t pixels, const std::stri
   require_keys(value, "the sphere", {"zones", "survival"});
   const Value& survival = required_key(value, "the sphere", "survival");
   const double q = above_zero(survival, "the sphere's survival");
-  if (q >= 1) throw InputError(survival.where(), "the sphere's survival must be below 1");
+  survival.require(q < 1, "the sphere's survival must be below 1");
   return sphere_of(zones_of(required_key(value, "the sphere", "zones"), folder), q, pixels);
 }
 

@@ -25,14 +25,11 @@ class Reader {
     const Value* form = nullptr;
     for (const char* key : {"zones", "furnace", "surfaces"}) {
       const Value* const found = value.find(key);
-      if (found && form) {
-        throw InputError(found->where(), "a scene has one of `zones`, `furnace` and `surfaces`");
-      }
-      if (found) form = found;
+      if (!found) continue;
+      found->require(!form, "a scene has one of `zones`, `furnace` and `surfaces`");
+      form = found;
     }
-    if (!form) {
-      throw InputError(value.where(), "a scene needs one of `zones`, `furnace` and `surfaces`");
-    }
+    value.require(form, "a scene needs one of `zones`, `furnace` and `surfaces`");
     const Value& camera_value = required_key(value, "the scene", "camera");
     const Camera camera = this->camera(camera_value);
     if (value.find("zones")) return {sphere(*form, camera, camera_value), camera, grey_};
@@ -54,9 +51,7 @@ class Reader {
     if (value.kind() != Value::Kind::list) return Rgb::grey(at_least_zero(value, what));
     grey_ = false;
     const std::vector<Value>& items = value.items();
-    if (items.size() != 3) {
-      throw InputError(value.where(), what + " must be a number or a list of three");
-    }
+    value.require(items.size() == 3, what + " must be a number or a list of three");
     return {at_least_zero(items[0], what), at_least_zero(items[1], what),
             at_least_zero(items[2], what)};
   }
@@ -68,36 +63,28 @@ class Reader {
     out.diffuse = colour(albedo, what + "'s albedo");
     const Value* const mirror = may_mirror ? value.find("mirror") : nullptr;
     if (mirror) out.mirror = colour(*mirror, what + "'s mirror");
-    if (largest(out.albedo()) >= 1) {
-      throw InputError(albedo.where(),
-                       what + "'s albedo" + (mirror ? ", `mirror` included," : "") +
-                           " must be below 1 in every channel: a path that never loses light "
-                           "never ends");
-    }
+    albedo.require(largest(out.albedo()) < 1,
+                   what + "'s albedo" + (mirror ? ", `mirror` included," : "") +
+                       " must be below 1 in every channel: a path that never loses light never "
+                       "ends");
     return out;
   }
 
   SphereScene sphere(const Value& value, const Camera& camera, const Value& camera_value) {
-    if (value.kind() != Value::Kind::list || value.items().empty()) {
-      throw InputError(value.where(), "zones must be a list of one or more");
-    }
+    value.require(!value.items().empty(), "zones must be a list of one or more");
     SphereScene out;
     double below = -1;
     for (const Value& item : value.items()) {
       require_keys(item, "a zone", {"top", "emission", "albedo"});
       const Value& top = required_key(item, "a zone", "top");
       const double z = top.number("a zone's top");
-      if (!(z > below && z <= 1)) {
-        throw InputError(top.where(), "the zones' tops must ascend from -1 to 1");
-      }
+      top.require(z > below && z <= 1, "the zones' tops must ascend from -1 to 1");
       below = z;
       out.zones.push_back({z, surface(item, "a zone", false)});
     }
-    if (below != 1) throw InputError(value.where(), "the last zone's top must be 1");
-    if (!(length(camera.position) < 1)) {
-      throw InputError(camera_value.where(),
-                       "the camera must be inside the unit sphere about the origin");
-    }
+    value.require(below == 1, "the last zone's top must be 1");
+    camera_value.require(length(camera.position) < 1,
+                         "the camera must be inside the unit sphere about the origin");
     return out;
   }
 
@@ -120,20 +107,16 @@ class Reader {
   };
 
   static void require_inside(const TriangleMesh& mesh, const Blame& blame) {
-    if (const std::string why = why_not_closed(mesh); !why.empty()) {
-      throw InputError(blame.file.where(), "the furnace's mesh is not closed: " + why +
-                                               ". Neighbours must share their vertices, and all "
-                                               "faces be counter-clockwise from one side");
-    }
-    if (winding_number(mesh, blame.camera.position) == 0) {
-      throw InputError(blame.camera_value.where(), "the camera must be inside the furnace");
-    }
+    const std::string why = why_not_closed(mesh);
+    blame.file.require(why.empty(), "the furnace's mesh is not closed: " + why +
+                                        ". Neighbours must share their vertices, and all faces be "
+                                        "counter-clockwise from one side");
+    blame.camera_value.require(winding_number(mesh, blame.camera.position) != 0,
+                               "the camera must be inside the furnace");
   }
 
   MeshScene surfaces(const Value& value) {
-    if (value.kind() != Value::Kind::list || value.items().empty()) {
-      throw InputError(value.where(), "surfaces must be a list of one or more");
-    }
+    value.require(!value.items().empty(), "surfaces must be a list of one or more");
     MeshScene out;
     for (const Value& item : value.items()) {
       require_keys(item, "a surface", {"polygon", "obj", "emission", "albedo", "mirror"});
@@ -146,9 +129,7 @@ class Reader {
   TriangleMesh shape(const Value& value) const {
     const Value* const polygon = value.find("polygon");
     const Value* const file = value.find("obj");
-    if (!polygon == !file) {
-      throw InputError(value.where(), "a surface needs either `polygon` or `obj`");
-    }
+    value.require(!polygon != !file, "a surface needs either `polygon` or `obj`");
     return polygon ? render::fan(luminaire::read_polygon(*polygon, "a surface's polygon"))
                    : luminaire::read_mesh(*file, "a surface's file", folder_);
   }

@@ -126,14 +126,14 @@ class Peak final : public Radiance {
   Lobe lobe_;
 };
 
-[[noreturn]] void refuse_negative(const Value& at, double least) {
-  throw InputError(at.where(), "parameter `sky`: the radiance falls to " + std::to_string(least) +
-                                   "; it must not be negative in any direction");
+void require_not_negative(const Value& at, double least) {
+  at.require(least >= 0, "parameter `sky`: the radiance falls to " + std::to_string(least) +
+                             "; it must not be negative in any direction");
 }
 
 SharedRadiance read_uniform(const Value& value) {
   const double level = finite_number(value, "`uniform`");
-  if (level < 0) refuse_negative(value, level);
+  require_not_negative(value, level);
   return std::make_shared<Gradient>(level, Vector3{});
 }
 
@@ -144,15 +144,14 @@ SharedRadiance read_gradient(const Value& value) {
   };
   const double base = finite_number(at("base"), "`base`");
   const Vector3 slope = luminaire::read_vector(at("slope"), "`slope`");
-  if (base < length(slope)) refuse_negative(value, base - length(slope));
+  require_not_negative(value, base - length(slope));
   return std::make_shared<Gradient>(base, slope);
 }
 
 SharedRadiance read_harmonics(const Value& value) {
   std::array<double, 9> coefficients{};
-  if (value.kind() != Value::Kind::list || value.items().size() != coefficients.size()) {
-    throw InputError(value.where(), "`harmonics` must be a list of nine coefficients");
-  }
+  value.require(value.items().size() == coefficients.size(),
+                "`harmonics` must be a list of nine coefficients");
   for (std::size_t i = 0; i < coefficients.size(); ++i) {
     coefficients[i] = finite_number(value.items()[i], "a coefficient of `harmonics`");
   }
@@ -160,7 +159,7 @@ SharedRadiance read_harmonics(const Value& value) {
   const Octahedron grid(6);
   double least = 0;
   for (const Vector3& w : grid.vertices()) least = std::min(least, (*sky)(w)[0]);
-  if (least < 0) refuse_negative(value, least);
+  require_not_negative(value, least);
   return sky;
 }
 
@@ -178,7 +177,7 @@ SharedRadiance read_peak(const Value& value) {
                   .direction = luminaire::read_unit_vector(at("direction"), "`direction`")};
   const double least =
       lobe.base + std::min(lobe.height, lobe.height * std::exp(-2 * lobe.sharpness));
-  if (least < 0) refuse_negative(value, least);
+  require_not_negative(value, least);
   return std::make_shared<Peak>(lobe);
 }
 
