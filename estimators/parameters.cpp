@@ -234,6 +234,10 @@ void Parameters::refuse(std::string_view name, const std::string& why) const {
   throw InputError(where(name), plugin_ + ": parameter `" + std::string(name) + "` " + why);
 }
 
+void Parameters::require(bool holds, std::string_view name, const std::string& why) const {
+  if (!holds) refuse(name, why);
+}
+
 void Parameters::require_all_read() const {
   for (const ParameterInformation& parameter : declared_) {
     if (!read_.contains(parameter.name)) {

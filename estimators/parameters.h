@@ -90,6 +90,8 @@ class Parameters {
   Location where(std::string_view name) const;
   /// An InputError at the parameter's place, beginning with plugin and parameter.
   [[noreturn]] void refuse(std::string_view name, const std::string& why) const;
+  /// The same unless something holds.
+  void require(bool holds, std::string_view name, const std::string& why) const;
 
   const std::string& plugin() const { return plugin_; }
   const std::string& folder() const { return folder_; }

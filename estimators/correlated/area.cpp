@@ -56,11 +56,9 @@ SharedPairs area_pairs(const SceneDescription& description, const Location& wher
 
 SharedPairs read_area_pairs(Parameters& given) {
   const SceneDescription scene = luminaire::read_scene(given.structure("scene"), given.folder());
-  if (!std::holds_alternative<render::Polygon>(scene.light.shape)) {
-    given.refuse("scene",
-                 "the luminaire must be one polygon: of a mesh, which may shade itself, the "
-                 "integral of the control is not known in closed form");
-  }
+  given.require(std::holds_alternative<render::Polygon>(scene.light.shape), "scene",
+                "the luminaire must be one polygon: of a mesh, which may shade itself, the "
+                "integral of the control is not known in closed form");
   return area_pairs(scene, given.where("scene"));
 }
 

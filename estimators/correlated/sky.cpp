@@ -20,11 +20,10 @@ sky::SharedDirections directions_of(Parameters& given, const sky::Setting& setti
       sampling == "emittance" ? steerable::Lobe{.coefficients = 1, .offset = 0} : steerable::Lobe{};
   const auto tree = std::make_shared<const steerable::SkyTree>(
       setting.radiance(), steerable::Preparation{.coefficients = lobe.coefficients});
-  if (!(tree->least() > 0)) {
-    given.refuse("sky", "is black at a vertex of the subdivision that `sampling: " + sampling +
-                            "` draws by: some directions would never be drawn; sample it uniformly "
-                            "or by the cosine");
-  }
+  given.require(tree->least() > 0, "sky",
+                "is black at a vertex of the subdivision that `sampling: " + sampling +
+                    "` draws by: some directions would never be drawn; sample it uniformly or by "
+                    "the cosine");
   return std::make_shared<const steerable::SteeredDirections<>>(tree, lobe, setting.frame());
 }
 

@@ -72,10 +72,9 @@ std::shared_ptr<const Setup> prepare(Parameters& given) {
                 .frequency = 2 * std::numbers::pi / given.number("wavelength"),
                 .phase = given.number("phase")},
       .exact = given.string("rays") == "exact"};
-  if (reflection.exact && !reflection.mirror.returns_all(reflection.lens, reflection.pixel)) {
-    given.refuse("curvature",
-                 "rays from the lens may miss so curved a mirror, or not come back from it");
-  }
+  given.require(
+      !reflection.exact || reflection.mirror.returns_all(reflection.lens, reflection.pixel),
+      "curvature", "rays from the lens may miss so curved a mirror, or not come back from it");
   return averaging(channel(reflection), reflection, lens_samplers());
 }
 

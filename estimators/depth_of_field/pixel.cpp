@@ -22,12 +22,11 @@ ParameterInformation pixel_parameter() {
 
 PlanePoint read_pixel(Parameters& given) {
   const Value& value = given.structure("pixel");
-  if (value.kind() != Value::Kind::list || value.items().size() != 2) {
-    given.refuse("pixel", "must be a list of two numbers, x and y on the focal plane");
-  }
+  given.require(value.items().size() == 2, "pixel",
+                "must be a list of two numbers, x and y on the focal plane");
   const PlanePoint out{value.items()[0].number("the pixel's x"),
                        value.items()[1].number("the pixel's y")};
-  if (!std::isfinite(out.x) || !std::isfinite(out.y)) given.refuse("pixel", "must be finite");
+  given.require(std::isfinite(out.x) && std::isfinite(out.y), "pixel", "must be finite");
   return out;
 }
 

@@ -121,9 +121,8 @@ std::vector<Channel> pixel_channels(const ReconstructionPlan& plan) {
 
 ReconstructionPlan read_reconstruction_plan(Parameters& given, const ReconstructionRules& rules) {
   const std::uint64_t spacing = given.count("spacing");
-  if (spacing > tile_side || (spacing & (spacing - 1)) != 0) {
-    given.refuse("spacing", "must be 0 (by the predicted bandwidth), 1, 2, 4 or 8 pixels");
-  }
+  given.require(spacing <= tile_side && (spacing & (spacing - 1)) == 0, "spacing",
+                "must be 0 (by the predicted bandwidth), 1, 2, 4 or 8 pixels");
   ReconstructionPlan plan{.setting = read_setting(given), .grid = read_grid(given)};
   const Prediction found = predict(*plan.setting, plan.grid, rules.prediction);
   plan.overhead = found.cost;

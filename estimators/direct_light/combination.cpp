@@ -46,9 +46,8 @@ Heuristic read_heuristic(Parameters& given) {
   const Value& value = given.structure("heuristic");
   if (value.kind() == Value::Kind::scalar) return named(given, value.text());
   require_keys(value, "the heuristic", {"power", "cutoff"});
-  if (value.members().size() != 1) {
-    given.refuse("heuristic", "must have one of the keys `power` and `cutoff`");
-  }
+  given.require(value.members().size() == 1, "heuristic",
+                "must have one of the keys `power` and `cutoff`");
   const auto& [kind, own] = value.members().front();
   const double number = own.number("the heuristic's " + kind);
   if (kind == "power") {

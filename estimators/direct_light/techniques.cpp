@@ -68,9 +68,8 @@ ParameterInformation brdf_parameter() {
 SharedReflectance read_reflectance(Parameters& given) {
   const Value& value = given.structure("brdf");
   require_keys(value, "the brdf", {"lambert", "ward", "ashikhmin_shirley"});
-  if (value.members().size() != 1) {
-    given.refuse("brdf", "must have one of the keys `lambert`, `ward` and `ashikhmin_shirley`");
-  }
+  given.require(value.members().size() == 1, "brdf",
+                "must have one of the keys `lambert`, `ward` and `ashikhmin_shirley`");
   const auto& [kind, own] = value.members().front();
   const auto parameters = [&](std::vector<ParameterInformation> declared) {
     return Parameters(given.plugin() + ": " + kind, std::move(declared), own, given.folder());

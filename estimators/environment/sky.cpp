@@ -178,7 +178,7 @@ std::shared_ptr<const Setup> prepare_emittance(Parameters& given) {
   const render::EnvironmentMap& map = sky.picture->map();
   bool black = true;
   for (std::size_t texel = 0; texel < map.size(); ++texel) black &= sum(map.radiance(texel)) == 0;
-  if (black) given.refuse("map", "is black everywhere: no direction can be drawn");
+  given.require(!black, "map", "is black everywhere: no direction can be drawn");
 
   const auto sampler = std::make_shared<const EmittanceSampler>(sky);
   const auto primary = [sampler](Stream& random, Cost& cost) {

@@ -164,24 +164,20 @@ void check_places(const Parameters& parameters, const std::string& word) {
 }
 
 void check_command(const Parameters& parameters, const std::vector<std::string>& command) {
-  if (command.empty() || command[0].empty()) {
-    parameters.refuse("command",
-                      "names no program; as in `[render, --seed, \"{seed}\", \"{out}\"]`");
-  }
-  if (!foreign::has_place(command, "{seed}") && !foreign::has_place(command, "{seeds}")) {
-    parameters.refuse("command", "lacks `{seed}`: every observation would be the same");
-  }
-  if (foreign::has_place(command, "{seed}") && foreign::has_place(command, "{seeds}")) {
-    parameters.refuse("command", "has `{seed}` and `{seeds}`; use one of them");
-  }
-  if (!foreign::has_place(command, "{out}")) {
-    parameters.refuse("command", "lacks `{out}`, the file to write");
-  }
+  const auto require = [&](bool holds, const std::string& why) {
+    parameters.require(holds, "command", why);
+  };
+  const bool seed = foreign::has_place(command, "{seed}");
+  const bool seeds = foreign::has_place(command, "{seeds}");
+  require(!command.empty() && !command[0].empty(),
+          "names no program; as in `[render, --seed, \"{seed}\", \"{out}\"]`");
+  require(seed || seeds, "lacks `{seed}`: every observation would be the same");
+  require(!seed || !seeds, "has `{seed}` and `{seeds}`; use one of them");
+  require(foreign::has_place(command, "{out}"), "lacks `{out}`, the file to write");
   for (const std::string& word : command) check_places(parameters, word);
-  if (program_path(command[0], parameters.folder()).empty()) {
-    parameters.refuse("command", "names the program `" + command[0] + "`, which does not exist" +
-                                     foreign::mend_of_program(command[0]));
-  }
+  require(!program_path(command[0], parameters.folder()).empty(),
+          "names the program `" + command[0] + "`, which does not exist" +
+              foreign::mend_of_program(command[0]));
 }
 
 std::string ending_of(const std::string& output) { return output == "text" ? "txt" : output; }

@@ -51,9 +51,8 @@ foreign::LibraryChoice choice_of(Parameters& parameters) {
       .folder = parameters.folder()};
   if (!parameters.given("estimator")) choice.estimator.clear();
   const Value& given = parameters.structure("parameters");
-  if (given.kind() != Value::Kind::map) {
-    parameters.refuse("parameters", "must be a map of names to values: `{rate: 2}`");
-  }
+  parameters.require(given.kind() == Value::Kind::map, "parameters",
+                     "must be a map of names to values: `{rate: 2}`");
   for (const auto& [name, value] : given.members()) {
     choice.parameters.emplace_back(name, value.string("parameter `" + name + "` of the library"));
   }

@@ -10,9 +10,9 @@ namespace {
 std::shared_ptr<const Setup> prepare(Parameters& parameters) {
   foreign::Terms terms = foreign::read_terms(parameters);
   terms.launch.command = parameters.texts("command");
-  if (terms.launch.command.empty() || terms.launch.command.front().empty()) {
-    parameters.refuse("command", "names no program; as in `[python3, mine.py]`");
-  }
+  const std::vector<std::string>& command = terms.launch.command;
+  parameters.require(!command.empty() && !command.front().empty(), "command",
+                     "names no program; as in `[python3, mine.py]`");
   terms.asked_whether_it_flushes = std::make_shared<std::atomic_flag>();
   return foreign::start(std::move(terms), parameters, "command");
 }

@@ -334,9 +334,8 @@ SharedTarget read_target(Parameters& given) {
   const Value& target = given.structure("target");
   const std::size_t pixels = given.count("pixels");
   if (target.kind() == Value::Kind::scalar) return named(given, target.text(), pixels);
-  if (target.kind() != Value::Kind::map || target.members().size() != 1) {
-    given.refuse("target", "must be a name or a map with one key: mixture or sphere");
-  }
+  given.require(target.members().size() == 1, "target",
+                "must be a name or a map with one key: mixture or sphere");
   require_keys(target, "the target", {"mixture", "sphere"});
   const auto& [kind, value] = target.members()[0];
   return kind == "mixture" ? mixture_of(value, pixels) : read_sphere(value, pixels, given.folder());

@@ -83,7 +83,7 @@ SharedPairs unclipped_integral(Parameters& given) {
 
 SharedPairs without_radiance(Parameters& given) {
   const double radiance = luminaire::read_setting(given)->radiance();
-  if (radiance == 0) given.refuse("scene", "the luminaire must have a radiance above 0");
+  given.require(radiance != 0, "scene", "the luminaire must have a radiance above 0");
   const SharedPairs pairs = read_area_pairs(given);
   return with_integral(pairs, integral_of(pairs) / radiance);
 }
@@ -110,8 +110,8 @@ double uncentred(const Sums& sums, double integral) {
 
 // These have a rule of their own, and the parameters only so that their streams are the original's.
 void only_published_rule(Parameters& given) {
-  if (given.string("centre") != "integral") given.refuse("centre", "must be `integral` here");
-  if (given.boolean("clamped")) given.refuse("clamped", "must be false here");
+  given.require(given.string("centre") == "integral", "centre", "must be `integral` here");
+  given.require(!given.boolean("clamped"), "clamped", "must be false here");
 }
 
 Sums sums_of(const PairSource& pixel, std::uint64_t count, Stream& random, Cost& cost) {

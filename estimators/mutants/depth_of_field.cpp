@@ -34,13 +34,12 @@ struct BlurByDepth {
 std::shared_ptr<const Setup> blur_by_depth(Parameters& given) {
   const SharedSetting setting = read_setting(given);
   const PlanePoint pixel = read_pixel(given);
-  if (given.count("jitter") != 1) given.refuse("jitter", "must be 1 here");
+  given.require(given.count("jitter") == 1, "jitter", "must be 1 here");
   Cost uncounted;
   const Plane* const seen = setting->first_hit(pixel, {}, uncounted);
   const double factor = seen ? setting->scene().lens.focus / seen->depth : 1;
-  if (factor > 1)
-    given.refuse("scene",
-                 "what the middle of the lens sees must not be in front of the focal plane");
+  given.require(factor <= 1, "scene",
+                "what the middle of the lens sees must not be in front of the focal plane");
   Channel channel = radiance_channel(setting->scene(), exact_moments(setting->scene(), pixel));
   channel.variance.reset();
   return averaging(std::move(channel), BlurByDepth{setting, pixel, factor});

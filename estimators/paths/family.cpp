@@ -164,12 +164,10 @@ ParameterInformation direct_parameter() {
 
 Direct read_direct(Parameters& parameters, const Scene& scene) {
   const auto direct = parameters.choice<Direct>("direct");
-  if (direct == Direct::exact && !scene.law) {
-    parameters.refuse("direct", "exact direct light is known in spheres and furnaces only");
-  }
-  if (direct == Direct::sampled && largest(scene.global.all) == 0) {
-    parameters.refuse("direct", "there is no light to sample: no surface emits");
-  }
+  parameters.require(direct != Direct::exact || scene.law, "direct",
+                     "exact direct light is known in spheres and furnaces only");
+  parameters.require(direct != Direct::sampled || largest(scene.global.all) != 0, "direct",
+                     "there is no light to sample: no surface emits");
   return direct;
 }
 

@@ -43,9 +43,7 @@ std::shared_ptr<const Setup> ray_free(Parameters& parameters) {
   const SceneDescription description =
       paths::read_scene(parameters.structure("scene"), parameters.folder());
   const auto* const sphere = std::get_if<SphereScene>(&description.form);
-  if (!sphere) {
-    parameters.refuse("scene", "only a sphere can be walked without rays: give it zones");
-  }
+  parameters.require(sphere, "scene", "only a sphere can be walked without rays: give it zones");
   const Scene scene = paths::read_scene(parameters);
   const double q = parameters.number("survival");
   const auto world = std::make_shared<const RayFreeWorld>(*sphere, description.camera);

@@ -86,10 +86,8 @@ RoulettePlan read_improved(Parameters& parameters, const Scene& scene) {
     return plan;
   }
   const auto* const mesh = std::get_if<SharedMesh>(&scene.world);
-  if (!mesh) {
-    parameters.refuse("terminal",
-                      "inside a sphere the same light arrives everywhere: use `global`");
-  }
+  parameters.require(mesh, "terminal",
+                     "inside a sphere the same light arrives everywhere: use `global`");
   const std::vector<Incoming> local = local_incoming(**mesh, local_rays, plan.cost);
   for (std::size_t i = 0; i < local.size(); ++i) {
     plan.terminal.push_back(terminal_value((*mesh)->surface(i), local[i], plan.direct, plan.scale));

@@ -82,11 +82,9 @@ Selection select(const recorded::Table& table, Parameters& parameters) {
   const std::string column = parameters.string("column");
   if (!parameters.given("column")) return {0, table.columns.size()};
   const auto found = std::ranges::find(table.columns, column);
-  if (found == table.columns.end()) {
-    parameters.refuse(
-        "column", "must be a column of the file, but it is `" + column + "`" +
-                      did_you_mean(column, table.columns, "there is: " + quoted(table.columns)));
-  }
+  parameters.require(found != table.columns.end(), "column",
+                     "must be a column of the file, but it is `" + column + "`" +
+                         did_you_mean(column, table.columns, "there is: " + quoted(table.columns)));
   return {static_cast<std::size_t>(found - table.columns.begin()), 1};
 }
 
@@ -196,16 +194,13 @@ std::shared_ptr<const Setup> prepare_reference(const Parameters& parameters,
                                                const PictureRequest& request,
                                                const std::vector<std::string>& files) {
   const recorded::MomentChannels& errors = request.errors;
-  if (files.size() > 1) {
-    parameters.refuse("file", "names " + std::to_string(files.size()) +
-                                  " files, but a mean with its error must be one file");
-  }
-  if (!errors.variance.empty() && !errors.second_moment.empty()) {
-    parameters.refuse("second_moment", "is given beside `variance`; leave one of them out");
-  }
-  if (request.exact && errors.any()) {
-    parameters.refuse("exact", "is given beside a variance: a mean is exact or has an error");
-  }
+  parameters.require(files.size() == 1, "file",
+                     "names " + std::to_string(files.size()) +
+                         " files, but a mean with its error must be one file");
+  parameters.require(errors.variance.empty() || errors.second_moment.empty(), "second_moment",
+                     "is given beside `variance`; leave one of them out");
+  parameters.require(!request.exact || !errors.any(), "exact",
+                     "is given beside a variance: a mean is exact or has an error");
   return recorded::reference_setup(reading(parameters, request, [&] {
     return recorded::read_moments(files[0], request.channels, errors, request.treatment);
   }));
@@ -213,15 +208,13 @@ std::shared_ptr<const Setup> prepare_reference(const Parameters& parameters,
 
 std::shared_ptr<const Setup> prepare_pictures(const Parameters& parameters,
                                               const PictureRequest& request) {
-  if (parameters.given("column")) {
-    parameters.refuse("column", "is for text files; for pictures use `channels`");
-  }
+  parameters.require(!parameters.given("column"), "column",
+                     "is for text files; for pictures use `channels`");
   std::vector<std::string> files =
       reading(parameters, request, [&] { return recorded::files_of(request.pattern); });
   if (request.exact || request.errors.any()) return prepare_reference(parameters, request, files);
-  if (!request.errors.samples.empty()) {
-    parameters.refuse("samples", "needs `variance` or `second_moment` beside it");
-  }
+  parameters.require(request.errors.samples.empty(), "samples",
+                     "needs `variance` or `second_moment` beside it");
   recorded::PictureStack stack = reading(parameters, request, [&] {
     return recorded::open_stack(std::move(files), request.channels, request.treatment);
   });
@@ -232,9 +225,7 @@ std::shared_ptr<const Setup> prepare_pictures(const Parameters& parameters,
 std::shared_ptr<const Setup> prepare_text(Parameters& parameters) {
   for (const char* const name : {"channels", "pixels", "exact", "variance", "second_moment",
                                  "samples", "rounded", "crop", "mask", "finite"}) {
-    if (parameters.given(name)) {
-      parameters.refuse(name, "is for pictures, and `file` names none");
-    }
+    parameters.require(!parameters.given(name), name, "is for pictures, and `file` names none");
   }
   const Reading reading = read(parameters);
   return std::make_shared<RecordedSetup>(reading, select(*reading.table, parameters));
@@ -243,13 +234,11 @@ std::shared_ptr<const Setup> prepare_text(Parameters& parameters) {
 std::shared_ptr<const Setup> prepare(Parameters& parameters) {
   for (const char* of_run : {"run", "estimator"}) {
     parameters.string(of_run);
-    if (parameters.given(of_run)) {
-      parameters.refuse(of_run, "is for moments of a run, which have no rows");
-    }
+    parameters.require(!parameters.given(of_run), of_run,
+                       "is for moments of a run, which have no rows");
   }
-  if (!parameters.given("file")) {
-    parameters.refuse("file", "is missing; give it, or `run` and `estimator`");
-  }
+  parameters.require(parameters.given("file"), "file",
+                     "is missing; give it, or `run` and `estimator`");
   const PictureRequest request = picture_request(parameters);
   parameters.string("column");
   return recorded::names_pictures(request.pattern) ? prepare_pictures(parameters, request)

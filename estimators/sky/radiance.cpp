@@ -230,9 +230,8 @@ ParameterInformation sky_parameter() {
 SharedRadiance read_radiance(Parameters& given) {
   const Value& sky = given.structure("sky");
   const std::vector<std::string> kinds = {"uniform", "gradient", "harmonics", "peak", "map"};
-  if (sky.kind() != Value::Kind::map || sky.members().size() != 1) {
-    given.refuse("sky", "must be a map with one key: uniform, gradient, harmonics, peak or map");
-  }
+  given.require(sky.members().size() == 1, "sky",
+                "must be a map with one key: uniform, gradient, harmonics, peak or map");
   const auto& [kind, value] = sky.members()[0];
   if (kind == "uniform") return read_uniform(value);
   if (kind == "gradient") return read_gradient(value);

@@ -55,16 +55,14 @@ SquarePoint square_of(const VertexWeights& w, const TrianglePoint& point) {
 
 VertexWeights read_weights(Parameters& given) {
   const Value& list = given.structure("weights");
-  if (list.kind() != Value::Kind::list || list.items().size() != 3) {
-    given.refuse("weights", "must be a list of three numbers");
-  }
+  given.require(list.items().size() == 3, "weights", "must be a list of three numbers");
   std::array<double, 3> w{};
   for (std::size_t i = 0; i < w.size(); ++i) {
     w[i] = list.items()[i].number("a weight");
-    if (!std::isfinite(w[i])) given.refuse("weights", "must be finite");
-    if (w[i] < 0) given.refuse("weights", "must not be negative: a density cannot be");
+    given.require(std::isfinite(w[i]), "weights", "must be finite");
+    given.require(w[i] >= 0, "weights", "must not be negative: a density cannot be");
   }
-  if (w[0] + w[1] + w[2] == 0) given.refuse("weights", "must not all be zero");
+  given.require(w[0] + w[1] + w[2] != 0, "weights", "must not all be zero");
   return {w[0], w[1], w[2]};
 }
 

@@ -30,21 +30,19 @@ void require_diffuse(Parameters& parameters, const paths::MeshWorld& world) {
   bool light = false;
   for (std::size_t i = 0; i < world.patches(); ++i) {
     const paths::Surface& surface = world.surface(i);
-    if (!(surface.mirror == Rgb{})) {
-      parameters.refuse("scene", "a virtual light reflects diffusely: every `mirror` must be 0");
-    }
+    parameters.require(surface.mirror == Rgb{}, "scene",
+                       "a virtual light reflects diffusely: every `mirror` must be 0");
     light = light || render::largest(surface.emission) > 0;
   }
-  if (!light) parameters.refuse("scene", "there is no light to shoot: no surface emits");
+  parameters.require(light, "scene", "there is no light to shoot: no surface emits");
 }
 
 void require_receiver(Parameters& parameters, const paths::MeshWorld& world) {
   Cost uncounted;
   const Vertex seen = world.camera(uncounted);
-  if (!seen.surface) parameters.refuse("scene", "the camera sees no surface");
-  if (seen.surface->diffuse == Rgb{}) {
-    parameters.refuse("scene", "the camera sees a surface of albedo 0, which reflects no light");
-  }
+  parameters.require(seen.surface, "scene", "the camera sees no surface");
+  parameters.require(seen.surface->diffuse != Rgb{}, "scene",
+                     "the camera sees a surface of albedo 0, which reflects no light");
 }
 
 double read_shininess(Parameters& parameters, const paths::MeshWorld& world) {
@@ -52,10 +50,8 @@ double read_shininess(Parameters& parameters, const paths::MeshWorld& world) {
   Cost uncounted;
   const Vertex seen = world.camera(uncounted);
   // To the rounding of a direction that is given in decimals.
-  if (shininess > 0 && dot(seen.arriving, seen.normal) > -1 + 1e-9) {
-    parameters.refuse("shininess",
-                      "a glossy receiver must be seen along its normal, which its lobe is about");
-  }
+  parameters.require(!(shininess > 0) || dot(seen.arriving, seen.normal) <= -1 + 1e-9, "shininess",
+                     "a glossy receiver must be seen along its normal, which its lobe is about");
   return shininess;
 }
 
@@ -63,17 +59,13 @@ double given_target_integral(Parameters& parameters, const Room& room, Weighting
   const Value& value = parameters.structure("target_integral");
   if (value.kind() == Value::Kind::scalar && value.string("target_integral") == "exact") {
     const Known known = target_integral(room, weighting);
-    if (!known.value) {
-      parameters.refuse("target_integral",
-                        "`exact` is " + known.why_not + ". Give the integral as a number");
-    }
+    parameters.require(known.value.has_value(), "target_integral",
+                       "`exact` is " + known.why_not + ". Give the integral as a number");
     return *known.value;
   }
   const double number = value.number("target_integral");
-  if (!std::isfinite(number) || number <= 0 || number > 1) {
-    parameters.refuse("target_integral",
-                      "must be `exact` or a number above 0 and at most 1: the target is a density");
-  }
+  parameters.require(number > 0 && number <= 1, "target_integral",
+                     "must be `exact` or a number above 0 and at most 1: the target is a density");
   return number;
 }
 
@@ -82,7 +74,7 @@ double given_target_integral(Parameters& parameters, const Room& room, Weighting
 Scene read_room(Parameters& parameters) {
   const paths::Scene scene = paths::read_scene(parameters);
   const auto* const world = std::get_if<paths::SharedMesh>(&scene.world);
-  if (!world) parameters.refuse("scene", "virtual lights need triangles: a furnace or surfaces");
+  parameters.require(world, "scene", "virtual lights need triangles: a furnace or surfaces");
   require_diffuse(parameters, **world);
   require_receiver(parameters, **world);
   const double shininess = read_shininess(parameters, **world);
@@ -91,9 +83,8 @@ Scene read_room(Parameters& parameters) {
 
 Weighted read_weighted(Parameters& parameters, SharedRoom room) {
   const auto weighting = parameters.choice<Weighting>("weighting");
-  if (weighting == Weighting::marginal && !room->why_no_marginal().empty()) {
-    parameters.refuse("weighting", "the marginal density is " + room->why_no_marginal());
-  }
+  parameters.require(weighting != Weighting::marginal || room->why_no_marginal().empty(),
+                     "weighting", "the marginal density is " + room->why_no_marginal());
   const double integral = given_target_integral(parameters, *room, weighting);
   return {{std::move(room)}, weighting, integral};
 }
