@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "estimators/core/mapped.h"
+
 namespace assay {
 
 namespace plugins {
@@ -109,9 +111,7 @@ const std::vector<Entry>& catalogue() {
 
 const Entry& find_plugin(std::string_view name, const Location& where) {
   if (const Entry* entry = lookup(catalogue(), name)) return *entry;
-  std::vector<std::string> names;
-  for (const Entry& entry : catalogue()) names.push_back(entry.information.name);
-  const std::string near = suggested(name, names);
+  const std::string near = suggested(name, mapped(catalogue(), name_of));
   throw InputError(where, "there is no plugin `" + std::string(name) + "`" +
                               (near.empty() ? "; `assay list plugins` shows them all"
                                             : "; did you mean `" + near + "`?"));

@@ -7,15 +7,14 @@
 #include <utility>
 
 #include "estimators/core/flow.h"
+#include "estimators/core/mapped.h"
 
 namespace assay {
 
 namespace {
 
 std::vector<std::string> names_of(const std::vector<ParameterInformation>& declared) {
-  std::vector<std::string> names;
-  for (const ParameterInformation& parameter : declared) names.push_back(parameter.name);
-  return names;
+  return mapped(declared, &ParameterInformation::name);
 }
 
 std::string suggestion(std::string_view name, const std::vector<std::string>& known) {
@@ -46,21 +45,17 @@ std::vector<std::string> texts_of(const Value& value, const std::string& what) {
   if (value.kind() != Value::Kind::list) {
     throw InputError(value.where(), what + " must be a list of texts: `[one, two]`");
   }
-  std::vector<std::string> texts;
-  for (const Value& item : value.items()) texts.push_back(item.string("each item of " + what));
-  return texts;
-}
-
-std::string canonical_texts(const std::vector<Value>& items) {
-  std::vector<Value> marked;
-  for (const Value& item : items) marked.push_back(Value::scalar(":" + item.text()));
-  return Value::list(std::move(marked)).canonical();
+  return mapped(value.items(),
+                [&](const Value& item) { return item.string("each item of " + what); });
 }
 
 std::string canonical_value(const ParameterInformation& parameter, const Value& value) {
   // A text parameter `1e3` is not the text `1000`; prefixing keeps both from reading as numbers.
-  if (parameter.type == ParameterType::string) return Value::scalar(":" + value.text()).canonical();
-  if (parameter.type == ParameterType::texts) return canonical_texts(value.items());
+  const auto marked = [](const Value& text) { return Value::scalar(":" + text.text()); };
+  if (parameter.type == ParameterType::string) return marked(value).canonical();
+  if (parameter.type == ParameterType::texts) {
+    return Value::list(mapped(value.items(), marked)).canonical();
+  }
   return value.canonical();
 }
 

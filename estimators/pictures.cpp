@@ -11,6 +11,7 @@
 #include <set>
 #include <tuple>
 
+#include "estimators/core/mapped.h"
 #include "estimators/core/text_pattern.h"
 #include "estimators/core/value.h"
 
@@ -166,12 +167,10 @@ PictureView view_of_others(const PictureView& view, const std::vector<std::strin
 std::vector<std::string> substituted(const std::string& pattern,
                                      const std::vector<std::string>& by) {
   const std::size_t star = pattern.find('*');
-  std::vector<std::string> names;
-  for (const std::string& name : by) {
-    names.push_back(
-        star == pattern.npos ? pattern : pattern.substr(0, star) + name + pattern.substr(star + 1));
-  }
-  return names;
+  return mapped(by, [&](const std::string& name) {
+    return star == pattern.npos ? pattern
+                                : pattern.substr(0, star) + name + pattern.substr(star + 1);
+  });
 }
 
 /// Samples of every pixel.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "estimators/core/mapped.h"
 #include "estimators/parameters.h"
 
 namespace assay::correlated {
@@ -148,8 +149,7 @@ std::shared_ptr<const Setup> cross_fitted(SharedPairs source, LambdaRule rule) {
 }
 
 std::shared_ptr<const Setup> ratio(SharedPairs source) {
-  std::vector<Channel> channels;
-  for (const Colour& colour : source->colours) channels.push_back(irradiance(colour));
+  std::vector<Channel> channels = mapped(source->colours, irradiance);
   const auto estimate = [source](Stream& random, std::uint64_t primaries, std::span<double> out,
                                  Cost& cost) {
     const auto& colours = source->colours;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "estimators/core/mapped.h"
 #include "estimators/parameters.h"
 
 namespace assay::depth_of_field {
@@ -13,11 +14,9 @@ namespace assay::depth_of_field {
 namespace {
 
 std::vector<std::uint64_t> counts(std::span<const double> shares, double scale) {
-  std::vector<std::uint64_t> out;
-  for (const double share : shares) {
-    out.push_back(static_cast<std::uint64_t>(std::max(1.0, std::round(scale * share))));
-  }
-  return out;
+  return mapped(shares, [scale](double share) {
+    return static_cast<std::uint64_t>(std::max(1.0, std::round(scale * share)));
+  });
 }
 
 double total(const std::vector<std::uint64_t>& counts) {
@@ -27,8 +26,7 @@ double total(const std::vector<std::uint64_t>& counts) {
 }  // namespace
 
 std::vector<std::uint64_t> lens_counts(std::span<const double> variances, const Allocation& plan) {
-  std::vector<double> shares;
-  for (const double v : variances) shares.push_back(std::pow(v, plan.exponent));
+  const auto shares = mapped(variances, [&](double v) { return std::pow(v, plan.exponent); });
   const double sum = std::accumulate(shares.begin(), shares.end(), 0.0);
   if (!(sum > 0)) return counts(shares, 0);
   const double budget = plan.mean_count * static_cast<double>(shares.size());
@@ -44,12 +42,9 @@ std::vector<std::uint64_t> lens_counts(std::span<const double> variances, const 
 namespace {
 
 std::vector<double> exact_variances(const std::vector<Moments>& moments) {
-  std::vector<double> out;
   // Below, the difference is rounding.
-  for (const Moments& m : moments) {
-    out.push_back(m.variance() > 1e-10 * m.square ? m.variance() : 0);
-  }
-  return out;
+  return mapped(
+      moments, [](const Moments& m) { return m.variance() > 1e-10 * m.square ? m.variance() : 0; });
 }
 
 // The choices of `allocation` in their order.
@@ -70,9 +65,9 @@ Grid read_grid(Parameters& given) {
 
 ImagePlan read_image_plan(Parameters& given, const PredictionRules* rules) {
   ImagePlan plan{.setting = read_setting(given), .grid = read_grid(given)};
-  for (std::size_t i = 0; i < plan.grid.pixels(); ++i) {
-    plan.exact.push_back(exact_moments(plan.setting->scene(), plan.grid.pixel(i)));
-  }
+  plan.exact = mapped_indices(plan.grid.pixels(), [&](std::size_t i) {
+    return exact_moments(plan.setting->scene(), plan.grid.pixel(i));
+  });
   const Allocation allocation{static_cast<double>(given.count("samples")),
                               exponents[given.choice<std::size_t>("allocation")]};
   const std::string source = given.string("prediction");
@@ -102,12 +97,10 @@ NoiseExtremes noise_extremes(const ImagePlan& plan) {
 }
 
 std::vector<Channel> pixel_channels(const ImagePlan& plan) {
-  std::vector<Channel> out;
-  for (std::size_t i = 0; i < plan.exact.size(); ++i) {
-    out.push_back(radiance_channel(plan.setting->scene(), plan.exact[i],
-                                   static_cast<double>(plan.counts[i])));
-  }
-  return out;
+  return mapped_indices(plan.exact.size(), [&](std::size_t i) {
+    return radiance_channel(plan.setting->scene(), plan.exact[i],
+                            static_cast<double>(plan.counts[i]));
+  });
 }
 
 }  // namespace assay::depth_of_field

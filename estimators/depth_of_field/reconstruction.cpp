@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "depth_of_field/image.h"
+#include "estimators/core/mapped.h"
 #include "estimators/parameters.h"
 
 namespace assay::depth_of_field {
@@ -109,12 +110,11 @@ std::size_t worst_pixel(const ReconstructionPlan& plan) {
 }
 
 std::vector<Channel> pixel_channels(const ReconstructionPlan& plan) {
-  std::vector<Channel> out;
-  for (std::size_t p = 0; p < plan.exact.size(); ++p) {
-    out.push_back(radiance_channel(plan.setting->scene(), plan.exact[p]));
-    out.back().variance.reset();
-  }
-  return out;
+  return mapped(plan.exact, [&](const Moments& exact) {
+    Channel channel = radiance_channel(plan.setting->scene(), exact);
+    channel.variance.reset();
+    return channel;
+  });
 }
 
 }  // namespace
@@ -132,22 +132,20 @@ ReconstructionPlan read_reconstruction_plan(Parameters& given, const Reconstruct
   for (const ImageSample& s : plan.samples) variances.push_back(found.variance[plan.pixel_of(s)]);
   plan.counts = lens_counts(variances, {static_cast<double>(given.count("samples"))});
   plan.splats = rules.weights(tents(plan.grid, plan.samples));
-  for (std::size_t p = 0; p < plan.grid.pixels(); ++p) {
-    plan.exact.push_back(exact_moments(plan.setting->scene(), plan.grid.pixel(p)));
-  }
+  plan.exact = mapped_indices(plan.grid.pixels(), [&](std::size_t p) {
+    return exact_moments(plan.setting->scene(), plan.grid.pixel(p));
+  });
   return plan;
 }
 
 std::vector<double> ReconstructionPlan::bias() const {
-  std::vector<double> out;
-  for (std::size_t p = 0; p < splats.size(); ++p) {
+  return mapped_indices(splats.size(), [&](std::size_t p) {
     double sum = -exact[p].mean;
     for (const Share& share : splats[p]) {
       sum += share.weight * exact[pixel_of(samples[share.sample])].mean;
     }
-    out.push_back(sum);
-  }
-  return out;
+    return sum;
+  });
 }
 
 std::shared_ptr<const Setup> prepare_reconstruction(Parameters& given,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "estimators/core/mapped.h"
 #include "estimators/core/value_checks.h"
 
 namespace assay::depth_of_field {
@@ -73,7 +74,7 @@ SceneDescription scene(const Value& value) {
   if (const Value* const background = value.find("background")) {
     out.background = at_least_zero(*background, "the background");
   }
-  for (const Value& item : planes.items()) out.planes.push_back(plane(item));
+  out.planes = mapped(planes.items(), plane);
   std::ranges::stable_sort(out.planes, {}, &Plane::depth);
   require_apart(out.planes, planes);
   return out;
@@ -128,14 +129,12 @@ SceneDescription read_scene(const Value& value) { return scene(scene_of(value, b
 namespace {
 
 std::vector<render::Shape> shapes(const SceneDescription& scene) {
-  std::vector<render::Shape> out;
-  for (const Plane& p : scene.planes) {
-    out.emplace_back(render::fan({{p.x.low, p.y.low, p.depth},
-                                  {p.x.high, p.y.low, p.depth},
-                                  {p.x.high, p.y.high, p.depth},
-                                  {p.x.low, p.y.high, p.depth}}));
-  }
-  return out;
+  return mapped(scene.planes, [](const Plane& p) -> render::Shape {
+    return render::fan({{p.x.low, p.y.low, p.depth},
+                        {p.x.high, p.y.low, p.depth},
+                        {p.x.high, p.y.high, p.depth},
+                        {p.x.low, p.y.high, p.depth}});
+  });
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "depth_of_field/exact.h"
+#include "estimators/core/mapped.h"
 
 namespace assay::depth_of_field {
 
@@ -38,11 +39,9 @@ Spectrum& Spectrum::occlude(std::span<const MaskWave> mask) {
 }
 
 std::vector<CameraFrequency> Spectrum::at_camera(const Lens& lens) const {
-  std::vector<CameraFrequency> out;
-  for (const Frequency& w : waves_) {
-    out.push_back({w.position + w.slope / lens.focus, -w.slope / lens.focus, w.power});
-  }
-  return out;
+  return mapped(waves_, [&](const Frequency& w) -> CameraFrequency {
+    return {w.position + w.slope / lens.focus, -w.slope / lens.focus, w.power};
+  });
 }
 
 double lens_variance(std::span<const CameraFrequency> waves, const Lens& lens) {

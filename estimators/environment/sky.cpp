@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "estimators/core/mapped.h"
 #include "estimators/estimator.h"
 #include "estimators/parameters.h"
 #include "render/environment_map.h"
@@ -96,11 +97,9 @@ std::shared_ptr<const Setup> prepare_cosine(Parameters& given) {
 //   E[X_c^2] = S sum over texels of (L_c^2 / s) times the integral of cos+^2.
 
 std::vector<double> powers(const render::EnvironmentMap& map) {
-  std::vector<double> all;
-  for (std::size_t texel = 0; texel < map.size(); ++texel) {
-    all.push_back(sum(map.radiance(texel)) * solid_angle(map.patch(texel)));
-  }
-  return all;
+  return mapped_indices(map.size(), [&](std::size_t texel) {
+    return sum(map.radiance(texel)) * solid_angle(map.patch(texel));
+  });
 }
 
 /// A direction and the texel that it was drawn in; near a border, rounding may disagree with the

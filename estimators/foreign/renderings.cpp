@@ -15,6 +15,7 @@
 #include <thread>
 #include <utility>
 
+#include "estimators/core/mapped.h"
 #include "estimators/core/program_path.h"
 #include "estimators/core/quoting.h"
 #include "estimators/core/waiting.h"
@@ -222,11 +223,7 @@ std::vector<Renderings::Task> Renderings::tasks_of(const Wanted& wanted) {
     if (seeds.empty()) return {};
     return {{.seeds = std::move(seeds), .samples = wanted.samples}};
   }
-  std::vector<Task> tasks;
-  for (const std::uint32_t seed : seeds) {
-    tasks.push_back({.seeds = {seed}, .samples = wanted.samples});
-  }
-  return tasks;
+  return mapped(seeds, [&](std::uint32_t seed) -> Task { return {{seed}, wanted.samples}; });
 }
 
 /// The command, filled in.

@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "estimators/core/flush_denormals.h"
+#include "estimators/core/mapped.h"
 #include "estimators/foreign/words.h"
 #include "estimators/parameters.h"
 
@@ -125,18 +126,16 @@ ParameterType type_of(const AssayParameter& parameter, const std::string& librar
 
 std::vector<ParameterInformation> declared(const AssayEstimator& estimator,
                                            const std::string& library) {
-  std::vector<ParameterInformation> all;
-  if (estimator.parameter_count == 0) return all;
-  for (const AssayParameter& p : all_known(estimator.parameters, estimator.parameter_count)) {
+  const auto known = all_known(estimator.parameters, estimator.parameter_count);
+  return mapped(known, [&](const AssayParameter& p) {
     ParameterInformation parameter{.name = or_empty(p.name),
                                    .type = type_of(p, library),
                                    .summary = or_empty(p.summary),
                                    .fallback = or_empty(p.fallback)};
     if (has(p.flags, ASSAY_LOW)) parameter.range.low = p.low;
     if (has(p.flags, ASSAY_HIGH)) parameter.range.high = p.high;
-    all.push_back(std::move(parameter));
-  }
-  return all;
+    return parameter;
+  });
 }
 
 /// The values as the library gets them, with the texts that they point to.
@@ -195,10 +194,7 @@ ImageShape shape_of(const AssayImage& theirs) {
                    .height = theirs.height,
                    .independent = has(theirs.flags, ASSAY_INDEPENDENT)};
   if (theirs.components == nullptr) return shape;
-  shape.components.clear();
-  for (std::size_t i = 0; i < theirs.component_count; ++i) {
-    shape.components.push_back(or_empty(theirs.components[i]));
-  }
+  shape.components = mapped(std::span(theirs.components, theirs.component_count), or_empty);
   return shape;
 }
 
@@ -220,7 +216,6 @@ std::optional<BiasClass> bias_of(std::uint32_t theirs) {
 }
 
 std::vector<AssaySampler> samplers_of(const AssayPreparation& prepared) {
-  if (prepared.sampler_count == 0) return {};
   std::vector<AssaySampler> all = all_known(prepared.samplers, prepared.sampler_count);
   for (const AssaySampler& sampler : all) require_whole(sampler);
   return all;
@@ -234,10 +229,8 @@ std::string hello_text(const AssayEstimator& estimator, const AssayPreparation& 
     const AssayImage image = as_known(prepared.image);
     text += image_lines(shape_of(image), element_of(image));
   }
-  if (prepared.channel_count > 0) {
-    for (const AssayChannel& c : all_known(prepared.channels, prepared.channel_count)) {
-      text += channel_line(channel_of(c));
-    }
+  for (const AssayChannel& c : all_known(prepared.channels, prepared.channel_count)) {
+    text += channel_line(channel_of(c));
   }
   if (has(estimator.flags, ASSAY_AVERAGES)) text += "averages\n";
   if (has(estimator.flags, ASSAY_RAYS)) text += "rays\n";

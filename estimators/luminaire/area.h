@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "estimators/core/mapped.h"
 #include "luminaire/family.h"
 #include "render/share_table.h"
 
@@ -39,7 +40,7 @@ class AreaPrimary {
  public:
   explicit AreaPrimary(SharedSetting setting, Term term = {})
       : setting_(std::move(setting)),
-        shares_(areas(*setting_)),
+        shares_(mapped(setting_->triangles(), &LightTriangle::area)),
         factor_(setting_->area() * setting_->radiance()),
         term_(term) {}
 
@@ -61,12 +62,6 @@ class AreaPrimary {
   const render::ShareTable& shares() const { return shares_; }
 
  private:
-  static std::vector<double> areas(const Setting& setting) {
-    std::vector<double> list;
-    for (const LightTriangle& triangle : setting.triangles()) list.push_back(triangle.area);
-    return list;
-  }
-
   SharedSetting setting_;
   render::ShareTable shares_;
   double factor_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "estimators/core/mapped.h"
 #include "estimators/parameters.h"
 
 namespace assay::luminaire {
@@ -48,11 +49,9 @@ Floor read_floor(Parameters& parameters) {
 
 std::vector<Channel> floor_channels(const Floor& floor) {
   const auto unknown = [](const ExactIntegrals&) { return std::optional<double>(); };
-  std::vector<Channel> channels;
-  for (const SharedSetting& setting : floor.settings) {
-    channels.push_back(irradiance_channel(*setting, unknown, highest(*setting)));
-  }
-  return channels;
+  return mapped(floor.settings, [&](const SharedSetting& setting) {
+    return irradiance_channel(*setting, unknown, highest(*setting));
+  });
 }
 
 }  // namespace assay::luminaire

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "estimators/core/mapped.h"
 #include "estimators/core/value_checks.h"
 
 namespace assay::luminaire {
@@ -108,9 +109,8 @@ Vector3 read_unit_vector(const Value& value, const std::string& what) {
 
 Polygon read_polygon(const Value& value, const std::string& what) {
   value.require(value.items().size() >= 3, what + " must be a list of three or more vertices");
-  Polygon vertices;
-  for (const Value& item : value.items())
-    vertices.push_back(read_vector(item, "a vertex of " + what));
+  const Polygon vertices = mapped(
+      value.items(), [&](const Value& item) { return read_vector(item, "a vertex of " + what); });
   const auto same = std::ranges::adjacent_find(vertices);
   value.require(same == vertices.end() && vertices.front() != vertices.back(),
                 what + " has the same vertex twice in a row");
@@ -139,9 +139,7 @@ TriangleMesh read_mesh(const Value& value, const std::string& what, const std::s
 
 std::vector<Occluder> read_occluders(const Value& value, const std::string& folder) {
   value.require(value.kind() == Value::Kind::list, "occluders must be a list");
-  std::vector<Occluder> list;
-  for (const Value& item : value.items()) list.push_back(occluder(item, folder));
-  return list;
+  return mapped(value.items(), [&](const Value& item) { return occluder(item, folder); });
 }
 
 SceneDescription read_scene(const Value& given, const std::string& folder) {

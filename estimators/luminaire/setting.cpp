@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "estimators/core/mapped.h"
+
 namespace assay::luminaire {
 
 namespace {
@@ -52,11 +54,8 @@ LightTriangle light_triangle(const std::array<Vector3, 3>& corners, bool clockwi
 }
 
 std::vector<LightTriangle> light_triangles(const TriangleMesh& mesh, bool clockwise) {
-  std::vector<LightTriangle> triangles;
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    triangles.push_back(light_triangle(mesh.corners(i), clockwise));
-  }
-  return triangles;
+  return mapped_indices(mesh.triangles.size(),
+                        [&](std::size_t i) { return light_triangle(mesh.corners(i), clockwise); });
 }
 
 std::optional<std::vector<Polygon>> polygons_of(const std::vector<Occluder>& occluders,
@@ -122,11 +121,9 @@ Setting::Setting(const SceneDescription& description, const Location& where)
 
 std::vector<Shape> occluder_shapes(const std::vector<Occluder>& occluders,
                                    const Receiver& receiver) {
-  std::vector<Shape> list;
-  for (const Occluder& occluder : occluders) {
-    list.push_back(occluder_shape(occluder, View(receiver)));
-  }
-  return list;
+  return mapped(occluders, [view = View(receiver)](const Occluder& occluder) {
+    return occluder_shape(occluder, view);
+  });
 }
 
 }  // namespace assay::luminaire

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "estimators/core/mapped.h"
 #include "luminaire/family.h"
 #include "render/share_table.h"
 #include "render/spherical_triangle.h"
@@ -50,7 +51,7 @@ class SolidAnglePrimary {
   explicit SolidAnglePrimary(SharedSetting setting)
       : setting_(std::move(setting)),
         triangles_(lit_triangles(*setting_)),
-        shares_(solid_angles(triangles_)),
+        shares_(mapped(triangles_, solid_angle_of)),
         factor_(shares_.total() * setting_->radiance()) {}
 
   LightSample draw(Stream& random) const {
@@ -79,11 +80,7 @@ class SolidAnglePrimary {
   double solid_angle() const { return shares_.total(); }
 
  private:
-  static std::vector<double> solid_angles(const std::vector<LitTriangle>& triangles) {
-    std::vector<double> list;
-    for (const LitTriangle& triangle : triangles) list.push_back(triangle.seen.solid_angle());
-    return list;
-  }
+  static double solid_angle_of(const LitTriangle& triangle) { return triangle.seen.solid_angle(); }
 
   SharedSetting setting_;
   std::vector<LitTriangle> triangles_;

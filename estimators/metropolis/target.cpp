@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "estimators/core/flow.h"
+#include "estimators/core/mapped.h"
 #include "estimators/core/value_checks.h"
 #include "paths/path.h"
 #include "paths/worlds.h"
@@ -88,12 +89,9 @@ class BranchingTarget final : public Target {
     return {pixel, Rgb::grey(f), f};
   }
   std::vector<double> means() const override {
-    std::vector<double> all;
-    for (std::size_t p = 0; p < form_.width; ++p) {
-      all.push_back(p % 2 == 0 ? form_.level
-                               : form_.lobe.height * integral(form_.lobe.factors[0], 0, 1));
-    }
-    return all;
+    return mapped_indices(form_.width, [&](std::size_t p) {
+      return p % 2 == 0 ? form_.level : form_.lobe.height * integral(form_.lobe.factors[0], 0, 1);
+    });
   }
 
  private:
@@ -173,9 +171,8 @@ std::vector<double> centre_of(const Value& value, std::size_t dimensions) {
   value.require(value.items().size() == dimensions,
                 "a lobe's centre must have a number for each of the " + std::to_string(dimensions) +
                     " dimensions");
-  std::vector<double> centre;
-  for (const Value& item : value.items()) centre.push_back(finite_number(item, "a lobe's centre"));
-  return centre;
+  return mapped(value.items(),
+                [](const Value& item) { return finite_number(item, "a lobe's centre"); });
 }
 
 Product lobe_of(const Value& value, std::size_t dimensions) {

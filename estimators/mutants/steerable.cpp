@@ -6,6 +6,7 @@
 #include <functional>
 #include <utility>
 
+#include "estimators/core/mapped.h"
 #include "estimators/mutant.h"
 #include "render/share_table.h"
 #include "sky/directions.h"
@@ -74,12 +75,10 @@ class ClampedDirections final : public Directions {
     return {positive(w.a), positive(w.b), positive(w.c)};
   }
   static std::vector<double> areas(const SkyTree& tree, const sky::Harmonics& steering) {
-    std::vector<double> list;
-    for (std::size_t t = 0; t < tree.count(); ++t) {
+    return mapped_indices(tree.count(), [&](std::size_t t) {
       const auto [a, b, c] = tree.sphere().corners(t);
-      list.push_back(length(cross(b - a, c - a)) / 6 * weights(tree, steering, t).sum());
-    }
-    return list;
+      return length(cross(b - a, c - a)) / 6 * weights(tree, steering, t).sum();
+    });
   }
   double density_at(std::size_t triangle, const Vector3& q) const {
     const auto [a, b, c] = tree_->sphere().corners(triangle);

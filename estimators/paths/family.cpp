@@ -3,6 +3,8 @@
 #include <numbers>
 #include <utility>
 
+#include "estimators/core/mapped.h"
+
 namespace assay::paths {
 
 namespace {
@@ -44,16 +46,14 @@ void add_score(ZoneSteps& zone, const Scene& scene, const Surface& surface, std:
 }
 
 std::vector<ZoneSteps> zone_steps(const Scene& scene, const Steps& steps, std::size_t colour) {
-  std::vector<ZoneSteps> all;
-  for (const ZonedScene::Zone& z : scene.law->zones) {
+  return mapped(scene.law->zones, [&](const ZonedScene::Zone& z) {
     ZoneSteps zone{.fraction = z.fraction,
                    .albedo = z.surface.albedo()[colour],
                    .survival = steps.survival(z.surface),
                    .terminal = steps.terminal(z.surface)[colour]};
     add_score(zone, scene, z.surface, colour, steps.direct);
-    all.push_back(zone);
-  }
-  return all;
+    return zone;
+  });
 }
 
 // True if the variance's recursion describes the path. Mirrors keep it only in grey furnaces whose

@@ -1,5 +1,6 @@
 #include <numbers>
 
+#include "estimators/core/mapped.h"
 #include "paths/family.h"
 
 namespace assay::paths {
@@ -9,13 +10,10 @@ namespace {
 constexpr std::size_t local_rays = 256;
 
 std::vector<Surface> patch_surfaces(const Scene& scene) {
-  std::vector<Surface> all;
   if (const auto* const mesh = std::get_if<SharedMesh>(&scene.world)) {
-    for (std::size_t i = 0; i < (*mesh)->patches(); ++i) all.push_back((*mesh)->surface(i));
-  } else {
-    for (const ZonedScene::Zone& zone : scene.law->zones) all.push_back(zone.surface);
+    return mapped_indices((*mesh)->patches(), [&](std::size_t i) { return (*mesh)->surface(i); });
   }
-  return all;
+  return mapped(scene.law->zones, &ZonedScene::Zone::surface);
 }
 
 // The number of bounces of a path with roulette in a furnace, the last cell for all beyond.
@@ -66,11 +64,9 @@ Rgb terminal_value(const Surface& surface, const Incoming& incoming, Direct dire
 
 std::vector<Rgb> global_terminal(const Scene& scene, const Incoming& incoming, Direct direct,
                                  double scale) {
-  std::vector<Rgb> all;
-  for (const Surface& surface : patch_surfaces(scene)) {
-    all.push_back(terminal_value(surface, incoming, direct, scale));
-  }
-  return all;
+  return mapped(patch_surfaces(scene), [&](const Surface& surface) {
+    return terminal_value(surface, incoming, direct, scale);
+  });
 }
 
 RoulettePlan read_classical(Parameters& parameters, const Scene& scene) {
@@ -89,9 +85,9 @@ RoulettePlan read_improved(Parameters& parameters, const Scene& scene) {
   parameters.require(mesh, "terminal",
                      "inside a sphere the same light arrives everywhere: use `global`");
   const std::vector<Incoming> local = local_incoming(**mesh, local_rays, plan.cost);
-  for (std::size_t i = 0; i < local.size(); ++i) {
-    plan.terminal.push_back(terminal_value((*mesh)->surface(i), local[i], plan.direct, plan.scale));
-  }
+  plan.terminal = mapped_indices(local.size(), [&](std::size_t i) {
+    return terminal_value((*mesh)->surface(i), local[i], plan.direct, plan.scale);
+  });
   return plan;
 }
 

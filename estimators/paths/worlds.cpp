@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "estimators/core/mapped.h"
+
 namespace assay::paths {
 
 using render::TriangleMesh;
@@ -91,24 +93,17 @@ MeshWorld::Triangle MeshWorld::triangle(const std::array<Vector3, 3>& corners) {
 
 render::ShareTable MeshWorld::light_shares(const std::vector<Triangle>& triangles,
                                            const MeshScene& scene) {
-  std::vector<double> shares;
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    shares.push_back(triangles[i].area * mean(scene.surfaces[scene.surface_of[i]].emission));
-  }
-  return render::ShareTable(shares);
+  return render::ShareTable(mapped_indices(triangles.size(), [&](std::size_t i) {
+    return triangles[i].area * mean(scene.surfaces[scene.surface_of[i]].emission);
+  }));
 }
 
 MeshWorld::MeshWorld(const MeshScene& scene, const Camera& camera)
     : surfaces_(scene.surfaces),
       surface_of_(scene.surface_of),
       mesh_(Fit(render::Box(scene.mesh))(scene.mesh)),
-      triangles_([&] {
-        std::vector<Triangle> all;
-        for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
-          all.push_back(triangle(mesh_.corners(i)));
-        }
-        return all;
-      }()),
+      triangles_(mapped_indices(mesh_.triangles.size(),
+                                [&](std::size_t i) { return triangle(mesh_.corners(i)); })),
       light_(light_shares(triangles_, scene)),
       camera_{Fit(render::Box(scene.mesh))(camera.position), camera.direction},
       scene_({mesh_}) {

@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "estimators/core/line_error.h"
+#include "estimators/core/mapped.h"
 #include "estimators/core/quoting.h"
 #include "estimators/ready_made.h"
 #include "recorded/byte_source.h"
@@ -257,9 +258,7 @@ std::string in_message(std::string_view field) { return "`" + shown(field, 24) +
 
 std::vector<std::string> default_names(std::size_t count) {
   if (count == 1) return {"value"};
-  std::vector<std::string> names;
-  for (std::size_t i = 1; i <= count; ++i) names.push_back("value" + std::to_string(i));
-  return names;
+  return mapped_indices(count, [](std::size_t i) { return "value" + std::to_string(i + 1); });
 }
 
 bool is_whole(std::string_view text) {

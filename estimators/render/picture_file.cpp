@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "estimators/core/mapped.h"
 #include "estimators/core/value.h"
 #include "render/picture_kinds.h"
 
@@ -97,9 +98,7 @@ float rounded(float value, Rounding how, bool alpha) {
 }
 
 std::vector<std::string> PictureFile::channel_names() const {
-  std::vector<std::string> names;
-  for (const FileChannel& channel : channels_) names.push_back(channel.name);
-  return names;
+  return mapped(channels_, &FileChannel::name);
 }
 
 bool PictureFile::has(const std::vector<std::string>& names) const {

@@ -3,6 +3,7 @@
 #include <array>
 #include <utility>
 
+#include "estimators/core/mapped.h"
 #include "estimators/parameters.h"
 #include "luminaire/setting.h"
 
@@ -44,8 +45,7 @@ SharedSetting read_setting(Parameters& given) {
 
 std::vector<Channel> irradiance_channels(const Setting& setting, std::optional<double> gain) {
   constexpr std::array<const char*, 3> names = {"r", "g", "b"};
-  std::vector<Channel> channels;
-  for (std::size_t c = 0; c < setting.colours(); ++c) {
+  return mapped_indices(setting.colours(), [&](std::size_t c) {
     Channel channel{.name = setting.colours() == 1 ? "irradiance" : names[c]};
     if (setting.open()) {
       const Known known = setting.radiance().irradiance(setting.frame().normal, c);
@@ -58,9 +58,8 @@ std::vector<Channel> irradiance_channels(const Setting& setting, std::optional<d
       channel.high = *gain * setting.radiance().most(c) * (1 + 0x1p-40);
       channel.rounding = channel.high * 0x1p-40;
     }
-    channels.push_back(std::move(channel));
-  }
-  return channels;
+    return channel;
+  });
 }
 
 }  // namespace assay::sky

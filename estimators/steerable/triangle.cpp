@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "estimators/core/mapped.h"
 #include "estimators/estimator.h"
 
 namespace assay::steerable {
@@ -71,15 +72,13 @@ VertexWeights read_weights(Parameters& given) {
 std::vector<Channel> triangle_channels(const VertexWeights& weights, bool with_variance) {
   const std::array<double, 3> w = {weights.a, weights.b, weights.c};
   const std::array<const char*, 3> names = {"a", "b", "c"};
-  std::vector<Channel> channels;
-  for (std::size_t i = 0; i < w.size(); ++i) {
+  return mapped_indices(w.size(), [&](std::size_t i) {
     const double mean = (weights.sum() + w[i]) / (4 * weights.sum());
     const double square = (weights.sum() + 2 * w[i]) / (10 * weights.sum());
     Channel channel{.name = names[i], .mean = mean};
     if (with_variance) channel.variance = square - mean * mean;
-    channels.push_back(channel);
-  }
-  return channels;
+    return channel;
+  });
 }
 
 }  // namespace assay::steerable

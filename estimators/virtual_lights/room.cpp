@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "estimators/core/mapped.h"
 #include "paths/scene_description.h"
 
 namespace assay::virtual_lights {
@@ -80,9 +81,8 @@ void find_walls(const TriangleMesh& mesh, Enclosure& room) {
     room.why_not_convex = "its walls are not connected";
     return;
   }
-  for (std::uint32_t i = 0; i < count; ++i) {
-    room.wall_of.push_back(static_cast<std::uint32_t>(walls.find_set(i)));
-  }
+  room.wall_of = mapped_indices(
+      count, [&](std::size_t i) { return static_cast<std::uint32_t>(walls.find_set(i)); });
 }
 
 Vertex seen_by_camera(const MeshWorld& world) {
@@ -101,17 +101,9 @@ std::vector<std::uint32_t> emitting_sides(const MeshWorld& world, const Enclosur
 }
 
 std::vector<double> powers(const MeshWorld& world, const std::vector<std::uint32_t>& sides) {
-  std::vector<double> list;
-  for (const std::uint32_t i : sides) {
-    list.push_back(world.patch_area(i) * render::mean(world.surface(i).emission));
-  }
-  return list;
-}
-
-std::vector<std::uint32_t> triangles_of(const std::vector<std::uint32_t>& sides) {
-  std::vector<std::uint32_t> triangles;
-  for (const std::uint32_t side : sides) triangles.push_back(side / 2);
-  return triangles;
+  return mapped(sides, [&](std::uint32_t i) {
+    return world.patch_area(i) * render::mean(world.surface(i).emission);
+  });
 }
 
 // The share of the light on wall j that comes from elsewhere.
@@ -155,7 +147,7 @@ Room::Room(paths::SharedMesh world, double shininess)
       receiver_(seen_by_camera(*world_)),
       enclosure_(enclosure(world_->mesh(), receiver_.position)),
       sides_(emitting_sides(*world_, enclosure_)),
-      lamps_(triangles_of(sides_)),
+      lamps_(mapped(sides_, [](std::uint32_t side) { return side / 2; })),
       shares_(powers(*world_, sides_)),
       even_emission_(find_even_emission()) {
   if (!even_emission_ && !enclosure_.why_not_convex.empty()) {
