@@ -3,7 +3,6 @@
 #include <glob.h>
 
 #include <algorithm>
-#include <boost/algorithm/string.hpp>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -33,9 +32,7 @@ std::size_t rank_of(const std::string& channel) {
 }
 
 std::vector<std::string> split_at_commas(const std::string& text) {
-  std::vector<std::string> pieces;
-  boost::split(pieces, text, boost::is_any_of(","));
-  for (std::string& piece : pieces) boost::trim_if(piece, boost::is_any_of(" "));
+  std::vector<std::string> pieces = pieces_of(text, ',');
   std::erase(pieces, "");
   return pieces;
 }

@@ -10,6 +10,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "estimators/core/mapped.h"
 #include "estimators/estimator.h"
 
 namespace assay::analytic {
@@ -127,31 +128,21 @@ constexpr std::array<Law::Family, 8> families{{
 std::string quoted(std::string_view text) { return "`" + std::string(text) + "`"; }
 
 [[noreturn]] void refuse(const std::string& why) {
-  std::string known;
-  for (const Law::Family& family : families) {
-    known += (known.empty() ? "" : ", ") + std::string(family.signature);
-  }
-  throw std::invalid_argument(why + "; there is " + known);
+  const auto signature = [](const Law::Family& family) { return std::string(family.signature); };
+  throw std::invalid_argument(why + "; there is " + listed(mapped(families, signature)));
 }
 
 /// The numbers between the brackets.
 std::vector<double> numbers_of(std::string_view text) {
-  std::vector<double> numbers;
-  while (!text.empty()) {
-    const std::size_t comma = std::min(text.find(','), text.size());
-    const std::string_view part = text.substr(0, comma);
-    const std::size_t first = part.find_first_not_of(' ');
-    const std::size_t last = part.find_last_not_of(' ');
-    if (first == std::string_view::npos) refuse("a number of the law is missing");
-    const std::string number(part.substr(first, last - first + 1));
+  if (text.empty()) return {};
+  return mapped(pieces_of(text, ','), [](const std::string& number) {
+    if (number.empty()) refuse("a number of the law is missing");
     try {
-      numbers.push_back(Value::scalar(number).number("a number of the law"));
+      return Value::scalar(number).number("a number of the law");
     } catch (const InputError& error) {
       refuse(error.message());
     }
-    text.remove_prefix(std::min(comma + 1, text.size()));
-  }
-  return numbers;
+  });
 }
 
 }  // namespace

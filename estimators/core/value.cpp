@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/algorithm/string.hpp>
 #include <charconv>
 #include <cmath>
+#include <map>
+
+#include "estimators/core/mapped.h"
 
 namespace assay {
 
@@ -40,21 +44,11 @@ std::string canonical_scalar(const std::string& text) {
   return number && std::isfinite(*number) ? shortest_text(*number) : quoted(text);
 }
 
-std::string canonical_list(const std::vector<Value>& items) {
-  std::string out = "[";
-  for (const Value& item : items) out += (out.size() > 1 ? "," : "") + item.canonical();
-  return out + "]";
-}
-
 std::string canonical_map(const std::vector<Value::Member>& members) {
-  std::vector<const Value::Member*> sorted;
-  for (const Value::Member& member : members) sorted.push_back(&member);
-  std::ranges::sort(sorted, {}, [](const Value::Member* m) { return m->first; });
-  std::string out = "{";
-  for (const Value::Member* member : sorted) {
-    out += (out.size() > 1 ? "," : "") + quoted(member->first) + ":" + member->second.canonical();
-  }
-  return out + "}";
+  std::map<std::string, std::string> sorted;
+  for (const auto& [key, value] : members) sorted[key] = quoted(key) + ":" + value.canonical();
+  return "{" + listed(mapped(sorted, &std::pair<const std::string, std::string>::second), ",") +
+         "}";
 }
 
 // Optimal string alignment distance: insertions, deletions, substitutions, swaps of neighbours.
@@ -163,7 +157,7 @@ std::string Value::canonical() const {
     case Kind::scalar:
       return canonical_scalar(text_);
     case Kind::list:
-      return canonical_list(items_);
+      return "[" + listed(mapped(items_, &Value::canonical), ",") + "]";
     case Kind::map:
       return canonical_map(members_);
   }
@@ -228,10 +222,15 @@ std::string did_you_mean(std::string_view name, const std::vector<std::string>& 
   return otherwise.empty() ? "" : "; " + std::string(otherwise);
 }
 
-std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
+std::string listed(const std::vector<std::string>& names, std::string_view separator) {
+  return boost::join(names, separator);
+}
+
+std::vector<std::string> pieces_of(std::string_view text, char separator) {
+  std::vector<std::string> pieces;
+  boost::split(pieces, text, [separator](char c) { return c == separator; });
+  for (std::string& piece : pieces) boost::trim_if(piece, [](char c) { return c == ' '; });
+  return pieces;
 }
 
 std::string quoted(const std::vector<std::string>& names) {

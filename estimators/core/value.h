@@ -105,7 +105,9 @@ std::string did_you_mean(std::string_view name, const std::vector<std::string>& 
                          std::string_view otherwise = "");
 
 /// "a, b".
-std::string listed(const std::vector<std::string>& names);
+std::string listed(const std::vector<std::string>& names, std::string_view separator = ", ");
+/// The pieces of a text between separators, without blanks around them.
+std::vector<std::string> pieces_of(std::string_view text, char separator);
 
 /// "`a`, `b`".
 std::string quoted(const std::vector<std::string>& names);

@@ -202,8 +202,8 @@ std::string Renderings::folder_of(std::uint64_t samples) {
     throw RenderingError("cache", "the folder `" + path + "` cannot be made: " + error.message());
   }
   remove_leftovers(path);
-  std::ofstream(path + "/command.txt") << joined(rendering_.command) << "\nin " << rendering_.folder
-                                       << ", samples " << samples << "\n";
+  std::ofstream(path + "/command.txt") << listed(rendering_.command, " ") << "\nin "
+                                       << rendering_.folder << ", samples " << samples << "\n";
   return folder = path;
 }
 
@@ -228,10 +228,8 @@ std::vector<Renderings::Task> Renderings::tasks_of(const Wanted& wanted) {
 
 /// The command, filled in.
 std::vector<std::string> Renderings::words_of(const Task& task, const std::string& out) const {
-  std::string seeds;
-  for (const std::uint32_t seed : task.seeds) {
-    seeds += (seeds.empty() ? "" : ",") + std::to_string(seed);
-  }
+  const auto text_of = [](std::uint32_t seed) { return std::to_string(seed); };
+  const std::string seeds = listed(mapped(task.seeds, text_of), ",");
   std::vector<std::string> words;
   for (std::string word : rendering_.command) {
     boost::replace_all(word, "{seeds}", seeds);
@@ -267,7 +265,7 @@ std::string Renderings::run_program(const Task& task, const std::string& out, do
   }
   cpu_seconds += child.cpu_seconds();
   if (failure.empty()) return "";
-  return "`" + joined(launch.command) + "` " + failure + ending_with(child.last_errors());
+  return "`" + listed(launch.command, " ") + "` " + failure + ending_with(child.last_errors());
 }
 
 /// Makes the files and removes their seeds from the task. Why those that are left could not be
@@ -286,7 +284,7 @@ std::string Renderings::attempt(Task& task, const std::string& part, double& cpu
     return !error;
   });
   if (task.seeds.empty()) return "";
-  return "`" + joined(rendering_.command) + "` succeeded but wrote no file for the seed " +
+  return "`" + listed(rendering_.command, " ") + "` succeeded but wrote no file for the seed " +
          std::to_string(task.seeds.front()) +
          (several ? ": it must write SEED." + rendering_.ending + " in the folder `{out}`"
                   : ": it must write the file `{out}`");

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "estimators/core/flush_denormals.h"
+#include "estimators/core/mapped.h"
 #include "estimators/core/thread_seconds.h"
 #include "estimators/foreign/children.h"
 #include "estimators/foreign/words.h"
@@ -358,9 +359,7 @@ class ForeignSampler final : public Sampler {
     for (std::size_t i = 0; i * size < numbers.size(); ++i) {
       const std::span<const double> item = numbers.subspan(i * size, size);
       if (is_whole(item)) continue;
-      std::string words;
-      for (const double number : item) words += (words.empty() ? "" : ", ") + shortest_text(number);
-      throw NoAnswer("`" + children_->name() + "` gave " + words +
+      throw NoAnswer("`" + children_->name() + "` gave " + listed(mapped(item, shortest_text)) +
                      (size > 1 ? ", which is no draw: five numbers, and 1 for a point or 0 for none"
                                : ", which is no number"));
     }
@@ -449,7 +448,7 @@ std::string mend_of_program(const std::string& program) {
 std::shared_ptr<const Setup> start(Terms terms, const Parameters& parameters,
                                    std::string_view name) {
   const std::string program = terms.launch.command.front();
-  if (terms.name.empty()) terms.name = joined(terms.launch.command);
+  if (terms.name.empty()) terms.name = listed(terms.launch.command, " ");
   try {
     const auto shared = std::make_shared<const Terms>(std::move(terms));
     return setup_of(std::make_shared<Children>(

@@ -5,10 +5,12 @@
 #include <charconv>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "estimators/core/mapped.h"
 #include "estimators/core/quoting.h"
 #include "estimators/core/value.h"
 #include "estimators/sampler.h"
@@ -31,18 +33,7 @@ inline std::optional<std::uint64_t> whole_of(std::string_view word) {
 
 /// The coordinates that the domain uses: "(0.25, 1)".
 inline std::string text_of(const Point& point, Domain domain) {
-  std::string text;
-  for (std::size_t i = 0; i < coordinates(domain); ++i) {
-    text += (i == 0 ? "(" : ", ") + shortest_text(point[i]);
-  }
-  return text + ")";
-}
-
-/// With blanks between, as a command is shown.
-inline std::string joined(const std::vector<std::string>& words) {
-  std::string out;
-  for (const std::string& word : words) out += (out.empty() ? "" : " ") + word;
-  return out;
+  return "(" + listed(mapped(std::span(point).first(coordinates(domain)), shortest_text)) + ")";
 }
 
 /// The last words of a text, on one line. Cut at a blank, if there is one.
