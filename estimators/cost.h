@@ -23,6 +23,15 @@ struct Cost {
   bool operator==(const Cost&) const = default;
 };
 
+/// The argument of a call whose cost nobody counts.
+class Uncounted {
+ public:
+  operator Cost&() { return cost_; }
+
+ private:
+  Cost cost_;
+};
+
 inline Cost operator-(const Cost& after, const Cost& before) {
   return {.camera_rays = after.camera_rays - before.camera_rays,
           .closest_hit_rays = after.closest_hit_rays - before.closest_hit_rays,

@@ -35,9 +35,8 @@ class Directions : public Sampler {
     const Vector3 w = vector_of(point);
     const LitTriangle* triangle = containing(w);
     if (!triangle) return 0;
-    Cost uncounted;
     return techniques_->setting().received(
-        {luminaire::shadow_ray(triangle->distance(w) * w), techniques_->integrand(w)}, uncounted);
+        {luminaire::shadow_ray(triangle->distance(w) * w), techniques_->integrand(w)}, Uncounted());
   }
 
   // Parts as narrow as a quarter of the lobe, and thirty nodes across the luminaire.

@@ -117,18 +117,16 @@ class EmittanceSampler final : public Sampler {
   Domain domain() const override { return Domain::sphere; }
   SamplerDraw sample(Stream& random) const override {
     const Choice choice = choose(random);
-    Cost uncounted;
     return {.point = point_of(choice.direction),
             .density = density(choice.texel),
-            .weight = sky_.setting->grey(contribution(choice, uncounted))};
+            .weight = sky_.setting->grey(contribution(choice, Uncounted()))};
   }
   double density(const Point& p) const override {
     return density(map().texel(render::vector_of(p)));
   }
   double evaluate(const Point& p) const override {
     const Vector3 w = render::vector_of(p);
-    Cost uncounted;
-    return sky_.setting->grey(map().radiance(w)) * received(w, uncounted);
+    return sky_.setting->grey(map().radiance(w)) * received(w, Uncounted());
   }
   // The density jumps between texels: rows in theta, columns in phi.
   Panels panels() const override {

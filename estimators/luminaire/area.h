@@ -81,9 +81,8 @@ std::vector<NamedSampler> point_samplers(const SharedSetting& setting) {
     return p[0] >= 0 && p[1] >= 0 && p[0] + p[1] <= 1 ? 2 : 0;
   };
   const auto evaluate = [primary = AreaPrimary<>(setting)](const Point& p) {
-    Cost uncounted;
     const LightTriangle& triangle = primary.setting().triangles()[0];
-    return 2 * primary.value(primary.at(triangle, {p[0], p[1]}), uncounted);
+    return 2 * primary.value(primary.at(triangle, {p[0], p[1]}), Uncounted());
   };
   return {{"point", sampler_of({Domain::triangle, point, density, evaluate})}};
 }

@@ -33,8 +33,7 @@ std::shared_ptr<const Sampler> direction_sampler(const SharedSetting& setting) {
   };
   const auto density = [](const Point& p) { return Directions{}.density(render::vector_of(p)); };
   const auto evaluate = [setting](const Point& p) {
-    Cost uncounted;
-    const bool lit = setting->sees_light(setting->ray(render::vector_of(p)), uncounted);
+    const bool lit = setting->sees_light(setting->ray(render::vector_of(p)), Uncounted());
     return lit ? setting->radiance() * p[2] : 0;
   };
   return sampler_of({Domain::hemisphere, point, density, evaluate});

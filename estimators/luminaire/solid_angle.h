@@ -71,8 +71,7 @@ class SolidAnglePrimary {
 
   /// The X that goes with a direction.
   double weight(const render::Vector3& w, const LitTriangle& triangle) const {
-    Cost uncounted;
-    return value(along(w, triangle), uncounted);
+    return value(along(w, triangle), Uncounted());
   }
 
   const std::vector<LitTriangle>& triangles() const { return triangles_; }

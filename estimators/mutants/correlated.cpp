@@ -64,8 +64,7 @@ SharedPairs other_points(Parameters& given) {
   const SharedPairs sound = read_area_pairs(given);
   const auto exchange = [](const PairSource& source, Stream& random, std::span<Pair> out) {
     std::vector<Pair> others(out.size());
-    Cost uncounted;
-    source.draw(random, others, uncounted);
+    source.draw(random, others, Uncounted());
     for (std::size_t i = 0; i < out.size(); ++i) out[i].control = others[i].control;
   };
   return with_other_pairs(sound, exchange);

@@ -35,8 +35,7 @@ std::shared_ptr<const Setup> blur_by_depth(Parameters& given) {
   const SharedSetting setting = read_setting(given);
   const PlanePoint pixel = read_pixel(given);
   given.require(given.count("jitter") == 1, "jitter", "must be 1 here");
-  Cost uncounted;
-  const Plane* const seen = setting->first_hit(pixel, {}, uncounted);
+  const Plane* const seen = setting->first_hit(pixel, {}, Uncounted());
   const double factor = seen ? setting->scene().lens.focus / seen->depth : 1;
   given.require(factor <= 1, "scene",
                 "what the middle of the lens sees must not be in front of the focal plane");

@@ -24,9 +24,8 @@ class Lengths final : public Sampler {
   Domain domain() const override { return Domain::interval; }
   int lobes() const override { return cells; }
   SamplerDraw sample(Stream& random) const override {
-    Cost uncounted;
     Tally tally;
-    trace(*world_, roulette_, Direct::hit, random, tally, uncounted);
+    trace(*world_, roulette_, Direct::hit, random, tally, Uncounted());
     return {.density = 0,
             .weight = 1,
             .lobe = static_cast<int>(std::min<std::uint64_t>(tally.vertices, cells) - 1)};
@@ -135,8 +134,7 @@ std::vector<NamedSampler> samplers_of(const Scene& scene, const RoulettePlan& pl
   if (const auto* const sphere = std::get_if<SharedSphere>(&scene.world)) {
     // The point where a reflected ray arrives: uniform in area.
     const auto hit = [world = *sphere](Stream& random) {
-      Cost uncounted;
-      return point_of(world->reflected(world->camera(uncounted), random, uncounted).position);
+      return point_of(world->reflected(world->camera(Uncounted()), random, Uncounted()).position);
     };
     all.push_back(
         {"hit", sampler_of({Domain::sphere, hit, uniform_density(1 / (4 * std::numbers::pi))})});

@@ -64,8 +64,7 @@ class DirectionSampler final : public Sampler {
     return directions_->density(render::vector_of(p));
   }
   double evaluate(const Point& p) const override {
-    Cost uncounted;
-    return setting_->grey(setting_->received(render::vector_of(p), uncounted));
+    return setting_->grey(setting_->received(render::vector_of(p), Uncounted()));
   }
   Panels panels() const override { return directions_->panels(); }
 

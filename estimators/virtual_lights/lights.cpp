@@ -38,8 +38,7 @@ void require_diffuse(Parameters& parameters, const paths::MeshWorld& world) {
 }
 
 void require_receiver(Parameters& parameters, const paths::MeshWorld& world) {
-  Cost uncounted;
-  const Vertex seen = world.camera(uncounted);
+  const Vertex seen = world.camera(Uncounted());
   parameters.require(seen.surface, "scene", "the camera sees no surface");
   parameters.require(seen.surface->diffuse != Rgb{}, "scene",
                      "the camera sees a surface of albedo 0, which reflects no light");
@@ -47,8 +46,7 @@ void require_receiver(Parameters& parameters, const paths::MeshWorld& world) {
 
 double read_shininess(Parameters& parameters, const paths::MeshWorld& world) {
   const double shininess = parameters.number("shininess");
-  Cost uncounted;
-  const Vertex seen = world.camera(uncounted);
+  const Vertex seen = world.camera(Uncounted());
   // To the rounding of a direction that is given in decimals.
   parameters.require(!(shininess > 0) || dot(seen.arriving, seen.normal) <= -1 + 1e-9, "shininess",
                      "a glossy receiver must be seen along its normal, which its lobe is about");

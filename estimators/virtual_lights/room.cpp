@@ -85,11 +85,6 @@ void find_walls(const TriangleMesh& mesh, Enclosure& room) {
       count, [&](std::size_t i) { return static_cast<std::uint32_t>(walls.find_set(i)); });
 }
 
-Vertex seen_by_camera(const MeshWorld& world) {
-  Cost counted_by_the_set_up;
-  return world.camera(counted_by_the_set_up);
-}
-
 std::vector<std::uint32_t> emitting_sides(const MeshWorld& world, const Enclosure& room) {
   std::vector<std::uint32_t> sides;
   for (std::uint32_t i = 0; i < world.patches(); ++i) {
@@ -144,7 +139,7 @@ Enclosure enclosure(const TriangleMesh& mesh, const Vector3& point) {
 Room::Room(paths::SharedMesh world, double shininess)
     : world_(std::move(world)),
       shininess_(shininess),
-      receiver_(seen_by_camera(*world_)),
+      receiver_(world_->camera(Uncounted())),
       enclosure_(enclosure(world_->mesh(), receiver_.position)),
       sides_(emitting_sides(*world_, enclosure_)),
       lamps_(mapped(sides_, [](std::uint32_t side) { return side / 2; })),
