@@ -23,6 +23,15 @@ double total(const std::vector<std::uint64_t>& counts) {
   return static_cast<double>(std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}));
 }
 
+std::vector<double> exact_variances(const std::vector<Moments>& moments) {
+  // Below, the difference is rounding.
+  return mapped(
+      moments, [](const Moments& m) { return m.variance() > 1e-10 * m.square ? m.variance() : 0; });
+}
+
+// The choices of `allocation` in their order.
+constexpr std::array exponents = {0.0, 1.0, 2.0 / 3, 0.5};
+
 }  // namespace
 
 std::vector<std::uint64_t> lens_counts(std::span<const double> variances, const Allocation& plan) {
@@ -38,19 +47,6 @@ std::vector<std::uint64_t> lens_counts(std::span<const double> variances, const 
   }
   return counts(shares, low);
 }
-
-namespace {
-
-std::vector<double> exact_variances(const std::vector<Moments>& moments) {
-  // Below, the difference is rounding.
-  return mapped(
-      moments, [](const Moments& m) { return m.variance() > 1e-10 * m.square ? m.variance() : 0; });
-}
-
-// The choices of `allocation` in their order.
-constexpr std::array exponents = {0.0, 1.0, 2.0 / 3, 0.5};
-
-}  // namespace
 
 std::vector<ParameterInformation> grid_parameters() {
   return {count_parameter("width", "columns of pixels", "32", {2, 1024}),

@@ -49,6 +49,30 @@ double tent(std::size_t a, std::size_t b, std::size_t reach) {
   return std::max(0.0, 1 - distance / static_cast<double>(reach));
 }
 
+double lens_average(const ReconstructionPlan& plan, std::size_t sample, std::uint64_t count,
+                    Stream& random, Cost& cost) {
+  const PlanePoint pixel = plan.grid.pixel(plan.pixel_of(plan.samples[sample]));
+  double sum = 0;
+  for (std::uint64_t k = 0; k < count; ++k) {
+    sum += plan.setting->radiance(pixel, lens_point(random), cost);
+  }
+  return sum / static_cast<double>(count);
+}
+
+std::size_t worst_pixel(const ReconstructionPlan& plan) {
+  const std::vector<double> bias = plan.bias();
+  const auto larger = [](double a, double b) { return std::abs(a) < std::abs(b); };
+  return static_cast<std::size_t>(std::ranges::max_element(bias, larger) - bias.begin());
+}
+
+std::vector<Channel> pixel_channels(const ReconstructionPlan& plan) {
+  return mapped(plan.exact, [&](const Moments& exact) {
+    Channel channel = radiance_channel(plan.setting->scene(), exact);
+    channel.variance.reset();
+    return channel;
+  });
+}
+
 }  // namespace
 
 std::vector<ImageSample> regular_samples(const Grid& grid, std::size_t spacing) {
@@ -90,34 +114,6 @@ Splats normalised(Splats splats) {
   }
   return splats;
 }
-
-namespace {
-
-double lens_average(const ReconstructionPlan& plan, std::size_t sample, std::uint64_t count,
-                    Stream& random, Cost& cost) {
-  const PlanePoint pixel = plan.grid.pixel(plan.pixel_of(plan.samples[sample]));
-  double sum = 0;
-  for (std::uint64_t k = 0; k < count; ++k) {
-    sum += plan.setting->radiance(pixel, lens_point(random), cost);
-  }
-  return sum / static_cast<double>(count);
-}
-
-std::size_t worst_pixel(const ReconstructionPlan& plan) {
-  const std::vector<double> bias = plan.bias();
-  const auto larger = [](double a, double b) { return std::abs(a) < std::abs(b); };
-  return static_cast<std::size_t>(std::ranges::max_element(bias, larger) - bias.begin());
-}
-
-std::vector<Channel> pixel_channels(const ReconstructionPlan& plan) {
-  return mapped(plan.exact, [&](const Moments& exact) {
-    Channel channel = radiance_channel(plan.setting->scene(), exact);
-    channel.variance.reset();
-    return channel;
-  });
-}
-
-}  // namespace
 
 ReconstructionPlan read_reconstruction_plan(Parameters& given, const ReconstructionRules& rules) {
   const std::uint64_t spacing = given.count("spacing");

@@ -113,6 +113,15 @@ constexpr NamedScene built_in[] = {
      "{depth: 6, x: [-9, 9], y: [-9, 1.6], radiance: .3, amplitude: .2, wavelength: 1.2}]}"},
 };
 
+std::vector<render::Shape> shapes(const SceneDescription& scene) {
+  return mapped(scene.planes, [](const Plane& p) -> render::Shape {
+    return render::fan({{p.x.low, p.y.low, p.depth},
+                        {p.x.high, p.y.low, p.depth},
+                        {p.x.high, p.y.high, p.depth},
+                        {p.x.low, p.y.high, p.depth}});
+  });
+}
+
 }  // namespace
 
 Interval SceneDescription::range() const {
@@ -125,19 +134,6 @@ Interval SceneDescription::range() const {
 }
 
 SceneDescription read_scene(const Value& value) { return scene(scene_of(value, built_in)); }
-
-namespace {
-
-std::vector<render::Shape> shapes(const SceneDescription& scene) {
-  return mapped(scene.planes, [](const Plane& p) -> render::Shape {
-    return render::fan({{p.x.low, p.y.low, p.depth},
-                        {p.x.high, p.y.low, p.depth},
-                        {p.x.high, p.y.high, p.depth},
-                        {p.x.low, p.y.high, p.depth}});
-  });
-}
-
-}  // namespace
 
 Setting::Setting(SceneDescription scene) : scene_(std::move(scene)), rays_(shapes(scene_)) {}
 

@@ -15,6 +15,8 @@ namespace assay::direct_light {
 
 namespace {
 
+using luminaire::LightTriangle;
+using luminaire::SharedSetting;
 using render::Vector3;
 using std::numbers::pi;
 
@@ -53,44 +55,6 @@ class Glossy final : public Reflectance {
  private:
   brdf::SharedBrdf brdf_;
 };
-
-}  // namespace
-
-ParameterInformation brdf_parameter() {
-  return structure_parameter(
-      "brdf",
-      "the reflectance and its parameters: {lambert: {albedo}}, {ward: {alpha_x, alpha_y, theta_i, "
-      "phi_i}} or {ashikhmin_shirley: {nu, nv, reflectance, theta_i, phi_i}}; theta_i and phi_i "
-      "are the viewer's direction",
-      "{ward: {alpha_x: 0.15, alpha_y: 0.4, theta_i: 0.8, phi_i: 0.5}}");
-}
-
-SharedReflectance read_reflectance(Parameters& given) {
-  const Value& value = given.structure("brdf");
-  require_keys(value, "the brdf", {"lambert", "ward", "ashikhmin_shirley"});
-  given.require(value.members().size() == 1, "brdf",
-                "must have one of the keys `lambert`, `ward` and `ashikhmin_shirley`");
-  const auto& [kind, own] = value.members().front();
-  const auto parameters = [&](std::vector<ParameterInformation> declared) {
-    return Parameters(given.plugin() + ": " + kind, std::move(declared), own, given.folder());
-  };
-  if (kind == "ward") {
-    Parameters ward = parameters(brdf::ward_parameters());
-    return std::make_shared<Glossy>(brdf::ward(ward));
-  }
-  if (kind == "ashikhmin_shirley") {
-    Parameters ashikhmin_shirley = parameters(brdf::ashikhmin_shirley_parameters());
-    return std::make_shared<Glossy>(brdf::ashikhmin_shirley(ashikhmin_shirley));
-  }
-  Parameters lambert =
-      parameters({number_parameter("albedo", "reflected part of the light", "", {0, 1})});
-  return std::make_shared<Lambert>(lambert.number("albedo"));
-}
-
-namespace {
-
-using luminaire::LightTriangle;
-using luminaire::SharedSetting;
 
 class AreaSampling final : public LightSampling {
  public:
@@ -137,6 +101,37 @@ class SolidAngleSampling final : public LightSampling {
 };
 
 }  // namespace
+
+ParameterInformation brdf_parameter() {
+  return structure_parameter(
+      "brdf",
+      "the reflectance and its parameters: {lambert: {albedo}}, {ward: {alpha_x, alpha_y, theta_i, "
+      "phi_i}} or {ashikhmin_shirley: {nu, nv, reflectance, theta_i, phi_i}}; theta_i and phi_i "
+      "are the viewer's direction",
+      "{ward: {alpha_x: 0.15, alpha_y: 0.4, theta_i: 0.8, phi_i: 0.5}}");
+}
+
+SharedReflectance read_reflectance(Parameters& given) {
+  const Value& value = given.structure("brdf");
+  require_keys(value, "the brdf", {"lambert", "ward", "ashikhmin_shirley"});
+  given.require(value.members().size() == 1, "brdf",
+                "must have one of the keys `lambert`, `ward` and `ashikhmin_shirley`");
+  const auto& [kind, own] = value.members().front();
+  const auto parameters = [&](std::vector<ParameterInformation> declared) {
+    return Parameters(given.plugin() + ": " + kind, std::move(declared), own, given.folder());
+  };
+  if (kind == "ward") {
+    Parameters ward = parameters(brdf::ward_parameters());
+    return std::make_shared<Glossy>(brdf::ward(ward));
+  }
+  if (kind == "ashikhmin_shirley") {
+    Parameters ashikhmin_shirley = parameters(brdf::ashikhmin_shirley_parameters());
+    return std::make_shared<Glossy>(brdf::ashikhmin_shirley(ashikhmin_shirley));
+  }
+  Parameters lambert =
+      parameters({number_parameter("albedo", "reflected part of the light", "", {0, 1})});
+  return std::make_shared<Lambert>(lambert.number("albedo"));
+}
 
 SharedLightSampling solid_angle_sampling(SharedSetting setting) {
   return std::make_shared<SolidAngleSampling>(std::move(setting));

@@ -302,6 +302,16 @@ class Reader {
   bool ready_ = false;
 };
 
+// Text comes in pieces of this size; beyond the end of a binary reply so much is read to be shown.
+constexpr std::size_t piece = 65536;
+constexpr std::size_t surplus = 64;
+// A line is one observation: no number takes more characters than this, with its blank.
+constexpr std::size_t characters_a_number = 64;
+
+std::string of(std::uint64_t count, const char* what) {
+  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
 }  // namespace
 
 std::string channel_line(const Channel& channel) {
@@ -376,20 +386,6 @@ std::string to_text(const Hello& hello) {
 }
 
 // ---- Questions and replies
-
-namespace {
-
-// Text comes in pieces of this size; beyond the end of a binary reply so much is read to be shown.
-constexpr std::size_t piece = 65536;
-constexpr std::size_t surplus = 64;
-// A line is one observation: no number takes more characters than this, with its blank.
-constexpr std::size_t characters_a_number = 64;
-
-std::string of(std::uint64_t count, const char* what) {
-  return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
-}
-
-}  // namespace
 
 std::string to_bytes(const Question& q, Numbers numbers) {
   if (numbers == Numbers::text) {

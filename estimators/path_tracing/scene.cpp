@@ -43,6 +43,71 @@ double one_less_cosine(const Shape& sphere, const Vector3& from) {
   return ratio < 1 ? ratio / (1 + std::sqrt(1 - ratio)) : 2;
 }
 
+Material diffuse(const Rgb& albedo) { return {.surface = Surface::diffuse, .colour = albedo}; }
+Material glossy(const Rgb& albedo, double exponent) {
+  return {.surface = Surface::glossy, .colour = albedo, .exponent = exponent};
+}
+Material emitter(double radiance) {
+  return {.surface = Surface::emitter, .colour = {radiance, radiance, radiance}};
+}
+
+/// The unit box, open towards the eye at z = 1, and its camera.
+std::vector<Shape> box() {
+  const Material white = diffuse({.72, .72, .70});
+  return {parallelogram({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, white),
+          parallelogram({0, 1, 0}, {1, 0, 0}, {0, 0, 1}, white),
+          parallelogram({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, white),
+          parallelogram({0, 0, 0}, {0, 1, 0}, {0, 0, 1}, diffuse({.63, .06, .05})),
+          parallelogram({1, 0, 0}, {0, 0, 1}, {0, 1, 0}, diffuse({.14, .45, .09}))};
+}
+constexpr Scene::Camera box_camera{
+    .eye = {.5, .5, 2.3}, .corner = {-.6, .45, -1.3}, .right = {1.2, 0, 0}, .down = {0, -.9, 0}};
+
+Scene mild_box() {
+  std::vector<Shape> shapes = box();
+  shapes.push_back(parallelogram({.2, .999, .2}, {.6, 0, 0}, {0, 0, .6}, emitter(4)));
+  shapes.push_back(sphere({.3, .25, .4}, .25, diffuse({.6, .6, .7})));
+  shapes.push_back(sphere({.72, .18, .6}, .18, diffuse({.7, .65, .4})));
+  return {std::move(shapes), box_camera, 4};
+}
+
+Scene glass_box() {
+  std::vector<Shape> shapes = box();
+  shapes.push_back(parallelogram({.44, .999, .44}, {.12, 0, 0}, {0, 0, .12}, emitter(90)));
+  shapes.push_back(sphere({.68, .22, .6}, .22, {.surface = Surface::glass, .refraction = 1.5}));
+  shapes.push_back(
+      sphere({.28, .26, .35}, .26, {.surface = Surface::mirror, .colour = {.95, .95, .95}}));
+  return {std::move(shapes), box_camera, 5};
+}
+
+Scene plates() {
+  std::vector<Shape> shapes{
+      parallelogram({-6, -1, -2}, {0, 0, 8}, {12, 0, 0}, diffuse({.4, .4, .4})),
+      parallelogram({-6, -1, -2}, {12, 0, 0}, {0, 7, 0}, diffuse({.4, .4, .4}))};
+  constexpr Vector3 eye{0, 1.6, 7};
+  constexpr double light_height = 2.4;
+  constexpr double light_depth = -.4;
+  constexpr double exponents[] = {20, 200, 2000, 20000};
+  for (int i = 0; i < 4; ++i) {
+    // Each plate mirrors the lights to the eye.
+    const Vector3 middle{0, -.8 + .35 * i, 1.6 - .75 * i};
+    const Vector3 to_light = render::normalised(Vector3{0, light_height, light_depth} - middle);
+    const Vector3 normal = render::normalised(render::normalised(eye - middle) + to_light);
+    const Vector3 up = .6 * Vector3{0, normal.z, -normal.y};
+    shapes.push_back(parallelogram(middle - .5 * up - Vector3{2.2, 0, 0}, {4.4, 0, 0}, up,
+                                   glossy({.6, .6, .6}, exponents[i])));
+  }
+  constexpr double radii[] = {.03, .1, .3, .8};
+  for (int i = 0; i < 4; ++i) {
+    const double radius = radii[i];
+    shapes.push_back(sphere({-2.7 + 1.8 * i, light_height, light_depth}, radius,
+                            emitter(.35 / (radius * radius))));
+  }
+  return {std::move(shapes),
+          {.eye = eye, .corner = {-.4, .22, -1}, .right = {.8, 0, 0}, .down = {0, -.6, 0}},
+          2};
+}
+
 }  // namespace
 
 Shape sphere(const Vector3& centre, double radius, const Material& material) {
@@ -125,75 +190,6 @@ double Scene::light_density(const Vector3& from, const Hit& hit, const Vector3& 
   const double area = render::length(cross(light.first, light.second));
   return hit.distance * hit.distance / (std::abs(dot(light.normal, direction)) * area * count);
 }
-
-namespace {
-
-Material diffuse(const Rgb& albedo) { return {.surface = Surface::diffuse, .colour = albedo}; }
-Material glossy(const Rgb& albedo, double exponent) {
-  return {.surface = Surface::glossy, .colour = albedo, .exponent = exponent};
-}
-Material emitter(double radiance) {
-  return {.surface = Surface::emitter, .colour = {radiance, radiance, radiance}};
-}
-
-/// The unit box, open towards the eye at z = 1, and its camera.
-std::vector<Shape> box() {
-  const Material white = diffuse({.72, .72, .70});
-  return {parallelogram({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, white),
-          parallelogram({0, 1, 0}, {1, 0, 0}, {0, 0, 1}, white),
-          parallelogram({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, white),
-          parallelogram({0, 0, 0}, {0, 1, 0}, {0, 0, 1}, diffuse({.63, .06, .05})),
-          parallelogram({1, 0, 0}, {0, 0, 1}, {0, 1, 0}, diffuse({.14, .45, .09}))};
-}
-constexpr Scene::Camera box_camera{
-    .eye = {.5, .5, 2.3}, .corner = {-.6, .45, -1.3}, .right = {1.2, 0, 0}, .down = {0, -.9, 0}};
-
-Scene mild_box() {
-  std::vector<Shape> shapes = box();
-  shapes.push_back(parallelogram({.2, .999, .2}, {.6, 0, 0}, {0, 0, .6}, emitter(4)));
-  shapes.push_back(sphere({.3, .25, .4}, .25, diffuse({.6, .6, .7})));
-  shapes.push_back(sphere({.72, .18, .6}, .18, diffuse({.7, .65, .4})));
-  return {std::move(shapes), box_camera, 4};
-}
-
-Scene glass_box() {
-  std::vector<Shape> shapes = box();
-  shapes.push_back(parallelogram({.44, .999, .44}, {.12, 0, 0}, {0, 0, .12}, emitter(90)));
-  shapes.push_back(sphere({.68, .22, .6}, .22, {.surface = Surface::glass, .refraction = 1.5}));
-  shapes.push_back(
-      sphere({.28, .26, .35}, .26, {.surface = Surface::mirror, .colour = {.95, .95, .95}}));
-  return {std::move(shapes), box_camera, 5};
-}
-
-Scene plates() {
-  std::vector<Shape> shapes{
-      parallelogram({-6, -1, -2}, {0, 0, 8}, {12, 0, 0}, diffuse({.4, .4, .4})),
-      parallelogram({-6, -1, -2}, {12, 0, 0}, {0, 7, 0}, diffuse({.4, .4, .4}))};
-  constexpr Vector3 eye{0, 1.6, 7};
-  constexpr double light_height = 2.4;
-  constexpr double light_depth = -.4;
-  constexpr double exponents[] = {20, 200, 2000, 20000};
-  for (int i = 0; i < 4; ++i) {
-    // Each plate mirrors the lights to the eye.
-    const Vector3 middle{0, -.8 + .35 * i, 1.6 - .75 * i};
-    const Vector3 to_light = render::normalised(Vector3{0, light_height, light_depth} - middle);
-    const Vector3 normal = render::normalised(render::normalised(eye - middle) + to_light);
-    const Vector3 up = .6 * Vector3{0, normal.z, -normal.y};
-    shapes.push_back(parallelogram(middle - .5 * up - Vector3{2.2, 0, 0}, {4.4, 0, 0}, up,
-                                   glossy({.6, .6, .6}, exponents[i])));
-  }
-  constexpr double radii[] = {.03, .1, .3, .8};
-  for (int i = 0; i < 4; ++i) {
-    const double radius = radii[i];
-    shapes.push_back(sphere({-2.7 + 1.8 * i, light_height, light_depth}, radius,
-                            emitter(.35 / (radius * radius))));
-  }
-  return {std::move(shapes),
-          {.eye = eye, .corner = {-.4, .22, -1}, .right = {.8, 0, 0}, .down = {0, -.6, 0}},
-          2};
-}
-
-}  // namespace
 
 std::shared_ptr<const Scene> scene_of(const std::string& name) {
   if (name == "glass") return std::make_shared<const Scene>(glass_box());

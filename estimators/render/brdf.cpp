@@ -11,6 +11,8 @@
 
 namespace assay::render {
 
+using std::numbers::pi;
+
 Vector3 direction(Angles angles) {
   const double sine = std::sin(angles.theta);
   return {sine * std::cos(angles.phi), sine * std::sin(angles.phi), std::cos(angles.theta)};
@@ -40,8 +42,6 @@ double HalfVectorBrdf::target(Target target, const Vector3& out) const {
   }
   return 0;
 }
-
-using std::numbers::pi;
 
 double AshikhminShirley::normalisation() const {
   return std::sqrt((material_.exponents.u + 1) * (material_.exponents.v + 1));
@@ -115,8 +115,6 @@ double AshikhminShirley::width() const {
   return 1 / std::sqrt(std::max(material_.exponents.u, material_.exponents.v) + 1);
 }
 
-using std::numbers::pi;
-
 // exp(-tan^2 d (...)) of a half vector of any length.
 double Ward::gaussian(const Vector3& h) const {
   const double x = h.x / (h.z * roughness_.x);
@@ -181,22 +179,6 @@ Vector3 propose(Stream& random) {
   throw std::logic_error(message.str());
 }
 
-}  // namespace
-
-Vector3 sample_by_rejection(const HalfVectorBrdf& brdf, Target target, Stream& random) {
-  const double bound = brdf.rejection_bound(target);
-  while (true) {
-    const Vector3 out = propose(random);
-    const double quotient = 4 * std::numbers::pi * std::sqrt(out.z) * brdf.target(target, out);
-    const double acceptance = quotient / bound;
-    if (!(acceptance <= rounding)) exceeded(out, acceptance);
-    if (random.uniform() < acceptance) return out;
-  }
-}
-
-namespace {
-
-using std::numbers::pi;
 using Five = std::array<double, 5>;
 
 constexpr double tolerance = 1e-12;
@@ -248,6 +230,17 @@ Integrals<5> over_polar_angle(const HalfVectorBrdf& brdf, const HalfPlane& plane
 }
 
 }  // namespace
+
+Vector3 sample_by_rejection(const HalfVectorBrdf& brdf, Target target, Stream& random) {
+  const double bound = brdf.rejection_bound(target);
+  while (true) {
+    const Vector3 out = propose(random);
+    const double quotient = 4 * pi * std::sqrt(out.z) * brdf.target(target, out);
+    const double acceptance = quotient / bound;
+    if (!(acceptance <= rounding)) exceeded(out, acceptance);
+    if (random.uniform() < acceptance) return out;
+  }
+}
 
 BrdfIntegrals integrate(const HalfVectorBrdf& brdf) {
   const Vector3& incident = brdf.incident();
