@@ -20,15 +20,6 @@ void put_in_order(std::span<const Real> values, std::vector<Placed<Real>>& order
       [](const Placed<Real>& a, const Placed<Real>& b) { return a.value < b.value; });
 }
 
-// Calls visit(first, end) for each run of equal values.
-template <class Real, class Visit>
-void for_each_tie(const std::vector<Placed<Real>>& order, const Visit& visit) {
-  for (std::size_t first = 0, end = 0; first < order.size(); first = end) {
-    while (end < order.size() && order[end].value == order[first].value) ++end;
-    visit(first, end);
-  }
-}
-
 }  // namespace
 
 template <class Real>

@@ -13,7 +13,19 @@ template <class Real>
 struct Placed {
   Real value;
   std::size_t place;
+
+  bool operator==(const Placed& other) const { return value == other.value; }
 };
+
+// Calls visit(first, end) for each run of equal values, which follow on each other.
+template <class Values, class Visit>
+void for_each_tie(const Values& order, const Visit& visit) {
+  for (std::size_t first = 0, end = 0; first < order.size(); first = end) {
+    end = first + 1;
+    while (end < order.size() && order[end] == order[first]) ++end;
+    visit(first, end);
+  }
+}
 
 // Midranks from 0 on: equal values share the mean of their places. `order` is room for the order.
 template <class Real>

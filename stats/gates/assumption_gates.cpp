@@ -149,15 +149,10 @@ bool is_lattice(std::span<const double> sorted) {
 double tie_probability(std::span<const double> sorted) {
   const double n = static_cast<double>(sorted.size());
   double pairs = 0;
-  double count = 1;
-  for (std::size_t i = 1; i <= sorted.size(); ++i) {
-    if (i < sorted.size() && sorted[i] == sorted[i - 1]) {
-      ++count;
-      continue;
-    }
+  for_each_tie(sorted, [&](std::size_t first, std::size_t end) {
+    const double count = static_cast<double>(end - first);
     pairs += count * (count - 1);
-    count = 1;
-  }
+  });
   return pairs / (n * (n - 1));
 }
 

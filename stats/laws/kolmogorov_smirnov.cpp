@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "stats/basics/check.h"
+#include "stats/basics/scores.h"
 #include "stats/basics/search.h"
 #include "stats/tails/kolmogorov.h"
 #include "stats/tails/special.h"
@@ -52,12 +53,9 @@ void add_run(double value, TiedRun run, TwoSampleDistance& result) {
 
 // The runs of equal values after `before` others.
 void add_runs(std::span<const double> sorted, std::uint64_t before, TwoSampleDistance& result) {
-  for (std::size_t begin = 0; begin < sorted.size();) {
-    std::size_t end = begin + 1;
-    while (end < sorted.size() && sorted[end] == sorted[begin]) ++end;
-    add_run(sorted[begin], {before + begin, end - begin}, result);
-    begin = end;
-  }
+  for_each_tie(sorted, [&](std::size_t first, std::size_t end) {
+    add_run(sorted[first], {before + first, end - first}, result);
+  });
 }
 
 TestResult result_of(double distance, Distribution law, SmirnovTail tail) {
