@@ -15,7 +15,7 @@
 #include "harness/language/laws.h"
 #include "harness/plan/sizes.h"
 #include "harness/run/evaluate.h"
-#include "stats/basics/sorted.h"
+#include "stats/basics/scores.h"
 #include "stats/cells/chi_square_fit.h"
 #include "stats/cells/chi_square_two_sample.h"
 #include "stats/gates/assumption_gates.h"

@@ -9,7 +9,7 @@
 #include "harness/question/question.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/theta.h"
-#include "stats/basics/sorted.h"
+#include "stats/basics/scores.h"
 #include "stats/laws/quantile_test.h"
 #include "stats/tails/tails.h"
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <boost/sort/pdqsort/pdqsort.hpp>
+#include <boost/sort/spreadsort/float_sort.hpp>
 #include <cmath>
 #include <numeric>
 
@@ -21,6 +22,11 @@ void put_in_order(std::span<const Real> values, std::vector<Placed<Real>>& order
 }
 
 }  // namespace
+
+std::vector<double> sorted(std::vector<double> values) {
+  boost::sort::spreadsort::float_sort(values.begin(), values.end());
+  return values;
+}
 
 template <class Real>
 void midranks(std::span<const Real> values, std::vector<Placed<Real>>& order,

@@ -1,4 +1,4 @@
-#include "stats/basics/sorted.h"
+#include "stats/basics/scores.h"
 
 #include "tests/stats/prelude.h"
 
