@@ -1,8 +1,10 @@
 #include "stats/basics/check.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <functional>
 #include <stdexcept>
 
 namespace assay::stats::check {
@@ -47,6 +49,17 @@ void log_probability(Argument argument, double value) {
 
 void at_least(Argument argument, std::uint64_t value, std::uint64_t minimum) {
   if (value < minimum) fail(argument, value, "at least " + std::to_string(minimum));
+}
+
+void sorted(const char* function, std::span<const double> values) {
+  at_least({function, "values"}, values.size(), 1);
+  finite({function, "smallest value"}, values.front());
+  finite({function, "largest value"}, values.back());
+  // NaN fails every comparison, so an ordered range with finite ends is finite throughout.
+  if (std::ranges::adjacent_find(values, std::not_fn(std::less_equal())) != values.end()) {
+    throw std::domain_error(std::string(function) +
+                            ": values must be sorted ascending, without NaN");
+  }
 }
 
 }  // namespace assay::stats::check

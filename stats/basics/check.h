@@ -2,6 +2,7 @@
 
 #include <concepts>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -30,5 +31,7 @@ void inside_unit(Argument argument, double value);      // In (0, 1).
 void unit(Argument argument, double value);             // In [0, 1].
 void log_probability(Argument argument, double value);  // At most 0, not NaN.
 void at_least(Argument argument, std::uint64_t value, std::uint64_t minimum);
+// One value or more, finite and ascending.
+void sorted(const char* function, std::span<const double> values);
 
 }  // namespace assay::stats::check

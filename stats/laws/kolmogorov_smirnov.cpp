@@ -5,7 +5,6 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
-#include <stdexcept>
 
 #include "stats/basics/check.h"
 #include "stats/basics/scores.h"
@@ -15,18 +14,6 @@
 
 namespace assay::stats {
 namespace {
-
-void check_sorted(std::span<const double> values) {
-  check::at_least({"ks_distance", "sample size"}, values.size(), 1);
-  // NaN fails every comparison, so an ordered range with finite ends is finite throughout.
-  const bool ordered = std::adjacent_find(values.begin(), values.end(), [](double a, double b) {
-                         return !(a <= b);
-                       }) == values.end();
-  if (!ordered)
-    throw std::domain_error("ks_distance: sample must be sorted ascending, without NaN");
-  check::finite({"ks_distance", "smallest value"}, values.front());
-  check::finite({"ks_distance", "largest value"}, values.back());
-}
 
 // The distance from a law with these probabilities up to each value.
 OneSampleDistance largest_gap(std::span<const double> sorted, std::span<const double> at) {
@@ -171,12 +158,12 @@ std::vector<double> probabilities(std::span<const double> sorted, const Continuo
 }
 
 OneSampleDistance ks_distance(std::span<const double> sorted, const ContinuousLaw& law) {
-  check_sorted(sorted);
+  check::sorted("ks_distance", sorted);
   return largest_gap(sorted, probabilities(sorted, law));
 }
 
 OneSampleDistance ks_distance(std::span<const double> sorted, Probabilities at) {
-  check_sorted(sorted);
+  check::sorted("ks_distance", sorted);
   if (at.of_values.size() != sorted.size()) {
     check::fail({"ks_distance", "number of probabilities"},
                 static_cast<double>(at.of_values.size()), "that of the values");
@@ -186,8 +173,8 @@ OneSampleDistance ks_distance(std::span<const double> sorted, Probabilities at) 
 }
 
 TwoSampleDistance ks_distance(std::span<const double> sorted_x, std::span<const double> sorted_y) {
-  check_sorted(sorted_x);
-  check_sorted(sorted_y);
+  check::sorted("ks_distance", sorted_x);
+  check::sorted("ks_distance", sorted_y);
   const std::uint64_t m = sorted_x.size();
   const std::uint64_t n = sorted_y.size();
   const std::uint64_t common = std::gcd(m, n);

@@ -15,15 +15,6 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-void check_sorted(const char* function, std::span<const double> sorted) {
-  check::at_least({function, "values"}, sorted.size(), 1);
-  check::finite({function, "smallest value"}, sorted.front());
-  check::finite({function, "largest value"}, sorted.back());
-  if (!std::is_sorted(sorted.begin(), sorted.end())) {
-    check::fail({function, "values"}, sorted.size(), "sorted ascending");
-  }
-}
-
 // The smallest k with P(K <= k) > e^log_level, the lower critical count.
 std::uint64_t smallest_kept(Trials trials, double log_level) {
   return smallest_whole(0, trials.trials, [&](std::uint64_t count) {
@@ -123,7 +114,7 @@ void check_contrast(const QuantileContrast& contrast) {
 }  // namespace
 
 QuantileCounts count_around(std::span<const double> sorted, double value) {
-  check_sorted("count_around", sorted);
+  check::sorted("count_around", sorted);
   check::finite({"count_around", "value"}, value);
   const SortedSide side{sorted, {1, 0}};
   return {side.below(value), side.at_most(value), sorted.size()};
@@ -145,7 +136,7 @@ TestResult quantile_test(const QuantileCounts& counts, double probability) {
 }
 
 Interval quantile_interval(std::span<const double> sorted, double probability, double confidence) {
-  check_sorted("quantile_interval", sorted);
+  check::sorted("quantile_interval", sorted);
   check::inside_unit({"quantile_interval", "probability"}, probability);
   check::inside_unit({"quantile_interval", "confidence"}, confidence);
   const Trials trials{sorted.size(), probability};
@@ -158,8 +149,8 @@ Interval quantile_interval(std::span<const double> sorted, double probability, d
 
 TestResult quantile_compare(std::span<const double> sorted_x, std::span<const double> sorted_y,
                             QuantileContrast contrast) {
-  check_sorted("quantile_compare", sorted_x);
-  check_sorted("quantile_compare", sorted_y);
+  check::sorted("quantile_compare", sorted_x);
+  check::sorted("quantile_compare", sorted_y);
   check_contrast(contrast);
   const double q = contrast.probability;
   const SortedSide x{sorted_x, {1, 0}};
@@ -174,8 +165,8 @@ Interval quantile_difference_interval(std::span<const double> sorted_x,
   check::inside_unit({"quantile_difference_interval", "confidence"}, confidence);
   const double log_level = std::log((1 - confidence) / 2);
   check::inside_unit({"quantile_difference_interval", "probability"}, probability);
-  check_sorted("quantile_difference_interval", sorted_x);
-  check_sorted("quantile_difference_interval", sorted_y);
+  check::sorted("quantile_difference_interval", sorted_x);
+  check::sorted("quantile_difference_interval", sorted_y);
   const SortedSide x{sorted_x, {1, 0}};
   const auto moved = [&](double offset) { return SortedSide{sorted_y, {1, offset}}; };
   const auto rejected_above = [&](double offset) {
