@@ -61,7 +61,7 @@ Evidence quantile(const Seen& seen) {
   const double probability = question.test->claim.left.arguments[0];
   const double estimate = middle(x, probability) - middle(y, probability);
   const auto at = [x, y, probability](double theta) {
-    return stats::quantile_compare(x, y, {.probability = probability, .offset = theta});
+    return stats::quantile_compare(x, y, probability, theta);
   };
   const auto interval = [x, y, probability](double confidence) {
     return stats::quantile_difference_interval(x, y, probability, confidence);

@@ -37,25 +37,20 @@ double log_fisher(double log_product) {
   return std::min(0.0, log_product + std::log1p(-log_product));
 }
 
-struct Transform {
-  double scale;
-  double offset;
-
-  double operator()(double y) const { return scale * y + offset; }
-};
-
 struct SortedSide {
   std::span<const double> values;
-  Transform map;
+  double offset = 0;
 
+  double moved(double y) const { return y + offset; }
   std::uint64_t below(double v) const {
     return static_cast<std::uint64_t>(
-        std::partition_point(values.begin(), values.end(), [&](double y) { return map(y) < v; }) -
+        std::partition_point(values.begin(), values.end(), [&](double y) { return moved(y) < v; }) -
         values.begin());
   }
   std::uint64_t at_most(double v) const {
     return static_cast<std::uint64_t>(
-        std::partition_point(values.begin(), values.end(), [&](double y) { return map(y) <= v; }) -
+        std::partition_point(values.begin(), values.end(),
+                             [&](double y) { return moved(y) <= v; }) -
         values.begin());
   }
 };
@@ -68,9 +63,9 @@ class LargestProduct {
  public:
   LargestProduct(const SortedSide& lower, const SortedSide& upper, double probability)
       : lower_(lower), upper_(upper), probability_(probability) {
-    for (const double y : lower.values) splits_.push_back(lower.map(y));
+    for (const double y : lower.values) splits_.push_back(lower.moved(y));
     const auto middle = static_cast<std::ptrdiff_t>(splits_.size());
-    for (const double y : upper.values) splits_.push_back(upper.map(y));
+    for (const double y : upper.values) splits_.push_back(upper.moved(y));
     std::inplace_merge(splits_.begin(), splits_.begin() + middle, splits_.end());
   }
 
@@ -105,18 +100,12 @@ double log_p_below(const SortedSide& lower, const SortedSide& upper, double prob
   return log_fisher(LargestProduct(lower, upper, probability).logarithm());
 }
 
-void check_contrast(const QuantileContrast& contrast) {
-  check::inside_unit({"quantile_compare", "probability"}, contrast.probability);
-  check::positive({"quantile_compare", "scale"}, contrast.scale);
-  check::finite({"quantile_compare", "offset"}, contrast.offset);
-}
-
 }  // namespace
 
 QuantileCounts count_around(std::span<const double> sorted, double value) {
   check::sorted("count_around", sorted);
   check::finite({"count_around", "value"}, value);
-  const SortedSide side{sorted, {1, 0}};
+  const SortedSide side{sorted};
   return {side.below(value), side.at_most(value), sorted.size()};
 }
 
@@ -148,15 +137,20 @@ Interval quantile_interval(std::span<const double> sorted, double probability, d
 }
 
 TestResult quantile_compare(std::span<const double> sorted_x, std::span<const double> sorted_y,
-                            QuantileContrast contrast) {
+                            double probability, double offset) {
   check::sorted("quantile_compare", sorted_x);
   check::sorted("quantile_compare", sorted_y);
-  check_contrast(contrast);
-  const double q = contrast.probability;
-  const SortedSide x{sorted_x, {1, 0}};
-  const SortedSide y{sorted_y, {contrast.scale, contrast.offset}};
-  const double difference = sample_quantile(sorted_x, q) - y.map(sample_quantile(sorted_y, q));
-  return {difference, {"bound", {}}, log_p_below(x, y, q), log_p_below(y, x, q), Exactness::exact};
+  check::inside_unit({"quantile_compare", "probability"}, probability);
+  check::finite({"quantile_compare", "offset"}, offset);
+  const SortedSide x{sorted_x};
+  const SortedSide y{sorted_y, offset};
+  const double difference =
+      sample_quantile(sorted_x, probability) - y.moved(sample_quantile(sorted_y, probability));
+  return {difference,
+          {"bound", {}},
+          log_p_below(x, y, probability),
+          log_p_below(y, x, probability),
+          Exactness::exact};
 }
 
 Interval quantile_difference_interval(std::span<const double> sorted_x,
@@ -167,8 +161,8 @@ Interval quantile_difference_interval(std::span<const double> sorted_x,
   check::inside_unit({"quantile_difference_interval", "probability"}, probability);
   check::sorted("quantile_difference_interval", sorted_x);
   check::sorted("quantile_difference_interval", sorted_y);
-  const SortedSide x{sorted_x, {1, 0}};
-  const auto moved = [&](double offset) { return SortedSide{sorted_y, {1, offset}}; };
+  const SortedSide x{sorted_x};
+  const auto moved = [&](double offset) { return SortedSide{sorted_y, offset}; };
   const auto rejected_above = [&](double offset) {
     return log_p_below(x, moved(offset), probability) <= log_level;
   };

@@ -30,26 +30,20 @@ TestResult quantile_test(const QuantileCounts& counts, double probability);
 // ascending and finite (std::domain_error).
 Interval quantile_interval(std::span<const double> sorted, double probability, double confidence);
 
-struct QuantileContrast {
-  double probability = 0.5;
-  double scale = 1;  // > 0.
-  double offset = 0;
-};
-
 // Index of the sample quantile in sorted values, at least one: floor(q n), for q = 1 the last.
 std::size_t sample_quantile_rank(std::size_t count, double probability);
 
-// Null hypothesis: Q(x) = scale Q(y) + offset for the quantiles Q of one probability, independent
-// samples. Take the hypothesis Q(x) <= scale Q(y) + offset. It says that some v lies between the
-// two sides. So it is rejected if every v is. The exact p-values of the two inequalities at v are
+// Null hypothesis: Q(x) = Q(y) + offset for the quantiles Q of one probability, independent
+// samples. Take the hypothesis Q(x) <= Q(y) + offset. It says that some v lies between the two
+// sides. So it is rejected if every v is. The exact p-values of the two inequalities at v are
 // independent. Their product c has P(c <= a) <= a (1 - ln a) (Fisher 1932). The largest over v is
 // the p-value. Exact and conservative (law "bound"). The statistic is the difference of the two
 // sample quantiles.
 TestResult quantile_compare(std::span<const double> sorted_x, std::span<const double> sorted_y,
-                            QuantileContrast contrast);
+                            double probability, double offset = 0);
 
-// Central interval of Q(x) - Q(y): the offsets not rejected (scale 1), by bisection to double
-// precision. Ends are infinite if no offset is rejected.
+// Central interval of Q(x) - Q(y): the offsets not rejected, by bisection to double precision. Ends
+// are infinite if no offset is rejected.
 Interval quantile_difference_interval(std::span<const double> sorted_x,
                                       std::span<const double> sorted_y, double probability,
                                       double confidence);
