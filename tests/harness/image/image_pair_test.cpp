@@ -64,9 +64,7 @@ class Constants : public testing::Test {
 
 TEST_F(Constants, AConstantWithinRoundingOfItsReferenceIsAtIt) {
   Stack images = at_reference(64);
-  for (auto& image : images) {
-    round_up(image[dark]);
-  }
+  for (auto& image : images) round_up(image[dark]);
   round_up(images[5][7]);  // varies, but not by more than rounding
   images[5][8] += 1e-3F;
   const Settled part = settled(0, {images});

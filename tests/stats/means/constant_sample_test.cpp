@@ -49,14 +49,10 @@ TEST(ConstantSample, TheErrorTakesTheGreatestOfAllDivisions) {
 }
 
 TEST(ConstantSample, OtherValuesCountByTheirSizeForOneThatWasMissed) {
-  Moments others;
-  for (const double value : {2.0, 2.0, 3.0, 5.0}) others.add(value);
+  const Moments others = moments_of(std::vector{2.0, 2.0, 3.0, 5.0});
   EXPECT_NEAR(size_about(2, others), (1.0 + 9) / (1 + 3), 1e-12);
   EXPECT_EQ(size_about(3, others), infinity);  // as many above as below
-  Moments alike;
-  alike.add(0.1F);
-  alike.merge(alike);
-  EXPECT_EQ(size_about(0.1F, alike), infinity);
+  EXPECT_EQ(size_about(0.1F, moments_of(std::vector<double>(9, 0.1F))), infinity);
 }
 
 }  // namespace
