@@ -72,70 +72,6 @@ std::vector<ParameterInformation> rule_parameters() {
           boolean_parameter("clamped", "whether lambda is moved into [0, 1]", false)};
 }
 
-Entry fixed_entry(const Family& family) {
-  return {{.name = family.name,
-           .summary = family.integral + " with a control of known integral, lambda given.",
-           .description = family.description +
-                          " Estimates I = the integral of f by f/p + lambda (J - g/p) (Szecsi, "
-                          "Sbert and Szirmay-Kalos 2004): lambda = 0 is importance sampling, 1 "
-                          "correlated sampling. Unbiased for every lambda; the variance Var(f/p) + "
-                          "lambda^2 Var(g/p) - 2 lambda Cov(f/p, g/p) is least at lambda* = "
-                          "Cov(f/p, g/p) / Var(g/p), which may lie outside [0, 1].",
-           .parameters = joined(family.parameters, {lambda_parameter()})},
-          [read = family.read](Parameters& given) {
-            return fixed(read(given), given.number("lambda"));
-          }};
-}
-
-Entry same_samples_entry(const Family& family) {
-  return {
-      {.name = family.name + "_same_samples",
-       .summary = family.integral + " with a control, lambda from the same samples.",
-       .description =
-           family.description +
-           " Estimates I by the mean of f/p + lambda (J - g/p) over M primaries with lambda = "
-           "sum d (mean f/p - f/p) / sum d^2, d = J - g/p, from the same primaries. Consistent, "
-           "not unbiased: the bias times M tends to -E[(f - I - lambda* (g - J)) (g - J)^2] / "
-           "Var g (f, g over p). With `centre: mean` the spread in the denominator is taken "
-           "about the samples' mean, as by least squares; where f = g this gives I exactly, "
-           "`centre: integral` does not. With one primary, and where g/p does not vary (to "
-           "2^-40 of J), lambda is 0.",
-       .parameters = joined(family.parameters, rule_parameters()),
-       .bias = BiasClass::inverse_primaries,
-       .averages = false},
-      [read = family.read](Parameters& given) {
-        return same_samples(read(given), read_rule(given));
-      }};
-}
-
-Entry cross_fitted_entry(const Family& family) {
-  return {{.name = family.name + "_cross_fitted",
-           .summary = family.integral + " with a control, lambda from the other half.",
-           .description =
-               family.description +
-               " Estimates I by the mean of f/p + lambda (J - g/p) over M primaries in two halves, "
-               "each with the lambda that the other half gives (see the estimator of the same "
-               "samples): lambda is independent of what it multiplies, so the estimate is "
-               "unbiased. Fewer than two samples in a half give lambda = 0.",
-           .parameters = joined(family.parameters, rule_parameters()),
-           .averages = false},
-          [read = family.read](Parameters& given) {
-            return cross_fitted(read(given), read_rule(given));
-          }};
-}
-
-Entry ratio_entry(const Family& family) {
-  return {{.name = family.name + "_ratio",
-           .summary = family.integral + " by weighted importance sampling.",
-           .description = family.description +
-                          " Estimates I by J sum(f/p) / sum(g/p) over M primaries: the same two "
-                          "sums put to use as a ratio. Consistent; biased like 1/M.",
-           .parameters = family.parameters,
-           .bias = BiasClass::inverse_primaries,
-           .averages = false},
-          [read = family.read](Parameters& given) { return ratio(read(given)); }};
-}
-
 }  // namespace
 
 LambdaRule estimated_lambda(Centre centre) {
@@ -247,8 +183,58 @@ LambdaRule read_rule(Parameters& given) {
 }
 
 std::vector<Entry> entries(const Family& family) {
-  return {fixed_entry(family), same_samples_entry(family), cross_fitted_entry(family),
-          ratio_entry(family)};
+  return {
+      {{.name = family.name,
+        .summary = family.integral + " with a control of known integral, lambda given.",
+        .description = family.description +
+                       " Estimates I = the integral of f by f/p + lambda (J - g/p) (Szecsi, "
+                       "Sbert and Szirmay-Kalos 2004): lambda = 0 is importance sampling, 1 "
+                       "correlated sampling. Unbiased for every lambda; the variance Var(f/p) + "
+                       "lambda^2 Var(g/p) - 2 lambda Cov(f/p, g/p) is least at lambda* = "
+                       "Cov(f/p, g/p) / Var(g/p), which may lie outside [0, 1].",
+        .parameters = joined(family.parameters, {lambda_parameter()})},
+       [read = family.read](Parameters& given) {
+         return fixed(read(given), given.number("lambda"));
+       }},
+      {{.name = family.name + "_same_samples",
+        .summary = family.integral + " with a control, lambda from the same samples.",
+        .description =
+            family.description +
+            " Estimates I by the mean of f/p + lambda (J - g/p) over M primaries with lambda = "
+            "sum d (mean f/p - f/p) / sum d^2, d = J - g/p, from the same primaries. Consistent, "
+            "not unbiased: the bias times M tends to -E[(f - I - lambda* (g - J)) (g - J)^2] / "
+            "Var g (f, g over p). With `centre: mean` the spread in the denominator is taken "
+            "about the samples' mean, as by least squares; where f = g this gives I exactly, "
+            "`centre: integral` does not. With one primary, and where g/p does not vary (to "
+            "2^-40 of J), lambda is 0.",
+        .parameters = joined(family.parameters, rule_parameters()),
+        .bias = BiasClass::inverse_primaries,
+        .averages = false},
+       [read = family.read](Parameters& given) {
+         return same_samples(read(given), read_rule(given));
+       }},
+      {{.name = family.name + "_cross_fitted",
+        .summary = family.integral + " with a control, lambda from the other half.",
+        .description =
+            family.description +
+            " Estimates I by the mean of f/p + lambda (J - g/p) over M primaries in two halves, "
+            "each with the lambda that the other half gives (see the estimator of the same "
+            "samples): lambda is independent of what it multiplies, so the estimate is "
+            "unbiased. Fewer than two samples in a half give lambda = 0.",
+        .parameters = joined(family.parameters, rule_parameters()),
+        .averages = false},
+       [read = family.read](Parameters& given) {
+         return cross_fitted(read(given), read_rule(given));
+       }},
+      {{.name = family.name + "_ratio",
+        .summary = family.integral + " by weighted importance sampling.",
+        .description = family.description +
+                       " Estimates I by J sum(f/p) / sum(g/p) over M primaries: the same two "
+                       "sums put to use as a ratio. Consistent; biased like 1/M.",
+        .parameters = family.parameters,
+        .bias = BiasClass::inverse_primaries,
+        .averages = false},
+       [read = family.read](Parameters& given) { return ratio(read(given)); }}};
 }
 
 }  // namespace assay::correlated

@@ -304,79 +304,67 @@ const std::string of_channels =
     "uniform one after a step). Cost: samples are path evaluations, the bootstrap's included; rays "
     "are the paths'.";
 
-Entry mean_value() {
-  return {{.name = "metropolis/mean_value",
-           .summary = "Metropolis light transport, both ends of a step by the expected value.",
-           .description = of_chains +
-                          "A step adds a b F(y) / I(y) to the pixel of y and (1 - a) b F(x) / I(x) "
-                          "to that of x (Veach and Guibas 1997). The chain starts at one of "
-                          "`bootstrap` independent points, drawn in proportion to I, with b the "
-                          "mean of I over the same points: E[b h(x_k)] is the integral of h I for "
-                          "every step k, so that the image is unbiased however short the chain." +
-                          of_channels,
-           .parameters = chain_parameters(),
-           .averages = false},
-          [](Parameters& given) { return chain(recipe(read_ingredients(given), false)); }};
-}
-
-Entry multiple_importance() {
-  return {{.name = "metropolis/multiple_importance",
-           .summary = "Metropolis light transport, large steps combined as uniform samples.",
-           .description = of_chains +
-                          "Large steps are uniform samples, too: a step adds F(y) (a + [large]) / "
-                          "(I(y) / b + p_large) to the pixel of y and F(x) (1 - a) / (I(x) / b + "
-                          "p_large) to that of x, multiple importance sampling of the two. The "
-                          "start is that of metropolis/mean_value. The weights are not linear in "
-                          "b, so the image is biased, like 1 / bootstrap however long the chain." +
-                          of_channels,
-           .parameters = chain_parameters(),
-           .bias = BiasClass::inverse_bootstrap,
-           .averages = false},
-          [](Parameters& given) { return chain(recipe(read_ingredients(given), true)); }};
-}
-
-Entry uniform_start() {
-  return {{.name = "metropolis/uniform_start",
-           .summary = "Metropolis light transport from a uniform point, which it has to forget.",
-           .description = of_chains +
-                          "The first state is a uniform point instead of one drawn in proportion "
-                          "to I; b is the mean of I over `bootstrap` others. The chain has a "
-                          "start-up bias, which large steps and length make smaller. Weights as in "
-                          "metropolis/mean_value or metropolis/multiple_importance." +
-                          of_channels,
-           .parameters =
-               joined(chain_parameters(),
-                      {text_parameter("weights",
-                                      "what the two ends of a step count for: by the expected "
-                                      "value (mean_value), or combined with "
-                                      "the large steps as uniform samples (multiple_importance)",
-                                      "mean_value", {"mean_value", "multiple_importance"})}),
-           .bias = BiasClass::start_up,
-           .averages = false},
-          [](Parameters& given) {
-            const Ingredients parts = read_ingredients(given);
-            Recipe list = recipe(parts, given.string("weights") != "mean_value");
-            list.start = start_anywhere;
-            return chain(std::move(list));
-          }};
-}
-
-Entry independent_points() {
-  return {{.name = "metropolis/independent",
-           .summary = "The image of a Metropolis target by independent points.",
-           .description =
-               "The plain Monte Carlo estimate of what the chains of this family integrate: the "
-               "mean of F over independent uniform points of the primary sample space, each in its "
-               "pixel. It is trusted: the chains' variance is compared with it at equal path "
-               "evaluations. Channels: the image's elements and the diagnostic `image_mean`.",
-           .parameters = target_parameters()},
-          [](Parameters& given) { return independent(read_target(given)); }};
-}
-
 }  // namespace
 
 std::vector<Entry> metropolis_chains() {
-  return {mean_value(), multiple_importance(), uniform_start(), independent_points()};
+  return {
+      {{.name = "metropolis/mean_value",
+        .summary = "Metropolis light transport, both ends of a step by the expected value.",
+        .description = of_chains +
+                       "A step adds a b F(y) / I(y) to the pixel of y and (1 - a) b F(x) / I(x) "
+                       "to that of x (Veach and Guibas 1997). The chain starts at one of "
+                       "`bootstrap` independent points, drawn in proportion to I, with b the "
+                       "mean of I over the same points: E[b h(x_k)] is the integral of h I for "
+                       "every step k, so that the image is unbiased however short the chain." +
+                       of_channels,
+        .parameters = chain_parameters(),
+        .averages = false},
+       [](Parameters& given) { return chain(recipe(read_ingredients(given), false)); }},
+      {{.name = "metropolis/multiple_importance",
+        .summary = "Metropolis light transport, large steps combined as uniform samples.",
+        .description = of_chains +
+                       "Large steps are uniform samples, too: a step adds F(y) (a + [large]) / "
+                       "(I(y) / b + p_large) to the pixel of y and F(x) (1 - a) / (I(x) / b + "
+                       "p_large) to that of x, multiple importance sampling of the two. The "
+                       "start is that of metropolis/mean_value. The weights are not linear in "
+                       "b, so the image is biased, like 1 / bootstrap however long the chain." +
+                       of_channels,
+        .parameters = chain_parameters(),
+        .bias = BiasClass::inverse_bootstrap,
+        .averages = false},
+       [](Parameters& given) { return chain(recipe(read_ingredients(given), true)); }},
+      {{.name = "metropolis/uniform_start",
+        .summary = "Metropolis light transport from a uniform point, which it has to forget.",
+        .description = of_chains +
+                       "The first state is a uniform point instead of one drawn in proportion "
+                       "to I; b is the mean of I over `bootstrap` others. The chain has a "
+                       "start-up bias, which large steps and length make smaller. Weights as in "
+                       "metropolis/mean_value or metropolis/multiple_importance." +
+                       of_channels,
+        .parameters =
+            joined(chain_parameters(),
+                   {text_parameter("weights",
+                                   "what the two ends of a step count for: by the expected "
+                                   "value (mean_value), or combined with "
+                                   "the large steps as uniform samples (multiple_importance)",
+                                   "mean_value", {"mean_value", "multiple_importance"})}),
+        .bias = BiasClass::start_up,
+        .averages = false},
+       [](Parameters& given) {
+         const Ingredients parts = read_ingredients(given);
+         Recipe list = recipe(parts, given.string("weights") != "mean_value");
+         list.start = start_anywhere;
+         return chain(std::move(list));
+       }},
+      {{.name = "metropolis/independent",
+        .summary = "The image of a Metropolis target by independent points.",
+        .description =
+            "The plain Monte Carlo estimate of what the chains of this family integrate: the "
+            "mean of F over independent uniform points of the primary sample space, each in its "
+            "pixel. It is trusted: the chains' variance is compared with it at equal path "
+            "evaluations. Channels: the image's elements and the diagnostic `image_mean`.",
+        .parameters = target_parameters()},
+       [](Parameters& given) { return independent(read_target(given)); }}};
 }
 
 }  // namespace assay::plugins
