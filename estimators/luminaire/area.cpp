@@ -31,23 +31,18 @@ Channel area_channel(const Setting& setting) {
 
 namespace assay::plugins {
 
-namespace {
-
-std::shared_ptr<const Setup> prepare(Parameters& parameters) {
-  const luminaire::SharedSetting setting = luminaire::read_setting(parameters);
-  return averaging(luminaire::area_channel(*setting), luminaire::AreaPrimary<>(setting),
-                   luminaire::point_samplers<>(setting));
-}
-
-}  // namespace
-
 std::vector<Entry> luminaire_area() {
-  return {{luminaire::information(
-               "luminaire/area", "Irradiance from a luminaire by points uniform on its area.",
-               "X = A L cos+(receiver) cos+(light) / r^2 [visible] at a point uniform on the "
-               "luminaire of area A. At most one shadow ray a sample: none where a cosine is "
-               "zero. Sampler (of a single triangle): point."),
-           prepare}};
+  using namespace luminaire;
+  return {
+      {information("luminaire/area", "Irradiance from a luminaire by points uniform on its area.",
+                   "X = A L cos+(receiver) cos+(light) / r^2 [visible] at a point uniform on the "
+                   "luminaire of area A. At most one shadow ray a sample: none where a cosine is "
+                   "zero. Sampler (of a single triangle): point."),
+       [](Parameters& parameters) {
+         const SharedSetting setting = read_setting(parameters);
+         return averaging(area_channel(*setting), AreaPrimary<>(setting),
+                          point_samplers<>(setting));
+       }}};
 }
 
 }  // namespace assay::plugins

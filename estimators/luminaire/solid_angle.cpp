@@ -43,26 +43,20 @@ Channel solid_angle_channel(const Setting& setting) {
 
 namespace assay::plugins {
 
-namespace {
-
-std::shared_ptr<const Setup> prepare(Parameters& parameters) {
-  const luminaire::SharedSetting setting = luminaire::read_setting(parameters);
-  return averaging(luminaire::solid_angle_channel(*setting),
-                   luminaire::SolidAnglePrimary<>(setting),
-                   luminaire::solid_angle_samplers<>(setting));
-}
-
-}  // namespace
-
 std::vector<Entry> luminaire_solid_angle() {
-  return {{luminaire::information(
+  using namespace luminaire;
+  return {{information(
                "luminaire/solid_angle",
                "Irradiance from a luminaire by directions uniform in its solid angle.",
                "X = Omega L cos+ [visible] along a direction uniform in the solid angle Omega of "
                "the luminaire (Arvo 1995, Stratified sampling of spherical triangles). At most one "
                "shadow ray a sample: none below the horizon. Samplers: direction (of a polygon), "
                "square (of a single triangle: the numbers behind the direction, uniform)."),
-           prepare}};
+           [](Parameters& parameters) {
+             const SharedSetting setting = read_setting(parameters);
+             return averaging(solid_angle_channel(*setting), SolidAnglePrimary<>(setting),
+                              solid_angle_samplers<>(setting));
+           }}};
 }
 
 }  // namespace assay::plugins
