@@ -49,11 +49,6 @@ std::shared_ptr<const Sampler> rejection_sampler(const SharedBrdf& brdf, Target 
   return brdf_sampler(brdf, point_above, density);
 }
 
-struct Prepared {
-  Channel channel;
-  std::shared_ptr<const Sampler> sampler;
-};
-
 Channel channel(const render::BrdfIntegrals& integrals, double second_moment, double bound) {
   const double mean = integrals.albedo;
   return {.name = "albedo",
@@ -65,25 +60,25 @@ Channel channel(const render::BrdfIntegrals& integrals, double second_moment, do
 }
 
 // f cos_o / (p / mass) <= mass times the bound of f cos_o / p.
-Prepared by_density(SharedBrdf brdf, const render::BrdfIntegrals& i) {
-  return {channel(i, i.mass * i.second_moment, i.mass * brdf->weight_bound()),
-          rejection_sampler(brdf, Target::density, i.mass)};
+std::shared_ptr<const Setup> by_density(SharedBrdf brdf, const render::BrdfIntegrals& i) {
+  return albedo(channel(i, i.mass * i.second_moment, i.mass * brdf->weight_bound()),
+                rejection_sampler(brdf, Target::density, i.mass));
 }
 
 // f cos_o / (f / B) = B cos_o <= B, of second moment B^2 E[cos_o^2] = B times that of f.
-Prepared by_brdf(SharedBrdf brdf, const render::BrdfIntegrals& i) {
-  return {channel(i, i.brdf * i.cosine_moment, i.brdf),
-          rejection_sampler(brdf, Target::brdf, i.brdf)};
+std::shared_ptr<const Setup> by_brdf(SharedBrdf brdf, const render::BrdfIntegrals& i) {
+  return albedo(channel(i, i.brdf * i.cosine_moment, i.brdf),
+                rejection_sampler(brdf, Target::brdf, i.brdf));
 }
 
 // f cos_o / (f cos_o / albedo): the albedo whatever is drawn, to rounding.
-Prepared by_brdf_cosine(SharedBrdf brdf, const render::BrdfIntegrals& i) {
+std::shared_ptr<const Setup> by_brdf_cosine(SharedBrdf brdf, const render::BrdfIntegrals& i) {
   // A weight is off by a few units in the last place, a sum of many primaries by more.
   const double rounding = i.albedo * 0x1p-40;
   Channel constant = channel(i, i.albedo * i.albedo, i.albedo + rounding);
   constant.low = i.albedo - rounding;
   constant.rounding = 2 * rounding;
-  return {constant, rejection_sampler(brdf, Target::brdf_cosine, i.albedo)};
+  return albedo(constant, rejection_sampler(brdf, Target::brdf_cosine, i.albedo));
 }
 
 /// Reads `sampler` and prepares that one. Mean and variance come from quadrature.
@@ -91,10 +86,8 @@ std::shared_ptr<const Setup> prepare_albedo(SharedBrdf brdf, Parameters& paramet
   const std::string kind = parameters.string("sampler");
   if (kind == "published") return albedo(published_channel(*brdf), published_sampler(brdf));
   const render::BrdfIntegrals integrals = integrate(*brdf);
-  Prepared prepared = kind == "density_rejection" ? by_density(brdf, integrals)
-                      : kind == "brdf_rejection"  ? by_brdf(brdf, integrals)
-                                                  : by_brdf_cosine(brdf, integrals);
-  return albedo(std::move(prepared.channel), std::move(prepared.sampler));
+  if (kind == "density_rejection") return by_density(brdf, integrals);
+  return kind == "brdf_rejection" ? by_brdf(brdf, integrals) : by_brdf_cosine(brdf, integrals);
 }
 
 std::vector<ParameterInformation> incident_parameters() {
