@@ -73,20 +73,20 @@ struct Pipe {
   std::array<int, 2> ends{-1, -1};  ///< reading, writing
 };
 
-struct Actions {
-  Actions() { check(posix_spawn_file_actions_init(&actions), "posix_spawn"); }
-  ~Actions() { posix_spawn_file_actions_destroy(&actions); }
-  Actions(const Actions&) = delete;
-  Actions& operator=(const Actions&) = delete;
-  posix_spawn_file_actions_t actions{};
-};
-
-struct Attributes {
-  Attributes() { check(posix_spawnattr_init(&attributes), "posix_spawn"); }
-  ~Attributes() { posix_spawnattr_destroy(&attributes); }
-  Attributes(const Attributes&) = delete;
-  Attributes& operator=(const Attributes&) = delete;
-  posix_spawnattr_t attributes{};
+/// What posix_spawn() is told of files and signals.
+struct Spawning {
+  Spawning() {
+    check(posix_spawn_file_actions_init(&files), "posix_spawn");
+    check(posix_spawnattr_init(&process), "posix_spawn");
+  }
+  ~Spawning() {
+    posix_spawn_file_actions_destroy(&files);
+    posix_spawnattr_destroy(&process);
+  }
+  Spawning(const Spawning&) = delete;
+  Spawning& operator=(const Spawning&) = delete;
+  posix_spawn_file_actions_t files{};
+  posix_spawnattr_t process{};
 };
 
 void describe_files(posix_spawn_file_actions_t* actions, const Launch& launch,
@@ -143,15 +143,14 @@ std::vector<std::string> environment_of(const Launch& launch) {
 }
 
 pid_t spawn(const Launch& launch, const std::array<int, 3>& standard) {
-  Actions files;
-  Attributes process;
-  describe_files(&files.actions, launch, standard);
-  describe_process(&process.attributes);
+  Spawning spawning;
+  describe_files(&spawning.files, launch, standard);
+  describe_process(&spawning.process);
   std::vector<std::string> words = launch.command;
   const std::vector<char*> arguments = pointers_to(words);
   std::vector<std::string> variables = environment_of(launch);
   pid_t child = -1;
-  check(posix_spawnp(&child, arguments[0], &files.actions, &process.attributes, arguments.data(),
+  check(posix_spawnp(&child, arguments[0], &spawning.files, &spawning.process, arguments.data(),
                      pointers_to(variables).data()),
         "posix_spawn");
   return child;
