@@ -37,9 +37,6 @@ constexpr double squared_length(const Vector3& v) { return dot(v, v); }
 inline double length(const Vector3& v) { return std::sqrt(squared_length(v)); }
 /// The unit vector along v; not a number for the zero vector, which callers exclude beforehand.
 inline Vector3 normalised(const Vector3& v) { return v / length(v); }
-inline bool is_finite(const Vector3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 /// The angle between two vectors in [0, pi], accurate near both ends, where acos is not.
 inline double angle_between(const Vector3& a, const Vector3& b) {
   return std::atan2(length(cross(a, b)), dot(a, b));
