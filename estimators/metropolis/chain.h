@@ -91,6 +91,7 @@ double start_anywhere(Walker& walker, std::uint64_t count);
 struct Recipe {
   SharedTarget target;
   double p_large;  ///< probability of a large step, in (0, 1]
+  Boundary boundary;
   std::shared_ptr<const SmallStep> step;
   std::shared_ptr<const Rules> rules;
   std::uint64_t bootstrap;  ///< number of points that the start takes b from
@@ -104,17 +105,8 @@ struct Recipe {
 /// `acceptance` (mean of a).
 std::shared_ptr<const Setup> chain(Recipe recipe);
 
-/// Parameters that a plugin reads before it knows its rules and its start.
-struct Ingredients {
-  SharedTarget target;
-  double p_large;
-  std::uint64_t bootstrap;
-  Boundary boundary;
-};
-Ingredients read_ingredients(Parameters& given);
-
-/// A sound chain, started from the bootstrap. Its rules are MultipleImportanceRules where
+/// Reads a sound chain, started from the bootstrap. Its rules are MultipleImportanceRules where
 /// `combined`, else MeanValueRules.
-Recipe recipe(const Ingredients& ingredients, bool combined);
+Recipe read_recipe(Parameters& given, bool combined);
 
 }  // namespace assay::metropolis

@@ -261,21 +261,17 @@ std::shared_ptr<const Setup> chain(Recipe recipe) {
                    .elements = elements_of(means)});
 }
 
-Ingredients read_ingredients(Parameters& given) {
-  return {.target = read_target(given),
-          .p_large = given.number("p_large"),
-          .bootstrap = given.count("bootstrap"),
-          .boundary = given.choice<Boundary>("boundary")};
-}
-
-Recipe recipe(const Ingredients& ingredients, bool combined) {
+Recipe read_recipe(Parameters& given, bool combined) {
+  const double p_large = given.number("p_large");
+  const auto boundary = given.choice<Boundary>("boundary");
   std::shared_ptr<const Rules> rules = std::make_shared<MeanValueRules>();
-  if (combined) rules = std::make_shared<MultipleImportanceRules>(ingredients.p_large);
-  return {.target = ingredients.target,
-          .p_large = ingredients.p_large,
-          .step = std::make_shared<SmallStep>(ingredients.boundary),
+  if (combined) rules = std::make_shared<MultipleImportanceRules>(p_large);
+  return {.target = read_target(given),
+          .p_large = p_large,
+          .boundary = boundary,
+          .step = std::make_shared<SmallStep>(boundary),
           .rules = std::move(rules),
-          .bootstrap = ingredients.bootstrap,
+          .bootstrap = given.count("bootstrap"),
           .coordinates = [](std::shared_ptr<const SmallStep> step) {
             return std::make_unique<LazyCoordinates>(std::move(step));
           }};
@@ -319,7 +315,7 @@ std::vector<Entry> metropolis_chains() {
                        of_channels,
         .parameters = chain_parameters(),
         .averages = false},
-       [](Parameters& given) { return chain(recipe(read_ingredients(given), false)); }},
+       [](Parameters& given) { return chain(read_recipe(given, false)); }},
       {{.name = "metropolis/multiple_importance",
         .summary = "Metropolis light transport, large steps combined as uniform samples.",
         .description = of_chains +
@@ -332,7 +328,7 @@ std::vector<Entry> metropolis_chains() {
         .parameters = chain_parameters(),
         .bias = BiasClass::inverse_bootstrap,
         .averages = false},
-       [](Parameters& given) { return chain(recipe(read_ingredients(given), true)); }},
+       [](Parameters& given) { return chain(read_recipe(given, true)); }},
       {{.name = "metropolis/uniform_start",
         .summary = "Metropolis light transport from a uniform point, which it has to forget.",
         .description = of_chains +
@@ -351,10 +347,9 @@ std::vector<Entry> metropolis_chains() {
         .bias = BiasClass::start_up,
         .averages = false},
        [](Parameters& given) {
-         const Ingredients parts = read_ingredients(given);
-         Recipe list = recipe(parts, given.string("weights") != "mean_value");
-         list.start = start_anywhere;
-         return chain(std::move(list));
+         Recipe recipe = read_recipe(given, given.string("weights") != "mean_value");
+         recipe.start = start_anywhere;
+         return chain(std::move(recipe));
        }},
       {{.name = "metropolis/independent",
         .summary = "The image of a Metropolis target by independent points.",

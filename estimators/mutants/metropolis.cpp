@@ -128,20 +128,18 @@ struct NotFreshened final : LazyCoordinates {
 };
 
 // The change that a mutant makes to a sound recipe.
-using Defect = std::function<void(Recipe&, const Ingredients&)>;
+using Defect = std::function<void(Recipe&)>;
 
 template <class Mutant>
 Defect steps() {
-  return [](Recipe& recipe, const Ingredients& parts) {
-    recipe.step = std::make_shared<Mutant>(parts.boundary);
-  };
+  return [](Recipe& recipe) { recipe.step = std::make_shared<Mutant>(recipe.boundary); };
 }
 
 template <class Mutant>
 Defect rules() {
-  return [](Recipe& recipe, const Ingredients& parts) {
+  return [](Recipe& recipe) {
     if constexpr (std::is_constructible_v<Mutant, double>) {
-      recipe.rules = std::make_shared<Mutant>(parts.p_large);
+      recipe.rules = std::make_shared<Mutant>(recipe.p_large);
     } else {
       recipe.rules = std::make_shared<Mutant>();
     }
@@ -149,12 +147,12 @@ Defect rules() {
 }
 
 Defect start(Start mutant) {
-  return [mutant](Recipe& recipe, const Ingredients&) { recipe.start = mutant; };
+  return [mutant](Recipe& recipe) { recipe.start = mutant; };
 }
 
 template <class Mutant>
 Defect bookkeeping() {
-  return [](Recipe& recipe, const Ingredients&) {
+  return [](Recipe& recipe) {
     recipe.coordinates = [](std::shared_ptr<const SmallStep> step) {
       return std::make_unique<Mutant>(std::move(step));
     };
@@ -164,9 +162,8 @@ Defect bookkeeping() {
 Entry entry(const std::string& original, const char* name, const char* defect, Defect apply) {
   return mutant({std::string("metropolis_") + name, original, defect},
                 [original, apply = std::move(apply)](Parameters& given) {
-                  const Ingredients parts = read_ingredients(given);
-                  Recipe recipe = metropolis::recipe(parts, original != "metropolis/mean_value");
-                  apply(recipe, parts);
+                  Recipe recipe = read_recipe(given, original != "metropolis/mean_value");
+                  apply(recipe);
                   return chain(std::move(recipe));
                 });
 }
