@@ -4,8 +4,8 @@
 #include <oneapi/tbb/global_control.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
-#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <stdexcept>
@@ -54,20 +54,17 @@ class Device {
 
   /// Throws what Embree has to complain of; it keeps the first error of each thread until asked.
   void check() const {
-    switch (rtcGetDeviceError(handle_)) {
-      case RTC_ERROR_NONE:
-        return;
-      case RTC_ERROR_INVALID_ARGUMENT:
-        embree_failed("invalid argument");
-      case RTC_ERROR_INVALID_OPERATION:
-        embree_failed("invalid operation");
-      case RTC_ERROR_OUT_OF_MEMORY:
-        embree_failed("out of memory");
-      case RTC_ERROR_UNSUPPORTED_CPU:
-        embree_failed("this processor is not supported");
-      default:
-        embree_failed("unknown error");
-    }
+    // By Embree's numbers.
+    constexpr std::array words{"",
+                               "unknown error",
+                               "invalid argument",
+                               "invalid operation",
+                               "out of memory",
+                               "this processor is not supported",
+                               "cancelled"};
+    static_assert(RTC_ERROR_CANCELLED + 1 == words.size());
+    const RTCError error = rtcGetDeviceError(handle_);
+    if (error != RTC_ERROR_NONE) embree_failed(words.at(error));
   }
 
   /// An empty scene that keeps the device alive. The scene is then built on the calling thread, so
