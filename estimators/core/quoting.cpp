@@ -1,6 +1,9 @@
 #include "estimators/core/quoting.h"
 
 #include <algorithm>
+#include <boost/algorithm/string/replace.hpp>
+#include <iomanip>
+#include <sstream>
 
 namespace assay {
 
@@ -8,18 +11,13 @@ std::string shell_quoted(const std::string& word) {
   constexpr const char* harmless =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=,:%+@";
   if (!word.empty() && word.find_first_not_of(harmless) == std::string::npos) return word;
-  std::string out = "'";
-  for (const char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
+  return "'" + boost::replace_all_copy(word, "'", "'\\''") + "'";
 }
 
 std::string python_quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c;
-  }
-  return out + "\"";
+  std::ostringstream out;
+  out << std::quoted(text);
+  return out.str();
 }
 
 std::string shown(std::string_view text, std::size_t most) {

@@ -5,7 +5,9 @@
 #include <boost/algorithm/string.hpp>
 #include <charconv>
 #include <cmath>
+#include <iomanip>
 #include <map>
+#include <sstream>
 
 #include "estimators/core/mapped.h"
 
@@ -13,18 +15,11 @@ namespace assay {
 
 namespace {
 
-std::string quoted(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    // Within quotes YAML would fold the end of a line to a blank.
-    if (c == '\n') {
-      out += "\\n";
-    } else {
-      out += c;
-    }
-  }
-  return out + '"';
+std::string quoted(const std::string& text) {
+  std::ostringstream out;
+  out << std::quoted(text);
+  // Within quotes YAML would fold the end of a line to a blank.
+  return boost::replace_all_copy(out.str(), "\n", "\\n");
 }
 
 const char* kind_name(Value::Kind kind) {
