@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <boost/algorithm/string/replace.hpp>
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
@@ -30,10 +31,7 @@ using foreign::Question;
 
 constexpr int failed = 3;
 
-std::string& host_program() {
-  static std::string program;
-  return program;
-}
+std::string host_program;
 
 /// The pipes of the protocol, out of the library's reach. The library reads an empty standard
 /// input; its standard output goes to a file in memory.
@@ -142,17 +140,12 @@ std::unique_ptr<const PreparedLibrary> prepared(const std::vector<std::string>& 
   return std::make_unique<const PreparedLibrary>(choice);
 }
 
-std::string one_line(std::string text) {
-  for (char& c : text) c = c == '\n' ? ' ' : c;
-  return text;
-}
-
 }  // namespace
 
-void set_library_host(const std::string& program) { host_program() = program; }
+void set_library_host(const std::string& program) { host_program = program; }
 
 std::string library_host() {
-  if (!host_program().empty()) return host_program();
+  if (!host_program.empty()) return host_program;
   const char* const program = std::getenv("ASSAY_PROGRAM");
   if (program != nullptr && *program != '\0') return program;
   throw std::runtime_error(
@@ -168,7 +161,8 @@ int host_library(const std::vector<std::string>& arguments) {
     library = prepared(arguments);
     refuse_printing(channels);
   } catch (const std::exception& error) {
-    channels.write("assay 1 binary\nerror " + one_line(error.what()) + "\n");
+    channels.write("assay 1 binary\nerror " +
+                   boost::replace_all_copy(std::string(error.what()), "\n", " ") + "\n");
     return failed;
   }
   try {
