@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "estimators/core/mapped.h"
 #include "estimators/foreign/words.h"
 
 namespace assay::foreign {
@@ -70,7 +71,7 @@ class Reader {
   Hello finish() {
     if (!greeted_) throw ProtocolError("it printed nothing; the first line is `assay 1 text`");
     if (!ready_) throw ProtocolError("its hello does not end with `ready`");
-    refuse_double_components();
+    if (hello_.image) unequal(hello_.image->components, "component");
     if (!hello_.image && !needs_image_.empty()) wrong(needs_image_, "there is no `image`");
     if (hello_.channel_count() == 0) {
       throw ProtocolError("its hello names neither a `channel` nor an `image`");
@@ -240,20 +241,18 @@ class Reader {
     };
   }
 
-  void refuse_double_components() const {
-    if (!hello_.image) return;
-    const std::vector<std::string>& all = hello_.image->components;
-    if (std::set<std::string>(all.begin(), all.end()).size() < all.size()) {
-      throw ProtocolError("its hello names a component twice");
+  /// The names, none of which stands twice.
+  static std::set<std::string> unequal(const std::vector<std::string>& all, const char* what) {
+    std::set<std::string> names;
+    for (const std::string& name : all) {
+      if (names.insert(name).second) continue;
+      throw ProtocolError("its hello names the " + std::string(what) + " `" + name + "` twice");
     }
+    return names;
   }
 
   void refuse_doubles() const {
-    std::set<std::string> names;
-    for (const Channel& channel : hello_.channels) {
-      if (names.insert(channel.name).second) continue;
-      throw ProtocolError("its hello names `" + channel.name + "` twice");
-    }
+    const auto names = unequal(mapped(hello_.channels, &Channel::name), "channel");
     if (names.empty() || !hello_.image) return;
     for (std::size_t element = 0; element < hello_.image->elements(); ++element) {
       const std::string name = element_name(*hello_.image, element);
@@ -269,11 +268,7 @@ class Reader {
   }
 
   void require_sound_samplers() const {
-    std::set<std::string_view> names;
-    for (const SamplerNote& sampler : hello_.samplers) {
-      if (names.insert(sampler.name).second) continue;
-      throw ProtocolError("its hello names the sampler `" + sampler.name + "` twice");
-    }
+    unequal(mapped(hello_.samplers, &SamplerNote::name), "sampler");
     if (!hello_.samplers.empty() && hello_.numbers == Numbers::text) {
       throw ProtocolError("its hello has a `sampler`, whose numbers are binary only");
     }
