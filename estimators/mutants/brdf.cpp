@@ -69,66 +69,52 @@ struct NoSineOfAzimuth final : Ward {
   }
 };
 
+using Draw = std::function<SamplerDraw(const Sampler& original, Stream& random)>;
+using Density = std::function<double(const Sampler& original, const Point& p)>;
+
 // The original's points with one part of what is said of them exchanged.
-class Misreported : public Sampler {
+class Misreported final : public Sampler {
  public:
-  explicit Misreported(std::shared_ptr<const Sampler> original) : original_(std::move(original)) {}
+  Misreported(std::shared_ptr<const Sampler> original, Draw draw, Density density)
+      : original_(std::move(original)), draw_(std::move(draw)), density_(std::move(density)) {}
   Domain domain() const override { return original_->domain(); }
-  SamplerDraw sample(Stream& random) const override { return original_->sample(random); }
-  double density(const Point& p) const override { return original_->density(p); }
+  SamplerDraw sample(Stream& random) const override { return draw_(*original_, random); }
+  double density(const Point& p) const override { return density_(*original_, p); }
   double evaluate(const Point& p) const override { return original_->evaluate(p); }
   Panels panels() const override { return original_->panels(); }
 
- protected:
-  const Sampler& original() const { return *original_; }
-
  private:
   std::shared_ptr<const Sampler> original_;
+  Draw draw_;
+  Density density_;
 };
 
-struct Redrawn final : Misreported {
-  using Misreported::Misreported;
-  SamplerDraw sample(Stream& random) const override {
-    while (true) {
-      const SamplerDraw draw = original().sample(random);
-      if (draw.valid) return draw;
-    }
+SamplerDraw redrawn(const Sampler& original, Stream& random) {
+  while (true) {
+    const SamplerDraw draw = original.sample(random);
+    if (draw.valid) return draw;
   }
-};
-
-struct WeightWithoutCosine final : Misreported {
-  using Misreported::Misreported;
-  SamplerDraw sample(Stream& random) const override {
-    SamplerDraw draw = original().sample(random);
-    if (draw.valid) draw.weight /= draw.point[2];
-    return draw;
-  }
-};
-
-// One hundredth of the azimuth, phi - pi in [0.05, 0.05 + pi / 50).
-bool in_sector(const Point& p) {
-  const double turned = std::atan2(-p[1], -p[0]);
-  return turned >= 0.05 && turned < 0.05 + pi / 50;
 }
 
-struct DensityOffInASector final : Misreported {
-  using Misreported::Misreported;
-  double density(const Point& p) const override {
-    return (in_sector(p) ? 1.001 : 1) * Misreported::density(p);
-  }
-};
+SamplerDraw weighted_without_cosine(const Sampler& original, Stream& random) {
+  SamplerDraw draw = original.sample(random);
+  if (draw.valid) draw.weight /= draw.point[2];
+  return draw;
+}
+
+// Off in one hundredth of the azimuth, phi - pi in [0.05, 0.05 + pi / 50).
+double off_in_a_sector(const Sampler& original, const Point& p) {
+  const double turned = std::atan2(-p[1], -p[0]);
+  return (turned >= 0.05 && turned < 0.05 + pi / 50 ? 1.001 : 1) * original.density(p);
+}
 
 // Tangent and bitangent exchanged: the mirror image about the diagonal of the surface axes.
-struct MirroredWeight final : Misreported {
-  using Misreported::Misreported;
-  SamplerDraw sample(Stream& random) const override {
-    SamplerDraw draw = original().sample(random);
-    if (!draw.valid) return draw;
-    const Point mirrored{draw.point[1], draw.point[0], draw.point[2]};
-    draw.weight = evaluate(mirrored) / draw.density;
-    return draw;
-  }
-};
+SamplerDraw mirrored(const Sampler& original, Stream& random) {
+  SamplerDraw draw = original.sample(random);
+  if (!draw.valid) return draw;
+  draw.weight = original.evaluate({draw.point[1], draw.point[0], draw.point[2]}) / draw.density;
+  return draw;
+}
 
 std::shared_ptr<const Setup> mutated(Parameters& given, const render::HalfVectorBrdf& original,
                                      std::shared_ptr<const Sampler> broken) {
@@ -139,6 +125,8 @@ std::shared_ptr<const Setup> mutated(Parameters& given, const render::HalfVector
 struct Defect {
   const char* name;
   const char* what;
+  Draw draw = &Sampler::sample;
+  Density density = &Sampler::density;
 };
 
 // The defects are in the published sampler, the only choice.
@@ -175,11 +163,13 @@ Entry exchanged(const Defect& defect) {
   });
 }
 
-template <class Sound, class Wrapper>
-Entry wrapped(const Defect& defect) {
-  return entry(original_of<Sound>, defect, [](Parameters& given) {
+template <class Sound>
+Entry misreported(const Defect& defect) {
+  return entry(original_of<Sound>, defect, [defect](Parameters& given) {
     const auto original = read_brdf<Sound>(given);
-    return mutated(given, *original, std::make_shared<Wrapper>(brdf::published_sampler(original)));
+    return mutated(given, *original,
+                   std::make_shared<Misreported>(brdf::published_sampler(original), defect.draw,
+                                                 defect.density));
   });
 }
 
@@ -189,7 +179,7 @@ std::vector<Entry> mutants_brdf() {
   const auto* const quadrant = "draws half vectors in the first quadrant only.";
   const auto* const uniform = "takes the azimuth 2 pi u although the lobe is anisotropic.";
   const auto* const jacobian = "leaves the factor 1 / (4 h . w_i) out of the density.";
-  const auto* const redrawn =
+  const auto* const draws_again =
       "draws directions below the horizon again and does not renormalise the density.";
   return {
       exchanged<SingleQuadrant<Ward>>({"ward_single_quadrant", quadrant}),
@@ -201,16 +191,16 @@ std::vector<Entry> mutants_brdf() {
            "of 1992."}),
       exchanged<NoSineOfAzimuth>(
           {"ward_no_sine", "leaves the factor sin phi out of the y component of h."}),
-      wrapped<Ward, Redrawn>({"ward_redrawn", redrawn}),
-      wrapped<Ward, WeightWithoutCosine>(
-          {"ward_weight_without_cosine", "weights by f / p, without the cosine."}),
-      wrapped<Ward, DensityOffInASector>({"ward_density_sector",
-                                          "declares the density at a point .1 % too large in a "
-                                          "hundredth of the azimuth, that from "
-                                          "pi + 0.05 on."}),
-      wrapped<Ward, MirroredWeight>(
+      misreported<Ward>({"ward_redrawn", draws_again, redrawn}),
+      misreported<Ward>({"ward_weight_without_cosine", "weights by f / p, without the cosine.",
+                         weighted_without_cosine}),
+      misreported<Ward>({.name = "ward_density_sector",
+                         .what = "declares the density at a point .1 % too large in a "
+                                 "hundredth of the azimuth, that from pi + 0.05 on.",
+                         .density = off_in_a_sector}),
+      misreported<Ward>(
           {"ward_weight_mirrored",
-           "takes the BRDF in the weight of the direction with its x and y exchanged."}),
+           "takes the BRDF in the weight of the direction with its x and y exchanged.", mirrored}),
       exchanged<SingleQuadrant<AshikhminShirley>>({"ashikhmin_shirley_single_quadrant", quadrant}),
       exchanged<UniformAzimuth<AshikhminShirley>>({"ashikhmin_shirley_uniform_azimuth", uniform}),
       exchanged<UnmirroredQuadrants>(
@@ -219,7 +209,7 @@ std::vector<Entry> mutants_brdf() {
       exchanged<ExponentWithoutOne>(
           {"ashikhmin_shirley_exponent", "takes cos d = v^(1/e) instead of v^(1/(e+1))."}),
       exchanged<NoJacobian<AshikhminShirley>>({"ashikhmin_shirley_no_jacobian", jacobian}),
-      wrapped<AshikhminShirley, Redrawn>({"ashikhmin_shirley_redrawn", redrawn}),
+      misreported<AshikhminShirley>({"ashikhmin_shirley_redrawn", draws_again, redrawn}),
   };
 }
 
