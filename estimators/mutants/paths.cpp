@@ -126,32 +126,24 @@ void require_darker(const Parameters& parameters, const Scene& scene, double lim
   if (scene.law && std::ranges::none_of(scene.law->zones, dark)) parameters.refuse("scene", why);
 }
 
-struct Kind {
-  const char* original;
-  RoulettePlan (*read)(Parameters&, const Scene&);
-};
-
-constexpr Kind classical = {"paths/roulette", read_classical};
-constexpr Kind improved = {"paths/improved_roulette", read_improved};
-
-struct Defect {
-  std::string name;
-  std::string what;
-};
+constexpr const char* classical = "paths/roulette";
+constexpr const char* improved = "paths/improved_roulette";
+constexpr const char* winners = "paths/winners";
 
 // `make` makes a set-up from a scene and a sound plan.
 template <class Make>
-Entry entry(const Kind& kind, const Defect& defect, const Make& make) {
-  return mutant({defect.name, kind.original, defect.what}, [kind, make](Parameters& parameters) {
+Entry entry(const Mutant& its, const Make& make) {
+  const auto read_plan = its.original == classical ? read_classical : read_improved;
+  return mutant(its, [read_plan, make](Parameters& parameters) {
     const Scene scene = paths::read_scene(parameters);
-    const RoulettePlan plan = kind.read(parameters, scene);
+    const RoulettePlan plan = read_plan(parameters, scene);
     return make(scene, plan, parameters);
   });
 }
 
 template <class Broken>
-Entry roulette_mutant(const Kind& kind, const Defect& defect) {
-  return entry(kind, defect, [](const Scene& scene, const RoulettePlan& plan, Parameters&) {
+Entry roulette_mutant(const Mutant& its) {
+  return entry(its, [](const Scene& scene, const RoulettePlan& plan, Parameters&) {
     return paths_by(scene, Broken{plan.roulette(scene)}, plan.direct);
   });
 }
@@ -247,32 +239,31 @@ struct FirstVertex {
 // `path_of` makes a path from a scene, how light is learnt of and N. If a child follows from every
 // n of a half or more (`rounds`), trees may never end.
 template <class PathOf>
-Entry of_winners(const Defect& defect, const PathOf& path_of, bool rounds = false) {
-  return mutant(
-      {defect.name, "paths/winners", defect.what}, [path_of, rounds](Parameters& parameters) {
-        const Scene scene = paths::read_scene(parameters);
-        if (rounds) {
-          require_darker(parameters, scene, 0.5,
-                         "where every albedo is 1/2 or more, its trees never end");
-        }
-        const Direct direct = read_direct(parameters, scene);
-        return broken_paths(scene, path_of(scene, direct, parameters.number("splitting")));
-      });
+Entry of_winners(const Mutant& its, const PathOf& path_of, bool rounds = false) {
+  return mutant(its, [path_of, rounds](Parameters& parameters) {
+    const Scene scene = paths::read_scene(parameters);
+    if (rounds) {
+      require_darker(parameters, scene, 0.5,
+                     "where every albedo is 1/2 or more, its trees never end");
+    }
+    const Direct direct = read_direct(parameters, scene);
+    return broken_paths(scene, path_of(scene, direct, parameters.number("splitting")));
+  });
 }
 
 template <class Broken>
-Entry tree_mutant(const Defect& defect, bool rounds = false) {
+Entry tree_mutant(const Mutant& its, bool rounds = false) {
   const auto path_of = [](const Scene&, Direct direct, double splitting) {
     return [broken = Broken{Winners(splitting)}, direct](const auto& world, auto&... run) {
       Tree(world, broken, direct).trace(run...);
     };
   };
-  return of_winners(defect, path_of, rounds);
+  return of_winners(its, path_of, rounds);
 }
 
-Entry first_vertex_mutant(const Defect& defect, bool first_child_decides) {
+Entry first_vertex_mutant(const Mutant& its, bool first_child_decides) {
   return of_winners(
-      defect, [first_child_decides](const Scene& scene, Direct direct, double splitting) {
+      its, [first_child_decides](const Scene& scene, Direct direct, double splitting) {
         const FirstVertex first{splitting, direct, sum(scene.global.all) / 2, first_child_decides};
         return [first](const auto& world, auto&... run) { first.trace(world, run...); };
       });
@@ -283,83 +274,77 @@ Entry first_vertex_mutant(const Defect& defect, bool first_child_decides) {
 std::vector<Entry> mutants_paths() {
   return {
       roulette_mutant<TerminalNotSubtracted>(
-          improved, {"terminal_not_subtracted",
-                     "adds the terminal value at the end and takes nothing off when going on; +50 "
-                     "% in a furnace of albedo 0.5."}),
-      roulette_mutant<ThroughputNotDivided>(classical,
-                                            {"throughput_not_divided",
+          {"terminal_not_subtracted", improved,
+           "adds the terminal value at the end and takes nothing off when going on; +50 "
+           "% in a furnace of albedo 0.5."}),
+      roulette_mutant<ThroughputNotDivided>({"throughput_not_divided", classical,
                                              "does not divide the throughput by the probability to "
                                              "go on; -33 % in a furnace of albedo 0.5."}),
-      entry(classical,
-            {"depth_limit",
+      entry({"depth_limit", classical,
              "loses what comes after eight reflections; -0.2 % in a furnace of albedo 0.5, -13.4 % "
              "of albedo 0.8."},
             depth_limit),
-      entry(improved,
-            {"terminal_from_hindsight",
+      entry({"terminal_from_hindsight", improved,
              "raises the terminal value to what the path finds when it goes on; learns of light by "
              "hits whatever `direct` says. Nothing in a furnace, -10 % in the built-in sphere."},
             from_hindsight),
-      entry(improved,
-            {"direct_light_twice",
+      entry({"direct_light_twice", improved,
              "leaves the direct light in the terminal value although it is learnt of separately: "
              "still unbiased, but of a larger variance."},
             direct_light_twice),
       roulette_mutant<DarkSurfacesEnd>(
-          classical, {"dark_surfaces_end",
-                      "never goes on from surfaces whose albedo is below 0.3, and counts nothing "
-                      "for it; too dark where there are such surfaces."}),
-      entry(classical,
-            {"survival_above_one",
+          {"dark_surfaces_end", classical,
+           "never goes on from surfaces whose albedo is below 0.3, and counts nothing "
+           "for it; too dark where there are such surfaces."}),
+      entry({"survival_above_one", classical,
              "goes on with 1.2 times the probability and divides by all of it, above 1, too; too "
              "dark where an albedo exceeds 5/6."},
             survival_above_one),
       roulette_mutant<DividedByItself>(
-          classical, {"divided_by_itself",
-                      "divides each colour by its own albedo, so that the throughput stays what it "
-                      "was; saturated surfaces come out grey: +184 %, +950 % and +2060 % in the "
-                      "built-in coloured sphere."}),
+          {"divided_by_itself", classical,
+           "divides each colour by its own albedo, so that the throughput stays what it "
+           "was; saturated surfaces come out grey: +184 %, +950 % and +2060 % in the "
+           "built-in coloured sphere."}),
       roulette_mutant<ClampedSurvival>(
-          classical, {"clamped_survival",
-                      "goes on with probability 1/2 at least, and divides by what it was before; "
-                      "too bright where it was below: +67 %, +120 % and +139 % in the coloured "
-                      "sphere by the throughput."}),
-      roulette_mutant<DarkPathsKilled>(classical,
-                                       {"dark_paths_killed",
+          {"clamped_survival", classical,
+           "goes on with probability 1/2 at least, and divides by what it was before; "
+           "too bright where it was below: +67 %, +120 % and +139 % in the coloured "
+           "sphere by the throughput."}),
+      roulette_mutant<DarkPathsKilled>({"dark_paths_killed", classical,
                                         "ends paths whose probability to go on is below 0.1 "
                                         "without compensation; too dark where there are such."}),
       roulette_mutant<LuminanceThroughput>(
-          classical, {"luminance_throughput",
-                      "keeps of the throughput its luminance alone; colours are lost: -58 %, +55 % "
-                      "and +219 % in the coloured sphere by the throughput."}),
+          {"luminance_throughput", classical,
+           "keeps of the throughput its luminance alone; colours are lost: -58 %, +55 % "
+           "and +219 % in the coloured sphere by the throughput."}),
       roulette_mutant<SurvivalAfterUpdate>(
-          classical,
-          {"survival_after_update",
+          {"survival_after_update", classical,
            "decides by the throughput before the reflection and divides by the probability that "
            "follows from the one after it; -48 %, -53 % and -55 % in the coloured sphere by the "
            "throughput, nothing in grey scenes or by rules of the albedo alone."}),
       tree_mutant<DrawnNumber>(
-          {"drawn_number",
+          {"drawn_number", winners,
            "divides by the number of children that was drawn, not by the expected one: where none "
            "is drawn nothing makes up for it; -57 % in the built-in sphere."}),
-      tree_mutant<AtLeastOneChild>({"at_least_one_child",
+      tree_mutant<AtLeastOneChild>({"at_least_one_child", winners,
                                     "has max(1, floor(n)) children of weight a / n where n is 1/2 "
                                     "or more; too bright where n is below 1, too dark above."},
                                    true),
-      tree_mutant<RoundedNumber>(
-          {"rounded_number", "rounds the number of children to the nearest, weight a / n."}, true),
-      first_vertex_mutant({"split_while_bright",
+      tree_mutant<RoundedNumber>({"rounded_number", winners,
+                                  "rounds the number of children to the nearest, weight a / n."},
+                                 true),
+      first_vertex_mutant({"split_while_bright", winners,
                            "draws children of the first vertex until one is dark, and takes their "
                            "mean; -28 % in the built-in sphere."},
                           false),
-      first_vertex_mutant({"number_from_first_child",
+      first_vertex_mutant({"number_from_first_child", winners,
                            "has one child of the first vertex, and if that is bright more, and "
                            "takes the mean of all; -31 % in the built-in sphere."},
                           true),
-      tree_mutant<CappedNumber>({"capped_number",
+      tree_mutant<CappedNumber>({"capped_number", winners,
                                  "has two children at most, weighted as if there were no limit; "
                                  "-37.5 % in the built-in sphere, nothing where n is 2 or less."}),
-      tree_mutant<SmallNumbersDropped>({"small_numbers_dropped",
+      tree_mutant<SmallNumbersDropped>({"small_numbers_dropped", winners,
                                         "has no children where fewer than 0.1 are expected; too "
                                         "dark where albedos are that small, nothing elsewhere."}),
   };
