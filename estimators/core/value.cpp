@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <boost/algorithm/string.hpp>
-#include <charconv>
 #include <cmath>
 #include <iomanip>
 #include <map>
@@ -123,10 +122,7 @@ double Value::number(std::string_view what) const {
 std::uint64_t Value::count(std::string_view what) const {
   constexpr const char* wanted = "a whole number, 0 or more";
   if (kind_ != Kind::scalar) wrong_type(*this, what, wanted);
-  std::uint64_t digits = 0;
-  const char* const end = text_.data() + text_.size();
-  const auto parsed = std::from_chars(text_.data(), end, digits);
-  if (parsed.ec == std::errc{} && parsed.ptr == end) return digits;
+  if (const auto digits = read_as<std::uint64_t>(text_)) return *digits;
   const std::optional<double> value = parse_number(text_);
   // Up to 2^53 every whole double stands for itself; above, 1e17 might not be what was meant.
   const bool exact = value && *value >= 0 && *value <= 0x1p53 && *value == std::floor(*value);
@@ -162,10 +158,7 @@ std::string Value::canonical() const {
 std::optional<double> parse_number(std::string_view text) {
   if (text.starts_with("+-")) return {};
   if (text.starts_with('+')) text.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) return {};
-  return value;
+  return read_as<double>(text);
 }
 
 std::string_view take_word(std::string_view& line) {

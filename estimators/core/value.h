@@ -3,11 +3,13 @@
 // Plain data that a user wrote: a YAML document, a `--set` value, a recorded file's header. Every
 // node remembers where it was written, so that whatever is wrong with it can be shown there.
 
+#include <charconv>
 #include <cstdint>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -87,6 +89,15 @@ class Value {
   std::vector<Value> items_;
   std::vector<Member> members_;
 };
+
+/// The number that the whole of a text is, as std::from_chars reads it.
+template <class Number, class... Format>
+std::optional<Number> read_as(std::string_view text, Format... format) {
+  Number number{};
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, number, format...);
+  return error == std::errc{} && stop == end ? std::optional(number) : std::nullopt;
+}
 
 /// A number as C or Python writes it: decimal, `inf`, `nan`, perhaps with a sign.
 std::optional<double> parse_number(std::string_view text);

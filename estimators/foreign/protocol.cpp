@@ -88,7 +88,7 @@ class Reader {
             "the first line is `assay 1 text` or `assay 1 binary`; print everything else to "
             "standard error");
     }
-    if (whole_of(words[1]) != protocol_version) {
+    if (read_as<unsigned>(words[1]) != protocol_version) {
       wrong(text, "it speaks version " + std::string(words[1]) +
                       " of the protocol, this is version " + std::to_string(protocol_version));
     }
@@ -161,8 +161,8 @@ class Reader {
   void image(const Words& words) {
     if (hello_.image) wrong_here("there is one image");
     if (words.size() < 3) wrong_here("an image has a width and a height in pixels");
-    const std::uint64_t width = whole_of(words[1]).value_or(0);
-    const std::uint64_t height = whole_of(words[2]).value_or(0);
+    const std::uint64_t width = read_as<std::uint64_t>(words[1]).value_or(0);
+    const std::uint64_t height = read_as<std::uint64_t>(words[2]).value_or(0);
     const std::uint64_t components = words.size() == 3 ? 1 : words.size() - 3;
     if (width == 0 || height == 0) wrong_here("width and height are whole numbers above 0");
     if (width > most_ || height > most_ / width / components) {

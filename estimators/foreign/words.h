@@ -2,9 +2,6 @@
 
 // Lines and words of what programs write to each other.
 
-#include <charconv>
-#include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -22,13 +19,6 @@ inline std::vector<std::string_view> words_of(std::string_view line) {
   std::vector<std::string_view> words;
   for (auto word = take_word(line); !word.empty(); word = take_word(line)) words.push_back(word);
   return words;
-}
-
-inline std::optional<std::uint64_t> whole_of(std::string_view word) {
-  std::uint64_t value = 0;
-  const auto parsed = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (parsed.ec != std::errc{} || parsed.ptr != word.data() + word.size()) return {};
-  return value;
 }
 
 /// The coordinates that the domain uses: "(0.25, 1)".

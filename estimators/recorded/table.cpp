@@ -389,15 +389,12 @@ class Reader {
 
   void stream(const Field& field) {
     const Field key = trimmed(field.text, stream_keyword.size(), field.text.size());
-    std::uint64_t bits = 0;
-    const char* const end = key.text.data() + key.text.size();
-    const auto [stop, problem] = std::from_chars(key.text.data(), end, bits, 16);
-    if (key.text.empty() || problem != std::errc{} || stop != end) {
+    table_.stream = read_as<std::uint64_t>(key.text, 16);
+    if (!table_.stream) {
       refuse(field.column,
              "`# stream:` needs a key of up to 16 hexadecimal digits,\n  as `assay sample` writes "
              "it; leave the line out if there is none");
     }
-    table_.stream = bits;
   }
 
   void add_names(const std::vector<Field>& names, int skipped) {

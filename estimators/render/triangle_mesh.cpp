@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cstring>
 #include <fstream>
 #include <string>
@@ -34,12 +33,6 @@ TriangleMesh fan(const Polygon& polygon) {
 }
 
 namespace {
-
-template <class Number>
-bool parse(std::string_view word, Number& number) {
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-  return error == std::errc{} && end == word.data() + word.size();
-}
 
 class ObjReader {
  public:
@@ -79,9 +72,11 @@ class ObjReader {
     Vector3 p;
     for (double* const coordinate : {&p.x, &p.y, &p.z}) {
       const std::string_view word = take_word(rest);
-      if (!parse(word, *coordinate) || !std::isfinite(*coordinate)) {
+      const auto number = read_as<double>(word);
+      if (!number || !std::isfinite(*number)) {
         fail("a vertex needs three finite numbers, but one is `" + std::string(word) + "`");
       }
+      *coordinate = *number;
     }
     if (!take_word(rest).empty()) fail("a vertex has exactly three coordinates");
     mesh_.vertices.push_back(p);
@@ -103,8 +98,9 @@ class ObjReader {
   // `v`, `v/vt`, `v//vn` or `v/vt/vn`; only v matters, the others must be numbers all the same.
   std::uint32_t corner(std::string_view word) {
     const std::size_t slash = word.find('/');
-    long index = 0;
-    if (!parse(word.substr(0, slash), index)) malformed_corner(word);
+    const auto given = read_as<long>(word.substr(0, slash));
+    if (!given) malformed_corner(word);
+    const long index = *given;
     if (slash != std::string_view::npos) check_further(word, word.substr(slash + 1));
     const long count = static_cast<long>(mesh_.vertices.size());
     if (index == 0 || index > count || index < -count) {
@@ -117,10 +113,9 @@ class ObjReader {
   void check_further(std::string_view word, std::string_view further) {
     const std::size_t slash = further.find('/');
     const std::string_view texture = further.substr(0, slash);
-    long index = 0;
-    const bool texture_fine = parse(texture, index) || (texture.empty() && slash == 0);
+    const bool texture_fine = read_as<long>(texture) || (texture.empty() && slash == 0);
     const bool normal_fine =
-        slash == std::string_view::npos || parse(further.substr(slash + 1), index);
+        slash == std::string_view::npos || read_as<long>(further.substr(slash + 1));
     if (!texture_fine || !normal_fine) malformed_corner(word);
   }
 
