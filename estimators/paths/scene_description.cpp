@@ -31,10 +31,10 @@ class Reader {
     }
     value.require(form, "a scene needs one of `zones`, `furnace` and `surfaces`");
     const Value& camera_value = required_key(value, "the scene", "camera");
-    const Camera camera = this->camera(camera_value);
-    if (value.find("zones")) return {sphere(*form, camera, camera_value), camera, grey_};
-    if (value.find("furnace")) return {furnace(*form, camera, camera_value), camera, grey_};
-    return {surfaces(*form), camera, grey_};
+    camera_ = camera(camera_value);
+    if (value.find("zones")) return {sphere(*form, camera_value), camera_, grey_};
+    if (value.find("furnace")) return {furnace(*form, camera_value), camera_, grey_};
+    return {surfaces(*form), camera_, grey_};
   }
 
  private:
@@ -70,7 +70,7 @@ class Reader {
     return out;
   }
 
-  SphereScene sphere(const Value& value, const Camera& camera, const Value& camera_value) {
+  SphereScene sphere(const Value& value, const Value& camera_value) {
     value.require(!value.items().empty(), "zones must be a list of one or more");
     SphereScene out;
     double below = -1;
@@ -83,12 +83,12 @@ class Reader {
       out.zones.push_back({z, surface(item, "a zone", false)});
     }
     value.require(below == 1, "the last zone's top must be 1");
-    camera_value.require(length(camera.position) < 1,
+    camera_value.require(length(camera_.position) < 1,
                          "the camera must be inside the unit sphere about the origin");
     return out;
   }
 
-  MeshScene furnace(const Value& value, const Camera& camera, const Value& camera_value) {
+  MeshScene furnace(const Value& value, const Value& camera_value) {
     require_keys(value, "the furnace", {"obj", "emission", "albedo", "mirror"});
     const Value& file = required_key(value, "the furnace", "obj");
     MeshScene out;
@@ -96,23 +96,13 @@ class Reader {
     out.mesh = luminaire::read_mesh(file, "the furnace's file", folder_);
     out.surfaces = {surface(value, "the furnace", true)};
     out.surface_of.assign(out.mesh.triangles.size(), 0);
-    require_inside(out.mesh, {file, camera, camera_value});
+    const std::string why = why_not_closed(out.mesh);
+    file.require(why.empty(), "the furnace's mesh is not closed: " + why +
+                                  ". Neighbours must share their vertices, and all faces be "
+                                  "counter-clockwise from one side");
+    camera_value.require(winding_number(out.mesh, camera_.position) != 0,
+                         "the camera must be inside the furnace");
     return out;
-  }
-
-  struct Blame {
-    const Value& file;
-    const Camera& camera;
-    const Value& camera_value;
-  };
-
-  static void require_inside(const TriangleMesh& mesh, const Blame& blame) {
-    const std::string why = why_not_closed(mesh);
-    blame.file.require(why.empty(), "the furnace's mesh is not closed: " + why +
-                                        ". Neighbours must share their vertices, and all faces be "
-                                        "counter-clockwise from one side");
-    blame.camera_value.require(winding_number(mesh, blame.camera.position) != 0,
-                               "the camera must be inside the furnace");
   }
 
   MeshScene surfaces(const Value& value) {
@@ -146,6 +136,7 @@ class Reader {
   }
 
   std::string folder_;
+  Camera camera_;
   bool grey_ = true;
 };
 
