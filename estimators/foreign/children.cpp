@@ -164,9 +164,7 @@ void Children::examine_unusual(Respondent& dialogue, const Question& question,
   }
   const std::optional<std::size_t> found = usual ? first_unusual(numbers, *usual) : std::nullopt;
   if (!found) return;
-  Question one = question;
-  one.first += *found;
-  one.count = 1;
+  const Question one = question.alone(*found);
   const std::size_t width = usual->size();
   const std::span<const double> unusual = std::span(numbers).subspan(*found * width, width);
   const bool same = same_bits(dialogue.ask(one), unusual);

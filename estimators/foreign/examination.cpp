@@ -23,37 +23,8 @@ std::size_t holding(std::size_t numbers, std::size_t width, std::size_t least) {
   return std::clamp(numbers / width, least, numbers);
 }
 
-/// Observations of the stream whose first ones are known.
-class Source {
- public:
-  Source(const Asking& ask, const FirstObservations& first) : ask_(ask), first_(first) {}
-
-  std::vector<double> at(std::size_t index) const {
-    return index < first_.count() ? first_.row(index) : of(first_.question, index);
-  }
-  /// The same of another key.
-  std::vector<double> of_other_key(std::size_t index) const {
-    Question question = first_.question;
-    question.key = ~question.key;
-    return of(question, index);
-  }
-  /// The same of twice as many primaries.
-  std::vector<double> of_twice_as_many(std::size_t index) const {
-    Question question = first_.question;
-    question.primaries *= 2;
-    return of(question, index);
-  }
-
- private:
-  std::vector<double> of(Question question, std::size_t index) const {
-    question.first = index;
-    question.count = 1;
-    return ask_(question);
-  }
-
-  const Asking& ask_;
-  const FirstObservations& first_;
-};
+/// Gives one observation of a stream by its index.
+using Observations = std::function<std::vector<double>(std::size_t index)>;
 
 /// The probability that all pairs of exchangeable observations are equal, given their values.
 class Coincidence {
@@ -73,11 +44,11 @@ class Coincidence {
 };
 
 /// True if the same observations come for another key. The first pair that differs ends it.
-bool ignores_key(const Source& source, std::size_t most) {
+bool ignores_key(const Observations& source, const Observations& others, std::size_t most) {
   Coincidence coincidence;
   for (std::size_t i = 0; i < most; ++i) {
-    const std::vector<double> mine = source.at(i);
-    if (!same_bits(source.of_other_key(i), mine)) return false;
+    const std::vector<double> mine = source(i);
+    if (!same_bits(others(i), mine)) return false;
     coincidence.add(mine);
     if (coincidence.probability() < least_chance) return true;
   }
@@ -103,14 +74,13 @@ bool same_but_for_rounding(const std::vector<double>& a, const std::vector<doubl
 
 /// True if the index of an observation changes nothing, though the question does. The first `count`
 /// observations all begin with the same numbers, and the others all begin with different ones.
-template <class Others>
-bool ignores_index(const Source& source, const Others& others, std::size_t numbers,
+bool ignores_index(const Observations& source, const Observations& others, std::size_t numbers,
                    std::size_t count, std::uint64_t primaries) {
-  const std::vector<double> mine = begin_of(source.at(0), numbers);
+  const std::vector<double> mine = begin_of(source(0), numbers);
   const std::vector<double> other = begin_of(others(0), numbers);
   if (same_but_for_rounding(mine, other, primaries)) return false;
   for (std::size_t i = 1; i < count; ++i) {
-    if (!same_bits(begin_of(source.at(i), numbers), mine)) return false;
+    if (!same_bits(begin_of(source(i), numbers), mine)) return false;
     if (!same_bits(begin_of(others(i), numbers), other)) return false;
   }
   return true;
@@ -148,10 +118,8 @@ std::uint64_t asked_twice(std::size_t width, std::uint64_t primaries) {
 
 std::string why_not_repeated(const Asking& ask, const FirstObservations& first,
                              const std::string& name) {
-  Question one = first.question;
-  one.count = 1;
   for (std::size_t i = first.count(); i-- > 0;) {
-    one.first = i;
+    const Question one = first.question.alone(i);
     if (!same_bits(ask(one), first.row(i))) return other_numbers(name, one);
   }
   return "";
@@ -160,9 +128,17 @@ std::string why_not_repeated(const Asking& ask, const FirstObservations& first,
 std::string why_unfit(const Asking& ask, const FirstObservations& first, const std::string& name,
                       std::size_t means) {
   const std::uint64_t primaries = first.question.primaries;
-  const Source source(ask, first);
+  const auto of = [&](const Question& question) -> Observations {
+    return [&ask, question](std::size_t index) { return ask(question.alone(index)); };
+  };
+  const auto source = [&, more = of(first.question)](std::size_t index) {
+    return index < first.count() ? first.row(index) : more(index);
+  };
+  const Question& asked = first.question;
+  const auto other_key = of({~asked.key, asked.first, asked.count, primaries});
+  const auto twice_as_many = of({asked.key, asked.first, asked.count, 2 * primaries});
   const std::size_t most = holding(numbers_compared, first.width, least_compared);
-  if (ignores_key(source, most)) {
+  if (ignores_key(source, other_key, most)) {
     return "`" + name +
            "` gave the same numbers for two keys: runs of other seeds would repeat each other, and "
            "so would estimators that must be independent; " +
@@ -170,8 +146,6 @@ std::string why_unfit(const Asking& ask, const FirstObservations& first, const s
   }
   if (!first.usual()) return "";
   const std::size_t count = std::min(numbers_twice, most);
-  const auto other_key = [&](std::size_t i) { return source.of_other_key(i); };
-  const auto twice_as_many = [&](std::size_t i) { return source.of_twice_as_many(i); };
   const std::string same =
       "`" + name + "` ignores the index: observations 0 to " + std::to_string(count - 1);
   const std::string again =

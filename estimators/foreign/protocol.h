@@ -100,6 +100,8 @@ struct Question {
   std::uint64_t primaries = 1;
 
   bool is_to_sampler() const { return primaries == 0; }
+  /// The question for one of its observations alone.
+  Question alone(std::uint64_t place) const { return {key, first + place, 1, primaries}; }
   /// The kind of a question to a sampler.
   Asked asked() const { return Asked{first % denormals_flushed}; }
 };

@@ -130,7 +130,7 @@ class ForeignEstimator final : public Estimator {
       }
     } catch (const NoAnswer& failure) {
       drop();
-      const auto ask_one = [&](std::uint64_t i) { return ask_alone(question, i); };
+      const auto ask_one = [&](std::uint64_t i) { return ask_alone(question.alone(i)); };
       numbers_ = one_by_one(question.count, failure, ask_one);
       question.count = numbers_.size() / width_;
     }
@@ -155,9 +155,7 @@ class ForeignEstimator final : public Estimator {
   }
 
   /// Asks a new program for one observation of the question.
-  std::vector<double> ask_alone(Question one, std::uint64_t index) {
-    one.first += index;
-    one.count = 1;
+  std::vector<double> ask_alone(const Question& one) {
     try {
       take(one);
       return ask(one);
@@ -342,10 +340,8 @@ class ForeignSampler final : public Sampler {
       const std::scoped_lock lock(mutex_);
       if (asked_alone_.contains(items.what)) return;
     }
-    Question last = question;
-    last.count = 1;
     const Items item = items.range(items.size() - 1, 1);
-    const std::vector<double> alone = dialogue.ask(last, item.bytes);
+    const std::vector<double> alone = dialogue.ask(question.alone(0), item.bytes);
     if (same_bits(alone, numbers.last(alone.size()))) {
       const std::scoped_lock lock(mutex_);
       asked_alone_.insert(items.what);
@@ -367,8 +363,7 @@ class ForeignSampler final : public Sampler {
 
   /// Each program is asked for the very same as the first one, and that one twice.
   void witness(Respondent& dialogue, const Question& question, const Items& items) const {
-    Question one = question;
-    one.count = 1;
+    const Question one = question.alone(0);
     Witness first{one, std::string(items.range(0, 1).bytes), {}};
     first.numbers = dialogue.ask(one, first.item);
     {
