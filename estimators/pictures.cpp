@@ -66,9 +66,9 @@ std::vector<std::string> usual_channels(const PictureFile& file) {
     if (last_of(layer) == "Combined") return colours_of(layer);
   }
   if (names.size() == 1) return names;
-  refuse(file.name(),
-         "it is not clear which channels to use; choose them with `channels`, as in `channels: \"" +
-             (names.empty() ? "R" : layer_of(names[0]) + ".*") + "\"`; it has " + quoted(names));
+  file.refuse(
+      "it is not clear which channels to use; choose them with `channels`, as in `channels: \"" +
+      (names.empty() ? "R" : layer_of(names[0]) + ".*") + "\"`; it has " + quoted(names));
 }
 
 std::vector<std::string> matching_channels(const PictureFile& file, const std::string& patterns) {
@@ -82,8 +82,8 @@ std::vector<std::string> matching_channels(const PictureFile& file, const std::s
       chosen.insert(name);
     }
     if (any) continue;
-    refuse(file.name(), "no channel matches `" + pattern + "`" +
-                            did_you_mean(pattern, names, "it has " + quoted(names)));
+    file.refuse("no channel matches `" + pattern + "`" +
+                did_you_mean(pattern, names, "it has " + quoted(names)));
   }
   return {chosen.begin(), chosen.end()};
 }
@@ -125,11 +125,11 @@ void require_same(const PictureFile& file, const PictureView& view, const std::s
   const PictureWindow window = file.window(view.channels.names);
   if (window == view.whole) return;
   if (window.width == view.whole.width && window.height == view.whole.height) {
-    refuse(file.name(), "its data window lies elsewhere than that of `" + first +
-                            "`: render all files with one crop window");
+    file.refuse("its data window lies elsewhere than that of `" + first +
+                "`: render all files with one crop window");
   }
-  refuse(file.name(), "it has " + size_text(window) + " pixels, but `" + first + "` has " +
-                          size_text(view.whole) + ": render all files at one size");
+  file.refuse("it has " + size_text(window) + " pixels, but `" + first + "` has " +
+              size_text(view.whole) + ": render all files at one size");
 }
 
 std::string at_texel(const ImageShape& shape, std::size_t element) {
@@ -146,8 +146,8 @@ std::vector<double> read_doubles(const PictureFile& file, const PictureView& vie
   view.read(file, texels);
   const auto bad = std::ranges::find_if(texels, [](float x) { return !std::isfinite(x); });
   if (bad != texels.end()) {
-    refuse(file.name(), "the channels " + quoted(view.channels.names) + " are not finite " +
-                            at_texel(shape, static_cast<std::size_t>(bad - texels.begin())));
+    file.refuse("the channels " + quoted(view.channels.names) + " are not finite " +
+                at_texel(shape, static_cast<std::size_t>(bad - texels.begin())));
   }
   return {texels.begin(), texels.end()};
 }
@@ -179,9 +179,9 @@ std::vector<double> read_counts(const PictureFile& file, const MomentChannels& e
   const std::string& text = errors.samples;
   if (text.empty()) {
     if (const auto count = file.samples_per_pixel()) return everywhere(static_cast<double>(*count));
-    refuse(file.name(),
-           "it does not say how many samples its means average; give `samples`, a number or the "
-           "name of the channel that counts them");
+    file.refuse(
+        "it does not say how many samples its means average; give `samples`, a number or the "
+        "name of the channel that counts them");
   }
   std::vector<double> counts;
   if (const auto number = parse_number(text)) {
@@ -194,8 +194,8 @@ std::vector<double> read_counts(const PictureFile& file, const MomentChannels& e
   }
   const auto few = std::ranges::find_if(counts, [&](double count) { return !(count >= least); });
   if (few == counts.end()) return counts;
-  refuse(file.name(), "`samples` must be " + std::string(least > 1 ? "2" : "1") +
-                          " or more, and in some pixel is " + std::to_string(*few));
+  file.refuse("`samples` must be " + std::string(least > 1 ? "2" : "1") +
+              " or more, and in some pixel is " + std::to_string(*few));
 }
 
 /// Copies rows of a file into those of a view.
@@ -238,10 +238,9 @@ void require_inside(const PictureFile& file, const PictureWindow& window,
       ends_inside(window.top, window.height, whole.top, whole.height)) {
     return;
   }
-  refuse(file.name(), "its " + size_text(whole) + " pixels at x " + std::to_string(whole.left) +
-                          ", y " + std::to_string(whole.top) + " do not cover the window of " +
-                          size_text(window) + " at x " + std::to_string(window.left) + ", y " +
-                          std::to_string(window.top));
+  file.refuse("its " + size_text(whole) + " pixels at x " + std::to_string(whole.left) + ", y " +
+              std::to_string(whole.top) + " do not cover the window of " + size_text(window) +
+              " at x " + std::to_string(window.left) + ", y " + std::to_string(window.top));
 }
 
 /// The pixels of a part in which one of the numbers is such.
@@ -270,8 +269,8 @@ void apply_mask(const std::string& name, const PictureFile& of, const PictureVie
   if (mask.whole.width == view.window.width && mask.whole.height == view.window.height) {
     mask.window = mask.whole;
   } else if (mask.whole != view.whole && file->canvas() != of.canvas()) {
-    refuse(name, "it has " + size_text(mask.whole) + " pixels, and the pictures have " +
-                     size_text(view.whole) + "; a mask must have as many");
+    file->refuse("it has " + size_text(mask.whole) + " pixels, and the pictures have " +
+                 size_text(view.whole) + "; a mask must have as many");
   }
   const std::vector<bool> lit = pixels_with(*file, mask, [](float x) { return x != 0; });
   for (std::size_t i = 0; i < lit.size(); ++i) left_out[i] = left_out[i] || !lit[i];
@@ -304,7 +303,7 @@ PictureView view_of(const PictureFile& file, const std::string& patterns,
   if (!treatment.finite.empty()) apply_finite(treatment.finite, patterns, view, left_out);
   const auto count = static_cast<std::size_t>(std::ranges::count(left_out, true));
   if (count == left_out.size()) {
-    refuse(file.name(), "all its pixels are left out; check that the mask is not black");
+    file.refuse("all its pixels are left out; check that the mask is not black");
   }
   if (count > 0) view.left_out = std::make_shared<const std::vector<bool>>(std::move(left_out));
   return view;
@@ -389,7 +388,7 @@ PictureChannels choose_channels(const PictureFile& file, const std::string& patt
     channels.names = matching_channels(file, patterns);
     sort_channels(channels.names);
   }
-  if (channels.names.empty()) refuse(file.name(), "no channel is chosen");
+  if (channels.names.empty()) file.refuse("no channel is chosen");
   name_components(channels, file.channel_names());
   return channels;
 }
@@ -460,7 +459,7 @@ PictureMoments read_moments(const std::string& name, const std::string& patterns
   PictureMoments moments{.shape = view.shape(), .mean = read_doubles(*file, view)};
   if (!errors.any()) return moments;
   if (view.channels.names.size() != view.channels.components.size()) {
-    refuse(name, "a depth that may be infinite has no variance; choose other channels");
+    file->refuse("a depth that may be infinite has no variance; choose other channels");
   }
   const ImageShape& shape = moments.shape;
   const bool by_variance = !errors.variance.empty();
@@ -471,7 +470,7 @@ PictureMoments read_moments(const std::string& name, const std::string& patterns
   for (std::size_t i = 0; i < moments.mean.size(); ++i) {
     double& value = moments.standard_error[i];
     if (!by_variance) value = std::max(0.0, value - moments.mean[i] * moments.mean[i]);
-    if (value < 0) refuse(name, "the variance is negative " + at_texel(shape, i));
+    if (value < 0) file->refuse("the variance is negative " + at_texel(shape, i));
     const double count = counts[i / shape.components.size()];
     // A variance is taken about the mean of the same samples, and that of second moments is not yet
     // made up for it.

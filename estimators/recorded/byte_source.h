@@ -31,6 +31,8 @@ class ByteSource {
   ByteSource& operator=(const ByteSource&) = delete;
 
   const std::string& name() const { return name_; }
+  /// InputError at called(file).
+  [[noreturn]] void refuse(const std::string& why) const;
   /// Tells whether the bytes are compressed where they come from.
   bool packed() const { return inflater_ != nullptr; }
   /// The bytes that come next, `least` of them or more; fewer only at the end. Valid until the
@@ -46,7 +48,6 @@ class ByteSource {
     ~Descriptor();
   };
 
-  [[noreturn]] void refuse(const std::string& why) const;
   bool fetch();
   std::size_t fetch_packed();
   bool unpack();

@@ -18,14 +18,10 @@ namespace {
 // numpy itself reads no header of more than 10000 bytes unless it is told to.
 constexpr std::size_t longest_header = 10000;
 
-[[noreturn]] void refuse(const ByteSource& source, const std::string& why) {
-  throw InputError({.file = source.name()}, why);
-}
-
 [[noreturn]] void refuse_header(const ByteSource& source) {
-  refuse(source,
-         "its header is none of numpy's format .npy: the file is damaged;\n"
-         "  save the array again with `numpy.save`");
+  source.refuse(
+      "its header is none of numpy's format .npy: the file is damaged;\n"
+      "  save the array again with `numpy.save`");
 }
 
 /// Says how to save the array, `a`, in another form.
@@ -43,8 +39,8 @@ struct Header {
 /// flow map.
 Header header_of(const ByteSource& source, std::string text) {
   if (text.find('[') != text.npos) {
-    refuse(source, "it is an array of records, and an observation is a row of numbers;" +
-                       save_it("a[a.dtype.names[0]]"));
+    source.refuse("it is an array of records, and an observation is a row of numbers;" +
+                  save_it("a[a.dtype.names[0]]"));
   }
   if (std::ranges::count(text, '(') != 1) refuse_header(source);
   std::erase_if(text, [](char c) { return c == '\'' || c == '"' || c == '\n'; });
@@ -76,9 +72,9 @@ Header read_header(ByteSource& source) {
   if (bytes.size() < fixed) refuse_header(source);
   const std::size_t version = byte_at(bytes, npy_magic.size());
   if (version < 1 || version > 3 || byte_at(bytes, npy_magic.size() + 1) != 0) {
-    refuse(source,
-           "it is of a format .npy that Assay does not know;\n"
-           "  save the array again with `numpy.save`");
+    source.refuse(
+        "it is of a format .npy that Assay does not know;\n"
+        "  save the array again with `numpy.save`");
   }
   const std::size_t digits = version == 1 ? 2 : 4;  // bytes of the header's length
   bytes = source.look(fixed + digits);
@@ -109,9 +105,9 @@ Type type_of(const ByteSource& source, const std::string& text) {
   if (std::ranges::find(known, plain) == known.end()) {
     const bool named = text.size() < 16;
     const bool complex = plain.starts_with('c');
-    refuse(source, "its numbers are of the type " + (named ? "`" + text + "`" : "of a long name") +
-                       ", and not float32, float64 or whole;" +
-                       save_it(complex ? "a.real" : "a.astype(\"f8\")"));
+    source.refuse("its numbers are of the type " + (named ? "`" + text + "`" : "of a long name") +
+                  ", and not float32, float64 or whole;" +
+                  save_it(complex ? "a.real" : "a.astype(\"f8\")"));
   }
   return {.kind = plain[0],
           .size = static_cast<std::size_t>(plain[1] - '0'),
@@ -175,9 +171,9 @@ std::vector<double> read_numbers(ByteSource& source, const Type& type, std::size
     const std::string_view bytes = source.look(type.size);
     const std::size_t whole = std::min(bytes.size() / type.size, count - values.size());
     if (whole == 0) {
-      refuse(source, "it is cut short: the array has " + std::to_string(count) +
-                         " numbers,\n  and " + std::to_string(values.size()) +
-                         " of them are there; copy or save it again");
+      source.refuse("it is cut short: the array has " + std::to_string(count) +
+                    " numbers,\n  and " + std::to_string(values.size()) +
+                    " of them are there; copy or save it again");
     }
     for (std::size_t i = 0; i < whole; ++i) {
       values.push_back(number_of(type, bytes.data() + i * type.size));
@@ -185,7 +181,7 @@ std::vector<double> read_numbers(ByteSource& source, const Type& type, std::size
     source.take(whole * type.size);
   }
   if (!source.look().empty()) {
-    refuse(source, "bytes follow the array: save one array in a file");
+    source.refuse("bytes follow the array: save one array in a file");
   }
   return values;
 }
@@ -196,18 +192,17 @@ Matrix read_npy(ByteSource& source, std::size_t most) {
   const Header header = read_header(source);
   const Type type = type_of(source, header.type);
   if (header.shape.empty() || header.shape.size() > 2) {
-    refuse(source, header.shape.empty()
-                       ? "it holds one number; save an array, an observation an element"
-                       : "its array has " + std::to_string(header.shape.size()) + " dimensions (" +
-                             extents_of(header.shape) + "), and an observation is a row;" +
-                             save_it("a.reshape(len(a), -1)"));
+    source.refuse(header.shape.empty()
+                      ? "it holds one number; save an array, an observation an element"
+                      : "its array has " + std::to_string(header.shape.size()) + " dimensions (" +
+                            extents_of(header.shape) + "), and an observation is a row;" +
+                            save_it("a.reshape(len(a), -1)"));
   }
   const std::size_t rows = header.shape[0];
   const std::size_t columns = header.shape.size() == 2 ? header.shape[1] : 1;
-  if (rows == 0 || columns == 0) refuse(source, "its array is empty: it has no observation");
+  if (rows == 0 || columns == 0) source.refuse("its array is empty: it has no observation");
   if (columns > most / rows) {
-    refuse(source,
-           "its array of " + extents_of(header.shape) + " numbers does not fit into memory");
+    source.refuse("its array of " + extents_of(header.shape) + " numbers does not fit into memory");
   }
   Matrix matrix{.columns = columns, .values = read_numbers(source, type, rows * columns)};
   if (header.fortran && rows > 1 && columns > 1) matrix.values = transposed(matrix.values, rows);

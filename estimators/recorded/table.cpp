@@ -300,7 +300,7 @@ class Reader {
     check_length(fields);
     may_be_decimals_ = may_be_decimals_ && may_be_a_decimal(fields, separator_);
     if (table_.values.size() + fields.size() > most_) {
-      throw InputError({.file = source_.name()}, "its numbers do not fit into memory");
+      source_.refuse("its numbers do not fit into memory");
     }
     for (const Field& field : fields) table_.values.push_back(number(field));
     if (table_.lines.empty()) first_separator_ = separator_;
@@ -310,9 +310,8 @@ class Reader {
   Table finish() && {
     const std::size_t columns = table_.columns.size();
     if (table_.values.empty()) {
-      throw InputError({.file = source_.name()},
-                       std::string(line_ == 0 ? "it is empty" : "it has no rows") +
-                           ": write one observation a line");
+      source_.refuse(std::string(line_ == 0 ? "it is empty" : "it has no rows") +
+                     ": write one observation a line");
     }
     const bool alone = table_.rows() == 1 && columns > 1 && !names_line_;
     if (alone && expected_ == Rows::several) refuse_one_row(columns);
@@ -342,11 +341,10 @@ class Reader {
                " \\t\\r' '\\n'";
     if (first_separator_ == ';') command += " | tr , .";
     if (file) command += (source_.packed() ? "" : " <" + name) + std::string(" > lines.txt");
-    throw InputError({.file = source_.name()},
-                     "it is one row of " + std::to_string(columns) +
-                         " numbers, and an observation is a row;\n  if each is an observation, "
-                         "`" +
-                         command + "`\n  writes one a line");
+    source_.refuse("it is one row of " + std::to_string(columns) +
+                   " numbers, and an observation is a row;\n  if each is an observation, "
+                   "`" +
+                   command + "`\n  writes one a line");
   }
 
   void comment(const Field& field) {
@@ -480,7 +478,7 @@ class Lines {
     std::string_view bytes = source_.look();
     for (; !bytes.empty(); bytes = source_.look()) {
       if (first_binary_byte(bytes) != bytes.npos) {
-        throw InputError({.file = source_.name()}, no_text(bytes, source_.name()));
+        source_.refuse(no_text(bytes, source_.name()));
       }
       take_lines(bytes);
       source_.take(bytes.size());
@@ -495,8 +493,7 @@ class Lines {
       const std::size_t end = bytes.find('\n');
       if (end == bytes.npos || !begun_.empty()) begun_ += bytes.substr(0, end);
       if (begun_.size() > longest_line) {
-        throw InputError({.file = source_.name()},
-                         "a line of it has more than 64 MiB: write one observation a line");
+        source_.refuse("a line of it has more than 64 MiB: write one observation a line");
       }
       if (end == bytes.npos) return;
       reader_.line(begun_.empty() ? bytes.substr(0, end) : begun_);
@@ -520,10 +517,9 @@ std::size_t most_numbers() {
 
 Table table_of(Matrix matrix, const ByteSource& source, Rows expected) {
   if (expected == Rows::several && matrix.values.size() == matrix.columns && matrix.columns > 1) {
-    throw InputError({.file = source.name()},
-                     "it is one row of " + std::to_string(matrix.columns) +
-                         " numbers, and an observation is a row;\n  if each is an observation, "
-                         "save it with `numpy.save(\"mine.npy\", a.ravel())`");
+    source.refuse("it is one row of " + std::to_string(matrix.columns) +
+                  " numbers, and an observation is a row;\n  if each is an observation, "
+                  "save it with `numpy.save(\"mine.npy\", a.ravel())`");
   }
   return {.columns = default_names(matrix.columns), .values = std::move(matrix.values)};
 }
@@ -555,7 +551,7 @@ Table read_table(const std::string& file, Rows expected) {
   }
   constexpr std::size_t beginning = 512;
   const std::string problem = no_text(source.look(beginning), source.name());
-  if (!problem.empty()) throw InputError({.file = source.name()}, problem);
+  if (!problem.empty()) source.refuse(problem);
   return Lines(source, most, expected).read();
 }
 

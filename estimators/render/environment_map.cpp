@@ -12,7 +12,6 @@
 
 #include "estimators/core/value.h"
 #include "estimators/picture_file.h"
-#include "render/picture_kinds.h"
 #include "render/quadrature.h"
 
 namespace assay::render {
@@ -173,12 +172,12 @@ EnvironmentMap read_environment(const std::string& file) {
   std::vector<std::string> names{"Y"};
   if (picture->has({"R", "G", "B"})) names = {"R", "G", "B"};
   if (!picture->has(names)) {
-    refuse_picture(file, "the picture needs the channels R, G and B, or Y; it has " +
-                             listed(picture->channel_names()));
+    picture->refuse("the picture needs the channels R, G and B, or Y; it has " +
+                    listed(picture->channel_names()));
   }
   const PictureWindow window = picture->window(names);
   if (window != picture->canvas()) {
-    refuse_picture(file, "the picture is cropped: its data window must be its display window");
+    picture->refuse("the picture is cropped: its data window must be its display window");
   }
   std::vector<float> read(window.width * window.height * names.size());
   picture->read(names, read);
@@ -190,7 +189,7 @@ EnvironmentMap read_environment(const std::string& file) {
       std::ostringstream why;
       why << "the texel in row " << i / window.width << ", column " << i % window.width << " is "
           << texels[i][c] << "; radiance must be finite and not negative";
-      refuse_picture(file, why.str());
+      picture->refuse(why.str());
     }
   }
   return {{window.width, window.height}, std::move(texels)};

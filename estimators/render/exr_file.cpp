@@ -147,13 +147,12 @@ void ExrFile::open() {
 void ExrFile::add_part(int part, double bytes) {
   const Imf::Header& header = input_->header(part);
   if (header.hasType() && !Imf::isImage(header.type())) {
-    refuse_picture(name_, "it holds deep pixels, with several samples each; flatten it first");
+    refuse("it holds deep pixels, with several samples each; flatten it first");
   }
   require_possible(header, name_, bytes);
   require_possible_tiles(header, name_);
   if (!input_->partComplete(part)) {
-    refuse_picture(name_,
-                   "the picture is not complete: writing it was interrupted; write it again");
+    refuse("the picture is not complete: writing it was interrupted; write it again");
   }
   for (auto i = header.channels().begin(); i != header.channels().end(); ++i) {
     channels_.push_back(
@@ -172,8 +171,7 @@ void ExrFile::add_part(int part, double bytes) {
 void ExrFile::require_whole(const FileChannel& channel) const {
   const Imf::Channel& described = input_->header(channel.part).channels()[channel.in_part.c_str()];
   if (described.xSampling == 1 && described.ySampling == 1) return;
-  refuse_picture(name_,
-                 "channel `" + channel.in_part + "` is sub-sampled; store it at full resolution");
+  refuse("channel `" + channel.in_part + "` is sub-sampled; store it at full resolution");
 }
 
 void ExrFile::read_rows(std::span<const std::string> names, std::span<float> texels,

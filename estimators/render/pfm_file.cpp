@@ -45,7 +45,7 @@ class PfmFile final : public PictureFile {
     stream.seekg(static_cast<std::streamoff>(begin_ + 4 * row * (canvas_.height - last)));
     stream.read(reinterpret_cast<char*>(bits.data()),
                 static_cast<std::streamsize>(4 * bits.size()));
-    if (!stream) refuse_picture(name_, "the picture is cut short; write it again");
+    if (!stream) refuse("the picture is cut short; write it again");
     for (std::size_t c = 0; c < names.size(); ++c) {
       const auto source = static_cast<std::size_t>(&channel(names[c]) - channels_.data());
       for (std::size_t i = 0; i < texels.size() / names.size(); ++i) {

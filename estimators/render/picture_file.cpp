@@ -97,6 +97,8 @@ float rounded(float value, Rounding how, bool alpha) {
   return value;
 }
 
+void PictureFile::refuse(const std::string& why) const { render::refuse_picture(name_, why); }
+
 std::vector<std::string> PictureFile::channel_names() const {
   return mapped(channels_, &FileChannel::name);
 }
@@ -110,17 +112,16 @@ bool PictureFile::has(const std::vector<std::string>& names) const {
 const FileChannel& PictureFile::channel(const std::string& name) const {
   const auto found = std::ranges::find(channels_, name, &FileChannel::name);
   if (found != channels_.end()) return *found;
-  render::refuse_picture(name_,
-                         "there is no channel `" + name + "`; it has " + quoted(channel_names()));
+  refuse("there is no channel `" + name + "`; it has " + quoted(channel_names()));
 }
 
 PictureWindow PictureFile::window(std::span<const std::string> names) const {
   const FileChannel& first = channel(names.front());
   for (const std::string& name : names) {
     if (channel(name).window == first.window) continue;
-    render::refuse_picture(name_, "the channels `" + first.name + "` and `" + name +
-                                      "` are pictures of unequal sizes; choose channels of one "
-                                      "size");
+    refuse("the channels `" + first.name + "` and `" + name +
+           "` are pictures of unequal sizes; choose channels of one "
+           "size");
   }
   return first.window;
 }
