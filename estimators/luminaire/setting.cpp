@@ -27,11 +27,12 @@ class View {
     for (Vector3& p : polygon) p = point(p);
     return polygon;
   }
-  TriangleMesh of(TriangleMesh mesh) const {
+  TriangleMesh shape(const Polygon& polygon) const { return fan(of(polygon)); }
+  TriangleMesh shape(TriangleMesh mesh) const {
     for (Vector3& p : mesh.vertices) p = point(p);
     return mesh;
   }
-  Disc of(const Disc& disc) const {
+  Disc shape(const Disc& disc) const {
     return {point(disc.centre), frame_.to_local(disc.normal), disc.radius};
   }
 
@@ -41,8 +42,7 @@ class View {
 };
 
 TriangleMesh light_mesh(const Light& light, const View& view) {
-  if (const auto* polygon = std::get_if<Polygon>(&light.shape)) return fan(view.of(*polygon));
-  return view.of(std::get<TriangleMesh>(light.shape));
+  return std::visit([&](const auto& form) { return view.shape(form); }, light.shape);
 }
 
 LightTriangle light_triangle(const std::array<Vector3, 3>& corners, bool clockwise) {
@@ -80,9 +80,7 @@ double near_distance(const TriangleMesh& mesh, const Location& where) {
 }
 
 Shape occluder_shape(const Occluder& occluder, const View& view) {
-  if (const auto* polygon = std::get_if<Polygon>(&occluder)) return fan(view.of(*polygon));
-  if (const auto* disc = std::get_if<Disc>(&occluder)) return view.of(*disc);
-  return view.of(std::get<TriangleMesh>(occluder));
+  return std::visit([&](const auto& form) -> Shape { return view.shape(form); }, occluder);
 }
 
 TriangleMesh drawn_nearer(TriangleMesh mesh) {
