@@ -307,7 +307,7 @@ std::string of(std::uint64_t count, const char* what) {
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
-}  // namespace
+// Lines of a hello, each with its end.
 
 std::string channel_line(const Channel& channel) {
   std::string line = "channel " + channel.name;
@@ -344,6 +344,8 @@ std::string sampler_line(const SamplerNote& sampler) {
   if (sampler.rounding != 0) line += " rounding " + shortest_text(sampler.rounding);
   return line + "\n";
 }
+
+}  // namespace
 
 bool is_whole_hello(std::string_view text) {
   for (std::size_t end = text.find('\n'); end != std::string_view::npos; end = text.find('\n')) {

@@ -78,13 +78,6 @@ Hello parse_hello(std::string_view text, std::uint64_t most = most_numbers);
 /// The text that parse_hello() reads.
 std::string to_text(const Hello& hello);
 
-/// Lines of a hello, each with its end: a channel, an image, a bias, a sampler. Each element of the
-/// image has the range of the given channel.
-std::string channel_line(const Channel& channel);
-std::string image_lines(const ImageShape& image, const Channel& element);
-std::string bias_line(std::optional<BiasClass> bias);
-std::string sampler_line(const SamplerNote& sampler);
-
 /// The kind of a question to a sampler: 0, 1 or 2, plus 4 if denormals are to be flushed to zero.
 enum class Asked : std::uint64_t { draws, densities, evaluations };
 inline constexpr std::uint64_t denormals_flushed = 4;

@@ -221,21 +221,21 @@ std::vector<AssaySampler> samplers_of(const AssayPreparation& prepared) {
   return all;
 }
 
-/// The library's facts in the words of a program, so that the same rules read both.
-std::string hello_text(const AssayEstimator& estimator, const AssayPreparation& prepared,
-                       const std::vector<AssaySampler>& samplers) {
-  std::string text = "assay " + std::to_string(protocol_version) + " binary\n";
+/// The library's facts as a program says them, so that the same rules read both.
+Hello hello_of(const AssayEstimator& estimator, const AssayPreparation& prepared,
+               const std::vector<AssaySampler>& samplers) {
+  Hello hello{
+      .numbers = Numbers::binary,
+      .channels = mapped(all_known(prepared.channels, prepared.channel_count), channel_of),
+      .nature = {.averages = has(estimator.flags, ASSAY_AVERAGES), .bias = bias_of(estimator.bias)},
+      .rays = has(estimator.flags, ASSAY_RAYS),
+      .samplers = mapped(samplers, note_of)};
   if (prepared.image != nullptr) {
     const AssayImage image = as_known(prepared.image);
-    text += image_lines(shape_of(image), element_of(image));
+    hello.image = shape_of(image);
+    hello.element = element_of(image);
   }
-  for (const AssayChannel& c : all_known(prepared.channels, prepared.channel_count)) {
-    text += channel_line(channel_of(c));
-  }
-  if (has(estimator.flags, ASSAY_AVERAGES)) text += "averages\n";
-  if (has(estimator.flags, ASSAY_RAYS)) text += "rays\n";
-  for (const AssaySampler& sampler : samplers) text += sampler_line(note_of(sampler));
-  return text + bias_line(bias_of(estimator.bias)) + "ready\n";
+  return parse_hello(to_text(hello));
 }
 
 /// The items of a question to a sampler.
@@ -308,7 +308,7 @@ PreparedLibrary::PreparedLibrary(const LibraryChoice& choice)
   prepare(choice, preparation);
   try {
     samplers_ = samplers_of(preparation);
-    hello_ = parse_hello(hello_text(estimator_, preparation, samplers_));
+    hello_ = hello_of(estimator_, preparation, samplers_);
   } catch (...) {
     if (estimator_.release != nullptr) estimator_.release(state_);
     throw;
