@@ -22,18 +22,44 @@ using render::Vector3;
 using render::vector_of;
 using std::numbers::pi;
 
-// Directions in which f is the integrand of direct lighting.
-class Directions : public Sampler {
+// Directions in which f is the integrand of direct lighting, of one technique or of both with these
+// probabilities, then a lobe each.
+class Directions final : public Sampler {
  public:
-  explicit Directions(SharedTechniques techniques)
+  Directions(SharedTechniques techniques, const Pair& probabilities)
       : techniques_(std::move(techniques)),
+        probabilities_(probabilities),
         triangles_(luminaire::lit_triangles(techniques_->setting())) {}
 
   Domain domain() const override { return luminaire::domain_of(triangles_); }
 
+  SamplerDraw sample(Stream& random) const override {
+    const bool light =
+        lobes() == 1 ? probabilities_.light > 0 : random.uniform() < probabilities_.light;
+    const int lobe = lobes() == 1 || light ? 0 : 1;
+    if (light) {
+      const auto point = techniques_->light_sampling().sample(random);
+      if (!point) return {.lobe = lobe, .valid = false};
+      const Vector3 w = normalised(point->to_light);
+      return draw(w, probabilities_.light * point->density + by_brdf(w), lobe);
+    }
+    const Vector3 w = techniques_->reflectance().sample(random);
+    if (w.z <= 0) return {.lobe = lobe, .valid = false};
+    return draw(w, density(point_of(w)), lobe);
+  }
+
+  double density(const Point& point) const override {
+    return by_light(vector_of(point)) + by_brdf(vector_of(point));
+  }
+  int lobes() const override { return probabilities_.light > 0 && probabilities_.brdf > 0 ? 2 : 1; }
+  double lobe_density(int lobe, const Point& point) const override {
+    if (lobes() == 1) return density(point);
+    return lobe == 0 ? by_light(vector_of(point)) : by_brdf(vector_of(point));
+  }
+
   double evaluate(const Point& point) const override {
     const Vector3 w = vector_of(point);
-    const LitTriangle* triangle = containing(w);
+    const LitTriangle* triangle = luminaire::containing(triangles_, w);
     if (!triangle) return 0;
     return techniques_->setting().received(
         {luminaire::shadow_ray(triangle->distance(w) * w), techniques_->integrand(w)}, Uncounted());
@@ -50,82 +76,26 @@ class Directions : public Sampler {
             .second = static_cast<std::size_t>(2 * parts)};
   }
 
- protected:
-  const LitTriangle* containing(const Vector3& w) const {
-    return luminaire::containing(triangles_, w);
-  }
+ private:
   // All triangles of a planar luminaire lie in the plane of the first.
-  double light_density(const Vector3& w) const {
-    if (!containing(w)) return 0;
-    return techniques_->light_sampling().density(techniques_->setting().triangles()[0], w);
+  double by_light(const Vector3& w) const {
+    if (probabilities_.light == 0 || !luminaire::containing(triangles_, w)) return 0;
+    return probabilities_.light *
+           techniques_->light_sampling().density(techniques_->setting().triangles()[0], w);
   }
-  double brdf_density(const Vector3& w) const {
-    return w.z > 0 ? techniques_->reflectance().density(w) : 0;
+  double by_brdf(const Vector3& w) const {
+    if (probabilities_.brdf == 0 || w.z <= 0) return 0;
+    return probabilities_.brdf * techniques_->reflectance().density(w);
   }
   SamplerDraw draw(const Vector3& w, double declared, int lobe) const {
     const Point point = point_of(w);
     return {
         .point = point, .density = declared, .weight = evaluate(point) / declared, .lobe = lobe};
   }
-  const Techniques& techniques() const { return *techniques_; }
 
- private:
   SharedTechniques techniques_;
-  std::vector<LitTriangle> triangles_;
-};
-
-class LightDirections final : public Directions {
- public:
-  using Directions::Directions;
-
-  SamplerDraw sample(Stream& random) const override {
-    const auto point = techniques().light_sampling().sample(random);
-    if (!point) return {.valid = false};
-    return draw(normalised(point->to_light), point->density, 0);
-  }
-  double density(const Point& point) const override { return light_density(vector_of(point)); }
-};
-
-class BrdfDirections final : public Directions {
- public:
-  using Directions::Directions;
-
-  SamplerDraw sample(Stream& random) const override {
-    const Vector3 w = techniques().reflectance().sample(random);
-    return w.z > 0 ? draw(w, brdf_density(w), 0) : SamplerDraw{.valid = false};
-  }
-  double density(const Point& point) const override { return brdf_density(vector_of(point)); }
-};
-
-class MixtureDirections final : public Directions {
- public:
-  MixtureDirections(SharedTechniques techniques, const Pair& probabilities)
-      : Directions(std::move(techniques)), probabilities_(probabilities) {}
-
-  SamplerDraw sample(Stream& random) const override {
-    if (random.uniform() < probabilities_.light) {
-      const auto point = techniques().light_sampling().sample(random);
-      if (!point) return {.lobe = 0, .valid = false};
-      const Vector3 w = normalised(point->to_light);
-      return draw(w, probabilities_.light * point->density + probabilities_.brdf * brdf_density(w),
-                  0);
-    }
-    const Vector3 w = techniques().reflectance().sample(random);
-    if (w.z <= 0) return {.lobe = 1, .valid = false};
-    return draw(w, density(point_of(w)), 1);
-  }
-  double density(const Point& point) const override {
-    return lobe_density(0, point) + lobe_density(1, point);
-  }
-  int lobes() const override { return 2; }
-  double lobe_density(int lobe, const Point& point) const override {
-    const Vector3 w = vector_of(point);
-    return lobe == 0 ? probabilities_.light * light_density(w)
-                     : probabilities_.brdf * brdf_density(w);
-  }
-
- private:
   Pair probabilities_;
+  std::vector<LitTriangle> triangles_;
 };
 
 bool has_directions(const Techniques& techniques) {
@@ -133,22 +103,27 @@ bool has_directions(const Techniques& techniques) {
   return setting.planar() && setting.triangles()[0].emits;
 }
 
+NamedSampler sampler_named(const char* name, const SharedTechniques& techniques,
+                           const Pair& probabilities) {
+  return {name, std::make_shared<Directions>(techniques, probabilities)};
+}
+
 /// `light`: of a planar luminaire that emits towards the receiver, else nothing.
 std::vector<NamedSampler> light_samplers(const SharedTechniques& techniques) {
   if (!has_directions(*techniques)) return {};
-  return {{"light", std::make_shared<LightDirections>(techniques)}};
+  return {sampler_named("light", techniques, {1, 0})};
 }
 
 /// `brdf`, with directions below the horizon as invalid draws.
-std::vector<NamedSampler> brdf_samplers(const SharedTechniques& techniques) {
-  return {{"brdf", std::make_shared<BrdfDirections>(techniques)}};
+NamedSampler brdf_sampler(const SharedTechniques& techniques) {
+  return sampler_named("brdf", techniques, {0, 1});
 }
 
-/// `mixture` of both with these probabilities, a lobe each; where there is `light`.
+/// `mixture` of both with these probabilities; where there is `light`.
 std::vector<NamedSampler> mixture_samplers(const SharedTechniques& techniques,
                                            const Pair& probabilities) {
   if (!has_directions(*techniques)) return {};
-  return {{"mixture", std::make_shared<MixtureDirections>(techniques, probabilities)}};
+  return {sampler_named("mixture", techniques, probabilities)};
 }
 
 // The most that a draw of the BRDF brings when all the light of the scene is weighted by 1.
@@ -200,12 +175,11 @@ std::shared_ptr<const Setup> prepare_brdf(Parameters& given) {
   const auto techniques = std::make_shared<const Techniques>(setting, read_reflectance(given),
                                                              solid_angle_sampling(setting));
   const WeightedByHeuristic alone(Heuristic::balance(), {0, 1});
-  return averaging(
-      one_sample_channel(*techniques, alone, highest_of_brdf(*techniques), {0, 1}),
-      [techniques, alone](Stream& random, Cost& cost) {
-        return from_brdf(alone, techniques->brdf(random, cost));
-      },
-      brdf_samplers(techniques));
+  return averaging(one_sample_channel(*techniques, alone, highest_of_brdf(*techniques), {0, 1}),
+                   [techniques, alone](Stream& random, Cost& cost) {
+                     return from_brdf(alone, techniques->brdf(random, cost));
+                   },
+                   {brdf_sampler(techniques)});
 }
 
 std::shared_ptr<const Setup> prepare_multi_sample(Parameters& given) {
@@ -220,7 +194,7 @@ std::shared_ptr<const Setup> prepare_multi_sample(Parameters& given) {
   //   Maximum and cutoff: f / q_i with q_i the larger, if the other is left out.
   const double high = highest_of_brdf(*techniques) * (n.light + n.brdf) / n.brdf;
   std::vector<NamedSampler> samplers = light_samplers(techniques);
-  samplers.push_back(brdf_samplers(techniques)[0]);
+  samplers.push_back(brdf_sampler(techniques));
   return averaging(
       radiance_channel(*techniques, combination, high,
                        [&](const Moments& known) { return known.multi_sample_variance(counts); }),
