@@ -1,7 +1,6 @@
 #include "estimators/recorded/picture_setup.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstring>
 #include <stdexcept>
@@ -67,23 +66,6 @@ class SeenStack {
 };
 using SharedStack = std::shared_ptr<SeenStack>;
 
-class Picture final : public Estimator {
- public:
-  explicit Picture(SharedStack shared) : shared_(std::move(shared)) {}
-
-  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
-                 Cost& cost) override {
-    if (primaries != 1) throw std::invalid_argument("recorded: `primaries` must be 1");
-    texels_.resize(out.size() - 1);
-    shared_->read(random.observation(), texels_, cost);
-    write_observation(texels_, out);
-  }
-
- private:
-  SharedStack shared_;
-  std::vector<float> texels_;  // scratch
-};
-
 class StackRows final : public PictureRows {
  public:
   explicit StackRows(SharedStack shared)
@@ -126,7 +108,16 @@ class PictureSetup final : public Setup, public Pictures {
   std::size_t channel_count() const override { return shape_.elements() + 1; }
   Channel channel(std::size_t place) const override { return picture_channel(shape_, place); }
   std::optional<ImageShape> image() const override { return shape_; }
-  std::unique_ptr<Estimator> make() const override { return std::make_unique<Picture>(shared_); }
+  std::unique_ptr<Estimator> make() const override {
+    return estimating(
+        [shared = shared_, texels = std::vector<float>()](
+            Stream& random, std::uint64_t primaries, std::span<double> out, Cost& cost) mutable {
+          if (primaries != 1) throw std::invalid_argument("recorded: `primaries` must be 1");
+          texels.resize(out.size() - 1);
+          shared->read(random.observation(), texels, cost);
+          write_observation(texels, out);
+        })();
+  }
   std::optional<std::uint64_t> observations() const override {
     return shared_->stack().files.size();
   }
@@ -205,8 +196,7 @@ void PictureDigest::add(std::span<const float> texels) {
   }
 }
 
-std::optional<std::pair<std::uint64_t, std::uint64_t>> SeenPictures::note(
-    std::uint64_t index, const PictureDigest& digest) {
+std::optional<TwoPictures> SeenPictures::note(std::uint64_t index, const PictureDigest& digest) {
   if (!digest.finite() || digest.one_value()) return {};
   const std::scoped_lock lock(mutex_);
   const std::uint64_t first = by_digest_.try_emplace(digest.value(), index).first->second;
@@ -214,10 +204,10 @@ std::optional<std::pair<std::uint64_t, std::uint64_t>> SeenPictures::note(
   return all_alike() ? std::nullopt : repeated_;
 }
 
-std::optional<std::pair<std::uint64_t, std::uint64_t>> SeenPictures::shared_with(
-    const SeenPictures& other, std::uint64_t count) const {
+std::optional<TwoPictures> SeenPictures::shared_with(const SeenPictures& other,
+                                                     std::uint64_t count) const {
   const std::scoped_lock lock(mutex_, other.mutex_);
-  std::optional<std::pair<std::uint64_t, std::uint64_t>> found;
+  std::optional<TwoPictures> found;
   if (all_alike() || other.all_alike()) return found;
   for (const auto& [digest, index] : other.by_digest_) {
     const auto mine = by_digest_.find(digest);

@@ -55,26 +55,27 @@ class PictureDigest {
   bool one_value_ = true;
 };
 
+/// By their indices.
+using TwoPictures = std::pair<std::uint64_t, std::uint64_t>;
+
 class SeenPictures {
  public:
   /// Notes the picture of an observation by its digest. Returns two that had the same, or nullopt.
   /// Pictures of one value throughout, which noise may never have reached, count for nothing. So do
   /// pictures with texels that are not finite. As long as all are alike, such as a layer of depth,
   /// none counts. Thread-safe.
-  std::optional<std::pair<std::uint64_t, std::uint64_t>> note(std::uint64_t index,
-                                                              const PictureDigest& digest);
+  std::optional<TwoPictures> note(std::uint64_t index, const PictureDigest& digest);
 
   /// Finds a picture here and the first one there that had the same digest, among those noted so
   /// far. Their indices are below `count`. nullopt where no two have it, or all of a side are
   /// alike.
-  std::optional<std::pair<std::uint64_t, std::uint64_t>> shared_with(const SeenPictures& other,
-                                                                     std::uint64_t count) const;
+  std::optional<TwoPictures> shared_with(const SeenPictures& other, std::uint64_t count) const;
 
  private:
   bool all_alike() const { return by_digest_.size() == 1 && repeated_; }
 
   mutable std::mutex mutex_;
-  std::optional<std::pair<std::uint64_t, std::uint64_t>> repeated_ = {};
+  std::optional<TwoPictures> repeated_ = {};
   std::map<std::uint64_t, std::uint64_t> by_digest_;
 };
 
