@@ -5,43 +5,29 @@
 #include "estimators/foreign/shared_library.h"
 #include "estimators/library_host.h"
 
-namespace assay::foreign {
+namespace assay::plugins {
 
 namespace {
 
 /// A library in this process.
-class LibraryRespondent final : public Respondent {
+class LibraryRespondent final : public foreign::Respondent {
  public:
-  explicit LibraryRespondent(std::shared_ptr<const PreparedLibrary> library)
+  explicit LibraryRespondent(std::shared_ptr<const foreign::PreparedLibrary> library)
       : library_(std::move(library)) {}
 
-  const Hello& hello() const override { return library_->hello(); }
+  const foreign::Hello& hello() const override { return library_->hello(); }
 
  private:
-  std::vector<double> hear(const Question& question, std::string_view items) override {
+  std::vector<double> hear(const foreign::Question& question, std::string_view items) override {
     try {
       return library_->answer(question, items);
-    } catch (const LibraryError& error) {
-      throw NoAnswer(error.what());
+    } catch (const foreign::LibraryError& error) {
+      throw foreign::NoAnswer(error.what());
     }
   }
 
-  std::shared_ptr<const PreparedLibrary> library_;
+  std::shared_ptr<const foreign::PreparedLibrary> library_;
 };
-
-std::shared_ptr<const Setup> in_this_process(const LibraryChoice& choice) {
-  const auto library = std::make_shared<const PreparedLibrary>(choice);
-  const auto start = [library] { return std::make_unique<LibraryRespondent>(library); };
-  return setup_of(std::make_shared<Children>(library->file(), start));
-}
-
-}  // namespace
-
-}  // namespace assay::foreign
-
-namespace assay::plugins {
-
-namespace {
 
 foreign::LibraryChoice choice_of(Parameters& parameters) {
   // Absolute: the host runs in the suite's folder.
@@ -79,7 +65,9 @@ std::shared_ptr<const Setup> isolated(foreign::Terms terms, const foreign::Libra
 std::shared_ptr<const Setup> in_process(const foreign::LibraryChoice& choice,
                                         const Parameters& parameters) {
   try {
-    return foreign::in_this_process(choice);
+    const auto library = std::make_shared<const foreign::PreparedLibrary>(choice);
+    const auto start = [library] { return std::make_unique<LibraryRespondent>(library); };
+    return foreign::setup_of(std::make_shared<foreign::Children>(library->file(), start));
   } catch (const std::runtime_error& error) {
     parameters.refuse("file", std::string("is of no use: ") + error.what());
   }
