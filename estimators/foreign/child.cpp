@@ -43,8 +43,8 @@ constexpr int wanted_pipe = 1 << 20;
   throw std::system_error(error, std::generic_category(), what);
 }
 
-void check(int error, const char* what) {
-  if (error != 0) system_failure(error, what);
+void check(int error) {
+  if (error != 0) system_failure(error, "posix_spawn");
 }
 
 void close_descriptor(int& descriptor) {
@@ -76,8 +76,8 @@ struct Pipe {
 /// What posix_spawn() is told of files and signals.
 struct Spawning {
   Spawning() {
-    check(posix_spawn_file_actions_init(&files), "posix_spawn");
-    check(posix_spawnattr_init(&process), "posix_spawn");
+    check(posix_spawn_file_actions_init(&files));
+    check(posix_spawnattr_init(&process));
   }
   ~Spawning() {
     posix_spawn_file_actions_destroy(&files);
@@ -92,12 +92,11 @@ struct Spawning {
 void describe_files(posix_spawn_file_actions_t* actions, const Launch& launch,
                     const std::array<int, 3>& standard) {
   for (int i = 0; i < 3; ++i) {
-    check(posix_spawn_file_actions_adddup2(actions, standard[static_cast<std::size_t>(i)], i),
-          "posix_spawn");
+    check(posix_spawn_file_actions_adddup2(actions, standard[static_cast<std::size_t>(i)], i));
   }
-  check(posix_spawn_file_actions_addclosefrom_np(actions, 3), "posix_spawn");
+  check(posix_spawn_file_actions_addclosefrom_np(actions, 3));
   if (!launch.folder.empty()) {
-    check(posix_spawn_file_actions_addchdir_np(actions, launch.folder.c_str()), "posix_spawn");
+    check(posix_spawn_file_actions_addchdir_np(actions, launch.folder.c_str()));
   }
 }
 
@@ -110,13 +109,12 @@ void describe_process(posix_spawnattr_t* attributes) {
   }
   sigset_t none;
   sigemptyset(&none);
-  check(posix_spawnattr_setsigdefault(attributes, &defaults), "posix_spawn");
-  check(posix_spawnattr_setsigmask(attributes, &none), "posix_spawn");
-  check(posix_spawnattr_setpgroup(attributes, 0), "posix_spawn");
-  check(posix_spawnattr_setflags(attributes,
-                                 static_cast<short>(POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF |
-                                                    POSIX_SPAWN_SETSIGMASK)),
-        "posix_spawn");
+  check(posix_spawnattr_setsigdefault(attributes, &defaults));
+  check(posix_spawnattr_setsigmask(attributes, &none));
+  check(posix_spawnattr_setpgroup(attributes, 0));
+  check(posix_spawnattr_setflags(
+      attributes,
+      static_cast<short>(POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK)));
 }
 
 /// Null-terminated pointers to texts, as a program is given its arguments.
@@ -151,8 +149,7 @@ pid_t spawn(const Launch& launch, const std::array<int, 3>& standard) {
   std::vector<std::string> variables = environment_of(launch);
   pid_t child = -1;
   check(posix_spawnp(&child, arguments[0], &spawning.files, &spawning.process, arguments.data(),
-                     pointers_to(variables).data()),
-        "posix_spawn");
+                     pointers_to(variables).data()));
   return child;
 }
 
