@@ -291,20 +291,14 @@ std::shared_ptr<const Setup> averaging(Channel channel, Primary primary,
                    .samplers = std::move(samplers)});
 }
 
-/// The source of the random numbers of an image's elements.
-enum class ImageStreams {
-  own,    ///< a substream for each element: the elements are independent
-  shared  ///< one for all of them: each element's primary gets the same numbers
-};
-
 /// The parts of an image: what is known of its elements, in the shape's order, and their primaries.
-/// Both repeat where they are fewer: those of one row serve rows that are alike.
+/// Both repeat where they are fewer: those of one row serve rows that are alike. Elements that are
+/// independent have a substream each. Else the primaries of all elements get the same numbers.
 template <class Primary>
 struct ImageParts {
   ImageShape shape;
   std::vector<Channel> elements;
   std::vector<Primary> primaries;
-  ImageStreams streams = ImageStreams::own;
 };
 
 /// The set-up of an image whose elements are averages. A secondary estimate is an image at
@@ -312,9 +306,7 @@ struct ImageParts {
 /// least.
 template <class Primary>
 std::shared_ptr<const Setup> imaging(ImageParts<Primary> parts) {
-  parts.shape.independent = parts.streams == ImageStreams::own;
-  const auto make = [primaries = std::move(parts.primaries),
-                     own = parts.streams == ImageStreams::own] {
+  const auto make = [primaries = std::move(parts.primaries), own = parts.shape.independent] {
     std::vector<AveragingEstimator<Primary>> averages(primaries.begin(), primaries.end());
     auto image = [averages = std::move(averages), own](Stream& random, std::uint64_t count,
                                                        std::span<double> out, Cost& cost) mutable {

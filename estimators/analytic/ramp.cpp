@@ -25,9 +25,9 @@ Variable rescaled(const Law& law, double mean, double deviation) {
 std::shared_ptr<const Setup> prepare(Parameters& parameters) {
   constexpr std::array<double, 3> colour = {1, 0.8, 0.6};
   const std::size_t width = parameters.count("width");
-  ImageParts<Variable> parts{
-      .shape = {.width = width, .height = parameters.count("height")},
-      .streams = parameters.boolean("shared") ? ImageStreams::shared : ImageStreams::own};
+  ImageParts<Variable> parts{.shape = {.width = width,
+                                       .height = parameters.count("height"),
+                                       .independent = !parameters.boolean("shared")}};
   if (parameters.boolean("colour")) parts.shape.components = {"red", "green", "blue"};
   const double spread = parameters.number("spread");
   const Law law = analytic::law_of(parameters);

@@ -32,8 +32,8 @@ Floor read_floor(Parameters& parameters) {
   SceneDescription scene = read_scene(parameters.structure("scene"), parameters.folder());
   Floor floor{.shape = {.width = parameters.count("width"),
                         .height = parameters.count("height"),
-                        .components = {"irradiance"}},
-              .streams = parameters.boolean("shared") ? ImageStreams::shared : ImageStreams::own};
+                        .components = {"irradiance"},
+                        .independent = !parameters.boolean("shared")}};
   const double part = parameters.number("size") / static_cast<double>(floor.shape.width);
   const Vector3 centre = scene.receiver.position;
   const Frame frame = Frame::about(scene.receiver.normal);
@@ -75,8 +75,7 @@ std::shared_ptr<const Setup> prepare(Parameters& parameters) {
   const Floor floor = read_floor(parameters);
   std::vector<AreaPrimary<>> primaries;
   for (const SharedSetting& setting : floor.settings) primaries.emplace_back(setting);
-  return imaging<AreaPrimary<>>(
-      {floor.shape, floor_channels(floor), std::move(primaries), floor.streams});
+  return imaging<AreaPrimary<>>({floor.shape, floor_channels(floor), std::move(primaries)});
 }
 
 }  // namespace

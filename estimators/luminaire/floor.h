@@ -13,7 +13,6 @@ namespace assay::luminaire {
 struct Floor {
   ImageShape shape;
   std::vector<SharedSetting> settings;  ///< of each pixel, row by row
-  ImageStreams streams = ImageStreams::own;
 };
 
 /// Reads scene, width, height, size, shared.

@@ -198,7 +198,7 @@ std::shared_ptr<const Setup> weighted(Parameters& parameters, const Weight& weig
     primaries.push_back({AreaPrimary<>(floor.settings[i]), weight(pixel, floor.shape)});
   }
   return imaging<WeightedPrimary>(
-      {floor.shape, only_means(floor_channels(floor)), std::move(primaries), floor.streams});
+      {floor.shape, only_means(floor_channels(floor)), std::move(primaries)});
 }
 
 Entry entry(const char* name, const char* defect, Weight weight) {
