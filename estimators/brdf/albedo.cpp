@@ -127,10 +127,6 @@ ParameterInformation sampler_parameter() {
       "published", {"published", "density_rejection", "brdf_rejection", "brdf_cosine_rejection"});
 }
 
-// The directional albedo of the Ashikhmin-Shirley reflectance (specular part): E = the integral of
-// f cos_o over the hemisphere, by the half vector (render/brdf.h). Like Ward's, the published
-// algorithm follows its own p(w_o); directions below the horizon count as zero.
-
 std::vector<ParameterInformation> ashikhmin_shirley_parameters() {
   return joined(
       {number_parameter("nu", "exponent along x", "10", {0, 10000}),
@@ -139,12 +135,6 @@ std::vector<ParameterInformation> ashikhmin_shirley_parameters() {
                         {0, 1})},
       incident_parameters());
 }
-
-// The directional albedo of Ward's reflectance: E = the integral of f cos_o over the hemisphere.
-//
-// Directions are drawn by the half vector (render/brdf.h). The published algorithm follows its own
-// density p(w_o), so the weight f cos / p is not constant. Directions below the horizon count as
-// zero: so the mean of the weights is the albedo.
 
 std::vector<ParameterInformation> ward_parameters() {
   return joined({number_parameter("alpha_x", "roughness along x", "0.15", {0.02, 1}),

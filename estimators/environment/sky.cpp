@@ -1,7 +1,4 @@
-// A receiver under the picture of an environment, with occluders between. The estimators of the
-// family estimate the irradiance of each colour channel,
-//   E = integral over directions w of L(w) max(0, n . w) V(w).
-// V(w) = 1 if nothing stands in the way, else 0.
+// A receiver under the picture of an environment, with occluders between (sky/setting.h).
 
 #include <algorithm>
 #include <functional>
