@@ -102,23 +102,21 @@ class LazyCoordinates : public Coordinates {
   /// A small step that a coordinate has missed. No path looks at it, so that it may stay where the
   /// step would leave: that, too, is symmetric.
   void advance(Coordinate& coordinate);
-  bool large() const { return large_; }
-  std::uint64_t time() const { return time_; }
   /// From the proposal on, coordinates that are older are drawn afresh.
   void date_large_step() { large_time_ = time_ + 1; }
 
-  const std::vector<Saved>& saved() const { return saved_; }
   void restore(const Saved& saved) { list_[saved.index] = saved.coordinate; }
+
+  std::vector<Saved> saved_;
+  std::uint64_t time_ = 1;  ///< of the state
+  bool large_ = false;
 
  private:
   std::shared_ptr<const SmallStep> step_;
   std::vector<Coordinate> list_;
-  std::vector<Saved> saved_;
   Stream* random_ = nullptr;
   std::size_t used_ = 0;
-  std::uint64_t time_ = 1;        ///< of the state
   std::uint64_t large_time_ = 1;  ///< of the last accepted large step
-  bool large_ = false;
   bool inside_ = true;
 };
 

@@ -92,14 +92,14 @@ double other_normaliser(Walker& walker, std::uint64_t count) {
 struct FirstRestored final : LazyCoordinates {
   using LazyCoordinates::LazyCoordinates;
   void reject() override {
-    if (!saved().empty()) restore(saved().front());
+    if (!saved_.empty()) restore(saved_.front());
   }
 };
 
 struct LargeNotSaved final : LazyCoordinates {
   using LazyCoordinates::LazyCoordinates;
   void set_aside(std::size_t index) override {
-    if (!large()) LazyCoordinates::set_aside(index);
+    if (!large_) LazyCoordinates::set_aside(index);
   }
 };
 
@@ -107,7 +107,7 @@ struct LargeTimeOnRejection final : LazyCoordinates {
   using LazyCoordinates::LazyCoordinates;
   void reject() override {
     LazyCoordinates::reject();
-    if (large()) date_large_step();
+    if (large_) date_large_step();
   }
 };
 
@@ -115,7 +115,7 @@ struct NoCatchingUp final : LazyCoordinates {
   using LazyCoordinates::LazyCoordinates;
   void catch_up(Coordinate& coordinate) override {
     freshen(coordinate);
-    coordinate.time = time();
+    coordinate.time = time_;
   }
 };
 
@@ -123,7 +123,7 @@ struct NotFreshened final : LazyCoordinates {
   using LazyCoordinates::LazyCoordinates;
   void catch_up(Coordinate& coordinate) override {
     if (coordinate.time == 0) return freshen(coordinate);
-    coordinate.time = time();
+    coordinate.time = time_;
   }
 };
 
