@@ -29,8 +29,7 @@ class Middles {
 }  // namespace
 
 Octahedron::Octahedron(std::size_t level)
-    : level_(level), vertices_{{1, 0, 0},  {-1, 0, 0}, {0, 1, 0},
-                               {0, -1, 0}, {0, 0, 1},  {0, 0, -1}} {
+    : vertices_{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}} {
   if (level > 9) throw std::invalid_argument("Octahedron: level must be at most 9");
   // By octants: bit 0 for x < 0, bit 1 for y < 0, bit 2 for z < 0; counter-clockwise from outside.
   std::vector<Triangle> roots;

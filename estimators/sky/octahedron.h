@@ -23,7 +23,7 @@ class Octahedron {
   /// `level` at most 9 (two million triangles); std::invalid_argument otherwise.
   explicit Octahedron(std::size_t level);
 
-  std::size_t level() const { return level_; }
+  std::size_t level() const { return levels_.size() - 1; }
   const std::vector<Vector3>& vertices() const { return vertices_; }
   const std::vector<Triangle>& triangles() const { return levels_.back(); }
 
@@ -39,7 +39,6 @@ class Octahedron {
     return dot(cross(vertices_[a], vertices_[b]), w) < 0;
   }
 
-  std::size_t level_;
   std::vector<Vector3> vertices_;
   std::vector<std::vector<Triangle>> levels_;
 };
