@@ -59,11 +59,14 @@ bool Children::is_to_draw(const Question& wanted) {
 /// Ends the drawing of first observations. If they are not known, the next one who comes draws
 /// them.
 void Children::settle(std::uint64_t primaries, Known known) {
-  {
-    const std::scoped_lock lock(mutex_);
-    known_.at(primaries) = std::move(known);
-  }
+  const std::scoped_lock lock(mutex_);
+  known_.at(primaries) = std::move(known);
   drawn_.notify_all();
+}
+
+Children::Known Children::known_of(std::uint64_t primaries) const {
+  const std::scoped_lock lock(mutex_);
+  return known_.at(primaries);
 }
 
 void Children::refuse_unless_empty(const std::string& why) {
@@ -132,11 +135,7 @@ bool Children::examine_first(Respondent& dialogue, const Question& wanted) {
 }
 
 void Children::examine_further(Respondent& dialogue, const Question& wanted) {
-  FirstObservations few;
-  {
-    const std::scoped_lock lock(mutex_);
-    few = known_.at(wanted.primaries).first;
-  }
+  FirstObservations few = known_of(wanted.primaries).first;
   few.numbers.resize(std::min(few.count(), asked_of_further) * few.width);
   const auto ask = [&](const Question& one) { return dialogue.ask(one); };
   refuse_unless_empty(why_not_repeated(ask, few, name_));
@@ -157,11 +156,7 @@ Recalled Children::recalled(const Question& question) const {
 
 void Children::examine_unusual(Respondent& dialogue, const Question& question,
                                const std::vector<double>& numbers) {
-  std::optional<std::vector<double>> usual;
-  {
-    const std::scoped_lock lock(mutex_);
-    usual = known_.at(question.primaries).usual;
-  }
+  const std::optional<std::vector<double>> usual = known_of(question.primaries).usual;
   const std::optional<std::size_t> found = usual ? first_unusual(numbers, *usual) : std::nullopt;
   if (!found) return;
   const Question one = question.alone(*found);

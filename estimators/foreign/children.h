@@ -77,6 +77,7 @@ class Children {
   bool is_to_draw(const Question& wanted);
   bool draw_ahead(Respondent& dialogue, FirstObservations& mine);
   void settle(std::uint64_t primaries, Known known);
+  Known known_of(std::uint64_t primaries) const;
   void refuse_unless_empty(const std::string& why);
   bool examine_first(Respondent& dialogue, const Question& wanted);
   void examine_further(Respondent& dialogue, const Question& wanted);
