@@ -28,6 +28,14 @@ std::vector<double> sorted(std::vector<double> values) {
   return values;
 }
 
+std::size_t count_below(std::span<const double> ascending, double v) {
+  return static_cast<std::size_t>(std::ranges::lower_bound(ascending, v) - ascending.begin());
+}
+
+std::size_t count_up_to(std::span<const double> ascending, double v) {
+  return static_cast<std::size_t>(std::ranges::upper_bound(ascending, v) - ascending.begin());
+}
+
 template <class Real>
 void midranks(std::span<const Real> values, std::vector<Placed<Real>>& order,
               std::vector<double>& ranks) {

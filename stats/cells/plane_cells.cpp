@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "stats/basics/check.h"
+#include "stats/basics/scores.h"
 
 namespace assay::stats {
 namespace {
@@ -19,9 +20,7 @@ std::size_t slot(const std::vector<double>& borders, double x) {
   if (!(x >= borders.front() && x <= borders.back())) {
     check::fail({"PlaneGrid::index", "coordinate"}, x, "inside the grid");
   }
-  const auto above = std::upper_bound(borders.begin(), borders.end(), x);
-  const auto slot = static_cast<std::size_t>(above - borders.begin()) - 1;
-  return std::min(slot, borders.size() - 2);
+  return std::min(count_up_to(borders, x), borders.size() - 1) - 1;
 }
 
 // The greatest density met in a cell's neighbours, 0 if none showed any.

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "stats/basics/check.h"
+#include "stats/basics/scores.h"
 
 namespace assay::stats {
 namespace {
@@ -24,19 +25,14 @@ std::vector<double> borders(Points sorted, std::size_t parts, Coordinate coordin
   return all;
 }
 
-std::size_t part(const std::vector<double>& borders, double value) {
-  return static_cast<std::size_t>(std::upper_bound(borders.begin(), borders.end(), value) -
-                                  borders.begin());
-}
-
 double first_of(const PlanePoint& point) { return point.first; }
 double second_of(const PlanePoint& point) { return point.second; }
 
 }  // namespace
 
 std::size_t SampledCells::index(PlanePoint point) const {
-  const std::size_t band = part(band_borders, point.first);
-  return before[band] + part(cut_borders[band], point.second);
+  const std::size_t band = count_up_to(band_borders, point.first);
+  return before[band] + count_up_to(cut_borders[band], point.second);
 }
 
 SampledCells sampled_cells(std::vector<PlanePoint> points, CellNumbers numbers) {

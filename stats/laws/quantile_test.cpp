@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <vector>
 
 #include "stats/basics/check.h"
+#include "stats/basics/scores.h"
 #include "stats/basics/search.h"
 #include "stats/tails/tails.h"
 
@@ -26,7 +28,9 @@ std::uint64_t largest_kept(Trials trials, double log_level) {
   return trials.trials - smallest_kept({trials.trials, 1 - trials.probability}, log_level);
 }
 
-double sample_quantile(std::span<const double> sorted, double probability) {
+using Sorted = std::span<const double>;
+
+double sample_quantile(Sorted sorted, double probability) {
   return sorted[sample_quantile_rank(sorted.size(), probability)];
 }
 
@@ -37,23 +41,11 @@ double log_fisher(double log_product) {
   return std::min(0.0, log_product + std::log1p(-log_product));
 }
 
-struct SortedSide {
-  std::span<const double> values;
-  double offset = 0;
-
-  double moved(double y) const { return y + offset; }
-  std::uint64_t below(double v) const {
-    return static_cast<std::uint64_t>(
-        std::partition_point(values.begin(), values.end(), [&](double y) { return moved(y) < v; }) -
-        values.begin());
-  }
-  std::uint64_t at_most(double v) const {
-    return static_cast<std::uint64_t>(
-        std::partition_point(values.begin(), values.end(),
-                             [&](double y) { return moved(y) <= v; }) -
-        values.begin());
-  }
-};
+std::vector<double> moved(Sorted sorted, double offset) {
+  std::vector<double> all(sorted.begin(), sorted.end());
+  for (double& value : all) value += offset;
+  return all;
+}
 
 // The largest product over v of two probabilities. P(so many of `lower` below v) falls with v, and
 // P(so few of `upper` up to v) rises. The counts change only at observations, so the largest is
@@ -61,12 +53,9 @@ struct SortedSide {
 // second at its end. That prunes the search.
 class LargestProduct {
  public:
-  LargestProduct(const SortedSide& lower, const SortedSide& upper, double probability)
+  LargestProduct(Sorted lower, Sorted upper, double probability)
       : lower_(lower), upper_(upper), probability_(probability) {
-    for (const double y : lower.values) splits_.push_back(lower.moved(y));
-    const auto middle = static_cast<std::ptrdiff_t>(splits_.size());
-    for (const double y : upper.values) splits_.push_back(upper.moved(y));
-    std::inplace_merge(splits_.begin(), splits_.begin() + middle, splits_.end());
+    std::ranges::merge(lower, upper, std::back_inserter(splits_));
   }
 
   double logarithm() {
@@ -76,10 +65,10 @@ class LargestProduct {
 
  private:
   double first(std::size_t i) const {
-    return binomial_upper(lower_.below(splits_[i]), {lower_.values.size(), probability_});
+    return binomial_upper(count_below(lower_, splits_[i]), {lower_.size(), probability_});
   }
   double second(std::size_t i) const {
-    return binomial_lower(upper_.at_most(splits_[i]), {upper_.values.size(), probability_});
+    return binomial_lower(count_up_to(upper_, splits_[i]), {upper_.size(), probability_});
   }
   void search(std::size_t begin, std::size_t end) {
     if (first(begin) + second(end) <= largest_) return;
@@ -89,14 +78,14 @@ class LargestProduct {
     if (middle < end) search(middle + 1, end);
   }
 
-  const SortedSide& lower_;
-  const SortedSide& upper_;
+  Sorted lower_;
+  Sorted upper_;
   double probability_;
   std::vector<double> splits_;
   double largest_ = -infinity;
 };
 
-double log_p_below(const SortedSide& lower, const SortedSide& upper, double probability) {
+double log_p_below(Sorted lower, Sorted upper, double probability) {
   return log_fisher(LargestProduct(lower, upper, probability).logarithm());
 }
 
@@ -105,8 +94,7 @@ double log_p_below(const SortedSide& lower, const SortedSide& upper, double prob
 QuantileCounts count_around(std::span<const double> sorted, double value) {
   check::sorted("count_around", sorted);
   check::finite({"count_around", "value"}, value);
-  const SortedSide side{sorted};
-  return {side.below(value), side.at_most(value), sorted.size()};
+  return {count_below(sorted, value), count_up_to(sorted, value), sorted.size()};
 }
 
 TestResult quantile_test(const QuantileCounts& counts, double probability) {
@@ -142,14 +130,11 @@ TestResult quantile_compare(std::span<const double> sorted_x, std::span<const do
   check::sorted("quantile_compare", sorted_y);
   check::inside_unit({"quantile_compare", "probability"}, probability);
   check::finite({"quantile_compare", "offset"}, offset);
-  const SortedSide x{sorted_x};
-  const SortedSide y{sorted_y, offset};
-  const double difference =
-      sample_quantile(sorted_x, probability) - y.moved(sample_quantile(sorted_y, probability));
-  return {difference,
+  const std::vector<double> y = moved(sorted_y, offset);
+  return {sample_quantile(sorted_x, probability) - sample_quantile(y, probability),
           {"bound", {}},
-          log_p_below(x, y, probability),
-          log_p_below(y, x, probability),
+          log_p_below(sorted_x, y, probability),
+          log_p_below(y, sorted_x, probability),
           Exactness::exact};
 }
 
@@ -161,13 +146,11 @@ Interval quantile_difference_interval(std::span<const double> sorted_x,
   check::inside_unit({"quantile_difference_interval", "probability"}, probability);
   check::sorted("quantile_difference_interval", sorted_x);
   check::sorted("quantile_difference_interval", sorted_y);
-  const SortedSide x{sorted_x};
-  const auto moved = [&](double offset) { return SortedSide{sorted_y, offset}; };
   const auto rejected_above = [&](double offset) {
-    return log_p_below(x, moved(offset), probability) <= log_level;
+    return log_p_below(sorted_x, moved(sorted_y, offset), probability) <= log_level;
   };
   const auto rejected_below = [&](double offset) {
-    return log_p_below(moved(offset), x, probability) <= log_level;
+    return log_p_below(moved(sorted_y, offset), sorted_x, probability) <= log_level;
   };
   const double middle =
       sample_quantile(sorted_x, probability) - sample_quantile(sorted_y, probability);

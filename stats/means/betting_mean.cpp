@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "stats/basics/check.h"
+#include "stats/basics/scores.h"
 #include "stats/basics/search.h"
 #include "stats/basics/vector_copies.h"
 #include "stats/tails/special.h"
@@ -161,11 +162,7 @@ ValueCells::ValueCells(std::span<const double> values) {
   const std::size_t n = sorted.size();
   for (std::size_t begin = 0; begin < n;) {
     const std::size_t size = std::max<std::size_t>(1, std::min(begin, n - begin) / ranks_a_value);
-    const double largest = sorted[begin + size - 1];
-    auto end = static_cast<std::size_t>(
-        std::upper_bound(sorted.begin() + static_cast<std::ptrdiff_t>(begin + size), sorted.end(),
-                         largest) -
-        sorted.begin());
+    const std::size_t end = count_up_to(sorted, sorted[begin + size - 1]);
     cells_.push_back(cell_of(std::span<const double>(sorted).subspan(begin, end - begin)));
     begin = end;
   }

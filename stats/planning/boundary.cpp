@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "stats/basics/check.h"
+#include "stats/basics/scores.h"
 #include "stats/tails/special.h"
 #include "stats/tails/tails.h"
 
@@ -117,11 +118,8 @@ void spread(const Paths& from, const Step& step, Paths& to) {
     const double centre = step.correlation * z;
     double sum = 0;
     const double width = bridge_reach * step.deviation;
-    const auto index = [&](double score) {
-      return static_cast<std::size_t>(std::ranges::lower_bound(from.scores, score) -
-                                      from.scores.begin());
-    };
-    for (std::size_t i = index(centre - width), end = index(centre + width); i < end; ++i) {
+    const std::size_t end = count_below(from.scores, centre + width);
+    for (std::size_t i = count_below(from.scores, centre - width); i < end; ++i) {
       const double x = (z - step.correlation * from.scores[i]) * scale;
       sum += from.masses[i] * std::exp(-x * x / 2);
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "stats/basics/check.h"
+#include "stats/basics/scores.h"
 
 namespace assay::stats {
 namespace {
@@ -182,8 +183,7 @@ class Table {
 double TabulatedLaw::operator()(double x) const {
   if (x <= place.front()) return 0;
   if (x >= place.back()) return 1;
-  const auto above =
-      static_cast<std::size_t>(std::upper_bound(place.begin(), place.end(), x) - place.begin());
+  const std::size_t above = count_up_to(place, x);
   const std::size_t part = above - 1;
   const double share = (x - place[part]) / (place[above] - place[part]);
   const double mass = cumulated[above] - cumulated[part];
