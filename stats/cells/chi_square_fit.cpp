@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "stats/basics/check.h"
 #include "stats/tails/special.h"
@@ -43,50 +44,29 @@ void absorb(PooledCell& into, const PooledCell& from) {
 }
 
 // Cells of positive probability, large ones alone and small ones gathered.
-struct Pools {
+std::vector<PooledCell> pooled(const CellCounts& counts, double observations, double minimum) {
   std::vector<PooledCell> large;
   std::vector<PooledCell> gathered;
   PooledCell rest;  // The incomplete last pool.
-};
-
-Pools gather(const CellCounts& counts, double observations, double minimum) {
-  Pools pools;
   for (std::size_t i = 0; i < counts.probability.size(); ++i) {
     if (counts.probability[i] == 0) continue;
     const PooledCell cell{counts.observed[i], observations * counts.probability[i], {i}};
     if (cell.expected >= minimum) {
-      pools.large.push_back(cell);
+      large.push_back(cell);
       continue;
     }
-    absorb(pools.rest, cell);
-    if (pools.rest.expected >= minimum) {
-      pools.gathered.push_back(std::move(pools.rest));
-      pools.rest = {};
-    }
+    absorb(rest, cell);
+    if (rest.expected >= minimum) gathered.push_back(std::exchange(rest, {}));
   }
-  return pools;
-}
-
-void flush_rest(Pools& pools) {
-  if (pools.rest.members.empty()) return;
-  if (!pools.gathered.empty()) {
-    absorb(pools.gathered.back(), pools.rest);
-  } else if (!pools.large.empty()) {
-    absorb(
-        *std::ranges::min_element(pools.large, {}, [](const auto& cell) { return cell.expected; }),
-        pools.rest);
-  } else {
-    pools.gathered.push_back(pools.rest);
+  if (!rest.members.empty()) {
+    if (large.empty() && gathered.empty()) gathered.emplace_back();
+    absorb(gathered.empty() ? *std::ranges::min_element(large, {}, &PooledCell::expected)
+                            : gathered.back(),
+           rest);
   }
-}
-
-std::vector<PooledCell> pooled(const CellCounts& counts, double observations, double minimum) {
-  Pools pools = gather(counts, observations, minimum);
-  flush_rest(pools);
-  std::vector<PooledCell> cells = std::move(pools.large);
-  cells.insert(cells.end(), pools.gathered.begin(), pools.gathered.end());
-  std::ranges::sort(cells, {}, [](const auto& cell) { return cell.members.front(); });
-  return cells;
+  large.insert(large.end(), gathered.begin(), gathered.end());
+  std::ranges::sort(large, {}, [](const auto& cell) { return cell.members.front(); });
+  return large;
 }
 
 std::uint64_t impossible_observations(const CellCounts& counts) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "stats/basics/check.h"
 #include "stats/cells/cell_effect.h"
@@ -42,15 +43,11 @@ std::vector<PooledPair> pooled(const TwoSampleCounts& counts, double enough) {
     if (counts.x[i] + counts.y[i] == 0) continue;
     absorb(open, {.x = counts.x[i], .y = counts.y[i], .members = {i}});
     if (static_cast<double>(open.x + open.y) < enough) continue;
-    pools.push_back(std::move(open));
-    open = {};
+    pools.push_back(std::exchange(open, {}));
   }
   if (open.members.empty()) return pools;
-  if (pools.empty()) {
-    pools.push_back(std::move(open));
-  } else {
-    absorb(pools.back(), open);
-  }
+  if (pools.empty()) pools.emplace_back();
+  absorb(pools.back(), open);
   return pools;
 }
 
