@@ -24,33 +24,23 @@ constexpr auto choose = [] {
   return c;
 }();
 
-// Sums of (d + u)^i e^j from those of d^i e^j, for each j.
-void move_x(Sums& sums, double u) {
-  if (u == 0) return;
-  std::array<double, weight + 1> power{1};
-  for (std::size_t i = 1; i <= weight; ++i) power[i] = power[i - 1] * u;
-  for (std::size_t j = 0; j <= powers_of_cost; ++j) {
-    // Higher powers first: each needs the lower ones as they were.
-    for (std::size_t i = weight - 2 * j; i > 0; --i) {
-      double moved = sums[at_powers(i, j)];
-      for (std::size_t k = 0; k < i; ++k)
-        moved += choose[i][k] * power[i - k] * sums[at_powers(k, j)];
-      sums[at_powers(i, j)] = moved;
-    }
-  }
-}
+enum class Along { x, cost };
 
-// Sums of d^i (e + v)^j from those of d^i e^j, for each i.
-void move_cost(Sums& sums, double v) {
-  if (v == 0) return;
-  std::array<double, powers_of_cost + 1> power{1};
-  for (std::size_t j = 1; j <= powers_of_cost; ++j) power[j] = power[j - 1] * v;
-  for (std::size_t j = powers_of_cost; j > 0; --j) {
-    for (std::size_t i = 0; i + 2 * j <= weight; ++i) {
-      double moved = sums[at_powers(i, j)];
-      for (std::size_t k = 0; k < j; ++k)
-        moved += choose[j][k] * power[j - k] * sums[at_powers(i, k)];
-      sums[at_powers(i, j)] = moved;
+// Sums of (d + step)^i e^j from those of d^i e^j for each j, or of d^i (e + step)^j for each i.
+void move_origin(Sums& sums, Along along, double step) {
+  if (step == 0) return;
+  std::array<double, weight + 1> power{1};
+  for (std::size_t n = 1; n <= weight; ++n) power[n] = power[n - 1] * step;
+  const bool of_x = along == Along::x;
+  for (std::size_t other = 0; other <= (of_x ? powers_of_cost : weight); ++other) {
+    const auto at = [&](std::size_t n) -> double& {
+      return sums[of_x ? at_powers(n, other) : at_powers(other, n)];
+    };
+    // Higher powers first: each needs the lower ones as they were.
+    for (std::size_t n = of_x ? weight - 2 * other : (weight - other) / 2; n > 0; --n) {
+      double moved = at(n);
+      for (std::size_t k = 0; k < n; ++k) moved += choose[n][k] * power[n - k] * at(k);
+      at(n) = moved;
     }
   }
 }
@@ -137,10 +127,10 @@ void JointMoments::merge(const JointMoments& other) {
   const double dc = distance(of_cost, other.of_cost);
   const double share = there / (here + there);
   Sums theirs = other.sums;
-  move_x(sums, -dx * share);
-  move_cost(sums, -dc * share);
-  move_x(theirs, dx * (1 - share));
-  move_cost(theirs, dc * (1 - share));
+  move_origin(sums, Along::x, -dx * share);
+  move_origin(sums, Along::cost, -dc * share);
+  move_origin(theirs, Along::x, dx * (1 - share));
+  move_origin(theirs, Along::cost, dc * (1 - share));
   for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += theirs[k];
   // The deviations sum to zero by definition.
   sums[at_powers(1, 0)] = 0;
