@@ -5,6 +5,7 @@
 #include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "stats/basics/check.h"
 #include "stats/tails/special.h"
@@ -48,6 +49,23 @@ struct Convergents {
     now = 1;
     return inverse_now;
   }
+
+  // One over the whole fraction, of which term(n) gives a_n and b_n from n = 1 on. It takes four
+  // terms at a time, and fewer than `most`.
+  template <class Term>
+  double reciprocal_of_all(double most, const Term& term) {
+    double last = 0;
+    for (double n = 1; n < most;) {
+      for (const double end = n + 4; n < end; ++n) {
+        const auto [numerator, denominator] = term(n);
+        add(numerator, denominator);
+      }
+      const double value = reciprocal();
+      if (std::abs(value - last) <= 1e-12 * value) return value;
+      last = value;
+    }
+    return last;
+  }
 };
 
 // ---- Normal
@@ -87,18 +105,10 @@ double log_far_lower(double shape, double x) {
 double log_far_upper(double shape, double x) {
   const double per_first = 1 / (x + 1 - shape);
   Convergents fraction{.inverse_now = per_first};
-  double last = 0;
-  for (double k = 1; k < 1e7;) {
-    for (const double end = k + 4; k < end; ++k) {
-      const double numerator = k * per_first * ((shape - k) * per_first);
-      const double denominator = 1 + 2 * k * per_first;
-      fraction.add(numerator, denominator);
-    }
-    const double value = fraction.reciprocal();
-    if (std::abs(value - last) <= 1e-12 * value) return special::log_gamma_prefix(shape, x, value);
-    last = value;
-  }
-  return special::log_gamma_prefix(shape, x, last);
+  const double value = fraction.reciprocal_of_all(1e7, [&](double k) {
+    return std::pair(k * per_first * ((shape - k) * per_first), 1 + 2 * k * per_first);
+  });
+  return special::log_gamma_prefix(shape, x, value);
 }
 
 // Up to here the sum and the fraction take at most 200 terms and are cheaper than Boost's
@@ -131,22 +141,15 @@ double beta_fraction(BetaPoint point, BetaShape shape) {
   const double lambda = a * y - b * x;
   double reciprocal = 1 / (a + 1);
   Convergents fraction{.now = a * (lambda + 1) * reciprocal};
-  double last = 0;
-  for (double n = 1; n < 1e5;) {
-    for (const double end = n + 4; n < end; ++n) {
-      const double next = 1 / (a + 2 * n + 1);
-      const double r = x * reciprocal;
-      const double left = n * (b - n) * r;
-      const double numerator = (a + n - 1) * (a + b + n - 1) * left * r;
-      const double denominator = n + left + (a + n) * (lambda + 1 + n * (1 + y)) * next;
-      fraction.add(numerator, denominator);
-      reciprocal = next;
-    }
-    const double value = fraction.reciprocal();
-    if (std::abs(value - last) <= 1e-12 * value) return value;
-    last = value;
-  }
-  return last;
+  return fraction.reciprocal_of_all(1e5, [&](double n) {
+    const double next = 1 / (a + 2 * n + 1);
+    const double r = x * reciprocal;
+    const double left = n * (b - n) * r;
+    const double numerator = (a + n - 1) * (a + b + n - 1) * left * r;
+    const double denominator = n + left + (a + n) * (lambda + 1 + n * (1 + y)) * next;
+    reciprocal = next;
+    return std::pair(numerator, denominator);
+  });
 }
 
 double log_by_fraction(BetaPoint point, BetaShape shape) {
