@@ -38,15 +38,19 @@ AdaptiveQuadrature::Function across(const PlaneDensity& density, Span y, Adaptiv
   };
 }
 
-Integral CellQuadrature::over(const PlaneCell& cell) {
+Integral CellQuadrature::over(const PlaneDensity& density, const PlaneCell& cell) {
   Integral sum;
-  rule_.forget_largest();
-  const auto strip = across(density_, cell.y, rule_);
-  for (const Span& part : cut(cell.x, density_.x, density_.x_panels)) {
+  const auto strip = across(density, cell.y, rule_);
+  for (const Span& part : cut(cell.x, density.x, density.x_panels)) {
     sum = sum + rule_.over(strip, part);
   }
   densest_ = std::max(densest_, rule_.largest());
   return sum;
+}
+
+Integral CellQuadrature::over(const PlaneCell& cell) {
+  rule_.forget_largest();
+  return over(density_, cell);
 }
 
 // True if the density shows at some of the points of each side from this one on.
@@ -81,13 +85,7 @@ Integral CellQuadrature::beside_support(const PlaneCell& cell) {
                             .values = density_.values,
                             .x_panels = {panels_of_a_corner},
                             .y_panels = {panels_of_a_corner}};
-  Integral sum;
-  const auto strip = marginal_density(closer, rule_);
-  for (const Span& part : cut(cell.x, cell.x, closer.x_panels)) {
-    sum = sum + rule_.over(strip, part);
-  }
-  densest_ = std::max(densest_, rule_.largest());
-  return sum;
+  return over(closer, cell);
 }
 
 double hidden_beside_support(const PlaneCell& cell, double densest) {

@@ -54,6 +54,7 @@ class CellQuadrature {
   bool exhausted() const { return rule_.exhausted(); }
 
  private:
+  Integral over(const PlaneDensity& density, const PlaneCell& cell);
   bool shown_at(const PlaneCell& cell, std::size_t first);
   bool shown_at_a_side(const PlaneCell& cell);
 
