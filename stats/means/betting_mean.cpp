@@ -97,16 +97,6 @@ double log_wealth(const ValueCells& x, double sign, double null, double room) {
          std::log(static_cast<double>(bet_count));
 }
 
-// ln p of "E (sign x) <= sign null", where `room` is from the null to the end of the range below.
-double log_p_upper(const ValueCells& x, double sign, double null, double room) {
-  if (room == infinity) return 0;
-  const double mean_above = sign * (x.mean() - null);
-  if (room < 0 || (room == 0 && mean_above > 0)) return special::lowest_log();
-  // ln(1 + b g) is b g at most, so that no bet gains.
-  if (room == 0 || mean_above <= 0) return 0;
-  return special::clamp_log(-log_wealth(x, sign, null, room));
-}
-
 void check_arguments(const char* function, const ValueCells& x, Range range, double null_mean) {
   check::finite({function, "null_mean"}, null_mean);
   if (!(range.low < range.high)) check::fail({function, "high"}, range.high, "above low");
@@ -127,8 +117,14 @@ struct Bettor {
 
   // ln p of "sign E x <= sign null".
   double log_p(double sign, double null) const {
+    // From the null to the end of the range below.
     const double room = sign > 0 ? null - range.low : range.high - null;
-    return log_p_upper(values, sign, null, room);
+    if (room == infinity) return 0;
+    const double mean_above = sign * (values.mean() - null);
+    if (room < 0 || (room == 0 && mean_above > 0)) return special::lowest_log();
+    // ln(1 + b g) is b g at most, so that no bet gains.
+    if (room == 0 || mean_above <= 0) return 0;
+    return special::clamp_log(-log_wealth(values, sign, null, room));
   }
 };
 
@@ -183,10 +179,11 @@ void ValueCells::add(double value, double weight) {
 
 TestResult betting_mean(const ValueCells& x, Range range, double null_mean) {
   check_arguments("betting_mean", x, range, null_mean);
+  const Bettor bettor{x, range};
   return {x.mean() - null_mean,
           {"bound", {}},
-          log_p_upper(x, -1, null_mean, range.high - null_mean),
-          log_p_upper(x, 1, null_mean, null_mean - range.low),
+          bettor.log_p(-1, null_mean),
+          bettor.log_p(1, null_mean),
           Exactness::exact};
 }
 
