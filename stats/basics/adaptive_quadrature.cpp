@@ -36,14 +36,18 @@ AdaptiveQuadrature::Places places_in(Span span) {
   return places;
 }
 
+// Numbers of all nodes, in their order, from those of the nodes at or above 0.
+std::array<double, AdaptiveQuadrature::nodes> on_both_sides(const auto& upper, double sign) {
+  std::array<double, AdaptiveQuadrature::nodes> all{upper[0]};
+  for (std::size_t i = 1; i < upper.size(); ++i) {
+    all[2 * i - 1] = sign * upper[i];
+    all[2 * i] = upper[i];
+  }
+  return all;
+}
+
 const std::array<double, AdaptiveQuadrature::nodes>& node_weights() {
-  static const std::array<double, AdaptiveQuadrature::nodes> weights = [] {
-    std::array<double, AdaptiveQuadrature::nodes> all{Rule::weights()[0]};
-    for (std::size_t i = 1; i < Rule::weights().size(); ++i) {
-      all[2 * i - 1] = all[2 * i] = Rule::weights()[i];
-    }
-    return all;
-  }();
+  static const auto weights = on_both_sides(Rule::weights(), 1);
   return weights;
 }
 
@@ -163,15 +167,7 @@ Integral AdaptiveQuadrature::once(const Function& function, Span span) {
 }
 
 const std::array<double, AdaptiveQuadrature::nodes>& AdaptiveQuadrature::node_places() {
-  static const std::array<double, nodes> places = [] {
-    std::array<double, nodes> all{};
-    const auto& upper = Rule::abscissa();
-    for (std::size_t i = 1; i < upper.size(); ++i) {
-      all[2 * i - 1] = -upper[i];
-      all[2 * i] = upper[i];
-    }
-    return all;
-  }();
+  static const auto places = on_both_sides(Rule::abscissa(), -1);
   return places;
 }
 
