@@ -45,10 +45,6 @@ void add_runs(std::span<const double> sorted, std::uint64_t before, TwoSampleDis
   });
 }
 
-TestResult result_of(double distance, Distribution law, SmirnovTail tail) {
-  return {distance, std::move(law), 0, tail.log_p, tail.exactness};
-}
-
 // ln of Hoeffding's bound on the probability of a deviation `gap` of a mean (or of a difference).
 double log_hoeffding(double gap, double effective_size) {
   return gap > 0 ? special::clamp_log(-2 * effective_size * gap * gap) : 0;
@@ -212,16 +208,21 @@ TwoSampleDistance ks_distance(std::span<const double> sorted_x, std::span<const 
 }
 
 TestResult kolmogorov_smirnov(const OneSampleDistance& distance) {
-  const LogTails tails = kolmogorov_tails(distance.distance, distance.n);
-  return result_of(distance.distance, {"kolmogorov", {static_cast<double>(distance.n)}},
-                   {tails.upper, Exactness::exact});
+  return {distance.distance,
+          {"kolmogorov", {static_cast<double>(distance.n)}},
+          0,
+          kolmogorov_tails(distance.distance, distance.n).upper,
+          Exactness::exact};
 }
 
 TestResult kolmogorov_smirnov(const TwoSampleDistance& distance) {
-  const auto& lattice = distance.lattice;
-  return result_of(distance.distance(),
-                   {"smirnov", {static_cast<double>(lattice.m), static_cast<double>(lattice.n)}},
-                   smirnov_upper_tail(lattice, distance.ties));
+  const auto& [steps, m, n] = distance.lattice;
+  const SmirnovTail tail = smirnov_upper_tail(distance.lattice, distance.ties);
+  return {distance.distance(),
+          {"smirnov", {static_cast<double>(m), static_cast<double>(n)}},
+          0,
+          tail.log_p,
+          tail.exactness};
 }
 
 TestResult ks_margin(const OneSampleDistance& distance, double null_distance) {
