@@ -223,17 +223,17 @@ std::optional<Along> narrower_along(const PlaneDensity& density, const PlaneCell
   return narrower(spread(along_x), spread(along_y));
 }
 
-void check_share(double largest_share) {
+void check_limits(double largest_share, const QuadratureLimits& limits) {
   check::unit({"adaptive_cells", "largest_share"}, largest_share);
   check::positive({"adaptive_cells", "largest_share"}, largest_share);
+  check::positive({"adaptive_cells", "tolerance"}, limits.tolerance);
 }
 
 }  // namespace
 
 AdaptiveCells adaptive_cells(const PlaneGrid& grid, const PlaneDensity& density,
                              double largest_share, QuadratureLimits limits) {
-  check_share(largest_share);
-  check::positive({"adaptive_cells", "tolerance"}, limits.tolerance);
+  check_limits(largest_share, limits);
   CellQuadrature rule(density, limits);
   const std::vector<Integral> masses = integrals_over(grid, rule);
   // A cell that shows no density lies beside one that shows some.
@@ -267,8 +267,7 @@ AdaptiveCells adaptive_cells(const PlaneGrid& grid, const PlaneDensity& density,
 
 AdaptiveCells adaptive_cells(const std::vector<double>& borders, const LineDensity& density,
                              double largest_share, QuadratureLimits limits) {
-  check_share(largest_share);
-  check::positive({"adaptive_cells", "tolerance"}, limits.tolerance);
+  check_limits(largest_share, limits);
   const PlaneGrid grid{.x_borders = borders, .y_borders = {0, 1}};
   check_borders(grid);
   const Span whole{borders.front(), borders.back()};

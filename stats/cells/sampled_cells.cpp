@@ -13,20 +13,16 @@ using Points = std::span<PlanePoint>;
 
 /// Borders that cut sorted values into about equal parts. None is the smallest value, and none
 /// occurs twice.
-template <class Coordinate>
-std::vector<double> borders(Points sorted, std::size_t parts, Coordinate coordinate) {
+std::vector<double> borders(Points sorted, std::size_t parts, double PlanePoint::*coordinate) {
   std::vector<double> all;
-  double last = coordinate(sorted.front());
+  double last = sorted.front().*coordinate;
   for (std::size_t k = 1; k < parts; ++k) {
-    const double value = coordinate(sorted[k * sorted.size() / parts]);
+    const double value = sorted[k * sorted.size() / parts].*coordinate;
     if (value > last) all.push_back(value);
     last = value;
   }
   return all;
 }
-
-double first_of(const PlanePoint& point) { return point.first; }
-double second_of(const PlanePoint& point) { return point.second; }
 
 }  // namespace
 
@@ -44,17 +40,16 @@ SampledCells sampled_cells(std::vector<PlanePoint> points, CellNumbers numbers) 
     check::finite({"sampled_cells", "second coordinate"}, point.second);
   }
   std::ranges::sort(points, {}, &PlanePoint::first);
-  SampledCells cells{.band_borders = borders(points, numbers.bands, first_of)};
+  SampledCells cells{.band_borders = borders(points, numbers.bands, &PlanePoint::first)};
   std::size_t behind = 0;
   auto begin = points.begin();
   for (std::size_t band = 0; band <= cells.band_borders.size(); ++band) {
     const auto end = band == cells.band_borders.size()
                          ? points.end()
-                         : std::find_if(begin, points.end(), [&](const auto& p) {
-                             return p.first >= cells.band_borders[band];
-                           });
-    std::sort(begin, end, [](const auto& a, const auto& b) { return a.second < b.second; });
-    cells.cut_borders.push_back(borders(Points(begin, end), numbers.cuts, second_of));
+                         : std::ranges::lower_bound(begin, points.end(), cells.band_borders[band],
+                                                    {}, &PlanePoint::first);
+    std::ranges::sort(begin, end, {}, &PlanePoint::second);
+    cells.cut_borders.push_back(borders(Points(begin, end), numbers.cuts, &PlanePoint::second));
     cells.before.push_back(behind);
     behind += cells.cut_borders.back().size() + 1;
     begin = end;
