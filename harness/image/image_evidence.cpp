@@ -190,8 +190,7 @@ stats::TestResult at_exactly(double known, double theta) {
   return {.statistic = known - theta,
           .distribution = {"exact", {}},
           .log_p_lower = known < theta ? never : 0,
-          .log_p_upper = known > theta ? never : 0,
-          .exactness = stats::Exactness::exact};
+          .log_p_upper = known > theta ? never : 0};
 }
 
 /// Values of theta that at_margin does not reject, found by the square root's signed square.
@@ -355,8 +354,7 @@ ChannelEvidence evidence_of_image_laws(const Seen& seen, const ImageTest& test) 
       .statistic = law.most.z,
       .distribution = {"permutation", {static_cast<double>(law.permutations)}},
       .log_p_lower = 0,
-      .log_p_upper = law.log_p,
-      .exactness = stats::Exactness::exact};
+      .log_p_upper = law.log_p};
   constexpr double unknown = std::numeric_limits<double>::infinity();
   Evidence evidence{.estimate = unknown,
                     .at = [equal](double) { return equal; },
@@ -440,8 +438,7 @@ ChannelEvidence evidence_of_images(const Seen& seen, const ImageTest& test) {
       .statistic = family.winner.z,
       .distribution = {"image-family", {static_cast<double>(family.tested)}},
       .log_p_lower = 0,
-      .log_p_upper = family.log_p,
-      .exactness = stats::Exactness::asymptotic};
+      .log_p_upper = family.log_p};
   const double ratio = distance.squared_bias / distance.squared_norm;
   const double estimate = std::sqrt(std::max(0.0, ratio));
   // So it is without noise, and beside an image of zeros.

@@ -157,7 +157,7 @@ ChiSquareFit chi_square_fit(const CellCounts& counts, FitOptions options) {
   const double impossible = impossible_tails(fit, 0).upper;
   const double log_p = two_ways ? std::min(tails.upper, impossible) + std::log(2.0) : tails.upper;
   fit.test = by_tails(statistic, {"chi-square", {fit.degrees_of_freedom}},
-                      {tails.lower, special::clamp_log(log_p)}, Exactness::asymptotic);
+                      {tails.lower, special::clamp_log(log_p)});
   fit.effect = effect_of(fit);
   return fit;
 }
@@ -169,7 +169,7 @@ TestResult chi_square_fit_effect(const ChiSquareFit& fit, double null_effect) {
   return by_tails(
       cells.statistic(null_effect),
       {"noncentral-chi-square", {fit.degrees_of_freedom, n * null_effect * null_effect}},
-      effect_tails(fit, cells, null_effect), Exactness::asymptotic);
+      effect_tails(fit, cells, null_effect));
 }
 
 Interval chi_square_fit_interval(const ChiSquareFit& fit, double confidence) {

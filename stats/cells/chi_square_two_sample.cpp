@@ -77,8 +77,7 @@ ChiSquareTwoSample chi_square_two_sample(const TwoSampleCounts& counts) {
                       .degrees_of_freedom = static_cast<double>(result.cells.size() - 1),
                       .observations = m * n / (m + n)};
   const double degrees = result.statistic.degrees_of_freedom;
-  result.test = by_tails(sum, {"chi-square", {degrees}}, chi_square_tails(sum, degrees),
-                         Exactness::asymptotic);
+  result.test = by_tails(sum, {"chi-square", {degrees}}, chi_square_tails(sum, degrees));
   return result;
 }
 
@@ -91,7 +90,7 @@ TestResult chi_square_effect(const ChiSquareStatistic& statistic, double null_ef
   const double noncentrality = statistic.observations * null_effect * null_effect;
   return by_tails(statistic.value,
                   {"noncentral-chi-square", {statistic.degrees_of_freedom, noncentrality}},
-                  effect_tails(statistic, null_effect), Exactness::asymptotic);
+                  effect_tails(statistic, null_effect));
 }
 
 Interval chi_square_effect_interval(const ChiSquareStatistic& statistic, double confidence) {

@@ -69,7 +69,7 @@ TestResult lag_one_test(std::span<const double> values, const char* caller) {
   const double variance = (n * n * n * n - 4 * n * n * n + 3 * n * n + 4 * n - 4) /
                           ((n + 1) * n * n * (n - 1) * (n - 1));
   const double z = (r + 1 / n) / std::sqrt(variance);
-  return by_tails(z, {"normal", {}}, normal_tails(z), Exactness::asymptotic);
+  return by_tails(z, {"normal", {}}, normal_tails(z));
 }
 
 double effective_sample_size(std::span<const double> values) {

@@ -284,8 +284,7 @@ TestResult squared_margin_test(const ImageDistance& distance, double squared_mar
   if (!(variance > 0)) throw ZeroVariance("image_equivalence: zero standard error");
   const double t =
       (distance.squared_bias - squared_margin * distance.squared_norm) / std::sqrt(variance);
-  return by_tails(t, {"student-t", {distance.degrees}}, student_t_tails(t, distance.degrees),
-                  Exactness::asymptotic);
+  return by_tails(t, {"student-t", {distance.degrees}}, student_t_tails(t, distance.degrees));
 }
 
 }  // namespace assay::stats

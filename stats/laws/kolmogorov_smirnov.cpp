@@ -211,18 +211,15 @@ TestResult kolmogorov_smirnov(const OneSampleDistance& distance) {
   return {distance.distance,
           {"kolmogorov", {static_cast<double>(distance.n)}},
           0,
-          kolmogorov_tails(distance.distance, distance.n).upper,
-          Exactness::exact};
+          kolmogorov_tails(distance.distance, distance.n).upper};
 }
 
 TestResult kolmogorov_smirnov(const TwoSampleDistance& distance) {
   const auto& [steps, m, n] = distance.lattice;
-  const SmirnovTail tail = smirnov_upper_tail(distance.lattice, distance.ties);
   return {distance.distance(),
           {"smirnov", {static_cast<double>(m), static_cast<double>(n)}},
           0,
-          tail.log_p,
-          tail.exactness};
+          smirnov_upper_tail(distance.lattice, distance.ties)};
 }
 
 TestResult ks_margin(const OneSampleDistance& distance, double null_distance) {
@@ -232,8 +229,7 @@ TestResult ks_margin(const OneSampleDistance& distance, double null_distance) {
   return {distance.distance,
           {"bound", {}},
           log_hoeffding(null_distance - distance.distance, size),
-          kolmogorov_tails(excess, distance.n).upper,
-          Exactness::exact};
+          kolmogorov_tails(excess, distance.n).upper};
 }
 
 TestResult ks_margin(const TwoSampleDistance& distance, double null_distance) {
@@ -244,8 +240,7 @@ TestResult ks_margin(const TwoSampleDistance& distance, double null_distance) {
   return {observed,
           {"bound", {}},
           log_hoeffding(null_distance - observed, effective_size(lattice)),
-          upper,
-          Exactness::exact};
+          upper};
 }
 
 Interval ks_interval(const OneSampleDistance& distance, double confidence) {
@@ -274,8 +269,7 @@ TwoLawsTest two_part_ks(std::span<const double> sorted_x, std::span<const double
   return {.result = {.statistic = distance.distance(),
                      .distribution = {"bound", {}},
                      .log_p_lower = 0,
-                     .log_p_upper = std::min(0.0, std::numbers::ln2 + smaller),
-                     .exactness = rest.exactness},
+                     .log_p_upper = std::min(0.0, std::numbers::ln2 + smaller)},
           .common = CommonValue{
               .value = value, .difference = std::abs(x.share() - y.share()), .decides = decides}};
 }

@@ -97,7 +97,7 @@ inline constexpr double least_common_share = 0.01;
 // value makes up `least_common_share` or more, it is tested apart. Fisher's exact test (1935)
 // compares its counts. Given these, kolmogorov_smirnov compares the other values. The parts are
 // exact, and the smaller p-value counts twice (Bonferroni). Without such a value it is
-// kolmogorov_smirnov of all. Exact and conservative; exactness is that of kolmogorov_smirnov.
+// kolmogorov_smirnov of all. Exact as far as kolmogorov_smirnov is, and conservative.
 // `distance` is that of the samples. Throws std::domain_error as ks_distance does.
 TwoLawsTest two_part_ks(std::span<const double> sorted_x, std::span<const double> sorted_y,
                         const TwoSampleDistance& distance);

@@ -31,7 +31,7 @@ TwoSizes sizes_of(const DistancePlan& plan, double n) {
 double two_sample_critical(double log_alpha, TwoSizes sizes) {
   const std::uint64_t steps = std::lcm(sizes.m, sizes.n);
   const std::uint64_t critical = smallest_whole(1, steps + 1, [&](std::uint64_t step) {
-    return smirnov_upper_tail({step, sizes.m, sizes.n}).log_p <= log_alpha;
+    return smirnov_upper_tail({step, sizes.m, sizes.n}) <= log_alpha;
   });
   return static_cast<double>(critical) / static_cast<double>(steps);
 }

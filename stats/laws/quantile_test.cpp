@@ -108,8 +108,7 @@ TestResult quantile_test(const QuantileCounts& counts, double probability) {
   return {probability - share,
           {"binomial", {n, probability}},
           binomial_upper(counts.below, trials),
-          binomial_lower(counts.at_most, trials),
-          Exactness::exact};
+          binomial_lower(counts.at_most, trials)};
 }
 
 Interval quantile_interval(std::span<const double> sorted, double probability, double confidence) {
@@ -134,8 +133,7 @@ TestResult quantile_compare(std::span<const double> sorted_x, std::span<const do
   return {sample_quantile(sorted_x, probability) - sample_quantile(y, probability),
           {"bound", {}},
           log_p_below(sorted_x, y, probability),
-          log_p_below(y, sorted_x, probability),
-          Exactness::exact};
+          log_p_below(y, sorted_x, probability)};
 }
 
 Interval quantile_difference_interval(std::span<const double> sorted_x,

@@ -180,11 +180,8 @@ void ValueCells::add(double value, double weight) {
 TestResult betting_mean(const ValueCells& x, Range range, double null_mean) {
   check_arguments("betting_mean", x, range, null_mean);
   const Bettor bettor{x, range};
-  return {x.mean() - null_mean,
-          {"bound", {}},
-          bettor.log_p(-1, null_mean),
-          bettor.log_p(1, null_mean),
-          Exactness::exact};
+  return {
+      x.mean() - null_mean, {"bound", {}}, bettor.log_p(-1, null_mean), bettor.log_p(1, null_mean)};
 }
 
 TestResult betting_contrast(const ValueCells& x, Range of_x, const ValueCells& y, Range of_y,
@@ -198,8 +195,7 @@ TestResult betting_contrast(const ValueCells& x, Range of_x, const ValueCells& y
   return {x.mean() - null_value.scale * y.mean() - null_value.offset,
           {"bound", {}},
           log_p_contrast(first, second, null_value, -1),
-          log_p_contrast(first, second, null_value, 1),
-          Exactness::exact};
+          log_p_contrast(first, second, null_value, 1)};
 }
 
 BetGrowth bet_growth(const MovedLaw& law, std::size_t index) {

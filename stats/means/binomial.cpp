@@ -99,8 +99,7 @@ TestResult binomial(Successes observed, double null_probability) {
   check::unit({"binomial", "null_probability"}, null_probability);
   return by_tails(static_cast<double>(observed.successes),
                   {"binomial", {static_cast<double>(observed.trials), null_probability}},
-                  binomial_tails(observed.successes, {observed.trials, null_probability}),
-                  Exactness::exact);
+                  binomial_tails(observed.successes, {observed.trials, null_probability}));
 }
 
 Interval clopper_pearson(Successes observed, double confidence) {
@@ -161,8 +160,7 @@ TestResult two_valued_contrast(const TwoValued& x, const TwoValued& y, Contrast 
   return {mean_of(x) - null_value.scale * mean_of(y) - null_value.offset,
           {"bound", {}},
           log_p_lower(x, y, null_value),
-          log_p_upper(x, y, null_value),
-          Exactness::exact};
+          log_p_upper(x, y, null_value)};
 }
 
 Interval two_valued_difference_interval(const TwoValued& x, const TwoValued& y, double confidence) {

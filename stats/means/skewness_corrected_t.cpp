@@ -71,8 +71,7 @@ Combination combination(const char* caller, const Moments& x, const Moments& y, 
 TestResult result_of(const char* caller, double difference, const Combination& means) {
   const double h = transformed(difference / means.standard_error(), means.a());
   check::finite({caller, "transformed statistic"}, h);
-  return by_tails(h, {"student-t", {means.degrees}}, student_t_tails(h, means.degrees),
-                  Exactness::asymptotic);
+  return by_tails(h, {"student-t", {means.degrees}}, student_t_tails(h, means.degrees));
 }
 
 // ---- The remaining error

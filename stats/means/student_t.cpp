@@ -88,8 +88,7 @@ struct Excess {
 TestResult student_t(const Moments& x, Reference null_mean, const char* caller) {
   const Scale scale = scale_of(caller, x, null_mean);
   const double t = x.mean_less(null_mean.value) / scale.standard_error;
-  return by_tails(t, {"student-t", {scale.degrees}}, student_t_tails(t, scale.degrees),
-                  null_mean.standard_error > 0 ? Exactness::asymptotic : Exactness::exact);
+  return by_tails(t, {"student-t", {scale.degrees}}, student_t_tails(t, scale.degrees));
 }
 
 Interval student_t_interval(const Moments& x, Reference reference, double confidence) {
@@ -117,8 +116,7 @@ TestResult welch_t(const Moments& x, const Moments& y, Contrast null_value, cons
   check::finite({caller, "offset"}, null_value.offset);
   const Scale scale = scale_of(caller, x, y, null_value.scale);
   const double t = contrast_of_means(x, y, null_value) / scale.standard_error;
-  return by_tails(t, {"student-t", {scale.degrees}}, student_t_tails(t, scale.degrees),
-                  Exactness::asymptotic);
+  return by_tails(t, {"student-t", {scale.degrees}}, student_t_tails(t, scale.degrees));
 }
 
 Interval welch_t_interval(const Moments& x, const Moments& y, double confidence) {

@@ -21,7 +21,7 @@ struct Range {
 //   T = (mean - value) / sqrt(s2 / n + standard_error^2).
 // Student's t with nu = n - 1. With a reference error nu = (s2/n + se^2)^2 / ((s2/n)^2 / (n-1)).
 // That is Welch-Satterthwaite with infinitely many degrees of freedom for the reference (Welch
-// 1947). Exact for normal data and an exact reference; asymptotic (labelled) with a reference
+// 1947). Exact for normal data and an exact reference; asymptotic with a reference
 // error. Throws std::domain_error (count < 2, non-finite value, negative error), ZeroVariance (s2 =
 // 0). Their text names `caller`: the function that the user called.
 TestResult student_t(const Moments& x, Reference null_mean, const char* caller = "student_t");
@@ -45,7 +45,7 @@ double contrast_of_means(const Moments& x, const Moments& y, Contrast contrast);
 // Null hypothesis: E x - scale E y = offset, variances free (Welch 1947, Satterthwaite 1946).
 //   T  = (mean x - scale mean y - offset) / sqrt(vx + vy),  vx = s2x / nx,  vy = scale^2 s2y / ny.
 //   Degrees:  (vx + vy)^2 / (vx^2 / (nx - 1) + vy^2 / (ny - 1)).
-// The law is Student's t to second order even for normal data, hence `asymptotic`. One of the two
+// The law is Student's t to second order even for normal data, hence asymptotic. One of the two
 // samples may be constant; it then counts as known exactly. Throws std::domain_error (count < 2,
 // non-finite arguments), ZeroVariance (vx + vy = 0). Their text names `caller`.
 TestResult welch_t(const Moments& x, const Moments& y, Contrast null_value,

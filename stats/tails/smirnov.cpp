@@ -172,7 +172,7 @@ double LatticeDistance::value() const {
   return static_cast<double>(steps) * (common / static_cast<double>(m)) / static_cast<double>(n);
 }
 
-SmirnovTail smirnov_upper_tail(LatticeDistance distance, std::span<const TiedRun> ties) {
+double smirnov_upper_tail(LatticeDistance distance, std::span<const TiedRun> ties) {
   check::at_least({"smirnov_upper_tail", "m"}, distance.m, 1);
   check::at_least({"smirnov_upper_tail", "n"}, distance.n, 1);
   const double m = static_cast<double>(distance.m);
@@ -182,20 +182,20 @@ SmirnovTail smirnov_upper_tail(LatticeDistance distance, std::span<const TiedRun
     check::fail({"smirnov_upper_tail", "n"}, distance.n, "so small that lcm(m, n) <= 2^62");
   }
   check_ties(distance, ties);
-  if (distance.steps == 0) return {0, Exactness::exact};
+  if (distance.steps == 0) return 0;
   if (distance.steps > distance.m / common * distance.n) {
-    return {special::lowest_log(), Exactness::exact};
+    return special::lowest_log();
   }
   const bool by_formula = distance.m == distance.n && ties.empty();
   const Lattice lattice(distance, ties);
   const double expected = log_limit(distance);
   if (!by_formula && expected > least_log_p && lattice.is_within(most_places)) {
-    return {special::clamp_log(log_lattice(lattice, expected)), Exactness::exact};
+    return special::clamp_log(log_lattice(lattice, expected));
   }
   if (distance.m == distance.n) {
-    return {special::clamp_log(log_equal_sizes(distance.steps, distance.n)), Exactness::exact};
+    return special::clamp_log(log_equal_sizes(distance.steps, distance.n));
   }
-  return {expected, Exactness::asymptotic};
+  return expected;
 }
 
 // With grid points b_0 = 0 < … < b_K = gap:

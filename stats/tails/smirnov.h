@@ -23,14 +23,10 @@ struct TiedRun {
   std::uint64_t size = 0;
 };
 
-struct SmirnovTail {
-  double log_p = 0;  // ln P(max |F_m - G_n| >= distance).
-  Exactness exactness = Exactness::exact;
-};
-
-// The tail for two samples of one law, given the ties of both together. All orders of the pooled
-// values are equally likely. So the m x n lattice's paths are, and a path counts at the ends of
-// runs alone (Schroeer & Trenkler 1995). Without ties it is the tail for continuous laws.
+// ln P(max |F_m - G_n| >= distance) for two samples of one law, given the ties of both together.
+// All orders of the pooled values are equally likely. So the m x n lattice's paths are, and a path
+// counts at the ends of runs alone (Schroeer & Trenkler 1995). Without ties it is the tail for
+// continuous laws.
 //   m = n without ties: the reflection formula in nested form (Gnedenko & Korolyuk 1951).
 //   Else: a recursion over the lattice gives the upper tail itself, free of cancellation.
 //   If the band of paths has more than 2e8 places, or p is below e^-20000: the tail without ties.
@@ -38,7 +34,7 @@ struct SmirnovTail {
 //   asymptotic.
 // Runs ascend and do not overlap. Throws std::domain_error: empty samples, runs beyond m + n values
 // or out of order, lcm(m, n) beyond 2^62.
-SmirnovTail smirnov_upper_tail(LatticeDistance distance, std::span<const TiedRun> ties = {});
+double smirnov_upper_tail(LatticeDistance distance, std::span<const TiedRun> ties = {});
 
 // Sizes of two samples.
 struct TwoSizes {

@@ -20,9 +20,8 @@ struct LogTails {
 double log_p_two_sided(LogTails tails);
 
 // The result of a statistic whose law has these tails there.
-inline TestResult by_tails(double statistic, Distribution law, LogTails tails,
-                           Exactness exactness) {
-  return {statistic, std::move(law), tails.lower, tails.upper, exactness};
+inline TestResult by_tails(double statistic, Distribution law, LogTails tails) {
+  return {statistic, std::move(law), tails.lower, tails.upper};
 }
 
 enum class Tail { lower, upper };

@@ -16,12 +16,10 @@ struct Distribution {
   std::vector<double> parameters;
 };
 
-// Exact: under the method's stated assumptions P(p <= a) <= a for every sample size. Asymptotic: in
-// the limit of large samples.
-enum class Exactness { exact, asymptotic };
-
 // One statistic S and its two one-sided p-values, as natural logarithms. They are always finite:
-// the most negative finite double stands for smaller values.
+// the most negative finite double stands for smaller values. A method is exact if P(p <= a) <= a
+// for every sample size, under its stated assumptions. It is asymptotic if that holds in the limit
+// of large samples.
 struct TestResult {
   double statistic = 0;
   Distribution distribution;
@@ -29,7 +27,6 @@ struct TestResult {
   double log_p_lower = 0;
   // ln P(S >= statistic). Small: rejects "parameter <= null value".
   double log_p_upper = 0;
-  Exactness exactness = Exactness::exact;
 };
 
 // ln p of the point null: min(0, ln 2 + min(log_p_lower, log_p_upper)).

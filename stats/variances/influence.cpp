@@ -108,11 +108,8 @@ constexpr double second_order = 2;
 TestResult deterministic(double log_ratio) {
   constexpr double impossible = std::numeric_limits<double>::lowest();
   const double difference = std::abs(log_ratio) <= influence_rounding ? 0 : log_ratio;
-  return {difference,
-          {"bound", {}},
-          difference < 0 ? impossible : 0,
-          difference > 0 ? impossible : 0,
-          Exactness::exact};
+  return {
+      difference, {"bound", {}}, difference < 0 ? impossible : 0, difference > 0 ? impossible : 0};
 }
 
 // e to the distance from the estimate; beyond e^300 nothing changes.

@@ -182,11 +182,7 @@ TestResult slope_test(const SlopeData& unordered, double null_slope) {
     double& least = node.slope <= null_slope ? below : above;
     least = std::min(least, node.misfit);
   }
-  return {here,
-          {"chi-square", {degrees}},
-          log_p(above, degrees),
-          log_p(below, degrees),
-          Exactness::asymptotic};
+  return {here, {"chi-square", {degrees}}, log_p(above, degrees), log_p(below, degrees)};
 }
 
 Interval slope_set(const SlopeData& unordered, double confidence) {

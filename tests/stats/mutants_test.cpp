@@ -84,7 +84,7 @@ CAUGHT(Mutants, TiesWalkedOneAtATimeAreCaught, 118, 20000, Shape::at_most_unifor
     largest =
         std::max(largest, std::abs(static_cast<std::int64_t>(i) - static_cast<std::int64_t>(j)));
   }
-  return smirnov_upper_tail({static_cast<std::uint64_t>(largest), 40, 40}).log_p;
+  return smirnov_upper_tail({static_cast<std::uint64_t>(largest), 40, 40});
 }
 
 CAUGHT(Mutants, AChiSquareFitThatCountsEveryCellAsADegreeOfFreedomIsCaught, 119, 20000) {

@@ -1,5 +1,6 @@
 #include "stats/tails/smirnov.h"
 
+#include "stats/tails/kolmogorov.h"
 #include "tests/stats/prelude.h"
 
 namespace assay::stats {
@@ -10,21 +11,17 @@ TEST(Smirnov, AgreesWithExactCountsOfLatticePaths) {
     const LatticeDistance distance{static_cast<std::uint64_t>(row["steps"]),
                                    static_cast<std::uint64_t>(row["m"]),
                                    static_cast<std::uint64_t>(row["n"])};
-    const SmirnovTail tail = smirnov_upper_tail(distance);
-    EXPECT_EQ(tail.exactness, Exactness::exact);
     // Relative error of p; near certainty too, as only the upper tail is promised.
     const double expected = row["log_upper"];
-    EXPECT_NEAR(tail.log_p, expected, 1e-10 * std::max(1.0, -expected / 690))
+    EXPECT_NEAR(smirnov_upper_tail(distance), expected, 1e-10 * std::max(1.0, -expected / 690))
         << row["steps"] << " " << row["m"] << " " << row["n"];
   }
 }
 
 TEST(Smirnov, LargeEqualSizesAreExactAndNearTheLimitLaw) {
   const std::uint64_t n = 20000000;
-  const SmirnovTail tail = smirnov_upper_tail({10000, n, n});
-  EXPECT_EQ(tail.exactness, Exactness::exact);
   const double z2 = 1e8 / (2.0 * static_cast<double>(n));
-  EXPECT_NEAR(tail.log_p, std::log(2) - 2 * z2, 1e-3);
+  EXPECT_NEAR(smirnov_upper_tail({10000, n, n}), std::log(2) - 2 * z2, 1e-3);
 }
 
 // Every order of m values of x among n of y, at the ends of runs.
@@ -58,11 +55,11 @@ TEST(Smirnov, GivenTiesIsTheShareOfAllOrders) {
   for (std::uint64_t steps = 1; steps <= 42; ++steps) {
     for (const auto& ties : {std::vector<TiedRun>{}, some, all}) {
       const LatticeDistance distance{steps, 6, 7};
-      const double p = std::exp(smirnov_upper_tail(distance, ties).log_p);
+      const double p = std::exp(smirnov_upper_tail(distance, ties));
       EXPECT_NEAR(p, enumerated(distance, ties), 1e-14) << steps;
     }
     const LatticeDistance even{steps % 6 + 1, 6, 6};
-    EXPECT_NEAR(std::exp(smirnov_upper_tail(even, std::vector<TiedRun>{{2, 5}}).log_p),
+    EXPECT_NEAR(std::exp(smirnov_upper_tail(even, std::vector<TiedRun>{{2, 5}})),
                 enumerated(even, {{2, 5}}), 1e-14);
   }
 }
@@ -70,24 +67,26 @@ TEST(Smirnov, GivenTiesIsTheShareOfAllOrders) {
 TEST(Smirnov, BeyondTheExactCountTiesAreBoundedFromAbove) {
   const std::uint64_t n = 40000;
   const std::vector<TiedRun> half{{0, n}};
-  const SmirnovTail bound = smirnov_upper_tail({400, n, n}, half);
-  EXPECT_EQ(bound.log_p, smirnov_upper_tail({400, n, n}).log_p);
-  const SmirnovTail exact =
-      smirnov_upper_tail({100, n / 4, n / 4}, std::vector<TiedRun>{{0, n / 4}});
-  EXPECT_LT(exact.log_p, smirnov_upper_tail({100, n / 4, n / 4}).log_p);
+  EXPECT_EQ(smirnov_upper_tail({400, n, n}, half), smirnov_upper_tail({400, n, n}));
+  const double exact = smirnov_upper_tail({100, n / 4, n / 4}, std::vector<TiedRun>{{0, n / 4}});
+  EXPECT_LT(exact, smirnov_upper_tail({100, n / 4, n / 4}));
 }
 
-TEST(Smirnov, LargeUnequalSizesSayTheyAreAsymptotic) {
-  const SmirnovTail exact = smirnov_upper_tail({10000000, 20000, 30001});
-  EXPECT_EQ(exact.exactness, Exactness::exact);
-  const SmirnovTail limit = smirnov_upper_tail({300000000, 200000, 300001});
-  EXPECT_EQ(limit.exactness, Exactness::asymptotic);
-  EXPECT_NEAR(limit.log_p, std::log(2) - 2 * 3e8 * 3e8 / 200000 / 300001 / 500001, 1e-6);
+TEST(Smirnov, OnlyLargeUnequalSizesTakeTheLimitLaw) {
+  const auto limit = [](const LatticeDistance& distance, double m, double n) {
+    return log_kolmogorov_limit(std::sqrt(m / (m + n) * n) * distance.value());
+  };
+  const LatticeDistance small{10000000, 20000, 30001};
+  EXPECT_NE(smirnov_upper_tail(small), limit(small, 20000, 30001));
+  const LatticeDistance large{300000000, 200000, 300001};
+  EXPECT_EQ(smirnov_upper_tail(large), limit(large, 200000, 300001));
+  EXPECT_NEAR(smirnov_upper_tail(large), std::log(2) - 2 * 3e8 * 3e8 / 200000 / 300001 / 500001,
+              1e-6);
 }
 
 TEST(Smirnov, ImpossibleAndEmptyDistances) {
-  EXPECT_EQ(smirnov_upper_tail({0, 3, 4}).log_p, 0);
-  EXPECT_TRUE(std::isfinite(smirnov_upper_tail({13, 3, 4}).log_p));
+  EXPECT_EQ(smirnov_upper_tail({0, 3, 4}), 0);
+  EXPECT_TRUE(std::isfinite(smirnov_upper_tail({13, 3, 4})));
 }
 
 // tests/tables/suprema.csv is the convolution itself, by quadrature; the grid may only add to it.

@@ -128,7 +128,6 @@ TEST(Influence, WithoutSpreadHasTheQuotientOfWholeCostsHoweverItIsRounded) {
     }
   }
   EXPECT_EQ(log_p_two_sided(influence_t(always(115), std::log(1.15 * 100))), 0);
-  EXPECT_EQ(influence_t(always(115), 1).exactness, Exactness::exact);
 }
 
 TEST(Influence, OneSideWithoutSpreadIsAKnownNumber) {
