@@ -109,14 +109,22 @@ double effect_of(const ChiSquareFit& fit) {
   return std::sqrt(squared + beyond * beyond / t);
 }
 
-/// Tails of the number of impossible observations if w is null_effect by them alone. Both are 0 if
-/// there are none.
+/// Tails of the number of impossible observations if w is null_effect by them alone.
 LogTails impossible_tails(const ChiSquareFit& fit, double null_effect) {
-  if (fit.impossible == 0) return {0, 0};
   const double t = fit.probability_tolerance;
   if (t == 0) return {0, special::lowest_log()};
   const double share = std::min(1.0, t + null_effect * std::sqrt(t));
   return binomial_tails(fit.impossible, {fit.observations, share});
+}
+
+/// Tails of two ways to reject, which share the level: by the cells, and by impossible
+/// observations.
+LogTails with_impossible(const ChiSquareFit& fit, LogTails by_cells, double null_effect) {
+  if (fit.impossible == 0) return by_cells;
+  const LogTails by_impossible = impossible_tails(fit, null_effect);
+  const double upper = std::min(by_cells.upper, by_impossible.upper) + std::log(2.0);
+  return {.lower = std::max(by_cells.lower, by_impossible.lower),
+          .upper = special::clamp_log(upper)};
 }
 
 LogTails effect_tails(const ChiSquareFit& fit, const CellEffect& cells, double null_effect) {
@@ -125,11 +133,7 @@ LogTails effect_tails(const ChiSquareFit& fit, const CellEffect& cells, double n
       r == 0 ? cells.tails(null_effect)
              : LogTails{.lower = cells.tails(std::max(0.0, null_effect - r)).lower,
                         .upper = cells.tails(null_effect + r).upper};
-  if (fit.impossible == 0) return by_cells;
-  const LogTails by_impossible = impossible_tails(fit, null_effect);
-  const double upper = std::min(by_cells.upper, by_impossible.upper) + std::log(2.0);
-  return {.lower = std::max(by_cells.lower, by_impossible.lower),
-          .upper = special::clamp_log(upper)};
+  return with_impossible(fit, by_cells, null_effect);
 }
 
 }  // namespace
@@ -152,12 +156,8 @@ ChiSquareFit chi_square_fit(const CellCounts& counts, FitOptions options) {
   if (fit.error_effect > 0 && fit.observations >= CellEffect::fewest_observations) {
     tails.upper = std::max(tails.upper, cell_effect(fit).tails(fit.error_effect).upper);
   }
-  // Two ways to reject share the level.
-  const bool two_ways = fit.impossible > 0;
-  const double impossible = impossible_tails(fit, 0).upper;
-  const double log_p = two_ways ? std::min(tails.upper, impossible) + std::log(2.0) : tails.upper;
-  fit.test = by_tails(statistic, {"chi-square", {fit.degrees_of_freedom}},
-                      {tails.lower, special::clamp_log(log_p)});
+  tails.upper = with_impossible(fit, tails, 0).upper;
+  fit.test = by_tails(statistic, {"chi-square", {fit.degrees_of_freedom}}, tails);
   fit.effect = effect_of(fit);
   return fit;
 }
