@@ -108,10 +108,6 @@ Moments batch_means(std::span<const double> values, std::size_t length) {
   return means;
 }
 
-double batch_variance(std::span<const double> values, std::size_t length) {
-  return static_cast<double>(length) * batch_means(values, length).variance();
-}
-
 std::vector<LaggedCorrelation> lagged_correlations(std::span<const double> values,
                                                    std::size_t first) {
   const std::size_t n = values.size();

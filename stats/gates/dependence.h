@@ -34,13 +34,11 @@ double effective_sample_size(std::span<const double> values);
 // floor(sqrt n), the default length of a batch.
 std::size_t default_batch(std::size_t n);
 // The moments of the means of floor(n / length) whole batches. The rest at the end is left out.
+// Their variance times the length estimates lim n Var(mean).
 // student_t on them tests the mean of a stationary sequence, asymptotically. It needs at least 20
 // batches of about ten integrated autocorrelation times (Glynn & Iglehart 1990). Throws
 // std::domain_error for fewer than two batches or length 0.
 Moments batch_means(std::span<const double> values, std::size_t length);
-
-// Estimates lim n Var(mean) as length times the variance of batch means. Throws as batch_means.
-double batch_variance(std::span<const double> values, std::size_t length);
 
 // ---- Ranks
 

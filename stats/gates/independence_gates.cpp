@@ -182,7 +182,8 @@ double autocorrelation_time(std::span<const double> values) {
     averaged.push_back(batch.mean);
     all.merge(batch);
   }
-  return time(averaged) * batch_variance(values, length) / all.variance();
+  const double variance = static_cast<double>(length) * batch_means(values, length).variance();
+  return time(averaged) * variance / all.variance();
 }
 
 double allowance_for_dependence(std::span<const double> values) {
