@@ -211,7 +211,7 @@ double log_two_suprema_bound(double gap, TwoSizes sizes) {
     const double tail_high = log_massart(high, sizes.n);
     if (tail_high >= tail_low) continue;
     const double mass = tail_low + log_complement(tail_high - tail_low);
-    total = log_sum({total, mass + log_massart(gap - high, sizes.m)});
+    total = log_sum(total, mass + log_massart(gap - high, sizes.m));
   }
   return special::clamp_log(total);
 }

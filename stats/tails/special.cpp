@@ -12,9 +12,8 @@ double log_complement(double log_probability) {
                                               : std::log1p(-std::exp(log_probability));
 }
 
-double log_sum(LogPair terms) {
-  const double high = std::max(terms.first, terms.second);
-  const double low = std::min(terms.first, terms.second);
+double log_sum(double a, double b) {
+  const auto [low, high] = std::minmax(a, b);
   if (std::isinf(high)) return high;
   return high + std::log1p(std::exp(low - high));
 }

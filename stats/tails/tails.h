@@ -104,10 +104,6 @@ inline double t_to_z(StudentValue value) {
 
 // ln(1 - e^x) for x <= 0 and ln(e^a + e^b), without cancellation or overflow.
 double log_complement(double log_probability);
-struct LogPair {
-  double first;
-  double second;
-};
-double log_sum(LogPair terms);
+double log_sum(double a, double b);
 
 }  // namespace assay::stats
