@@ -243,13 +243,6 @@ bool durbin_affordable(double d, std::uint64_t n) {
 
 enum class Body { exact, expansion };
 
-LogTails body(double d, std::uint64_t n, Body by) {
-  if (by == Body::exact && durbin_affordable(d, n)) {
-    return special::from_lower(log_durbin_lower(d, n));
-  }
-  return special::from_lower(std::log(pelz_good_lower(d, n)));
-}
-
 LogTails tails_by(Body by, double distance, std::uint64_t n) {
   const double size = static_cast<double>(n);
   const double t = size * distance;
@@ -262,7 +255,9 @@ LogTails tails_by(Body by, double distance, std::uint64_t n) {
   if (distance >= 0.5 || t * distance >= upper_tail_from(n)) {
     return special::from_upper(log_upper_from_one_sided(distance, n));
   }
-  return body(distance, n, by);
+  const bool by_matrix = by == Body::exact && durbin_affordable(distance, n);
+  return special::from_lower(by_matrix ? log_durbin_lower(distance, n)
+                                       : std::log(pelz_good_lower(distance, n)));
 }
 
 /// The upper end of the bracket in which ln P(D >= d), computed by this form, falls to
