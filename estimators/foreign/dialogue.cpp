@@ -47,21 +47,22 @@ Dialogue::Dialogue(const Terms& terms) : terms_(terms), child_(terms.launch) {
   }
 }
 
-/// Seconds that a reply may take. After several that were overdue, each is asked for alone, which
-/// takes far less than `pleasant_seconds` unless it is the one that hangs.
+/// Seconds that a reply may take. After a block that was overdue, each observation is asked for
+/// alone: a process that has answered before answers far sooner, unless this one hangs.
 double Dialogue::patience() const {
   constexpr double least = 0.5, part = 0.1;
   const double whole = terms_.timeout;
-  return terms_.was_overdue->test() ? std::min(whole, std::max(least, part * whole)) : whole;
+  const bool soon = has_answered_ && terms_.was_overdue->test();
+  return soon ? std::min(whole, std::max(least, part * whole)) : whole;
 }
 
 /// Waits for bytes of its standard output. Where none come for a while the user is asked, once.
 std::size_t Dialogue::listen(std::span<char> into, Deadline end) {
-  const Deadline patience = steady_clock::now() + std::chrono::seconds(silent_seconds);
+  const Deadline silence_ends = steady_clock::now() + std::chrono::seconds(silent_seconds);
   std::atomic_flag* const asked = terms_.asked_whether_it_flushes.get();
-  if (asked == nullptr || asked->test() || patience >= end) return child_.receive(into, end);
+  if (asked == nullptr || asked->test() || silence_ends >= end) return child_.receive(into, end);
   try {
-    return child_.receive(into, patience);
+    return child_.receive(into, silence_ends);
   } catch (const TimeOut&) {
     if (!asked->test_and_set()) {
       notice("`" + terms_.name + "` has not replied for " + std::to_string(silent_seconds) +
@@ -109,7 +110,9 @@ std::vector<double> Respondent::ask(const Question& question, std::string_view i
 
 std::vector<double> Dialogue::hear(const Question& question, std::string_view items) {
   try {
-    return reply_to(question, items);
+    std::vector<double> numbers = reply_to(question, items);
+    has_answered_ = true;
+    return numbers;
   } catch (const ProtocolError& error) {
     give_up("cannot be understood: " + std::string(error.what()));
   }
@@ -119,7 +122,8 @@ std::vector<double> Dialogue::reply_to(const Question& question, std::string_vie
   const std::size_t width =
       question.is_to_sampler() ? numbers_of(question.asked()) : hello_.width();
   Reply reply(question, width, hello_.numbers);
-  Deadline end = after(patience());
+  const double seconds = patience();
+  Deadline end = after(seconds);
   bool reads = true;
   if (child_.has_output()) {
     std::array<char, 64> early{};
@@ -145,12 +149,15 @@ std::vector<double> Dialogue::reply_to(const Question& question, std::string_vie
   } catch (const TimeOut&) {
     if (question.count > 1) terms_.was_overdue->test_and_set();
     if (!reads) give_up("closed its standard input instead of answering for " + to_text(question));
-    give_up(
-        "did not answer for " + to_text(question) + " within " + seconds_text(terms_.timeout) +
-            (terms_.asked_whether_it_flushes ? " (parameter `timeout`; does it flush its output "
-                                               "after each reply, or does it run for ever?)"
-                                             : " (parameter `timeout`)"),
-        reply.so_far());
+    const std::string beside =
+        seconds < terms_.timeout ? ", and not beside others within " + seconds_text(terms_.timeout)
+                                 : "";
+    give_up("did not answer for " + to_text(question) + " within " + seconds_text(seconds) +
+                beside +
+                (terms_.asked_whether_it_flushes ? " (parameter `timeout`; does it flush its "
+                                                   "output after each reply, or run for ever?)"
+                                                 : " (parameter `timeout`)"),
+            reply.so_far());
   }
   return reply.numbers();
 }

@@ -26,7 +26,8 @@ struct Terms {
   /// Set once a program of the set-up that said nothing for 3 s was asked if it flushes its output.
   /// Null if output cannot wait in a buffer.
   std::shared_ptr<std::atomic_flag> asked_whether_it_flushes = {};
-  /// Set once the reply to a question for several took longer. Which of them hangs is seen sooner.
+  /// Set once the reply for several observations took longer than `timeout`. Each is then asked for
+  /// alone, with less patience.
   std::shared_ptr<std::atomic_flag> was_overdue = std::make_shared<std::atomic_flag>();
   /// Who prints the line `ready`, and when.
   std::string who_is_ready =
@@ -106,6 +107,7 @@ class Dialogue final : public Respondent {
   const Terms& terms_;
   Child child_;
   Hello hello_;
+  bool has_answered_ = false;
 };
 
 }  // namespace assay::foreign

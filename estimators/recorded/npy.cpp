@@ -38,7 +38,8 @@ struct Header {
 /// Reads Python's dictionary of three entries. But for quotes and the brackets of its tuple it is a
 /// flow map.
 Header header_of(const ByteSource& source, std::string text) {
-  if (text.find('[') != text.npos) {
+  const std::size_t type = text.find(':', text.find("descr"));
+  if (type != text.npos && text.find_first_not_of(" :", type) == text.find('[')) {
     source.refuse("it is an array of records, and an observation is a row of numbers;" +
                   save_it("a[a.dtype.names[0]]"));
   }

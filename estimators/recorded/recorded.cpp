@@ -82,9 +82,11 @@ Selection select(const recorded::Table& table, Parameters& parameters) {
   const std::string column = parameters.string("column");
   if (!parameters.given("column")) return {0, table.columns.size()};
   const auto found = std::ranges::find(table.columns, column);
-  parameters.require(found != table.columns.end(), "column",
-                     "must be a column of the file, but it is `" + column + "`" +
-                         did_you_mean(column, table.columns, "there is: " + quoted(table.columns)));
+  if (found == table.columns.end()) {
+    parameters.refuse(
+        "column", "must be a column of the file, but it is `" + column + "`" +
+                      did_you_mean(column, table.columns, "there is: " + quoted(table.columns)));
+  }
   return {static_cast<std::size_t>(found - table.columns.begin()), 1};
 }
 

@@ -421,7 +421,9 @@ Examples:
   for (const Table& table : tables())
     std::ranges::copy(names_of(table.rows, &TableRow::name), std::back_inserter(words));
   options.add(
-      {.name = "NAME", .needed = "a plugin, a method, a quantity or a law", .words = words},
+      {.name = "NAME",
+       .needed = "a plugin, a method, a quantity, a law, a gate or a report",
+       .words = words},
       command.name,
       "a plugin, a method, a quantity, a law, a gate or a report, as `assay list` prints them");
 }

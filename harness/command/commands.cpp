@@ -78,7 +78,9 @@ int run_suites(const std::vector<Suite>& suites, const RunOptions& options, cons
     if (tell_broken(test, output)) told.insert(test.id);
   };
   reports::Record record = run(suites, drawn, *progress, broken, &ledger_fault);
-  write_run(record, output, told);
+  Output last = output;
+  last.tells_code = output.tells_code && ledger_fault.empty() && !interrupted();
+  write_run(record, last, told);
   keep_last_run(record, output.detail > 0);
   if (ranks && output.detail > 1) say_beside_progress(ranks->window_text());
   if (checkpoint && !interrupted()) checkpoint->remove();

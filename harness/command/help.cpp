@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/algorithm/string/replace.hpp>
 #include <utility>
 
 #include "harness/base/text_file.h"
@@ -199,9 +200,10 @@ std::string help_of_claims(std::string_view markdown) {
       text += std::string(line) + "\n";
     } else if (is_row) {
       const std::size_t cell = std::min(line.find(" | "), line.size());
-      const std::string rest(line.substr(std::min(cell + 3, line.size())));
-      text += beside(std::string(line.substr(0, cell)).replace(0, 1, " "),
-                     rest.substr(0, rest.rfind(" |")), column);
+      std::string rest(line.substr(std::min(cell + 3, line.size())));
+      rest.erase(std::min(rest.rfind(" |"), rest.size()));
+      boost::replace_all(rest, " | ", "; ");
+      text += beside(std::string(line.substr(0, cell)).replace(0, 1, " "), rest, column);
     } else if (!line.starts_with('|')) {
       const std::size_t begin = line.find_first_not_of(' ');
       paragraph += (paragraph.empty() ? "" : " ") + std::string(line.substr(begin));

@@ -34,9 +34,9 @@ struct CommandText {
 
 /// `assay --help`: the first hour, in 24 lines of 80 columns.
 std::string overview(const std::vector<CommandText>& commands);
-/// `assay help all`.
 /// The page on claims, a text in Markdown, in lines of 80 columns.
 std::string help_of_claims(std::string_view markdown);
+/// `assay help all`.
 std::string help_of_all(const std::vector<CommandText>& commands);
 /// `assay COMMAND --help`, in lines of `page_width`.
 std::string help_of(const CommandText& command);

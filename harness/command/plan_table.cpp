@@ -287,8 +287,9 @@ void write_totals(std::string& page, const PlannedRun& planned) {
   page += on_page(
       "last: observations of each source at the last look. in all, rays, CPU time: what all "
       "sources draw up to it, estimated from the pilot. effect: what the test finds, or proves for "
-      "`within`, `<` and `>`, with probability 1 - beta. draws: the mean part that is drawn. All "
-      "this assumes that the pilot's spread is true and that no test becomes invalid.");
+      "`within`, `<` and `>`, with probability 1 - beta. draws: the mean fraction of that. All "
+      "this "
+      "assumes that the pilot's spread is true and that no test becomes invalid.");
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ void note_margins(const PlannedRun& planned) {
   }
   if (doubts.empty() || tests == 1) return;
   const std::size_t others = doubts.size() - 1;
-  notice(doubts[0] + (others > 0 ? fmt::format(" ({} more like it)", others) : ""));
+  notice(doubts[0] + (others > 0 ? fmt::format(" ({} other doubtful `detect`)", others) : ""));
 }
 
 /// Adds remarks on the ledger.

@@ -676,8 +676,8 @@ std::string lack_of_spread(const Seen& seen) {
   for (std::size_t subject = 0; subject < question.compared(); ++subject) {
     if (is_constant(seen, subject)) {
       return fmt::format(
-          "every observation of `{}` is {:.10g} but for rounding: a sample without spread says "
-          "nothing about a variance, and a rare value may be unseen; {}",
+          "every observation of `{}` is {:.10g} but for rounding: a sample without spread does "
+          "not show its own error, and a rare value may be unseen; {}",
           question.subjects[subject].estimator->name, seen.moments(subject).mean,
           question.of_two() ? "compare the other with a number, or take more observations"
                             : "see that it uses its random numbers, or take more observations");

@@ -430,8 +430,8 @@ void check_quantity(const Quantity& q) {
   }
   if (q.slope && q.row->slope == nullptr) {
     auto sloped = quantities() | std::views::filter(&QuantityRow::slope);
-    refuse(q.where, "`slope` takes a {}, not `{}`", listed(names_of(sloped, &QuantityRow::word)),
-           q.row->word);
+    refuse(q.where, "`slope` takes a {}, not `{}`",
+           listed(names_of(sloped, &QuantityRow::word), " or "), q.row->word);
   }
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
+#include <string>
 
 #include "harness/base/interrupt.h"
 #include "harness/sampling/recorded_run.h"
@@ -132,14 +134,14 @@ std::variant<Pilot, Fault> read(const std::shared_ptr<const Pool>& pool) {
                .images = drawn.images(images)};
 }
 
-/// True if a claim on the estimator compares costs.
-bool is_costly(const PreparedEstimator& estimator, const std::vector<Question>& questions) {
-  return std::ranges::any_of(questions, [&](const Question& question) {
-    return methods_for(question).front().keeps == Keeps::costs &&
-           std::ranges::any_of(question.subjects, [&](const Subject& side) {
-             return side.estimator->name == estimator.name;
-           });
-  });
+/// The names of the estimators whose costs a claim compares.
+std::set<std::string> compared_by_cost(const std::vector<Question>& questions) {
+  std::set<std::string> names;
+  for (const Question& question : questions) {
+    if (methods_for(question).front().keeps != Keeps::costs) continue;
+    for (const Subject& side : question.subjects) names.insert(side.estimator->name);
+  }
+  return names;
 }
 
 /// The most primaries of a pilot's pool that any claim on the estimator pays for.
@@ -254,6 +256,7 @@ std::vector<std::pair<std::string, std::shared_ptr<Pool>>> pilot_pools(
     const std::vector<const PreparedEstimator*>& estimators, const std::vector<Question>& questions,
     std::uint64_t seed) {
   std::vector<std::pair<std::string, std::shared_ptr<Pool>>> pools;
+  const std::set<std::string> costly = compared_by_cost(questions);
   for (const PreparedEstimator* estimator : estimators) {
     const bool averages = estimator->nature().averages;
     const std::uint64_t primaries = averages ? 1 : estimator->primaries.value_or(1);
@@ -261,7 +264,7 @@ std::vector<std::pair<std::string, std::shared_ptr<Pool>>> pilot_pools(
                        pilot_pool(estimator->setup, key_of(*estimator, seed, 0, "pilot"), primaries,
                                   usual_observations(*estimator, primaries),
                                   most_primaries(*estimator, questions)));
-    if (is_costly(*estimator, questions)) {
+    if (costly.contains(estimator->name)) {
       for (ChannelPlan& channel : pools.back().second->plans()) channel.powers = Powers::with_costs;
     }
   }

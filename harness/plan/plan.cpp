@@ -485,11 +485,11 @@ std::string doubtful_margin(const Question& question, const Pilots& pilots) {
   const double part = part_of_size(question, pilots);
   if (part == 0 || (part >= small && part <= large)) return "";
   return fmt::format(
-      fmt::runtime(part > large ? "errors below `detect`, {:.3g} % of what is claimed, may "
-                                  "pass; a part of it is written `{:g}%`"
-                                : "`detect` is {:.3g} % of what is claimed; a part of it is "
-                                  "written `{:g}%`"),
-      100 * part, 100 * question.test->detect->value);
+             fmt::runtime(part > large
+                              ? "errors below `detect`, {:.3g} % of what is claimed, may pass"
+                              : "`detect` is {:.3g} % of what is claimed"),
+             100 * part) +
+         "; for a part of it write per cent, as in `1%`";
 }
 
 TestOutcome plan_alone(const Suite& suite, const Question& question, const Pilots& pilots) {

@@ -278,11 +278,11 @@ void require_drawn(const Question& question) {
   if (question.test->cost != CostKind::seconds) return;
   for (const Subject& subject : question.subjects) {
     if (!is_recorded(subject) && !subject.setup->keeps_files()) continue;
-    refuse(
-        question.test->place_of("cost"),
-        "`{}` is read, not drawn: its seconds mean nothing; draw it by `process`, or write the "
-        "seconds as a number of the observation",
-        subject.estimator->name);
+    refuse(question.test->place_of("cost"),
+           "`{}` is read, maybe from an earlier run: its seconds mean nothing; draw it by "
+           "`process`, or write the "
+           "seconds as a number of the observation",
+           subject.estimator->name);
   }
 }
 

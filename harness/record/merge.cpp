@@ -195,7 +195,8 @@ void check_same(const ShardFile& first, const ShardFile& other) {
   if (!found) return;
   refuse({.file = other.file},
          "is no part of the run that `{}` is of: {} is `{}` here and `{}` there; run all shards by "
-         "one build and one command, but for --shard and --report, on the same files",
+         "one build on machines of one kind, with one --seed, on the same files; only --shard and "
+         "--report may differ",
          first.file, found->name, found->ours, found->theirs);
 }
 

@@ -346,9 +346,9 @@ void take_sound_look(TestWork& work, const DrawnTest& test, bool may_go_on) {
       Reason reason = narrate(outcome);
       const std::string where = outcome.question.theta->where_it_differs(test);
       outcome.message = reason.text + where;
-      // Its first part, without the command after it. A picture's record has the place.
+      // A picture's record has the place.
       if (!where.empty() && !reason.advice && !outcome.channels[0].image)
-        reason.advice = reports::Advice{.words = where.substr(2, where.find(';', 2) - 2)};
+        reason.advice = reports::Advice{.words = where.substr(2)};
       outcome.advice = std::move(reason.advice);
       if (is_doubted(outcome)) add_caveat(outcome);
     }

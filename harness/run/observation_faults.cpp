@@ -132,7 +132,8 @@ std::string first_contradiction(const DrawnTest& test) {
     // with it.
   }
   if (!first) return "";
-  return fmt::format("; the first is observation {}{}", *first, replay_line(outcome, *first));
+  return fmt::format("; the first inconsistent draw is observation {}{}", *first,
+                     replay_line(outcome, *first));
 }
 
 bool was_activated(const Subject& subject, const Pool& pool, std::uint64_t observations) {

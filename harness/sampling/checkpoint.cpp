@@ -54,7 +54,7 @@ void Checkpoint::read() {
            "is the checkpoint of another run: {} was {} and is {}; remove it, or name another file",
            other->name, other->theirs, other->ours);
   }
-  pools_.insert(entries.begin(), entries.end());
+  pools_.insert(std::make_move_iterator(entries.begin()), std::make_move_iterator(entries.end()));
 }
 
 /// Drops what was added when FILE was not written any more.

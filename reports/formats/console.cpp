@@ -116,7 +116,8 @@ class Screen {
       if (fits(1 + more.size())) next.insert(next.end(), more.begin(), more.end());
     } else if (test.verdict == Verdict::fail && asked && !test.replay.empty()) {
       const std::vector<std::string> more = step_lines(*repeat);
-      if (!fits(text.size() + more.size())) next.clear();
+      const int used_below = static_cast<int>(text.size() + more.size());
+      next = cut(std::move(next), std::max(0, most - used - used_below));
       next.insert(next.end(), more.begin(), more.end());
     }
     indented(text, room());
@@ -214,18 +215,22 @@ class Screen {
   }
 
   /// So many lines at most; what is cut ends in an ellipsis.
-  void indented(std::vector<std::string> text, int most) {
-    if (text.size() > static_cast<std::size_t>(most)) {
-      text.resize(static_cast<std::size_t>(most));
-      text.back() = shorten(text.back() + "…", options_.width - block_indent);
-    }
-    for (const std::string& part : text) line(spaces(block_indent) + part);
+  void indented(const std::vector<std::string>& text, int most) {
+    for (const std::string& part : cut(text, most)) line(spaces(block_indent) + part);
   }
   void indented(const std::string& text, int most = unlimited) {
     indented(wrapped(text, options_.width - block_indent), most);
   }
 
-  /// A step is never cut, but for a test's id to paste: a part of it selects the test too.
+  /// The first so many lines. If that leaves some out, "…" ends the last.
+  std::vector<std::string> cut(std::vector<std::string> lines, int most) const {
+    if (lines.size() <= static_cast<std::size_t>(most)) return lines;
+    lines.resize(static_cast<std::size_t>(most));
+    if (most > 0) lines.back() = shorten(lines.back() + "…", options_.width - block_indent);
+    return lines;
+  }
+
+  /// A test's id to paste may be cut: a part of it selects the test too.
   std::vector<std::string> step_lines(const Step& step) const {
     const std::string label = step.label + ": ";
     const int room = options_.width - block_indent - columns(label);

@@ -73,7 +73,7 @@ std::string explain(const Suite& suite, const Test& test, int width, const Ledge
   for (const LedgerSeries& series : ledger.series) {
     if (!series.alarm || series.test != test.id) continue;
     out += "\n";
-    say(fmt::format("Ledger {} alarms of {}. {} It has {}.", ledger.file,
+    say(fmt::format("The ledger {} raises an alarm for {}. {} The series has {}.", ledger.file,
                     one_line(series_name(ledger, series)), alarm_sentence(series),
                     series_sentence(series)));
     if (const std::string log = changes(series); !log.empty())

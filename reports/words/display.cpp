@@ -38,24 +38,15 @@ std::string bracket(const Effect& effect) {
   return text.empty() ? text : fmt::format(" ({})", text);
 }
 
-bool has_direction(const Effect& effect) {
-  return is_ratio(effect) || effect.quantity.find("difference") != std::string::npos;
-}
-
-/// The place where a refuted law differs most, which its distance does not tell; "" of another
-/// claim.
-std::string place_of_distance(const Test& test) {
-  const bool is_distance = !test.image && !has_direction(deciding_channel(test).effect);
-  return test.verdict == Verdict::fail && test.advice && is_distance ? test.advice->words : "";
-}
-
 /// "mean(area) is 1.07 % above analytic (+0.06 % to +2.1 %)".
 std::string found(const Test& test, const Effect& effect) {
   const double theta = *effect.estimate;
   const auto [left, relation, right] = sides_of(test.claim);
+  const bool signed_effect =
+      is_ratio(effect) || effect.quantity.find("difference") != std::string::npos;
   const std::string text = theta_text(theta, effect);
   const auto is = [&](const std::string& what) { return what + bracket(effect); };
-  if (right.empty() || !has_direction(effect) || test.image || relation == "within" ||
+  if (right.empty() || !signed_effect || test.image || relation == "within" ||
       !std::isfinite(theta))
     return is(fmt::format("{} is {}", effect_name(effect), text));
   if (theta == 0) return is(fmt::format("{} equals {}", left, right));
@@ -104,8 +95,7 @@ std::string exclusion_of_claim(const Test& test, const Effect& effect, const std
 
 /// Words without the advice in them, which is a step of its own.
 std::string without_advice(std::string words, const Test& test) {
-  const bool is_step = test.advice && test.advice->key.empty() && place_of_distance(test).empty();
-  const std::string advice = is_step ? test.advice->words : "";
+  const std::string advice = test.advice && test.advice->key.empty() ? test.advice->words : "";
   const std::size_t at = advice.empty() ? std::string::npos : words.rfind(advice);
   if (at == std::string::npos || at < 2) return words;
   return words.erase(at - 2, advice.size() + 2);  // with "; " or ": "
@@ -117,7 +107,6 @@ std::string sentence_of(const Test& test, const Effect& effect, const std::strin
   std::string text = is_told_by_place(test) ? found_in_image(*test.image) : std::string();
   if (text.empty() && effect.estimate) text = found(test, effect);
   if (text.empty()) return headline(test);
-  if (const std::string where = place_of_distance(test); !where.empty()) text = where + "; " + text;
   if (test.channels.size() > 1) text += " in channel " + deciding_channel(test).name;
   // A fail was noticed, whatever its size.
   if (!margin.empty() && test.verdict != Verdict::fail)
@@ -385,18 +374,20 @@ std::vector<Step> steps(const Test& test) {
     else
       add("write into the test", key + ": " + value);
   };
-  if (const auto& advice = test.advice; advice && !advice->key.empty())
-    set(advice->key, advice->value);
-  else if (advice && place_of_distance(test).empty())
+  if (const auto& advice = test.advice; advice && advice->key.empty())
     all.push_back(
         {.label = test.verdict == Verdict::fail ? "note" : "to decide", .words = advice->words});
+  else if (advice)
+    set(advice->key, advice->value);
   const Effect effect = deciding_channel(test).effect;
   if (is_missed(test)) {
     std::string words = "leave `expect` out, if there is no bug";
-    if (test.detect && effect.relative)
+    if (test.detect) {
+      const double half = effect.relative ? 50 * *test.detect : *test.detect / 2;
       words = fmt::format(
-          "write `detect: {:.2g}%`; if it passes again, there is no bug: leave `expect` out",
-          50 * *test.detect);
+          "write `detect: {:.2g}{}`; if it passes again, any bug is smaller: leave `expect` out",
+          half, effect.relative ? "%" : "");
+    }
     all.push_back({.label = "to decide", .words = words});
   }
   if (!test.no_replay.empty()) all.push_back({.label = "again", .words = test.no_replay});

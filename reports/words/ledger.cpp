@@ -89,12 +89,13 @@ std::string alarm_sentence(const LedgerSeries& series) {
   const auto is_before = [&](const LedgerNight& night) { return night.date < series.moved; };
   const Number before = average(series, is_before);
   const Number now = always ? series.estimate : average(series, std::not_fn(is_before));
+  const auto text = [&](const Number& size) { return size ? theta_text(*size, effect) : ""; };
   return fmt::format(
       "{}{}{}. The nights together refute the claim since {}.",
-      now ? fmt::format("The {} is about {}. ", effect_name(effect), theta_text(*now, effect)) : "",
+      now ? fmt::format("The {} is about {}. ", effect_name(effect), text(now)) : "",
       always ? "Most likely it was so from the first night on"
              : fmt::format("It moved {}most likely on the night of {}, by Assay {}",
-                           before ? fmt::format("from {} ", theta_text(*before, effect)) : "",
+                           text(before) == text(now) ? "" : fmt::format("from {} ", text(before)),
                            minute(series.moved), series.moved_commit),
       range, minute(series.since));
 }

@@ -158,10 +158,10 @@ test_mistakes_in_a_check_say_what_to_write() {
     '  - {name: large, claim: mean(a) == 0.02, detect: 0.01}' \
     '  - {name: small, claim: mean(b) == 5000, detect: 0.1}' >parts.yaml
   expect 0 run parts.yaml
-  contains err '`parts/large`: errors below `detect`, 50 % of what is claimed, may pass; a part of it is written `1%` (1 more like it)'
+  contains err '`parts/large`: errors below `detect`, 50 % of what is claimed, may pass; for a part of it write per cent, as in `1%` (1 other doubtful `detect`)'
   expect 0 run parts.yaml --filter '*/small'
   empty err
-  contains out '`detect` is 0.002 % of what is claimed; a part of it is written `10%`'
+  contains out '`detect` is 0.002 % of what is claimed; for a part of it write per cent, as in `1%`'
   printf '%s\n' 'suite: idle' 'estimators: {a: {plugin: luminaire/area}, idle: {plugin: luminaire/area}}' \
     'tests: [{claim: mean(a) == analytic, secondaries: 100}]' >idle.yaml
   expect 0 run idle.yaml

@@ -119,14 +119,14 @@ test_a_wrong_density_of_a_library_fails() {
   library steeper '' 'return 2 * p[2] * p[2] / PI * .75;' 'return 1.5 * p[2] * p[2];'
   claims wrong.yaml steeper
   expect 1 run wrong.yaml --filter '*cosine*' --report json=run.json
-  contains out '(the first of them theta'
-  contains out 'the first is observation 0; probability of an inconsistent draw is'
+  tells out 'the first of them theta'
+  contains out 'note: the first inconsistent draw is observation 0'
   verdict_is run.json 'distribution(mine.cosine) == density' fail
   verdict_is run.json 'distribution(mine.cosine.theta) == density' fail
   verdict_is run.json 'inconsistency(mine.cosine) == 0' fail
   verdict_is run.json 'integral(mine.cosine) == 1' pass
   message run.json 'inconsistency(mine.cosine) == 0'
-  tells err 'the first is observation 0'
+  tells err 'the first inconsistent draw is observation 0'
   none_left
 }
 

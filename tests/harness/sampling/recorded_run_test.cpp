@@ -212,7 +212,7 @@ TEST_F(RecordedRunTest, RefusesWhatMomentsDoNotTell) {
         << claim;
   }
   EXPECT_THAT(refused(both, "claim: efficiency(new) >= efficiency(old), cost: seconds"),
-              HasSubstr("is read, not drawn: its seconds mean nothing"));
+              HasSubstr("is read, maybe from an earlier run: its seconds mean nothing"));
   EXPECT_THAT(refused(both, "claim: mean(new) == mean(old), secondaries: 100"),
               HasSubstr("moments of 20000 observations together; leave `secondaries` out"));
   EXPECT_THAT(refused(both, "claim: mean(old) == 2, test: batch-means"),
