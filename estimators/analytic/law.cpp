@@ -195,8 +195,7 @@ Channel channel_of(const Variable& variable) {
 }
 
 NormalLaw normal_law(Parameters& parameters) {
-  const double mean = parameters.number("mean");
-  return {.mean = mean, .deviation = parameters.number("deviation")};
+  return {.mean = parameters.number("mean"), .deviation = parameters.number("deviation")};
 }
 
 }  // namespace assay::analytic

@@ -33,33 +33,31 @@ Channel published_channel(const render::HalfVectorBrdf&);
 /// sampler.
 ParameterInformation sampler_parameter();
 
+/// Reads theta_i and phi_i.
+inline render::Angles read_incident(Parameters& given) {
+  return {.theta = given.number("theta_i"), .phi = given.number("phi_i")};
+}
+
 /// nu, nv, reflectance, theta_i, phi_i.
 std::vector<ParameterInformation> ashikhmin_shirley_parameters();
 
 /// Reads them; `Brdf` is constructible as AshikhminShirley is.
 template <class Brdf = render::AshikhminShirley>
-std::shared_ptr<const Brdf> ashikhmin_shirley(Parameters& parameters) {
-  const double u = parameters.number("nu");
-  const double v = parameters.number("nv");
-  const double reflectance = parameters.number("reflectance");
-  const double theta = parameters.number("theta_i");
-  const double phi = parameters.number("phi_i");
+std::shared_ptr<const Brdf> ashikhmin_shirley(Parameters& given) {
   return std::make_shared<Brdf>(
-      typename Brdf::Material{.exponents = {.u = u, .v = v}, .reflectance = reflectance},
-      render::Angles{.theta = theta, .phi = phi});
+      typename Brdf::Material{.exponents = {.u = given.number("nu"), .v = given.number("nv")},
+                              .reflectance = given.number("reflectance")},
+      read_incident(given));
 }
 
 /// alpha_x, alpha_y, theta_i, phi_i.
 std::vector<ParameterInformation> ward_parameters();
 /// Reads them; `Brdf` is constructible as Ward is.
 template <class Brdf = render::Ward>
-std::shared_ptr<const Brdf> ward(Parameters& parameters) {
-  const double x = parameters.number("alpha_x");
-  const double y = parameters.number("alpha_y");
-  const double theta = parameters.number("theta_i");
-  const double phi = parameters.number("phi_i");
-  return std::make_shared<Brdf>(render::Roughness{.x = x, .y = y},
-                                render::Angles{.theta = theta, .phi = phi});
+std::shared_ptr<const Brdf> ward(Parameters& given) {
+  return std::make_shared<Brdf>(
+      render::Roughness{.x = given.number("alpha_x"), .y = given.number("alpha_y")},
+      read_incident(given));
 }
 
 }  // namespace assay::brdf

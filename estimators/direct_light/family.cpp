@@ -18,8 +18,7 @@ std::vector<ParameterInformation> count_parameters() {
 }
 
 Counts read_counts(Parameters& given) {
-  const std::uint64_t light = given.count("light_samples");
-  return {.light = light, .brdf = given.count("brdf_samples")};
+  return {.light = given.count("light_samples"), .brdf = given.count("brdf_samples")};
 }
 
 ParameterInformation probability_parameter() {
