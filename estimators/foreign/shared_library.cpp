@@ -52,6 +52,10 @@ constexpr std::size_t least_estimator =
   throw LibraryError("`" + file + "` " + why);
 }
 
+void require(bool holds, const std::string& file, const std::string& why) {
+  if (!holds) refuse(file, why);
+}
+
 /// dlopen's messages repeat the file's name.
 std::string reason(const std::string& file) {
   const char* const text = dlerror();
@@ -76,21 +80,20 @@ std::shared_ptr<void> opened(const std::string& file) {
   return {handle, [](void* open) { dlclose(open); }};
 }
 
+std::string or_empty(const char* text) { return text != nullptr ? text : ""; }
+
 /// Throws LibraryError where a function is missing or a domain is none.
 void require_whole(const AssaySampler& sampler) {
-  const std::string name = sampler.name != nullptr ? sampler.name : "";
-  if (name.empty() || sampler.sample == nullptr || sampler.density == nullptr ||
-      sampler.evaluate == nullptr) {
-    throw LibraryError("the sampler `" + name +
-                       "` lacks its name, sample(), density() or evaluate()");
-  }
-  if (sampler.domain > ASSAY_SPHERE) {
-    throw LibraryError("the sampler `" + name + "` has the domain " +
-                       std::to_string(sampler.domain) + ", which is none");
-  }
-  if (sampler.domain == ASSAY_INTERVAL && !(sampler.low < sampler.high)) {
-    throw LibraryError("the sampler `" + name + "` has an empty interval: set `low` and `high`");
-  }
+  const std::string name = or_empty(sampler.name);
+  const auto require = [&](bool holds, const std::string& why) {
+    if (!holds) throw LibraryError("the sampler `" + name + "` " + why);
+  };
+  require(!name.empty() && sampler.sample && sampler.density && sampler.evaluate,
+          "lacks its name, sample(), density() or evaluate()");
+  require(sampler.domain <= ASSAY_SPHERE,
+          "has the domain " + std::to_string(sampler.domain) + ", which is none");
+  require(sampler.domain != ASSAY_INTERVAL || sampler.low < sampler.high,
+          "has an empty interval: set `low` and `high`");
 }
 
 /// The sampler's facts. require_whole() has passed.
@@ -110,8 +113,6 @@ std::string text_of(const Message& message) {
   const std::string text(message.data(), strnlen(message.data(), message.size()));
   return text.empty() ? "it says no reason" : text;
 }
-
-std::string or_empty(const char* text) { return text != nullptr ? text : ""; }
 
 bool has(std::uint32_t flags, int flag) { return (flags & static_cast<unsigned>(flag)) != 0; }
 
@@ -250,37 +251,30 @@ std::vector<Item> items_of(std::string_view bytes) {
 
 SharedObject::SharedObject(const std::string& file) : file_(file), handle_(opened(file)) {
   void* const found = dlsym(handle_.get(), symbol);
-  if (found == nullptr) {
-    refuse(file, std::string("does not export ") + symbol +
-                     "(); estimators/plugin_abi.h declares it, and a C++ library needs it there");
-  }
+  require(found != nullptr, file,
+          std::string("does not export ") + symbol +
+              "(); estimators/plugin_abi.h declares it, and a C++ library needs it there");
   const auto table = reinterpret_cast<const AssayLibrary* (*)()>(found);
   read_table(table());
 }
 
 void SharedObject::read_table(const AssayLibrary* table) {
-  if (table == nullptr || table->size < least_library) {
-    refuse(file_, std::string("returns no table from ") + symbol + "()");
-  }
-  if (table->version != ASSAY_ABI_VERSION) {
-    refuse(file_, "was compiled for version " + std::to_string(table->version) +
-                      " of the interface, this is version " + std::to_string(ASSAY_ABI_VERSION) +
-                      "; compile it again with this version's plugin_abi.h");
-  }
+  require(table != nullptr && table->size >= least_library, file_,
+          std::string("returns no table from ") + symbol + "()");
+  require(table->version == ASSAY_ABI_VERSION, file_,
+          "was compiled for version " + std::to_string(table->version) +
+              " of the interface, this is version " + std::to_string(ASSAY_ABI_VERSION) +
+              "; compile it again with this version's plugin_abi.h");
   const AssayLibrary known = as_known(table);
-  if (known.estimators == nullptr || known.estimator_count == 0) {
-    refuse(file_, "has no estimators in its table");
-  }
-  if (known.estimators->size < least_estimator) {
-    refuse(file_,
-           "has an estimator whose `size` is not the size of its struct; set it to "
-           "sizeof(AssayEstimator)");
-  }
+  require(known.estimators != nullptr && known.estimator_count > 0, file_,
+          "has no estimators in its table");
+  require(known.estimators->size >= least_estimator, file_,
+          "has an estimator whose `size` is not the size of its struct; set it to "
+          "sizeof(AssayEstimator)");
   estimators_ = all_known(known.estimators, known.estimator_count);
   for (const AssayEstimator& estimator : estimators_) {
-    if (estimator.name == nullptr || estimator.secondary == nullptr) {
-      refuse(file_, "has an estimator without a name or without secondary()");
-    }
+    require(estimator.name != nullptr && estimator.secondary != nullptr, file_,
+            "has an estimator without a name or without secondary()");
   }
 }
 
