@@ -51,6 +51,8 @@ class PictureFile {
   const std::string& name() const { return name_; }
   /// InputError at the file.
   [[noreturn]] void refuse(const std::string& why) const;
+  /// The same unless something holds.
+  void require(bool holds, const std::string& why) const;
   /// In the order of the file: part by part, by name.
   const std::vector<FileChannel>& channels() const { return channels_; }
   std::vector<std::string> channel_names() const;

@@ -124,10 +124,9 @@ std::string size_text(const PictureWindow& window) {
 void require_same(const PictureFile& file, const PictureView& view, const std::string& first) {
   const PictureWindow window = file.window(view.channels.names);
   if (window == view.whole) return;
-  if (window.width == view.whole.width && window.height == view.whole.height) {
-    file.refuse("its data window lies elsewhere than that of `" + first +
-                "`: render all files with one crop window");
-  }
+  file.require(window.width != view.whole.width || window.height != view.whole.height,
+               "its data window lies elsewhere than that of `" + first +
+                   "`: render all files with one crop window");
   file.refuse("it has " + size_text(window) + " pixels, but `" + first + "` has " +
               size_text(view.whole) + ": render all files at one size");
 }
@@ -234,13 +233,11 @@ void require_inside(const PictureFile& file, const PictureWindow& window,
     return begin >= from &&
            begin + static_cast<std::int64_t>(size) <= from + static_cast<std::int64_t>(of);
   };
-  if (ends_inside(window.left, window.width, whole.left, whole.width) &&
-      ends_inside(window.top, window.height, whole.top, whole.height)) {
-    return;
-  }
-  file.refuse("its " + size_text(whole) + " pixels at x " + std::to_string(whole.left) + ", y " +
-              std::to_string(whole.top) + " do not cover the window of " + size_text(window) +
-              " at x " + std::to_string(window.left) + ", y " + std::to_string(window.top));
+  file.require(ends_inside(window.left, window.width, whole.left, whole.width) &&
+                   ends_inside(window.top, window.height, whole.top, whole.height),
+               "its " + size_text(whole) + " pixels at x " + std::to_string(whole.left) + ", y " +
+                   std::to_string(whole.top) + " do not cover the window of " + size_text(window) +
+                   " at x " + std::to_string(window.left) + ", y " + std::to_string(window.top));
 }
 
 /// The pixels of a part in which one of the numbers is such.
@@ -302,9 +299,8 @@ PictureView view_of(const PictureFile& file, const std::string& patterns,
   if (!treatment.mask.empty()) apply_mask(treatment.mask, file, view, left_out);
   if (!treatment.finite.empty()) apply_finite(treatment.finite, patterns, view, left_out);
   const auto count = static_cast<std::size_t>(std::ranges::count(left_out, true));
-  if (count == left_out.size()) {
-    file.refuse("all its pixels are left out; check that the mask is not black");
-  }
+  file.require(count < left_out.size(),
+               "all its pixels are left out; check that the mask is not black");
   if (count > 0) view.left_out = std::make_shared<const std::vector<bool>>(std::move(left_out));
   return view;
 }
@@ -388,7 +384,7 @@ PictureChannels choose_channels(const PictureFile& file, const std::string& patt
     channels.names = matching_channels(file, patterns);
     sort_channels(channels.names);
   }
-  if (channels.names.empty()) file.refuse("no channel is chosen");
+  file.require(!channels.names.empty(), "no channel is chosen");
   name_components(channels, file.channel_names());
   return channels;
 }
@@ -458,9 +454,8 @@ PictureMoments read_moments(const std::string& name, const std::string& patterns
   const PictureView view = view_of(*file, patterns, treatment);
   PictureMoments moments{.shape = view.shape(), .mean = read_doubles(*file, view)};
   if (!errors.any()) return moments;
-  if (view.channels.names.size() != view.channels.components.size()) {
-    file->refuse("a depth that may be infinite has no variance; choose other channels");
-  }
+  file->require(view.channels.names.size() == view.channels.components.size(),
+                "a depth that may be infinite has no variance; choose other channels");
   const ImageShape& shape = moments.shape;
   const bool by_variance = !errors.variance.empty();
   const std::vector<double> counts = read_counts(*file, errors, view, by_variance ? 1 : 2);

@@ -171,14 +171,11 @@ EnvironmentMap read_environment(const std::string& file) {
   const std::unique_ptr<const PictureFile> picture = open_picture(file);
   std::vector<std::string> names{"Y"};
   if (picture->has({"R", "G", "B"})) names = {"R", "G", "B"};
-  if (!picture->has(names)) {
-    picture->refuse("the picture needs the channels R, G and B, or Y; it has " +
-                    listed(picture->channel_names()));
-  }
+  picture->require(picture->has(names), "the picture needs the channels R, G and B, or Y; it has " +
+                                            listed(picture->channel_names()));
   const PictureWindow window = picture->window(names);
-  if (window != picture->canvas()) {
-    picture->refuse("the picture is cropped: its data window must be its display window");
-  }
+  picture->require(window == picture->canvas(),
+                   "the picture is cropped: its data window must be its display window");
   std::vector<float> read(window.width * window.height * names.size());
   picture->read(names, read);
   std::vector<Rgb> texels(window.width * window.height);

@@ -146,14 +146,12 @@ void ExrFile::open() {
 
 void ExrFile::add_part(int part, double bytes) {
   const Imf::Header& header = input_->header(part);
-  if (header.hasType() && !Imf::isImage(header.type())) {
-    refuse("it holds deep pixels, with several samples each; flatten it first");
-  }
+  require(!header.hasType() || Imf::isImage(header.type()),
+          "it holds deep pixels, with several samples each; flatten it first");
   require_possible(header, name_, bytes);
   require_possible_tiles(header, name_);
-  if (!input_->partComplete(part)) {
-    refuse("the picture is not complete: writing it was interrupted; write it again");
-  }
+  require(input_->partComplete(part),
+          "the picture is not complete: writing it was interrupted; write it again");
   for (auto i = header.channels().begin(); i != header.channels().end(); ++i) {
     channels_.push_back(
         {.name = full_name(header, input_->parts(), i.name()),
@@ -170,8 +168,8 @@ void ExrFile::add_part(int part, double bytes) {
 
 void ExrFile::require_whole(const FileChannel& channel) const {
   const Imf::Channel& described = input_->header(channel.part).channels()[channel.in_part.c_str()];
-  if (described.xSampling == 1 && described.ySampling == 1) return;
-  refuse("channel `" + channel.in_part + "` is sub-sampled; store it at full resolution");
+  require(described.xSampling == 1 && described.ySampling == 1,
+          "channel `" + channel.in_part + "` is sub-sampled; store it at full resolution");
 }
 
 void ExrFile::read_rows(std::span<const std::string> names, std::span<float> texels,

@@ -99,6 +99,10 @@ float rounded(float value, Rounding how, bool alpha) {
 
 void PictureFile::refuse(const std::string& why) const { render::refuse_picture(name_, why); }
 
+void PictureFile::require(bool holds, const std::string& why) const {
+  if (!holds) refuse(why);
+}
+
 std::vector<std::string> PictureFile::channel_names() const {
   return mapped(channels_, &FileChannel::name);
 }
@@ -118,10 +122,9 @@ const FileChannel& PictureFile::channel(const std::string& name) const {
 PictureWindow PictureFile::window(std::span<const std::string> names) const {
   const FileChannel& first = channel(names.front());
   for (const std::string& name : names) {
-    if (channel(name).window == first.window) continue;
-    refuse("the channels `" + first.name + "` and `" + name +
-           "` are pictures of unequal sizes; choose channels of one "
-           "size");
+    require(channel(name).window == first.window,
+            "the channels `" + first.name + "` and `" + name +
+                "` are pictures of unequal sizes; choose channels of one size");
   }
   return first.window;
 }
