@@ -230,15 +230,13 @@ std::vector<Renderings::Task> Renderings::tasks_of(const Wanted& wanted) {
 std::vector<std::string> Renderings::words_of(const Task& task, const std::string& out) const {
   const auto text_of = [](std::uint32_t seed) { return std::to_string(seed); };
   const std::string seeds = listed(mapped(task.seeds, text_of), ",");
-  std::vector<std::string> words;
-  for (std::string word : rendering_.command) {
+  return mapped(rendering_.command, [&](std::string word) {
     boost::replace_all(word, "{seeds}", seeds);
     boost::replace_all(word, "{seed}", std::to_string(task.seeds.front()));
     boost::replace_all(word, "{samples}", std::to_string(task.samples));
     boost::replace_all(word, "{out}", out);
-    words.push_back(std::move(word));
-  }
-  return words;
+    return word;
+  });
 }
 
 /// Why it failed, "" where it ended well. Its CPU seconds are added.

@@ -32,12 +32,10 @@ Struct as_known(const Struct* theirs) {
 /// An array of such structs, each as large as the first says.
 template <class Struct>
 std::vector<Struct> all_known(const Struct* first, std::size_t count) {
-  std::vector<Struct> all;
-  const char* at = reinterpret_cast<const char*>(first);
-  for (std::size_t i = 0; i < count; ++i, at += first->size) {
-    all.push_back(as_known(reinterpret_cast<const Struct*>(at)));
-  }
-  return all;
+  const char* const bytes = reinterpret_cast<const char*>(first);
+  return mapped_indices(count, [&](std::size_t i) {
+    return as_known(reinterpret_cast<const Struct*>(bytes + i * first->size));
+  });
 }
 
 constexpr const char* symbol = "assay_library";
@@ -403,17 +401,13 @@ std::vector<double> PreparedLibrary::at_points(const AssaySampler& sampler, Aske
                                                std::string_view items) const {
   const bool densities = what == Asked::densities;
   const auto points = items_of<Point>(items);
-  std::vector<double> numbers;
-  numbers.reserve(points.size());
-  for (const Point& point : points) {
-    const auto ask = densities ? sampler.density : sampler.evaluate;
-    numbers.push_back(ask(state_, point.data()));
-    if (std::isnan(numbers.back())) {
-      throw LibraryError(std::string(densities ? "density()" : "evaluate()") + " is " +
-                         shortest_text(numbers.back()));
-    }
-  }
-  return numbers;
+  const auto ask = densities ? sampler.density : sampler.evaluate;
+  return mapped(points, [&](const Point& point) {
+    const double number = ask(state_, point.data());
+    if (!std::isnan(number)) return number;
+    throw LibraryError(std::string(densities ? "density()" : "evaluate()") + " is " +
+                       shortest_text(number));
+  });
 }
 
 }  // namespace assay::foreign
