@@ -24,19 +24,11 @@ namespace {
 
 // Lower-case words of letters, digits and underscores, joined by slashes: luminaire/area, recorded.
 bool well_formed(std::string_view name) {
-  bool word_begins = true;
-  for (const char c : name) {
-    const bool letter = c >= 'a' && c <= 'z';
-    const bool later = (c >= '0' && c <= '9') || c == '_';
-    if (c == '/' && !word_begins) {
-      word_begins = true;
-    } else if (letter || (later && !word_begins)) {
-      word_begins = false;
-    } else {
-      return false;
-    }
-  }
-  return !word_begins;
+  const auto is_word = [](const std::string& word) {
+    return !word.empty() && word[0] >= 'a' && word[0] <= 'z' &&
+           word.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") == word.npos;
+  };
+  return name.find(' ') == name.npos && std::ranges::all_of(pieces_of(name, '/'), is_word);
 }
 
 const std::string& name_of(const Entry& entry) { return entry.information.name; }
