@@ -10,6 +10,8 @@
 #include <cstring>
 #include <filesystem>
 #include <optional>
+#include <tuple>
+#include <utility>
 
 #include "estimators/core/flush_denormals.h"
 #include "estimators/core/mapped.h"
@@ -143,32 +145,24 @@ struct Values {
   std::vector<AssayValue> values;
 };
 
-double read(Parameters& given, const ParameterInformation& parameter, std::string& text) {
-  double number = 0;
-  switch (parameter.type) {
-    case ParameterType::number:
-      number = given.number(parameter.name);
-      break;
-    case ParameterType::count:
-      number = static_cast<double>(given.count(parameter.name));
-      break;
-    case ParameterType::boolean:
-      number = given.boolean(parameter.name) ? 1 : 0;
-      text = number == 1 ? "true" : "false";
-      return number;
-    default:
-      text = given.string(parameter.name);
-      return 0;
+std::pair<std::string, double> read(Parameters& given, const ParameterInformation& parameter) {
+  const std::string& name = parameter.name;
+  if (parameter.type == ParameterType::string) return {given.string(name), 0};
+  if (parameter.type == ParameterType::boolean) {
+    return given.boolean(name) ? std::pair("true", 1.0) : std::pair("false", 0.0);
   }
-  text = shortest_text(number);
-  return number;
+  const double number = parameter.type == ParameterType::count
+                            ? static_cast<double>(given.count(name))
+                            : given.number(name);
+  return {shortest_text(number), number};
 }
 
 Values values_of(const std::vector<ParameterInformation>& declared, Parameters& given) {
   Values all;
   all.texts.resize(declared.size());
   for (std::size_t i = 0; i < declared.size(); ++i) {
-    const double number = read(given, declared[i], all.texts[i]);
+    double number = 0;
+    std::tie(all.texts[i], number) = read(given, declared[i]);
     all.values.push_back({.size = sizeof(AssayValue),
                           .name = declared[i].name.c_str(),
                           .text = all.texts[i].c_str(),
