@@ -155,15 +155,6 @@ std::optional<PictureWindow> crop_of(Parameters& parameters) {
   return crop;
 }
 
-recorded::PictureTreatment treatment_of(Parameters& parameters) {
-  const std::string finite = parameters.string("finite");
-  const std::string mask = parameters.string("mask");
-  return {.rounding = parameters.choice<Rounding>("rounded"),
-          .crop = crop_of(parameters),
-          .mask = parameters.given("mask") ? parameters.file("mask") : "",
-          .finite = parameters.given("finite") ? finite : ""};
-}
-
 PictureRequest picture_request(Parameters& parameters) {
   const auto given = [&](const char* name) {
     const std::string text = parameters.string(name);
@@ -176,7 +167,10 @@ PictureRequest picture_request(Parameters& parameters) {
           .errors = {.variance = given("variance"),
                      .second_moment = given("second_moment"),
                      .samples = given("samples")},
-          .treatment = treatment_of(parameters)};
+          .treatment = {.rounding = parameters.choice<Rounding>("rounded"),
+                        .crop = crop_of(parameters),
+                        .mask = given("mask").empty() ? "" : parameters.file("mask"),
+                        .finite = given("finite")}};
 }
 
 /// Reports an error of a file at the parameter that names it.
