@@ -1,5 +1,6 @@
 #include "depth_of_field/pixel.h"
 
+#include "estimators/core/value_checks.h"
 #include "estimators/parameters.h"
 
 namespace assay::depth_of_field {
@@ -24,10 +25,8 @@ PlanePoint read_pixel(Parameters& given) {
   const Value& value = given.structure("pixel");
   given.require(value.items().size() == 2, "pixel",
                 "must be a list of two numbers, x and y on the focal plane");
-  const PlanePoint out{value.items()[0].number("the pixel's x"),
-                       value.items()[1].number("the pixel's y")};
-  given.require(std::isfinite(out.x) && std::isfinite(out.y), "pixel", "must be finite");
-  return out;
+  return {finite_number(value.items()[0], "the pixel's x"),
+          finite_number(value.items()[1], "the pixel's y")};
 }
 
 Channel radiance_channel(const SceneDescription& scene, const Moments& moments, double samples) {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "estimators/core/mapped.h"
+#include "estimators/core/value_checks.h"
 #include "estimators/estimator.h"
 
 namespace assay::steerable {
@@ -57,14 +58,11 @@ SquarePoint square_of(const VertexWeights& w, const TrianglePoint& point) {
 VertexWeights read_weights(Parameters& given) {
   const Value& list = given.structure("weights");
   given.require(list.items().size() == 3, "weights", "must be a list of three numbers");
-  std::array<double, 3> w{};
-  for (std::size_t i = 0; i < w.size(); ++i) {
-    w[i] = list.items()[i].number("a weight");
-    given.require(std::isfinite(w[i]), "weights", "must be finite");
-    given.require(w[i] >= 0, "weights", "must not be negative: a density cannot be");
-  }
-  given.require(w[0] + w[1] + w[2] != 0, "weights", "must not all be zero");
-  return {w[0], w[1], w[2]};
+  const VertexWeights weights{at_least_zero(list.items()[0], "a number of `weights`"),
+                              at_least_zero(list.items()[1], "a number of `weights`"),
+                              at_least_zero(list.items()[2], "a number of `weights`")};
+  given.require(weights.sum() != 0, "weights", "must not all be zero");
+  return weights;
 }
 
 // Integrals over the triangle of products of its coordinates (Dirichlet). The density is 6 sum w_j
