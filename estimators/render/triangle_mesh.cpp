@@ -97,30 +97,22 @@ class ObjReader {
 
   // `v`, `v/vt`, `v//vn` or `v/vt/vn`; only v matters, the others must be numbers all the same.
   std::uint32_t corner(std::string_view word) {
-    const std::size_t slash = word.find('/');
-    const auto given = read_as<long>(word.substr(0, slash));
-    if (!given) malformed_corner(word);
-    const long index = *given;
-    if (slash != std::string_view::npos) check_further(word, word.substr(slash + 1));
+    const std::vector<std::string> indices = pieces_of(word, '/');
+    const auto is_number = [](const std::string& index) {
+      return read_as<long>(index).has_value();
+    };
+    const bool no_texture = indices.size() == 3 && indices[1].empty();
+    if (indices.size() > 3 ||
+        std::ranges::count_if(indices, is_number) + no_texture != std::ssize(indices)) {
+      fail("a corner must be v, v/vt, v//vn or v/vt/vn, but it is `" + std::string(word) + "`");
+    }
+    const long index = *read_as<long>(indices[0]);
     const long count = static_cast<long>(mesh_.vertices.size());
     if (index == 0 || index > count || index < -count) {
       fail("there is no vertex " + std::to_string(index) + " yet: " + std::to_string(count) +
            " are defined above");
     }
     return static_cast<std::uint32_t>(index > 0 ? index - 1 : count + index);
-  }
-
-  void check_further(std::string_view word, std::string_view further) {
-    const std::size_t slash = further.find('/');
-    const std::string_view texture = further.substr(0, slash);
-    const bool texture_fine = read_as<long>(texture) || (texture.empty() && slash == 0);
-    const bool normal_fine =
-        slash == std::string_view::npos || read_as<long>(further.substr(slash + 1));
-    if (!texture_fine || !normal_fine) malformed_corner(word);
-  }
-
-  [[noreturn]] void malformed_corner(std::string_view word) const {
-    fail("a corner must be v, v/vt, v//vn or v/vt/vn, but it is `" + std::string(word) + "`");
   }
 
   [[noreturn]] void fail(const std::string& why) const { throw InputError({file_, line_, 1}, why); }
