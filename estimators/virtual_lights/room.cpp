@@ -109,10 +109,9 @@ double reached(const std::vector<double>& shares, std::uint32_t wall, Weighting 
   return elsewhere > 1e-12 ? 1 : 0;
 }
 
-bool even_albedo(const Room& room) {
-  const paths::MeshWorld& world = room.world();
+bool is_even(const MeshWorld& world, Rgb paths::Surface::*property) {
   for (std::size_t i = 0; i < world.patches(); ++i) {
-    if (!(world.surface(i).diffuse == world.surface(0).diffuse)) return false;
+    if (world.surface(i).*property != world.surface(0).*property) return false;
   }
   return true;
 }
@@ -154,12 +153,8 @@ Room::Room(paths::SharedMesh world, double shininess)
 }
 
 std::optional<Rgb> Room::find_even_emission() const {
-  if (!enclosure_.why_open.empty()) return {};
-  const Rgb& emission = world_->surface(0).emission;
-  for (std::size_t i = 0; i < world_->patches(); ++i) {
-    if (!(world_->surface(i).emission == emission)) return {};
-  }
-  return emission;
+  if (!enclosure_.why_open.empty() || !is_even(*world_, &paths::Surface::emission)) return {};
+  return world_->surface(0).emission;
 }
 
 LightPath Room::shoot(Stream& random, Cost& cost) const {
@@ -243,7 +238,7 @@ std::optional<Rgb> twice_reflected(const Room& room) {
   if (!room.even_emission()) return {};
   const paths::MeshWorld& world = room.world();
   const Rgb first = room.receiver().surface->diffuse * *room.even_emission();
-  if (even_albedo(room)) return first * world.surface(0).diffuse;
+  if (is_even(world, &paths::Surface::diffuse)) return first * world.surface(0).diffuse;
   const Enclosure& walls = room.walls();
   if (room.shininess() > 0 || !walls.why_not_convex.empty()) return {};
   const std::uint32_t own = walls.wall_of[room.receiver().patch / 2];
