@@ -66,20 +66,6 @@ void require_apart(const std::vector<Plane>& planes, const Value& blame) {
   }
 }
 
-SceneDescription scene(const Value& value) {
-  require_keys(value, "the scene", {"lens", "background", "planes"});
-  const Value& planes = required_key(value, "the scene", "planes");
-  planes.require(!planes.items().empty(), "planes must be a list of one or more");
-  SceneDescription out{.lens = lens(required_key(value, "the scene", "lens"))};
-  if (const Value* const background = value.find("background")) {
-    out.background = at_least_zero(*background, "the background");
-  }
-  out.planes = mapped(planes.items(), plane);
-  std::ranges::stable_sort(out.planes, {}, &Plane::depth);
-  require_apart(out.planes, planes);
-  return out;
-}
-
 constexpr NamedScene built_in[] = {
     // A black half-plane before a sharp white one: discs of confusion of radius 0.1 on the half-
     // plane, 0.2 on the focal plane.
@@ -133,7 +119,20 @@ Interval SceneDescription::range() const {
   return out;
 }
 
-SceneDescription read_scene(const Value& value) { return scene(scene_of(value, built_in)); }
+SceneDescription read_scene(const Value& given) {
+  const Value value = scene_of(given, built_in);
+  require_keys(value, "the scene", {"lens", "background", "planes"});
+  const Value& planes = required_key(value, "the scene", "planes");
+  planes.require(!planes.items().empty(), "planes must be a list of one or more");
+  SceneDescription out{.lens = lens(required_key(value, "the scene", "lens"))};
+  if (const Value* const background = value.find("background")) {
+    out.background = at_least_zero(*background, "the background");
+  }
+  out.planes = mapped(planes.items(), plane);
+  std::ranges::stable_sort(out.planes, {}, &Plane::depth);
+  require_apart(out.planes, planes);
+  return out;
+}
 
 Setting::Setting(SceneDescription scene) : scene_(std::move(scene)), rays_(shapes(scene_)) {}
 

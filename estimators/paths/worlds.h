@@ -39,11 +39,6 @@ class Zones {
   render::Vector3 seen_;
 };
 
-inline render::Vector3 uniform_on_sphere(Stream& random) {
-  const double z = 2 * random.uniform() - 1;
-  return render::direction_at(z, random.uniform());
-}
-
 /// The unit vector where a ray from inside the unit sphere, or from its surface, leaves it. It
 /// solves |o + t d|^2 = 1 for d of unit length. From the surface the other root is 0, and saying so
 /// is exact.
@@ -91,7 +86,8 @@ class SphereWorld {
   /// The product of the cosines of two points over their squared distance is 1/4. With the area
   /// 4 pi and albedo / pi this leaves albedo x emission.
   Rgb sampled_light(const Vertex& v, Stream& random, Cost& cost) const {
-    const Vertex light = zones_.vertex(uniform_on_sphere(random));
+    const double z = 2 * random.uniform() - 1;
+    const Vertex light = zones_.vertex(render::direction_at(z, random.uniform()));
     if (light.surface->emission == Rgb{}) return {};
     ++cost.shadow_rays;
     return v.surface->diffuse * light.surface->emission;

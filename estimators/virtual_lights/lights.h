@@ -45,23 +45,17 @@ struct Weighted : Classic {
   }
 };
 
-/// Adds a path that has been shot to the sums.
-template <class Kernel>
-void add_path(const Kernel& kernel, const LightPath& path, Sums& sums, Cost& cost) {
-  if (!path.at.surface) return;
-  const double geometry = kernel.room->geometry(path.at);
-  if (geometry == 0) return;
-  const bool seen = kernel.room->sees(path.at, cost);
-  if (seen) sums.full += kernel.full(path, geometry);
-  sums.target += kernel.target(path, geometry, seen);
-}
-
 /// The sums of `count` light paths.
 template <class Kernel>
 Sums shoot_all(const Kernel& kernel, std::uint64_t count, Stream& random, Cost& cost) {
   Sums sums;
   for (std::uint64_t i = 0; i < count; ++i) {
-    add_path(kernel, kernel.shoot(random, cost), sums, cost);
+    const LightPath path = kernel.shoot(random, cost);
+    const double geometry = path.at.surface ? kernel.room->geometry(path.at) : 0;
+    if (geometry == 0) continue;
+    const bool seen = kernel.room->sees(path.at, cost);
+    if (seen) sums.full += kernel.full(path, geometry);
+    sums.target += kernel.target(path, geometry, seen);
   }
   cost.samples += count;
   return sums;
