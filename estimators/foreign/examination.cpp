@@ -26,31 +26,18 @@ std::size_t holding(std::size_t numbers, std::size_t width, std::size_t least) {
 /// Gives one observation of a stream by its index.
 using Observations = std::function<std::vector<double>(std::size_t index)>;
 
-/// The probability that all pairs of exchangeable observations are equal, given their values.
-class Coincidence {
- public:
-  void add(const std::vector<double>& value) {
-    const auto* const bytes = reinterpret_cast<const char*>(value.data());
-    // Two values of one hash make it larger.
-    double& earlier = pairs_[std::hash<std::string_view>{}({bytes, sizeof(double) * value.size()})];
-    probability_ *= (2 * earlier++ + 1) / (2 * all_++ + 1);
-  }
-  double probability() const { return probability_; }
-
- private:
-  std::map<std::size_t, double> pairs_;
-  double all_ = 0;
-  double probability_ = 1;
-};
-
 /// True if the same observations come for another key. The first pair that differs ends it.
 bool ignores_key(const Observations& source, const Observations& others, std::size_t most) {
-  Coincidence coincidence;
+  // That all pairs of exchangeable observations are equal, given their values.
+  double probability = 1;
+  std::map<std::size_t, double> pairs;  // by value; two values of one hash make it larger
   for (std::size_t i = 0; i < most; ++i) {
     const std::vector<double> mine = source(i);
     if (!same_bits(others(i), mine)) return false;
-    coincidence.add(mine);
-    if (coincidence.probability() < least_chance) return true;
+    const auto* const bytes = reinterpret_cast<const char*>(mine.data());
+    double& earlier = pairs[std::hash<std::string_view>{}({bytes, sizeof(double) * mine.size()})];
+    probability *= (2 * earlier++ + 1) / (2 * static_cast<double>(i) + 1);
+    if (probability < least_chance) return true;
   }
   return false;
 }

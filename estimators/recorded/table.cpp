@@ -465,47 +465,35 @@ class Reader {
 };
 
 /// Gives the lines of a text to a reader as they come.
-class Lines {
- public:
-  Lines(ByteSource& source, std::size_t most, Rows expected)
-      : source_(source), reader_(source, most, expected) {}
-
-  Table read() && {
-    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
-    if (source_.look(byte_order_mark.size()).starts_with(byte_order_mark)) {
-      source_.take(byte_order_mark.size());
-    }
-    std::string_view bytes = source_.look();
-    for (; !bytes.empty(); bytes = source_.look()) {
-      if (first_binary_byte(bytes) != bytes.npos) {
-        source_.refuse(no_text(bytes, source_.name()));
-      }
-      take_lines(bytes);
-      source_.take(bytes.size());
-    }
-    if (!begun_.empty()) reader_.line(begun_);
-    return std::move(reader_).finish();
-  }
-
- private:
-  void take_lines(std::string_view bytes) {
+Table read_text(ByteSource& source, std::size_t most, Rows expected) {
+  Reader reader(source, most, expected);
+  std::string begun;  // a line of which the end has not come
+  const auto take_lines = [&](std::string_view bytes) {
     while (!bytes.empty()) {
       const std::size_t end = bytes.find('\n');
-      if (end == bytes.npos || !begun_.empty()) begun_ += bytes.substr(0, end);
-      if (begun_.size() > longest_line) {
-        source_.refuse("a line of it has more than 64 MiB: write one observation a line");
+      if (end == bytes.npos || !begun.empty()) begun += bytes.substr(0, end);
+      if (begun.size() > longest_line) {
+        source.refuse("a line of it has more than 64 MiB: write one observation a line");
       }
       if (end == bytes.npos) return;
-      reader_.line(begun_.empty() ? bytes.substr(0, end) : begun_);
-      begun_.clear();
+      reader.line(begun.empty() ? bytes.substr(0, end) : begun);
+      begun.clear();
       bytes.remove_prefix(end + 1);
     }
+  };
+  constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+  if (source.look(byte_order_mark.size()).starts_with(byte_order_mark)) {
+    source.take(byte_order_mark.size());
   }
-
-  ByteSource& source_;
-  Reader reader_;
-  std::string begun_;  ///< a line of which the end has not come
-};
+  std::string_view bytes = source.look();
+  for (; !bytes.empty(); bytes = source.look()) {
+    if (first_binary_byte(bytes) != bytes.npos) source.refuse(no_text(bytes, source.name()));
+    take_lines(bytes);
+    source.take(bytes.size());
+  }
+  if (!begun.empty()) reader.line(begun);
+  return std::move(reader).finish();
+}
 
 /// A quarter of the memory, since a vector that grows takes thrice its size.
 std::size_t most_numbers() {
@@ -552,7 +540,7 @@ Table read_table(const std::string& file, Rows expected) {
   constexpr std::size_t beginning = 512;
   const std::string problem = no_text(source.look(beginning), source.name());
   if (!problem.empty()) source.refuse(problem);
-  return Lines(source, most, expected).read();
+  return read_text(source, most, expected);
 }
 
 }  // namespace assay::recorded

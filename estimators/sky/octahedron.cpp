@@ -7,27 +7,6 @@
 
 namespace assay::sky {
 
-namespace {
-
-/// The vertex in the middle of an edge, made once.
-class Middles {
- public:
-  explicit Middles(std::vector<Vector3>& vertices) : vertices_(vertices) {}
-
-  std::uint32_t operator()(std::uint32_t a, std::uint32_t b) {
-    const auto [found, is_new] =
-        made_.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(vertices_.size()));
-    if (is_new) vertices_.push_back(normalised(vertices_[a] + vertices_[b]));
-    return found->second;
-  }
-
- private:
-  std::vector<Vector3>& vertices_;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> made_;
-};
-
-}  // namespace
-
 Octahedron::Octahedron(std::size_t level)
     : vertices_{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}} {
   if (level > 9) throw std::invalid_argument("Octahedron: level must be at most 9");
@@ -41,7 +20,14 @@ Octahedron::Octahedron(std::size_t level)
     roots.push_back(mirrored ? Triangle{y, x, z} : Triangle{x, y, z});
   }
   levels_.push_back(std::move(roots));
-  Middles middle(vertices_);
+  // The vertex in the middle of an edge, made once.
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> made;
+  const auto middle = [&](std::uint32_t a, std::uint32_t b) {
+    const auto [found, is_new] =
+        made.try_emplace(std::minmax(a, b), static_cast<std::uint32_t>(vertices_.size()));
+    if (is_new) vertices_.push_back(normalised(vertices_[a] + vertices_[b]));
+    return found->second;
+  };
   while (levels_.size() <= level) {
     std::vector<Triangle> finer;
     for (const auto& [a, b, c] : levels_.back()) {
