@@ -48,28 +48,23 @@ inline double ratio_of_sums(std::span<const RatioPair> pairs) {
   return all.full / all.target;
 }
 
-/// The means of all pairs but one.
-struct LeftOut {
-  RatioPair all;
-  double count;
-
-  RatioPair mean() const { return {all.full / count, all.target / count}; }
-  RatioPair without(const RatioPair& pair) const {
-    return {(all.full - pair.full) / (count - 1), (all.target - pair.target) / (count - 1)};
-  }
-};
-
 /// The jackknife (Quenouille 1956) removes the term 1/M of the bias. It subtracts (M - 1) times the
 /// mean change of R when one pair is left out. The function `replicate` gives a ratio from the
 /// means with a pair left out and the means of all. One pair gives R as it is.
 auto jackknife(const auto& replicate) {
   return [replicate](std::span<const RatioPair> pairs) {
-    const LeftOut left{sum(pairs), static_cast<double>(pairs.size())};
-    const double ratio = left.all.full / left.all.target;
+    const RatioPair all = sum(pairs);
+    const auto count = static_cast<double>(pairs.size());
+    const double ratio = all.full / all.target;
     if (pairs.size() < 2) return ratio;
+    const RatioPair mean{all.full / count, all.target / count};
     double replicates = 0;
-    for (const RatioPair& pair : pairs) replicates += replicate(left.without(pair), left.mean());
-    return left.count * ratio - (left.count - 1) * replicates / left.count;
+    for (const RatioPair& pair : pairs) {
+      replicates += replicate(
+          RatioPair{(all.full - pair.full) / (count - 1), (all.target - pair.target) / (count - 1)},
+          mean);
+    }
+    return count * ratio - (count - 1) * replicates / count;
   };
 }
 
