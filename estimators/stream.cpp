@@ -9,51 +9,41 @@ namespace assay {
 
 namespace {
 
+std::uint64_t little_endian(std::string_view bytes) {
+  std::uint64_t word = 0;
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    word |= static_cast<std::uint64_t>(static_cast<unsigned char>(bytes[i])) << (8 * i);
+  }
+  return word;
+}
+
+std::uint64_t finalise(std::uint64_t z) {
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+  return z ^ (z >> 31);
+}
+
+}  // namespace
+
 // A sponge over 64-bit words. Each word is added; a Weyl constant keeps a run of zeros from being a
 // fixed point. Then the finaliser of SplitMix64 mixes (Steele, Lea and Flood 2014, section 4). It
 // is a bijection: every input bit flips each output bit with probability near one half.
-class Sponge {
- public:
-  void absorb(std::uint64_t word) { state_ = finalise((state_ ^ word) + 0x9e3779b97f4a7c15u); }
-
-  // The length comes first, so that ("ab", "c") and ("a", "bc") differ.
-  void absorb(std::string_view text) {
-    absorb(static_cast<std::uint64_t>(text.size()));
+StreamKey stream_key(std::uint64_t seed, std::string_view plugin, std::string_view parameters,
+                     std::uint32_t copy) {
+  std::uint64_t state = 0;
+  const auto absorb = [&](std::uint64_t word) {
+    state = finalise((state ^ word) + 0x9e3779b97f4a7c15u);
+  };
+  absorb(seed);
+  for (const std::string_view text : {plugin, parameters}) {
+    // The length comes first, so that ("ab", "c") and ("a", "bc") differ.
+    absorb(text.size());
     for (std::size_t begin = 0; begin < text.size(); begin += 8) {
       absorb(little_endian(text.substr(begin, 8)));
     }
   }
-
-  std::uint64_t squeeze() const { return finalise(state_); }
-
- private:
-  static std::uint64_t little_endian(std::string_view bytes) {
-    std::uint64_t word = 0;
-    for (std::size_t i = 0; i < bytes.size(); ++i) {
-      word |= static_cast<std::uint64_t>(static_cast<unsigned char>(bytes[i])) << (8 * i);
-    }
-    return word;
-  }
-
-  static std::uint64_t finalise(std::uint64_t z) {
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return z ^ (z >> 31);
-  }
-
-  std::uint64_t state_ = 0;
-};
-
-}  // namespace
-
-StreamKey stream_key(std::uint64_t seed, std::string_view plugin, std::string_view parameters,
-                     std::uint32_t copy) {
-  Sponge sponge;
-  sponge.absorb(seed);
-  sponge.absorb(plugin);
-  sponge.absorb(parameters);
-  sponge.absorb(static_cast<std::uint64_t>(copy));
-  return {sponge.squeeze()};
+  absorb(copy);
+  return {finalise(state)};
 }
 
 Stream Stream::substream(std::uint32_t index) const {
