@@ -79,10 +79,6 @@ double near_distance(const TriangleMesh& mesh, const Location& where) {
   return resolution * nearest;
 }
 
-Shape occluder_shape(const Occluder& occluder, const View& view) {
-  return std::visit([&](const auto& form) -> Shape { return view.shape(form); }, occluder);
-}
-
 TriangleMesh drawn_nearer(TriangleMesh mesh) {
   for (Vector3& p : mesh.vertices) p = (1 - resolution) * p;
   return mesh;
@@ -120,7 +116,7 @@ Setting::Setting(const SceneDescription& description, const Location& where)
 std::vector<Shape> occluder_shapes(const std::vector<Occluder>& occluders,
                                    const Receiver& receiver) {
   return mapped(occluders, [view = View(receiver)](const Occluder& occluder) {
-    return occluder_shape(occluder, view);
+    return std::visit([&](const auto& form) -> Shape { return view.shape(form); }, occluder);
   });
 }
 

@@ -15,19 +15,14 @@ namespace {
 
 // Moves a scene to the origin and scales its longest side to 1, where single precision is finest.
 // Radiance does not change.
-class Fit {
- public:
-  explicit Fit(const render::Box& box) : centre_(box.centre()), scale_(1 / box.longest_side()) {}
-  Vector3 operator()(const Vector3& v) const { return scale_ * (v - centre_); }
-  TriangleMesh operator()(TriangleMesh mesh) const {
-    for (Vector3& v : mesh.vertices) v = (*this)(v);
-    return mesh;
-  }
-
- private:
-  Vector3 centre_;
-  double scale_;
-};
+Vector3 fitted(const render::Box& box, const Vector3& v) {
+  return 1 / box.longest_side() * (v - box.centre());
+}
+TriangleMesh fitted(TriangleMesh mesh) {
+  const render::Box box(mesh);
+  for (Vector3& v : mesh.vertices) v = fitted(box, v);
+  return mesh;
+}
 
 // Additive recurrences with the powers of 1/g, g^5 = g + 1. They are even in four dimensions for
 // any number of points (Roberts 2018, "The unreasonable effectiveness of quasirandom sequences").
@@ -101,11 +96,11 @@ render::ShareTable MeshWorld::light_shares(const std::vector<Triangle>& triangle
 MeshWorld::MeshWorld(const MeshScene& scene, const Camera& camera)
     : surfaces_(scene.surfaces),
       surface_of_(scene.surface_of),
-      mesh_(Fit(render::Box(scene.mesh))(scene.mesh)),
+      mesh_(fitted(scene.mesh)),
       triangles_(mapped_indices(mesh_.triangles.size(),
                                 [&](std::size_t i) { return triangle(mesh_.corners(i)); })),
       light_(light_shares(triangles_, scene)),
-      camera_{Fit(render::Box(scene.mesh))(camera.position), camera.direction},
+      camera_{fitted(render::Box(scene.mesh), camera.position), camera.direction},
       scene_({mesh_}) {
   if (scene.furnace) furnace_ = {{{1, surfaces_[0]}}, 0};
 }
