@@ -56,49 +56,24 @@ class Glossy final : public Reflectance {
   brdf::SharedBrdf brdf_;
 };
 
-class AreaSampling final : public LightSampling {
- public:
-  explicit AreaSampling(SharedSetting setting) : points_(std::move(setting)) {}
-
-  std::optional<LightPoint> sample(Stream& random) const override {
-    const auto [index, x, y] = points_.shares().choose(random);
-    const LightTriangle& triangle = points_.setting().triangles()[index];
+LightSampling area_sampling(SharedSetting setting) {
+  const auto points = std::make_shared<const luminaire::AreaPrimary<>>(std::move(setting));
+  const auto sample = [points](Stream& random) -> std::optional<LightPoint> {
+    const auto [index, x, y] = points->shares().choose(random);
+    const LightTriangle& triangle = points->setting().triangles()[index];
     const auto [u, v] = luminaire::UniformTriangle{}(x, y);
     if (!triangle.emits) return {};
-    const luminaire::Connection way = points_.setting().connect(triangle, u, v);
+    const luminaire::Connection way = points->setting().connect(triangle, u, v);
     return LightPoint{way.to_light,
-                      way.squared_distance / (points_.setting().area() * way.light_cosine())};
-  }
-
-  double density(const LightTriangle& triangle, const Vector3& w) const override {
+                      way.squared_distance / (points->setting().area() * way.light_cosine())};
+  };
+  const auto density = [points](const LightTriangle& triangle, const Vector3& w) {
     const double cosine = -dot(w, triangle.normal);
     const double distance = triangle.plane_distance / cosine;
-    return distance * distance / (points_.setting().area() * cosine);
-  }
-
- private:
-  luminaire::AreaPrimary<> points_;
-};
-
-class SolidAngleSampling final : public LightSampling {
- public:
-  explicit SolidAngleSampling(SharedSetting setting) : directions_(std::move(setting)) {}
-
-  std::optional<LightPoint> sample(Stream& random) const override {
-    if (directions_.triangles().empty()) return {};
-    const auto [index, u, v] = directions_.shares().choose(random);
-    const luminaire::LitTriangle& triangle = directions_.triangles()[index];
-    const Vector3 w = triangle.seen.sample(u, v);
-    return LightPoint{triangle.distance(w) * w, 1 / directions_.solid_angle()};
-  }
-
-  double density(const LightTriangle&, const Vector3&) const override {
-    return 1 / directions_.solid_angle();
-  }
-
- private:
-  luminaire::SolidAnglePrimary<> directions_;
-};
+    return distance * distance / (points->setting().area() * cosine);
+  };
+  return {sample, density};
+}
 
 }  // namespace
 
@@ -133,8 +108,20 @@ SharedReflectance read_reflectance(Parameters& given) {
   return std::make_shared<Lambert>(lambert.number("albedo"));
 }
 
-SharedLightSampling solid_angle_sampling(SharedSetting setting) {
-  return std::make_shared<SolidAngleSampling>(std::move(setting));
+LightSampling solid_angle_sampling(SharedSetting setting) {
+  const auto directions =
+      std::make_shared<const luminaire::SolidAnglePrimary<>>(std::move(setting));
+  const auto sample = [directions](Stream& random) -> std::optional<LightPoint> {
+    if (directions->triangles().empty()) return {};
+    const auto [index, u, v] = directions->shares().choose(random);
+    const luminaire::LitTriangle& triangle = directions->triangles()[index];
+    const Vector3 w = triangle.seen.sample(u, v);
+    return LightPoint{triangle.distance(w) * w, 1 / directions->solid_angle()};
+  };
+  const auto density = [directions](const LightTriangle&, const Vector3&) {
+    return 1 / directions->solid_angle();
+  };
+  return {sample, density};
 }
 
 ParameterInformation light_sampling_parameter() {
@@ -143,13 +130,13 @@ ParameterInformation light_sampling_parameter() {
                         "solid_angle", {"solid_angle", "area"});
 }
 
-SharedLightSampling read_light_sampling(Parameters& given, SharedSetting setting) {
+LightSampling read_light_sampling(Parameters& given, SharedSetting setting) {
   if (given.string("light_sampling") == "solid_angle") return solid_angle_sampling(setting);
-  return std::make_shared<AreaSampling>(std::move(setting));
+  return area_sampling(std::move(setting));
 }
 
 Techniques::Techniques(luminaire::SharedSetting setting, SharedReflectance reflectance,
-                       SharedLightSampling light_sampling)
+                       LightSampling light_sampling)
     : setting_(std::move(setting)),
       reflectance_(std::move(reflectance)),
       light_sampling_(std::move(light_sampling)) {}
@@ -159,11 +146,11 @@ double Techniques::integrand(const Vector3& w) const {
 }
 
 Pair Techniques::density(const luminaire::LightTriangle& triangle, const Vector3& w) const {
-  return {light_sampling_->density(triangle, w), reflectance_->density(w)};
+  return {light_sampling_.density(triangle, w), reflectance_->density(w)};
 }
 
 Draw Techniques::light(Stream& random, Cost& cost) const {
-  const std::optional<LightPoint> point = light_sampling_->sample(random);
+  const std::optional<LightPoint> point = light_sampling_.sample(random);
   if (!point) return {};
   const Vector3 w = normalised(point->to_light);
   const luminaire::LightSample sample{luminaire::shadow_ray(point->to_light), integrand(w)};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -49,25 +50,21 @@ struct LightPoint {
   double density = 0;  ///< per solid angle
 };
 
-class LightSampling {
- public:
-  virtual ~LightSampling() = default;
+struct LightSampling {
   /// None where the point does not emit towards the receiver.
-  virtual std::optional<LightPoint> sample(Stream& random) const = 0;
+  std::function<std::optional<LightPoint>(Stream& random)> sample;
   /// The density per solid angle of the point of a triangle that emits towards the receiver in the
   /// direction of the unit vector w.
-  virtual double density(const luminaire::LightTriangle&, const render::Vector3& w) const = 0;
+  std::function<double(const luminaire::LightTriangle&, const render::Vector3& w)> density;
 };
-
-using SharedLightSampling = std::shared_ptr<const LightSampling>;
 
 /// Directions uniform in the solid angle Omega of the triangles that emit towards the receiver
 /// (Arvo 1995): density 1 / Omega.
-SharedLightSampling solid_angle_sampling(luminaire::SharedSetting);
+LightSampling solid_angle_sampling(luminaire::SharedSetting);
 
 /// `light_sampling`: solid_angle or area.
 ParameterInformation light_sampling_parameter();
-SharedLightSampling read_light_sampling(Parameters&, luminaire::SharedSetting);
+LightSampling read_light_sampling(Parameters&, luminaire::SharedSetting);
 
 /// A direction that a technique drew.
 struct Draw {
@@ -81,7 +78,7 @@ struct Draw {
 class Techniques {
  public:
   Techniques(luminaire::SharedSetting setting, SharedReflectance reflectance,
-             SharedLightSampling light_sampling);
+             LightSampling light_sampling);
   virtual ~Techniques() = default;
 
   /// A point of the luminaire and a shadow ray to it; none where nothing would arrive.
@@ -96,12 +93,12 @@ class Techniques {
 
   const luminaire::Setting& setting() const { return *setting_; }
   const Reflectance& reflectance() const { return *reflectance_; }
-  const LightSampling& light_sampling() const { return *light_sampling_; }
+  const LightSampling& light_sampling() const { return light_sampling_; }
 
  private:
   luminaire::SharedSetting setting_;
   SharedReflectance reflectance_;
-  SharedLightSampling light_sampling_;
+  LightSampling light_sampling_;
 };
 
 using SharedTechniques = std::shared_ptr<const Techniques>;
