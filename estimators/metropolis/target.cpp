@@ -42,6 +42,12 @@ std::size_t pixel_of(double u, std::size_t width) {
   return static_cast<std::size_t>(u * static_cast<double>(width));
 }
 
+ImageShape row_of(std::size_t width, bool coloured) {
+  ImageShape shape{.width = width, .height = 1};
+  if (coloured) shape.components = {"red", "green", "blue"};
+  return shape;
+}
+
 std::vector<Rgb> row_of_colours(std::size_t width, bool coloured) {
   std::vector<Rgb> colours(width, Rgb::grey(1));
   for (std::size_t p = 0; coloured && p < width; ++p) {
@@ -72,30 +78,26 @@ std::vector<Product> checked(std::vector<Product> sum) {
 /// coordinate and bring `lobe` of it.
 class BranchingTarget final : public Target {
  public:
-  struct Form {
-    std::size_t width;
-    double level;
-    Product lobe;  ///< of one factor
-  };
-  explicit BranchingTarget(Form form) : form_(std::move(form)) {}
+  explicit BranchingTarget(std::size_t width) : width_(width) {}
 
-  ImageShape shape() const override { return {.width = form_.width, .height = 1}; }
+  ImageShape shape() const override { return row_of(width_, false); }
   Contribution at(Coordinates& point, Cost&) const override {
     constexpr std::size_t stripes = 32;
-    const std::size_t pixel = pixel_of(point.uniform(), stripes * form_.width) % form_.width;
-    const double f = pixel % 2 == 0
-                         ? form_.level
-                         : form_.lobe.height * value(form_.lobe.factors[0], point.uniform());
+    const std::size_t pixel = pixel_of(point.uniform(), stripes * width_) % width_;
+    const double f =
+        pixel % 2 == 0 ? level_ : lobe_.height * value(lobe_.factors[0], point.uniform());
     return {pixel, Rgb::grey(f), f};
   }
   std::vector<double> means() const override {
-    return mapped_indices(form_.width, [&](std::size_t p) {
-      return p % 2 == 0 ? form_.level : form_.lobe.height * integral(form_.lobe.factors[0], 0, 1);
+    return mapped_indices(width_, [&](std::size_t p) {
+      return p % 2 == 0 ? level_ : lobe_.height * integral(lobe_.factors[0], 0, 1);
     });
   }
 
  private:
-  Form form_;
+  std::size_t width_;
+  double level_ = 1;
+  Product lobe_{100, {Gaussian{0.5, 0.004}}};  ///< of one factor
 };
 
 /// Light transport to a row of receivers inside a sphere, by rays. Pixel p is the wall between two
@@ -118,11 +120,7 @@ class SphereTarget final : public Target {
         world_(std::make_shared<const paths::SphereWorld>(form_.scene,
                                                           paths::Camera{{0, 0, 0}, {0, 0, 1}})) {}
 
-  ImageShape shape() const override {
-    ImageShape shape{.width = form_.width, .height = 1};
-    if (!form_.grey) shape.components = {"red", "green", "blue"};
-    return shape;
-  }
+  ImageShape shape() const override { return row_of(form_.width, !form_.grey); }
   Contribution at(Coordinates& point, Cost& cost) const override {
     const double u = point.uniform();
     const render::Vector3 position = render::direction_at(2 * u - 1, point.uniform());
@@ -203,13 +201,6 @@ SharedTarget mixture_of(const Value& value, std::size_t pixels) {
   return std::make_shared<ProductTarget>(std::move(sum), pixels, false);
 }
 
-SharedTarget peak(std::size_t pixels, bool coloured) {
-  return std::make_shared<ProductTarget>(
-      std::vector<Product>{{1, {Linear{0.05, 0.5}, Linear{}}},
-                           {40, {Gaussian{0.3, 0.02}, Gaussian{0.7, 0.02}}}},
-      pixels, coloured);
-}
-
 SharedTarget sphere_of(const paths::SceneDescription& scene, double survival, std::size_t pixels) {
   return std::make_shared<SphereTarget>(
       SphereTarget::Form{.scene = std::get<paths::SphereScene>(scene.form),
@@ -238,7 +229,12 @@ SharedTarget named(Parameters& given, const std::string& name, std::size_t pixel
     return std::make_shared<ProductTarget>(std::vector<Product>{{1, {Linear{}, Linear{}}}}, pixels,
                                            false);
   }
-  if (name == "peak" || name == "coloured_peak") return peak(pixels, name != "peak");
+  if (name == "peak" || name == "coloured_peak") {
+    return std::make_shared<ProductTarget>(
+        std::vector<Product>{{1, {Linear{0.05, 0.5}, Linear{}}},
+                             {40, {Gaussian{0.3, 0.02}, Gaussian{0.7, 0.02}}}},
+        pixels, name != "peak");
+  }
   if (name == "boundary") {
     return std::make_shared<ProductTarget>(
         std::vector<Product>{{0.02, {Linear{}}}, {1, {Decay{20}}}}, pixels, false);
@@ -248,10 +244,7 @@ SharedTarget named(Parameters& given, const std::string& name, std::size_t pixel
                                  "width: 0.1}, {height: 60, centre: 0.7, width: 0.08}]}"),
                       pixels);
   }
-  if (name == "branches") {
-    return std::make_shared<BranchingTarget>(
-        BranchingTarget::Form{pixels, 1, {100, {Gaussian{0.5, 0.004}}}});
-  }
+  if (name == "branches") return std::make_shared<BranchingTarget>(pixels);
   if (name == "sphere" || name == "coloured_sphere") {
     return sphere_of(paths::read_scene(Value::scalar(name), given.folder()), 0.8, pixels);
   }
@@ -277,11 +270,7 @@ ProductTarget::ProductTarget(std::vector<Product> sum, std::size_t width, bool c
       colours_(row_of_colours(width, coloured)),
       coloured_(coloured) {}
 
-ImageShape ProductTarget::shape() const {
-  ImageShape shape{.width = colours_.size(), .height = 1};
-  if (coloured_) shape.components = {"red", "green", "blue"};
-  return shape;
-}
+ImageShape ProductTarget::shape() const { return row_of(colours_.size(), coloured_); }
 
 Contribution ProductTarget::at(Coordinates& point, Cost&) const {
   std::array<double, most_terms> products;
