@@ -139,11 +139,9 @@ SharedRadiance read_uniform(const Value& value) {
 
 SharedRadiance read_gradient(const Value& value) {
   require_keys(value, "`gradient`", {"base", "slope"});
-  const auto at = [&](const char* key) -> const Value& {
-    return required_key(value, "`gradient`", key);
-  };
-  const double base = finite_number(at("base"), "`base`");
-  const Vector3 slope = luminaire::read_vector(at("slope"), "`slope`");
+  const double base = finite_number(required_key(value, "`gradient`", "base"), "`base`");
+  const Vector3 slope =
+      luminaire::read_vector(required_key(value, "`gradient`", "slope"), "`slope`");
   require_not_negative(value, base - length(slope));
   return std::make_shared<Gradient>(base, slope);
 }
@@ -229,18 +227,15 @@ ParameterInformation sky_parameter() {
 
 SharedRadiance read_radiance(Parameters& given) {
   const Value& sky = given.structure("sky");
-  const std::vector<std::string> kinds = {"uniform", "gradient", "harmonics", "peak", "map"};
   given.require(sky.members().size() == 1, "sky",
                 "must be a map with one key: uniform, gradient, harmonics, peak or map");
+  require_keys(sky, "the sky", {"uniform", "gradient", "harmonics", "peak", "map"});
   const auto& [kind, value] = sky.members()[0];
   if (kind == "uniform") return read_uniform(value);
   if (kind == "gradient") return read_gradient(value);
   if (kind == "harmonics") return read_harmonics(value);
   if (kind == "peak") return read_peak(value);
-  if (kind == "map") return read_picture(value, given);
-  given.refuse(
-      "sky", "there is no sky `" + kind + "`" +
-                 did_you_mean(kind, kinds, "there are uniform, gradient, harmonics, peak and map"));
+  return read_picture(value, given);
 }
 
 }  // namespace assay::sky
