@@ -5,6 +5,7 @@
 
 #include <functional>
 
+#include "estimators/core/mapped.h"
 #include "estimators/mutant.h"
 #include "luminaire/area.h"
 #include "luminaire/floor.h"
@@ -185,25 +186,15 @@ double last_column(const Pixel& p, const ImageShape& shape) {
   return p.x + 1 == shape.width ? 0.9 : 1;
 }
 
-std::vector<Channel> only_means(std::vector<Channel> channels) {
-  for (Channel& channel : channels) channel = only_mean(channel);
-  return channels;
-}
-
-std::shared_ptr<const Setup> weighted(Parameters& parameters, const Weight& weight) {
-  const Floor floor = read_floor(parameters);
-  std::vector<WeightedPrimary> primaries;
-  for (std::size_t i = 0; i < floor.settings.size(); ++i) {
-    const Pixel pixel{i % floor.shape.width, i / floor.shape.width};
-    primaries.push_back({AreaPrimary<>(floor.settings[i]), weight(pixel, floor.shape)});
-  }
-  return imaging<WeightedPrimary>(
-      {floor.shape, only_means(floor_channels(floor)), std::move(primaries)});
-}
-
 Entry entry(const char* name, const char* defect, Weight weight) {
   return mutant({name, "luminaire/floor", defect}, [weight = std::move(weight)](Parameters& given) {
-    return weighted(given, weight);
+    const Floor floor = read_floor(given);
+    const auto primary = [&](std::size_t i) -> WeightedPrimary {
+      const Pixel pixel{i % floor.shape.width, i / floor.shape.width};
+      return {AreaPrimary<>(floor.settings[i]), weight(pixel, floor.shape)};
+    };
+    return imaging<WeightedPrimary>({floor.shape, mapped(floor_channels(floor), only_mean),
+                                     mapped_indices(floor.settings.size(), primary)});
   });
 }
 
