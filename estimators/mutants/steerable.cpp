@@ -173,12 +173,11 @@ std::shared_ptr<const Setup> analytic_normaliser(const Parts& parts) {
 
 std::shared_ptr<const Setup> map_density(const Parts& parts) {
   const auto sound = steered(parts);
-  const SharedSetting setting = parts.setting;
-  const Lobe lobe = parts.lobe;
-  return with(parts,
-              std::make_shared<const Redeclared>(sound, [sound, setting, lobe](const Vector3& w) {
-                return setting->grey(setting->radiance(w)) * lobe_value(lobe, w.z) / sound->total();
-              }));
+  const auto density = [sound, parts](const Vector3& w) {
+    const double grey = parts.setting->grey(parts.setting->radiance(w));
+    return grey * lobe_value(parts.lobe, w.z) / sound->total();
+  };
+  return with(parts, std::make_shared<const Redeclared>(sound, density));
 }
 
 std::shared_ptr<const Setup> flipped(const Parts& parts) {
