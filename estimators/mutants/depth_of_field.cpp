@@ -112,12 +112,9 @@ std::shared_ptr<const Setup> signed_maximum(Parameters& given) {
   return prepare_reconstruction(given, rules);
 }
 
-Splats as_they_fall(Splats splats) { return splats; }
-
 std::shared_ptr<const Setup> unnormalised(Parameters& given) {
-  ReconstructionRules rules;
-  rules.weights = as_they_fall;
-  return prepare_reconstruction(given, rules);
+  return prepare_reconstruction(given,
+                                {.weights = [](Splats as_they_fall) { return as_they_fall; }});
 }
 
 }  // namespace
