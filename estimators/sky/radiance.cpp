@@ -166,11 +166,8 @@ SharedRadiance read_peak(const Value& value) {
   const auto at = [&](const char* key) -> const Value& {
     return required_key(value, "`peak`", key);
   };
-  const auto number = [&](const char* key) {
-    return finite_number(at(key), std::string("`") + key + "`");
-  };
-  const Lobe lobe{.base = number("base"),
-                  .height = number("height"),
+  const Lobe lobe{.base = finite_number(at("base"), "`base`"),
+                  .height = finite_number(at("height"), "`height`"),
                   .sharpness = above_zero(at("sharpness"), "`sharpness`"),
                   .direction = luminaire::read_unit_vector(at("direction"), "`direction`")};
   const double least =
