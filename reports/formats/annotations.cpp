@@ -7,7 +7,6 @@
 
 #include "reports/report_formats.h"
 #include "reports/words/describe.h"
-#include "reports/words/display.h"
 #include "reports/words/ledger.h"
 #include "reports/words/text.h"
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <boost/algorithm/string/join.hpp>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <set>

@@ -1,6 +1,5 @@
 #include "stats/means/student_t.h"
 
-#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
-#include <numeric>
 
 #include "stats/basics/check.h"
 #include "stats/basics/search.h"

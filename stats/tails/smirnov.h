@@ -3,8 +3,6 @@
 #include <cstdint>
 #include <span>
 
-#include "stats/tails/test_result.h"
-
 namespace assay::stats {
 
 // A two-sample distance max |F_m - G_n| as a whole number of steps of 1 / lcm(m, n).

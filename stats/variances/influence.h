@@ -1,6 +1,5 @@
 #pragma once
 
-#include "stats/basics/gate.h"
 #include "stats/basics/joint_moments.h"
 #include "stats/tails/test_result.h"
 
