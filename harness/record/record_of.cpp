@@ -295,7 +295,7 @@ Estimate variance_of(const stats::Moments& moments, double primaries, double con
   if (moments.m2 == 0) return {0.0, 0.0, 0.0};
   const Estimate alone{number(primaries * moments.variance()), {}, {}};
   if (!has_spread(moments)) return alone;
-  const stats::Influence influence = stats::influence_of_variance(moments);
+  const stats::Influence influence = stats::influence_of_variance(stats::joint_of_four(moments));
   // One observation makes up most of what the variance's own spread is known from.
   if (stats::dominance_gate(influence.relative).state == stats::GateState::red) return alone;
   const stats::Interval log = interval_by_inversion(

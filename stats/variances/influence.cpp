@@ -143,10 +143,6 @@ Influence influence_of_variance(const JointMoments& sample) {
   return influence;
 }
 
-Influence influence_of_variance(const Moments& x) {
-  return influence_of_variance(joint_of_four(x));
-}
-
 Influence influence_of_variance_and_cost(const JointMoments& sample) {
   check_sample("influence_of_variance_and_cost", sample);
   check::positive({"influence_of_variance_and_cost", "mean cost"}, sample.of_cost.mean);

@@ -22,8 +22,6 @@ Influence influence_of_mean(const Moments& positive);
 // known to weight 4 only, the skewness of psi counts as 0, and influence_t is the plain t. These
 // three throw std::domain_error (count < 4, powers that are not finite), ZeroVariance.
 Influence influence_of_variance(const JointMoments& sample);
-// The same from four moments.
-Influence influence_of_variance(const Moments& x);
 // s2 times the mean cost c. The inverse is the efficiency.
 //   psi = c (d^2 - s2) + s2 (cost - c) + s2 c.
 Influence influence_of_variance_and_cost(const JointMoments& sample);
