@@ -162,24 +162,20 @@ AdaptiveQuadrature::Sampled AdaptiveQuadrature::sampled(const Function& function
   return sampled_in(span, function(places_in(span)));
 }
 
-Integral AdaptiveQuadrature::once(const Function& function, Span span) {
-  return sampled(function, span).integral;
-}
-
 const std::array<double, AdaptiveQuadrature::nodes>& AdaptiveQuadrature::node_places() {
   static const auto places = on_both_sides(Rule::abscissa(), -1);
   return places;
 }
 
 Integral AdaptiveQuadrature::over(const Function& function, Span span) {
-  return refined(function, span, once(function, span), deepest_bisection);
+  return refined(function, span, sampled(function, span).integral, deepest_bisection);
 }
 
 Integral AdaptiveQuadrature::refined(const Function& function, Span span, Integral whole,
                                      int depth) {
   const auto [first, second] = span.halves();
-  const Integral one = once(function, first);
-  const Integral two = once(function, second);
+  const Integral one = sampled(function, first).integral;
+  const Integral two = sampled(function, second).integral;
   const Integral sum = from_halves(whole, one, two);
   if (is_good(sum, limits_.tolerance)) return sum;
   if (depth <= 0 || exhausted()) return given_up(sum);

@@ -69,10 +69,9 @@ class AdaptiveQuadrature {
   // so that each call asks for hundreds of places. A density in another process is slow per call.
   // Throws as above.
   std::vector<Integral> along(const PlaneValues& density, std::span<const Line> lines);
-  // The integral without halving. Its error covers the values' own errors and a jump.
-  Integral once(const Function& function, Span span);
-  // The same with its parts: w_i f(x_i) times half the width at each node, and f just inside the
-  // ends. The nodes come in the order of node_places().
+  // The integral without halving. Its error covers the values' own errors and a jump. Its parts are
+  // w_i f(x_i) times half the width at each node, in the order of node_places(). The ends hold f
+  // just inside the part.
   struct Sampled {
     Integral integral;
     std::array<double, nodes> parts = {};
