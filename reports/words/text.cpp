@@ -13,18 +13,20 @@ namespace {
 
 using Utf8 = boost::locale::utf::utf_traits<char>;
 
-bool non_character(char32_t c) { return (c & 0xFFFE) == 0xFFFE || (c >= 0xFDD0 && c <= 0xFDEF); }
+struct Range {
+  char32_t first, last;
+};
 
-bool control(char32_t c) { return c < 0x20 || (c >= 0x7F && c < 0xA0); }
-
-// Line and paragraph separators, and the controls that reorder what follows them.
-bool layout_control(char32_t c) {
-  return (c >= 0x2028 && c <= 0x202E) || (c >= 0x2066 && c <= 0x2069);
+bool within(std::span<const Range> ranges, char32_t c) {
+  return std::ranges::any_of(ranges, [c](Range r) { return c >= r.first && c <= r.last; });
 }
 
-bool showable(char32_t c) {
-  return c == '\n' || c == '\t' || !(control(c) || layout_control(c) || non_character(c));
-}
+// These are never shown: controls but for tab and line feed, separators of lines and paragraphs,
+// controls that reorder what follows them, and non-characters.
+constexpr Range hidden[] = {{0x00, 0x08},     {0x0B, 0x1F},     {0x7F, 0x9F},
+                            {0x2028, 0x202E}, {0x2066, 0x2069}, {0xFDD0, 0xFDEF}};
+
+bool showable(char32_t c) { return !within(hidden, c) && (c & 0xFFFE) != 0xFFFE; }
 
 constexpr Form xml_forms[] = {
     {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
@@ -37,10 +39,6 @@ constexpr Form markdown_forms[] = {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"},
                                    {'`', "\\`"},   {'~', "\\~"},  {'[', "\\["},  {']', "\\]"},
                                    {'$', "\\$"},   {'\\', "\\\\"}};
 
-struct Range {
-  char32_t first, last;
-};
-
 constexpr Range combining[] = {{0x0300, 0x036F}, {0x1AB0, 0x1ACE}, {0x1DC0, 0x1DFF},
                                {0x200B, 0x200F}, {0x20D0, 0x20F0}, {0xFE00, 0xFE0F}};
 
@@ -50,10 +48,6 @@ constexpr Range wide[] = {
     {0x25FD, 0x26FF}, {0x2705, 0x27BF}, {0x2B1B, 0x2B55},   {0x2E80, 0xA4CF},
     {0xA960, 0xA97C}, {0xAC00, 0xD7FF}, {0xF900, 0xFAFF},   {0xFE10, 0xFE6F},
     {0xFF01, 0xFF60}, {0xFFE0, 0xFFE6}, {0x16FE0, 0x1FFFF}, {0x20000, 0x3FFFF}};
-
-bool within(std::span<const Range> ranges, char32_t c) {
-  return std::ranges::any_of(ranges, [c](Range r) { return c >= r.first && c <= r.last; });
-}
 
 // The longest start of the text that fits, and its columns.
 std::size_t fitting(std::string_view text, int width) {
