@@ -213,7 +213,7 @@ Examples:
   options.add_key(
       {"--detect", "X"}, given.keys,
       "the effect that must not pass, as 0.5% or 0.002; default none: 1000 observations; "
-      "for laws 0.05");
+      "for laws 0.05, but none for rows of a file");
   options.add_key({"--allow", "X"}, given.keys,
                   "the tolerated effect, as 0.5% or 0.002; default 0");
   options.add_key(

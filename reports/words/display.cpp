@@ -280,7 +280,7 @@ Standings standings(const Record& record) {
 
 std::string meaning(const Test& test) {
   if (is_missed(test)) return "";
-  if (standing(test) == Standing::caught) return "This is as the suite expects.";
+  if (standing(test) == Standing::caught) return "The planted bug was caught.";
   if (test.verdict == Verdict::pass && is_proof(test)) return "The claim is shown.";
   constexpr const char* meanings[] = {
       "Nothing speaks against the claim.",

@@ -42,16 +42,34 @@ std::vector<double> steadied(const ImageExtent& extent, const std::vector<double
   return steady;
 }
 
+std::size_t fewest_of(const ImagePair& pair) {
+  const std::size_t count = pair.a.images.size();
+  return pair.b != nullptr ? std::min(count, pair.b->images.size()) : count;
+}
+
 // Sets means, variances and difference of these elements.
 void take(const ImagePair& pair, std::size_t which, ElementRange range, Half& half) {
   const std::size_t here = range.first - half.first;
   const std::size_t size = range.size();
   const auto part = [&](std::vector<double>& all) { return std::span(all).subspan(here, size); };
-  const auto take_side = [&](const ImageStack& stack, std::size_t side) {
-    const std::span<double> errors = part(half.variance[side]);
-    moments_of_range(stack, range.first, {part(half.mean[side]), errors}, {which, halves});
+  const auto take_moments = [&](const ImageStack& stack, MomentArrays of) {
+    moments_of_range(stack, range.first, of, {which, halves});
     const double n = static_cast<double>(half_count(stack.images.size(), which));
-    for (double& m2 : errors) m2 /= n * (n - 1);
+    for (double& m2 : of.m2) m2 /= n * (n - 1);
+  };
+  const auto take_side = [&](const ImageStack& stack, std::size_t side) {
+    const MomentArrays all{part(half.mean[side]), part(half.variance[side])};
+    const MomentArrays some{part(half.mean_of_fewest[side]), part(half.variance_of_fewest[side])};
+    take_moments(stack, all);
+    const std::size_t fewest = fewest_of(pair);
+    if (stack.images.size() == fewest) {
+      std::ranges::copy(all.mean, some.mean.begin());
+      std::ranges::copy(all.m2, some.m2.begin());
+    } else {
+      ImageStack first = stack;
+      first.images.resize(fewest);
+      take_moments(first, some);
+    }
   };
   take_side(pair.a, 0);
   if (pair.b != nullptr) take_side(*pair.b, 1);
@@ -78,6 +96,8 @@ void advance(const ImagePair& pair, std::size_t which, ElementRange range, Half&
   for (std::size_t side = 0; side < (pair.b != nullptr ? 2U : 1U); ++side) {
     move(half.mean[side]);
     move(half.variance[side]);
+    move(half.mean_of_fewest[side]);
+    move(half.variance_of_fewest[side]);
   }
   move(half.difference);
   for_each((range.size() - kept + at_a_time - 1) / at_a_time, [&](std::size_t i) {

@@ -20,8 +20,8 @@ inline std::size_t half_count(std::size_t replicates, std::size_t half) {
 // zero if none of these varies within the half. A single element's v is from few values, and one
 // that is tiny by chance would carry the whole mean.
 //
-// The halves' means are uncorrelated as far as an element's weight does not tell the sign of its own
-// D. So an element that is constant within the half, which rare values make too dark, keeps the
+// The halves' means are uncorrelated as far as an element's weight does not tell the sign of its
+// own D. So an element that is constant within the half, which rare values make too dark, keeps the
 // weight that its neighbours give it.
 struct Half {
   std::size_t first = 0;  // The element that they begin with.
@@ -29,6 +29,9 @@ struct Half {
   // differs from another. A reference has neither.
   std::array<std::vector<double>, 2> mean;
   std::array<std::vector<double>, 2> variance;
+  // The same of as many replicates as either side has at least, so that chance treats both alike.
+  std::array<std::vector<double>, 2> mean_of_fewest;
+  std::array<std::vector<double>, 2> variance_of_fewest;
   std::vector<double> difference;
   std::vector<double> weight;
 

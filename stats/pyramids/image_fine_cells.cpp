@@ -374,7 +374,7 @@ class FineTiles {
           }
           ++counts_.tested;
           const CellNoise noise = noise_of(element);
-          note_noisier(noise, element, x, y, c);
+          if (cells_.pair.b != nullptr) note_noisier(element, x, y, c);
           const StudentValue value = own_value(noise);
           found_.z[element] = t_to_z(value);
           if (!candidates_[0].wants(value.t)) return;
@@ -411,14 +411,19 @@ class FineTiles {
     return std::midpoint(cells_.half[0].mean[side][here], cells_.half[1].mean[side][here]);
   }
 
-  // Which side has the larger variance over its squared mean?
-  void note_noisier(const CellNoise& cell, std::size_t element, std::size_t x, std::size_t y,
-                    std::size_t c) {
-    const auto noise = [&](std::size_t side) {
-      return cell.variance[side] * std::pow(mean_of(1 - side, element), 2);
+  // Which of two sides has the larger variance over its squared mean?
+  void note_noisier(std::size_t element, std::size_t x, std::size_t y, std::size_t c) {
+    const std::size_t here = element - cells_.half[0].first;
+    const auto sum = [&](const auto Half::*of, std::size_t side) {
+      return (cells_.half[0].*of)[side][here] + (cells_.half[1].*of)[side][here];
     };
-    found_.noise.at(0, x, y, c).add_element(noise(0) > noise(1));
-    if (cells_.pair.b != nullptr) found_.noise.at(1, x, y, c).add_element(noise(1) > noise(0));
+    const auto noise = [&](std::size_t side) {
+      return sum(&Half::variance_of_fewest, side) *
+             std::pow(sum(&Half::mean_of_fewest, 1 - side), 2);
+    };
+    for (const std::size_t side : {0U, 1U}) {
+      found_.noise.at(side, x, y, c).add_element(noise(side) > noise(1 - side));
+    }
   }
 
   // The weight in this half, which the other gives.

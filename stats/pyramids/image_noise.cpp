@@ -12,6 +12,11 @@ PooledNoise::Powers powers_of(double x, double count) {
   return {.count = 0, .squares = count * x * x, .cubes = count * x * x * x};
 }
 
+// That of a cell by its own noise, for an effect of this sign.
+double own_growth(const CellNoise& cell, double sign) {
+  return (sign < 0 ? 1 : -1) * cell.third / (cell.variance[0] + cell.variance[1]);
+}
+
 }  // namespace
 
 void PooledNoise::add(const Powers& powers) {
@@ -201,35 +206,43 @@ double NoisePyramid::growth(const std::array<PooledNoise::Moments, sides_of_pair
   return second > 0 ? third / second : 0;
 }
 
-double NoisePyramid::growth(const CellNoise& cell, double sign, const Rectangle& window,
-                            std::size_t channel) const {
-  const double direction = sign < 0 ? 1 : -1;
-  const double toward = cell.concentration < 0 ? -direction : direction;
-  const Around near = around(window, channel);
-  double largest = 0;
+std::optional<double> NoisePyramid::growth_of_blocks(const CellNoise& cell, double sign,
+                                                     const Rectangle& window,
+                                                     std::size_t channel) const {
   constexpr double fewest = 2;  // One giant tells no size of the rare.
-  if (!of_one_law(near, toward)) {
-    for (const auto& [a, b] : near.blocks) {
-      double beyond = 0;
-      for (int octave = near.last; octave >= near.first; --octave) {
-        beyond += (toward > 0 ? a : b)->rare(octave);
-        largest = std::max(largest, growth({a->cut_off(octave), b->cut_off(octave)}, toward));
-        if (beyond < fewest) continue;
-        largest =
-            std::max(largest, growth({a->rare_cut_off(octave), b->rare_cut_off(octave)}, toward));
-      }
+  const double toward = (sign < 0) == (cell.concentration < 0) ? -1 : 1;
+  const Around near = around(window, channel);
+  if (of_one_law(near, toward)) return std::nullopt;
+  double largest = 0;
+  for (const auto& [a, b] : near.blocks) {
+    double beyond = 0;
+    for (int octave = near.last; octave >= near.first; --octave) {
+      beyond += (toward > 0 ? a : b)->rare(octave);
+      largest = std::max(largest, growth({a->cut_off(octave), b->cut_off(octave)}, toward));
+      if (beyond < fewest) continue;
+      largest =
+          std::max(largest, growth({a->rare_cut_off(octave), b->rare_cut_off(octave)}, toward));
     }
   }
-  const double own = direction * cell.third / (cell.variance[0] + cell.variance[1]);
-  return std::max(std::abs(cell.concentration) * largest, own);
+  return std::abs(cell.concentration) * largest;
+}
+
+double NoisePyramid::growth(const CellNoise& cell, double sign, const Rectangle& window,
+                            std::size_t channel) const {
+  return std::max(growth_of_blocks(cell, sign, window, channel).value_or(0),
+                  own_growth(cell, sign));
 }
 
 ImageEffect NoisePyramid::kept(const CellNoise& cell, const Rectangle& window,
                                std::size_t channel) const {
-  const double growing = growth(cell, cell.effect, window, channel);
-  const double standard_error =
-      std::sqrt(cell.variance[0] + cell.variance[1] + std::abs(cell.effect) * growing);
-  return {.estimate = cell.effect, .standard_error = standard_error, .degrees = cell.degrees};
+  const auto& [a, b] = cell.variance;
+  const auto of_blocks = growth_of_blocks(cell, cell.effect, window, channel);
+  const double ratio = replicates_[0] / replicates_[1];
+  const double variance = of_blocks ? a + b : std::max(a + b, ratio * a + b / ratio);
+  const double growing = std::max(of_blocks.value_or(0), own_growth(cell, cell.effect));
+  return {.estimate = cell.effect,
+          .standard_error = std::sqrt(variance + std::abs(cell.effect) * growing),
+          .degrees = cell.degrees};
 }
 
 double NoisePyramid::hidden_squares(double times) const {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "stats/images/image.h"
@@ -124,10 +125,11 @@ class NoisePyramid {
   // rarest do not drown the others. Its rare ones count by themselves too, so that the edge of a
   // lamp does not drown them. That is in octaves that two of the darker side reach.
   //
-  // Two sides of one law have k3 = 0. So the blocks count only where the sides have different laws
-  // in one of them. That is where one is noisier for its mean in too many elements (sign test). It
-  // is also where the darker has too many rare values beyond an octave.
-  // A reference has a law of its own.
+  // Two sides of one law have one variance, which is pooled (Student 1908), unless Welch's is
+  // larger. What few replicates of one missed the other shows. So the blocks count only where the
+  // sides have different laws in one of them. That is where one is noisier for its mean in too many
+  // elements (sign test). It is also where the darker has too many rare values beyond an octave. A
+  // reference has a law of its own.
   ImageEffect kept(const CellNoise& cell, const Rectangle& window, std::size_t channel) const;
   // The k3 / k2 of an effect of this sign.
   double growth(const CellNoise& cell, double sign, const Rectangle& window,
@@ -159,6 +161,10 @@ class NoisePyramid {
   double inverse(std::size_t side) const;  // 1 / replicates_, 0 of a reference.
   bool of_one_law(const Around& near, double toward) const;
   double growth(const std::array<PooledNoise::Moments, sides_of_pair>& here, double toward) const;
+  // The k3 / k2 that the blocks tell of an effect of this sign; none where the sides are of one
+  // law.
+  std::optional<double> growth_of_blocks(const CellNoise& cell, double sign,
+                                         const Rectangle& window, std::size_t channel) const;
 
   std::array<double, sides_of_pair> replicates_ = {};  // 0: no side, but a reference.
   std::vector<Level> levels_;

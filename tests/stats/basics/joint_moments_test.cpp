@@ -72,9 +72,7 @@ TEST(JointMoments, MergedPartsEqualOnePass) {
   for (const std::size_t cut : {0UL, 1UL, 37UL, 256UL, 700UL, 1000UL}) {
     JointSums left;
     JointSums right;
-    for (std::size_t i = 0; i < 1000; ++i) {
-      (i < cut ? left : right).add(pairs.x[i], pairs.cost[i]);
-    }
+    for (std::size_t i = 0; i < 1000; ++i) (i < cut ? left : right).add(pairs.x[i], pairs.cost[i]);
     left.merge(right);
     EXPECT_EQ(left.moments().count, 1000U);
     expect_sums(pairs, left.moments(), 1e-13);
@@ -100,9 +98,7 @@ TEST(JointMoments, AConstantCostLeavesExactZeros) {
   for (const double x : pairs.x) sums.add(x, 3.3);
   const JointMoments moments = sums.moments();
   for (std::size_t j = 1; 2 * j <= JointMoments::weight; ++j) {
-    for (std::size_t i = 0; i + 2 * j <= JointMoments::weight; ++i) {
-      EXPECT_EQ(moments.sum(i, j), 0);
-    }
+    for (std::size_t i = 0; i + 2 * j <= JointMoments::weight; ++i) EXPECT_EQ(moments.sum(i, j), 0);
   }
   EXPECT_EQ(moments.cost().mean, 3.3);
 }

@@ -152,6 +152,12 @@ CALIBRATED(ImagePyramid, RareLightOfOneSideKeepsTheLevel, 846, tests::repetition
   return image_pyramid({lit_stack(random, {}).view(), smooth_stack(random).view()}).log_p;
 }
 
+CALIBRATED(ImagePyramid, UnequalNumbersOfOneLawKeepTheLevel, 852, tests::repetitions(500),
+           Shape::at_most_uniform) {
+  const Fireflies rare{.rate = 0.02, .share = 0.5};
+  return image_pyramid({lit_stack(random, rare).view(), lit_stack(random, rare, 48).view()}).log_p;
+}
+
 // Half of the mean is in a fiftieth of the values: a cell often misses all of them.
 CALIBRATED(ImagePyramid, RarerLightOfOneSideKeepsTheLevel, 846, tests::repetitions(2000),
            Shape::at_most_uniform) {
@@ -220,9 +226,9 @@ void scale(OwnedStack& stack, const Factor& factor) {
 }
 
 // A block of 6 x 6 is 30 % too dark in one of two images with rare light, or with none. Neighbours
-// take little away where both sides have the same law.
+// take little away where both sides have the same law, and more replicates of one hide nothing.
 TEST(ImagePyramid, NeighboursLeaveADefectToTwoImagesOfOneLaw) {
-  for (const double share : {0.0, 0.1}) {
+  for (const auto& [share, others] : {std::pair(0.0, 16U), {0.1, 16U}, {0.0, 48U}, {0.1, 48U}}) {
     Philox random(847);
     int found = 0;
     for (int run = 0; run < 20; ++run) {
@@ -231,9 +237,10 @@ TEST(ImagePyramid, NeighboursLeaveADefectToTwoImagesOfOneLaw) {
       scale(a, [](std::size_t x, std::size_t y) {
         return x >= 10 && x < 16 && y >= 5 && y < 11 ? 0.7F : 1.0F;
       });
-      found += image_pyramid({a.view(), lit_stack(random, rare).view()}).log_p < std::log(1e-2);
+      const OwnedStack b = lit_stack(random, rare, others);
+      found += image_pyramid({a.view(), b.view()}).log_p < std::log(1e-2);
     }
-    EXPECT_GE(found, 18) << share;
+    EXPECT_GE(found, 18) << share << " " << others;
   }
 }
 
