@@ -152,14 +152,16 @@ std::vector<reports::Sample> samples_of(const TestWork& work) {
   return samples;
 }
 
-reports::Channel channel_of(const ChannelOutcome& outcome, const Regions& regions) {
+reports::Channel channel_of(const ChannelOutcome& outcome, const Regions& regions, bool has_p) {
   reports::Channel channel{.name = outcome.name,
                            .statistic = number(outcome.at_null.statistic),
                            .distribution = {.family = outcome.at_null.distribution.family,
-                                            .parameters = outcome.at_null.distribution.parameters},
-                           .p_value = probability(outcome.decision.log_p_claimed),
-                           .log10_p = log10_of(outcome.decision.log_p_claimed)};
-  if (regions.has_forbidden()) {
+                                            .parameters = outcome.at_null.distribution.parameters}};
+  if (has_p) {
+    channel.p_value = probability(outcome.decision.log_p_claimed);
+    channel.log10_p = log10_of(outcome.decision.log_p_claimed);
+  }
+  if (has_p && regions.has_forbidden()) {
     channel.p_pass = probability(outcome.decision.log_p_forbidden);
     channel.log10_p_pass = log10_of(outcome.decision.log_p_forbidden);
   }
@@ -434,9 +436,14 @@ reports::Test record_of_test(const TestWork& work, const std::string& file) {
   test.gates.assign(outcome.plan.gates.begin(), outcome.plan.gates.end());
   test.gates.insert(test.gates.end(), outcome.gates.begin(), outcome.gates.end());
   test.samples = samples_of(work);
+  test.looks = looks_of(outcome, regions);
   if (const std::optional<DrawnTest> drawn = harness::drawn(work)) {
+    // Red gates may have left no look to take a p-value of.
+    const bool has_p = outcome.verdict != reports::Verdict::inconclusive || test.looks.empty() ||
+                       !std::ranges::none_of(test.looks, &std::optional<reports::Effect>::has_value,
+                                             &reports::Look::effect);
     for (const ChannelOutcome& channel : outcome.channels) {
-      test.channels.push_back(channel_of(channel, regions));
+      test.channels.push_back(channel_of(channel, regions, has_p));
       test.channels.back().laws = empirical_laws(*drawn, channel.index);
     }
     if (!outcome.channels.empty()) test.detectable = outcome.channels.front().detectable;
@@ -444,7 +451,6 @@ reports::Test record_of_test(const TestWork& work, const std::string& file) {
     add_cells(*drawn, test);
   }
   test.planned_looks = outcome.plan.looks.sizes;
-  test.looks = looks_of(outcome, regions);
   test.message = outcome.message;
   test.advice = outcome.advice;
   return test;

@@ -116,8 +116,7 @@ class Screen {
       if (fits(1 + more.size())) next.insert(next.end(), more.begin(), more.end());
     } else if (test.verdict == Verdict::fail && asked && !test.replay.empty()) {
       const std::vector<std::string> more = step_lines(*repeat);
-      const int used_below = static_cast<int>(text.size() + more.size());
-      next = cut(std::move(next), std::max(0, most - used - used_below));
+      next = cut(next, std::max(0, most - used - static_cast<int>(text.size() + more.size())));
       next.insert(next.end(), more.begin(), more.end());
     }
     indented(text, room());

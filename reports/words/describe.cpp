@@ -26,22 +26,12 @@ const Channel* least_excluded(const Test& test) {
   return &*std::ranges::max_element(test.channels, {}, order);
 }
 
-/// True if red gates left no look to take a p-value of.
-bool has_no_look(const Test& test) {
-  return test.verdict == Verdict::inconclusive && !test.looks.empty() &&
-         std::ranges::none_of(test.looks,
-                              [](const Look& look) { return look.effect.has_value(); }) &&
-         std::ranges::count(test.gates, "red", &Gate::state) > 0;
-}
-
 NamedP p_of_claim(const Test& test) {
-  if (has_no_look(test)) return {};
   const Channel channel = worst_channel(test);
   return {is_proof(test) ? "p(claim)" : "p", channel.p_value, channel.log10_p};
 }
 
 NamedP p_of_contrary(const Test& test) {
-  if (has_no_look(test)) return {};
   const Channel* least = least_excluded(test);
   const char* const name = is_proof(test) ? "p(contrary)" : "p";
   return least ? NamedP{name, least->p_pass, least->log10_p_pass} : NamedP{name, {}, {}};
@@ -167,7 +157,7 @@ std::string channels_fact(const Test& test) {
     if (channel.name == deciding || ++named > 3) continue;
     text += fmt::format("; {} {}", channel.name, effect_text(channel.effect));
     const NamedP p{"p", channel.p_value, channel.log10_p};
-    if (p.exists() && !has_no_look(test)) text += fmt::format(" ({})", p.text());
+    if (p.exists()) text += fmt::format(" ({})", p.text());
   }
   return text;
 }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <map>
 
 #include "reports/words/number.h"
@@ -32,11 +31,11 @@ std::string theta_sentence(const LedgerSeries& series) {
                                 : "");
 }
 
-/// Theta by some of the nights, each with the weight of its own precision.
-Number average(const LedgerSeries& series, const std::function<bool(const LedgerNight&)>& counts) {
+/// Theta by the nights from this one on, each with the weight of its own precision.
+Number average_since(const LedgerSeries& series, const std::string& first) {
   double weights = 0, sum = 0;
   for (const LedgerNight& night : series.nights) {
-    if (!counts(night) || !is_finite(night.estimate) || !night.low || !night.high) continue;
+    if (night.date < first || !is_finite(night.estimate) || !night.low || !night.high) continue;
     const double width = *night.high - *night.low;
     if (!(width > 0)) continue;
     weights += 1 / (width * width);
@@ -86,16 +85,12 @@ std::string alarm_sentence(const LedgerSeries& series) {
                                               minute(series.moved_from), minute(series.moved_to));
   const bool always = !series.nights.empty() && series.moved == series.nights.front().date;
   const Effect effect{.quantity = series.quantity, .relative = series.relative};
-  const auto is_before = [&](const LedgerNight& night) { return night.date < series.moved; };
-  const Number before = average(series, is_before);
-  const Number now = always ? series.estimate : average(series, std::not_fn(is_before));
-  const auto text = [&](const Number& size) { return size ? theta_text(*size, effect) : ""; };
+  const Number now = always ? series.estimate : average_since(series, series.moved);
   return fmt::format(
       "{}{}{}. The nights together refute the claim since {}.",
-      now ? fmt::format("The {} is about {}. ", effect_name(effect), text(now)) : "",
+      now ? fmt::format("The {} is about {}. ", effect_name(effect), theta_text(*now, effect)) : "",
       always ? "Most likely it was so from the first night on"
-             : fmt::format("It moved {}most likely on the night of {}, by Assay {}",
-                           text(before) == text(now) ? "" : fmt::format("from {} ", text(before)),
+             : fmt::format("It moved most likely on the night of {}, by Assay {}",
                            minute(series.moved), series.moved_commit),
       range, minute(series.since));
 }
