@@ -374,7 +374,11 @@ class FineTiles {
           }
           ++counts_.tested;
           const CellNoise noise = noise_of(element);
-          if (cells_.pair.b != nullptr) note_noisier(element, x, y, c);
+          if (cells_.pair.b != nullptr) {
+            note_noisier(element, x, y, c);
+          } else {
+            found_.noise.at(0, x, y, c).add_element(false);
+          }
           const StudentValue value = own_value(noise);
           found_.z[element] = t_to_z(value);
           if (!candidates_[0].wants(value.t)) return;
