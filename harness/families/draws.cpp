@@ -150,9 +150,7 @@ class InconsistencyTheta final : public DrawsTheta {
       : DrawsTheta(Draws::consistency, "exact: how often a draw contradicts its sampler",
                    inconsistency) {}
 
-  std::string where_it_differs(const DrawnTest& test) const override {
-    return first_contradiction(test);
-  }
+  std::string caveat(const DrawnTest& test) const override { return first_contradiction(test); }
 
  protected:
   CountedProbability counted(const Question& question) const override {

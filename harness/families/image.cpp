@@ -351,8 +351,8 @@ class ImageTheta : public Theta {
   std::string where_it_differs(const DrawnTest& test) const override {
     return means_where_it_differs(test);
   }
-  std::string caveat(const TestOutcome& outcome) const override {
-    const Question& question = outcome.question;
+  std::string caveat(const DrawnTest& test) const override {
+    const Question& question = test.outcome.question;
     const ScaledQuantity* const other = other_side(question.test->claim);
     if (question.of_two() || other == nullptr) return "";
     const bool exact = std::ranges::all_of(

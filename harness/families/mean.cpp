@@ -763,8 +763,9 @@ class MeanTheta : public Theta {
 
   /// Rare values that were never drawn would move a mean towards an end of its range. Where that
   /// has no bound, they may be all that is missing.
-  std::string caveat(const TestOutcome& outcome) const override {
+  std::string caveat(const DrawnTest& test) const override {
     constexpr std::uint64_t many = 16 * floor_of_evidence;
+    const TestOutcome& outcome = test.outcome;
     const Question& question = outcome.question;
     if (outcome.plan.method.is.exact || outcome.verdict != reports::Verdict::fail) return "";
     const reports::Effect& effect = outcome.channels[0].effect;

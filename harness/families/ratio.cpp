@@ -415,8 +415,8 @@ class VarianceTheta : public LogTheta {
     return secondaries_of_floor(test);
   }
 
-  std::string caveat(const TestOutcome& outcome) const override {
-    const Question& question = outcome.question;
+  std::string caveat(const DrawnTest& test) const override {
+    const Question& question = test.outcome.question;
     return question.of_two() ? rows_beside_primaries(question) : "";
   }
 

@@ -440,8 +440,8 @@ reports::Test record_of_test(const TestWork& work, const std::string& file) {
   if (const std::optional<DrawnTest> drawn = harness::drawn(work)) {
     // Red gates may have left no look to take a p-value of.
     const bool has_p = outcome.verdict != reports::Verdict::inconclusive || test.looks.empty() ||
-                       !std::ranges::none_of(test.looks, &std::optional<reports::Effect>::has_value,
-                                             &reports::Look::effect);
+                       std::ranges::any_of(test.looks, &std::optional<reports::Effect>::has_value,
+                                           &reports::Look::effect);
     for (const ChannelOutcome& channel : outcome.channels) {
       test.channels.push_back(channel_of(channel, regions, has_p));
       test.channels.back().laws = empirical_laws(*drawn, channel.index);

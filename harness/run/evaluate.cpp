@@ -317,8 +317,8 @@ bool is_doubted(const TestOutcome& outcome) {
          (lies_above(effect, 0) || lies_below(effect, 0));
 }
 
-void add_caveat(TestOutcome& outcome) {
-  const std::string caveat = outcome.question.theta->caveat(outcome);
+void add_caveat(const DrawnTest& test, TestOutcome& outcome) {
+  const std::string caveat = outcome.question.theta->caveat(test);
   if (caveat.empty()) return;
   outcome.message += "; " + caveat;
   if (outcome.verdict == Verdict::fail) outcome.advice = reports::Advice{.words = caveat};
@@ -344,13 +344,9 @@ void take_sound_look(TestWork& work, const DrawnTest& test, bool may_go_on) {
     note_sizes(outcome, test);
     if (outcome.message.empty()) {
       Reason reason = narrate(outcome);
-      const std::string where = outcome.question.theta->where_it_differs(test);
-      outcome.message = reason.text + where;
-      // A picture's record has the place.
-      if (!where.empty() && !reason.advice && !outcome.channels[0].image)
-        reason.advice = reports::Advice{.words = where.substr(2)};
+      outcome.message = reason.text + outcome.question.theta->where_it_differs(test);
       outcome.advice = std::move(reason.advice);
-      if (is_doubted(outcome)) add_caveat(outcome);
+      if (is_doubted(outcome)) add_caveat(test, outcome);
     }
   }
   require_activation(outcome, test);

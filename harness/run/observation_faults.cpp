@@ -132,7 +132,7 @@ std::string first_contradiction(const DrawnTest& test) {
     // with it.
   }
   if (!first) return "";
-  return fmt::format("; the first inconsistent draw is observation {}{}", *first,
+  return fmt::format("the first inconsistent draw is observation {}{}", *first,
                      replay_line(outcome, *first));
 }
 

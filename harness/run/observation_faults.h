@@ -19,7 +19,7 @@ std::string where_it_stopped(const TestWork& work);
 /// they can.
 std::string unusable(const DrawnTest& test);
 
-/// The first draw that contradicts its sampler, as the end of a sentence; "" if none does.
+/// The first draw that contradicts its sampler, in a clause; "" if none does.
 std::string first_contradiction(const DrawnTest& test);
 
 /// True if a mutant's defect changed something: an observation of the pool differs from its

@@ -196,9 +196,9 @@ class Theta {
   virtual const char* detectable_text() const { return " or more"; }
   /// The place where the data of a failed claim differ.
   virtual std::string where_it_differs(const DrawnTest&) const { return ""; }
-  /// Another reason for what the data say, in a clause: of fails, and of passes whose interval
-  /// excludes the claim.
-  virtual std::string caveat(const TestOutcome&) const { return ""; }
+  /// A clause that fails need, and passes whose interval excludes the claim: another reason for
+  /// what the data say, or the draw that shows it.
+  virtual std::string caveat(const DrawnTest&) const { return ""; }
 };
 
 }  // namespace assay::harness

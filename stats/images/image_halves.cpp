@@ -42,9 +42,14 @@ std::vector<double> steadied(const ImageExtent& extent, const std::vector<double
   return steady;
 }
 
-std::size_t fewest_of(const ImagePair& pair) {
-  const std::size_t count = pair.a.images.size();
-  return pair.b != nullptr ? std::min(count, pair.b->images.size()) : count;
+const ImageStack& stack_of(const ImagePair& pair, std::size_t side) {
+  return side == 0 ? pair.a : *pair.b;
+}
+
+// True if this side has more replicates than the other.
+bool has_more(const ImagePair& pair, std::size_t side) {
+  return pair.b != nullptr &&
+         stack_of(pair, side).images.size() > stack_of(pair, 1 - side).images.size();
 }
 
 // Sets means, variances and difference of these elements.
@@ -58,18 +63,11 @@ void take(const ImagePair& pair, std::size_t which, ElementRange range, Half& ha
     for (double& m2 : of.m2) m2 /= n * (n - 1);
   };
   const auto take_side = [&](const ImageStack& stack, std::size_t side) {
-    const MomentArrays all{part(half.mean[side]), part(half.variance[side])};
-    const MomentArrays some{part(half.mean_of_fewest[side]), part(half.variance_of_fewest[side])};
-    take_moments(stack, all);
-    const std::size_t fewest = fewest_of(pair);
-    if (stack.images.size() == fewest) {
-      std::ranges::copy(all.mean, some.mean.begin());
-      std::ranges::copy(all.m2, some.m2.begin());
-    } else {
-      ImageStack first = stack;
-      first.images.resize(fewest);
-      take_moments(first, some);
-    }
+    take_moments(stack, {part(half.mean[side]), part(half.variance[side])});
+    if (!has_more(pair, side)) return;
+    ImageStack fewest = stack;
+    fewest.images.resize(stack_of(pair, 1 - side).images.size());
+    take_moments(fewest, {part(half.mean_of_fewest[side]), part(half.variance_of_fewest[side])});
   };
   take_side(pair.a, 0);
   if (pair.b != nullptr) take_side(*pair.b, 1);
@@ -96,6 +94,7 @@ void advance(const ImagePair& pair, std::size_t which, ElementRange range, Half&
   for (std::size_t side = 0; side < (pair.b != nullptr ? 2U : 1U); ++side) {
     move(half.mean[side]);
     move(half.variance[side]);
+    if (!has_more(pair, side)) continue;
     move(half.mean_of_fewest[side]);
     move(half.variance_of_fewest[side]);
   }

@@ -29,11 +29,20 @@ struct Half {
   // differs from another. A reference has neither.
   std::array<std::vector<double>, 2> mean;
   std::array<std::vector<double>, 2> variance;
-  // The same of as many replicates as either side has at least, so that chance treats both alike.
+  // A side with more replicates than the other has the same of as many as that, so that chance
+  // treats both alike.
   std::array<std::vector<double>, 2> mean_of_fewest;
   std::array<std::vector<double>, 2> variance_of_fewest;
   std::vector<double> difference;
   std::vector<double> weight;
+
+  // These are of as many replicates as the side with fewer has.
+  double fair_mean(std::size_t side, std::size_t here) const {
+    return (mean_of_fewest[side].empty() ? mean : mean_of_fewest)[side][here];
+  }
+  double fair_variance(std::size_t side, std::size_t here) const {
+    return (variance_of_fewest[side].empty() ? variance : variance_of_fewest)[side][here];
+  }
 
   // The squared error of the difference, without that of a reference.
   double variance_at(std::size_t here) const {

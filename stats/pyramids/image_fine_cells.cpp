@@ -374,11 +374,7 @@ class FineTiles {
           }
           ++counts_.tested;
           const CellNoise noise = noise_of(element);
-          if (cells_.pair.b != nullptr) {
-            note_noisier(element, x, y, c);
-          } else {
-            found_.noise.at(0, x, y, c).add_element(false);
-          }
+          add_element(element, x, y, c);
           const StudentValue value = own_value(noise);
           found_.z[element] = t_to_z(value);
           if (!candidates_[0].wants(value.t)) return;
@@ -415,19 +411,17 @@ class FineTiles {
     return std::midpoint(cells_.half[0].mean[side][here], cells_.half[1].mean[side][here]);
   }
 
-  // Which of two sides has the larger variance over its squared mean?
-  void note_noisier(std::size_t element, std::size_t x, std::size_t y, std::size_t c) {
-    const std::size_t here = element - cells_.half[0].first;
-    const auto sum = [&](const auto Half::*of, std::size_t side) {
-      return (cells_.half[0].*of)[side][here] + (cells_.half[1].*of)[side][here];
-    };
+  // Counts it. Of two sides one has the larger variance over its squared mean.
+  void add_element(std::size_t element, std::size_t x, std::size_t y, std::size_t c) {
+    const auto& [even, odd] = cells_.half;
+    const std::size_t here = element - even.first;
     const auto noise = [&](std::size_t side) {
-      return sum(&Half::variance_of_fewest, side) *
-             std::pow(sum(&Half::mean_of_fewest, 1 - side), 2);
+      return (even.fair_variance(side, here) + odd.fair_variance(side, here)) *
+             std::pow(even.fair_mean(1 - side, here) + odd.fair_mean(1 - side, here), 2);
     };
-    for (const std::size_t side : {0U, 1U}) {
-      found_.noise.at(side, x, y, c).add_element(noise(side) > noise(1 - side));
-    }
+    const bool of_two = cells_.pair.b != nullptr;
+    found_.noise.at(0, x, y, c).add_element(of_two && noise(0) > noise(1));
+    if (of_two) found_.noise.at(1, x, y, c).add_element(noise(1) > noise(0));
   }
 
   // The weight in this half, which the other gives.

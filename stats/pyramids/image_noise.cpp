@@ -12,7 +12,7 @@ PooledNoise::Powers powers_of(double x, double count) {
   return {.count = 0, .squares = count * x * x, .cubes = count * x * x * x};
 }
 
-// That of a cell by its own noise, for an effect of this sign.
+// A cell's own noise tells this growth for an effect of this sign.
 double own_growth(const CellNoise& cell, double sign) {
   return (sign < 0 ? 1 : -1) * cell.third / (cell.variance[0] + cell.variance[1]);
 }

@@ -94,6 +94,8 @@ TEST_F(ImageRows, MakeTheFamilyOfTheWhole) {
   EXPECT_EQ(z, z_of_whole);
   EXPECT_EQ(rows.weights, whole.weights);
   EXPECT_EQ(rows.hidden_squares, whole.hidden_squares);
+  const std::vector<double> zeros(extent.elements());
+  EXPECT_GT(image_pyramid({a_.view(), ImageReference{extent, zeros}}).hidden_squares, 0);
 }
 
 TEST_F(ImageRows, HaveTheDistanceOfTheWhole) {

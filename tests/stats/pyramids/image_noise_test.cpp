@@ -94,7 +94,7 @@ TEST(NoisePyramid, HasTheVarianceOfEqualMeans) {
   const double alone = t_of(0);
   const auto t = [](const NoisePyramid& noise) { return noise.kept(dark, pixel, 0).t(); };
   EXPECT_NEAR(t(pyramid_of({clean, clean})), alone, 1e-9);
-  // Of one law the variance is pooled.
+  // Sides of one law pool their variance.
   EXPECT_NEAR(t(pyramid_of({clean, clean}, {16, 32})), -3 / std::sqrt(.0625 / 2 + .0625 * 2), 1e-9);
   // The roots of 6.4 and 1.4 are 1.9 standard errors apart: 6 values and 1 may be of one law.
   EXPECT_NEAR(t(pyramid_of({with_rare(6), with_rare(1)})), alone, 1e-9);
