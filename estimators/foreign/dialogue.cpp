@@ -47,15 +47,6 @@ Dialogue::Dialogue(const Terms& terms) : terms_(terms), child_(terms.launch) {
   }
 }
 
-/// Seconds that a reply may take. After a block that was overdue, each observation is asked for
-/// alone: a process that has answered before answers far sooner, unless this one hangs.
-double Dialogue::patience() const {
-  constexpr double least = 0.5, part = 0.1;
-  const double whole = terms_.timeout;
-  const bool soon = has_answered_ && terms_.was_overdue->test();
-  return soon ? std::min(whole, std::max(least, part * whole)) : whole;
-}
-
 /// Waits for bytes of its standard output. Where none come for a while the user is asked, once.
 std::size_t Dialogue::listen(std::span<char> into, Deadline end) {
   const Deadline silence_ends = steady_clock::now() + std::chrono::seconds(silent_seconds);
@@ -110,9 +101,7 @@ std::vector<double> Respondent::ask(const Question& question, std::string_view i
 
 std::vector<double> Dialogue::hear(const Question& question, std::string_view items) {
   try {
-    std::vector<double> numbers = reply_to(question, items);
-    has_answered_ = true;
-    return numbers;
+    return reply_to(question, items);
   } catch (const ProtocolError& error) {
     give_up("cannot be understood: " + std::string(error.what()));
   }
@@ -122,8 +111,7 @@ std::vector<double> Dialogue::reply_to(const Question& question, std::string_vie
   const std::size_t width =
       question.is_to_sampler() ? numbers_of(question.asked()) : hello_.width();
   Reply reply(question, width, hello_.numbers);
-  const double seconds = patience();
-  Deadline end = after(seconds);
+  Deadline end = after(terms_.timeout);
   bool reads = true;
   if (child_.has_output()) {
     std::array<char, 64> early{};
@@ -147,13 +135,8 @@ std::vector<double> Dialogue::reply_to(const Question& question, std::string_vie
       if (const std::string why = reply.ends_early(); !why.empty()) throw ProtocolError(why);
     }
   } catch (const TimeOut&) {
-    if (question.count > 1) terms_.was_overdue->test_and_set();
     if (!reads) give_up("closed its standard input instead of answering for " + to_text(question));
-    const std::string beside =
-        seconds < terms_.timeout ? ", and not beside others within " + seconds_text(terms_.timeout)
-                                 : "";
-    give_up("did not answer for " + to_text(question) + " within " + seconds_text(seconds) +
-                beside +
+    give_up("did not answer for " + to_text(question) + " within " + seconds_text(terms_.timeout) +
                 (terms_.asked_whether_it_flushes ? " (parameter `timeout`; does it flush its "
                                                    "output after each reply, or run for ever?)"
                                                  : " (parameter `timeout`)"),

@@ -26,9 +26,6 @@ struct Terms {
   /// Set once a program of the set-up that said nothing for 3 s was asked if it flushes its output.
   /// Null if output cannot wait in a buffer.
   std::shared_ptr<std::atomic_flag> asked_whether_it_flushes = {};
-  /// Set once the reply for several observations took longer than `timeout`. Each is then asked for
-  /// alone, with less patience.
-  std::shared_ptr<std::atomic_flag> was_overdue = std::make_shared<std::atomic_flag>();
   /// Who prints the line `ready`, and when.
   std::string who_is_ready =
       "a Python program ends with `assay.serve(FUNCTION)`, which prints it (the package `assay` is "
@@ -97,7 +94,6 @@ class Dialogue final : public Respondent {
   void ends_by(Deadline end) override { child_.ends_by(end); }
 
  private:
-  double patience() const;
   void hear_hello();
   std::size_t listen(std::span<char> into, Deadline end);
   std::vector<double> hear(const Question& question, std::string_view items) override;
@@ -107,7 +103,6 @@ class Dialogue final : public Respondent {
   const Terms& terms_;
   Child child_;
   Hello hello_;
-  bool has_answered_ = false;
 };
 
 }  // namespace assay::foreign

@@ -363,9 +363,8 @@ test_manuals_tell_all() {
   tells out 'its crash ends the whole run'
 }
 
-# A block of observations is waited for, and then for a moment the one that hangs.
-test_a_program_that_hangs_is_waited_for_once() {
-  local start
+# Once for a block of observations, and once for the one that hangs.
+test_a_program_that_hangs_is_waited_for_twice() {
   cat >hangs.py <<'PROGRAM'
 import random, sys, time
 
@@ -382,14 +381,12 @@ PROGRAM
   cat >hangs.yaml <<'SUITE'
 suite: hangs
 estimators:
-  a: {plugin: process, command: [/usr/bin/python3, -I, hangs.py], timeout: 5}
+  a: {plugin: process, command: [/usr/bin/python3, -I, hangs.py], timeout: 2}
 tests:
   - claim: mean(a) == 0.5
 SUITE
-  start=$SECONDS
   expect 1 run hangs.yaml
-  [ $((SECONDS - start)) -lt 9 ] || fail "it took $((SECONDS - start)) s"
-  tells out 'did not answer for observation 600 within 0.5 seconds, and not beside others within 5 seconds'
+  tells out 'did not answer for observation 600 within 2 seconds'
   [ "$(wc -l <waits)" = 2 ] || fail "$(wc -l <waits) waits"
 }
 
