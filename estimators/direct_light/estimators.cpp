@@ -98,32 +98,14 @@ class Directions final : public Sampler {
   std::vector<LitTriangle> triangles_;
 };
 
-bool has_directions(const Techniques& techniques) {
-  const luminaire::Setting& setting = techniques.setting();
-  return setting.planar() && setting.triangles()[0].emits;
-}
-
-NamedSampler sampler_named(const char* name, const SharedTechniques& techniques,
-                           const Pair& probabilities) {
-  return {name, std::make_shared<Directions>(techniques, probabilities)};
-}
-
-/// `light`: of a planar luminaire that emits towards the receiver, else nothing.
-std::vector<NamedSampler> light_samplers(const SharedTechniques& techniques) {
-  if (!has_directions(*techniques)) return {};
-  return {sampler_named("light", techniques, {1, 0})};
-}
-
-/// `brdf`, with directions below the horizon as invalid draws.
-NamedSampler brdf_sampler(const SharedTechniques& techniques) {
-  return sampler_named("brdf", techniques, {0, 1});
-}
-
-/// `mixture` of both with these probabilities; where there is `light`.
-std::vector<NamedSampler> mixture_samplers(const SharedTechniques& techniques,
-                                           const Pair& probabilities) {
-  if (!has_directions(*techniques)) return {};
-  return {sampler_named("mixture", techniques, probabilities)};
+/// The directions as a sampler; none that draw the light unless it is planar and emits towards the
+/// receiver.
+std::vector<NamedSampler> samplers(const char* name, const SharedTechniques& techniques,
+                                   const Pair& probabilities) {
+  const luminaire::Setting& setting = techniques->setting();
+  const bool has_light = setting.planar() && setting.triangles()[0].emits;
+  if (probabilities.light > 0 && !has_light) return {};
+  return {{name, std::make_shared<Directions>(techniques, probabilities)}};
 }
 
 // The most that a draw of the BRDF brings when all the light of the scene is weighted by 1.
@@ -167,7 +149,7 @@ std::shared_ptr<const Setup> prepare_light(Parameters& given) {
       [techniques, alone](Stream& random, Cost& cost) {
         return from_light(alone, techniques->light(random, cost));
       },
-      light_samplers(techniques));
+      samplers("light", techniques, {1, 0}));
 }
 
 std::shared_ptr<const Setup> prepare_brdf(Parameters& given) {
@@ -175,11 +157,12 @@ std::shared_ptr<const Setup> prepare_brdf(Parameters& given) {
   const auto techniques = std::make_shared<const Techniques>(setting, read_reflectance(given),
                                                              solid_angle_sampling(setting));
   const WeightedByHeuristic alone(Heuristic::balance(), {0, 1});
-  return averaging(one_sample_channel(*techniques, alone, highest_of_brdf(*techniques), {0, 1}),
-                   [techniques, alone](Stream& random, Cost& cost) {
-                     return from_brdf(alone, techniques->brdf(random, cost));
-                   },
-                   {brdf_sampler(techniques)});
+  return averaging(
+      one_sample_channel(*techniques, alone, highest_of_brdf(*techniques), {0, 1}),
+      [techniques, alone](Stream& random, Cost& cost) {
+        return from_brdf(alone, techniques->brdf(random, cost));
+      },
+      samplers("brdf", techniques, {0, 1}));
 }
 
 std::shared_ptr<const Setup> prepare_multi_sample(Parameters& given) {
@@ -193,12 +176,12 @@ std::shared_ptr<const Setup> prepare_multi_sample(Parameters& given) {
   //   Power: f q_i^(e-1) / (q_l^e + q_b^e) <= f / q_b, since x^(e-1) <= 1 + x^e.
   //   Maximum and cutoff: f / q_i with q_i the larger, if the other is left out.
   const double high = highest_of_brdf(*techniques) * (n.light + n.brdf) / n.brdf;
-  std::vector<NamedSampler> samplers = light_samplers(techniques);
-  samplers.push_back(brdf_sampler(techniques));
+  std::vector<NamedSampler> both = samplers("light", techniques, {1, 0});
+  both.push_back(samplers("brdf", techniques, {0, 1}).front());
   return averaging(
       radiance_channel(*techniques, combination, high,
                        [&](const Moments& known) { return known.multi_sample_variance(counts); }),
-      MultiSamplePrimary<>{techniques, counts, combination}, std::move(samplers));
+      MultiSamplePrimary<>{techniques, counts, combination}, std::move(both));
 }
 
 std::shared_ptr<const Setup> prepare_one_sample(Parameters& given) {
@@ -209,7 +192,7 @@ std::shared_ptr<const Setup> prepare_one_sample(Parameters& given) {
   const double high = highest_of_brdf(*techniques) / probabilities.brdf;
   return averaging(one_sample_channel(*techniques, combination, high, probabilities),
                    OneSamplePrimary<>{techniques, probabilities, combination},
-                   mixture_samplers(techniques, probabilities));
+                   samplers("mixture", techniques, probabilities));
 }
 
 }  // namespace
