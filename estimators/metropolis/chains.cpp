@@ -43,10 +43,6 @@ std::vector<NamedSampler> step_samplers(const std::shared_ptr<const SmallStep>& 
           {"coordinate", sampler_of({Domain::interval, moved, uniform_density(1)})}};
 }
 
-double luminance_of(const Rgb& s, std::size_t components) {
-  return components == 1 ? s[0] : luminance(s);
-}
-
 /// Writes an image of sums over `count` points, and the mean over its pixels.
 void write_image(const ImageShape& shape, const Tally& tally, std::span<double> out) {
   const std::size_t components = shape.components.size();
@@ -60,7 +56,7 @@ void write_image(const ImageShape& shape, const Tally& tally, std::span<double> 
       out[p * components + c] = pixels * value[c];
     }
   }
-  out[shape.elements()] = luminance_of(sum, components);
+  out[shape.elements()] = components == 1 ? sum[0] : luminance(sum);
 }
 
 class ChainEstimator final : public Estimator {

@@ -108,58 +108,50 @@ class BranchingTarget final : public Target {
 /// brings what is emitted where it arrives.
 class SphereTarget final : public Target {
  public:
-  struct Form {
-    paths::SphereScene scene;
-    bool grey;
-    std::size_t width;
-    double survival;
-  };
   /// The camera is of no account: paths start at the wall.
-  explicit SphereTarget(Form form)
-      : form_(std::move(form)),
-        world_(std::make_shared<const paths::SphereWorld>(form_.scene,
-                                                          paths::Camera{{0, 0, 0}, {0, 0, 1}})) {}
+  SphereTarget(const paths::SceneDescription& scene, double survival, std::size_t width)
+      : sphere_(std::get<paths::SphereScene>(scene.form)),
+        grey_(scene.grey),
+        width_(width),
+        survival_(survival),
+        world_(sphere_, paths::Camera{{0, 0, 0}, {0, 0, 1}}) {}
 
-  ImageShape shape() const override { return row_of(form_.width, !form_.grey); }
+  ImageShape shape() const override { return row_of(width_, !grey_); }
   Contribution at(Coordinates& point, Cost& cost) const override {
     const double u = point.uniform();
     const render::Vector3 position = render::direction_at(2 * u - 1, point.uniform());
     paths::Tally tally;
-    paths::walk(*world_, world_->zones().vertex(position), form_.survival, point, tally, cost);
-    return {pixel_of(u, form_.width), tally.value,
-            form_.grey ? tally.value[0] : luminance(tally.value)};
+    paths::walk(world_, world_.zones().vertex(position), survival_, point, tally, cost);
+    return {pixel_of(u, width_), tally.value, grey_ ? tally.value[0] : luminance(tally.value)};
   }
   std::vector<double> means() const override {
-    const paths::ZonedScene& law = world_->zones().law();
+    const paths::ZonedScene& law = world_.zones().law();
     std::vector<double> all;
-    for (std::size_t p = 0; p < form_.width; ++p) {
-      const auto width = static_cast<double>(form_.width);
+    for (std::size_t p = 0; p < width_; ++p) {
+      const auto width = static_cast<double>(width_);
       const double low = 2 * static_cast<double>(p) / width - 1;
       const double high = 2 * static_cast<double>(p + 1) / width - 1;
       Rgb sum;
       double below = -1;
       for (std::size_t z = 0; z < law.zones.size(); ++z) {
-        const double top = form_.scene.zones[z].top;
+        const double top = sphere_.zones[z].top;
         const double common = std::max(0.0, std::min(high, top) - std::max(low, below));
         const paths::Surface& surface = law.zones[z].surface;
         sum += common / (high - low) * (surface.emission + surface.diffuse * law.mean_radiance());
         below = top;
       }
-      for (std::size_t c = 0; c < (form_.grey ? 1 : 3); ++c) all.push_back(sum[c]);
+      for (std::size_t c = 0; c < (grey_ ? 1 : 3); ++c) all.push_back(sum[c]);
     }
     return all;
   }
 
  private:
-  Form form_;
-  std::shared_ptr<const paths::SphereWorld> world_;
+  paths::SphereScene sphere_;
+  bool grey_;
+  std::size_t width_;
+  double survival_;
+  paths::SphereWorld world_;
 };
-
-std::size_t dimensions_of(const Value& value) {
-  const std::uint64_t count = value.count("`dimensions`");
-  value.require(count >= 1 && count <= most_terms, "`dimensions` must be from 1 to 32");
-  return count;
-}
 
 /// A number for all coordinates, or a list with one for each.
 std::vector<double> centre_of(const Value& value, std::size_t dimensions) {
@@ -185,7 +177,9 @@ Product lobe_of(const Value& value, std::size_t dimensions) {
 
 SharedTarget mixture_of(const Value& value, std::size_t pixels) {
   require_keys(value, "the mixture", {"dimensions", "base", "lobes"});
-  const std::size_t dimensions = dimensions_of(required_key(value, "the mixture", "dimensions"));
+  const Value& number = required_key(value, "the mixture", "dimensions");
+  const std::uint64_t dimensions = number.count("`dimensions`");
+  number.require(dimensions >= 1 && dimensions <= most_terms, "`dimensions` must be from 1 to 32");
   const Value& base = required_key(value, "the mixture", "base");
   const Value& lobes = required_key(value, "the mixture", "lobes");
   lobes.require(lobes.kind() == Value::Kind::list && lobes.items().size() < most_terms,
@@ -201,27 +195,16 @@ SharedTarget mixture_of(const Value& value, std::size_t pixels) {
   return std::make_shared<ProductTarget>(std::move(sum), pixels, false);
 }
 
-SharedTarget sphere_of(const paths::SceneDescription& scene, double survival, std::size_t pixels) {
-  return std::make_shared<SphereTarget>(
-      SphereTarget::Form{.scene = std::get<paths::SphereScene>(scene.form),
-                         .grey = scene.grey,
-                         .width = pixels,
-                         .survival = survival});
-}
-
-/// The zones as a scene of paths, whose camera nobody looks through here.
-paths::SceneDescription zones_of(const Value& zones, const std::string& folder) {
-  const Value camera = parse_flow("{position: [0, 0, 0], direction: [0, 0, 1]}");
-  return paths::read_scene(Value::map({{"zones", zones}, {"camera", camera}}, zones.where()),
-                           folder);
-}
-
 SharedTarget read_sphere(const Value& value, std::size_t pixels, const std::string& folder) {
   require_keys(value, "the sphere", {"zones", "survival"});
   const Value& survival = required_key(value, "the sphere", "survival");
   const double q = above_zero(survival, "the sphere's survival");
   survival.require(q < 1, "the sphere's survival must be below 1");
-  return sphere_of(zones_of(required_key(value, "the sphere", "zones"), folder), q, pixels);
+  const Value& zones = required_key(value, "the sphere", "zones");
+  // A scene of paths, whose camera nobody looks through here.
+  const Value camera = parse_flow("{position: [0, 0, 0], direction: [0, 0, 1]}");
+  const Value scene = Value::map({{"zones", zones}, {"camera", camera}}, zones.where());
+  return std::make_shared<SphereTarget>(paths::read_scene(scene, folder), q, pixels);
 }
 
 SharedTarget named(Parameters& given, const std::string& name, std::size_t pixels) {
@@ -246,7 +229,8 @@ SharedTarget named(Parameters& given, const std::string& name, std::size_t pixel
   }
   if (name == "branches") return std::make_shared<BranchingTarget>(pixels);
   if (name == "sphere" || name == "coloured_sphere") {
-    return sphere_of(paths::read_scene(Value::scalar(name), given.folder()), 0.8, pixels);
+    return std::make_shared<SphereTarget>(paths::read_scene(Value::scalar(name), given.folder()),
+                                          0.8, pixels);
   }
   given.refuse("target",
                "there is no target `" + name + "`" +
