@@ -11,11 +11,6 @@ namespace {
 using luminaire::SceneDescription;
 using luminaire::Setting;
 
-SceneDescription without_occluders(SceneDescription description) {
-  description.occluders.clear();
-  return description;
-}
-
 Colour colour_of(const Setting& setting, const Setting& open) {
   const auto control = luminaire::exact_integrals(open);
   if (!control) throw std::invalid_argument("area_pairs: the luminaire must be a planar polygon");
@@ -48,8 +43,10 @@ SharedPairs area_pairs(const SceneDescription& description, const Location& wher
       }
     }
   };
+  SceneDescription open = description;
+  open.occluders.clear();
   return std::make_shared<const PairSource>(
-      PairSource{.colours = {colour_of(*setting, Setting(without_occluders(description), where))},
+      PairSource{.colours = {colour_of(*setting, Setting(open, where))},
                  .draw = draw,
                  .samplers = luminaire::point_samplers<>(setting)});
 }

@@ -60,11 +60,6 @@ ColourSums draw_sums(const PairSource& source, std::uint64_t count, Stream& rand
   return sums;
 }
 
-ParameterInformation lambda_parameter() {
-  return number_parameter(
-      "lambda", "weight of the control: 0 importance sampling, 1 correlated sampling", "1");
-}
-
 std::vector<ParameterInformation> rule_parameters() {
   return {text_parameter("centre",
                          "what the spread of g/p is measured about: its integral J or its mean",
@@ -192,7 +187,11 @@ std::vector<Entry> entries(const Family& family) {
                        "correlated sampling. Unbiased for every lambda; the variance Var(f/p) + "
                        "lambda^2 Var(g/p) - 2 lambda Cov(f/p, g/p) is least at lambda* = "
                        "Cov(f/p, g/p) / Var(g/p), which may lie outside [0, 1].",
-        .parameters = joined(family.parameters, {lambda_parameter()})},
+        .parameters = joined(
+            family.parameters,
+            {number_parameter("lambda",
+                              "weight of the control: 0 importance sampling, 1 correlated sampling",
+                              "1")})},
        [read = family.read](Parameters& given) {
          return fixed(read(given), given.number("lambda"));
        }},

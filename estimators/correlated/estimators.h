@@ -151,16 +151,13 @@ std::vector<Channel> channels_with_lambda(const PairSource&);
 /// Reads `centre` and `clamped`.
 LambdaRule read_rule(Parameters&);
 
-/// A source of pairs from a plugin's parameters.
-using ReadPairs = std::function<SharedPairs(Parameters&)>;
-
 /// The names of one kind of source, and how it is made.
 struct Family {
   std::string name;         ///< "correlated/area"
   std::string integral;     ///< "the irradiance from ..."
   std::string description;  ///< of f, g, p and J
   std::vector<ParameterInformation> parameters;
-  ReadPairs read;
+  std::function<SharedPairs(Parameters&)> read;  ///< a source of pairs from a plugin's parameters
 };
 
 /// The four estimators of a source: NAME, NAME_same_samples, NAME_cross_fitted, NAME_ratio.

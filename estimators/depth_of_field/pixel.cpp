@@ -43,10 +43,6 @@ Channel radiance_channel(const SceneDescription& scene, const Moments& moments, 
   return channel;
 }
 
-StageRule read_stage_rule(Parameters& given) {
-  return {given.count("pilot"), given.number("noise"), given.count("most")};
-}
-
 }  // namespace assay::depth_of_field
 
 namespace assay::plugins {

@@ -91,14 +91,12 @@ struct FreshSamples {
   }
 };
 
-StageRule read_stage_rule(Parameters&);
-
 /// `Stages` makes one estimate from a rule and a callable that draws a lens sample.
 template <class Stages = FreshSamples>
 std::shared_ptr<const Setup> prepare_two_stage(Parameters& given) {
   const LensPrimary<> primary{read_setting(given), read_pixel(given)};
   const SceneDescription& scene = primary.setting->scene();
-  const StageRule rule = read_stage_rule(given);
+  const StageRule rule{given.count("pilot"), given.number("noise"), given.count("most")};
   Channel channel = radiance_channel(scene, exact_moments(scene, primary.pixel));
   channel.variance.reset();
   return averaging(

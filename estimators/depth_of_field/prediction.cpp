@@ -87,12 +87,6 @@ class Pass {
   }
 
  private:
-  PlanePoint place(std::size_t pixel, bool along_x, double coordinate) const {
-    PlanePoint p = grid_.pixel(pixel);
-    (along_x ? p.x : p.y) = coordinate;
-    return p;
-  }
-
   // The edge between a pixel and the next one of a line.
   Edge edge(std::size_t pixel, std::size_t next, bool along_x) {
     const auto coordinate = [&](std::size_t i) {
@@ -104,7 +98,9 @@ class Pass {
     const Plane* above = surface_[next];
     for (int i = 0; i < bisections; ++i) {
       const double middle = (low + high) / 2;
-      const Plane* const hit = setting_.first_hit(place(pixel, along_x, middle), {}, out_.cost);
+      PlanePoint place = grid_.pixel(pixel);
+      (along_x ? place.x : place.y) = middle;
+      const Plane* const hit = setting_.first_hit(place, {}, out_.cost);
       (hit == below ? low : high) = middle;
       if (hit != below) above = hit;
     }

@@ -59,12 +59,6 @@ double lens_average(const ReconstructionPlan& plan, std::size_t sample, std::uin
   return sum / static_cast<double>(count);
 }
 
-std::size_t worst_pixel(const ReconstructionPlan& plan) {
-  const std::vector<double> bias = plan.bias();
-  const auto larger = [](double a, double b) { return std::abs(a) < std::abs(b); };
-  return static_cast<std::size_t>(std::ranges::max_element(bias, larger) - bias.begin());
-}
-
 std::vector<Channel> pixel_channels(const ReconstructionPlan& plan) {
   return mapped(plan.exact, [&](const Moments& exact) {
     Channel channel = radiance_channel(plan.setting->scene(), exact);
@@ -148,7 +142,10 @@ std::shared_ptr<const Setup> prepare_reconstruction(Parameters& given,
                                                     const ReconstructionRules& rules) {
   const auto plan =
       std::make_shared<const ReconstructionPlan>(read_reconstruction_plan(given, rules));
-  const std::size_t worst = worst_pixel(*plan);
+  const std::vector<double> bias = plan->bias();
+  const auto size = [](double x) { return std::abs(x); };
+  const auto worst =
+      static_cast<std::size_t>(std::ranges::max_element(bias, {}, size) - bias.begin());
   const auto estimate = [plan, worst, values = std::vector<double>(plan->samples.size())](
                             Stream& random, std::uint64_t primaries, std::span<double> out,
                             Cost& cost) mutable {

@@ -98,15 +98,14 @@ class Covariance {
     spread_.both = s.both - distance * s.position;
     return *this;
   }
-  /// Variance of the frequency across the lens, Wx + Wv / focus.
-  double lens_spread(const Lens& lens) const {
-    return spread_.position + (2 * spread_.both + spread_.slope / lens.focus) / lens.focus;
-  }
-  /// The variance over a lens of Gaussian weights: power (1 - 1 / sqrt(1 + radius^2 lens_spread /
-  /// 2)). Its points spread as a disc's do, radius / 2 along an axis. For waves of low frequency it
-  /// is the disc's variance, up to the fourth power of the frequency.
+  /// The variance over a lens of Gaussian weights: power (1 - 1 / sqrt(1 + radius^2 spread / 2)),
+  /// with the spread of Wx + Wv / focus. Its points spread as a disc's do, radius / 2 along an
+  /// axis. For waves of low frequency it is the disc's variance, up to the fourth power of the
+  /// frequency.
   double lens_variance(const Lens& lens) const {
-    return power_ * (1 - 1 / std::sqrt(1 + lens.radius * lens.radius * lens_spread(lens) / 2));
+    const double spread =
+        spread_.position + (2 * spread_.both + spread_.slope / lens.focus) / lens.focus;
+    return power_ * (1 - 1 / std::sqrt(1 + lens.radius * lens.radius * spread / 2));
   }
 
  private:

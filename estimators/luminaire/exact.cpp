@@ -104,14 +104,6 @@ std::optional<double> squared_geometry(std::span<const SignedPolygon> parts, dou
   return total;
 }
 
-double whole_solid_angle(const Setting& setting) {
-  double sum = 0;
-  for (const LightTriangle& t : setting.triangles()) {
-    sum += render::solid_angle(t.a, t.a + t.ab, t.a + t.ac);
-  }
-  return sum;
-}
-
 }  // namespace
 
 std::optional<std::vector<SignedPolygon>> visible_parts(const Setting& setting) {
@@ -133,7 +125,9 @@ std::optional<ExactIntegrals> exact_integrals(const Setting& setting) {
   exact.irradiance = sum(*parts, [](const Polygon& p) { return render::lambert(p, up); });
   exact.squared_cosine =
       sum(*parts, [](const Polygon& p) { return render::squared_cosine(p, up); });
-  exact.solid_angle = whole_solid_angle(setting);
+  for (const LightTriangle& t : setting.triangles()) {
+    exact.solid_angle += render::solid_angle(t.a, t.a + t.ab, t.a + t.ac);
+  }
   exact.area = setting.area();
   exact.squared_geometry = squared_geometry(*parts, light.plane_distance);
   return exact;

@@ -45,17 +45,14 @@ TriangleMesh light_mesh(const Light& light, const View& view) {
   return std::visit([&](const auto& form) { return view.shape(form); }, light.shape);
 }
 
-LightTriangle light_triangle(const std::array<Vector3, 3>& corners, bool clockwise) {
-  const auto& [a, b, c] = corners;
-  const Vector3 area = 0.5 * cross(b - a, c - a);
-  const Vector3 normal = normalised(clockwise ? -area : area);
-  const double plane_distance = -dot(normal, a);
-  return {a, b - a, c - a, normal, length(area), plane_distance, plane_distance > 0};
-}
-
 std::vector<LightTriangle> light_triangles(const TriangleMesh& mesh, bool clockwise) {
-  return mapped_indices(mesh.triangles.size(),
-                        [&](std::size_t i) { return light_triangle(mesh.corners(i), clockwise); });
+  return mapped_indices(mesh.triangles.size(), [&](std::size_t i) -> LightTriangle {
+    const auto [a, b, c] = mesh.corners(i);
+    const Vector3 area = 0.5 * cross(b - a, c - a);
+    const Vector3 normal = normalised(clockwise ? -area : area);
+    const double plane_distance = -dot(normal, a);
+    return {a, b - a, c - a, normal, length(area), plane_distance, plane_distance > 0};
+  });
 }
 
 std::optional<std::vector<Polygon>> polygons_of(const std::vector<Occluder>& occluders,
@@ -79,18 +76,14 @@ double near_distance(const TriangleMesh& mesh, const Location& where) {
   return resolution * nearest;
 }
 
-TriangleMesh drawn_nearer(TriangleMesh mesh) {
-  for (Vector3& p : mesh.vertices) p = (1 - resolution) * p;
-  return mesh;
-}
-
 // Rays can hit the luminaire, which is shape 0, and the occluders. A planar luminaire never shades
 // itself.
 std::vector<Shape> shapes_of(const SceneDescription& description, bool with_luminaire) {
   std::vector<Shape> shapes = occluder_shapes(description.occluders, description.receiver);
   if (with_luminaire) {
-    shapes.insert(shapes.begin(),
-                  drawn_nearer(light_mesh(description.light, View(description.receiver))));
+    TriangleMesh nearer = light_mesh(description.light, View(description.receiver));
+    for (Vector3& p : nearer.vertices) p = (1 - resolution) * p;
+    shapes.insert(shapes.begin(), std::move(nearer));
   }
   return shapes;
 }

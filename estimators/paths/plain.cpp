@@ -17,14 +17,11 @@ ParameterInformation survival_parameter() {
                           "0.8", {0, 1, true, true});
 }
 
-std::optional<Steps> steps(const Scene& scene, double survival) {
-  if (scene.law && scene.law->has_mirrors()) return {};
-  return Steps{.survival = [survival](const Surface&) { return survival; },
-               .terminal = [](const Surface&) { return Rgb{}; }};
-}
-
 Knowledge known(const Scene& scene, double survival) {
-  Knowledge all = knowledge(scene, steps(scene, survival));
+  std::optional<Steps> steps = Steps{.survival = [survival](const Surface&) { return survival; },
+                                     .terminal = [](const Surface&) { return Rgb{}; }};
+  if (scene.law && scene.law->has_mirrors()) steps.reset();
+  Knowledge all = knowledge(scene, steps);
   all.low = 0;
   return all;
 }

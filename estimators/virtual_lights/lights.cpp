@@ -37,22 +37,6 @@ void require_diffuse(Parameters& parameters, const paths::MeshWorld& world) {
   parameters.require(light, "scene", "there is no light to shoot: no surface emits");
 }
 
-void require_receiver(Parameters& parameters, const paths::MeshWorld& world) {
-  const Vertex seen = world.camera(Uncounted());
-  parameters.require(seen.surface, "scene", "the camera sees no surface");
-  parameters.require(seen.surface->diffuse != Rgb{}, "scene",
-                     "the camera sees a surface of albedo 0, which reflects no light");
-}
-
-double read_shininess(Parameters& parameters, const paths::MeshWorld& world) {
-  const double shininess = parameters.number("shininess");
-  const Vertex seen = world.camera(Uncounted());
-  // To the rounding of a direction that is given in decimals.
-  parameters.require(!(shininess > 0) || dot(seen.arriving, seen.normal) <= -1 + 1e-9, "shininess",
-                     "a glossy receiver must be seen along its normal, which its lobe is about");
-  return shininess;
-}
-
 double given_target_integral(Parameters& parameters, const Room& room, Weighting weighting) {
   const Value& value = parameters.structure("target_integral");
   if (value.kind() == Value::Kind::scalar && value.string("target_integral") == "exact") {
@@ -74,8 +58,14 @@ Scene read_room(Parameters& parameters) {
   const auto* const world = std::get_if<paths::SharedMesh>(&scene.world);
   parameters.require(world, "scene", "virtual lights need triangles: a furnace or surfaces");
   require_diffuse(parameters, **world);
-  require_receiver(parameters, **world);
-  const double shininess = read_shininess(parameters, **world);
+  const Vertex seen = (*world)->camera(Uncounted());
+  parameters.require(seen.surface, "scene", "the camera sees no surface");
+  parameters.require(seen.surface->diffuse != Rgb{}, "scene",
+                     "the camera sees a surface of albedo 0, which reflects no light");
+  const double shininess = parameters.number("shininess");
+  // To the rounding of a direction that is given in decimals.
+  parameters.require(!(shininess > 0) || dot(seen.arriving, seen.normal) <= -1 + 1e-9, "shininess",
+                     "a glossy receiver must be seen along its normal, which its lobe is about");
   return {std::make_shared<const Room>(*world, shininess), scene.grey};
 }
 

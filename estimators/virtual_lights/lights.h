@@ -34,8 +34,8 @@ struct Weighted : Classic {
   double target_integral = 1;  ///< G
 
   double density(const LightPath& path) const {
-    return weighting == Weighting::conditional ? Room::conditional_density(path)
-                                               : room->marginal_density(path.at);
+    if (weighting == Weighting::marginal) return room->marginal_density(path.at);
+    return path.from_cosine() * path.at_cosine() / (std::numbers::pi * path.squared_distance());
   }
   double target(const LightPath& path, double geometry, bool seen) const {
     return seen ? geometry / (std::numbers::pi * density(path)) : 0;
@@ -76,15 +76,11 @@ Scene read_room(Parameters&);
 /// not known, at the second where `exact` is asked for and not known, saying why.
 Weighted read_weighted(Parameters&, SharedRoom);
 
-/// Writes one observation of `primaries` light paths.
-using Observe = std::function<Sums(Stream&, std::uint64_t primaries, Cost&)>;
-using Result = std::function<Rgb(const Sums&, double primaries)>;
-
 /// The way an observation is made. It may have the diagnostic channel `target`, the mean of g / p,
 /// with its mean G if that is known.
 struct Recipe {
-  Observe sums;
-  Result result;
+  std::function<Sums(Stream&, std::uint64_t primaries, Cost&)> sums;
+  std::function<Rgb(const Sums&, double primaries)> result;
   std::optional<Known> target = {};
 };
 

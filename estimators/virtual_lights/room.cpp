@@ -180,10 +180,6 @@ Rgb Room::reflected(const LightPath& path, double geometry) const {
          (path.power * path.at.surface->diffuse * receiver_.surface->diffuse);
 }
 
-double Room::conditional_density(const LightPath& path) {
-  return path.from_cosine() * path.at_cosine() / (pi * path.squared_distance());
-}
-
 double Room::form_factor(const Vertex& from, std::size_t triangle) const {
   // Back on the plane that the vertex was lifted off, so that walls end where its horizon does.
   const auto wall = world_->mesh().corners(from.patch / 2);

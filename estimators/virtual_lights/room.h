@@ -77,8 +77,6 @@ class Room {
   /// The radiance that the receiver reflects of one virtual light that it sees.
   Rgb reflected(const LightPath& path, double geometry) const;
 
-  /// Density of y1 by area given y0: cos cos' / (pi r^2).
-  static double conditional_density(const LightPath& path);
   /// Density of y1 by area whatever y0: its irradiance over all power, by Lambert's formula. Only
   /// where why_no_marginal() is empty.
   double marginal_density(const Vertex& at) const;
