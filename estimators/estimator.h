@@ -223,59 +223,47 @@ concept TwoStepPrimary = requires(const Primary& primary, Stream& random, Cost& 
   { primary.value(primary.draw(random), cost) } -> std::convertible_to<double>;
 };
 
-/// An estimator whose secondary estimate is the mean of independent primaries. `Primary` is
-/// callable as double(Stream&) or double(Stream&, Cost&), or is a TwoStepPrimary. It is a template
-/// so that a primary of a few nanoseconds is inlined into the loop.
+/// A secondary estimate that is the mean of independent primaries. `Primary` is callable as
+/// double(Stream&) or double(Stream&, Cost&), or is a TwoStepPrimary. It is a template so that a
+/// primary of a few nanoseconds is inlined into the loop.
 template <class Primary>
-class AveragingEstimator final : public Estimator {
- public:
-  explicit AveragingEstimator(Primary primary) : primary_(std::move(primary)) {}
+struct Averaging {
+  Primary primary = {};
 
-  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
-                 Cost& cost) override {
+  void operator()(Stream& random, std::uint64_t primaries, std::span<double> out, Cost& cost) {
     double sum = 0;
-    for (std::uint64_t i = 0; i < primaries; ++i) sum += draw(random, cost);
+    for (std::uint64_t i = 0; i < primaries; ++i) {
+      if constexpr (std::is_invocable_v<Primary&, Stream&, Cost&>) {
+        sum += primary(random, cost);
+      } else {
+        sum += primary(random);
+      }
+    }
     out[0] = sum / static_cast<double>(primaries);
     cost.samples += primaries;
   }
-
- private:
-  double draw(Stream& random, Cost& cost) {
-    if constexpr (std::is_invocable_v<Primary&, Stream&, Cost&>) {
-      return primary_(random, cost);
-    } else {
-      return primary_(random);
-    }
-  }
-
-  Primary primary_;
 };
 
 /// The same for a two-step primary: it makes a batch of choices before it follows them up. So the
 /// processor overlaps the arithmetic of many choices, instead of waiting for each ray. The order of
 /// random numbers and of the sum does not depend on the batch.
 template <TwoStepPrimary Primary>
-class AveragingEstimator<Primary> final : public Estimator {
- public:
-  explicit AveragingEstimator(Primary primary) : primary_(std::move(primary)) {}
+struct Averaging<Primary> {
+  using Choices = decltype(std::declval<const Primary&>().draw(std::declval<Stream&>()));
 
-  void secondary(Stream& random, std::uint64_t primaries, std::span<double> out,
-                 Cost& cost) override {
+  Primary primary = {};
+  std::array<Choices, 32> choices = {};  ///< scratch
+
+  void operator()(Stream& random, std::uint64_t primaries, std::span<double> out, Cost& cost) {
     double sum = 0;
-    for (std::uint64_t done = 0; done < primaries; done += choices_.size()) {
-      const std::uint64_t count = std::min<std::uint64_t>(choices_.size(), primaries - done);
-      for (std::uint64_t i = 0; i < count; ++i) choices_[i] = primary_.draw(random);
-      for (std::uint64_t i = 0; i < count; ++i) sum += primary_.value(choices_[i], cost);
+    for (std::uint64_t done = 0; done < primaries; done += choices.size()) {
+      const std::uint64_t count = std::min<std::uint64_t>(choices.size(), primaries - done);
+      for (std::uint64_t i = 0; i < count; ++i) choices[i] = primary.draw(random);
+      for (std::uint64_t i = 0; i < count; ++i) sum += primary.value(choices[i], cost);
     }
     out[0] = sum / static_cast<double>(primaries);
     cost.samples += primaries;
   }
-
- private:
-  using Choices = decltype(std::declval<const Primary&>().draw(std::declval<Stream&>()));
-
-  Primary primary_;
-  std::array<Choices, 32> choices_{};  // scratch
 };
 
 /// The set-up of an averaging estimator with one channel. Every worker gets a copy of the primary:
@@ -284,10 +272,7 @@ template <class Primary>
 std::shared_ptr<const Setup> averaging(Channel channel, Primary primary,
                                        std::vector<NamedSampler> samplers = {}) {
   return setup_of({.channels = {std::move(channel)},
-                   .make =
-                       [primary = std::move(primary)] {
-                         return std::make_unique<AveragingEstimator<Primary>>(primary);
-                       },
+                   .make = estimating(Averaging<Primary>{std::move(primary)}),
                    .samplers = std::move(samplers)});
 }
 
@@ -302,17 +287,17 @@ struct ImageParts {
 };
 
 /// The set-up of an image whose elements are averages. A secondary estimate is an image at
-/// `primaries` samples an element. `Primary` is as for AveragingEstimator. There is one primary at
-/// least.
+/// `primaries` samples an element. `Primary` is as for Averaging. There is one primary at least.
 template <class Primary>
 std::shared_ptr<const Setup> imaging(ImageParts<Primary> parts) {
   const auto make = [primaries = std::move(parts.primaries), own = parts.shape.independent] {
-    std::vector<AveragingEstimator<Primary>> averages(primaries.begin(), primaries.end());
+    std::vector<Averaging<Primary>> averages;
+    for (const Primary& primary : primaries) averages.push_back({primary});
     auto image = [averages = std::move(averages), own](Stream& random, std::uint64_t count,
                                                        std::span<double> out, Cost& cost) mutable {
       for (std::size_t i = 0; i < out.size(); ++i) {
         Stream mine = random.substream(static_cast<std::uint32_t>(own ? i : 0));
-        averages[i % averages.size()].secondary(mine, count, out.subspan(i, 1), cost);
+        averages[i % averages.size()](mine, count, out.subspan(i, 1), cost);
       }
     };
     return std::make_unique<FunctionEstimator<decltype(image)>>(std::move(image));

@@ -32,7 +32,7 @@ SharedPairs area_pairs(const SceneDescription& description, const Location& wher
   const auto setting = std::make_shared<const Setting>(description, where);
   const auto draw = [primary = luminaire::AreaPrimary<>(setting)](Stream& random,
                                                                   std::span<Pair> out, Cost& cost) {
-    // Points first, rays after: see AveragingEstimator.
+    // Points first, rays after: see Averaging.
     std::array<luminaire::LightSample, 32> points;
     for (std::size_t done = 0; done < out.size(); done += points.size()) {
       const std::size_t size = std::min(points.size(), out.size() - done);

@@ -23,27 +23,27 @@ struct TwoStep {
   }
 };
 
-double secondary(Estimator& estimator, std::uint64_t primaries, Cost& cost) {
+double secondary(auto& average, std::uint64_t primaries, Cost& cost) {
   Stream random({1}, 5);
   double out = 0;
-  estimator.secondary(random, primaries, {&out, 1}, cost);
+  average(random, primaries, {&out, 1}, cost);
   return out;
 }
 
-TEST(AveragingEstimator, IsTheMeanOfItsPrimaries) {
-  AveragingEstimator<OneStep> estimator({});
+TEST(Averaging, IsTheMeanOfItsPrimaries) {
+  Averaging<OneStep> average;
   Stream random({1}, 5);
   Cost ignored;
   double sum = 0;
   for (int i = 0; i < 3; ++i) sum += OneStep{}(random, ignored);
   Cost cost;
-  EXPECT_EQ(secondary(estimator, 3, cost), sum / 3);
+  EXPECT_EQ(secondary(average, 3, cost), sum / 3);
   EXPECT_EQ(cost, (Cost{.shadow_rays = 3, .samples = 3}));
 }
 
-TEST(AveragingEstimator, TwoStepsGiveTheNumbersOfOneWhateverTheBatch) {
-  AveragingEstimator<OneStep> one({});
-  AveragingEstimator<TwoStep> two({});
+TEST(Averaging, TwoStepsGiveTheNumbersOfOneWhateverTheBatch) {
+  Averaging<OneStep> one;
+  Averaging<TwoStep> two;
   for (const std::uint64_t primaries : {1u, 2u, 31u, 32u, 33u, 64u, 1000u}) {
     Cost cost_one;
     Cost cost_two;
@@ -52,12 +52,12 @@ TEST(AveragingEstimator, TwoStepsGiveTheNumbersOfOneWhateverTheBatch) {
   }
 }
 
-TEST(AveragingEstimator, NothingLeaksFromOneObservationToTheNext) {
-  AveragingEstimator<TwoStep> estimator({});
+TEST(Averaging, NothingLeaksFromOneObservationToTheNext) {
+  Averaging<TwoStep> average;
   Cost cost;
-  const double before = secondary(estimator, 7, cost);
-  secondary(estimator, 40, cost);
-  EXPECT_EQ(secondary(estimator, 7, cost), before);
+  const double before = secondary(average, 7, cost);
+  secondary(average, 40, cost);
+  EXPECT_EQ(secondary(average, 7, cost), before);
 }
 
 TEST(AveragingSetup, GivesWhatItWasMadeFrom) {
