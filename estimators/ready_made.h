@@ -2,7 +2,6 @@
 
 // Observations that another program made.
 
-#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>

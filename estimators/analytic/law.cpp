@@ -132,7 +132,6 @@ std::string quoted(std::string_view text) { return "`" + std::string(text) + "`"
   throw std::invalid_argument(why + "; there is " + listed(mapped(families, signature)));
 }
 
-/// The numbers between the brackets.
 std::vector<double> numbers_of(std::string_view text) {
   if (text.empty()) return {};
   return mapped(pieces_of(text, ','), [](const std::string& number) {

@@ -31,7 +31,6 @@ struct Pair {
   Rgb control;
 };
 
-/// Second moments of a pair.
 struct Moments {
   double full = 0;     ///< E[(f/p)^2]
   double product = 0;  ///< E[(f/p) (g/p)]

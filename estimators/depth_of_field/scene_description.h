@@ -4,7 +4,6 @@
 // radiance across them.
 
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "depth_of_field/thin_lens.h"

@@ -96,7 +96,10 @@ bool Children::draw_ahead(Respondent& dialogue, FirstObservations& mine) {
 
 bool Children::examine(Respondent& dialogue, const Question& wanted) {
   if (is_to_draw(wanted)) return examine_first(dialogue, wanted);
-  examine_further(dialogue, wanted);
+  FirstObservations few = known_of(wanted.primaries).first;
+  few.numbers.resize(std::min(few.count(), asked_of_further) * few.width);
+  const auto ask = [&](const Question& one) { return dialogue.ask(one); };
+  refuse_unless_empty(why_not_repeated(ask, few, name_));
   return true;
 }
 
@@ -132,13 +135,6 @@ bool Children::examine_first(Respondent& dialogue, const Question& wanted) {
   }
   refuse_unless_empty(why);
   return true;
-}
-
-void Children::examine_further(Respondent& dialogue, const Question& wanted) {
-  FirstObservations few = known_of(wanted.primaries).first;
-  few.numbers.resize(std::min(few.count(), asked_of_further) * few.width);
-  const auto ask = [&](const Question& one) { return dialogue.ask(one); };
-  refuse_unless_empty(why_not_repeated(ask, few, name_));
 }
 
 Recalled Children::recalled(const Question& question) const {

@@ -80,7 +80,6 @@ class Children {
   Known known_of(std::uint64_t primaries) const;
   void refuse_unless_empty(const std::string& why);
   bool examine_first(Respondent& dialogue, const Question& wanted);
-  void examine_further(Respondent& dialogue, const Question& wanted);
 
   struct Failure {
     std::uint64_t index;

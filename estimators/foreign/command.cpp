@@ -120,13 +120,6 @@ struct Look {
   bool independent;
 };
 
-/// Renders one picture of one sample a pixel, with a seed of its own. Returns its file.
-std::string make_one(foreign::Renderings& renderings) {
-  const StreamKey key = stream_key(0, "command", "size", 0);
-  renderings.make({.key = key, .first = 0, .last = 1, .samples = 1});
-  return renderings.file(key, 0, 1);
-}
-
 /// Why no channels of a picture can be chosen; "" where they can.
 std::string why_no_channels(const std::string& file, const std::string& channels) {
   if (!is_picture(file)) return "";
@@ -180,18 +173,17 @@ void check_command(const Parameters& parameters, const std::vector<std::string>&
               foreign::mend_of_program(command[0]));
 }
 
-std::string ending_of(const std::string& output) { return output == "text" ? "txt" : output; }
-
 std::shared_ptr<const Setup> prepare(Parameters& parameters) {
   foreign::Rendering rendering{.command = parameters.texts("command"),
                                .depends = parameters.texts("depends"),
                                .folder = parameters.folder().empty() ? "." : parameters.folder(),
                                .cache = parameters.file("cache"),
-                               .ending = ending_of(parameters.string("output")),
+                               .ending = parameters.string("output"),
                                .timeout = parameters.number("timeout"),
                                .retries = parameters.count("retries"),
                                .memory = parameters.number("memory"),
                                .jobs = parameters.count("jobs")};
+  if (rendering.ending == "text") rendering.ending = "txt";
   check_command(parameters, rendering.command);
   if (rendering.jobs == 0) {
     rendering.jobs = std::max(1U, std::thread::hardware_concurrency());
@@ -202,7 +194,10 @@ std::shared_ptr<const Setup> prepare(Parameters& parameters) {
   std::string file;
   try {
     auto renderings = std::make_shared<foreign::Renderings>(std::move(rendering));
-    file = make_one(*renderings);
+    // One picture of one sample a pixel, with a seed of its own.
+    const StreamKey key = stream_key(0, "command", "size", 0);
+    renderings->make({.key = key, .first = 0, .last = 1, .samples = 1});
+    file = renderings->file(key, 0, 1);
     why = why_no_channels(file, look.channels);
     if (why.empty()) {
       return std::make_shared<CommandSetup>(std::move(renderings), look_at(file, look));

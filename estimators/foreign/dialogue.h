@@ -65,7 +65,6 @@ class Respondent {
   bool meets(const Question& question);
   /// CPU seconds that it has spent outside of the threads that ask.
   virtual double cpu_seconds() const { return 0; }
-  /// Asks it to end.
   virtual void close() {}
   /// Waits for that.
   virtual void ends_by(Deadline) {}

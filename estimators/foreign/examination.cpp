@@ -42,7 +42,6 @@ bool ignores_key(const Observations& source, const Observations& others, std::si
   return false;
 }
 
-/// The first numbers of an observation.
 std::vector<double> begin_of(std::vector<double> row, std::size_t numbers) {
   row.resize(std::min(numbers, row.size()));
   return row;

@@ -80,19 +80,6 @@ std::shared_ptr<const Setup> prepare(Parameters& parameters) {
   return in_process(choice, parameters);
 }
 
-std::vector<ParameterInformation> parameters() {
-  return joined(
-      {{.name = "file",
-        .type = ParameterType::string,
-        .summary = "the library; its path starts at the suite's folder"},
-       text_parameter("estimator", "which of its estimators to use, if it has several", "only"),
-       structure_parameter("parameters", "parameters that the library declares, `{rate: 2}`", "{}"),
-       beside_draws(boolean_parameter(
-           "isolated", "run the library in another process; if false, its crash ends the whole run",
-           true))},
-      foreign::terms_parameters());
-}
-
 }  // namespace
 
 std::vector<Entry> foreign_library() {
@@ -111,7 +98,19 @@ std::vector<Entry> foreign_library() {
             "faster for estimators that cost nothing and gives the same bits. But a crash ends the "
             "run, nothing times out, and several threads call secondary() at a time. The same "
             "holds for its samplers; a message then names the draw, or the point of a density.",
-        .parameters = parameters(),
+        .parameters = joined(
+            {{.name = "file",
+              .type = ParameterType::string,
+              .summary = "the library; its path starts at the suite's folder"},
+             text_parameter("estimator", "which of its estimators to use, if it has several",
+                            "only"),
+             structure_parameter("parameters", "parameters that the library declares, `{rate: 2}`",
+                                 "{}"),
+             beside_draws(boolean_parameter(
+                 "isolated",
+                 "run the library in another process; if false, its crash ends the whole run",
+                 true))},
+            foreign::terms_parameters()),
         .averages = false,
         .says_nature = true},
        prepare}};

@@ -17,15 +17,6 @@ std::shared_ptr<const Setup> prepare(Parameters& parameters) {
   return foreign::start(std::move(terms), parameters, "command");
 }
 
-std::vector<ParameterInformation> parameters() {
-  return joined(
-      {{.name = "command",
-        .type = ParameterType::texts,
-        .summary =
-            "the program and its arguments, `[python3, mine.py]`; it runs in the suite's folder"}},
-      foreign::terms_parameters());
-}
-
 }  // namespace
 
 std::vector<Entry> foreign_process() {
@@ -56,7 +47,11 @@ std::vector<Entry> foreign_process() {
             "`rays` if one more number follows each observation, the rays it took; `sampler NAME "
             "DOMAIN`, in binary only, for a source of points that Assay asks for draws and "
             "densities (estimators/foreign/README.md); `error WORDS` to refuse.",
-        .parameters = parameters(),
+        .parameters = joined({{.name = "command",
+                               .type = ParameterType::texts,
+                               .summary = "the program and its arguments, `[python3, mine.py]`; it "
+                                          "runs in the suite's folder"}},
+                             foreign::terms_parameters()),
         .averages = false,
         .says_nature = true},
        prepare}};

@@ -329,11 +329,6 @@ std::string image_lines(const ImageShape& image, const Channel& element) {
   return lines + "range " + shortest_text(element.low) + " " + shortest_text(element.high) + "\n";
 }
 
-std::string bias_line(std::optional<BiasClass> bias) {
-  const auto* const known = std::ranges::find(bias_words, bias, &BiasWord::bias);
-  return "bias " + std::string(known->word) + "\n";
-}
-
 std::string sampler_line(const SamplerNote& sampler) {
   const std::string_view domain = domain_words[static_cast<std::size_t>(sampler.domain)];
   std::string line = "sampler " + sampler.name + " " + std::string(domain);
@@ -376,7 +371,8 @@ std::string to_text(const Hello& hello) {
   if (hello.image) text += image_lines(*hello.image, hello.element);
   for (const Channel& channel : hello.channels) text += channel_line(channel);
   if (hello.nature.averages) text += "averages\n";
-  text += bias_line(hello.nature.bias);
+  const auto* const bias = std::ranges::find(bias_words, hello.nature.bias, &BiasWord::bias);
+  text += "bias " + std::string(bias->word) + "\n";
   if (hello.rays) text += "rays\n";
   for (const SamplerNote& sampler : hello.samplers) text += sampler_line(sampler);
   return text + "ready\n";

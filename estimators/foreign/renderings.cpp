@@ -226,7 +226,6 @@ std::vector<Renderings::Task> Renderings::tasks_of(const Wanted& wanted) {
   return mapped(seeds, [&](std::uint32_t seed) -> Task { return {{seed}, wanted.samples}; });
 }
 
-/// The command, filled in.
 std::vector<std::string> Renderings::words_of(const Task& task, const std::string& out) const {
   const auto text_of = [](std::uint32_t seed) { return std::to_string(seed); };
   const std::string seeds = listed(mapped(task.seeds, text_of), ",");

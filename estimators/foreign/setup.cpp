@@ -197,18 +197,6 @@ class Counted {
   double before_;
 };
 
-/// The question for one draw, as an observation of no primaries.
-Question draw_of(const Stream& random) {
-  return {.key = random.key().bits, .first = random.observation(), .count = 1, .primaries = 0};
-}
-
-SamplerDraw draw_from(const double* numbers) {
-  return {.point = {numbers[0], numbers[1], numbers[2]},
-          .density = numbers[3],
-          .weight = numbers[4],
-          .valid = numbers[5] != 0};
-}
-
 /// True if an item of a reply is whole: no NaN, and a draw ends with 0 or 1.
 bool is_whole(std::span<const double> item) {
   if (item.size() > 1) {
@@ -275,7 +263,11 @@ class ForeignSampler final : public Sampler {
   }
 
   std::size_t samples(std::span<const Stream> random, std::span<SamplerDraw> draws) const override {
-    const Question first = draw_of(random.front());
+    // A draw is an observation of no primaries.
+    const Question first{.key = random.front().key().bits,
+                         .first = random.front().observation(),
+                         .count = 1,
+                         .primaries = 0};
     children_->refuse_after_failure(first);
     std::vector<std::uint64_t> words;
     for (Stream stream : random) {
@@ -287,7 +279,9 @@ class ForeignSampler final : public Sampler {
                {reinterpret_cast<const char*>(words.data()), sizeof words[0] * words.size()}});
       const std::size_t count = numbers.size() / numbers_of(Asked::draws);
       for (std::size_t i = 0; i < count; ++i) {
-        draws[i] = draw_from(numbers.data() + i * numbers_of(Asked::draws));
+        const double* const x = numbers.data() + i * numbers_of(Asked::draws);
+        draws[i] = {
+            .point = {x[0], x[1], x[2]}, .density = x[3], .weight = x[4], .valid = x[5] != 0};
       }
       return count;
     } catch (const NoAnswer& failure) {

@@ -231,7 +231,6 @@ Hello hello_of(const AssayEstimator& estimator, const AssayPreparation& prepared
   return parse_hello(to_text(hello));
 }
 
-/// The items of a question to a sampler.
 template <class Item>
 std::vector<Item> items_of(std::string_view bytes) {
   std::vector<Item> items(bytes.size() / sizeof(Item));

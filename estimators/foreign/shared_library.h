@@ -3,9 +3,7 @@
 // A shared library that keeps the interface of estimators/plugin_abi.h: opened, read with regard to
 // the sizes of its structs, and called in this process.
 
-#include <cstdint>
 #include <memory>
-#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>

@@ -10,7 +10,6 @@ namespace assay::luminaire {
 namespace {
 
 using render::Frame;
-using render::Vector3;
 
 /// The middle of pixel `index` of `count` that divide a length into equal parts, from its middle.
 double offset(std::size_t index, std::size_t count, double part) {
@@ -35,7 +34,7 @@ Floor read_floor(Parameters& parameters) {
                         .components = {"irradiance"},
                         .independent = !parameters.boolean("shared")}};
   const double part = parameters.number("size") / static_cast<double>(floor.shape.width);
-  const Vector3 centre = scene.receiver.position;
+  const render::Vector3 centre = scene.receiver.position;
   const Frame frame = Frame::about(scene.receiver.normal);
   for (std::size_t y = 0; y < floor.shape.height; ++y) {
     for (std::size_t x = 0; x < floor.shape.width; ++x) {

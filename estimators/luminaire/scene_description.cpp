@@ -12,7 +12,6 @@ namespace assay::luminaire {
 
 namespace {
 
-using render::Disc;
 using render::Polygon;
 using render::TriangleMesh;
 using render::Vector3;
@@ -60,7 +59,7 @@ Light light(const Value& value, const Receiver& receiver, const std::string& fol
   return polygon_light(value, receiver, radiance);
 }
 
-Disc disc(const Value& value) {
+render::Disc disc(const Value& value) {
   require_keys(value, "a disc", {"center", "normal", "radius"});
   return {read_vector(required_key(value, "a disc", "center"), "a disc's center"),
           read_unit_vector(required_key(value, "a disc", "normal"), "a disc's normal"),

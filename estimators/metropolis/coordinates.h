@@ -18,7 +18,6 @@ namespace assay::metropolis {
 class Coordinates {
  public:
   virtual ~Coordinates() = default;
-  /// The next coordinate.
   virtual double uniform() = 0;
 };
 

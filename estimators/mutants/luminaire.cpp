@@ -91,11 +91,8 @@ struct UniformAngle {
   }
 };
 
-// Entries.
-
-using Make = std::function<std::shared_ptr<const Setup>(SharedSetting)>;
-
-Entry entry(const Mutant& its, const Make& make) {
+Entry entry(const Mutant& its,
+            const std::function<std::shared_ptr<const Setup>(SharedSetting)>& make) {
   return mutant(its, [make](Parameters& parameters) { return make(read_setting(parameters)); });
 }
 

@@ -104,8 +104,6 @@ class EightReflections {
   mutable int reflections_ = 0;
 };
 
-// Entries.
-
 // Paths of which only the means are known.
 std::shared_ptr<const Setup> broken_paths(const Scene& scene, const auto& path) {
   return setup_in_world(scene, knowledge(scene, {}), path);

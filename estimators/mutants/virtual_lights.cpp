@@ -12,7 +12,6 @@ namespace assay::plugins {
 namespace {
 
 using namespace virtual_lights;
-using std::numbers::pi;
 
 // Replacements for parts of the kernels.
 
@@ -55,8 +54,6 @@ struct ClampedDistance : Classic {
     return Classic::full(path, geometry * square / clamped);
   }
 };
-
-// Entries.
 
 template <class Broken>
 std::shared_ptr<const Setup> weighted(Parameters& parameters) {

@@ -78,7 +78,6 @@ Vector3 through_glass(const Hit& hit, const Vector3& direction, double schlick, 
   return render::normalised(direction / ratio + (cosine / ratio - inner) * normal);
 }
 
-/// The tile that a shift moves.
 bool in_tile(const Picture& picture, std::size_t x, std::size_t y) {
   return x >= picture.width / 2 && x < picture.width / 2 + picture.width / 4 &&
          y >= picture.height / 2 && y < picture.height / 2 + picture.height / 4;

@@ -3,7 +3,6 @@
 // Pictures of a scene by path tracing, and the radiance that a camera ray meets.
 
 #include <span>
-#include <string>
 
 #include "estimators/cost.h"
 #include "estimators/estimator.h"

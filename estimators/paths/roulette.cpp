@@ -98,18 +98,6 @@ namespace {
 
 using namespace paths;
 
-std::vector<ParameterInformation> improved_parameters() {
-  return {scene_parameter("furnace"), rule_parameter(), direct_parameter(),
-          text_parameter("terminal",
-                         "where the terminal value comes from: one estimate for the scene, or one "
-                         "for each side of each triangle",
-                         "global", {"global", "local"}),
-          number_parameter("scale",
-                           "factor of the terminal value: 1 where the estimate is trusted, 0 is "
-                           "the classical roulette",
-                           "1", {0, 1000})};
-}
-
 /// The steps of zones where the probability to go on depends on the zone alone.
 std::optional<Steps> exact_steps(const Scene& scene, const RoulettePlan& plan) {
   const bool by_surface = plan.rule == Rule::max_albedo || plan.rule == Rule::mean_albedo ||
@@ -190,7 +178,17 @@ std::vector<Entry> paths_roulette() {
             "cost of the set-up). Where direct light is learnt of separately its part is left out "
             "of e. In a furnace the variance is (1 - scale)^2 times that of paths/roulette; in a "
             "sphere the global estimate is the local one. Everything else as paths/roulette.",
-        .parameters = improved_parameters()},
+        .parameters =
+            {scene_parameter("furnace"), rule_parameter(), direct_parameter(),
+             text_parameter(
+                 "terminal",
+                 "where the terminal value comes from: one estimate for the scene, or one "
+                 "for each side of each triangle",
+                 "global", {"global", "local"}),
+             number_parameter("scale",
+                              "factor of the terminal value: 1 where the estimate is trusted, 0 is "
+                              "the classical roulette",
+                              "1", {0, 1000})}},
        [](Parameters& p) { return prepared(p, read_improved); }}};
 }
 

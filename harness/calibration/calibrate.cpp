@@ -326,13 +326,6 @@ std::string calibration_law(const std::string& named) {
          named, fmt::join(calibration_laws(), ", "));
 }
 
-/// InputError with the known methods if this one has no cases.
-void require_calibrated(const std::string& method) {
-  std::set<std::string> known;
-  for (const Draft& draft : all_drafts()) known.insert(draft.method);
-  choice(Value::scalar(method), "a method to calibrate", {known.begin(), known.end()});
-}
-
 // ---- Runs
 
 /// The claims of cases at a level. A proof errs by passing, so its level is beta.
@@ -347,13 +340,6 @@ std::vector<CalibratedClaim*> claims_of(std::vector<CalibrationCase>& all) {
     }
   }
   return claims;
-}
-
-/// Turns off histograms, which a calibration does not show.
-void leave_out_pictures(const Pools& pools) {
-  for (const auto& pool : pools.all()) {
-    for (ChannelPlan& channel : pool->plans()) channel.histogram_high = channel.histogram_low;
-  }
 }
 
 /// Errors and refusals count as invalid.
@@ -400,7 +386,10 @@ void run_once(const CalibrationBench& bench, const std::vector<CalibratedClaim*>
   }
   std::vector<TestWork*> open;
   for (TestWork& work : works) open.push_back(&work);
-  leave_out_pictures(pools);
+  for (const auto& pool : pools.all()) {
+    // A calibration shows no histograms.
+    for (ChannelPlan& channel : pool->plans()) channel.histogram_high = channel.histogram_low;
+  }
   sample_in_looks(open, pools.all(), {.executor = threads(1)}, silence);
   if (interrupted()) return;
   const std::lock_guard lock(counting);
@@ -516,7 +505,11 @@ reports::Calibration calibration(const CalibrateArguments& arguments, Progress& 
   if (laws.empty()) laws = calibration_laws();
   CalibrateArguments options = arguments;
   if (options.alphas.empty()) options.alphas = {0.05, 0.01, 0.001};
-  for (const std::string& method : arguments.methods) require_calibrated(method);
+  std::set<std::string> known;
+  for (const Draft& draft : all_drafts()) known.insert(draft.method);
+  for (const std::string& method : arguments.methods) {
+    choice(Value::scalar(method), "a method to calibrate", {known.begin(), known.end()});
+  }
   refuse_twice("METHOD", arguments.methods);
   std::vector<CalibrationCase> all;
   progress.begin({"calibration", laws.size() * arguments.runs, "runs"});

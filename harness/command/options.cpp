@@ -147,11 +147,6 @@ std::string in_words(const CLI::ParseError& error) {
   return text;
 }
 
-std::uint64_t random_seed() {
-  std::random_device words;
-  return std::uint64_t{words()} << 32U | words();
-}
-
 /// A report's kind alone, or a path by its ending, completed.
 std::string meant_report(std::string text) {
   while (text.ends_with('=')) text.pop_back();
@@ -284,7 +279,10 @@ unsigned read_threads(const std::string& text, const std::string& option) {
 }
 
 std::uint64_t read_seed(const std::string& text, const std::string& option) {
-  if (text == "random") return random_seed();
+  if (text == "random") {
+    std::random_device words;
+    return std::uint64_t{words()} << 32U | words();
+  }
   try {
     return at_least(0)(text, option);
   } catch (const InputError&) {

@@ -24,7 +24,6 @@ namespace assay::harness {
 
 using Texts = std::vector<std::string>;
 
-/// The options and arguments of one command.
 class Options {
  public:
   explicit Options(CLI::App& app) : app_(app) {}

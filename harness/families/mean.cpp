@@ -507,12 +507,6 @@ stats::Gate near_normal_gate(const Known& known) {
           .state = value <= limit ? stats::GateState::green : stats::GateState::amber};
 }
 
-bool meets_claimed(const stats::Range& theta, const Regions& regions) {
-  const stats::Range claimed = regions.claimed();
-  return regions.proof() ? theta.low < claimed.high && theta.high > claimed.low
-                         : theta.low <= claimed.high && theta.high >= claimed.low;
-}
-
 /// Hint at the commonest cause of constant observations.
 std::string seeds(const Question& question) {
   for (const Subject& subject : question.subjects) {
@@ -540,7 +534,10 @@ std::optional<ConstantVerdict> judge_constant(const Seen& seen, const Regions& r
   const double unit = seen.relative() && reference != 0 ? std::abs(reference) : 1;
   const stats::Range theta{.low = (difference - rounding) / unit,
                            .high = (difference + rounding) / unit};
-  if (meets_claimed(theta, regions)) {
+  const stats::Range claimed = regions.claimed();
+  const bool as_claimed = regions.proof() ? theta.low < claimed.high && theta.high > claimed.low
+                                          : theta.low <= claimed.high && theta.high >= claimed.low;
+  if (as_claimed) {
     if (!regions.has_forbidden()) {
       return ConstantVerdict{
           reports::Verdict::pass,

@@ -26,7 +26,6 @@ std::vector<double> sorted(std::span<const double> values, double factor) {
   return stats::sorted(std::move(copy));
 }
 
-/// The sample quantile.
 double middle(const std::vector<double>& sorted, double probability) {
   return sorted[stats::sample_quantile_rank(sorted.size(), probability)];
 }

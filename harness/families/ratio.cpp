@@ -73,7 +73,6 @@ struct LogRatio {
   }
 };
 
-/// The test of theta with these truths.
 TestResult test(const LogRatio& ratio, std::span<const double> truths, double theta) {
   const auto influence = [&](std::size_t i) {
     return ratio.sides[i].influence(truths.size() > i ? truths[i] : truths[0]);
@@ -655,20 +654,6 @@ class TotalVarianceTheta final : public LogTheta {
   bool tells(const ChannelData& data) const override { return data.group_variances.count >= 2; }
 };
 
-bool is_biased(const Subject& subject) {
-  return subject.estimator->nature().bias.value_or(BiasClass::unbiased) != BiasClass::unbiased;
-}
-
-/// The mean squared error of an averaging estimator depends on `primaries`, so the suite must say
-/// it.
-void require_primaries(const Subject& subject) {
-  if (!subject.averages || subject.estimator->primaries) return;
-  refuse(subject.estimator->where,
-         "the mean squared error of `{0}` depends on how many primaries it averages: give the "
-         "number, as in `{0}: {{…, primaries: 16}}`",
-         subject.estimator->name);
-}
-
 }  // namespace
 
 std::string lack_of_spread(const Seen& seen) {
@@ -713,8 +698,14 @@ Question EfficiencyTheta::bind(const TestEntry& test, const Estimators& estimato
   bool any = false;
   for (std::size_t i = 0; i < question.subjects.size(); ++i) {
     const Subject& subject = question.subjects[i];
-    if (!asked && !is_biased(subject)) continue;
-    require_primaries(subject);
+    const BiasClass bias = subject.estimator->nature().bias.value_or(BiasClass::unbiased);
+    if (!asked && bias == BiasClass::unbiased) continue;
+    if (subject.averages && !subject.estimator->primaries) {
+      refuse(subject.estimator->where,
+             "the mean squared error of `{0}` depends on how many primaries it averages: give the "
+             "number, as in `{0}: {{…, primaries: 16}}`",
+             subject.estimator->name);
+    }
     any = true;
     question.truths[i] = truths_of(test, subject, sources[i]);
   }

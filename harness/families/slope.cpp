@@ -308,7 +308,6 @@ class SlopeTheta final : public Theta {
 
 // ---- Binding
 
-/// The estimator at one value of the sweep.
 PreparedEstimator swept(const PreparedEstimator& estimator, const std::string& parameter,
                         const Value& value) {
   PreparedEstimator point = estimator;

@@ -184,7 +184,6 @@ double wanted_replicates(const Distances& distances, double margin, const ImageT
   return below ? replicates * factor : 0;
 }
 
-/// Tests of a theta that is known exactly.
 stats::TestResult at_exactly(double known, double theta) {
   const double never = std::numeric_limits<double>::lowest();
   return {.statistic = known - theta,
@@ -228,7 +227,6 @@ void require_independent(const ImageTest& test, const ImagePair& pair) {
   test.require_independent(stats::image_dependence(pair.pair(), on_all_threads));
 }
 
-/// The look of kept pictures.
 PictureLook look_at(const Question& question, const ImageTest& test, ImagePair pair,
                     std::vector<UnseenElement>& unseen) {
   const auto [fewest, most] = pair.replicates();

@@ -31,7 +31,6 @@ struct Declared {
   double rounding;
   double precision = 0;  ///< relative rounding of an image's numbers when they are drawn
   double offset = 0;     ///< added after that
-  /// The largest error of a value.
   double error(double value) const {
     return rounding + precision * (std::abs(value) + std::abs(value - offset));
   }
@@ -108,7 +107,6 @@ class ScannedSide {
   const Declared& declared(std::size_t element) const {
     return declared_at(declarations_, element);
   }
-  /// The element of the first image.
   double value(std::size_t element) const { return stack_.images[0][element]; }
   /// The range of the element last looked at, if it is constant.
   const Span& span() const { return span_; }

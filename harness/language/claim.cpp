@@ -76,7 +76,6 @@ class Lexer {
     return found.length > 0 ? number(found) : symbol();
   }
 
-  /// The next token, without taking it.
   Token peek() const { return Lexer(*this).next(); }
 
  private:
@@ -170,10 +169,6 @@ class Lexer {
 using Kind = Token::Kind;
 
 std::vector<std::string> quantity_words() { return names_of(quantities(), &QuantityRow::word); }
-
-bool stands_on_the_right(std::string_view word) {
-  return word == "analytic" || word == "density" || find_law(word);
-}
 
 /// Words that may begin the right side.
 std::vector<std::string> side_words() {
@@ -348,7 +343,9 @@ class Parser {
       refuse(name.where, "there is no quantity `median`; it is a quantile: `quantile(…, 0.5)`");
     }
     const std::string near = did_you_mean(name.text, quantity_words());
-    if (near.empty() && stands_on_the_right(name.text)) {
+    const bool stands_on_the_right =
+        name.text == "analytic" || name.text == "density" || find_law(name.text);
+    if (near.empty() && stands_on_the_right) {
       refuse(name.where,
              "`{}` stands on the right, as in `mean(area) == analytic` or `distribution(x) == "
              "normal(0, 1)`",
@@ -376,7 +373,6 @@ class Parser {
     return fmt::format("; expected {}", expected_side);
   }
 
-  /// Takes the symbol if it is next.
   bool take(std::string_view symbol) {
     const bool is_next = lexer_.peek().is(symbol);
     if (is_next) lexer_.next();

@@ -93,7 +93,6 @@ struct PilotChannel {
   stats::Moments moments;
   std::span<const double> values;  ///< empty for channels that are not kept
 };
-/// One channel of a subject in its pilot.
 PilotChannel pilot_channel(const Subject& subject, const Pilot& pilot, std::size_t channel);
 /// The same for a question's subject, which must have a pilot. It looks the pilot up by name, which
 /// is too slow for every channel of an image.

@@ -153,10 +153,6 @@ constexpr std::uint64_t least_primaries = 64;
 // Beyond this a larger mean no longer tames the tail in reasonable time.
 constexpr std::uint64_t most_primaries = 4096;
 
-bool chooses_primaries(const Subject& subject) {
-  return subject.averages && subject.purpose.empty() && !subject.estimator->primaries;
-}
-
 std::uint64_t wanted_primaries(const Question& question, const FamilyPlace& place,
                                std::size_t subject, const Pilots& pilots) {
   std::uint64_t wanted = least_primaries;
@@ -505,7 +501,8 @@ Primaries choose_primaries(const std::vector<Question>& questions,
     if (question.theta->takes_single_primaries(question, pilots)) continue;
     for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
       const Subject& side = question.subjects[subject];
-      if (!chooses_primaries(side) || pilot_of(side, pilots) == nullptr) continue;
+      if (!side.averages || !side.purpose.empty() || side.estimator->primaries) continue;
+      if (pilot_of(side, pilots) == nullptr) continue;
       const std::uint64_t wanted = wanted_primaries(question, places[i], subject, pilots);
       std::uint64_t& primaries = chosen[side.estimator->name];
       // A power of two: pilots of other seeds mostly choose the same.

@@ -276,7 +276,6 @@ class Ranks::Window {
     return bytes;
   }
 
-  /// Notes a block, and how long it took.
   void note(Slot& slot, Pool::Block block, std::size_t bytes, double block_seconds, double waited) {
     Usual& usual = usual_[slot.task.pool];
     usual = {block_seconds, std::max(usual.wait, waited)};

@@ -24,8 +24,6 @@
 namespace assay::harness {
 namespace {
 
-using reports::Number;
-
 reports::ImageFinding finding_of(const stats::ImageFinding& finding, const ImageShape& shape,
                                  std::span<const float> weights) {
   return {.statistic = finding.alternation ? "alternating" : "window",
@@ -63,7 +61,6 @@ float narrow(double value) {
                               : static_cast<float>(value);
 }
 
-/// A map of value(element).
 template <class Value>
 reports::Map map_of(const char* name, const ImageShape& shape, const Value& value) {
   constexpr std::size_t at_a_time = std::size_t{1} << 16;
@@ -94,12 +91,6 @@ double adjusted_p(double z, double tested) {
   return std::exp(stats::adjusted(log_p, {.count = tested, .share = 1}));
 }
 
-reports::Map adjusted_map(const ImageShape& shape, const std::vector<double>& z, double tested) {
-  const double one = surely_one(tested);
-  return map_of("p_adjusted", shape,
-                [&](std::size_t i) { return std::abs(z[i]) < one ? 1 : adjusted_p(z[i], tested); });
-}
-
 void add_moments(const DrawnTest& drawn, std::size_t subject, reports::Test& test) {
   const Subject& side = drawn.outcome.question.subjects[subject];
   const Summary& summary = drawn.samples[subject].summary();
@@ -117,7 +108,10 @@ void add_maps(const DrawnTest& drawn, const ImageOutcome& outcome, reports::Test
   const ImageShape& shape = *question.subjects[0].image;
   const double tested = std::max(1.0, static_cast<double>(outcome.family.tested));
   test.maps.push_back(map_of("z", shape, [&](std::size_t i) { return outcome.z[i]; }));
-  test.maps.push_back(adjusted_map(shape, outcome.z, tested));
+  const double one = surely_one(tested);
+  test.maps.push_back(map_of("p_adjusted", shape, [&](std::size_t i) {
+    return std::abs(outcome.z[i]) < one ? 1 : adjusted_p(outcome.z[i], tested);
+  }));
   for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
     add_moments(drawn, subject, test);
   }
@@ -195,20 +189,15 @@ std::string axis(const Marginal& marginal, const std::vector<double>& borders) {
   return fmt::format("{} {:.4g} to {:.4g}", marginal.name, borders.front(), borders.back());
 }
 
-/// Names the coordinates of cells of equal measure.
-std::string axes_of(const SamplerSetup& draws, const stats::PlaneGrid& grid) {
-  const std::vector<Marginal> coordinates = cell_coordinates(draws.sampler());
-  return fmt::format("{} from top to bottom, {} from left to right",
-                     axis(coordinates[0], grid.x_borders), axis(coordinates[1], grid.y_borders));
-}
-
 /// Counts in the grid's cells, summed over lobes and parts of halved cells. The residual is the
 /// largest of the parts that are tested alone, else that of the sum.
 Cells of_density(const SamplerSetup& draws, const ChannelData& data) {
   const DensityCells& density = draws.density_cells();
   const stats::PlaneGrid& grid = density.cells.grid();
   const auto total = static_cast<double>(data.moments.count);
-  Cells cells{.axes = axes_of(draws, grid),
+  const std::vector<Marginal> axes = cell_coordinates(draws.sampler());
+  Cells cells{.axes = fmt::format("{} from top to bottom, {} from left to right",
+                                  axis(axes[0], grid.x_borders), axis(axes[1], grid.y_borders)),
               .width = grid.columns(),
               .height = grid.rows(),
               .observed = std::vector<double>(grid.size()),

@@ -34,8 +34,6 @@ std::string digest_of(const SuiteRun& run) {
   return fmt::format("{:016x}", hash);
 }
 
-using reports::Verdict;
-
 /// The numbers of the shards that are not there.
 std::set<std::uint64_t> missing_of(const std::vector<ShardFile>& shards) {
   const auto all = std::views::iota(std::uint64_t{1}, shards.front().record.shard->count + 1);
@@ -73,7 +71,7 @@ std::vector<FamilyMember> parts_of(const std::vector<ShardFile>& shards, std::si
           .claim = test.claim,
           .file = any.suites[suite].file,
           .line = test.line,
-          .verdict = Verdict::skipped,
+          .verdict = reports::Verdict::skipped,
           .message = fmt::format("shard {} of {} is missing", test.shard, any.shard->count)},
          {.position = test.position}});
   }

@@ -4,7 +4,6 @@
 // the exit code.
 
 #include <cstdint>
-#include <cstdio>
 #include <functional>
 #include <set>
 #include <string>

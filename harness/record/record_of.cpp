@@ -43,8 +43,6 @@ std::string processor_name() {
   return "unknown";
 }
 
-using reports::Number;
-
 /// At most 99 points of a normal quantile plot of the values, at the probabilities (i - 1/2) / k.
 std::vector<reports::QuantilePoint> quantile_points(std::span<const double> values) {
   std::vector<double> sorted;
@@ -82,13 +80,6 @@ reports::Sample sample_of(const TestOutcome& outcome, std::size_t subject, const
           .primaries = outcome.plan.primaries[subject],
           .secondaries = drawn.summary().count,
           .cost = cost_of(drawn.summary())};
-}
-
-reports::Sample image_sample(const TestOutcome& outcome, std::size_t subject, const Drawn& drawn) {
-  const Subject& side = outcome.question.subjects[subject];
-  reports::Sample sample = sample_of(outcome, subject, drawn, image_name(*side.image));
-  add_elements(side, drawn.summary(), sample);
-  return sample;
 }
 
 reports::Sample sample_of(const TestOutcome& outcome, std::size_t subject, const Drawn& drawn,
@@ -144,9 +135,14 @@ std::vector<reports::Sample> samples_of(const TestWork& work) {
   for (std::size_t row = 0; row < rows; ++row) {
     for (std::size_t subject = 0; subject < all.size(); ++subject) {
       const Drawn* const drawn = std::get_if<Drawn>(&all[subject]);
-      if (drawn == nullptr || row >= subjects[subject].channels.size()) continue;
-      samples.push_back(subjects[subject].image ? image_sample(outcome, subject, *drawn)
-                                                : sample_of(outcome, subject, *drawn, row));
+      const Subject& side = subjects[subject];
+      if (drawn == nullptr || row >= side.channels.size()) continue;
+      if (side.image) {
+        samples.push_back(sample_of(outcome, subject, *drawn, image_name(*side.image)));
+        add_elements(side, drawn->summary(), samples.back());
+      } else {
+        samples.push_back(sample_of(outcome, subject, *drawn, row));
+      }
     }
   }
   return samples;
@@ -215,11 +211,6 @@ std::string reference_text(const TestEntry& test) {
 
 std::string cost_text(const TestEntry& test) {
   return test.claim.left.row->counts_cost ? cost_words[static_cast<std::size_t>(test.cost)] : "";
-}
-
-/// True if the clock affects the numbers.
-bool is_timed(const TestWork& work) {
-  return work.outcome.plan.method.keeps == Keeps::blocks || work.outcome.place.in_seconds;
 }
 
 std::vector<reports::Statement> statements_of(const Suite& suite,
@@ -564,7 +555,10 @@ reports::Record record_of(const SuiteRuns& runs, const RunOptions& options) {
       suite.tests.push_back(std::move(each.test));
     }
     suite.statements = statements_of(run->suite, suite.tests);
-    suite.timed = std::ranges::any_of(run->tests, is_timed);
+    // The clock affects their numbers.
+    suite.timed = std::ranges::any_of(run->tests, [](const TestWork& work) {
+      return work.outcome.plan.method.keeps == Keeps::blocks || work.outcome.place.in_seconds;
+    });
     for (const auto& [name, estimator] : run->estimators) {
       const auto* const rendered = dynamic_cast<const foreign::Rendered*>(estimator.setup.get());
       if (rendered == nullptr) continue;

@@ -10,13 +10,11 @@
 
 namespace assay::harness {
 
-/// Hears of each test when it is decided. If it answers no, nothing more is drawn.
-using Decided = std::function<bool(const TestWork&)>;
-
 struct Rounds {
   std::shared_ptr<Executor> executor = threads();
   bool cheapest_first = false;  ///< A round takes one look, that with the fewest primaries.
-  Decided decided = {};
+  /// Hears of each test when it is decided. If it answers no, nothing more is drawn.
+  std::function<bool(const TestWork&)> decided = {};
 };
 
 /// Draws in rounds: in each, every undecided test takes its next look. It ends when every test is

@@ -47,12 +47,6 @@ std::shared_ptr<const Sampler> sampler_of(const Setup& setup, const std::string&
   return all.size() == 1 ? all[0].sampler : nullptr;
 }
 
-/// True if two samplers declare the same at one point.
-bool same_at(const Point& point, const Sampler& one, const Sampler& other) {
-  return same_number(one.density(point), other.density(point)) &&
-         same_number(one.evaluate(point), other.evaluate(point));
-}
-
 bool draws_differ(const Subject& subject, const Pool& pool, std::uint64_t observations) {
   const auto& setup = dynamic_cast<const SamplerSetup&>(*subject.setup);
   const Sampler& mine = setup.sampler();
@@ -64,7 +58,12 @@ bool draws_differ(const Subject& subject, const Pool& pool, std::uint64_t observ
     Stream other(pool.key(), i);
     const SamplerDraw draw = mine.sample(one);
     if (draw != original->sample(other)) return true;
-    if (draw.valid && !same_at(draw.point, mine, *original)) return true;
+    if (!draw.valid) continue;
+    const Point& point = draw.point;
+    if (!same_number(mine.density(point), original->density(point)) ||
+        !same_number(mine.evaluate(point), original->evaluate(point))) {
+      return true;
+    }
   }
   return false;
 }

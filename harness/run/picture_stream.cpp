@@ -91,7 +91,6 @@ class Side {
     return stack;
   }
 
-  /// Frees the rows.
   void end() {
     LargeVector<float>().swap(texels_);
     there_ = {};
@@ -259,7 +258,6 @@ class Looking {
     }
   }
 
-  /// Takes the pair that is tested.
   void take(const stats::ImagePair& pair, stats::RowRange rows,
             const stats::MomentsOfSides& moments = {}) {
     if (rows.first == 0) {
@@ -333,13 +331,6 @@ bool is_streamed(const Question& question) {
          is_streamed(question.subjects[1], question.subjects[0]);
 }
 
-double streamed_bytes(const Subject& side) {
-  const stats::ImageExtent extent = extent_of(*side.image);
-  const std::size_t pictures = pictures_of(side);
-  return static_cast<double>(pictures * rows_there(extent, 2 * pictures) * extent.row() *
-                             sizeof(float));
-}
-
 /// The side of a streamed claim that this estimator is, or null.
 const Subject* streamed_side(const PreparedEstimator& estimator, const StreamedClaims& streamed) {
   for (const Question* const question : streamed) {
@@ -357,7 +348,10 @@ double bytes_of(const PreparedEstimator& estimator, const StreamedClaims& stream
   const auto elements = static_cast<double>(image->elements());
   const auto numbers = elements * static_cast<double>(*pictures);
   if (const Subject* const side = streamed_side(estimator, streamed)) {
-    return streamed_bytes(*side) + numbers * bytes_of_block + elements * bytes_of_streamed_element;
+    const stats::ImageExtent extent = extent_of(*side->image);
+    const std::size_t rows = rows_there(extent, 2 * *pictures);
+    return static_cast<double>(*pictures * rows * extent.row() * sizeof(float)) +
+           numbers * bytes_of_block + elements * bytes_of_streamed_element;
   }
   return numbers * (bytes_of_number + bytes_of_block) + elements * bytes_of_element;
 }

@@ -131,15 +131,6 @@ void plan_pools(SuiteRun& run, Pools& pools) {
   }
 }
 
-/// Why the suite's tests cannot run on this machine; "" if they can.
-std::string lack_of(const Suite& suite) {
-  for (const std::string& program : suite.needs) {
-    if (!program_path(program, suite.folder).empty()) continue;
-    return fmt::format("needs the program `{}`, which is not installed", program);
-  }
-  return "";
-}
-
 /// Prepares the estimators and returns faults. A refusal by an estimator is the user's mistake; any
 /// other exception is the estimator's fault.
 std::map<std::string, Fault> prepare_estimators(SuiteRun& run) {
@@ -200,7 +191,9 @@ std::unique_ptr<SuiteRun> prepare_suite(const Suite& suite, const RunOptions& op
   if (options.alpha) run->suite.alpha = *options.alpha;
   share_budget(run->suite);
   run->seed = options.seed.value_or(suite.seed.value_or(1));
-  if (const std::string lack = lack_of(suite); !lack.empty()) {
+  for (const std::string& program : suite.needs) {
+    if (!program_path(program, suite.folder).empty()) continue;
+    const std::string lack = fmt::format("needs the program `{}`, which is not installed", program);
     for (const TestEntry& test : run->suite.tests) {
       run->untested.push_back({&test, reports::Verdict::skipped, lack});
     }

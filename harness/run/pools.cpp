@@ -28,12 +28,6 @@ ChannelPlan with_histogram(Range range) {
   return plan;
 }
 
-Range expected_range(const Channel& channel, const stats::Moments& pilot, double averaged) {
-  const double reach = histogram_deviations * std::sqrt(pilot.variance() / averaged);
-  return {std::max({channel.low, pilot.minimum, pilot.mean - reach}),
-          std::min({channel.high, pilot.maximum, pilot.mean + reach})};
-}
-
 std::vector<ChannelPlan> sampler_plan(const SamplerSetup& setup) {
   std::vector<ChannelPlan> plan;
   for (const Marginal& marginal : setup.marginals()) {
@@ -56,11 +50,14 @@ std::vector<ChannelPlan> estimator_plan(const Pool& pool, const PreparedEstimato
       continue;
     }
     const stats::Moments& moments = pilot->moments(i);
-    // The pilot of a file is all of it.
-    plan.push_back(
-        with_histogram(pool.setup()->observations()
-                           ? Range{moments.minimum, moments.maximum}
-                           : expected_range(pool.setup()->channel(i), moments, averaged)));
+    Range range{moments.minimum, moments.maximum};
+    if (!pool.setup()->observations()) {  // the pilot of a file is all of it
+      const Channel channel = pool.setup()->channel(i);
+      const double reach = histogram_deviations * std::sqrt(moments.variance() / averaged);
+      range = {std::max({channel.low, range.low, moments.mean - reach}),
+               std::min({channel.high, range.high, moments.mean + reach})};
+    }
+    plan.push_back(with_histogram(range));
   }
   return plan;
 }

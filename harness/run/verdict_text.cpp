@@ -68,11 +68,6 @@ double excluded_beyond(const TestOutcome& outcome, const ChannelOutcome& channel
   return channel.regions.bounds_above() ? high : low;
 }
 
-/// A distance's interval has ends, unless even 0 is too large for these data.
-bool holds_no_effect(const ChannelOutcome& channel) {
-  return channel.evidence.distance && !channel.effect.low && !channel.effect.high;
-}
-
 /// An image's interval is that of the difference's size, and does not decide.
 const char* no_evidence(const ChannelOutcome& channel) {
   return channel.image && channel.effect.low.value_or(0) > 0
@@ -138,7 +133,9 @@ std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& chann
         "pass",
         text, finding(channel));
   }
-  if (holds_no_effect(channel)) return passed_by_empty_interval(channel);
+  // A distance's interval has ends, unless even 0 is too large for these data.
+  const bool has_ends = channel.effect.low || channel.effect.high;
+  if (channel.evidence.distance && !has_ends) return passed_by_empty_interval(channel);
   const double excluded = excluded_beyond(outcome, channel);
   const std::string interval =
       fmt::format("the {}{}", reports::interval_name(channel.effect), in_channel(outcome, channel));

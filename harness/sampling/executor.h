@@ -43,7 +43,6 @@ class Round {
   std::uint64_t blocks_left() const;
   /// Adds a drawn block to its pool. Blocks come in the order of next().
   void fold(const Task& task, Pool::Block&& block);
-  /// Called after each fold.
   void after_fold(std::function<void()> act) { after_fold_.push_back(std::move(act)); }
 
  private:

@@ -57,16 +57,6 @@ std::size_t elements_of(const Setup& setup) {
   return image ? image->elements() : 0;
 }
 
-/// Files of pictures are read once.
-std::uint64_t kept_anyway(const Setup& setup) {
-  return setup.image() ? setup.observations().value_or(0) : 0;
-}
-
-const Summary* ready_made(const Setup& setup) {
-  const RecordedRun* run = as_recorded_run(setup);
-  return run == nullptr ? nullptr : &run->summary();
-}
-
 }  // namespace
 
 std::string sentence_of(const Fault& fault, const std::string& estimator, const std::string& when) {
@@ -129,12 +119,13 @@ std::uint64_t block_size_of(std::uint64_t primaries) {
 
 Pool::Pool(std::shared_ptr<const Setup> setup, Recipe recipe)
     : setup_(std::move(setup)),
-      ready_made_(ready_made(*setup_)),
       recipe_(std::move(recipe)),
       block_size_(block_size_of(primaries_of_observation(*setup_, recipe_.primaries))),
       channels_(setup_->channel_count()),
       elements_(elements_of(*setup_)) {
-  keep_observations(kept_anyway(*setup_));
+  if (const RecordedRun* run = as_recorded_run(*setup_)) ready_made_ = &run->summary();
+  // Files of pictures are read once.
+  if (setup_->image()) keep_observations(setup_->observations().value_or(0));
   for (const std::uint64_t count : std::exchange(recipe_.marks, {})) mark(count);
 }
 

@@ -198,8 +198,8 @@ class Pool {
 
  private:
   std::shared_ptr<const Setup> setup_;
-  const Summary* ready_made_;  ///< points into `setup_`
-  Recipe recipe_;              ///< without the marks, of which `prefixes_` has the sums
+  const Summary* ready_made_ = nullptr;  ///< points into `setup_`
+  Recipe recipe_;                        ///< without the marks, of which `prefixes_` has the sums
   std::uint64_t block_size_;
   std::size_t channels_;
   std::size_t elements_;

@@ -115,11 +115,8 @@ StreamKey key_of(const PreparedEstimator& estimator, std::uint64_t seed, std::ui
 std::string stream_text(StreamKey key) { return fmt::format("{:016x}", key.bits); }
 
 std::optional<StreamKey> read_stream(const std::string& text) {
-  StreamKey key;
-  const char* const end = text.data() + text.size();
-  const auto [last, error] = std::from_chars(text.data(), end, key.bits, 16);
-  if (error != std::errc() || last != end) return {};
-  return key;
+  const auto bits = read_as<std::uint64_t>(text, 16);
+  return bits ? std::optional(StreamKey{*bits}) : std::nullopt;
 }
 
 }  // namespace assay::harness

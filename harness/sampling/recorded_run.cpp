@@ -120,7 +120,7 @@ std::string wanted_estimator(Parameters& parameters, const std::vector<std::stri
     if (names.size() == 1) return names[0];
     parameters.refuse("run", "has several estimators; choose one by `estimator`: " + quoted(names));
   }
-  if (std::find(names.begin(), names.end(), name) != names.end()) return name;
+  if (std::ranges::find(names, name) != names.end()) return name;
   parameters.refuse("estimator", "`" + name + "` is none of the run's" +
                                      did_you_mean(name, names, "there is: " + quoted(names)));
 }

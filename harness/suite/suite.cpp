@@ -25,15 +25,11 @@ bool stands_in_one_piece(const Document& document, const Value& value, const std
   return at < line.size() && line.substr(at).starts_with(text);
 }
 
-std::string without_line_ends(std::string text) {
-  std::ranges::replace(text, '\n', ' ');
-  text.erase(text.find_last_not_of(' ') + 1);
-  return text;
-}
-
 /// Columns of errors count in the file if the claim stands there unbroken, else in the claim.
 Claim read_claim(const Document& document, const Value& value) {
-  const std::string text = without_line_ends(value.string("`claim`"));
+  std::string text = value.string("`claim`");
+  std::ranges::replace(text, '\n', ' ');
+  text.erase(text.find_last_not_of(' ') + 1);
   try {
     return parse_claim(text, value.where());
   } catch (const InputError& e) {
@@ -55,11 +51,6 @@ const std::vector<Value>& items_of(const Value& list, const std::string& otherwi
 
 std::vector<std::string> read_lines(const Value& list, const char* what) {
   return names_of(list.items(), [&](const Value& item) { return one_line(item, what); });
-}
-
-std::vector<std::string> read_tags(const Value& value) {
-  if (value.kind() == Value::Kind::list) return read_lines(value, "a tag");
-  refuse(value.where(), "`tags` must be a list: `tags: [slow, images]`");
 }
 
 Budget read_short_budget(const Value& value) {
@@ -194,11 +185,6 @@ void require_tests(const std::vector<const TestEntry*>& found, const Value& name
                       "tests are named by `name`, or else by their claim"));
 }
 
-void require_an_answer(const TestEntry& test, const Location& where) {
-  if (test.expect == reports::Verdict::pass || test.expect == reports::Verdict::fail) return;
-  refuse(where, "`{}` expects no decision, so it answers nothing", test.name);
-}
-
 std::vector<std::string> read_names(const Keys& keys, const char* key, const Tests& tests) {
   const Value* list = keys.find(key);
   if (list == nullptr) return {};
@@ -210,7 +196,11 @@ std::vector<std::string> read_names(const Keys& keys, const char* key, const Tes
     const std::vector<const TestEntry*> found = tests_named(item.text(), tests);
     require_tests(found, item, tests);
     for (const TestEntry* test : found) {
-      require_an_answer(*test, item.where());
+      const bool answers =
+          test->expect == reports::Verdict::pass || test->expect == reports::Verdict::fail;
+      if (!answers) {
+        refuse(item.where(), "`{}` expects no decision, so it answers nothing", test->name);
+      }
       if (!is_in(names, test->name)) names.push_back(test->name);
     }
   }
@@ -343,11 +333,6 @@ std::uint64_t seed_of(const Value& value) {
   return value.count("`seed`");
 }
 
-std::vector<std::string> read_needs(const Value& value) {
-  items_of(value, "`needs` must be a list of programs: `needs: [blender]`");
-  return read_lines(value, "a program");
-}
-
 void read_head(const Document& document, const Keys& keys, Suite& suite) {
   suite.name = one_line(keys.require("suite", "suite: my first suite"), "`suite`");
   if (const Value* v = keys.find("about")) suite.about = v->string("`about`");
@@ -360,7 +345,10 @@ void read_head(const Document& document, const Keys& keys, Suite& suite) {
     }
   }
   if (const Value* v = keys.find("seed")) suite.seed = seed_of(*v);
-  if (const Value* v = keys.find("needs")) suite.needs = read_needs(*v);
+  if (const Value* v = keys.find("needs")) {
+    items_of(*v, "`needs` must be a list of programs: `needs: [blender]`");
+    suite.needs = read_lines(*v, "a program");
+  }
   if (const Value* v = keys.find("budget")) suite.budget = read_budget(document, *v);
 }
 
@@ -490,7 +478,10 @@ void read_test_keys(const Document& document, const Value& map, TestEntry& test)
     constexpr reports::Verdict verdicts[] = {pass, fail, invalid, error};
     test.expect = verdicts[choice(*v, "`expect`", {"pass", "fail", "invalid", "error"})];
   }
-  if (const Value* v = map.find("tags")) test.tags = read_tags(*v);
+  if (const Value* v = map.find("tags")) {
+    v->require(v->kind() == Value::Kind::list, "`tags` must be a list: `tags: [slow, images]`");
+    test.tags = read_lines(*v, "a tag");
+  }
   if (const Value* v = map.find("test")) {
     test.method = method_names()[choice(*v, "`test`", method_names())];
   }

@@ -57,7 +57,6 @@ struct Layer {
   recorded::PictureChannels of_reference;
 };
 
-/// True if a channel is 1 throughout.
 bool is_one(const PictureFile& file, const std::string& name) {
   const PictureWindow window = file.window(std::span(&name, 1));
   std::vector<float> texels(window.width * window.height);
