@@ -24,12 +24,6 @@ std::shared_ptr<const Setup> uniform(Parameters&) {
 
 // f(u) f(1 - u) = e^3, so E[X^2] = ((e^6 - 1) / 6 + e^3) / 2.
 
-double antithetic_pair(Stream& random, Cost& cost) {
-  const double x = random.uniform();
-  cost.samples += 1;  // the other is counted as the primary itself
-  return (integrand(x) + integrand(1 - x)) / 2;
-}
-
 std::shared_ptr<const Setup> antithetic(Parameters&) {
   const double mean = integral();
   const double square = (integral_of_square() + std::exp(3)) / 2;
@@ -38,7 +32,11 @@ std::shared_ptr<const Setup> antithetic(Parameters&) {
                            .variance = square - mean * mean,
                            .low = integrand(0.5),
                            .high = (1 + std::exp(3)) / 2},
-                   antithetic_pair);
+                   [](Stream& random, Cost& cost) {
+                     const double x = random.uniform();
+                     cost.samples += 1;  // the other is counted as the primary itself
+                     return (integrand(x) + integrand(1 - x)) / 2;
+                   });
 }
 
 // The control is f's Taylor polynomial g(x) = 1 + 3x + 9x^2 / 2, of integral 4.
@@ -141,13 +139,6 @@ std::shared_ptr<const Setup> stratified(Parameters& parameters) {
       [strata](Stream& random, Cost& cost) { return stratified_mean(strata, random, cost); });
 }
 
-// The variance is zero but for rounding, which a t test mistakes for a scale.
-double by_perfect_density(Stream& random) {
-  const double x = std::log1p(random.uniform() * std::expm1(3)) / 3;
-  const double density = integrand(x) / integral();
-  return integrand(x) / density;
-}
-
 std::shared_ptr<const Setup> zero_variance(Parameters&) {
   const double mean = integral();
   // Two roundings, and those of the sum of primaries.
@@ -157,7 +148,12 @@ std::shared_ptr<const Setup> zero_variance(Parameters&) {
                            .low = mean * (1 - rounding),
                            .high = mean * (1 + rounding),
                            .rounding = 2 * mean * rounding},
-                   by_perfect_density);
+                   [](Stream& random) {
+                     // The variance is zero but for rounding, which a t test mistakes for a scale.
+                     const double x = std::log1p(random.uniform() * std::expm1(3)) / 3;
+                     const double density = integrand(x) / integral();
+                     return integrand(x) / density;
+                   });
 }
 
 // n (E[I^] - I) -> I Var g - Cov(f, g) = -0.50012,  n Var I^ -> Var(f - I g).

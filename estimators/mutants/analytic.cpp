@@ -30,27 +30,6 @@ std::shared_ptr<const Setup> rare_nan(Parameters& parameters) {
   });
 }
 
-// Replacements for parts of the ratio estimators.
-
-RatioPair other_point(Stream& random) {
-  const RatioPair own = same_point(random);
-  return {own.full, same_point(random).target};
-}
-
-double mean_of_ratios(std::span<const RatioPair> pairs) {
-  double total = 0;
-  for (const RatioPair& pair : pairs) total += pair.full / pair.target;
-  return total / static_cast<double>(pairs.size());
-}
-
-double numerator_left_out(const RatioPair& without, const RatioPair& all) {
-  return without.full / all.target;
-}
-
-double denominator_left_out(const RatioPair& without, const RatioPair& all) {
-  return all.full / without.target;
-}
-
 Entry ratio_mutant(const Mutant& its, const auto& draw, const auto& combine) {
   return mutant(its, [draw, combine](Parameters&) {
     return ratio_setup(Channel{.mean = integral()}, draw, combine);
@@ -76,22 +55,35 @@ std::vector<Entry> mutants_analytic() {
               {"ratio_of_other_points", "analytic/ratio",
                "evaluates the target at other points than the integrand: consistent, but of 50 "
                "times the variance, and M times the bias tends to I Var g = +3.03 for -0.50."},
-              other_point, ratio_of_sums),
+              [](Stream& random) -> RatioPair {
+                const RatioPair own = same_point(random);
+                return {own.full, same_point(random).target};
+              },
+              ratio_of_sums),
           ratio_mutant(
               {"mean_of_ratios", "analytic/ratio",
                "averages the ratios f / g in place of dividing the sums: the mean is that of f / "
                "g, 5.96, -6.3 % whatever M."},
-              same_point, mean_of_ratios),
+              same_point,
+              [](std::span<const RatioPair> pairs) {
+                double total = 0;
+                for (const RatioPair& pair : pairs) total += pair.full / pair.target;
+                return total / static_cast<double>(pairs.size());
+              }),
           ratio_mutant(
               {"jackknifed_numerator", "analytic/jackknifed_ratio",
                "leaves points out of the numerator alone: repairs nothing, M times the bias tends "
                "to -0.50 as without the jackknife."},
-              same_point, jackknife(numerator_left_out)),
+              same_point, jackknife([](const RatioPair& without, const RatioPair& all) {
+                return without.full / all.target;
+              })),
           ratio_mutant(
               {"jackknifed_denominator", "analytic/jackknifed_ratio",
                "leaves points out of the denominator alone: takes I Var g away and leaves - Cov(f, "
                "g), M times the bias tends to -3.54."},
-              same_point, jackknife(denominator_left_out))};
+              same_point, jackknife([](const RatioPair& without, const RatioPair& all) {
+                return all.full / without.target;
+              }))};
 }
 
 }  // namespace assay::plugins

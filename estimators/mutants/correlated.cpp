@@ -48,18 +48,6 @@ SharedPairs with_integral(const SharedPairs& source, double integral) {
 
 double integral_of(const SharedPairs& pairs) { return pairs->colours[0].control_integral; }
 
-SharedPairs added_twice(Parameters& given) {
-  return changed(read_area_pairs(given), [](const PairSource&, Stream&, std::span<Pair> out) {
-    for (Pair& pair : out) pair.control = -1 * pair.control;
-  });
-}
-
-SharedPairs visible_control(Parameters& given) {
-  return changed(read_area_pairs(given), [](const PairSource&, Stream&, std::span<Pair> out) {
-    for (Pair& pair : out) pair.control = pair.full;
-  });
-}
-
 SharedPairs other_points(Parameters& given) {
   const SharedPairs sound = read_area_pairs(given);
   const auto exchange = [](const PairSource& source, Stream& random, std::span<Pair> out) {
@@ -70,41 +58,12 @@ SharedPairs other_points(Parameters& given) {
   return with_other_pairs(sound, exchange);
 }
 
-SharedPairs without_pi(Parameters& given) {
-  const SharedPairs pairs = read_area_pairs(given);
-  return with_integral(pairs, integral_of(pairs) * (1 / std::numbers::pi));
-}
-
-SharedPairs unclipped_integral(Parameters& given) {
-  const luminaire::SharedSetting setting = luminaire::read_setting(given);
-  return with_integral(read_area_pairs(given), luminaire::unclipped_irradiance(*setting));
-}
-
-SharedPairs without_radiance(Parameters& given) {
-  const double radiance = luminaire::read_setting(given)->radiance();
-  given.require(radiance != 0, "scene", "the luminaire must have a radiance above 0");
-  const SharedPairs pairs = read_area_pairs(given);
-  return with_integral(pairs, integral_of(pairs) / radiance);
-}
-
-SharedPairs grey_integral(Parameters& given) {
-  const SharedPairs pairs = read_sky_pairs(given);
-  double sum = 0;
-  for (const Colour& colour : pairs->colours) sum += colour.control_integral;
-  return with_integral(pairs, sum / static_cast<double>(pairs->colours.size()));
-}
-
 /// A mutant of the estimator with a given lambda, by other pairs.
 Entry entry(const char* name, const char* original, const char* defect,
             SharedPairs (*pairs_of)(Parameters&)) {
   return mutant({name, original, defect}, [pairs_of](Parameters& given) {
     return fixed(pairs_of(given), given.number("lambda"));
   });
-}
-
-double uncentred(const Sums& sums, double integral) {
-  const double spread = sums.lack_squared - sums.lack * sums.lack / sums.count;
-  return spread > 0 ? (integral * sums.full - sums.product) / spread : 0;
 }
 
 // These have a rule of their own, and the parameters only so that their streams are the original's.
@@ -159,23 +118,45 @@ std::vector<Entry> mutants_correlated() {
   return {
       entry("control_added_twice", "correlated/area",
             "adds the control where it should be taken away, J + g: 2 lambda J too much.",
-            added_twice),
+            [](Parameters& given) {
+              return changed(read_area_pairs(given),
+                             [](const PairSource&, Stream&, std::span<Pair> out) {
+                               for (Pair& pair : out) pair.control = -1 * pair.control;
+                             });
+            }),
       entry("control_unclipped", "correlated/area",
             "integrates the control over the whole polygon, that below the receiver's "
             "horizon too: nothing on `rectangle`, lambda (unclipped - clipped) where the "
             "luminaire crosses the horizon.",
-            unclipped_integral),
+            [](Parameters& given) {
+              const luminaire::SharedSetting setting = luminaire::read_setting(given);
+              return with_integral(read_area_pairs(given),
+                                   luminaire::unclipped_irradiance(*setting));
+            }),
       entry("control_without_pi", "correlated/area",
             "takes the form factor for the control's integral, J / pi: lambda J (1/pi - 1).",
-            without_pi),
+            [](Parameters& given) {
+              const SharedPairs pairs = read_area_pairs(given);
+              return with_integral(pairs, integral_of(pairs) * (1 / std::numbers::pi));
+            }),
       entry("control_without_radiance", "correlated/area",
             "leaves the luminaire's radiance L out of J: lambda J (1/L - 1), nothing at L = "
             "1.",
-            without_radiance),
+            [](Parameters& given) {
+              const double radiance = luminaire::read_setting(given)->radiance();
+              given.require(radiance != 0, "scene", "the luminaire must have a radiance above 0");
+              const SharedPairs pairs = read_area_pairs(given);
+              return with_integral(pairs, integral_of(pairs) / radiance);
+            }),
       entry("control_visible", "correlated/area",
             "lets occluders shade the control's samples but not its integral: lambda (J - "
             "I).",
-            visible_control),
+            [](Parameters& given) {
+              return changed(read_area_pairs(given),
+                             [](const PairSource&, Stream&, std::span<Pair> out) {
+                               for (Pair& pair : out) pair.control = pair.full;
+                             });
+            }),
       entry("control_elsewhere", "correlated/area",
             "evaluates the control at other points than the integrand: no bias, but the "
             "variance grows to Var f + lambda^2 Var g.",
@@ -185,7 +166,10 @@ std::vector<Entry> mutants_correlated() {
               "tends to (Cov + I J) / Var g; no bias, more variance."},
              [](Parameters& given) {
                only_published_rule(given);
-               return cross_fitted(read_area_pairs(given), uncentred);
+               return cross_fitted(read_area_pairs(given), [](const Sums& sums, double integral) {
+                 const double spread = sums.lack_squared - sums.lack * sums.lack / sums.count;
+                 return spread > 0 ? (integral * sums.full - sums.product) / spread : 0;
+               });
              }),
       mutant(
           {"lambda_own_half", "correlated/area_cross_fitted",
@@ -199,7 +183,12 @@ std::vector<Entry> mutants_correlated() {
       entry("control_grey_integral", "correlated/sky",
             "has one J for all colours, the mean of theirs, beside a control in colour: lambda "
             "(mean J - J) in each, nothing under a grey sky.",
-            grey_integral),
+            [](Parameters& given) {
+              const SharedPairs pairs = read_sky_pairs(given);
+              double sum = 0;
+              for (const Colour& colour : pairs->colours) sum += colour.control_integral;
+              return with_integral(pairs, sum / static_cast<double>(pairs->colours.size()));
+            }),
   };
 }
 

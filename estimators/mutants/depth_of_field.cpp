@@ -85,18 +85,6 @@ struct SharpBackground : SoundShading {
   }
 };
 
-std::shared_ptr<const Setup> sharp_background(Parameters& given) {
-  const PredictionRules rules =
-      given.string("prediction") == "covariance" ? covariance_rules() : wave_rules();
-  return image_setup(read_image_plan(given, &rules), SharpBackground{});
-}
-
-std::shared_ptr<const Setup> fronts_ignored(Parameters& given) {
-  PredictionRules rules = wave_rules();
-  rules.occludes = [](const Plane& front, const Lens& lens) { return front.depth >= lens.focus; };
-  return image_setup(read_image_plan(given, &rules));
-}
-
 // The largest frequency with its sign: -Wv / f made it positive, Wv itself is not.
 double signed_bandwidth(std::span<const CameraFrequency> waves, const Lens& lens) {
   double highest = 0;
@@ -104,17 +92,6 @@ double signed_bandwidth(std::span<const CameraFrequency> waves, const Lens& lens
     if (passes(w, lens)) highest = std::max(highest, -w.image);
   }
   return highest;
-}
-
-std::shared_ptr<const Setup> signed_maximum(Parameters& given) {
-  ReconstructionRules rules;
-  rules.prediction.bandwidth = signed_bandwidth;
-  return prepare_reconstruction(given, rules);
-}
-
-std::shared_ptr<const Setup> unnormalised(Parameters& given) {
-  return prepare_reconstruction(given,
-                                {.weights = [](Splats as_they_fall) { return as_they_fall; }});
 }
 
 }  // namespace
@@ -147,20 +124,37 @@ std::vector<Entry> mutants_depth_of_field() {
       mutant({"lens_sharp_background", "depth_of_field/image",
               "gives the lens no aperture in pixels whose middle sees no surface: what is blurred "
               "across the background there is cut off."},
-             sharp_background),
+             [](Parameters& given) {
+               const PredictionRules rules =
+                   given.string("prediction") == "covariance" ? covariance_rules() : wave_rules();
+               return image_setup(read_image_plan(given, &rules), SharpBackground{});
+             }),
       mutant({"lens_fronts_ignored", "depth_of_field/image",
               "predicts nothing from occluders in front of the focal plane: no bias, but one lens "
               "sample where there is most noise."},
-             fronts_ignored),
+             [](Parameters& given) {
+               PredictionRules rules = wave_rules();
+               rules.occludes = [](const Plane& front, const Lens& lens) {
+                 return front.depth >= lens.focus;
+               };
+               return image_setup(read_image_plan(given, &rules));
+             }),
       mutant({"bandwidth_signed", "depth_of_field/reconstruction",
               "takes the largest frequency with its sign: those that are all negative count as "
               "none, and waves are sampled eight pixels apart."},
-             signed_maximum),
+             [](Parameters& given) {
+               ReconstructionRules rules;
+               rules.prediction.bandwidth = signed_bandwidth;
+               return prepare_reconstruction(given, rules);
+             }),
       mutant(
           {"splats_unnormalised", "depth_of_field/reconstruction",
            "does not divide by the sum of the weights: too bright where dense samples and sparse "
            "ones meet, too dark beyond the last sample."},
-          unnormalised),
+          [](Parameters& given) {
+            return prepare_reconstruction(
+                given, {.weights = [](Splats as_they_fall) { return as_they_fall; }});
+          }),
   };
 }
 

@@ -21,38 +21,6 @@ using render::Vector3;
 
 // Replacements for the geometry term cos+ light_cosine+ / r^2.
 
-double no_receiver_cosine(const Connection& c) {
-  if (c.receiver_height() <= 0) return 0;
-  return std::max(0.0, c.light_cosine()) / c.squared_distance;
-}
-
-double no_light_cosine(const Connection& c) {
-  if (c.light_height <= 0) return 0;
-  return std::max(0.0, c.receiver_cosine()) / c.squared_distance;
-}
-
-double no_change_of_variables(const Connection& c) {
-  return c.light_height > 0 ? std::max(0.0, c.receiver_cosine()) : 0;
-}
-
-double inverse_distance(const Connection& c) { return GeometryTerm{}(c)*c.distance(); }
-
-double reversed_difference(const Connection& c) {
-  return -c.receiver_height() * c.light_height / (c.squared_distance * c.squared_distance);
-}
-
-double absolute_receiver_cosine(const Connection& c) {
-  return std::abs(c.receiver_height()) * std::max(0.0, c.light_height) /
-         (c.squared_distance * c.squared_distance);
-}
-
-double two_sided_light(const Connection& c) {
-  return std::max(0.0, c.receiver_height()) * std::abs(c.light_height) /
-         (c.squared_distance * c.squared_distance);
-}
-
-double one_percent_more(const Connection& c) { return 1.01 * GeometryTerm{}(c); }
-
 struct SolidAngleDensity {
   double omega_over_area;
   double operator()(const Connection& c) const {
@@ -98,7 +66,7 @@ Entry entry(const Mutant& its,
 
 using Term = double (*)(const Connection&);
 
-Entry term_mutant(Term term, const char* name, const char* defect) {
+Entry term_mutant(const char* name, const char* defect, Term term) {
   return entry({name, "luminaire/area", defect}, [term](SharedSetting setting) {
     return averaging(only_mean(area_channel(*setting)),
                      AreaPrimary<UniformTriangle, Term>(setting, term), point_samplers<>(setting));
@@ -113,11 +81,6 @@ Entry arvo_mutant(const char* name, const char* defect) {
   });
 }
 
-std::shared_ptr<const Setup> unwarped_triangle(SharedSetting setting) {
-  return averaging(only_mean(area_channel(*setting)), AreaPrimary<UnwarpedTriangle>(setting),
-                   point_samplers<UnwarpedTriangle>(setting));
-}
-
 std::shared_ptr<const Setup> half_dropped(SharedSetting setting) {
   const auto primary = [area = AreaPrimary<>(setting)](Stream& random, Cost& cost) {
     const auto [index, x, y] = area.shares().choose(random);
@@ -125,20 +88,6 @@ std::shared_ptr<const Setup> half_dropped(SharedSetting setting) {
     return area.value(area.at(area.setting().triangles()[index], UnitSquare{}(x, y)), cost);
   };
   return averaging(only_mean(area_channel(*setting)), primary, point_samplers<UnitSquare>(setting));
-}
-
-std::shared_ptr<const Setup> solid_angle_density(SharedSetting setting) {
-  const double omega = SolidAnglePrimary<>(setting).solid_angle();
-  return averaging(only_mean(area_channel(*setting)),
-                   AreaPrimary<UniformTriangle, SolidAngleDensity>(
-                       setting, {.omega_over_area = omega / setting->area()}),
-                   point_samplers<>(setting));
-}
-
-std::shared_ptr<const Setup> unclipped_reference(SharedSetting setting) {
-  Channel channel = only_mean(area_channel(*setting));
-  if (channel.mean) channel.mean = unclipped_irradiance(*setting);
-  return averaging(channel, AreaPrimary<>(setting), point_samplers<>(setting));
 }
 
 // Mutants of luminaire/floor scale what some receivers get, as a wrong weight would.
@@ -162,27 +111,6 @@ struct WeightedPrimary {
   }
 };
 
-/// Four pixels, away from each other and from the edges.
-double hot_pixels(const Pixel& p, const ImageShape& shape) {
-  const bool row = p.y == shape.height / 4 || p.y == shape.height - 1 - shape.height / 4;
-  const bool column = p.x == shape.width / 3 || p.x == shape.width - 1 - shape.width / 3;
-  return row && column ? 1.3 : 1;
-}
-
-double tile(const Pixel& p, const ImageShape& shape) {
-  const bool column = p.x >= shape.width / 2 && p.x < shape.width / 2 + shape.width / 4;
-  const bool row = p.y >= shape.height / 2 && p.y < shape.height / 2 + shape.height / 4;
-  return row && column ? 1.02 : 1;
-}
-
-double everywhere(const Pixel&, const ImageShape&) { return 1.004; }
-
-double every_other_row(const Pixel& p, const ImageShape&) { return p.y % 2 == 0 ? 1.005 : 0.995; }
-
-double last_column(const Pixel& p, const ImageShape& shape) {
-  return p.x + 1 == shape.width ? 0.9 : 1;
-}
-
 Entry entry(const char* name, const char* defect, Weight weight) {
   return mutant({name, "luminaire/floor", defect}, [weight = std::move(weight)](Parameters& given) {
     const Floor floor = read_floor(given);
@@ -199,28 +127,56 @@ Entry entry(const char* name, const char* defect, Weight weight) {
 
 std::vector<Entry> mutants_luminaire() {
   return {
-      term_mutant(no_receiver_cosine, "no_cosine",
-                  "forgets the receiver's cosine: the result is L Omega; +13.8 %."),
-      term_mutant(no_light_cosine, "no_light_cosine", "forgets the luminaire's cosine; +31.9 %."),
-      term_mutant(no_change_of_variables, "no_change_of_variables",
-                  "forgets light_cosine / r^2, which turns solid angle into area; +134 %."),
-      term_mutant(inverse_distance, "inverse_distance", "divides by r, not r^2; +28.9 %."),
-      term_mutant(reversed_difference, "reversed_difference",
+      term_mutant("no_cosine", "forgets the receiver's cosine: the result is L Omega; +13.8 %.",
+                  [](const Connection& c) -> double {
+                    if (c.receiver_height() <= 0) return 0;
+                    return std::max(0.0, c.light_cosine()) / c.squared_distance;
+                  }),
+      term_mutant("no_light_cosine", "forgets the luminaire's cosine; +31.9 %.",
+                  [](const Connection& c) -> double {
+                    if (c.light_height <= 0) return 0;
+                    return std::max(0.0, c.receiver_cosine()) / c.squared_distance;
+                  }),
+      term_mutant("no_change_of_variables",
+                  "forgets light_cosine / r^2, which turns solid angle into area; +134 %.",
+                  [](const Connection& c) {
+                    return c.light_height > 0 ? std::max(0.0, c.receiver_cosine()) : 0;
+                  }),
+      term_mutant("inverse_distance", "divides by r, not r^2; +28.9 %.",
+                  [](const Connection& c) { return GeometryTerm{}(c)*c.distance(); }),
+      term_mutant("reversed_difference",
                   "takes the connection from the luminaire to the receiver and does not clamp: the "
-                  "irradiance comes out negative; -200 %."),
+                  "irradiance comes out negative; -200 %.",
+                  [](const Connection& c) {
+                    return -c.receiver_height() * c.light_height /
+                           (c.squared_distance * c.squared_distance);
+                  }),
       term_mutant(
-          absolute_receiver_cosine, "absolute_cosine",
+          "absolute_cosine",
           "takes the receiver's cosine absolutely, so that a luminaire below the horizon shines: "
-          "nothing on `triangle`, too bright where a luminaire crosses the horizon."),
+          "nothing on `triangle`, too bright where a luminaire crosses the horizon.",
+          [](const Connection& c) {
+            return std::abs(c.receiver_height()) * std::max(0.0, c.light_height) /
+                   (c.squared_distance * c.squared_distance);
+          }),
       term_mutant(
-          two_sided_light, "two_sided_light",
+          "two_sided_light",
           "lets both sides of the luminaire emit: nothing where the emitting side faces the "
-          "receiver; a luminaire that faces away shines."),
-      term_mutant(one_percent_more, "one_percent", "is scaled by 1.01; +1 %."),
+          "receiver; a luminaire that faces away shines.",
+          [](const Connection& c) {
+            return std::max(0.0, c.receiver_height()) * std::abs(c.light_height) /
+                   (c.squared_distance * c.squared_distance);
+          }),
+      term_mutant("one_percent", "is scaled by 1.01; +1 %.",
+                  [](const Connection& c) { return 1.01 * GeometryTerm{}(c); }),
       entry({"nonuniform_triangle", "luminaire/area",
              "maps (x, y) to (x, y (1 - x)), which is not uniform in the "
              "triangle, at the uniform density; -25.4 %."},
-            unwarped_triangle),
+            [](SharedSetting setting) {
+              return averaging(only_mean(area_channel(*setting)),
+                               AreaPrimary<UnwarpedTriangle>(setting),
+                               point_samplers<UnwarpedTriangle>(setting));
+            }),
       entry({"half_dropped", "luminaire/area",
              "takes points of the unit square, counts those outside the "
              "triangle as zero and does not double the others; -50 %."},
@@ -228,26 +184,51 @@ std::vector<Entry> mutants_luminaire() {
       entry({"solid_angle_density", "luminaire/area",
              "divides points uniform in area by the density 1 / Omega of "
              "directions uniform in solid angle; -4.0 %."},
-            solid_angle_density),
+            [](SharedSetting setting) {
+              const double omega = SolidAnglePrimary<>(setting).solid_angle();
+              return averaging(only_mean(area_channel(*setting)),
+                               AreaPrimary<UniformTriangle, SolidAngleDensity>(
+                                   setting, {.omega_over_area = omega / setting->area()}),
+                               point_samplers<>(setting));
+            }),
       entry({"unclipped_reference", "luminaire/area",
              "states as its mean Lambert's formula without clipping at the "
              "horizon; the estimator is sound. Nothing on `triangle`, wrong "
              "where a luminaire crosses the horizon."},
-            unclipped_reference),
+            [](SharedSetting setting) {
+              Channel channel = only_mean(area_channel(*setting));
+              if (channel.mean) channel.mean = unclipped_irradiance(*setting);
+              return averaging(channel, AreaPrimary<>(setting), point_samplers<>(setting));
+            }),
       arvo_mutant<UniformArc>("arvo_uniform_arc",
                               "takes c' uniform on the arc from a to c; +0.32 %."),
       arvo_mutant<UniformAngle>("arvo_uniform_angle",
                                 "takes the angle from b uniform, not its cosine; -4.7 %."),
-      entry("floor_hot_pixels", "is 30 % too bright in four single pixels.", hot_pixels),
+      entry("floor_hot_pixels", "is 30 % too bright in four single pixels.",
+            [](const Pixel& p, const ImageShape& shape) {
+              // Four pixels, away from each other and from the edges.
+              const bool row =
+                  p.y == shape.height / 4 || p.y == shape.height - 1 - shape.height / 4;
+              const bool column =
+                  p.x == shape.width / 3 || p.x == shape.width - 1 - shape.width / 3;
+              return row && column ? 1.3 : 1;
+            }),
       entry("floor_tile",
-            "is 2 % too bright in one tile, a quarter of the width and of the height.", tile),
-      entry("floor_global", "is 0.4 % too bright in every pixel.", everywhere),
+            "is 2 % too bright in one tile, a quarter of the width and of the height.",
+            [](const Pixel& p, const ImageShape& shape) {
+              const bool column = p.x >= shape.width / 2 && p.x < shape.width / 2 + shape.width / 4;
+              const bool row = p.y >= shape.height / 2 && p.y < shape.height / 2 + shape.height / 4;
+              return row && column ? 1.02 : 1;
+            }),
+      entry("floor_global", "is 0.4 % too bright in every pixel.",
+            [](const Pixel&, const ImageShape&) { return 1.004; }),
       entry("floor_interlaced",
             "is 0.5 % too bright in the even rows and 0.5 % too dark in the odd ones: the "
             "image's mean is right.",
-            every_other_row),
-      entry("floor_last_column", "is 10 % too dark in the last column, where a filter was cut off.",
-            last_column),
+            [](const Pixel& p, const ImageShape&) { return p.y % 2 == 0 ? 1.005 : 0.995; }),
+      entry(
+          "floor_last_column", "is 10 % too dark in the last column, where a filter was cut off.",
+          [](const Pixel& p, const ImageShape& shape) { return p.x + 1 == shape.width ? 0.9 : 1; }),
   };
 }
 

@@ -146,34 +146,6 @@ Entry roulette_mutant(const Mutant& its) {
   });
 }
 
-std::shared_ptr<const Setup> depth_limit(const Scene& scene, const RoulettePlan& plan,
-                                         Parameters&) {
-  return broken_paths(
-      scene, [sound = plan.roulette(scene), direct = plan.direct](const auto& world, auto&... run) {
-        trace(EightReflections(world), sound, direct, run...);
-      });
-}
-
-std::shared_ptr<const Setup> from_hindsight(const Scene& scene, const RoulettePlan& plan,
-                                            Parameters&) {
-  return paths_by(scene, TerminalFromHindsight{plan.roulette(scene)}, Direct::hit);
-}
-
-// Twice counted: e as if light were learnt of by hits, whatever the way it is learnt of.
-std::shared_ptr<const Setup> direct_light_twice(const Scene& scene, const RoulettePlan& plan,
-                                                Parameters&) {
-  const Incoming incoming = plan.incoming.value_or(scene.global);
-  const Roulette broken(plan.rule, scene.global.all,
-                        global_terminal(scene, incoming, Direct::hit, plan.scale));
-  return paths_by(scene, broken, plan.direct);
-}
-
-std::shared_ptr<const Setup> survival_above_one(const Scene& scene, const RoulettePlan& plan,
-                                                Parameters& parameters) {
-  require_darker(parameters, scene, 0.8, "where every albedo is 0.8 or more, its paths never end");
-  return paths_by(scene, SurvivalAboveOne{plan.roulette(scene)}, plan.direct);
-}
-
 // Replacements for how many children there are and what they weigh.
 
 struct DrawnNumber : Winners {
@@ -281,15 +253,28 @@ std::vector<Entry> mutants_paths() {
       entry({"depth_limit", classical,
              "loses what comes after eight reflections; -0.2 % in a furnace of albedo 0.5, -13.4 % "
              "of albedo 0.8."},
-            depth_limit),
+            [](const Scene& scene, const RoulettePlan& plan, Parameters&) {
+              return broken_paths(scene, [sound = plan.roulette(scene), direct = plan.direct](
+                                             const auto& world, auto&... run) {
+                trace(EightReflections(world), sound, direct, run...);
+              });
+            }),
       entry({"terminal_from_hindsight", improved,
              "raises the terminal value to what the path finds when it goes on; learns of light by "
              "hits whatever `direct` says. Nothing in a furnace, -10 % in the built-in sphere."},
-            from_hindsight),
+            [](const Scene& scene, const RoulettePlan& plan, Parameters&) {
+              return paths_by(scene, TerminalFromHindsight{plan.roulette(scene)}, Direct::hit);
+            }),
       entry({"direct_light_twice", improved,
              "leaves the direct light in the terminal value although it is learnt of separately: "
              "still unbiased, but of a larger variance."},
-            direct_light_twice),
+            [](const Scene& scene, const RoulettePlan& plan, Parameters&) {
+              // Twice counted: e as if light were learnt of by hits, however it is.
+              const Incoming incoming = plan.incoming.value_or(scene.global);
+              const Roulette broken(plan.rule, scene.global.all,
+                                    global_terminal(scene, incoming, Direct::hit, plan.scale));
+              return paths_by(scene, broken, plan.direct);
+            }),
       roulette_mutant<DarkSurfacesEnd>(
           {"dark_surfaces_end", classical,
            "never goes on from surfaces whose albedo is below 0.3, and counts nothing "
@@ -297,7 +282,11 @@ std::vector<Entry> mutants_paths() {
       entry({"survival_above_one", classical,
              "goes on with 1.2 times the probability and divides by all of it, above 1, too; too "
              "dark where an albedo exceeds 5/6."},
-            survival_above_one),
+            [](const Scene& scene, const RoulettePlan& plan, Parameters& parameters) {
+              require_darker(parameters, scene, 0.8,
+                             "where every albedo is 0.8 or more, its paths never end");
+              return paths_by(scene, SurvivalAboveOne{plan.roulette(scene)}, plan.direct);
+            }),
       roulette_mutant<DividedByItself>(
           {"divided_by_itself", classical,
            "divides each colour by its own albedo, so that the throughput stays what it "

@@ -74,16 +74,6 @@ std::shared_ptr<const Setup> other_paths(Parameters& parameters) {
   return setup(scene, std::move(broken));
 }
 
-std::shared_ptr<const Setup> power_not_divided(Parameters& parameters) {
-  const Scene scene = read_room(parameters);
-  return setup(scene, recipe(PowerNotDivided{{scene.room}}));
-}
-
-std::shared_ptr<const Setup> clamped_distance(Parameters& parameters) {
-  const Scene scene = read_room(parameters);
-  return setup(scene, recipe(ClampedDistance{{scene.room}, parameters.number("least_distance")}));
-}
-
 }  // namespace
 
 std::vector<Entry> mutants_virtual_lights() {
@@ -115,14 +105,21 @@ std::vector<Entry> mutants_virtual_lights() {
              other_paths),
       mutant({"power_not_divided", "virtual_lights/classic",
               "gives each of M virtual lights the power of all: M times too much."},
-             power_not_divided),
+             [](Parameters& parameters) {
+               const Scene scene = read_room(parameters);
+               return setup(scene, recipe(PowerNotDivided{{scene.room}}));
+             }),
       mutant({"clamped_distance",
               "virtual_lights/classic",
               "takes no distance for less than `least_distance`: the spikes are gone, and so is "
               "the light that they stand for, more of it the nearer the receiver is to a corner.",
               {number_parameter("least_distance", "in units of the scene's longest side", "0.1",
                                 {0})}},
-             clamped_distance)};
+             [](Parameters& parameters) {
+               const Scene scene = read_room(parameters);
+               return setup(scene, recipe(ClampedDistance{{scene.room},
+                                                          parameters.number("least_distance")}));
+             })};
 }
 
 }  // namespace assay::plugins

@@ -112,11 +112,6 @@ std::vector<ParameterInformation> room_parameters() {
                            "0", {0, 1e6})};
 }
 
-std::shared_ptr<const Setup> classic(Parameters& parameters) {
-  const Scene scene = read_room(parameters);
-  return setup(scene, recipe(Classic{scene.room}));
-}
-
 Rgb gathered(const Room& room, bool sampled, Stream& random, Cost& cost) {
   const paths::MeshWorld& world = room.world();
   const Vertex first = world.reflected(room.receiver(), random, cost);
@@ -171,7 +166,10 @@ std::vector<Entry> virtual_lights_lights() {
             "closest-hit ray, and a shadow ray where both cosines are positive. Channels: "
             "`radiance`, or `red`, `green`, `blue`. Sampler: direction.",
         .parameters = room_parameters()},
-       classic},
+       [](Parameters& parameters) {
+         const Scene scene = read_room(parameters);
+         return setup(scene, recipe(Classic{scene.room}));
+       }},
       {{.name = "virtual_lights/gather",
         .summary = "Light after two reflections by gathering: the trusted reference.",
         .description = "The integral of virtual_lights/classic by a path from the receiver: a "
