@@ -42,9 +42,7 @@ bool within(const NumberRange& range, double value) {
 }
 
 std::vector<std::string> texts_of(const Value& value, const std::string& what) {
-  if (value.kind() != Value::Kind::list) {
-    throw InputError(value.where(), what + " must be a list of texts: `[one, two]`");
-  }
+  value.require(value.kind() == Value::Kind::list, what + " must be a list of texts: `[one, two]`");
   return mapped(value.items(),
                 [&](const Value& item) { return item.string("each item of " + what); });
 }

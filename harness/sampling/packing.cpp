@@ -96,24 +96,19 @@ std::string framed(std::string_view bytes) {
 
 std::string_view unframed(std::string_view frame) {
   Head head;
-  if (!frame.starts_with(magic) || frame.size() < sizeof head) {
-    throw Unpackable("it was not written by Assay");
-  }
+  Unpacker::require(frame.starts_with(magic) && frame.size() >= sizeof head,
+                    "it was not written by Assay");
   std::memcpy(&head, frame.data(), sizeof head);
-  if (head.name != Head().name) {
-    throw Unpackable("it is of another version of Assay");
-  }
-  if (head.byte_order != Head().byte_order) {
-    throw Unpackable("it is of a machine with another order of bytes");
-  }
+  Unpacker::require(head.name == Head().name, "it is of another version of Assay");
+  Unpacker::require(head.byte_order == Head().byte_order,
+                    "it is of a machine with another order of bytes");
   frame.remove_prefix(sizeof head);
   std::uint64_t checksum = 0;
-  if (frame.size() < sizeof checksum || frame.size() - sizeof checksum != head.size) {
-    throw Unpackable("it is cut short, or more follows it");
-  }
+  Unpacker::require(frame.size() >= sizeof checksum && frame.size() - sizeof checksum == head.size,
+                    "it is cut short, or more follows it");
   std::memcpy(&checksum, frame.data() + head.size, sizeof checksum);
   frame.remove_suffix(sizeof checksum);
-  if (checksum != checksum_of(frame)) throw Unpackable("it is damaged: its checksum differs");
+  Unpacker::require(checksum == checksum_of(frame), "it is damaged: its checksum differs");
   return frame;
 }
 

@@ -157,9 +157,8 @@ std::shared_ptr<const RecordedRun> read_recorded_run(Parameters& parameters) {
     const std::string& other = declared.name;
     if (other == "run" || other == "estimator") continue;
     parameters.string(other);
-    if (parameters.given(other)) {
-      parameters.refuse(other, "is for rows of a file: give it or `run`, not both");
-    }
+    parameters.require(!parameters.given(other), other,
+                       "is for rows of a file: give it or `run`, not both");
   }
   const reports::Record record = read(parameters);
   const std::string name = wanted_estimator(parameters, names_in(record));
