@@ -131,12 +131,6 @@ void require_not_negative(const Value& at, double least) {
                              "; it must not be negative in any direction");
 }
 
-SharedRadiance read_uniform(const Value& value) {
-  const double level = finite_number(value, "`uniform`");
-  require_not_negative(value, level);
-  return std::make_shared<Gradient>(level, Vector3{});
-}
-
 SharedRadiance read_gradient(const Value& value) {
   require_keys(value, "`gradient`", {"base", "slope"});
   const double base = finite_number(required_key(value, "`gradient`", "base"), "`base`");
@@ -228,7 +222,11 @@ SharedRadiance read_radiance(Parameters& given) {
                 "must be a map with one key: uniform, gradient, harmonics, peak or map");
   require_keys(sky, "the sky", {"uniform", "gradient", "harmonics", "peak", "map"});
   const auto& [kind, value] = sky.members()[0];
-  if (kind == "uniform") return read_uniform(value);
+  if (kind == "uniform") {
+    const double level = finite_number(value, "`uniform`");
+    require_not_negative(value, level);
+    return std::make_shared<Gradient>(level, Vector3{});
+  }
   if (kind == "gradient") return read_gradient(value);
   if (kind == "harmonics") return read_harmonics(value);
   if (kind == "peak") return read_peak(value);

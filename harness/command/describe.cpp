@@ -97,23 +97,15 @@ std::string channel_text(const Channel& channel) {
   return row_text(text);
 }
 
-std::string sampler_text(const NamedSampler& named) {
-  const Domain domain = named.sampler->domain();
-  std::string text = fmt::format("{}: {}; marginals", named.name, domain_name(domain));
-  for (const Marginal& marginal : marginals(domain)) text += " " + marginal.name;
-  return row_text(text);
-}
-
-std::string image_text(const ImageShape& shape) {
-  return row_text(fmt::format(
-      "{} x {} pixels of {}, {}", shape.width, shape.height, fmt::join(shape.components, ", "),
-      shape.independent ? "independent of each other" : "which depend on each other"));
-}
-
 std::string setup_text(const Setup& setup) {
   std::string out;
   const std::optional<ImageShape> image = setup.image();
-  if (image) out += "\nimage (with default parameters)\n" + image_text(*image);
+  if (image) {
+    out += "\nimage (with default parameters)\n";
+    out += row_text(fmt::format(
+        "{} x {} pixels of {}, {}", image->width, image->height, fmt::join(image->components, ", "),
+        image->independent ? "independent of each other" : "which depend on each other"));
+  }
   out += "\nchannels (with default parameters)\n";
   const std::size_t count = setup.channel_count();
   const std::size_t shown = image ? 4 : 20;
@@ -122,7 +114,12 @@ std::string setup_text(const Setup& setup) {
   const std::vector<NamedSampler> samplers = setup.samplers();
   if (samplers.empty()) return out;
   out += "\nsamplers\n";
-  for (const NamedSampler& named : samplers) out += sampler_text(named);
+  for (const NamedSampler& named : samplers) {
+    const Domain domain = named.sampler->domain();
+    std::string text = fmt::format("{}: {}; marginals", named.name, domain_name(domain));
+    for (const Marginal& marginal : marginals(domain)) text += " " + marginal.name;
+    out += row_text(text);
+  }
   return out;
 }
 
