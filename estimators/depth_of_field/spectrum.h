@@ -98,10 +98,10 @@ class Covariance {
     spread_.both = s.both - distance * s.position;
     return *this;
   }
-  /// The variance over a lens of Gaussian weights: power (1 - 1 / sqrt(1 + radius^2 spread / 2)),
-  /// with the spread of Wx + Wv / focus. Its points spread as a disc's do, radius / 2 along an
-  /// axis. For waves of low frequency it is the disc's variance, up to the fourth power of the
-  /// frequency.
+  /// The variance over a lens of Gaussian weights: power (1 - 1 / sqrt(1 + radius^2 spread / 2)).
+  /// The spread is that of Wx + Wv / focus. The lens's points spread as a disc's do, radius / 2
+  /// along an axis. For waves of low frequency it is the disc's variance, up to the fourth power of
+  /// the frequency.
   double lens_variance(const Lens& lens) const {
     const double spread =
         spread_.position + (2 * spread_.both + spread_.slope / lens.focus) / lens.focus;
