@@ -210,12 +210,11 @@ std::string tally_sentence(Standings count) {
 }
 
 std::string run_sentence(const Record& record) {
-  const auto alarm_count = static_cast<std::uint64_t>(alarms(record.ledger));
-  const std::string nights =
-      alarm_count > 0 ? counted(alarm_count, "ledger alarm", "ledger alarms") + ". " : "";
-  const std::string shard =
+  std::string text =
       record.shard ? fmt::format("Shard {} of {}: ", record.shard->index, record.shard->count) : "";
-  return shard + nights + tally_sentence(standings(record));
+  if (const auto count = static_cast<std::uint64_t>(alarms(record.ledger)); count > 0)
+    text += counted(count, "ledger alarm", "ledger alarms") + " over all nights. This run alone: ";
+  return text + tally_sentence(standings(record));
 }
 
 std::string false_alarms(double alpha) {

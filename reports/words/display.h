@@ -34,7 +34,7 @@ Standings standings(const Record&);
 /// The same as a sentence for a title.
 std::string tally_sentence(Standings);
 
-/// The same of a run, with the alarms of its ledger: "5 of 126 claims broken; 1 ledger alarm".
+/// The same of a run, after the alarms of its ledger: "1 ledger alarm over all nights. This …".
 std::string run_sentence(const Record&);
 
 /// "72 hold, 2 planted bugs caught"; where not all is well "1 broken, 2 undecided, 14 ok".
@@ -106,7 +106,7 @@ struct SeriesDisplay {
   ASSAY_FIELDS(SeriesDisplay, name, sentence, alarm, changes)
 };
 struct RecordDisplay {
-  std::string verdict;  ///< "5 of 126 claims broken; 1 ledger alarm"
+  std::string verdict;  ///< "5 of 126 claims broken"
   std::string counts;
   std::string rates;
   std::string seed;  ///< all digits
