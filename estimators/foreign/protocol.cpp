@@ -478,8 +478,8 @@ bool Reply::take_text() {
       return true;
     }
     if (line.size() + 1 == end_.size() && end_.starts_with(line)) {
-      throw ProtocolError(so_far() + ": the reply ended with observation " +
-                          std::to_string(question_.first + numbers_.size() / width_) + " missing");
+      throw ProtocolError(so_far() + " and lacks observation " +
+                          std::to_string(question_.first + numbers_.size() / width_));
     }
     take_line(line);
   }
@@ -498,8 +498,7 @@ std::string Reply::ends_early() const {
   const std::string_view all(bytes_.data(), filled_);
   if (!all.ends_with(end_)) return "";
   const std::size_t numbers = (filled_ - end_.size()) / 8;
-  return so_far() + ": the reply ended with observation " +
-         std::to_string(question_.first + numbers / width_) + " missing";
+  return so_far() + " and lacks observation " + std::to_string(question_.first + numbers / width_);
 }
 
 std::string Reply::so_far() const {
@@ -510,9 +509,9 @@ std::string Reply::so_far() const {
     count = std::min((filled_ - (ended ? end_.size() : 0)) / 8, wanted());
   }
   if (count == wanted()) {
-    return "its " + of(count, "number") + " came, but not the question again, which ends a reply";
+    return "its reply has all " + of(count, "number") + ", but not the question again at its end";
   }
-  return of(count, "number") + " of " + std::to_string(wanted()) + " came";
+  return "its reply has " + std::to_string(count) + " of " + of(wanted(), "number");
 }
 
 }  // namespace assay::foreign

@@ -56,7 +56,7 @@ WAYS = {
     "chatter": r"exit status 3.*no light",
     "flood": r"cannot be understood",
     "deaf": r"no light|closed its standard input",
-    "short": r"missing|the line `ready`|unusable|cannot be read",
+    "short": r"lacks|the line `ready`|unusable|cannot be read",
     "long": r"should be a line of 1 number|not end with the question|unusable",
     "garbage": r"cannot be understood|unusable|not a number",
     "nan": r"not finite|nan",

@@ -126,7 +126,7 @@ TEST_F(Process, FindsTheObservationAtWhichAReplyGoesWrong) {
             {"ended with exit status 3 instead of answering for observation 5",
              "its standard error ends with: out of luck"}},
            {"kill -SEGV $$; sleep 5", {"signal 11 (Segmentation fault)", "observation 5"}},
-           {":", {"observation 5 missing"}},
+           {":", {"lacks observation 5"}},
            {"echo 5; echo 5", {"its reply should end with the question, but it goes on"}},
            {"echo 50% done", {"observation 5 should be a line of 1 number, but it is `50% done`"}},
            {"yes 'so much' | head -c 3000000 >&2; exit 1",

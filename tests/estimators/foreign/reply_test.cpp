@@ -75,7 +75,7 @@ TEST(Reply, RefusesWhatIsNoReply) {
     return refusal(bytes + to_bytes(question, Numbers::binary), Numbers::binary);
   };
   EXPECT_THAT(binary(bytes_of({1, 2, 3})),
-              HasSubstr("incomplete: 3 numbers of 4 came: the reply ended with observation 6"));
+              HasSubstr("incomplete: its reply has 3 of 4 numbers and lacks observation 6"));
   EXPECT_THAT(binary(bytes_of({1, 2, 3, 4, 5, 6})), HasSubstr("does not end with the question"));
   EXPECT_THAT(binary("hello" + bytes_of({1, 2, 3, 4})),
               AllOf(HasSubstr("does not end with the question"), HasSubstr("begins with `hello")));
