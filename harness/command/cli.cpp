@@ -388,11 +388,11 @@ Examples:
   Texts lists{"plugins", "tests"};
   for (const Table& table : tables()) lists.push_back(table.plural);
   options.add(
-      {.name = "WHAT", .needed = "one of " + listed(lists), .words = lists}, command.what,
+      {.name = "WHAT", .words = lists}, command.what,
       [lists](const std::string& text, const std::string& /*option*/) {
         return lists[choice(Value::scalar(text), "what is listed", lists)];
       },
-      "plugins, tests, methods, quantities, laws, gates or reports");
+      "plugins, tests, methods, quantities, laws, gates or reports; default a list of these");
   options.add({.name = "SUITE", .words = {"*.yaml"}}, command.suites,
               "suite files whose tests are listed");
   add_selection(options, command.selection);
@@ -410,12 +410,12 @@ Examples:
 
 void define_describe(Options& options, DescribeCommand& command) {
   options.about(
-      R"(Prints the manual of a plugin: parameters, channels, references, samplers,
-mutants. It also describes a method, a quantity, a law, a gate or a report.
+      R"(Prints the manual of a plugin: parameters, channels, samplers, mutants. It also
+describes a family of plugins, a method, a quantity, a law, a gate or a report.
 
 Examples:
   assay describe luminaire/area
-  assay describe t
+  assay describe luminaire
 )");
   Texts words = plugin_names();
   for (const Table& table : tables())

@@ -112,7 +112,10 @@ int list_plugins() {
 }
 
 int list_table(const std::string& plural) {
-  fmt::print("{}", text_of(*std::ranges::find(tables(), plural, &Table::plural)));
+  for (const Table& table : tables()) {
+    if (plural.empty()) fmt::print("assay list {}\n", table.plural);
+    if (plural == table.plural) fmt::print("{}", text_of(table));
+  }
   return 0;
 }
 

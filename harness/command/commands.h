@@ -71,7 +71,7 @@ struct SampleArguments {
 int sample(const SampleArguments&);
 
 int list_plugins();
-/// Names and summaries of a table of describe.h.
+/// Names and summaries of a table of describe.h; the commands for all tables if it is "".
 int list_table(const std::string& plural);
 /// One id a line. 4 when no test is selected.
 int list_tests(const std::vector<Suite>& suites, const Selection& selection);

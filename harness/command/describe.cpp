@@ -257,7 +257,12 @@ std::string text_of(const Table& table) {
 }
 
 int describe(const std::string& name) {
-  std::string pages;
+  Table family;
+  for (const Entry& plugin : catalogue()) {
+    const Information& its = plugin.information;
+    if (its.name.starts_with(name + "/")) family.rows.push_back({its.name, its.summary, ""});
+  }
+  std::string pages = text_of(family);
   for (const Table& table : tables()) {
     if (name == table.plural) pages += text_of(table);
     std::set<std::string> said;  // Rows of one name have most sentences in common.

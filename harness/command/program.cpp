@@ -50,6 +50,7 @@ int act(const PlanCommand& command) {
 
 int act(const ListCommand& command) {
   if (command.what == "tests") return list_tests(load_suites(command.suites), command.selection);
+  if (command.what.empty()) fmt::print("assay list plugins\nassay list tests SUITE...\n");
   return command.what == "plugins" ? list_plugins() : list_table(command.what);
 }
 

@@ -726,6 +726,12 @@ test_lists_are_one_id_a_line() {
   [ "$(cat out)" = $'good/good\ngood/wrong' ] || fail 'not the two tests'
   expect 0 list plugins
   contains out 'luminaire/area'
+  expect 0 list
+  [ "$(head -n 2 out)" = $'assay list plugins\nassay list tests SUITE...' ] || fail 'no lists'
+  contains out 'assay list methods'
+  expect 0 describe luminaire
+  contains out 'luminaire/area '
+  lacks out 'mutants/'
   expect 0 --version
   expect 0 --help
 }
