@@ -1,9 +1,12 @@
 #include "harness/draws/consistency_setup.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "estimators/core/flush_denormals.h"
@@ -30,6 +33,20 @@ double difference_of(const AskedDraw& asked) {
   }
   return farther(relative_difference(draw.density, *asked.density),
                  relative_difference(draw.weight * *asked.density, asked.evaluation));
+}
+
+/// The two numbers that are farthest from each other, in words.
+std::string contradiction(const AskedDraw& asked) {
+  const double weight = asked.draw.weight, density = asked.density.value_or(0);
+  if (!asked.density) return fmt::format("the weight without a point is {}, not 0", weight);
+  const double far = difference_of(asked);
+  const double apart = relative_difference(asked.draw.density, density);
+  const int digits = far > 1e-6 ? 9 : 17;
+  if (std::isnan(apart) || apart == far)
+    return fmt::format("the draw has density {:.{}g}, but density(point) is {:.{}g}",
+                       asked.draw.density, digits, density, digits);
+  return fmt::format("weight x density is {:.{}g}, but evaluate is {:.{}g}", weight * density,
+                     digits, asked.evaluation, digits);
 }
 
 class ConsistencyEstimator final : public Estimator {
@@ -71,14 +88,16 @@ std::unique_ptr<Estimator> ConsistencySetup::make() const {
   return std::make_unique<ConsistencyEstimator>(*this);
 }
 
-std::optional<std::uint64_t> first_inconsistent(const Pool& pool, std::uint64_t count) {
+std::optional<std::pair<std::uint64_t, std::string>> first_inconsistent(const Pool& pool,
+                                                                        std::uint64_t count) {
   const FlushDenormals flush;
-  const std::unique_ptr<Estimator> estimator = pool.setup()->make();
-  estimator->announce({.key = pool.key(), .first = 0, .last = count});
-  std::vector<double> out(pool.channels());
+  const auto& setup = dynamic_cast<const ConsistencySetup&>(*pool.setup());
+  AskedDraws draws(setup.named(), PointNumbers::densities_and_evaluations);
+  draws.announce({.key = pool.key(), .first = 0, .last = count});
   for (std::uint64_t i = 0; i < count; ++i) {
-    pool.draw_again(*estimator, i, out);
-    if (out[0] != 0) return i;
+    const AskedDraw& asked = draws.of(Stream(pool.key(), i));
+    if (!(difference_of(asked) <= setup.sampler().rounding()))
+      return std::pair(i, contradiction(asked));
   }
   return std::nullopt;
 }

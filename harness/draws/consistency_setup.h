@@ -31,9 +31,10 @@ class ConsistencySetup final : public SamplerSetup {
 
 inline const std::string inconsistent_channel = "inconsistent";
 
-/// The index of the first inconsistent observation among the pool's first `count`, found by drawing
-/// them again; nullopt if there is none.
-std::optional<std::uint64_t> first_inconsistent(const Pool& pool, std::uint64_t count);
+/// The first inconsistent observation among the pool's first `count`, found by drawing them again,
+/// and the numbers that contradict each other, in words; nullopt if there is none.
+std::optional<std::pair<std::uint64_t, std::string>> first_inconsistent(const Pool& pool,
+                                                                        std::uint64_t count);
 
 /// Keeps a sampler's consistency and its draws on different streams.
 std::string consistency_purpose(const std::string& sampler);

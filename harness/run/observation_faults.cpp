@@ -123,7 +123,7 @@ std::string unusable(const DrawnTest& test) {
 std::string first_contradiction(const DrawnTest& test) {
   const TestOutcome& outcome = test.outcome;
   if (outcome.verdict != reports::Verdict::fail) return "";
-  std::optional<std::uint64_t> first;
+  std::optional<std::pair<std::uint64_t, std::string>> first;
   try {
     first = first_inconsistent(test.samples[0].pool(), outcome.secondaries());
   } catch (...) {
@@ -131,8 +131,8 @@ std::string first_contradiction(const DrawnTest& test) {
     // with it.
   }
   if (!first) return "";
-  return fmt::format("the first inconsistent draw is observation {}{}", *first,
-                     replay_line(outcome, *first));
+  return fmt::format("{}, first at observation {}{}", first->second, first->first,
+                     replay_line(outcome, first->first));
 }
 
 bool was_activated(const Subject& subject, const Pool& pool, std::uint64_t observations) {

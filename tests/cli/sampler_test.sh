@@ -120,13 +120,13 @@ test_a_wrong_density_of_a_library_fails() {
   claims wrong.yaml steeper
   expect 1 run wrong.yaml --filter '*cosine*' --report json=run.json
   contains out 'note: farthest off in'
-  contains out 'note: the first inconsistent draw is observation 0'
+  contains out 'note: the draw has density 0.'
   verdict_is run.json 'distribution(mine.cosine) == density' fail
   verdict_is run.json 'distribution(mine.cosine.theta) == density' fail
   verdict_is run.json 'inconsistency(mine.cosine) == 0' fail
   verdict_is run.json 'integral(mine.cosine) == 1' pass
   message run.json 'inconsistency(mine.cosine) == 0'
-  tells err 'the first inconsistent draw is observation 0'
+  tells err ', first at observation 0'
   none_left
 }
 
