@@ -54,13 +54,8 @@ std::vector<std::string> words_of_shell(const std::string& line) {
 
 /// The run that drew the test, by the command that its record keeps. No clock ends it.
 Loaded recorded_run(const Recorded& recorded, const ReplayArguments& arguments) {
-  const reports::Test& test = recorded.test;
-  if (test.replay.empty()) {
-    refuse({.file = arguments.record}, "test `{}` cannot be drawn again: {}", test.id,
-           test.no_replay.empty() ? "its record has no command" : test.no_replay);
-  }
   namespace fs = std::filesystem;
-  std::vector<std::string> words = words_of_shell(test.replay);
+  std::vector<std::string> words = words_of_shell(recorded.test.replay);
   words.erase(words.begin());
   // The suite's path starts where the command ran, which is here or beside the record.
   const std::string& file = recorded.suite.file;
@@ -305,12 +300,16 @@ bool replay_test(const Loaded& run, const Recorded& recorded) {
 }  // namespace
 
 int replay(ReplayArguments arguments) {
+  const Location where{.file = arguments.record.empty() ? "the last run" : arguments.record};
   if (arguments.record.empty()) arguments.record = last_run();
   const reports::Record record = read_record(arguments.record);
-  const Recorded recorded = find_test(record, arguments.record, arguments.test);
-  if (recorded.test.samples.empty()) {
-    refuse({.file = arguments.record}, "test `{}` recorded no samples: {}", recorded.test.id,
-           recorded.test.message);
+  const Recorded recorded = find_test(record, where.file, arguments.test);
+  const reports::Test& test = recorded.test;
+  if (test.samples.empty())
+    refuse(where, "test `{}` recorded no samples: {}", test.id, test.message);
+  if (test.replay.empty()) {
+    refuse(where, "test `{}` cannot be drawn again: {}", test.id,
+           test.no_replay.empty() ? "its record has no command" : test.no_replay);
   }
   try {
     const Loaded run = recorded_run(recorded, arguments);

@@ -502,13 +502,15 @@ test_explain_tells_of_the_last_run() {
   contains out 'The last run from this folder began'
   contains out 'secondaries: '
   expect 2 explain
-  contains err '2 tests match; give the id of one'
+  contains err 'assay: the last run: 2 tests match; give the id of one'
   expect 0 explain run.json mixed/wrong
   contains out 'The claim is wrong.'
   expect 2 explain mixed/
   contains err '3 tests have `mixed/` in their id'
   expect 2 explain mixed/wrnog
   contains err 'mixed/wrong'
+  expect 2 replay mixed/wrnog
+  contains err 'assay: the last run: no test `mixed/wrnog`'
   write_suite broken.yaml "$good" "$wrong"
   expect 1 run broken.yaml
   expect 0 explain
