@@ -68,12 +68,12 @@ Budget read_short_budget(const Value& value) {
 }
 
 Sweep read_sweep(const Value& value) {
-  const bool one = value.kind() == Value::Kind::map && value.members().size() == 1;
-  if (!one || value.members()[0].second.items().size() < 2) {
+  if (value.members().size() != 1)
     refuse(value.where(),
            "`over` is one parameter and two values or more: `over: {primaries: [8, 16, 32]}`");
-  }
   const auto& [parameter, values] = value.members()[0];
+  if (values.items().size() < 2)
+    refuse(values.where(), "a slope needs two values of `{}` or more: `[8, 16, 32]`", parameter);
   Sweep sweep{.parameter = parameter, .values = values.items()};
   double last = 0;
   for (const Value& each : sweep.values) {
