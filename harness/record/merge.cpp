@@ -179,7 +179,7 @@ Identity identity_of(const reports::Record& record) {
   };
   return {{"the number of shards", std::to_string(record.shard->count)},
           {"the program's version", record.tool.version + " " + record.tool.commit},
-          {"the options", record.shard->options},
+          {"the command", record.shard->options},
           {"the seed", all_of(record.suites, &reports::Suite::seed)},
           {"alpha and beta", all_of(record.suites, rates)},
           {"the digest of the suites and the data they name",
@@ -192,9 +192,8 @@ void check_same(const ShardFile& first, const ShardFile& other) {
   const auto found = difference(identity_of(other.record), identity_of(first.record));
   if (!found) return;
   refuse({.file = other.file},
-         "is no part of the run that `{}` is of: {} is `{}` here and `{}` there; run all shards by "
-         "one build on machines of one kind, with one --seed, on the same files; only --shard and "
-         "--report may differ",
+         "belongs to another run than `{0}`: {1} is `{2}` here and `{3}` there; run one of them "
+         "again so that {1} is the same",
          first.file, found->name, found->ours, found->theirs);
 }
 

@@ -177,9 +177,9 @@ TEST_F(Refusing, ShardsThatAreDoubledOrNoneAreNamed) {
 }
 
 TEST_F(Refusing, OtherOptionsOrSuitesAreAnotherRun) {
-  EXPECT_THAT(refused_with({.seed = 2}), HasSubstr("the seed is `2` here and `1` there"));
-  EXPECT_THAT(refused_with({.selection = {.filters = {"*"}}}), HasSubstr("the options"));
-  EXPECT_THAT(refused_with({.command = "assay run --set normal.mean=3"}), HasSubstr("the options"));
+  EXPECT_THAT(refused_with({.seed = 2}), HasSubstr("the seed is `2` here and `1` there; run one"));
+  EXPECT_THAT(refused_with({.selection = {.filters = {"*"}}}), HasSubstr("the command"));
+  EXPECT_THAT(refused_with({.command = "assay run --set normal.mean=3"}), HasSubstr("the command"));
   EXPECT_THAT(refused_with({.alpha = 0.02}), HasSubstr("alpha and beta"));
   const ShardFile other{"b.json", run_files({file_}, {.shard = std::pair(2U, 3U)})};
   EXPECT_THAT(refused({shards_[0], other}),
