@@ -95,17 +95,16 @@ std::string passed_by_empty_interval(const ChannelOutcome& channel) {
       reports::confidence_text(channel.effect.confidence));
 }
 
-std::string found_in_cell(const ChannelOutcome& channel) {
+std::string found_in_cell(const TestOutcome& outcome, const ChannelOutcome& channel) {
   if (!channel.image || !channel.image->detectable_in_cell) return "";
+  const bool noisy = channel.effect.relative && *channel.image->detectable_in_cell > 1;
   return fmt::format(
       "; in one typical square of {0} x {0} pixels alone, {1}{2} would have been found, too bright "
-      "or too dark{3}",
+      "or too dark; {3}{4}",
       stats::typical_side, reports::margin_text(*channel.image->detectable_in_cell, channel.effect),
       channel.effect.relative ? " of the image's mean" : "",
-      channel.effect.relative && *channel.image->detectable_in_cell > 1
-          ? "; so much noise may come from a few bright samples: test the `distribution` too "
-            "(--law)"
-          : "");
+      noisy ? "so much noise may come from a few bright samples" : "only means were compared",
+      outcome.question.of_two() ? ": test the `distribution` too (--law)" : "");
 }
 
 std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& channel) {
@@ -125,7 +124,7 @@ std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& chann
       const char* how = outcome.question.theta->detectable_text();
       return fmt::format("{}; {}{} would have been found with probability {:g}{}", text,
                          reports::margin_text(*channel.detectable, channel.effect), how,
-                         1 - outcome.place.share.beta, found_in_cell(channel));
+                         1 - outcome.place.share.beta, found_in_cell(outcome, channel));
     }
     if (reports::range_text(channel.effect).empty()) return text;
     return fmt::format(
@@ -148,7 +147,7 @@ std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& chann
   return fmt::format("{}; {} or more{} is excluded by {}{}", evidence_against(outcome, channel),
                      reports::size_text(excluded, channel.effect),
                      channel.image ? " over the whole image" : "", interval,
-                     found_in_cell(channel));
+                     found_in_cell(outcome, channel));
 }
 
 std::string passed_proof(const TestOutcome& outcome, const ChannelOutcome& channel) {

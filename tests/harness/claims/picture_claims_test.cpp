@@ -59,7 +59,7 @@ TEST_F(PictureClaims, StacksOfOneLawPass) {
   // A difference of both signs of that root mean square would not.
   expect_said(test, Verdict::pass,
               {"% all over the image would have been found",
-               "; in one typical square of 16 x 16 pixels alone, "});
+               "; in one typical square of 16 x 16 pixels alone, ", "; only means were"});
   EXPECT_EQ(test.image->replicates, 32u);
   EXPECT_EQ(test.samples.at(0).secondaries, 24u);
   EXPECT_EQ(test.samples.at(1).secondaries, 32u);
