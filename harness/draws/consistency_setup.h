@@ -31,8 +31,8 @@ class ConsistencySetup final : public SamplerSetup {
 
 inline const std::string inconsistent_channel = "inconsistent";
 
-/// The first inconsistent observation among the pool's first `count`, found by drawing them again,
-/// and the numbers that contradict each other, in words; nullopt if there is none.
+/// The first inconsistent observation among the pool's first `count`, and which numbers contradict
+/// each other. It is found by drawing again.
 std::optional<std::pair<std::uint64_t, std::string>> first_inconsistent(const Pool& pool,
                                                                         std::uint64_t count);
 
