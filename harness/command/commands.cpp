@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <set>
 
 #include "estimators/catalogue.h"
@@ -58,7 +59,8 @@ int run_suites(const std::vector<Suite>& suites, const RunOptions& options, cons
   if (selects_nothing(suites, options.selection)) return nothing_ran;
   const std::unique_ptr<Progress> progress = make_progress(output.quiet);
   std::string ledger_fault;
-  std::set<std::string> told;  // ids
+  std::set<std::string> told;                 // ids
+  std::map<std::string, std::string> errors;  // messages, with the first test's id
   RunOptions drawn = options;
   std::shared_ptr<Ranks> ranks;
   if (options.ranks != nullptr) {
@@ -74,7 +76,12 @@ int run_suites(const std::vector<Suite>& suites, const RunOptions& options, cons
         identity_of(suites, options), executor_of(drawn));
     drawn.executor = checkpoint;
   }
-  const auto broken = [&](const reports::Test& test) {
+  const auto broken = [&](reports::Test test) {
+    const auto [first, is_new] = errors.emplace(test.message, test.id);
+    if (test.verdict == reports::Verdict::error && !is_new) {
+      test.message = fmt::format("the same as of `{}`", first->second);
+      test.replay = test.no_replay = "";
+    }
     if (tell_broken(test, output)) told.insert(test.id);
   };
   reports::Record record = run(suites, drawn, *progress, broken, &ledger_fault);
