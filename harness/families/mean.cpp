@@ -361,13 +361,6 @@ std::shared_ptr<const stats::ValueCells> planned_law(const PlannedChannel& plann
 // Barnard's maximum over the nuisance probability costs at most this (stats/means/binomial.h).
 constexpr double two_sample_cost = 1.4;
 
-/// Sides of the reference where an effect is to be found. An alarm finds what speaks against the
-/// claim, a proof what the claim names.
-std::vector<int> sides_of(const Regions& regions) {
-  if (regions.two_sided()) return {1, -1};
-  return {regions.bounds_above() != regions.proof() ? 1 : -1};
-}
-
 bool is_quoted(const Sized& sized) {
   const MethodTraits& method = sized.test.plan.method.is;
   const PlannedChannel& channel = sized.channel;
@@ -409,7 +402,7 @@ std::optional<std::uint64_t> exact_secondaries(const TestOutcome& test,
   }
   const Regions& regions = channel.regions;
   std::uint64_t most = 0;
-  for (const int side : sides_of(regions)) {
+  for (const int side : regions.sides()) {
     double effect = side * *regions.detect * channel.unit;
     stats::ExactMeanPlan rejected = plan_of(channel, rates);
     if (regions.within()) {
@@ -717,6 +710,8 @@ class MeanTheta : public Theta {
     PlannedChannel observed{.regions = regions};
     for (std::size_t i = 0; i < seen.data.size(); ++i) {
       observed.deviations[i] = question.factor_of(i) * seen.moments(i).standard_deviation();
+      const double sign = i == 0 ? 1 : std::copysign(1, -question.factor);
+      if (seen.moments(i).m2 > 0) observed.skewness[i] = sign * seen.moments(i).skewness();
     }
     if (!question.of_two()) observed.reference_error = seen.reference().standard_error;
     note_range(question, seen.channel, seen.moments(0), observed);
@@ -731,7 +726,7 @@ class MeanTheta : public Theta {
     if (!sized.test.plan.method.is.exact) return Theta::detectable(sized);
     if (!is_quoted(sized)) return std::nullopt;
     double most = 0;
-    for (const int side : sides_of(sized.channel.regions)) {
+    for (const int side : sized.channel.regions.sides()) {
       const auto found = exact_effect(sized, side);
       if (!found) return std::nullopt;
       most = std::max(most, *found);
@@ -740,7 +735,7 @@ class MeanTheta : public Theta {
   }
 
   bool finds_nothing(const Sized& sized) const override {
-    return is_quoted(sized) && std::ranges::none_of(sides_of(sized.channel.regions), [&](int side) {
+    return is_quoted(sized) && std::ranges::none_of(sized.channel.regions.sides(), [&](int side) {
              return exact_effect(sized, side).has_value();
            });
   }
@@ -751,7 +746,7 @@ class MeanTheta : public Theta {
     const stats::ExactMeanPlan exact = plan_of(sized.channel, sized.rates());
     const stats::ExactPlanning& plans = *sized.test.plan.method.is.plans;
     double least = 1;
-    for (const int side : sides_of(sized.channel.regions)) {
+    for (const int side : sized.channel.regions.sides()) {
       const double theta = side * effect * sized.channel.unit;
       least = std::min(least, plans.power(exact, sized.size.secondaries, theta));
     }

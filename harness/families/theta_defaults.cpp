@@ -88,7 +88,11 @@ std::string Theta::why_impossible(const Question& question) const {
 
 std::optional<double> Theta::detectable(const Sized& sized) const {
   if (!sized.channel.varies()) return std::nullopt;
-  return stats::student_t_detectable(mean_plan(sized), sized.sizes().x) / sized.channel.unit;
+  double most = 0;
+  for (const int side : sized.channel.regions.sides()) {
+    most = std::max(most, stats::student_t_detectable(mean_plan(sized, side), sized.sizes().x));
+  }
+  return most / sized.channel.unit;
 }
 
 std::optional<double> Theta::power(const Sized& sized, double effect) const {
@@ -96,8 +100,13 @@ std::optional<double> Theta::power(const Sized& sized, double effect) const {
   if (!channel.varies()) return std::nullopt;
   const bool within = channel.regions.within();
   const double theta = (within ? *channel.regions.detect : effect) * channel.unit;
-  const double one_margin = stats::student_t_power(mean_plan(sized), sized.sizes().x, theta);
-  return within ? std::max(0.0, 2 * one_margin - 1) : one_margin;
+  double least = 1, missed = 0;
+  for (const int side : channel.regions.sides()) {
+    const double found = stats::student_t_power(mean_plan(sized, side), sized.sizes().x, theta);
+    least = std::min(least, found);
+    missed += 1 - found;
+  }
+  return within ? std::max(0.0, 1 - missed) : least;
 }
 
 std::string Theta::lack_of_numbers(const TestOutcome&, const Seen& seen) const {

@@ -20,9 +20,12 @@ double deviation_for(const Method& method, double deviation) {
 
 /// The plan for subjects of equal sizes.
 stats::MeanPlan mean_plan(const Method& method, const stats::ErrorRates& rates,
-                          const PlannedChannel& channel) {
+                          const PlannedChannel& channel, int side) {
+  const int corrected = method.is.corrects_skewness ? side : 0;
   return {.standard_deviation = deviation_for(method, channel.deviations[0]),
           .other_standard_deviation = deviation_for(method, channel.deviations[1]),
+          .skewness = corrected * channel.skewness[0],
+          .other_skewness = corrected * channel.skewness[1],
           .allow = channel.regions.allow * channel.unit,
           .reference_standard_error = channel.reference_error,
           .rates = rates};
@@ -60,8 +63,8 @@ stats::ErrorRates planned_rates(const ErrorShare& share, const Regions& regions)
   return {.alpha = share.alpha, .beta = share.beta, .two_sided = regions.two_sided()};
 }
 
-stats::MeanPlan mean_plan(const Sized& sized) {
-  stats::MeanPlan plan = mean_plan(sized.test.plan.method, sized.rates(), sized.channel);
+stats::MeanPlan mean_plan(const Sized& sized, int side) {
+  stats::MeanPlan plan = mean_plan(sized.test.plan.method, sized.rates(), sized.channel, side);
   plan.allocation = sized.sizes().y / sized.sizes().x;
   return plan;
 }
@@ -69,7 +72,7 @@ stats::MeanPlan mean_plan(const Sized& sized) {
 std::uint64_t secondaries_by_t(const Method& method, const stats::ErrorRates& rates,
                                const PlannedChannel& channel) {
   const double detect = *channel.regions.detect * channel.unit;
-  return stats::student_t_sample_size(mean_plan(method, rates, channel), detect)
+  return stats::student_t_sample_size(mean_plan(method, rates, channel, 1), detect)
       .value_or(impossible_secondaries);
 }
 

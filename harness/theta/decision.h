@@ -82,6 +82,12 @@ struct Regions {
   bool bounds_below() const { return two_sided() || !is_upper(relation); }
   /// True if a pass must exclude a forbidden region.
   bool has_forbidden() const { return proof() || detect.has_value(); }
+  /// Sides of the reference where an effect is to be found. An alarm finds what speaks against the
+  /// claim, a proof what the claim names.
+  std::vector<int> sides() const {
+    if (two_sided()) return {1, -1};
+    return {bounds_above() != proof() ? 1 : -1};
+  }
   bool has_margin() const { return allow != 0 || detect.has_value(); }
   /// The distance of C's ends from 0: 0, `allow` or the margin of `within`.
   double claimed_edge() const;

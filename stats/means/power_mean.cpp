@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stats/means/skewness_corrected_t.h"
 #include "stats/planning/planning.h"
 #include "stats/planning/power.h"
 
@@ -12,6 +13,7 @@ using planning::critical_tail;
 struct Studentised {
   double standard_error;
   double degrees;
+  double a;  // The skewness of the estimate over 6.
 };
 
 // P(reject), null region |theta| <= allow or theta <= allow.
@@ -29,7 +31,8 @@ class Power {
   // only rounding is left of the integrals.
   double noncentrality(double effect) const {
     const double most = 100 * std::max(1.0, std::abs(critical_));
-    return std::clamp(effect / scale_.standard_error, -most, most);
+    const double t = std::clamp(effect / scale_.standard_error, -most, most);
+    return std::clamp(without_skewness(t, scale_.a) - scale_.a, -most, most);
   }
   double near(EffectPlan effect) const {
     const double up = noncentrality(effect.detect - effect.allow);
@@ -54,7 +57,10 @@ Studentised scale_of(const MeanPlan& plan, double n) {
   const double part = own / total;
   const double other_part = other / total;
   return {std::sqrt(total),
-          (n - 1) / (part * part + other_part * other_part * (n - 1) / (other_n - 1))};
+          (n - 1) / (part * part + other_part * other_part * (n - 1) / (other_n - 1)),
+          (plan.skewness * part * std::sqrt(part / n) +
+           plan.other_skewness * other_part * std::sqrt(other_part / other_n)) /
+              6};
 }
 
 void check_plan(const char* function, const MeanPlan& plan) {

@@ -9,13 +9,13 @@
 #include "stats/tails/tails.h"
 
 namespace assay::stats {
-namespace {
 
-// Hall's transformation with a = skewness of the mean / 6, without a division by a.
-double transformed(double t, double a) {
+double without_skewness(double t, double a) {
   const double b = a * t;
   return t * (1 + 2 * b + 4 * b * b / 3) + a;
 }
+
+namespace {
 
 // One of the samples whose means are combined, and the factor of its mean.
 struct Part {
@@ -69,7 +69,7 @@ Combination combination(const char* caller, const Moments& x, const Moments& y, 
 }
 
 TestResult result_of(const char* caller, double difference, const Combination& means) {
-  const double h = transformed(difference / means.standard_error(), means.a());
+  const double h = without_skewness(difference / means.standard_error(), means.a());
   check::finite({caller, "transformed statistic"}, h);
   return by_tails(h, {"student-t", {means.degrees}}, student_t_tails(h, means.degrees));
 }

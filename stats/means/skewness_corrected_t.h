@@ -19,6 +19,9 @@ namespace assay::stats {
 // with T, so an interval is its exact inversion. Asymptotic: use it where residual_skewness_gate
 // is green. All throw as the tests they correct.
 
+// T_H, without a division by a.
+double without_skewness(double t, double a);
+
 // Null hypothesis: E x = null_mean.value.
 TestResult skewness_corrected_t(const Moments& x, Reference null_mean,
                                 const char* caller = "skewness_corrected_t");

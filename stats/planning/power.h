@@ -33,10 +33,14 @@ double normal_sample_size(double standard_deviation, EffectPlan effect, ErrorRat
 // n * allocation observations. With v the planned
 // variances of the means and of the reference, the degrees of freedom are Welch-Satterthwaite's:
 //   (sum v)^2 / (v_x^2 / (n_x - 1) + v_y^2 / (n_y - 1)).
+// With a skewness the test is corrected for it. The noncentrality is then T_H - a at T = effect /
+// standard error (skewness_corrected_t.h). An effect away from the long tail needs more.
 struct MeanPlan {
   double standard_deviation = 1;
   double other_standard_deviation = 0;  // The second sample's, times the contrast's scale.
   double allocation = 1;
+  double skewness = 0;  // An observation's, with the sign that it has on the effect's side.
+  double other_skewness = 0;
   double allow = 0;
   double reference_standard_error = 0;
   ErrorRates rates;
