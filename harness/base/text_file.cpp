@@ -22,11 +22,6 @@ constexpr std::size_t shown_bytes = 72;
 
 bool continues(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80; }
 
-bool forbidden_control(char c) {
-  const auto byte = static_cast<unsigned char>(c);
-  return (byte < 0x20 && c != '\t' && c != '\n' && c != '\r') || byte == 0x7F;
-}
-
 /// "; did you mean …?" of a file beside it, or "".
 std::string near_file(const std::string& file) {
   namespace fs = std::filesystem;
@@ -89,8 +84,9 @@ void require_utf8(std::string_view text, const std::string& file) {
     std::size_t next = i;
     const char32_t read = reports::next_code_point(text, next);
     const bool invalid = read == reports::replacement_character && next == i + 1;
-    if (invalid || forbidden_control(text[i])) {
-      const unsigned byte = static_cast<unsigned char>(text[i]);
+    const unsigned byte = static_cast<unsigned char>(text[i]);
+    const bool space = byte == '\t' || byte == '\n' || byte == '\r';
+    if (invalid || (byte < 0x20 && !space) || byte == 0x7F) {
       const char* why = invalid ? "is not UTF-8" : "is a control character";
       refuse({file, line, static_cast<int>(i - start) + 1},
              "the byte 0x{:02x} {}; save the file as UTF-8 text", byte, why);

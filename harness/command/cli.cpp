@@ -587,13 +587,6 @@ const std::vector<CommandRow>& command_rows() {
   return rows;
 }
 
-/// Keeps freed memory in the process. Pictures allocate and free tens of megabytes, and new pages
-/// from the system would cost more than the work on them.
-void keep_freed_memory() {
-  mallopt(M_MMAP_MAX, 0);
-  mallopt(M_TRIM_THRESHOLD, -1);
-}
-
 }  // namespace
 
 Command parse_command_line(const std::vector<std::string>& arguments) {
@@ -643,7 +636,10 @@ Loaded loaded(const Command& command) {
     return {{suite_of_claim(check->arguments)}, check->options};
   }
   if (const auto* images = std::get_if<ImagesCommand>(&command)) {
-    keep_freed_memory();
+    // Freed memory stays in the process. Pictures allocate and free tens of megabytes, and new
+    // pages from the system would cost more than the work on them.
+    mallopt(M_MMAP_MAX, 0);
+    mallopt(M_TRIM_THRESHOLD, -1);
     return {{suite_of_images(images->arguments)}, images->options};
   }
   refuse({}, "this command runs no test");

@@ -33,11 +33,6 @@ bool is_there(const CarriedFile& file, const std::filesystem::path& path) {
   return bytes_of(path.string()) == file.text;
 }
 
-std::string with_place(std::string_view steps, const std::string& folder) {
-  const std::string line = folder == "." ? "" : fmt::format("cd {}\n    ", shell_quoted(folder));
-  return boost::replace_first_copy(std::string(steps), "@CD@", line);
-}
-
 }  // namespace
 
 std::vector<std::string> kinds_of_example() {
@@ -80,7 +75,9 @@ int write_example(const InitArguments& arguments) {
   std::string steps;
   for (const CarriedFile& file : files) {
     if (file.path == next_steps) {
-      steps = with_place(file.text, arguments.folder);
+      const std::string& into = arguments.folder;
+      const std::string line = into == "." ? "" : fmt::format("cd {}\n    ", shell_quoted(into));
+      steps = boost::replace_first_copy(std::string(file.text), "@CD@", line);
       continue;
     }
     const std::filesystem::path path = folder / file.path;

@@ -68,12 +68,6 @@ int act(const TextCommand& command) {
   return 0;
 }
 
-/// The text that columns of the place `claim` refer to.
-std::string claim_of(const Command& command) {
-  if (const auto* check = std::get_if<CheckCommand>(&command)) return check->arguments.claim;
-  return "";
-}
-
 /// Failed output (a full disk, a closed pipe) must not look like success.
 int flushed(int code) {
   if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return code;
@@ -108,7 +102,8 @@ int program(const std::vector<std::string>& arguments, Messages* ranks) {
   try {
     return guarded(arguments, command, ranks);
   } catch (const InputError& e) {
-    fmt::print(stderr, "{}", failure_text(e, claim_of(command)));
+    const auto* const check = std::get_if<CheckCommand>(&command);
+    fmt::print(stderr, "{}", failure_text(e, check != nullptr ? check->arguments.claim : ""));
   } catch (const std::runtime_error& e) {
     // An outside cause: a full disk, a vanished file.
     fmt::print(stderr, "{}", in_lines(e.what()));

@@ -225,12 +225,6 @@ bool same_nonfinite(const reports::Sample& now, const reports::Sample& then) {
   return same;
 }
 
-/// The p-value beside its logarithm, if a double can hold it.
-std::string as_probability(const reports::Number& log10_p) {
-  if (!log10_p || *log10_p < -300) return "";
-  return fmt::format("   (p = {:.3g})", std::pow(10, *log10_p));
-}
-
 /// Prints the new numbers. True if they equal the recorded ones to the last bit, except those made
 /// of seconds.
 bool print_comparison(const reports::Test& now, const reports::Test& then, bool timed) {
@@ -253,8 +247,11 @@ bool print_comparison(const reports::Test& now, const reports::Test& then, bool 
     const bool statistic =
         same_line("statistic", now.channels[i].statistic, then.channels[i].statistic);
     const reports::Number& log10_p = now.channels[i].log10_p;
+    const bool fits = !(log10_p.value_or(-HUGE_VAL) < -300);  // a double
+    const std::string beside =
+        fits ? fmt::format("   (p = {:.3g})", std::pow(10, *log10_p)) : std::string();
     const bool p = same_line(then.looks.size() > 1 ? "log10 p over the looks" : "log10 p", log10_p,
-                             then.channels[i].log10_p, as_probability(log10_p));
+                             then.channels[i].log10_p, beside);
     same &= timed || (statistic && p);
   }
   same &= now.channels.size() == then.channels.size() && now.samples.size() == then.samples.size();

@@ -17,14 +17,6 @@
 namespace assay::harness {
 namespace {
 
-/// A family without some of its tests has no adjusted p-values.
-void note_whether_whole(SuiteRun& run, const RunOptions& options) {
-  const bool all = run.tests.size() + run.untested.size() == run.suite.tests.size();
-  const bool early =
-      std::ranges::any_of(run.tests, [](const TestWork& work) { return !work.outcome.decided; });
-  run.adjusted = all && !early && !options.shard;
-}
-
 /// Tells of the first doubtful margin. A single test tells it with its verdict.
 void note_margins(const PlannedRun& planned) {
   std::vector<std::string> doubts;
@@ -140,7 +132,11 @@ reports::Record run_in_arena(const std::vector<Suite>& suites, const RunOptions&
       std::ranges::none_of(tests, [](const TestWork* x) { return x->outcome.decided; });
   if (none || !options.ledger.empty() || options.shard) stop_if_interrupted();
   for (auto& run : planned.suites) {
-    note_whether_whole(*run, options);
+    // A family without some of its tests has no adjusted p-values.
+    const bool all = run->tests.size() + run->untested.size() == run->suite.tests.size();
+    run->adjusted =
+        all && !options.shard &&
+        std::ranges::all_of(run->tests, [](const TestWork& work) { return work.outcome.decided; });
     if (interrupted())
       leave_out(*run, "the run was interrupted before its verdict");
     else if (!listener.may_go_on())

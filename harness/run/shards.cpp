@@ -15,21 +15,18 @@ constexpr double slack = 1.1;
 /// The cost of a prefix of each pool.
 using Prefixes = std::map<PoolIdentity, double>;
 
-/// Rays and samples of an observation.
-double price_of(const Subject& subject, std::uint64_t primaries, const Pilots& pilots) {
-  const auto cost = observation_cost(subject, primaries, pilots);
-  return cost ? std::max(1.0, cost->rays + cost->samples) : static_cast<double>(primaries);
-}
-
 Prefixes prefixes_of(const TestOutcome& test, const SuiteRun& run) {
   Prefixes cost;
   if (!test.plan.invalid.empty()) return cost;
   const std::uint64_t expected = expected_secondaries(test, run.pilots);
   for (std::size_t i = 0; i < test.question.subjects.size(); ++i) {
     const Subject& side = test.question.subjects[i];
-    double& prefix = cost[pool_identity(side, test.plan.primaries[i], run.seed)];
-    prefix = std::max(prefix, static_cast<double>(side.secondaries(expected)) *
-                                  price_of(side, test.plan.primaries[i], run.pilots));
+    const std::uint64_t primaries = test.plan.primaries[i];
+    const auto each = observation_cost(side, primaries, run.pilots);
+    const double price =
+        each ? std::max(1.0, each->rays + each->samples) : static_cast<double>(primaries);
+    double& prefix = cost[pool_identity(side, primaries, run.seed)];
+    prefix = std::max(prefix, static_cast<double>(side.secondaries(expected)) * price);
   }
   return cost;
 }

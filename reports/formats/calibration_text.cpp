@@ -47,11 +47,6 @@ std::string row_of(const ClaimLine& line) {
              rates.by.empty() ? "" : rates.by.front().method);
 }
 
-const char* mark_of(const Calibration& calibration, const CalibrationCell& cell) {
-  if (above(calibration, cell)) return "!! ";
-  return unflagged(calibration, cell) ? "!  " : "   ";
-}
-
 constexpr const char* legend =
     R"(holds   the claim holds exactly        off  the claim is off by `detect`
 alone   this method forced, in one look, its warnings (gates) ignored
@@ -103,7 +98,8 @@ std::string console(const Calibration& calibration) {
       group = cell.method + cell.question;
       out += fmt::format("{}: {}\n", cell.method, cell.question);
     }
-    out += mark_of(calibration, cell) + cell.law + "\n";
+    out += above(calibration, cell) ? "!! " : unflagged(calibration, cell) ? "!  " : "   ";
+    out += cell.law + "\n";
     for (const ClaimLine& line : lines_of(cell)) out += row_of(line);
   }
   return fmt::format("{}\n{}{}\n\n{}\n", out, legend,

@@ -126,12 +126,6 @@ std::string both_ends(const Test& test, const Effect& effect, double margin) {
   return fmt::format(" (×{} to ×{})", human(1 / factor, 3), human(factor, 3));
 }
 
-/// Digits of what is missing to 1 say nothing of a power beyond these.
-std::string power_text(double power) {
-  constexpr double all = 0.9999;
-  return power > all ? "above " + confidence_text(all) : confidence_text(power);
-}
-
 std::string margins_fact(const Test& test) {
   const Effect effect = deciding_channel(test).effect;
   std::vector<std::string> parts;
@@ -143,7 +137,11 @@ std::string margins_fact(const Test& test) {
   if (test.allow.value_or(0) != 0) add("allowed up to", test.allow);
   add(detect_words(test), test.detect);
   add("would be noticed from", test.detectable);
-  if (test.power) parts.push_back("planned power " + power_text(*test.power));
+  constexpr double all = 0.9999;  // digits of what is missing to 1 say nothing of more
+  const double power = test.power.value_or(0);
+  if (test.power)
+    parts.push_back((power > all ? "planned power above " : "planned power ") +
+                    confidence_text(std::min(power, all)));
   return boost::join(parts, "; ");
 }
 
