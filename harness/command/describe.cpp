@@ -46,12 +46,6 @@ const char* primaries_text(const Information& information) {
                               : "not averaged; 1 unless given";
 }
 
-const char* domain_name(Domain domain) {
-  constexpr const char* names[] = {"interval", "unit square", "triangle (barycentric)",
-                                   "hemisphere (solid angle)", "sphere (solid angle)"};
-  return names[static_cast<int>(domain)];
-}
-
 /// "(0, 1]", "[1, inf)", "a, b or c"; "" if anything is allowed.
 std::string range_text(const ParameterInformation& p) {
   if (!p.choices.empty()) return fmt::format("{}", fmt::join(p.choices, " | "));
@@ -114,9 +108,12 @@ std::string setup_text(const Setup& setup) {
   const std::vector<NamedSampler> samplers = setup.samplers();
   if (samplers.empty()) return out;
   out += "\nsamplers\n";
+  constexpr const char* names[] = {"interval", "unit square", "triangle (barycentric)",
+                                   "hemisphere (solid angle)", "sphere (solid angle)"};
   for (const NamedSampler& named : samplers) {
     const Domain domain = named.sampler->domain();
-    std::string text = fmt::format("{}: {}; marginals", named.name, domain_name(domain));
+    const char* const name = names[static_cast<int>(domain)];
+    std::string text = fmt::format("{}: {}; marginals", named.name, name);
     for (const Marginal& marginal : marginals(domain)) text += " " + marginal.name;
     out += row_text(text);
   }

@@ -48,13 +48,6 @@ std::string row(const Test& test) {
                      duration(total_cost(test).seconds));
 }
 
-std::string suite_heading(const Suite& suite) {
-  std::string out = fmt::format("## {}\n\n", cell(suite.name));
-  if (!suite.about.empty()) out += cell(suite.about, paragraph_limit) + "\n\n";
-  return out + cell(levels_text(suite)) + "\n\n" +
-         "| verdict | test | effect [interval] | cost | CPU time |\n|---|---|---|---|---|\n";
-}
-
 // Which method sees which defect.
 std::string kill_section(const Suite& suite) {
   const KillMatrix matrix = kill_matrix(suite);
@@ -143,7 +136,11 @@ std::string statements_section(const Record& record) {
 }
 
 void add_table(const Suite& suite, Page& page, std::size_t& missing) {
-  if (suite.tests.empty() || !page.add(suite_heading(suite), missing, suite.tests.size())) return;
+  std::string head = fmt::format("## {}\n\n", cell(suite.name));
+  if (!suite.about.empty()) head += cell(suite.about, paragraph_limit) + "\n\n";
+  head += cell(levels_text(suite)) +
+          "\n\n| verdict | test | effect [interval] | cost | CPU time |\n|---|---|---|---|---|\n";
+  if (suite.tests.empty() || !page.add(head, missing, suite.tests.size())) return;
   for (const Test& test : suite.tests) page.add(row(test), missing);
   page.add("\n", missing, 0);
   page.add(kill_section(suite), missing);
