@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Shares of rows off by what a pass says would have been found, in which the claim fails.
+"""How often rows fail a claim that they break by the effect which a pass says it would find.
 
     /usr/bin/python3 tests/power_study.py --assay build/harness/assay [--files 300] [--seed 1] [LAW ...]
 

@@ -422,7 +422,7 @@ Examples:
     std::ranges::copy(names_of(table.rows, &TableRow::name), std::back_inserter(words));
   options.add(
       {.name = "NAME",
-       .needed = "a plugin, a method, a quantity, a law, a gate or a report",
+       .needed = "a plugin or a family, a method, a quantity, a law, a gate or a report",
        .words = words},
       command.name,
       "a plugin, a method, a quantity, a law, a gate or a report, as `assay list` prints them");

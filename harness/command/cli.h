@@ -41,7 +41,7 @@ struct CalibrateCommand {
 };
 
 struct ListCommand {
-  std::string what;  ///< "plugins", "tests", a table of describe.h or ""
+  std::string what;  ///< "plugins", "tests", a table of describe.h; empty: all lists
   std::vector<std::string> suites;
   Selection selection;
 };

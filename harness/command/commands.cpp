@@ -77,10 +77,9 @@ int run_suites(const std::vector<Suite>& suites, const RunOptions& options, cons
     drawn.executor = checkpoint;
   }
   const auto broken = [&](reports::Test test) {
-    const auto [first, is_new] = errors.emplace(test.message, test.id);
-    if (test.verdict == reports::Verdict::error && !is_new) {
-      test.message = fmt::format("the same as of `{}`", first->second);
-      test.replay = test.no_replay = "";
+    if (test.verdict == reports::Verdict::error) {
+      const auto [first, is_new] = errors.emplace(test.message, test.id);
+      if (!is_new) test.message = fmt::format("the same error as `{}`", first->second);
     }
     if (tell_broken(test, output)) told.insert(test.id);
   };
@@ -118,9 +117,14 @@ int list_plugins() {
   return 0;
 }
 
+int list_lists() {
+  fmt::print("assay list plugins\nassay list tests SUITE...\n");
+  for (const Table& table : tables()) fmt::print("assay list {}\n", table.plural);
+  return 0;
+}
+
 int list_table(const std::string& plural) {
   for (const Table& table : tables()) {
-    if (plural.empty()) fmt::print("assay list {}\n", table.plural);
     if (plural == table.plural) fmt::print("{}", text_of(table));
   }
   return 0;

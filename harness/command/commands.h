@@ -71,7 +71,9 @@ struct SampleArguments {
 int sample(const SampleArguments&);
 
 int list_plugins();
-/// Names and summaries of a table of describe.h; the commands for all tables if it is "".
+/// The commands for all lists.
+int list_lists();
+/// Names and summaries of a table of describe.h.
 int list_table(const std::string& plural);
 /// One id a line. 4 when no test is selected.
 int list_tests(const std::vector<Suite>& suites, const Selection& selection);

@@ -50,7 +50,7 @@ int act(const PlanCommand& command) {
 
 int act(const ListCommand& command) {
   if (command.what == "tests") return list_tests(load_suites(command.suites), command.selection);
-  if (command.what.empty()) fmt::print("assay list plugins\nassay list tests SUITE...\n");
+  if (command.what.empty()) return list_lists();
   return command.what == "plugins" ? list_plugins() : list_table(command.what);
 }
 

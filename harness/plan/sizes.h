@@ -46,9 +46,9 @@ double kurtosis_limit(const Question& question, const FamilyPlace& place);
 /// region at beta. For `within` both sides are rejected, and each misses with beta / 2.
 stats::ErrorRates planned_rates(const ErrorShare& share, const Regions& regions);
 
-/// The t test of a channel's mean, or of its two means, for the subjects' own sizes, where theta is
-/// above (1) or below (-1) the reference. Theta is taken for such a mean where it is the logarithm
-/// of a ratio.
+/// The t test of a channel's mean, or of its two means, for the subjects' own sizes. The true theta
+/// is above (1) or below (-1) the reference. Theta is taken for such a mean where it is the
+/// logarithm of a ratio.
 stats::MeanPlan mean_plan(const Sized& sized, int side);
 /// Secondaries, as many of each subject, with which a t test finds the channel's `detect`.
 std::uint64_t secondaries_by_t(const Method& method, const stats::ErrorRates& rates,

@@ -177,24 +177,24 @@ Identity identity_of(const reports::Record& record) {
   const auto rates = [](const reports::Suite& suite) {
     return fmt::format("{} {}", suite.alpha, suite.beta);
   };
-  return {{"the number of shards", std::to_string(record.shard->count)},
-          {"the program's version", record.tool.version + " " + record.tool.commit},
-          {"the command", record.shard->options},
-          {"the seed", all_of(record.suites, &reports::Suite::seed)},
+  return {{"number of shards", std::to_string(record.shard->count)},
+          {"version of the program", record.tool.version + " " + record.tool.commit},
+          {"command", record.shard->options},
+          {"seed", all_of(record.suites, &reports::Suite::seed)},
           {"alpha and beta", all_of(record.suites, rates)},
-          {"the digest of the suites and the data they name",
-           all_of(record.shard->suites, &reports::ShardSuite::digest)},
-          {"the compiler", record.environment.compiler},
-          {"the instruction set that traces rays", record.environment.isa}};
+          {"suites and data", all_of(record.shard->suites, &reports::ShardSuite::digest)},
+          {"compiler", record.environment.compiler},
+          {"instruction set for rays", record.environment.isa}};
 }
 
 void check_same(const ShardFile& first, const ShardFile& other) {
   const auto found = difference(identity_of(other.record), identity_of(first.record));
   if (!found) return;
-  refuse({.file = other.file},
-         "belongs to another run than `{0}`: {1} is `{2}` here and `{3}` there; run one of them "
-         "again so that {1} is the same",
-         first.file, found->name, found->ours, found->theirs);
+  refuse(
+      {.file = other.file},
+      "belongs to another run than `{0}`: {1} `{2}` here, `{3}` there; run one of them again with "
+      "the same {1}",
+      first.file, found->name, found->ours, found->theirs);
 }
 
 /// InputError unless the records are shards of one run, each at most once.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <boost/algorithm/string/replace.hpp>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <set>
@@ -210,11 +211,14 @@ std::string tally_sentence(Standings count) {
 }
 
 std::string run_sentence(const Record& record) {
-  std::string text =
-      record.shard ? fmt::format("Shard {} of {}: ", record.shard->index, record.shard->count) : "";
-  if (const auto count = static_cast<std::uint64_t>(alarms(record.ledger)); count > 0)
-    text += counted(count, "ledger alarm", "ledger alarms") + " over all nights. This run alone: ";
-  return text + tally_sentence(standings(record));
+  std::string tally = tally_sentence(standings(record));
+  if (const auto count = static_cast<std::uint64_t>(alarms(record.ledger)); count > 0) {
+    tally[0] = static_cast<char>(std::tolower(tally[0]));
+    tally = fmt::format("{} over all nights. In this run: {}",
+                        counted(count, "ledger alarm", "ledger alarms"), tally);
+  }
+  if (!record.shard) return tally;
+  return fmt::format("Shard {} of {}: {}", record.shard->index, record.shard->count, tally);
 }
 
 std::string false_alarms(double alpha) {

@@ -34,7 +34,7 @@ Standings standings(const Record&);
 /// The same as a sentence for a title.
 std::string tally_sentence(Standings);
 
-/// The same of a run, after the alarms of its ledger: "1 ledger alarm over all nights. This …".
+/// A run's tally, after the alarms of its ledger: "1 ledger alarm over all nights. In this run: …".
 std::string run_sentence(const Record&);
 
 /// "72 hold, 2 planted bugs caught"; where not all is well "1 broken, 2 undecided, 14 ok".

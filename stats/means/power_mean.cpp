@@ -71,6 +71,8 @@ void check_plan(const char* function, const MeanPlan& plan) {
   }
   check::non_negative({function, "standard_deviation"}, plan.standard_deviation);
   check::positive({function, "allocation"}, plan.allocation);
+  check::finite({function, "skewness"}, plan.skewness);
+  check::finite({function, "other_skewness"}, plan.other_skewness);
   check::non_negative({function, "allow"}, plan.allow);
   check::non_negative({function, "reference_standard_error"}, plan.reference_standard_error);
 }

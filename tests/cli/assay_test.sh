@@ -140,7 +140,7 @@ test_ledger_alarm_is_1() {
   done
   [ "$code" -eq 1 ] || fail "ended with $code, not 1"
   contains out '✗ ledger alarm: nights/off'
-  contains out '✗ 1 ledger alarm over all nights. This run alone: The claim is as it should be in'
+  contains out '✗ 1 ledger alarm over all nights. In this run: the claim is as it should be in'
   contains out 'The relative difference from the reference is about -1'
   expect 0 explain
   contains out 'The ledger n.ledger raises an alarm for nights/off. The relative difference from the reference is about -1'

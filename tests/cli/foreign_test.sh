@@ -179,7 +179,7 @@ test_a_program_that_says_no_hello_is_an_error_of_its_tests() {
   printf '%s\n' 'suite: dead' 'estimators: {ended: {plugin: process, command: [sh, none.sh]}}' \
     'tests: [{claim: mean(ended) == 1}, {claim: variance(ended) <= 1}]' >dead.yaml
   expect 1 run dead.yaml --report json=run.json
-  tells out 'the same as of `dead/mean(ended) == 1`'
+  tells out 'the same error as `dead/mean(ended) == 1`'
   [ "$(grep -c 'cannot be prepared' out)" -eq 1 ] || fail 'an error is told twice'
   message run.json 'variance(ended) <= 1'
   tells err '`ended` cannot be prepared'

@@ -15,8 +15,7 @@ namespace assay::harness {
 namespace {
 
 struct Rows {
-  std::vector<double> a;
-  std::vector<double> b;
+  std::vector<double> a, b;
 };
 
 reports::Suite judged(const Workplace& place, const Rows& rows, const std::string& tests) {

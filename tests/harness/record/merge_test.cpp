@@ -177,15 +177,14 @@ TEST_F(Refusing, ShardsThatAreDoubledOrNoneAreNamed) {
 }
 
 TEST_F(Refusing, OtherOptionsOrSuitesAreAnotherRun) {
-  EXPECT_THAT(refused_with({.seed = 2}), HasSubstr("the seed is `2` here and `1` there; run one"));
-  EXPECT_THAT(refused_with({.selection = {.filters = {"*"}}}), HasSubstr("the command"));
-  EXPECT_THAT(refused_with({.command = "assay run --set normal.mean=3"}), HasSubstr("the command"));
+  EXPECT_THAT(refused_with({.seed = 2}), HasSubstr("seed `2` here, `1` there; run one"));
+  EXPECT_THAT(refused_with({.selection = {.filters = {"*"}}}), HasSubstr("command `"));
+  EXPECT_THAT(refused_with({.command = "assay run --set normal.mean=3"}), HasSubstr("command `"));
   EXPECT_THAT(refused_with({.alpha = 0.02}), HasSubstr("alpha and beta"));
   const ShardFile other{"b.json", run_files({file_}, {.shard = std::pair(2U, 3U)})};
-  EXPECT_THAT(refused({shards_[0], other}),
-              HasSubstr("the number of shards is `3` here and `2` there"));
+  EXPECT_THAT(refused({shards_[0], other}), HasSubstr("number of shards `3` here, `2` there"));
   place_.write("good.yaml", merged_suite + "# a remark\n");
-  EXPECT_THAT(refused_with({}), HasSubstr("the digest of the suites"));
+  EXPECT_THAT(refused_with({}), HasSubstr("suites and data `"));
 }
 
 TEST_F(Refusing, OtherDataAreAnotherRun) {
@@ -196,16 +195,16 @@ TEST_F(Refusing, OtherDataAreAnotherRun) {
   place_.write("data.txt", "1\n2\n3\n");
   shards_ = shards_of({file_}, 2);
   place_.write("data.txt", "1\n2\n4\n");
-  EXPECT_THAT(refused_with({}), HasSubstr("the digest of the suites"));
+  EXPECT_THAT(refused_with({}), HasSubstr("suites and data `"));
 }
 
 TEST_F(Refusing, AnotherVersionOrMachineIsAnotherRun) {
   std::vector<ShardFile> shards = shards_;
   shards[1].record.tool.commit = "0123456789ab";
-  EXPECT_THAT(refused(shards), HasSubstr("the program's version"));
+  EXPECT_THAT(refused(shards), HasSubstr("version of the program `"));
   shards = shards_;
   shards[1].record.environment.isa = "sse4.2";
-  EXPECT_THAT(refused(shards), HasSubstr("the instruction set"));
+  EXPECT_THAT(refused(shards), HasSubstr("instruction set for rays `"));
 }
 
 TEST_F(Refusing, AnEditedRecordIsRefused) {

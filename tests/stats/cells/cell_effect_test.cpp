@@ -10,8 +10,7 @@ namespace {
 /// Cells of equal probability, or one of `rare` among equal ones. The first or the rare one comes
 /// `factor` times as often.
 struct Tilted {
-  std::vector<double> null;
-  std::vector<double> law;
+  std::vector<double> null, law;
 };
 
 Tilted tilted(std::size_t cells, double rare, double factor) {
