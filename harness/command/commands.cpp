@@ -76,12 +76,16 @@ int run_suites(const std::vector<Suite>& suites, const RunOptions& options, cons
         identity_of(suites, options), executor_of(drawn));
     drawn.executor = checkpoint;
   }
-  const auto broken = [&](reports::Test test) {
-    if (test.verdict == reports::Verdict::error) {
-      const auto [first, is_new] = errors.emplace(test.message, test.id);
-      if (!is_new) test.message = fmt::format("the same error as `{}`", first->second);
-    }
+  const auto tell = [&](const reports::Test& test) {
     if (tell_broken(test, output)) told.insert(test.id);
+  };
+  const auto broken = [&](const reports::Test& test) {
+    if (test.verdict != reports::Verdict::error) return tell(test);
+    const auto [first, is_new] = errors.emplace(test.message, test.id);
+    if (is_new) return tell(test);
+    reports::Test again = test;
+    again.message = fmt::format("the same error as `{}`", first->second);
+    tell(again);
   };
   reports::Record record = run(suites, drawn, *progress, broken, &ledger_fault);
   Output last = output;
@@ -124,9 +128,7 @@ int list_lists() {
 }
 
 int list_table(const std::string& plural) {
-  for (const Table& table : tables()) {
-    if (plural == table.plural) fmt::print("{}", text_of(table));
-  }
+  fmt::print("{}", text_of(*std::ranges::find(tables(), plural, &Table::plural)));
   return 0;
 }
 

@@ -710,8 +710,8 @@ class MeanTheta : public Theta {
     PlannedChannel observed{.regions = regions};
     for (std::size_t i = 0; i < seen.data.size(); ++i) {
       observed.deviations[i] = question.factor_of(i) * seen.moments(i).standard_deviation();
-      const double sign = i == 0 ? 1 : std::copysign(1, -question.factor);
-      if (seen.moments(i).m2 > 0) observed.skewness[i] = sign * seen.moments(i).skewness();
+      if (!(seen.moments(i).m2 > 0)) continue;
+      observed.skewness[i] = question.sign_of(i) * seen.moments(i).skewness();
     }
     if (!question.of_two()) observed.reference_error = seen.reference().standard_error;
     note_range(question, seen.channel, seen.moments(0), observed);
@@ -764,7 +764,7 @@ class MeanTheta : public Theta {
     const bool below = effect.estimate.value_or(0) < 0;
     for (std::size_t side = 0; side < question.compared(); ++side) {
       const stats::Range range = range_of(question, side, outcome.channels[0].index, {});
-      const bool upwards = below == (side == 0 || question.factor < 0);
+      const bool upwards = below == (question.sign_of(side) > 0);
       const std::uint64_t seen = outcome.secondaries(side) * outcome.plan.primaries[side];
       if (std::isfinite(upwards ? range.high : range.low) || seen >= many) continue;
       const double rarer = std::floor(static_cast<double>(std::max<std::uint64_t>(3, seen)) / 3);

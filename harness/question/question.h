@@ -110,6 +110,8 @@ struct Question {
   bool of_two() const { return sizes.empty() && compared() == 2; }
   /// Factor on a subject's standard deviation in the comparison.
   double factor_of(std::size_t subject) const { return subject == 0 ? 1 : std::abs(factor); }
+  /// The sign that a subject's mean has in theta.
+  int sign_of(std::size_t subject) const { return subject == 0 || factor < 0 ? 1 : -1; }
   /// The second side's value on the first's scale.
   double mapped(double second) const { return factor * second + offset; }
 };
