@@ -222,6 +222,7 @@ class FineTiles {
     std::size_t half;
     std::size_t side;
   };
+  static constexpr double large = 2;  // In units of the light of the block.
 
   // Elements that begin in a tile, rows as far apart as the tile's.
   struct Elements {
@@ -303,38 +304,62 @@ class FineTiles {
     for (WelchCells& moments : moments_) {
       moments.finish_part(part.half, part.side, static_cast<double>(count));
     }
-    finish_elements(tile, part, static_cast<double>(count));
+    finish_elements(tile, stack, part, static_cast<double>(count));
   }
 
   // Deviations beyond twice the light of the block are large.
   void start_part(const Tile& tile, const double* weights) {
-    constexpr double large = 2;
     elements_.start_part(Tile::rows * tile.stride());
     for_each_element(tile, [&](std::size_t i, std::size_t element, auto...) {
       elements_.limit[i] = large * elements_.light[i] * weights[element - cells_.half[0].first];
     });
   }
 
-  // A deviation is rare in its element beyond twice the spread that the sides have there.
   void note_large(const Tile& tile, std::size_t y, Part part, const float* values,
                   std::span<const double> weighted) {
     const double* const limit = elements_.limit.data() + y * tile.stride();
     const Half& own = cells_.half[part.half];
-    const std::size_t here = tile.first(y) - own.first;
-    const double* const mean = own.mean[part.side].data() + here;
+    const double* const mean = own.mean[part.side].data() + (tile.first(y) - own.first);
+    for (std::size_t i = 0; i < tile.size(); ++i) {
+      if (!(std::abs(weighted[i]) > limit[i])) continue;
+      note_large(tile, y, part, i, static_cast<double>(values[i]) - mean[i]);
+    }
+  }
+
+  // A deviation is rare in its element beyond twice the spread that the sides have there.
+  void note_large(const Tile& tile, std::size_t y, Part part, std::size_t i, double deviation) {
+    const Half& own = cells_.half[part.half];
     double shares = 0;  // of the squared spread in the squared error
     for (const auto& images : coarse_.half[part.half].images) {
       if (!images.empty()) shares += 1 / static_cast<double>(images.size());
     }
-    for (std::size_t i = 0; i < tile.size(); ++i) {
-      if (!(std::abs(weighted[i]) > limit[i])) continue;
-      const double deviation = static_cast<double>(values[i]) - mean[i];
-      found_.noise.at(part.side, tile.x + i / extent_.channels, tile.y + y, i % extent_.channels)
-          .add_large(deviation, shares * deviation * deviation > 4 * own.variance_at(here + i));
-    }
+    const double variance = own.variance_at(tile.first(y) + i - own.first);
+    found_.noise.at(part.side, tile.x + i / extent_.channels, tile.y + y, i % extent_.channels)
+        .add_large(deviation, shares * deviation * deviation > 4 * variance);
   }
 
-  void finish_elements(const Tile& tile, Part part, double count) {
+  // Powers of the deviations of an element that the other half gives no weight.
+  PooledNoise::Powers powers_without_weight(const Tile& tile, const ImageStack& stack,
+                                            std::size_t y, Part part, std::size_t i) {
+    const Half& own = cells_.half[part.half];
+    const std::size_t element = tile.first(y) + i;
+    const std::size_t here = element - own.first;
+    PooledNoise::Powers powers;
+    if (own.variance[part.side][here] == 0) return powers;
+    for (std::size_t r = part.half; r < stack.images.size(); r += halves) {
+      const double deviation =
+          static_cast<double>(*stack.at(r, element)) - own.mean[part.side][here];
+      powers.count += 1;
+      powers.squares += deviation * deviation;
+      powers.cubes += deviation * deviation * deviation;
+      if (std::abs(deviation) > large * elements_.light[y * tile.stride() + i]) {
+        note_large(tile, y, part, i, deviation);
+      }
+    }
+    return powers;
+  }
+
+  void finish_elements(const Tile& tile, const ImageStack& stack, Part part, double count) {
     constexpr std::size_t block = NoisePyramid::block;
     const double sign = part.side == 0 ? 1 : -1;
     Elements& all = elements_;
@@ -347,13 +372,12 @@ class FineTiles {
       for (std::size_t x = 0; x < tile.width(); x += block) {
         const std::size_t end = std::min(x + block, tile.width()) * extent_.channels;
         for (std::size_t c = 0; c < extent_.channels; ++c) {
-          PooledNoise::Powers powers;
+          PooledNoise& noise = found_.noise.at(part.side, tile.x + x, tile.y + y, c);
           for (std::size_t e = x * extent_.channels + c; e < end; e += extent_.channels) {
-            powers.count += weight[e] > 0 ? count : 0;
-            powers.squares += all.squares[i + e];
-            powers.cubes += all.cubes[i + e];
+            noise.add(weight[e] > 0
+                          ? PooledNoise::Powers{count, all.squares[i + e], all.cubes[i + e]}
+                          : powers_without_weight(tile, stack, y, part, e));
           }
-          found_.noise.at(part.side, tile.x + x, tile.y + y, c).add(powers);
         }
       }
     }

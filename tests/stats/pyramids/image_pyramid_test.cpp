@@ -152,6 +152,17 @@ CALIBRATED(ImagePyramid, RareLightOfOneSideKeepsTheLevel, 846, tests::repetition
   return image_pyramid({lit_stack(random, {}).view(), smooth_stack(random).view()}).log_p;
 }
 
+// The left half is dark but for rare light, which most of its elements never show in a half.
+CALIBRATED(ImagePyramid, RareLightInTheDarkKeepsTheLevel, 853, 500, Shape::at_most_uniform) {
+  const auto dark = [](std::size_t e) { return e % lit.width < 12; };
+  const OwnedStack a = draw_stack(lit, 16, [&](std::size_t e) {
+    return dark(e) ? 50.0 * (random.uniform() < 0.002) : 0.3 + 0.1 * random.normal();
+  });
+  std::vector<double> means;
+  for (std::size_t e = 0; e < lit.elements(); ++e) means.push_back(dark(e) ? 0.1 : 0.3);
+  return image_pyramid({a.view(), ImageReference{lit, means}}, {.constants_decide = false}).log_p;
+}
+
 CALIBRATED(ImagePyramid, UnequalNumbersOfOneLawKeepTheLevel, 852, tests::repetitions(500),
            Shape::at_most_uniform) {
   const Fireflies rare{.rate = 0.02, .share = 0.5};
