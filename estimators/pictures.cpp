@@ -360,7 +360,11 @@ bool names_pictures(const std::string& file) {
 std::vector<std::string> files_of(const std::string& pattern) {
   std::error_code ignored;
   if (std::filesystem::is_directory(pattern, ignored)) {
-    refuse(pattern, "is a folder; name its pictures, as in `" + pattern + "/*.exr`");
+    std::string ending = ".exr";
+    for (const auto& entry : std::filesystem::directory_iterator(pattern, ignored)) {
+      if (names_pictures(entry.path())) ending = entry.path().extension();
+    }
+    refuse(pattern, "is a folder; name its pictures, as in `" + pattern + "/*" + ending + "`");
   }
   if (std::filesystem::exists(pattern, ignored)) return {pattern};
   std::vector<std::string> files;

@@ -24,12 +24,19 @@ constexpr double unseen_share = 0.02;
 
 // ---- theta = 0
 
-stats::ImageFinding finding_of(const UnseenElement& unseen, const stats::ImageExtent& extent) {
-  stats::ImageFinding finding = stats::certain_finding(extent, unseen.element, unseen.sign);
-  finding.log_p = unseen.log_p;
-  finding.z = z_of(unseen);
+/// The clearest of the elements that never varied, with those that are as clear.
+stats::ImageFinding finding_of(std::span<const UnseenElement> unseen,
+                               const stats::ImageExtent& extent) {
+  const UnseenElement& least = *std::ranges::min_element(unseen, {}, &UnseenElement::log_p);
+  std::vector<std::size_t> alike;
+  for (const UnseenElement& each : unseen) {
+    if (each.log_p == least.log_p && each.sign == least.sign) alike.push_back(each.element);
+  }
+  stats::ImageFinding finding = stats::certain_finding(extent, alike, least.sign);
+  finding.log_p = least.log_p;
+  finding.z = z_of(least);
   const double elements = static_cast<double>(extent.elements());
-  finding.adjusted_log_p = std::min(0.0, unseen.log_p + std::log(elements / unseen_share));
+  finding.adjusted_log_p = std::min(0.0, least.log_p + std::log(elements / unseen_share));
   return finding;
 }
 
@@ -39,8 +46,7 @@ void add_unseen(const stats::ImageExtent& extent, ImageOutcome& outcome) {
   for (stats::ImageFinding& group : family.groups) {
     group.adjusted_log_p = std::min(0.0, group.adjusted_log_p - std::log1p(-unseen_share));
   }
-  const auto least = std::ranges::min_element(outcome.unseen, {}, &UnseenElement::log_p);
-  if (least != outcome.unseen.end()) family.groups.push_back(finding_of(*least, extent));
+  if (!outcome.unseen.empty()) family.groups.push_back(finding_of(outcome.unseen, extent));
   stats::decide(family);
 }
 

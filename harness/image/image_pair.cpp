@@ -134,7 +134,7 @@ class ScannedSide {
   }
   Constant mean(std::size_t element) const {
     stats::Moments moments;
-    for (const std::span<const float> image : stack_.images) moments.add(image[element]);
+    add_to(moments, element);
     return {moments.mean, moments.standard_error()};
   }
 
@@ -151,7 +151,8 @@ class ScannedSide {
   }
 
  private:
-  /// It is infinite beside others that never varied: what makes constants is common there.
+  /// Beside others that never varied the whole image tells it: what makes constants is common
+  /// there.
   double size_around(std::size_t element) {
     constexpr std::size_t reach = 4;
     const stats::ImageExtent& extent = stack_.extent;
@@ -163,16 +164,26 @@ class ScannedSide {
       for (std::size_t x = first; x <= column + reach && x < extent.width; ++x) {
         const std::size_t other =
             y * extent.row() + x * extent.channels + element % extent.channels;
-        if (other != element && is_constant(other)) return std::numeric_limits<double>::infinity();
-        for (const std::span<const float> image : stack_.images) around.add(image[other]);
+        if (other != element && is_constant(other)) return size_in_image(element);
+        add_to(around, other);
       }
     }
     return stats::size_about(value(element), around);
+  }
+  double size_in_image(std::size_t element) {
+    if (all_.count == 0) {
+      for (std::size_t i = 0; i < stack_.extent.elements(); ++i) add_to(all_, i);
+    }
+    return stats::size_about(value(element), all_);
+  }
+  void add_to(stats::Moments& values, std::size_t element) const {
+    for (const std::span<const float> image : stack_.images) values.add(image[element]);
   }
 
   stats::ImageStack& stack_;
   Declarations declarations_;
   Span span_{};
+  stats::Moments all_;  // of all values, once they are asked for
   std::vector<std::pair<std::size_t, double>> settled_;
 };
 

@@ -19,7 +19,7 @@ stats::ImageExtent extent_of(const ImageShape& shape);
 /// An element that was the same in every replicate and differs from its reference, or the other
 /// image's mean, by more than rounding. Unseen values may make up the difference
 /// (constant_sample.h). Without a declared range they are taken to be as large as the values around
-/// it, if all of these elements vary. Else its p-value is 1.
+/// it, if all of these elements vary. Else they are as large as all values of the image.
 struct UnseenElement {
   std::size_t element = 0;
   double sign = 0;  ///< sign of constant - reference

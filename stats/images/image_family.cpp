@@ -186,13 +186,24 @@ void decide(ImageFamily& family) {
   family.winner.adjusted_log_p = family.log_p;
 }
 
-ImageFinding certain_finding(const ImageExtent& extent, std::size_t element, double sign) {
-  const std::size_t place = element / extent.channels;
-  const Rectangle window{static_cast<std::uint32_t>(place % extent.width),
-                         static_cast<std::uint32_t>(place / extent.width), 1, 1};
+ImageFinding certain_finding(const ImageExtent& extent, std::span<const std::size_t> elements,
+                             double sign) {
+  const std::size_t channel = elements[0] % extent.channels;
+  const std::size_t row = elements[0] / extent.row();
+  std::size_t left = extent.width, right = 0, top = row, bottom = row;
+  for (const std::size_t element : elements) {
+    if (element % extent.channels != channel) continue;
+    const std::size_t x = element % extent.row() / extent.channels;
+    const std::size_t y = element / extent.row();
+    left = std::min(left, x);
+    right = std::max(right, x);
+    top = std::min(top, y);
+    bottom = std::max(bottom, y);
+  }
+  const auto narrow = [](std::size_t n) { return static_cast<std::uint32_t>(n); };
   constexpr double never = std::numeric_limits<double>::lowest();
-  return {.window = window,
-          .channel = element % extent.channels,
+  return {.window = {narrow(left), narrow(top), narrow(right - left + 1), narrow(bottom - top + 1)},
+          .channel = channel,
           .z = std::copysign(std::numeric_limits<double>::infinity(), sign),
           .log_p = never,
           .adjusted_log_p = never};

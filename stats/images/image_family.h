@@ -148,7 +148,9 @@ void decide(ImageFamily& family);
 // Each of different constants has this z: no double is as small as the normal tail beyond.
 inline constexpr double certain_z = 39;
 
-// A certain finding: different constants.
-ImageFinding certain_finding(const ImageExtent& extent, std::size_t element, double sign);
+// A certain finding: different constants. Its window holds those of these elements that are of the
+// first one's channel.
+ImageFinding certain_finding(const ImageExtent& extent, std::span<const std::size_t> elements,
+                             double sign);
 
 }  // namespace assay::stats

@@ -116,13 +116,11 @@ ImageFamily RowPyramid::family() {
                      .hidden_squares = found_.noise.hidden_squares(),
                      .hidden_squares_of_twice = found_.noise.hidden_squares(2)};
   if (counts.different_constants > 0) {
-    family.groups.push_back(certain_finding(extent_, counts.first_different, counts.difference));
-    ImageFinding& all = family.groups.back();
-    const Rectangle whole{0, 0, static_cast<std::uint32_t>(extent_.width),
-                          static_cast<std::uint32_t>(extent_.height)};
-    all.window = around(whole, all.channel, extent_, [&](std::size_t element) {
-      return found_.z[element] == found_.z[counts.first_different];
-    });
+    std::vector<std::size_t> alike;
+    for (std::size_t i = counts.first_different; i < extent_.elements(); ++i) {
+      if (found_.z[i] == found_.z[counts.first_different]) alike.push_back(i);
+    }
+    family.groups.push_back(certain_finding(extent_, alike, counts.difference));
   } else {
     family.typical.noise = offer_cells();
     add_best(family);

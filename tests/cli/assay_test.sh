@@ -323,13 +323,16 @@ for i in range(24):
     write(f"good{i}.pfm", drawn)
     dead = [0.0 if i == 205 else x for i, x in enumerate(drawn)]
     write(f"dead{i}.pfm", dead)
-    write(f"off{i}.pfm", [0.0 if i in lamp else x for i, x in enumerate(drawn)])'
+    write(f"off{i}.pfm", [0.0 if i in lamp else x for i, x in enumerate(drawn)])
+    write(f"hole{i}.pfm", [0.0 if i == 1230 else x for i, x in enumerate(drawn)])'
   expect 0 images --candidate 'good*.pfm' --reference exact.pfm
   expect 0 images --candidate 'dead*.pfm' --reference seldom.pfm
   expect 1 images --candidate 'dead*.pfm' --reference exact.pfm
   contains out 'pixel x 5, y 34 is 100 % too dark'
+  expect 1 images --candidate 'hole*.pfm' --reference exact.pfm
+  contains out 'pixel x 30, y 9 is 100 % too dark'
   expect 1 images --candidate 'off*.pfm' --reference exact.pfm
-  contains out 'the whole image is'
+  contains out 'x 20-39, y 0-19 is 100 % too dark'
 }
 
 # A hundred times as many rows would show a hundred times as much of the tail.
