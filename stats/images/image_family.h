@@ -90,7 +90,6 @@ struct ImageFinding {
   double adjusted_log_p = 0;  // In the family of everything that was looked at; at most 0.
   GroupSize group = {};
   ImageEffect effect = {};
-  double weights = 0;  // The sum of all elements' weights.
 };
 
 // Adjusts one p-value for its group: ln(1 - (1 - p)^count) - ln share, at most 0.

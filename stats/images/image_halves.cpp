@@ -122,6 +122,13 @@ std::array<Half, halves> halves_of(const ImagePair& pair, RowRange rows, const F
     check::reference_error("image_pyramid", pair.reference, e);
   }
   for_each(halves, [&](std::size_t half) { advance(pair, half, range, before[half], for_each); });
+  for (std::size_t i = 0; i < range.size(); ++i) {
+    const auto tells = [i](const Half& half) {
+      return half.variance_at(i) > 0 || half.difference[i] != 0;
+    };
+    if (std::ranges::any_of(before, tells)) continue;
+    for (Half& half : before) half.weight[i] = 0;
+  }
   return before;
 }
 

@@ -18,7 +18,8 @@ inline std::size_t half_count(std::size_t replicates, std::size_t half) {
 // One half: D = mean a - mean b, its squared error v, and the weight that the other half takes. The
 // weight is 1 / sqrt of the mean of v and of v smoothed over 5 x 5 elements of the channel. It is
 // zero if none of these varies within the half. A single element's v is from few values, and one
-// that is tiny by chance would carry the whole mean.
+// that is tiny by chance would carry the whole mean. An element that is equal and varies in neither
+// half has no weight: it tells no size of a difference.
 //
 // The halves' means are uncorrelated as far as an element's weight does not tell the sign of its
 // own D. So an element that is constant within the half, which rare values make too dark, keeps the

@@ -48,7 +48,6 @@ void offer(BestCell& best, const Candidate& candidate, const NoisePyramid& noise
   const double clearest = best.clearest ? std::abs(best.clearest->effect.t()) : 0;
   if (!may_win && !(std::abs(own_value(candidate.noise).t) > clearest)) return;
   ImageFinding finding = candidate.finding;
-  finding.weights = candidate.noise.weights;
   finding.effect = noise.kept(candidate.noise, finding.window, finding.channel);
   finding.z = t_to_z({finding.effect.t(), finding.effect.degrees});
   if (std::abs(finding.effect.t()) > clearest) best.clearest = finding;

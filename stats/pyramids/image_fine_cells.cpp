@@ -389,9 +389,7 @@ class FineTiles {
         tile, [&](std::size_t, std::size_t element, std::size_t x, std::size_t y, std::size_t c) {
           const std::size_t vary = halves_that_vary(element);
           const double difference = cells_.half[0].difference[element - cells_.half[0].first];
-          // An element that is equal and never varies tells no size of a difference.
-          const bool tells = vary > 0 || difference != 0;
-          found_.weights[element] = tells ? static_cast<float>(weight_of(element)) : 0;
+          found_.weights[element] = static_cast<float>(weight_of(element));
           if (vary < halves) {
             note_constant(element, vary == 0 && cells_.constants_decide ? difference : 0);
             return;

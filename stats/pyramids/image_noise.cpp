@@ -2,6 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <numbers>
+
+#include "stats/images/image_halves.h"
+#include "stats/means/constant_sample.h"
+#include "stats/tails/tails.h"
 
 namespace assay::stats {
 namespace {
@@ -240,9 +246,27 @@ ImageEffect NoisePyramid::kept(const CellNoise& cell, const Rectangle& window,
   const double ratio = replicates_[0] / replicates_[1];
   const double variance = of_blocks ? a + b : std::max(a + b, ratio * a + b / ratio);
   const double growing = std::max(of_blocks.value_or(0), own_growth(cell, cell.effect));
+  const ImageEffect effect{.estimate = cell.effect,
+                           .standard_error = std::sqrt(variance + std::abs(cell.effect) * growing),
+                           .degrees = cell.degrees};
+  const double log_p = log_p_with_unseen(effect, cell.weights);
+  const double own_log_p = log_p_two_sided(student_t_tails(effect.t(), effect.degrees));
+  if (!of_blocks || log_p <= own_log_p) return effect;
+  const double errors =
+      student_t_quantile({Tail::upper, log_p - std::numbers::ln2}, effect.degrees);
   return {.estimate = cell.effect,
-          .standard_error = std::sqrt(variance + std::abs(cell.effect) * growing),
+          .standard_error = std::abs(cell.effect) / errors,
           .degrees = cell.degrees};
+}
+
+// A weight is 1 / the error that its neighbours' noise gives the mean of a half.
+double NoisePyramid::log_p_with_unseen(const ImageEffect& effect, double weights) const {
+  const auto& [a, b] = replicates_;
+  const double fewest = b > 0 ? std::min(a, b) : a;
+  const double size = std::sqrt(fewest / halves) / weights;
+  return log_p_constant(
+      {.value = 0, .low = -size, .high = size, .count = static_cast<std::uint64_t>(fewest)},
+      {effect.estimate, effect.standard_error});
 }
 
 double NoisePyramid::hidden_squares(double times) const {

@@ -130,6 +130,9 @@ class NoisePyramid {
   // sides have different laws in one of them. That is where one is noisier for its mean in too many
   // elements (sign test). It is also where the darker has too many rare values beyond an octave. A
   // reference has a law of its own.
+  //
+  // Between different laws a cell is no clearer than values allow that it never showed. They may be
+  // as large as the noise of its neighbours.
   ImageEffect kept(const CellNoise& cell, const Rectangle& window, std::size_t channel) const;
   // The k3 / k2 of an effect of this sign.
   double growth(const CellNoise& cell, double sign, const Rectangle& window,
@@ -161,6 +164,9 @@ class NoisePyramid {
   double inverse(std::size_t side) const;  // 1 / replicates_, 0 of a reference.
   bool of_one_law(const Around& near, double toward) const;
   double growth(const std::array<PooledNoise::Moments, sides_of_pair>& here, double toward) const;
+  // ln p of an effect that values could explain which the cell never showed, as large as the noise
+  // of its neighbours (constant_sample.h).
+  double log_p_with_unseen(const ImageEffect& effect, double weights) const;
   // The k3 / k2 that the blocks tell of an effect of this sign; none where the sides are of one
   // law.
   std::optional<double> growth_of_blocks(const CellNoise& cell, double sign,

@@ -93,14 +93,8 @@ void RowPyramid::add_best(ImageFamily& family) const {
       finding.log_p = log_p_two_sided(tails_of(finding.effect));
       finding.adjusted_log_p = adjusted(finding.log_p, size);
       finding.group = size;
-      // The effect is that of the elements that tell something.
-      double weights = 0;
-      finding.window = around(finding.window, finding.channel, extent_, [&](std::size_t element) {
-        weights += static_cast<double>(found_.weights[element]);
-        return found_.weights[element] > 0;
-      });
-      finding.effect.estimate *= finding.weights / weights;
-      finding.effect.standard_error *= finding.weights / weights;
+      finding.window = around(finding.window, finding.channel, extent_,
+                              [&](std::size_t element) { return found_.weights[element] > 0; });
       findings.push_back(finding);
     };
     add(*best.finding, family.groups);

@@ -109,7 +109,7 @@ void expect_cells_of(const ImageExtent& extent, std::uint32_t test_case) {
     }
   }
   // Without noise around it, a coarse cell keeps its own value.
-  const NoisePyramid none(extent, {0, 0});
+  const NoisePyramid none(extent, {16, 16});
   std::vector<BestCell> coarse(groups.size());
   for (std::size_t c = 0; c < extent.channels; ++c) {
     offer_coarse_cells(found.coarse, groups, c, none, coarse);
@@ -172,7 +172,7 @@ TEST(BestCell, IsTheFirstOfEqualsInWhicheverOrderTheyCome) {
   first.noise = {.effect = 2.5, .variance = {1, 0}, .degrees = 30};
   Candidate later = first;
   later.finding.window = {0, 2, 2, 2};
-  const NoisePyramid none({4, 4, 1}, {0, 0});
+  const NoisePyramid none({4, 4, 1}, {16, 16});
   for (const bool in_order : {true, false}) {
     BestCell best;
     offer(best, in_order ? first : later, none);

@@ -1,5 +1,7 @@
 #include "stats/pyramids/image_noise.h"
 
+#include "stats/means/constant_sample.h"
+#include "stats/tails/tails.h"
 #include "tests/philox.h"
 #include "tests/prelude.h"
 
@@ -79,7 +81,9 @@ NoisePyramid pyramid_of(const std::array<std::vector<double>, sides_of_pair>& va
 }
 
 constexpr Rectangle pixel{3, 3, 1, 1};
-const CellNoise dark{.effect = -3, .variance = {.0625, .0625}, .degrees = 30, .concentration = 1};
+// Its neighbours are calm.
+const CellNoise dark{
+    .effect = -3, .variance = {.0625, .0625}, .degrees = 30, .weights = 1e9, .concentration = 1};
 
 // A darker cell that showed none of the bright values which its neighbours on the same side showed.
 TEST(NoisePyramid, HasTheVarianceOfEqualMeans) {
@@ -116,6 +120,12 @@ TEST(NoisePyramid, HasTheVarianceOfEqualMeans) {
   // A giant tells no laws apart. A reference is of another law than the pictures.
   EXPECT_NEAR(t(pyramid_of({with_rare(1, 1e5), clean})), alone, 1e-9);
   EXPECT_NEAR(t(pyramid_of({with_rare(1, 1e5), {}}, {16, 0})), t_of(1e5), 1e-8);
+  // A cell beside noise of 10 is no clearer than unseen values of that size allow.
+  CellNoise quiet = dark;
+  quiet.weights = std::sqrt(8.0) / 10;
+  const ImageEffect kept = pyramid_of({clean, {}}, {16, 0}).kept(quiet, pixel, 0);
+  EXPECT_NEAR(log_p_two_sided(student_t_tails(kept.t(), kept.degrees)),
+              log_p_constant({0, -10, 10, 16}, {3, std::sqrt(5.0 / 16)}), 1e-9);
   // The brighter side misses the same. A brighter cell misses no bright values.
   EXPECT_NEAR(t(pyramid_of({rare, rare})), alone, 1e-9);
   const CellNoise bright{.effect = 3, .variance = {.0625, .0625}, .concentration = 1};

@@ -163,6 +163,26 @@ CALIBRATED(ImagePyramid, RareLightInTheDarkKeepsTheLevel, 853, 500, Shape::at_mo
   return image_pyramid({a.view(), ImageReference{lit, means}}, {.constants_decide = false}).log_p;
 }
 
+// An object's edge before a constant background. Ever fewer of a pixel's eight samples hit it.
+// Values there differ in their last bits now and then.
+CALIBRATED(ImagePyramid, AnEdgeBeforeAConstantKeepsTheLevel, 854, 200, Shape::at_most_uniform) {
+  const auto covered = [](std::size_t e) {
+    return e % lit.width == 10 ? std::ldexp(0.5, -static_cast<int>(e / lit.width)) : 0.0;
+  };
+  const OwnedStack a = draw_stack(lit, 32, [&](std::size_t e) {
+    if (e % lit.width < 10) return 0.1 + 0.02 * random.normal();
+    const bool off = covered(e) > 0 && random.uniform() < 0.04;
+    double value = off ? 0.2 + 1e-5 * (random.uniform() - 0.5) : 0.2;
+    for (int i = 0; i < 8; ++i) value -= random.uniform() < covered(e) ? 0.15 / 8 : 0;
+    return value;
+  });
+  std::vector<double> means;
+  for (std::size_t e = 0; e < lit.elements(); ++e) {
+    means.push_back(e % lit.width < 10 ? 0.1 : static_cast<float>(0.2 - 0.15 * covered(e)));
+  }
+  return image_pyramid({a.view(), ImageReference{lit, means}}, {.constants_decide = false}).log_p;
+}
+
 CALIBRATED(ImagePyramid, UnequalNumbersOfOneLawKeepTheLevel, 852, tests::repetitions(500),
            Shape::at_most_uniform) {
   const Fireflies rare{.rate = 0.02, .share = 0.5};
