@@ -16,8 +16,6 @@ namespace {
 
 // Writing may take so small a part of the time.
 constexpr int pauses_a_write = 20;
-// A part has so many numbers at most, or those of one observation.
-constexpr std::size_t most_numbers = std::size_t{1} << 21;
 
 }  // namespace
 
@@ -89,10 +87,9 @@ void Checkpoint::write() {
 }
 
 void Checkpoint::update(const std::string& recipe, WrittenPool& written, const Pool& pool) {
-  const std::uint64_t most = std::max<std::uint64_t>(1, most_numbers / pool.kept_width());
   WrittenPool next{packed_sums(pool.drawn_sums()), written.kept, pool.drawn(), written.pool};
-  for (std::uint64_t first = written.count; first < pool.kept_end(); first += most) {
-    const std::uint64_t last = std::min(first + most, pool.kept_end());
+  for (std::uint64_t first = written.count; first < pool.kept_end(); first += pool.block_size()) {
+    const std::uint64_t last = std::min(first + pool.block_size(), pool.kept_end());
     const std::string part =
         packed(text_hash(recipe), first, packed_kept(pool.kept_block(first, last)));
     next.kept.push_back({first, kept_->size(), part.size()});

@@ -338,13 +338,6 @@ std::uint64_t Pool::kept_end() const {
   return std::min(drawn(), std::max(values, recipe_.kept_observations));
 }
 
-std::size_t Pool::kept_width() const {
-  if (recipe_.kept_observations > 0) return channels_;
-  const auto keeping = std::ranges::count_if(
-      recipe_.plan, [](const ChannelPlan& channel) { return channel.keep > 0; });
-  return static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, keeping));
-}
-
 Pool::Block Pool::kept_block(std::uint64_t first, std::uint64_t last) const {
   Block block;
   *block.observations = kept_->part(first, last);

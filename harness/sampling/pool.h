@@ -176,8 +176,6 @@ class Pool {
   Summary no_sums() const;
   /// Sums of all that is drawn, as one block that keeps nothing.
   Block drawn_sums() const;
-  /// The pool keeps so many numbers of each of the first observations.
-  std::size_t kept_width() const;
   /// Observations below it are kept whole, or some of their values.
   std::uint64_t kept_end() const;
   /// The block keeps what the pool keeps of observations [first, last). It has no sums.
