@@ -9,10 +9,10 @@ namespace assay {
 
 /// What a function makes of each element of a list, in order.
 template <class List, class Function>
-auto mapped(const List& list, const Function& function) {
+auto mapped(List&& list, const Function& function) {
   std::vector<std::decay_t<decltype(std::invoke(function, *list.begin()))>> made;
-  made.reserve(list.size());
-  for (const auto& element : list) made.push_back(std::invoke(function, element));
+  if constexpr (requires { list.size(); }) made.reserve(list.size());
+  for (auto&& element : list) made.push_back(std::invoke(function, element));
   return made;
 }
 

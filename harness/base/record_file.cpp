@@ -54,7 +54,7 @@ std::string meant(const std::string& asked, const std::vector<Recorded>& all) {
 std::string some_ids(const std::vector<Recorded>& tests) {
   constexpr std::size_t most = 5;
   const auto id = [](const Recorded& each) { return each.test.id; };
-  return quoted(names_of(std::span(tests).first(std::min(most, tests.size())), id)) +
+  return quoted(mapped(std::span(tests).first(std::min(most, tests.size())), id)) +
          (tests.size() > most ? ", …" : "");
 }
 

@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <functional>
 #include <string>
 #include <utility>
-#include <vector>
 
+#include "estimators/core/mapped.h"
 #include "estimators/core/value.h"
 
 namespace assay::harness {
@@ -22,14 +21,6 @@ requires(sizeof...(Parts) > 0)
     [[noreturn]] void refuse(const Location& where, fmt::format_string<Parts...> sentence,
                              Parts&&... parts) {
   throw InputError(where, fmt::format(sentence, std::forward<Parts>(parts)...));
-}
-
-/// One text of each row, such as the names that a message offers.
-template <class Rows, class Text>
-std::vector<std::string> names_of(Rows&& rows, Text text) {
-  std::vector<std::string> names;
-  for (const auto& row : rows) names.push_back(std::invoke(text, row));
-  return names;
 }
 
 }  // namespace assay::harness

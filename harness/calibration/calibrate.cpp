@@ -371,10 +371,9 @@ void tally(const TestOutcome& outcome, CalibratedClaim& claim) {
 /// All claims see the same observations.
 void run_once(const CalibrationBench& bench, const std::vector<CalibratedClaim*>& claims,
               std::uint64_t seed, std::mutex& counting) {
-  std::vector<Question> questions;
-  for (const CalibratedClaim* const claim : claims) {
-    questions.push_back(ask(claim->suite->tests[0], bench.estimators, seed));
-  }
+  const std::vector<Question> questions = mapped(claims, [&](const CalibratedClaim* claim) {
+    return ask(claim->suite->tests[0], bench.estimators, seed);
+  });
   const Pilots pilots = pilots_of(questions, seed, *threads(1));
   Pools pools;
   std::vector<TestWork> works;
@@ -384,8 +383,7 @@ void run_once(const CalibrationBench& bench, const std::vector<CalibratedClaim*>
     const TestOutcome& outcome = works[i].outcome;
     works[i].pools = pools.for_question(outcome.question, outcome.plan, seed, pilots);
   }
-  std::vector<TestWork*> open;
-  for (TestWork& work : works) open.push_back(&work);
+  const std::vector<TestWork*> open = mapped(works, [](TestWork& work) { return &work; });
   for (const auto& pool : pools.all()) {
     // A calibration shows no histograms.
     for (ChannelPlan& channel : pool->plans()) channel.histogram_high = channel.histogram_low;
@@ -496,8 +494,7 @@ reports::Calibration calibration(const CalibrateArguments& arguments, Progress& 
                               .runs = arguments.runs,
                               .started = utc_now(),
                               .detect = calibration_effects()};
-  std::vector<std::string> laws;
-  for (const std::string& law : arguments.laws) laws.push_back(calibration_law(law));
+  std::vector<std::string> laws = mapped(arguments.laws, calibration_law);
   std::vector<std::string> without_blanks = laws;
   for (std::string& law : without_blanks) std::erase(law, ' ');
   refuse_twice("--law", without_blanks);
@@ -527,7 +524,7 @@ reports::Calibration calibration(const CalibrateArguments& arguments, Progress& 
   }
   group(all, options.alphas);
   const double error = result.error / static_cast<double>(all.size());
-  for (const CalibrationCase& each : all) result.cells.push_back(cell_of(each, error));
+  result.cells = mapped(all, [&](const CalibrationCase& each) { return cell_of(each, error); });
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }

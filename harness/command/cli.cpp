@@ -21,7 +21,7 @@ namespace assay::harness {
 namespace {
 
 Texts plugin_names() {
-  return names_of(catalogue(), [](const Entry& entry) { return entry.information.name; });
+  return mapped(catalogue(), [](const Entry& entry) { return entry.information.name; });
 }
 
 std::string read_suite(const std::string& text, const std::string& /*option*/) {
@@ -47,7 +47,7 @@ auto report_beside(const std::vector<ReportRequest>& others) {
 // Rows of several commands.
 
 void add_report(Options& options, Output& output, const std::string& kinds) {
-  Texts words = names_of(reports::report_formats(), &reports::ReportFormat::kind);
+  Texts words = mapped(reports::report_formats(), &reports::ReportFormat::kind);
   for (std::string& word : words) word += '=';
   options.add(
       {"--report", "KIND=PATH", Replay::nowhere, "", words}, output.reports,
@@ -419,7 +419,7 @@ Examples:
 )");
   Texts words = plugin_names();
   for (const Table& table : tables())
-    std::ranges::copy(names_of(table.rows, &TableRow::name), std::back_inserter(words));
+    std::ranges::copy(mapped(table.rows, &TableRow::name), std::back_inserter(words));
   options.add(
       {.name = "NAME",
        .needed = "a plugin or a family, a method, a quantity, a law, a gate or a report",

@@ -27,7 +27,7 @@ Texts option_names(const CLI::App& app) {
 }
 
 Texts subcommand_names(const CLI::App& app) {
-  return names_of(app.get_subcommands({}), [](const CLI::App* sub) { return sub->get_name(); });
+  return mapped(app.get_subcommands({}), [](const CLI::App* sub) { return sub->get_name(); });
 }
 
 /// The suite's key that does the same as an option of `check`.
@@ -221,20 +221,16 @@ void Options::read_values() const {
 }
 
 CommandText Options::text(const std::string& summary) const {
-  CommandText text{app_.get_name(), summary, about_, {}};
-  for (const Row& row : rows_) text.options.push_back(row.text);
-  return text;
+  return {app_.get_name(), summary, about_, mapped(rows_, &Row::text)};
 }
 
 std::vector<CommandText> texts_of(const std::vector<CommandRow>& commands) {
   CLI::App app("", "assay");
-  std::vector<CommandText> texts;
-  for (const CommandRow& row : commands) {
+  return mapped(commands, [&](const CommandRow& row) {
     Options options(*app.add_subcommand(row.name));
     row.define(options);
-    texts.push_back(options.text(row.summary));
-  }
-  return texts;
+    return options.text(row.summary);
+  });
 }
 
 Command parsed(const Texts& arguments, const std::vector<CommandRow>& commands) {
@@ -313,7 +309,7 @@ ReportRequest read_report(const std::string& text, const std::string& option) {
            option, text, meant_report(text));
   }
   const std::string kind = text.substr(0, equals);
-  const auto kinds = names_of(reports::report_formats(), &reports::ReportFormat::kind);
+  const auto kinds = mapped(reports::report_formats(), &reports::ReportFormat::kind);
   choice(Value::scalar(kind), "the kind of " + option, kinds);
   for (const std::string& other : kinds) {
     const std::size_t comma = text.find("," + other + "=");

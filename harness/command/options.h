@@ -136,9 +136,7 @@ struct OneOf {
   std::vector<std::pair<std::string, T>> meanings;
 
   std::vector<std::string> words() const {
-    std::vector<std::string> all;
-    for (const auto& [word, meaning] : meanings) all.push_back(word);
-    return all;
+    return mapped(meanings, &std::pair<std::string, T>::first);
   }
   T operator()(const std::string& text, const std::string& option) const {
     return meanings[choice(Value::scalar(text), option, words())].second;

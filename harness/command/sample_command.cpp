@@ -77,9 +77,8 @@ int sample(const SampleArguments& arguments) {
              estimator.parameters, arguments.primaries, arguments.seed);
   fmt::print("# stream: {:016x}\n# columns: {}\n", key.bits, fmt::join(names, " "));
   if (const auto* draws = dynamic_cast<const SamplerSetup*>(sampled.setup.get())) {
-    std::vector<double> none;
-    for (const Marginal& marginal : draws->marginals()) none.push_back(no_point(marginal));
-    fmt::print("# a draw without a point: {}\n", fmt::join(none, " "));
+    fmt::print("# a draw without a point: {}\n",
+               fmt::join(mapped(draws->marginals(), no_point), " "));
   }
   const std::unique_ptr<Estimator> worker = sampled.setup->make();
   const FlushDenormals flush;

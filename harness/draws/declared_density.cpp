@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "estimators/core/mapped.h"
 #include "harness/draws/sound_draw.h"
 
 namespace assay::harness {
@@ -106,12 +107,9 @@ stats::LineDensity line_density(const Sampler& sampler, std::span<const Point> d
                                 Densities densities) {
   const auto values = [densities = std::move(densities)](std::span<const double> x,
                                                          std::span<double> out) {
-    std::vector<Point> points;
-    for (const double each : x) points.push_back({each, 0, 0});
-    write_all(densities, points, out);
+    write_all(densities, mapped(x, [](double each) { return Point{each, 0, 0}; }), out);
   };
-  std::vector<double> places;
-  for (const Point& point : drawn) places.push_back(point[0]);
+  std::vector<double> places = mapped(drawn, [](const Point& point) { return point[0]; });
   const stats::Span whole{sampler.bounds()[0], sampler.bounds()[1]};
   return {.values = values,
           .panels = {.equal = sampler.panels().first,

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "estimators/core/mapped.h"
+
 namespace assay::harness {
 namespace {
 
@@ -77,11 +79,9 @@ stats::PlaneGrid grid_of(const Sampler& sampler, const auto& shares) {
 
 /// Shares of the measure below the borders between equal cells.
 std::vector<double> equal_shares(std::size_t cells) {
-  std::vector<double> shares;
-  for (std::size_t k = 1; k < cells; ++k) {
-    shares.push_back(static_cast<double>(k) / static_cast<double>(cells));
-  }
-  return shares;
+  return mapped_indices(cells - 1, [&](std::size_t k) {
+    return static_cast<double>(k + 1) / static_cast<double>(cells);
+  });
 }
 
 }  // namespace

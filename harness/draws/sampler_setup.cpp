@@ -181,8 +181,7 @@ const std::vector<Point>& SamplerSetup::drawn() const {
   constexpr std::uint64_t count = 4096;
   if (drawn_) return *drawn_;
   drawn_.emplace();
-  std::vector<Stream> streams;
-  for (std::uint64_t i = 1; i <= count; ++i) streams.emplace_back(key_, i);
+  const auto streams = mapped_indices(count, [&](std::size_t i) { return Stream(key_, i + 1); });
   const FlushDenormals flush;
   try {
     for (std::span<const Stream> rest = streams; !rest.empty();) {

@@ -112,10 +112,8 @@ std::string without_leading_zeros(const std::string& text) {
 /// Keys tell a side's pictures apart: their names without the beginning and the end that all have
 /// in common.
 std::vector<std::string> keys_of(const Setup& side) {
-  std::vector<std::string> names;
-  for (std::uint64_t i = 0; i < *side.observations(); ++i) {
-    names.push_back(side.place_of({.index = i}));
-  }
+  std::vector<std::string> names = mapped_indices(
+      *side.observations(), [&](std::size_t i) { return side.place_of({.index = i}); });
   remove_beginnings(names);
   remove_beginnings(names);  // which are the ends now
   for (std::string& name : names) name = without_leading_zeros(name);
@@ -168,10 +166,9 @@ PlannedImage pilot_image(const stats::ImageStack& pilot) {
 
 /// The noise of differences, and the brightness of what is subtracted.
 PlannedImage pilot_of_differences(const Question& question, const Pilots& pilots) {
-  std::vector<ChannelData> data;
-  for (const Subject& side : question.subjects) {
-    data.push_back({.images = pilot_views(side, pilots)});
-  }
+  const std::vector<ChannelData> data = mapped(question.subjects, [&](const Subject& side) {
+    return ChannelData{.images = pilot_views(side, pilots)};
+  });
   const ImagePair pair({question, 0, data});
   PlannedImage image = pilot_image(pair.first);
   image.squared_norm = stats::image_squared_mean(*pair.subtracted);

@@ -522,7 +522,7 @@ void require_plane(const Question& question) {
 
 /// The compared marginals, as "u, v".
 std::string channel_names(const Subject& side) {
-  return fmt::format("{}", fmt::join(names_of(side.declared(), &Channel::name), ", "));
+  return fmt::format("{}", fmt::join(mapped(side.declared(), &Channel::name), ", "));
 }
 
 /// Two samplers are compared marginal by marginal, so both need the same ones.

@@ -259,12 +259,10 @@ std::string lost_to_rounding(const Seen& seen) {
 std::vector<Constant> recorded_means(const Question& question, const Subject& reference) {
   require_one_size(question);
   if (reference.image) require_equal_pixels(question, reference);
-  std::vector<Constant> means;
-  for (const Channel& channel : reference.declared()) {
-    means.push_back({question.factor * channel.mean.value_or(0),
-                     std::abs(question.factor) * channel.mean_error});
-  }
-  return means;
+  return mapped(reference.declared(), [&](const Channel& channel) {
+    return Constant{question.factor * channel.mean.value_or(0),
+                    std::abs(question.factor) * channel.mean_error};
+  });
 }
 
 // ---- Ranges

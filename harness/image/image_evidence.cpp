@@ -91,10 +91,8 @@ void note_errors(const std::vector<ChannelMeans>& means, bool relative, const Er
   const double part = typical.group.share / typical.group.count;
   const double errors = stats::upper_normal_quantile(share.alpha * part / 2) +
                         stats::upper_normal_quantile(share.beta);
-  std::vector<double> of_cells;
-  for (const auto& noise : typical.noise) {
-    of_cells.push_back(stats::standard_error_at(noise, errors));
-  }
+  const std::vector<double> of_cells = mapped(
+      typical.noise, [&](const auto& noise) { return stats::standard_error_at(noise, errors); });
   outcome.uniform_error = least_error(uniform_errors(means[0], means[1]), means[1], relative);
   outcome.cell_error = least_error(of_cells, means[1], relative);
 }
@@ -121,12 +119,10 @@ std::vector<Constant> distances_of_means(const PictureLook& look, const stats::I
                                          double squared_norm, bool of_pairs) {
   const double scale = std::sqrt(static_cast<double>(extent.width * extent.height) / squared_norm);
   const std::vector<double> errors = uniform_errors(look.means[0], look.means[1]);
-  std::vector<Constant> distances;
-  for (std::size_t c = 0; c < errors.size(); ++c) {
+  return mapped_indices(errors.size(), [&](std::size_t c) {
     const double other = of_pairs ? 0 : look.means[1][c].value;
-    distances.push_back({scale * std::abs(look.means[0][c].value - other), scale * errors[c]});
-  }
-  return distances;
+    return Constant{scale * std::abs(look.means[0][c].value - other), scale * errors[c]};
+  });
 }
 
 /// The natural logarithm of the p-value of "one of the means is `margin` off or more".
@@ -220,7 +216,7 @@ void require_spread(const Question& question, bool varies) {
   throw stats::ZeroVariance(fmt::format(
       "the images of {} never vary: values without spread say nothing about unseen values; check "
       "that the seed changes the image, take fewer `primaries`, or more observations",
-      quoted(names_of(question.subjects, name_of))));
+      quoted(mapped(question.subjects, name_of))));
 }
 
 bool varies(const stats::ImageStack& stack) {

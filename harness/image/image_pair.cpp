@@ -14,14 +14,10 @@
 namespace assay::harness {
 namespace {
 
-std::vector<std::vector<float>> mapped(const std::vector<std::span<const float>>& images,
-                                       const Question& question) {
-  std::vector<std::vector<float>> copies;
-  for (const std::span<const float> image : images) {
-    std::vector<float>& copy = copies.emplace_back(image.begin(), image.end());
-    for (float& value : copy) value = static_cast<float>(question.mapped(value));
-  }
-  return copies;
+/// The second side's images on the first's scale.
+std::vector<std::vector<float>> on_first_scale(const Question& question, const ImageViews& second) {
+  const auto moved = [&](float value) { return static_cast<float>(question.mapped(value)); };
+  return mapped(second.images(), [&](const auto& image) { return mapped(image, moved); });
 }
 
 /// A channel's declaration of its values.
@@ -53,12 +49,9 @@ const Declared& declared_at(const Declarations& all, std::size_t element) {
 Declarations declared_by(const Subject& subject) {
   if (subject.setup->pictures()) return {{Channel().low, Channel().high, Channel().rounding}};
   const double precision = relative_rounding(*subject.setup);
-  Declarations all;
-  all.reserve(subject.channels.size());
-  for (const Channel& channel : subject.declared()) {
-    all.push_back({channel.low, channel.high, channel.rounding, precision});
-  }
-  return all;
+  return mapped(subject.declared(), [&](const Channel& channel) {
+    return Declared{channel.low, channel.high, channel.rounding, precision};
+  });
 }
 
 /// The declarations of differences from images near `image`, but for their range.
@@ -200,7 +193,7 @@ ImagePair::ImagePair(const Seen& seen) {
   if (question.of_two()) {
     const bool maps = question.factor != 1 || question.offset != 0;
     const ImageViews& other = seen.data[1].images;
-    if (maps) scaled_ = ImageViews(mapped(other.images(), question));
+    if (maps) scaled_ = ImageViews(on_first_scale(question, other));
     second = {extent, (maps ? scaled_ : other).images()};
     if (!question.is().of_pairs) return;
     subtracted.swap(second);
@@ -208,14 +201,12 @@ ImagePair::ImagePair(const Seen& seen) {
     value.assign(extent.elements(), 0);
     return;
   }
-  value.reserve(extent.elements());
-  for (const Constant& reference : question.references) {
-    value.push_back(reference.value + question.offset);
-  }
+  value = mapped(question.references,
+                 [&](const Constant& reference) { return reference.value + question.offset; });
   const bool exact = std::ranges::all_of(
       question.references, [](const Constant& each) { return each.standard_error == 0; });
   if (exact) return;
-  for (const Constant& reference : question.references) error.push_back(reference.standard_error);
+  error = mapped(question.references, &Constant::standard_error);
 }
 
 stats::ImageStack difference(const stats::ImageStack& one, const stats::ImageStack& other,
@@ -240,13 +231,11 @@ ChannelMeans channel_means(const stats::ImageStack& stack) {
 
 ChannelMeans channel_means(const std::vector<double>& sums, const stats::ImageExtent& extent) {
   const auto pixels = static_cast<double>(extent.width * extent.height);
-  ChannelMeans means;
-  for (std::size_t c = 0; c < extent.channels; ++c) {
+  return mapped_indices(extent.channels, [&](std::size_t c) {
     stats::Moments moments;
     for (std::size_t i = c; i < sums.size(); i += extent.channels) moments.add(sums[i] / pixels);
-    means.push_back({moments.mean, moments.standard_error()});
-  }
-  return means;
+    return Constant{moments.mean, moments.standard_error()};
+  });
 }
 
 ChannelMeans channel_means(const stats::ImageReference& reference) {
@@ -263,11 +252,9 @@ ChannelMeans channel_means(const stats::ImageReference& reference) {
 }
 
 std::vector<double> uniform_errors(const ChannelMeans& first, const ChannelMeans& second) {
-  std::vector<double> errors;
-  for (std::size_t c = 0; c < first.size(); ++c) {
-    errors.push_back(std::hypot(first[c].standard_error, second[c].standard_error));
-  }
-  return errors;
+  return mapped_indices(first.size(), [&](std::size_t c) {
+    return std::hypot(first[c].standard_error, second[c].standard_error);
+  });
 }
 
 double least_error(std::span<const double> errors, const ChannelMeans& means, bool relative) {

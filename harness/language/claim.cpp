@@ -168,7 +168,7 @@ class Lexer {
 
 using Kind = Token::Kind;
 
-std::vector<std::string> quantity_words() { return names_of(quantities(), &QuantityRow::word); }
+std::vector<std::string> quantity_words() { return mapped(quantities(), &QuantityRow::word); }
 
 /// Words that may begin the right side.
 std::vector<std::string> side_words() {
@@ -427,7 +427,7 @@ void check_quantity(const Quantity& q) {
   if (q.slope && q.row->slope == nullptr) {
     auto sloped = quantities() | std::views::filter(&QuantityRow::slope);
     refuse(q.where, "`slope` takes a {}, not `{}`",
-           listed(names_of(sloped, &QuantityRow::word), " or "), q.row->word);
+           listed(mapped(sloped, &QuantityRow::word), " or "), q.row->word);
   }
 }
 

@@ -72,7 +72,7 @@ const LawInformation* find_law(std::string_view name) {
 }
 
 std::string signature(const LawInformation& law) {
-  return fmt::format("{}({})", law.name, listed(names_of(law.parameters, &LawParameter::name)));
+  return fmt::format("{}({})", law.name, listed(mapped(law.parameters, &LawParameter::name)));
 }
 
 void check_law(const Law& law) {

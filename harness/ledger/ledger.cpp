@@ -98,9 +98,7 @@ constexpr double credibility = 0.9;
 /// The values of nights, all of this kind.
 template <class Kind>
 std::vector<Kind> values_of(const std::vector<LedgerNight>& nights) {
-  std::vector<Kind> all;
-  for (const LedgerNight& night : nights) all.push_back(std::get<Kind>(night.value));
-  return all;
+  return mapped(nights, [](const LedgerNight& night) { return std::get<Kind>(night.value); });
 }
 
 /// The null hypothesis at the nearest value that the claim allows.

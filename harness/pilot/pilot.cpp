@@ -318,9 +318,8 @@ Pilots pilots_of(const std::vector<Question>& questions, std::uint64_t seed, Exe
       used.emplace(subject.estimator->name, subject.estimator);
     }
   }
-  std::vector<const PreparedEstimator*> estimators;
-  for (const auto& [name, estimator] : used) estimators.push_back(estimator);
-  return run_pilots(estimators, questions, seed, executor, silence);
+  return run_pilots(mapped(used, [](const auto& each) { return each.second; }), questions, seed,
+                    executor, silence);
 }
 
 }  // namespace assay::harness

@@ -108,10 +108,9 @@ const char* rows_noun(const Question& question) {
 }
 
 std::string sizes_text(const TestOutcome& outcome, double factor) {
-  std::vector<std::string> texts;
-  for (std::size_t i = 0; i < outcome.question.compared(); ++i) {
-    texts.push_back(reports::human(factor * static_cast<double>(outcome.secondaries(i)), 2));
-  }
+  const auto texts = mapped_indices(outcome.question.compared(), [&](std::size_t i) {
+    return reports::human(factor * static_cast<double>(outcome.secondaries(i)), 2);
+  });
   if (std::ranges::adjacent_find(texts, std::ranges::not_equal_to()) == texts.end()) {
     return texts.front();
   }

@@ -26,15 +26,13 @@ namespace {
 
 std::vector<Regions> regions_of(const Question& question) {
   const TestEntry& test = *question.test;
-  std::vector<Regions> all;
-  for (std::size_t channel = 0; channel < question.channel_count(); ++channel) {
+  return mapped_indices(question.channel_count(), [&](std::size_t channel) {
     Regions regions{.relation = test.claim.relation};
     if (test.allow) regions.allow = margin_on_theta(question, channel, *test.allow);
     if (test.detect) regions.detect = margin_on_theta(question, channel, *test.detect);
     if (regions.within()) regions.detect = margin_on_theta(question, channel, test.claim.margin);
-    all.push_back(regions);
-  }
-  return all;
+    return regions;
+  });
 }
 
 /// Names the estimator whose pilot gave a value that is not finite; "" if none did. Rows of files

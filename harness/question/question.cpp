@@ -22,7 +22,7 @@ std::string parts_of(const PreparedEstimator& estimator) {
     text = fmt::format("`{}`, …, `{}`", fmt::join(names, "`, `"),
                        element_name(*image, image->elements() - 1));
   } else {
-    text = quoted(names_of(estimator.setup->channels(), &Channel::name));
+    text = quoted(mapped(estimator.setup->channels(), &Channel::name));
   }
   for (const NamedSampler& named : estimator.setup->samplers()) {
     text += fmt::format(", `{}`", named.name);
@@ -109,7 +109,7 @@ const PreparedEstimator& estimator_of(const Source& source, const Estimators& es
   const auto found = estimators.find(source.estimator);
   if (found != estimators.end()) return found->second;
   refuse(source.where, "no estimator `{}` in this suite{}", source.estimator,
-         did_you_mean(source.estimator, names_of(estimators, &Estimators::value_type::first)));
+         did_you_mean(source.estimator, mapped(estimators, &Estimators::value_type::first)));
 }
 
 Subject estimates(const Source& source, const PreparedEstimator& estimator) {
@@ -196,13 +196,10 @@ Constant analytic_variance(const Channel& channel, const Source& source) {
 }
 
 std::vector<Constant> references_of(const Claim& claim, const Subject& subject) {
-  std::vector<Constant> numbers;
-  for (const Channel& channel : subject.declared()) {
-    const auto* const number = std::get_if<Constant>(&claim.right);
-    numbers.push_back(number != nullptr ? *number
-                                        : claim.left.row->analytic(channel, claim.left.source));
-  }
-  return numbers;
+  const auto* const number = std::get_if<Constant>(&claim.right);
+  return mapped(subject.declared(), [&](const Channel& channel) {
+    return number != nullptr ? *number : claim.left.row->analytic(channel, claim.left.source);
+  });
 }
 
 std::string image_name(const ImageShape& shape) {
@@ -255,17 +252,15 @@ std::vector<Constant> truths_of(const TestEntry& test, const Subject& subject,
   if (test.reference || test.reference_number) {
     return std::vector(subject.channels.size(), test.reference_number.value_or(Constant{}));
   }
-  std::vector<Constant> truths;
-  for (const Channel& channel : subject.declared()) {
+  return mapped(subject.declared(), [&](const Channel& channel) {
     if (!channel.mean) {
       refuse(source.where,
              "the true mean of `{}` is not known to its plugin; give the test a `reference:`, a "
              "number or an estimator",
              to_string(source));
     }
-    truths.push_back({*channel.mean, channel.mean_error});
-  }
-  return truths;
+    return Constant{*channel.mean, channel.mean_error};
+  });
 }
 
 void add_reference(Question& question, const Estimators& estimators) {

@@ -106,9 +106,7 @@ std::vector<reports::Statement> statements_of(const std::vector<ShardFile>& shar
       by_line.emplace(std::pair(statement.line, statement.text), statement);
     }
   }
-  std::vector<reports::Statement> all;
-  for (auto& [place, statement] : by_line) all.push_back(std::move(statement));
-  return all;
+  return mapped(by_line, [](const auto& each) { return each.second; });
 }
 
 reports::Suite merge_suite(const std::vector<ShardFile>& shards, std::size_t index, bool& whole) {

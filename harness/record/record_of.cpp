@@ -51,14 +51,13 @@ std::vector<reports::QuantilePoint> quantile_points(std::span<const double> valu
   std::ranges::sort(sorted);
   constexpr std::size_t most_points = 99;
   const std::size_t points = std::min(sorted.size(), most_points);
-  std::vector<reports::QuantilePoint> plot;
-  for (std::size_t i = 0; i < points; ++i) {
+  return mapped_indices(points, [&](std::size_t i) {
     const double probability = (static_cast<double>(i) + 0.5) / static_cast<double>(points);
     const auto rank = static_cast<std::size_t>(probability * static_cast<double>(sorted.size()));
-    plot.push_back({.normal = stats::normal_quantile({stats::Tail::lower, std::log(probability)}),
-                    .observed = sorted[rank]});
-  }
-  return plot;
+    return reports::QuantilePoint{
+        .normal = stats::normal_quantile({stats::Tail::lower, std::log(probability)}),
+        .observed = sorted[rank]};
+  });
 }
 
 reports::Cost cost_of(const Summary& summary) {
@@ -169,9 +168,8 @@ reports::Channel channel_of(const ChannelOutcome& outcome, const Regions& region
 /// The p-values of each look, as of a single look. They belong to the channel that speaks most
 /// against the claim, and to the one least excluded from the forbidden region.
 std::vector<reports::Look> looks_of(const TestOutcome& outcome, const Regions& regions) {
-  std::vector<reports::Look> looks;
   const std::size_t taken = outcome.history.empty() ? 0 : outcome.history[0].log_p_claimed.size();
-  for (std::size_t k = 0; k < taken; ++k) {
+  return mapped_indices(taken, [&](std::size_t k) {
     double claimed = 0;
     double forbidden = -std::numeric_limits<double>::infinity();
     for (const ChannelHistory& history : outcome.history) {
@@ -193,15 +191,14 @@ std::vector<reports::Look> looks_of(const TestOutcome& outcome, const Regions& r
       // Earlier looks have no interval: its confidence depends on the verdict.
       if (look.effect && k + 1 == taken) look.effect = worst.effect;
     }
-    looks.push_back(look);
-  }
-  return looks;
+    return look;
+  });
 }
 
 std::string over_text(const TestEntry& test) {
   if (!test.over) return "";
   return fmt::format("{{{}: [{}]}}", test.over->parameter,
-                     listed(names_of(test.over->values, &Value::text)));
+                     listed(mapped(test.over->values, &Value::text)));
 }
 
 std::string reference_text(const TestEntry& test) {
@@ -500,15 +497,13 @@ reports::Test record_of_untested(const Untested& untested, const SuiteRun& run) 
 }
 
 reports::FamilyResult place_in_family(const TestOutcome& outcome, const Suite& suite) {
-  reports::FamilyResult member{
-      .position = position_of(*outcome.question.test, suite),
-      .inside = outcome.place.inside,
-      .weight = outcome.place.weight,
-      .untested = outcome.question.channel_count() - outcome.channels.size()};
-  for (const ChannelOutcome& channel : outcome.channels) {
-    member.log_p.push_back(channel.decision.log_p_claimed);
-  }
-  return member;
+  return {.position = position_of(*outcome.question.test, suite),
+          .inside = outcome.place.inside,
+          .weight = outcome.place.weight,
+          .untested = outcome.question.channel_count() - outcome.channels.size(),
+          .log_p = mapped(outcome.channels, [](const ChannelOutcome& channel) {
+            return channel.decision.log_p_claimed;
+          })};
 }
 
 void adjust_p_values(std::vector<FamilyMember>& suite) {

@@ -155,9 +155,8 @@ std::vector<ConstantVerdict> evaluate_channels(TestOutcome& outcome, const Drawn
       constants.push_back(*std::move(constant));
       continue;
     }
-    for (Gate& gate : question.theta->gates(outcome, seen, critical)) {
-      outcome.gates.push_back(std::move(gate));
-    }
+    std::ranges::move(question.theta->gates(outcome, seen, critical),
+                      std::back_inserter(outcome.gates));
     outcome.channels.push_back(channel_outcome(test, seen));
   }
   return constants;
@@ -193,9 +192,8 @@ void remember(TestOutcome& outcome, bool counts) {
 
 Verdict verdict_of_channels(const TestOutcome& outcome) {
   if (outcome.channels.empty()) return Verdict::pass;
-  std::vector<ChannelDecision> decisions;
-  for (const ChannelOutcome& channel : outcome.channels) decisions.push_back(channel.decision);
-  return decide(decisions, outcome.plan.regions[0], outcome.place.share.beta);
+  return decide(mapped(outcome.channels, &ChannelOutcome::decision), outcome.plan.regions[0],
+                outcome.place.share.beta);
 }
 
 /// Points on no power law reject every slope, which says nothing about any, whatever the method.
@@ -370,9 +368,7 @@ Sample TestWork::sample(std::size_t subject) const {
 }
 
 std::vector<Sample> TestWork::samples() const {
-  std::vector<Sample> samples;
-  for (std::size_t i = 0; i < pools.size(); ++i) samples.push_back(sample(i));
-  return samples;
+  return mapped_indices(pools.size(), [&](std::size_t i) { return sample(i); });
 }
 
 std::optional<DrawnTest> drawn(const TestWork& work) {

@@ -99,13 +99,11 @@ class Side {
   /// Sums of each picture's channels over the rows read so far.
   std::vector<double> channel_sums() const { return sums_of(of_channels_); }
   std::vector<double> averages() const {
-    std::vector<double> averages;
-    for (const stats::ChannelSums& each : of_channels_) {
+    return mapped(of_channels_, [&](const stats::ChannelSums& each) {
       const std::vector<double> sums = each.sums();
-      averages.push_back(std::accumulate(sums.begin(), sums.end(), 0.0) /
-                         static_cast<double>(extent_.elements()));
-    }
-    return averages;
+      return std::accumulate(sums.begin(), sums.end(), 0.0) /
+             static_cast<double>(extent_.elements());
+    });
   }
   Extremes extremes() const {
     Extremes all;

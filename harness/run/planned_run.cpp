@@ -250,9 +250,7 @@ std::vector<foreign::MissingFile> missing_files(const std::vector<Suite>& suites
     }
     all.merge(missing);
   }
-  std::vector<foreign::MissingFile> files;
-  for (auto& [name, file] : all) files.push_back(std::move(file));
-  return files;
+  return mapped(all, [](const auto& each) { return each.second; });
 }
 
 NamedSetups setups_of(const PlannedRun& run) {
@@ -272,9 +270,8 @@ NamedSetups setups_of(const PlannedRun& run) {
 }
 
 PlannedRun prepare_run(const std::vector<Suite>& suites, const RunOptions& options) {
-  PlannedRun planned;
-  for (const Suite& suite : suites) planned.suites.push_back(prepare_suite(suite, options));
-  return planned;
+  const auto prepared = [&](const Suite& suite) { return prepare_suite(suite, options); };
+  return {.suites = mapped(suites, prepared)};
 }
 
 PlannedRun plan_run(const std::vector<Suite>& suites, const RunOptions& options,

@@ -29,10 +29,9 @@ ChannelPlan with_histogram(Range range) {
 }
 
 std::vector<ChannelPlan> sampler_plan(const SamplerSetup& setup) {
-  std::vector<ChannelPlan> plan;
-  for (const Marginal& marginal : setup.marginals()) {
-    plan.push_back(with_histogram({marginal.low, marginal.high}));
-  }
+  std::vector<ChannelPlan> plan = mapped(setup.marginals(), [](const Marginal& marginal) {
+    return with_histogram({marginal.low, marginal.high});
+  });
   plan.resize(setup.channel_count());
   return plan;
 }

@@ -83,9 +83,7 @@ void add_details(ChannelDetails& details, double value, const ObservationCost& c
 }
 
 std::vector<stats::JointMoments> joint_moments(const ChannelDetails& details) {
-  std::vector<stats::JointMoments> moments;
-  for (const stats::JointSums& each : details.joint) moments.push_back(each.moments());
-  return moments;
+  return mapped(details.joint, &stats::JointSums::moments);
 }
 
 Summary::Summary(std::size_t count_of_channels, std::span<const ChannelPlan> plan)

@@ -58,8 +58,7 @@ std::string unknown_tag(const std::vector<Suite>& suites, const std::string& tag
 }
 
 std::string unmatched_filter(const std::vector<Suite>& suites, const std::string& filter) {
-  std::vector<std::string> ids;
-  for (const TestEntry* test : selected(suites, {})) ids.push_back(test->id);
+  const std::vector<std::string> ids = mapped(selected(suites, {}), &TestEntry::id);
   const auto matched = [&](const std::string& glob) {
     std::vector<std::string> found;
     for (const std::string& id : ids) {

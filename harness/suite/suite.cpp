@@ -50,7 +50,7 @@ const std::vector<Value>& items_of(const Value& list, const std::string& otherwi
 }
 
 std::vector<std::string> read_lines(const Value& list, const char* what) {
-  return names_of(list.items(), [&](const Value& item) { return one_line(item, what); });
+  return mapped(list.items(), [&](const Value& item) { return one_line(item, what); });
 }
 
 Budget read_short_budget(const Value& value) {
@@ -108,7 +108,7 @@ void read_reference(const Value& value, TestEntry& test) {
 /// The quantities that have a trait, as "`bias` and `efficiency`".
 std::string quantities_with(bool QuantityRow::*trait) {
   auto rows = quantities() | std::views::filter(trait);
-  return fmt::format("`{}`", fmt::join(names_of(rows, &QuantityRow::word), "` and `"));
+  return fmt::format("`{}`", fmt::join(mapped(rows, &QuantityRow::word), "` and `"));
 }
 
 void check_margins(const TestEntry& test) {
@@ -181,7 +181,7 @@ void require_tests(const std::vector<const TestEntry*>& found, const Value& name
                    const Tests& tests) {
   if (!found.empty()) return;
   refuse(name.where(), "the suite has no test `{}`{}", name.text(),
-         did_you_mean(name.text(), names_of(tests, &TestEntry::name),
+         did_you_mean(name.text(), mapped(tests, &TestEntry::name),
                       "tests are named by `name`, or else by their claim"));
 }
 
@@ -318,9 +318,7 @@ std::vector<reports::Statement> read_statements(const Document& document, const 
   const auto& items = items_of(list,
                                "`statements` must be a list of at least one, as in `- {text: they "
                                "agree, source: a talk, holds: [a test]}`");
-  std::vector<reports::Statement> statements;
-  for (const Value& item : items) statements.push_back(read_statement(document, item, tests));
-  return statements;
+  return mapped(items, [&](const Value& item) { return read_statement(document, item, tests); });
 }
 
 /// A suite's seed is fixed; only the command line can ask for a fresh one.
@@ -378,7 +376,7 @@ void read_estimators(const Document& document, const Value& map, Suite& suite) {
 }
 
 void require_estimator(const Suite& suite, const Source& source) {
-  const auto names = names_of(suite.estimators, &EstimatorEntry::name);
+  const auto names = mapped(suite.estimators, &EstimatorEntry::name);
   if (std::ranges::find(names, source.estimator) != names.end()) return;
   refuse(source.where, "the suite has no estimator `{}`{}", source.estimator,
          suggestion(source.estimator, names));

@@ -78,7 +78,7 @@ EstimatorEntry entry_for(const Source& source, const std::vector<EstimatorEntry>
   if (const auto* entry = entry_named(given, source.estimator)) return *entry;
   const std::string file = source.estimator + "." + source.part;
   if (std::filesystem::is_regular_file(file)) refuse_file(source.where, source.estimator, file);
-  const std::string near = nearest(source.estimator, names_of(given, &EstimatorEntry::name));
+  const std::string near = nearest(source.estimator, mapped(given, &EstimatorEntry::name));
   if (!near.empty()) {
     refuse(source.where, "no --estimator is named `{}`; did you mean `{}`?", source.estimator,
            near);
@@ -91,7 +91,7 @@ EstimatorEntry entry_for(const Source& source, const std::vector<EstimatorEntry>
   } catch (const InputError& error) {
     if (given.empty() || source.estimator.find('/') != std::string::npos) throw;
     refuse(error.where(), "{}; --estimator names {}", error.message(),
-           quoted(names_of(given, &EstimatorEntry::name)));
+           quoted(mapped(given, &EstimatorEntry::name)));
   }
 }
 
@@ -101,7 +101,7 @@ void refuse_unused(const std::vector<EstimatorEntry>& given,
     if (entry_named(used, entry.name)) continue;
     refuse(entry.where,
            "`{0}` is used nowhere, only {1}: write `{0}` in its place, or leave the option out",
-           entry.name, quoted(names_of(used, &EstimatorEntry::name)));
+           entry.name, quoted(mapped(used, &EstimatorEntry::name)));
   }
 }
 

@@ -110,9 +110,7 @@ std::vector<Layer> layers_of(const std::string& patterns, const Pictures& candid
     }
   }
   if (found.size() == 1) return {layer("", patterns)};
-  std::vector<Layer> layers;
-  for (const auto& [of, channels] : found) layers.push_back(layer(as_name(of), channels));
-  return layers;
+  return mapped(found, [&](const auto& each) { return layer(as_name(each.first), each.second); });
 }
 
 /// The window that both sides have on one canvas. nullopt if their windows are equal.

@@ -90,7 +90,7 @@ Method find_method(const Question& question, const std::string& name) {
   const auto found = std::ranges::find(known, name, &Method::name);
   if (found == known.end()) {
     refuse_method(question, name,
-                  "does not answer this claim; there is " + quoted(names_of(known, &Method::name)));
+                  "does not answer this claim; there is " + quoted(mapped(known, &Method::name)));
   }
   require_data(*found, question);
   return *found;
