@@ -267,21 +267,18 @@ std::string series_hash(const TestWork& work, std::size_t channel) {
 
 std::vector<double> log_e_path(const LedgerSeries& series, const std::vector<LedgerNight>& nights,
                                const stats::Range& claimed) {
-  std::vector<double> path;
   if (series.has_estimates()) {
     stats::PooledNights pooled;
-    for (const auto& night : values_of<stats::NightEstimate>(nights)) {
+    return mapped(values_of<stats::NightEstimate>(nights), [&](const auto& night) {
       pooled.add(night);
-      path.push_back(stats::log_e_value(pooled, nearest(claimed, pooled, series)));
-    }
-    return path;
+      return stats::log_e_value(pooled, nearest(claimed, pooled, series));
+    });
   }
   stats::PooledPValues pooled;
-  for (const double log_p : values_of<NightLogP>(nights)) {
+  return mapped(values_of<NightLogP>(nights), [&](double log_p) {
     pooled.add(log_p);
-    path.push_back(stats::log_e_value(pooled));
-  }
-  return path;
+    return stats::log_e_value(pooled);
+  });
 }
 
 Moved moved(const LedgerSeries& series, const std::vector<LedgerNight>& nights,

@@ -404,18 +404,18 @@ void add_cells(const DrawnTest& drawn, reports::Test& test) {
 }
 
 std::vector<reports::EmpiricalLaw> empirical_laws(const DrawnTest& test, std::size_t channel) {
-  std::vector<reports::EmpiricalLaw> laws;
   const Question& question = test.outcome.question;
-  if (!question.is().of_a_law || test.outcome.plan.method.keeps != Keeps::values) return laws;
+  if (!question.is().of_a_law || test.outcome.plan.method.keeps != Keeps::values) return {};
   std::optional<DeclaredLaw> law;
   if (!question.of_two()) law = declared_law(question, channel);
   const double confidence = 1 - test.outcome.share().alpha;
   const std::vector<ChannelData> data = data_of(test, channel);
-  for (std::size_t subject = 0; subject < data.size(); ++subject) {
-    laws.push_back(empirical_law(points_of({question, channel, data}, subject), confidence, law));
-    laws.back().source = question.subjects[subject].estimator->listed;
-  }
-  return laws;
+  return mapped_indices(data.size(), [&](std::size_t subject) {
+    const Points points = points_of({question, channel, data}, subject);
+    reports::EmpiricalLaw drawn = empirical_law(points, confidence, law);
+    drawn.source = question.subjects[subject].estimator->listed;
+    return drawn;
+  });
 }
 
 }  // namespace assay::harness

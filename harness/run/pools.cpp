@@ -136,15 +136,14 @@ std::shared_ptr<Pool> Pools::find_or_make(const Subject& side, std::uint64_t pri
 
 std::vector<std::shared_ptr<Pool>> Pools::for_question(const Question& question, const Plan& plan,
                                                        std::uint64_t seed, const Pilots& pilots) {
-  std::vector<std::shared_ptr<Pool>> pools;
-  for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
+  return mapped_indices(question.subjects.size(), [&](std::size_t subject) {
     const Subject& side = question.subjects[subject];
-    pools.push_back(find_or_make(side, plan.primaries[subject], seed, pilots));
-    keep_for(plan, side, *pools.back());
-    for (const std::uint64_t size : plan.looks.sizes) pools.back()->mark(side.secondaries(size));
-    for (const std::uint64_t size : plan.postponed) pools.back()->mark(side.secondaries(size));
-  }
-  return pools;
+    std::shared_ptr<Pool> pool = find_or_make(side, plan.primaries[subject], seed, pilots);
+    keep_for(plan, side, *pool);
+    for (const std::uint64_t size : plan.looks.sizes) pool->mark(side.secondaries(size));
+    for (const std::uint64_t size : plan.postponed) pool->mark(side.secondaries(size));
+    return pool;
+  });
 }
 
 }  // namespace assay::harness

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <filesystem>
+#include <ranges>
 
 #include "estimators/catalogue.h"
 #include "harness/base/refuse.h"
@@ -14,11 +14,8 @@ namespace {
 
 /// The parameters on which an estimator's streams depend.
 std::vector<std::string> parameter_names(const Information& information) {
-  std::vector<std::string> names;
-  for (const ParameterInformation& parameter : information.parameters) {
-    if (parameter.shapes_draws) names.push_back(parameter.name);
-  }
-  return names;
+  return mapped(information.parameters | std::views::filter(&ParameterInformation::shapes_draws),
+                &ParameterInformation::name);
 }
 
 std::shared_ptr<const Setup> set_up(const Entry& entry, Parameters& parameters) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <ranges>
 #include <set>
 
 #include "estimators/core/quoting.h"
@@ -60,11 +61,8 @@ std::string unknown_tag(const std::vector<Suite>& suites, const std::string& tag
 std::string unmatched_filter(const std::vector<Suite>& suites, const std::string& filter) {
   const std::vector<std::string> ids = mapped(selected(suites, {}), &TestEntry::id);
   const auto matched = [&](const std::string& glob) {
-    std::vector<std::string> found;
-    for (const std::string& id : ids) {
-      if (matches(glob, id)) found.push_back(id);
-    }
-    return found;
+    const auto is_matched = [&](const std::string& id) { return matches(glob, id); };
+    return mapped(ids | std::views::filter(is_matched), std::identity());
   };
   if (!matched(filter).empty()) return "";
   std::string text = fmt::format("--filter {} matches no test\n", shell_quoted(filter));

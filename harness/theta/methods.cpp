@@ -78,11 +78,8 @@ const std::vector<std::string>& method_names() {
 }
 
 std::vector<Method> methods_for(const Question& question) {
-  std::vector<Method> methods;
-  for (const Method& row : question.theta->methods) {
-    if (row.answers(question)) methods.push_back(row);
-  }
-  return methods;
+  const auto answers = [&](const Method& row) { return row.answers(question); };
+  return mapped(question.theta->methods | std::views::filter(answers), std::identity());
 }
 
 Method find_method(const Question& question, const std::string& name) {
