@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cstring>
+#include <ranges>
 #include <sstream>
 
 #include "harness/base/identity.h"
 #include "harness/base/text_file.h"
 #include "harness/suite/yaml.h"
 #include "reports/words/number.h"
+#include "reports/words/text.h"
 
 namespace assay::harness {
 namespace {
@@ -31,8 +33,8 @@ constexpr const char* introduction[] = {
 
 std::string header_of(double budget) { return version_words + reports::round_trip(budget); }
 
-constexpr std::string_view escaped = "\"\\\n\t\r";
-constexpr std::string_view letters = "\"\\ntr";
+constexpr reports::Form escapes[] = {
+    {'"', "\\\""}, {'\\', "\\\\"}, {'\n', "\\n"}, {'\t', "\\t"}, {'\r', "\\r"}};
 
 /// Reads a text that `in_quotes` wrote. The stream fails if there is none.
 std::string unquoted(std::istream& in) {
@@ -40,8 +42,10 @@ std::string unquoted(std::istream& in) {
   char c = 0;
   if (in >> c && c != '"') in.setstate(std::ios::failbit);
   while (in.get(c) && c != '"') {
-    const std::size_t at = c == '\\' && in.get(c) ? letters.find(c) : std::string_view::npos;
-    text += at == std::string_view::npos ? c : escaped[at];
+    const auto stands_for = [&](const reports::Form& form) { return form.written[1] == c; };
+    const bool is_escape = c == '\\' && in.get(c);
+    const auto* const form = std::ranges::find_if(escapes, stands_for);
+    text += is_escape && form != std::end(escapes) ? form->character : c;
   }
   return text;
 }
@@ -98,11 +102,8 @@ LedgerBook::LedgerBook(double budget) : budget_(budget), check_(text_hash(header
 }
 
 std::vector<LedgerNight> LedgerBook::nights_of(std::size_t series) const {
-  std::vector<LedgerNight> mine;
-  for (const LedgerNight& night : nights_) {
-    if (night.series == series) mine.push_back(night);
-  }
-  return mine;
+  const auto is_its = [&](const LedgerNight& night) { return night.series == series; };
+  return mapped(nights_ | std::views::filter(is_its), std::identity());
 }
 
 std::optional<std::size_t> LedgerBook::open_series(const LedgerSeries& wanted) const {
@@ -288,16 +289,7 @@ LedgerBook LedgerBook::parse(const std::string& text, const std::string& file) {
 }
 
 std::string in_quotes(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    const std::size_t at = escaped.find(c);
-    if (at == std::string_view::npos) {
-      out += c;
-    } else {
-      out += std::string("\\") + letters[at];
-    }
-  }
-  return out + "\"";
+  return "\"" + reports::escape(text, escapes) + "\"";
 }
 
 }  // namespace assay::harness
