@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <fstream>
 
@@ -44,10 +43,7 @@ unsigned launched_tasks() {
   unsigned most = 1;
   // Open MPI; MPICH and its kin; srun, which says nothing of the kind to a batch script.
   for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"}) {
-    const std::string text = system_environment(name);
-    unsigned tasks = 1;
-    std::from_chars(text.data(), text.data() + text.size(), tasks);
-    most = std::max(most, tasks);
+    most = std::max(most, read_as<unsigned>(system_environment(name)).value_or(1));
   }
   return most;
 }
