@@ -120,23 +120,18 @@ void Round::fold(const Task& task, Pool::Block&& block) {
   for (const auto& act : after_fold_) act();
 }
 
-struct Workers::Estimators {
-  tbb::enumerable_thread_specific<std::vector<std::unique_ptr<Estimator>>> of_threads;
-};
-
-Workers::Workers(const SomePools& pools)
-    : pools_(pools), estimators_(std::make_unique<Estimators>()) {}
-Workers::~Workers() = default;
-
-Pool::Block Workers::draw(const Task& task) {
-  auto& mine = estimators_->of_threads.local();
-  return pools_[task.pool]->draw(
-      [&]() -> Estimator& {
-        mine.resize(pools_.size());
-        if (!mine[task.pool]) mine[task.pool] = pools_[task.pool]->setup()->make();
-        return *mine[task.pool];
-      },
-      task.first, task.last);
+Workers::Workers(const SomePools& pools) {
+  using Made = std::vector<std::unique_ptr<Estimator>>;
+  const auto of_threads = std::make_shared<tbb::enumerable_thread_specific<Made>>();
+  draw = [&pools, of_threads](const Task& task) {
+    const auto estimator = [&]() -> Estimator& {
+      Made& mine = of_threads->local();
+      mine.resize(pools.size());
+      if (!mine[task.pool]) mine[task.pool] = pools[task.pool]->setup()->make();
+      return *mine[task.pool];
+    };
+    return pools[task.pool]->draw(estimator, task.first, task.last);
+  };
 }
 
 std::shared_ptr<Executor> threads(unsigned count) { return std::make_shared<Threads>(count); }

@@ -59,17 +59,9 @@ class Round {
 };
 
 /// Draws blocks on threads, each of which has its own estimators, made at their first use.
-class Workers {
- public:
+struct Workers {
   explicit Workers(const SomePools& pools);
-  ~Workers();
-  Pool::Block draw(const Task& task);
-
- private:
-  struct Estimators;
-
-  const SomePools& pools_;
-  std::unique_ptr<Estimators> estimators_;
+  std::function<Pool::Block(const Task&)> draw;
 };
 
 /// Set-ups by names that are the same in every process of a run.
