@@ -69,10 +69,8 @@ struct Plan {
   std::vector<Regions> regions = {};  ///< One a channel.
   std::vector<Gate> gates = {};       ///< Gates of the pilot.
   std::string caution = "";  ///< Possible slip of the user, shown unless the claim is refuted.
-  /// True if red gates on the test's own data void a look. A forced method only shows them.
-  bool gates_invalidate = true;
-  Reason invalid = {};     ///< Why no method is valid, or empty.
-  std::string error = "";  ///< Reason why nothing can be planned, or "".
+  Reason invalid = {};       ///< Why no method is valid, or empty.
+  std::string error = "";    ///< Reason why nothing can be planned, or "".
   /// Reason why the pilot makes an error of a test with sound numbers, or "".
   std::string pilot_error = "";
   std::optional<PlannedImage> image = {};  ///< Set where the sizes of looks at images are planned.

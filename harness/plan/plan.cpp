@@ -424,8 +424,7 @@ TestOutcome plan_test(Question asked, const FamilyPlace& place, const Pilots& pi
   const std::optional<std::string>& forced = question.test->method;
   Plan& plan = test.plan;
   plan = {.method = forced ? find_method(question, *forced) : methods_for(question).front(),
-          .regions = regions_of(question),
-          .gates_invalidate = !forced};
+          .regions = regions_of(question)};
   const bool single = question.theta->takes_single_primaries(question, pilots);
   for (const Subject& subject : question.subjects) {
     const bool chosen = !single || subject.estimator->primaries;

@@ -412,7 +412,7 @@ reports::Test record_of_test(const TestWork& work, const std::string& file) {
   test.ok = test.verdict == test.expected;
   test.method = outcome.plan.method.name;
   const std::size_t worst = outcome.channels.empty() ? 0 : outcome.channels[0].index;
-  test.forced = !outcome.plan.gates_invalidate;
+  test.forced = entry.method.has_value();
   test.null_hypothesis = null_hypothesis(outcome.question, worst);
   const bool distance = !outcome.channels.empty() && outcome.channels[0].evidence.distance;
   test.tail = distance ? "upper" : tail(regions);

@@ -218,7 +218,8 @@ std::string cannot_fail(const TestOutcome& outcome) {
 }
 
 void conclude(TestOutcome& outcome, const std::vector<ConstantVerdict>& constants) {
-  const std::string red = outcome.plan.gates_invalidate ? red_gates(outcome.gates) : "";
+  // A forced method only shows its gates.
+  const std::string red = outcome.question.test->method ? "" : red_gates(outcome.gates);
   remember(outcome, red.empty());
   if (!outcome.plan.invalid.empty()) {
     settle(outcome, Verdict::invalid, outcome.plan.invalid);
@@ -303,7 +304,7 @@ bool is_put_off(const TestOutcome& outcome) {
     return std::ranges::none_of(history.effect,
                                 [](const auto& effect) { return effect.has_value(); });
   });
-  return !outcome.plan.postponed.empty() && outcome.plan.gates_invalidate && all_void &&
+  return !outcome.plan.postponed.empty() && !outcome.question.test->method && all_void &&
          need_more(outcome.gates) && !red_gates(outcome.gates).empty();
 }
 
