@@ -376,13 +376,12 @@ void run_once(const CalibrationBench& bench, const std::vector<CalibratedClaim*>
   });
   const Pilots pilots = pilots_of(questions, seed, *threads(1));
   Pools pools;
-  std::vector<TestWork> works;
-  for (std::size_t i = 0; i < claims.size(); ++i) {
-    works.push_back(
-        {.outcome = plan_alone(*claims[i]->suite, questions[i], pilots), .verdict_only = true});
-    const TestOutcome& outcome = works[i].outcome;
-    works[i].pools = pools.for_question(outcome.question, outcome.plan, seed, pilots);
-  }
+  std::vector<TestWork> works = mapped_indices(claims.size(), [&](std::size_t i) {
+    TestWork work{.outcome = plan_alone(*claims[i]->suite, questions[i], pilots),
+                  .verdict_only = true};
+    work.pools = pools.for_question(work.outcome.question, work.outcome.plan, seed, pilots);
+    return work;
+  });
   const std::vector<TestWork*> open = mapped(works, [](TestWork& work) { return &work; });
   for (const auto& pool : pools.all()) {
     // A calibration shows no histograms.

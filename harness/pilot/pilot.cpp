@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <set>
 #include <string>
 
@@ -243,13 +244,10 @@ PilotChannel pilot_channel(const Question& question, std::size_t subject, std::s
 std::vector<double> as_secondaries(const Subject& side, std::span<const double> values,
                                    std::uint64_t primaries) {
   const std::uint64_t each = side.averages && !is_recorded(side) ? primaries : 1;
-  std::vector<double> means;
-  for (std::size_t i = 0; i + each <= values.size(); i += each) {
-    double sum = 0;
-    for (std::uint64_t k = 0; k < each; ++k) sum += values[i + k];
-    means.push_back(sum / static_cast<double>(each));
-  }
-  return means;
+  return mapped_indices(values.size() / each, [&](std::size_t i) {
+    const std::span<const double> one = values.subspan(i * each, each);
+    return std::accumulate(one.begin(), one.end(), 0.0) / static_cast<double>(each);
+  });
 }
 
 std::vector<std::pair<std::string, std::shared_ptr<Pool>>> pilot_pools(
