@@ -1,8 +1,6 @@
 #pragma once
 
-#include <cmath>
-#include <cstddef>
-#include <vector>
+#include "tests/prelude.h"
 
 namespace assay::tests {
 

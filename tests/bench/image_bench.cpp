@@ -4,13 +4,11 @@
 
 //   image_bench [WIDTH HEIGHT]      Default 1920 1080: 3.2 GB.
 
-#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
-#include <span>
 #include <thread>
 #include <vector>
 

@@ -14,7 +14,6 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
-#include <iterator>
 #include <limits>
 #include <numbers>
 #include <vector>
@@ -24,7 +23,6 @@
 #include "estimators/instruction_set.h"
 #include "paths/worlds.h"
 #include "render/hemisphere.h"
-#include "render/scene.h"
 #include "render/triangle_mesh.h"
 
 namespace {

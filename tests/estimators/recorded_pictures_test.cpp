@@ -1,6 +1,5 @@
 #include "estimators/core/text_pattern.h"
-#include "recorded/picture_setup.h"
-#include "tests/estimators/exr.h"
+#include "estimators/pictures.h"
 #include "tests/estimators/exr_kinds.h"
 #include "tests/estimators/prelude.h"
 

@@ -5,7 +5,6 @@
 #include <boost/math/distributions/chi_squared.hpp>
 
 #include "tests/estimators/table.h"
-#include "tests/prelude.h"
 
 namespace assay {
 namespace {

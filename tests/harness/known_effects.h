@@ -6,10 +6,8 @@
 
 #include "harness/draws/sampler_setup.h"
 #include "stats/cells/chi_square_fit.h"
-#include "tests/harness/many_seeds.h"
 #include "tests/harness/questions.h"
 #include "tests/harness/table.h"
-#include "tests/prelude.h"
 
 namespace assay::harness {
 

@@ -6,9 +6,7 @@
 #include "harness/run/evaluate.h"
 #include "harness/run/pools.h"
 #include "harness/sampling/executor.h"
-#include "harness/theta/methods.h"
 #include "tests/harness/planned.h"
-#include "tests/prelude.h"
 #include "tests/stats/calibration.h"
 
 namespace assay::harness {

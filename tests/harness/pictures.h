@@ -7,7 +7,6 @@
 #include "tests/estimators/exr.h"
 #include "tests/harness/running.h"
 #include "tests/philox.h"
-#include "tests/prelude.h"
 
 namespace assay::harness {
 

@@ -3,9 +3,7 @@
 #include "harness/pilot/pilot.h"
 #include "harness/plan/plan.h"
 #include "tests/harness/questions.h"
-#include "tests/harness/running.h"
 #include "tests/harness/table.h"
-#include "tests/prelude.h"
 
 namespace assay::harness {
 

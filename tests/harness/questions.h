@@ -4,7 +4,6 @@
 #include "harness/question/question.h"
 #include "harness/theta/ask.h"
 #include "tests/harness/running.h"
-#include "tests/prelude.h"
 
 namespace assay::harness {
 

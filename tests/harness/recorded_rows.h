@@ -6,7 +6,6 @@
 
 #include "tests/harness/running.h"
 #include "tests/philox.h"
-#include "tests/prelude.h"
 
 namespace assay::harness {
 

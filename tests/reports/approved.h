@@ -1,7 +1,5 @@
 #pragma once
 
-#include <fstream>
-
 #include "tests/prelude.h"
 
 namespace assay::tests {

@@ -5,7 +5,6 @@
 #include "reports/formats/base64.h"
 #include "reports/report_formats.h"
 #include "reports/viewer/page.h"
-#include "reports/words/text.h"
 #include "tests/reports/large_records.h"
 #include "tests/reports/prelude.h"
 

@@ -1,7 +1,6 @@
 #include "reports/words/statements.h"
 
 #include "reports/report_formats.h"
-#include "reports/words/text.h"
 #include "tests/reports/prelude.h"
 
 namespace assay::reports {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include "stats/tails/test_result.h"
-#include "tests/prelude.h"
 #include "tests/stats/calibration.h"
 
 namespace assay::tests {

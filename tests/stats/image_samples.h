@@ -1,15 +1,10 @@
 #pragma once
 
-#include <cmath>
-#include <cstddef>
-#include <functional>
-#include <span>
-#include <vector>
-
 #include "stats/basics/moments.h"
 #include "stats/images/image.h"
 #include "stats/means/student_t.h"
 #include "tests/philox.h"
+#include "tests/prelude.h"
 
 namespace assay::tests {
 

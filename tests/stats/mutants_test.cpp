@@ -3,7 +3,6 @@
 
 #include "stats/cells/chi_square_fit.h"
 #include "stats/laws/kolmogorov_smirnov.h"
-#include "stats/means/binomial.h"
 #include "stats/means/student_t.h"
 #include "stats/tails/kolmogorov.h"
 #include "stats/tails/tails.h"

@@ -3,7 +3,6 @@
 #include "depth_of_field/exact.h"
 #include "depth_of_field/image.h"
 #include "tests/estimators/table.h"
-#include "tests/prelude.h"
 
 namespace assay::depth_of_field {
 namespace {

@@ -1,7 +1,6 @@
 // A wave in a curved, rough mirror: frequencies against rays, and rays to first order against rays.
 
 #include "depth_of_field/curved_mirror.h"
-#include "depth_of_field/exact.h"
 #include "tests/estimators/prelude.h"
 
 namespace assay::depth_of_field {

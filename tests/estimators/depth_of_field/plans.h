@@ -2,12 +2,11 @@
 
 // Plans of depth of field's images from parameters as text.
 
-#include <string>
-
 #include "depth_of_field/image.h"
 #include "depth_of_field/reconstruction.h"
 #include "estimators/catalogue.h"
 #include "estimators/core/flow.h"
+#include "tests/prelude.h"
 
 namespace assay::tests {
 

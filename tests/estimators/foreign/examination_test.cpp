@@ -5,7 +5,6 @@
 
 #include "estimators/core/thread_seconds.h"
 #include "tests/estimators/foreign/library.h"
-#include "tests/prelude.h"
 
 namespace assay::foreign {
 namespace {

@@ -1,6 +1,5 @@
 #include "estimators/foreign/protocol.h"
 #include "tests/estimators/table.h"
-#include "tests/prelude.h"
 
 namespace assay::foreign {
 namespace {

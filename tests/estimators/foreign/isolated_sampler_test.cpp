@@ -4,7 +4,6 @@
 #include "estimators/core/flush_denormals.h"
 #include "estimators/foreign/dialogue.h"
 #include "tests/estimators/foreign/foreign.h"
-#include "tests/prelude.h"
 
 namespace assay::foreign {
 namespace {

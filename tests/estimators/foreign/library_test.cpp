@@ -4,7 +4,6 @@
 #include "tests/estimators/foreign/library.h"
 
 #include "estimators/plugin_abi.h"
-#include "tests/prelude.h"
 
 namespace assay::foreign {
 namespace {

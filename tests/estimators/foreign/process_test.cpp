@@ -3,7 +3,6 @@
 
 #include "estimators/core/waiting.h"
 #include "tests/estimators/foreign/foreign.h"
-#include "tests/prelude.h"
 
 namespace assay::foreign {
 namespace {

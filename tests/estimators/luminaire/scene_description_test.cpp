@@ -1,7 +1,6 @@
 #include "luminaire/scene_description.h"
 
 #include "estimators/core/flow.h"
-#include "luminaire/setting.h"
 #include "tests/prelude.h"
 
 namespace assay::luminaire {

@@ -2,7 +2,6 @@
 
 #include "paths/worlds.h"
 
-#include "estimators/core/flow.h"
 #include "paths/scene_description.h"
 #include "tests/prelude.h"
 

@@ -1,7 +1,6 @@
 #include "estimators/core/value.h"
 #include "estimators/picture_file.h"
 #include "tests/estimators/exr_kinds.h"
-#include "tests/prelude.h"
 
 namespace assay {
 namespace {

@@ -1,7 +1,6 @@
 #include "estimators/core/value.h"
 #include "render/triangle_mesh.h"
 #include "tests/estimators/table.h"
-#include "tests/prelude.h"
 
 namespace assay::render {
 namespace {

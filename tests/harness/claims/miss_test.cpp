@@ -8,7 +8,6 @@
 #include "tests/harness/many_seeds.h"
 #include "tests/harness/table.h"
 #include "tests/philox.h"
-#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {

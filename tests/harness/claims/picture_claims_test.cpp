@@ -1,7 +1,5 @@
 // Claims about pictures that another program rendered, from files to verdict.
 
-#include <fmt/format.h>
-
 #include "harness/command/commands.h"
 #include "reports/report_formats.h"
 #include "tests/harness/pictures.h"

@@ -2,7 +2,6 @@
 // tests/tables/verdicts.txt.
 
 #include "tests/harness/recorded_rows.h"
-#include "tests/prelude.h"
 #include "tests/stats/calibration.h"
 #include "tests/stats/laws.h"
 

@@ -8,7 +8,6 @@
 #include "tests/harness/prelude.h"
 #include "tests/harness/recorded_rows.h"
 #include "tests/lehmer.h"
-#include "tests/stats/samples.h"
 #include "tests/stats/table.h"
 
 namespace assay::harness {

@@ -1,6 +1,5 @@
 #include "harness/draws/sampler_setup.h"
 #include "tests/harness/prelude.h"
-#include "tests/harness/questions.h"
 
 namespace assay::harness {
 namespace {

@@ -1,7 +1,6 @@
 #include "harness/draws/sound_draw.h"
 
 #include "harness/draws/consistency_setup.h"
-#include "harness/theta/ask.h"
 #include "tests/prelude.h"
 
 namespace assay::harness {

@@ -1,11 +1,9 @@
 #include "harness/plan/outcome.h"
 #include "harness/plan/sizes.h"
-#include "harness/run/evaluate.h"
 #include "harness/theta/decision.h"
 #include "harness/theta/methods.h"
 #include "harness/theta/theta.h"
 #include "tests/harness/questions.h"
-#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {

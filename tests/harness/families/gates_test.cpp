@@ -3,7 +3,6 @@
 #include "harness/theta/methods.h"
 #include "harness/theta/theta.h"
 #include "tests/harness/questions.h"
-#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {

@@ -1,9 +1,5 @@
 #include "harness/googletest/claims.h"
 
-#include <gtest/gtest-spi.h>
-
-#include <atomic>
-
 #include "harness/googletest/matchers.h"
 #include "tests/prelude.h"
 

@@ -4,7 +4,6 @@
 
 #include "tests/harness/questions.h"
 #include "tests/philox.h"
-#include "tests/prelude.h"
 #include "tests/stats/calibration.h"
 
 namespace assay::harness {

@@ -4,7 +4,6 @@
 
 #include "harness/question/question.h"
 #include "tests/harness/questions.h"
-#include "tests/prelude.h"
 #include "tests/stats/calibration.h"
 
 namespace assay::harness {

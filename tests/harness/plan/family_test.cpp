@@ -1,6 +1,5 @@
 #include "harness/plan/plan.h"
 #include "tests/harness/questions.h"
-#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {

@@ -2,7 +2,6 @@
 
 #include "harness/plan/sizes.h"
 #include "tests/harness/questions.h"
-#include "tests/prelude.h"
 
 namespace assay::harness {
 namespace {

@@ -1,6 +1,5 @@
 #include "harness/command/commands.h"
 #include "harness/record/output.h"
-#include "reports/report_formats.h"
 #include "tests/harness/prelude.h"
 
 namespace assay::harness {

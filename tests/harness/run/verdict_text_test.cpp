@@ -1,9 +1,7 @@
-#include "harness/run/evaluate.h"
-
 #include <fmt/format.h>
 
 #include "harness/plan/sizes.h"
-#include "harness/suite/run_options.h"
+#include "harness/run/evaluate.h"
 #include "reports/words/number.h"
 #include "tests/harness/prelude.h"
 #include "tests/harness/questions.h"

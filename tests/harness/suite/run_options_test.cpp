@@ -1,6 +1,5 @@
 #include "harness/suite/run_options.h"
 
-#include "harness/command/commands.h"
 #include "tests/harness/prelude.h"
 
 namespace assay::harness {

@@ -1,6 +1,5 @@
 // `assay images`: what it makes of its options.
 
-#include <fmt/format.h>
 #include <png.h>
 
 #include "harness/command/cli.h"

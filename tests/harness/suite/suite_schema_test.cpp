@@ -1,8 +1,6 @@
 // The editors' schema and the manual offer what this version takes, no more and no less.
 
 #include "harness/base/text_file.h"
-#include "harness/question/question.h"
-#include "harness/sampling/prepare.h"
 #include "harness/suite/suite.h"
 #include "harness/suite/yaml.h"
 #include "harness/theta/ask.h"

@@ -4,7 +4,6 @@
 #include "stats/means/student_t.h"
 #include "tests/harness/normal_evidence.h"
 #include "tests/philox.h"
-#include "tests/prelude.h"
 #include "tests/stats/samples.h"
 
 namespace assay::harness {

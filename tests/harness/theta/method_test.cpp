@@ -1,7 +1,6 @@
 
 #include "harness/theta/ask.h"
 #include "harness/theta/methods.h"
-#include "stats/tails/tails.h"
 #include "tests/harness/prelude.h"
 #include "tests/harness/questions.h"
 #include "tests/philox.h"

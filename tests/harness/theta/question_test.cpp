@@ -1,5 +1,3 @@
-#include "harness/families/families.h"
-#include "harness/theta/ask.h"
 #include "tests/harness/prelude.h"
 #include "tests/harness/questions.h"
 #include "tests/harness/table.h"

@@ -1,6 +1,5 @@
 #include "stats/basics/adaptive_quadrature.h"
 
-#include "stats/cells/plane_cells.h"
 #include "tests/stats/point_by_point.h"
 #include "tests/stats/prelude.h"
 

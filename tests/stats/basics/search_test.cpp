@@ -1,8 +1,6 @@
 #include "stats/basics/search.h"
 
-#include <gtest/gtest.h>
-
-#include <cmath>
+#include "tests/prelude.h"
 
 namespace assay::stats {
 namespace {

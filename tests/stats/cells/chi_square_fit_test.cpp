@@ -1,6 +1,5 @@
 #include "stats/cells/chi_square_fit.h"
 
-#include "stats/tails/tails.h"
 #include "tests/stats/prelude.h"
 
 namespace assay::stats {

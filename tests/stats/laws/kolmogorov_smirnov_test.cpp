@@ -1,6 +1,5 @@
 #include "stats/laws/kolmogorov_smirnov.h"
 
-#include "stats/tails/tails.h"
 #include "tests/stats/prelude.h"
 
 namespace assay::stats {

@@ -1,6 +1,5 @@
 #include "stats/means/power_exact.h"
 
-#include "stats/means/binomial.h"
 #include "tests/stats/prelude.h"
 
 namespace assay::stats {

@@ -1,6 +1,5 @@
 #include "stats/tails/tabulated_law.h"
 
-#include "stats/cells/plane_cells.h"
 #include "tests/stats/point_by_point.h"
 #include "tests/stats/prelude.h"
 

@@ -1,7 +1,6 @@
 #include "stats/variances/influence.h"
 
 #include "stats/gates/assumption_gates.h"
-#include "stats/means/skewness_corrected_t.h"
 #include "stats/planning/power.h"
 #include "stats/tails/tails.h"
 #include "tests/stats/prelude.h"

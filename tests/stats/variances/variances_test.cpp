@@ -1,5 +1,4 @@
 #include "stats/gates/assumption_gates.h"
-#include "stats/tails/tails.h"
 #include "stats/variances/normal_variances.h"
 #include "tests/stats/prelude.h"
 
