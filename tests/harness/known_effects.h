@@ -13,9 +13,8 @@ namespace assay::harness {
 
 /// The estimators of tests/tables/levels.txt that tests name: what is not drawn costs nothing.
 inline std::string estimators_of(const std::string& tests) {
-  std::istringstream entries(sections_of("levels.txt").at(0).head);
   std::string text = "estimators:\n";
-  for (std::string entry; std::getline(entries, entry);) {
+  for (const std::string& entry : lines(sections_of("levels.txt").at(0).head)) {
     const std::string name = entry.substr(2, entry.find(':') - 2);
     if (std::regex_search(tests, std::regex("(\\(|reference: )" + name + "\\b")))
       text += entry + "\n";

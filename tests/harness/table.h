@@ -47,10 +47,9 @@ inline std::vector<ClaimSection> sections_of(const std::string& table) {
 
 /// The head with this claim. Estimators that it does not name are comments: preparing takes time.
 inline std::string suite_with(const ClaimSection& section, const std::string& claim) {
-  std::istringstream lines(section.head);
   std::string suite;
   bool of_estimators = false;
-  for (std::string line; std::getline(lines, line);) {
+  for (const std::string& line : tests::lines(section.head)) {
     if (line == "tests:") of_estimators = false;
     const auto unnamed = [&] {
       const std::string name = line.substr(2, line.find(':') - 2);

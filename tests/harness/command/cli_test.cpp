@@ -178,18 +178,16 @@ TEST(CommandLine, HelpLeadsWithExamples) {
 }
 
 TEST(CommandLine, TheFirstPageFitsOneScreen) {
-  std::istringstream lines(parsed<TextCommand>({"--help"}).text);
-  int count = 0;
-  for (std::string line; std::getline(lines, line); ++count) EXPECT_LE(line.size(), 80U) << line;
-  EXPECT_LE(count, 24);
+  const auto page = lines(parsed<TextCommand>({"--help"}).text);
+  for (const std::string& line : page) EXPECT_LE(line.size(), 80U) << line;
+  EXPECT_LE(page.size(), 24U);
 }
 
 /// The words that completion offers after `assay`, without descriptions.
 std::vector<std::string> offered(std::vector<std::string> words) {
   words.insert(words.begin(), "__complete");
-  std::istringstream lines(parsed<TextCommand>(words).text);
-  std::vector<std::string> all;
-  for (std::string line; std::getline(lines, line);) all.push_back(line.substr(0, line.find('\t')));
+  auto all = lines(parsed<TextCommand>(words).text);
+  for (std::string& line : all) line.resize(std::min(line.size(), line.find('\t')));
   return all;
 }
 
@@ -273,8 +271,8 @@ TEST(CommandLine, HelpTellsEveryDefaultInAHundredColumns) {
       if (option.empty() || option.starts_with("  -h")) return;
       EXPECT_THAT(option, HasSubstr("default"));
     };
-    std::istringstream lines(help.substr(std::min(help.find("\nOptions:\n") + 10, help.size())));
-    for (std::string line; std::getline(lines, line);) {
+    const std::size_t options = std::min(help.find("\nOptions:\n") + 10, help.size());
+    for (const std::string& line : lines(help.substr(options))) {
       EXPECT_LE(line.size(), 100U) << line;
       if (line.starts_with("  -")) {
         finish();

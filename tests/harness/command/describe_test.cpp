@@ -102,8 +102,7 @@ TEST(Describe, SaysWhyChannelsAreNotKnownYet) {
 
 TEST(Describe, KeepsEveryManualWithinThePage) {
   for (const Entry& entry : catalogue()) {
-    std::istringstream lines(manual(entry, catalogue()));
-    for (std::string line; std::getline(lines, line);) {
+    for (const std::string& line : lines(manual(entry, catalogue()))) {
       const auto columns = std::ranges::count_if(
           line, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80; });
       EXPECT_LE(columns, page_width) << line;
@@ -129,8 +128,7 @@ TEST(List, PrintsEveryRowOfATableIn80Columns) {
       EXPECT_THAT(text, HasSubstr(row.name + " ")) << table.plural;
       EXPECT_FALSE(row.summary.empty()) << row.name;
     }
-    std::istringstream lines(text);
-    for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80U) << line;
+    for (const std::string& line : lines(text)) EXPECT_LE(line.size(), 80U) << line;
   }
 }
 

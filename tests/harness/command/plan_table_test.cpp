@@ -174,8 +174,7 @@ TEST_F(PlanTable, ShowsEveryTestInEightyColumns) {
   EXPECT_THAT(text, HasSubstr("0.5 %"));
   EXPECT_THAT(text, testing::Not(HasSubstr("green"))) << "that is no news";
   EXPECT_THAT(text, HasSubstr("share observations"));
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) EXPECT_LE(reports::columns(line), 80) << line;
+  for (const std::string& line : lines(text)) EXPECT_LE(reports::columns(line), 80) << line;
   EXPECT_EQ(plan_exit_code(planned), 0);
 }
 

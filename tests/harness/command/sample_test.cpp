@@ -11,11 +11,8 @@ std::string sampled(const SampleArguments& arguments) {
 }
 
 std::vector<std::string> rows(const std::string& text) {
-  std::vector<std::string> found;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) {
-    if (!line.starts_with("#")) found.push_back(line);
-  }
+  std::vector<std::string> found = lines(text);
+  std::erase_if(found, [](const std::string& line) { return line.starts_with("#"); });
   return found;
 }
 

@@ -3,7 +3,6 @@
 #include <rapidcheck.h>
 
 #include "estimators/core/value.h"
-#include "harness/base/text_file.h"
 #include "tests/prelude.h"
 
 namespace assay::harness {
@@ -27,11 +26,6 @@ LedgerBook example() {
   book.add({"2026-11-02T02:00:00Z", std::numeric_limits<std::uint64_t>::max(), "abd", a,
             stats::NightEstimate{-1e-300, 0, 1e300}});
   return book;
-}
-
-std::vector<std::string> lines_in(const std::string& text) {
-  const std::vector<std::string_view> lines = lines_of(text);
-  return {lines.begin(), lines.end()};
 }
 
 std::string joined(const std::vector<std::string>& lines) {
@@ -78,7 +72,7 @@ TEST(LedgerBook, KnowsSeedsOfATestWhateverItsSeries) {
 }
 
 TEST(LedgerBook, ABeginLineWrittenByHandStartsANewSeries) {
-  std::vector<std::string> lines = lines_in(example().text());
+  std::vector<std::string> lines = tests::lines(example().text());
   lines.push_back("begin " + in_quotes(score.test) + " ");
   LedgerBook book = LedgerBook::parse(joined(lines), "n.ledger");
   EXPECT_EQ(book.open_series(score), std::nullopt);
@@ -101,7 +95,7 @@ TEST(LedgerBook, AcceptsCommentsAndABudgetWrittenByHandBeforeTheFirstNight) {
 }
 
 TEST(LedgerBook, NamesTheLineThatWasChangedAndTheMend) {
-  const std::vector<std::string> lines = lines_in(example().text());
+  const std::vector<std::string> lines = tests::lines(example().text());
   for (std::size_t i = 0; i < lines.size(); ++i) {
     if (lines[i].starts_with("#")) continue;
     std::vector<std::string> edited = lines;
@@ -116,7 +110,7 @@ TEST(LedgerBook, NamesTheLineThatWasChangedAndTheMend) {
 }
 
 TEST(LedgerBook, FindsEveryLineTakenOutDoubledOrMoved) {
-  const std::vector<std::string> lines = lines_in(example().text());
+  const std::vector<std::string> lines = tests::lines(example().text());
   for (std::size_t i = 0; i < lines.size(); ++i) {
     if (lines[i].starts_with("#")) continue;
     std::vector<std::string> cut = lines;
@@ -145,7 +139,7 @@ TEST(LedgerBook, RefusesWhatIsNoLedger) {
   EXPECT_THAT(refused("assay-ledger 2 budget nan\nend 0\n"), HasSubstr("from 1e-9 to 0.5"));
   EXPECT_THAT(refused("assay-ledger 1 budget 0.01\nend 0\n"),
               HasSubstr("begins anew: mv n.ledger n.ledger.1"));
-  std::vector<std::string> lines = lines_in(example().text());
+  std::vector<std::string> lines = tests::lines(example().text());
   lines.push_back("begin \"suite/other\"");
   EXPECT_THAT(refused(joined(lines)), HasSubstr("has no test \"suite/other\""));
   lines.back() = "begin " + in_quotes(score.test);
