@@ -58,10 +58,15 @@ std::string recorded(const Workplace& place, const std::string& text = replayed_
                      reports::json(run_files({place.write("suite.yaml", text)}, options)));
 }
 
+void expect_replayed(const ReplayArguments& arguments, const std::vector<std::string>& words,
+                     int code = 0) {
+  const Said now = said(arguments);
+  EXPECT_EQ(now.code, code) << now.text;
+  for (const std::string& each : words) EXPECT_THAT(now.text, HasSubstr(each));
+}
+
 void expect_same_numbers(const std::string& file, const std::string& test) {
-  const Said now = said({.record = file, .test = test});
-  EXPECT_EQ(now.code, 0) << now.text;
-  EXPECT_THAT(now.text, HasSubstr("the same numbers as recorded"));
+  expect_replayed({.record = file, .test = test}, {"the same numbers as recorded"});
 }
 
 using Replays = Placed;
@@ -124,9 +129,7 @@ estimators:
 tests:
   - {name: cost, claim: cost(one) <= 1, cost: seconds}
 )");
-  const Said now = said({.record = file, .test = "cost"});
-  EXPECT_EQ(now.code, 0) << now.text;
-  EXPECT_THAT(now.text, HasSubstr("their seconds differ"));
+  expect_replayed({.record = file, .test = "cost"}, {"their seconds differ"});
 }
 
 TEST_F(Replays, UsesTheSeedOfTheTestsOwnSuite) {
@@ -147,8 +150,8 @@ TEST_F(Replays, PrintsTheValueThatWasDrawn) {
   double value = 0;
   Pool(uniform.setup, key_of(uniform, 1, 0, ""), primaries)
       .draw_again(*uniform.setup->make(), 17, {&value, 1});
-  const Said now = said({.record = file, .test = "mean", .observation = 17});
-  EXPECT_THAT(now.text, HasSubstr(fmt::format("observation 17: {}\n", value)));
+  expect_replayed({.record = file, .test = "mean", .observation = 17},
+                  {fmt::format("observation 17: {}\n", value)});
 }
 
 // The test saw numbers in single precision.
@@ -167,9 +170,8 @@ tests:
 }
 
 TEST_F(Replays, OfADrawShowsItsPoint) {
-  const Said now = said({.record = recorded(place), .test = "cells", .observation = 5});
-  EXPECT_THAT(now.text, HasSubstr("\n  draw of `direction`: point ("));
-  EXPECT_EQ(now.code, 0) << now.text;
+  expect_replayed({.record = recorded(place), .test = "cells", .observation = 5},
+                  {"\n  draw of `direction`: point ("});
 }
 
 TEST_F(Replays, DrawsTheVeryObservationThatIsNotANumber) {
@@ -179,10 +181,8 @@ TEST_F(Replays, DrawsTheVeryObservationThatIsNotANumber) {
   const std::size_t at = message.find(before);
   ASSERT_NE(at, std::string::npos) << message;
   const std::uint64_t index = std::stoull(message.substr(at + before.size()));
-  const Said now = said({.record = file, .test = "spoilt", .observation = index});
-  EXPECT_THAT(now.text, HasSubstr(": nan"));
-  EXPECT_THAT(now.text, HasSubstr("  not finite, as "));
-  EXPECT_EQ(now.code, 0);
+  expect_replayed({.record = file, .test = "spoilt", .observation = index},
+                  {": nan", "  not finite, as "});
 }
 
 TEST_F(Replays, SaysHowManyObservationsAreNotFinite) {
@@ -190,35 +190,26 @@ TEST_F(Replays, SaysHowManyObservationsAreNotFinite) {
   const reports::Test test = test_named(record, "spoilt");
   const std::string line = fmt::format("{:<27} {};", "not finite", test.samples[0].nonfinite);
   const std::string file = place.write("run.json", reports::json(record));
-  const Said now = said({.record = file, .test = "spoilt"});
-  EXPECT_EQ(now.code, 0) << now.text;
-  EXPECT_THAT(now.text, HasSubstr("error, so the numbers below decide nothing"));
-  EXPECT_THAT(now.text, HasSubstr(line));
+  expect_replayed({.record = file, .test = "spoilt"},
+                  {"error, so the numbers below decide nothing", line});
   for (reports::Test& each : record.suites[0].tests) {
     if (each.name == "spoilt") each.samples[0].nonfinite = 1;
   }
   const std::string tampered = place.write("tampered.json", reports::json(record));
-  const Said then = said({.record = tampered, .test = "spoilt"});
-  EXPECT_EQ(then.code, 1);
-  EXPECT_THAT(then.text, HasSubstr("(recorded: 1)"));
+  expect_replayed({.record = tampered, .test = "spoilt"}, {"(recorded: 1)"}, 1);
 }
 
 TEST_F(Replays, HoldsOneObservationAgainstTheRecordedRange) {
   reports::Record record = read_record(recorded(place));
   const std::string file = place.write("run.json", reports::json(record));
-  const Said now = said({.record = file, .test = "mean", .observation = 17});
-  EXPECT_EQ(now.code, 0);
-  EXPECT_THAT(now.text, HasSubstr("  lies in ["));
+  expect_replayed({.record = file, .test = "mean", .observation = 17}, {"  lies in ["});
   record.suites[0].tests[0].samples[0].min = 1e6;
   record.suites[0].tests[0].samples[0].max = 2e6;
   record.suites[0].tests[0].samples[0].mean = 6.5;
   const std::string tampered = place.write("tampered.json", reports::json(record));
-  const Said then = said({.record = tampered, .test = "mean", .observation = 17});
-  EXPECT_EQ(then.code, 1);
-  EXPECT_THAT(then.text, HasSubstr("NOT as recorded: lies outside [1"));
-  const Said whole = said({.record = tampered, .test = "mean"});
-  EXPECT_EQ(whole.code, 1);
-  EXPECT_THAT(whole.text, HasSubstr("(recorded: 6.5)"));
+  expect_replayed({.record = tampered, .test = "mean", .observation = 17},
+                  {"NOT as recorded: lies outside [1"}, 1);
+  expect_replayed({.record = tampered, .test = "mean"}, {"(recorded: 6.5)"}, 1);
 }
 
 TEST_F(Replays, OfOneObservationKnowsTheTwoSidesOfOneEstimatorApart) {
@@ -229,8 +220,7 @@ tests:
   - {name: same, claim: mean(one) == mean(one), secondaries: 2}
 )");
   for (const std::uint64_t index : {0U, 1U}) {
-    const Said now = said({.record = file, .test = "same", .observation = index});
-    EXPECT_EQ(now.code, 0) << now.text;
+    expect_replayed({.record = file, .test = "same", .observation = index}, {});
   }
 }
 
@@ -266,14 +256,11 @@ tests:
   - {name: all, claim: mean(all) == 3, test: t}
   - {name: one, claim: mean(one) == 3, test: t}
 )");
-  EXPECT_EQ(said({.record = file, .test = "all"}).code, 0);
-  EXPECT_EQ(said({.record = file, .test = "one"}).code, 0);
+  for (const char* test : {"all", "one"}) expect_replayed({.record = file, .test = test}, {});
   place.write("data.txt", "# columns: a b\n1 2\n3 4\n");
-  const Said shorter = said({.record = file, .test = "all"});
-  EXPECT_EQ(shorter.code, 1);
-  EXPECT_THAT(shorter.text, HasSubstr("2 secondaries of 1 primary   (recorded: 3"));
-  const Said beyond = said({.record = file, .test = "all", .observation = 2});
-  EXPECT_EQ(beyond.code, 1);
+  expect_replayed({.record = file, .test = "all"}, {"2 secondaries of 1 primary   (recorded: 3"},
+                  1);
+  expect_replayed({.record = file, .test = "all", .observation = 2}, {}, 1);
 }
 
 TEST_F(Replays, SaysThatTheNumbersOfAnInvalidTestDecideNothing) {
