@@ -58,6 +58,11 @@ inline void write_stack(const Workplace& place, const std::string& name, const P
   }
 }
 
+/// Stacks `a` and `b` of one law.
+inline void write_pair(const Workplace& place, const PictureKind& kind, const Texel& texel) {
+  for (const char* name : {"a", "b"}) write_stack(place, name, kind, texel);
+}
+
 /// The same value everywhere.
 inline Texel flat(float value) {
   return [value](int, int, const std::string&, double) { return value; };

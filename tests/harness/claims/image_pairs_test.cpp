@@ -204,9 +204,7 @@ TEST_F(ImageLaws, TakeAShareOfAlphaThatLabelsCanReach) {
 }
 
 TEST_F(ImageLaws, OfPicturesWithoutNoiseAreOfTheWholeImage) {
-  for (const char* side : {"a", "b"}) {
-    write_stack(place, side, {.width = pairs_width, .height = height, .count = 16}, flat(1));
-  }
+  write_pair(place, {.width = pairs_width, .height = height, .count = 16}, flat(1));
   const reports::Test test = of_files(place, laws_claim);
   expect_said(test, Verdict::pass);
   EXPECT_EQ(test.image->winner.width, static_cast<std::uint64_t>(pairs_width));

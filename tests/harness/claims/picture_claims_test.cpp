@@ -40,6 +40,9 @@ const std::string stack_b = "file: 'b*.exr', pixels: independent";
 
 class PictureClaims : public Placed {
  protected:
+  void write_both() const {
+    for (const char* name : {"a", "b"}) write(place, name);
+  }
   reports::Test tested(const std::string& claim = "mean(a) == mean(b)",
                        const std::string& reference = stack_b) const {
     return run_in(place, suite_text(reference, claim)).tests[0];
@@ -80,8 +83,7 @@ TEST_F(PictureClaims, WhoseNoiseAFewBrightSamplesMakeSaySo) {
 // Two stacks of 24 exclude about a hundredth of the mean. A hundredth of that takes 10^4 times as
 // many. The estimate may lie on either side of it.
 TEST_F(PictureClaims, ThatAreUndecidedSayHowManyPicturesWouldDecide) {
-  write(place, "a");
-  write(place, "b");
+  write_both();
   for (const char* claim :
        {"mean(a) == mean(b)\n    detect: 0.01%", "mean(a) within 0.01% of mean(b)",
         "mean(a.average) == mean(b.average)\n    detect: 0.01%"}) {
@@ -117,8 +119,7 @@ TEST_F(PictureClaims, StacksOfUnequalNumbersAreComparedWhole) {
 }
 
 TEST_F(PictureClaims, CopiesOnTheOtherSideAreErrorsWithTheirNames) {
-  write(place, "a");
-  write(place, "b");
+  write_both();
   std::filesystem::copy_file(place.file("a03.exr"), place.file("b23.exr"),
                              std::filesystem::copy_options::overwrite_existing);
   for (const char* claim : {"mean(a) == mean(b)", "mean(a.average) == mean(b.average)"}) {
@@ -134,8 +135,7 @@ TEST_F(PictureClaims, CopiesOnTheOtherSideAreErrorsWithTheirNames) {
 }
 
 TEST_F(PictureClaims, WithATexelThatIsNoNumberSayWhichAndWhere) {
-  write(place, "a");
-  write(place, "b");
+  write_both();
   write_spoilt(place.file("b07.exr"), 1, 1, std::numeric_limits<float>::quiet_NaN());
   expect_said(
       tested(), Verdict::error,
@@ -149,8 +149,7 @@ const std::string three_claims =
     "  - {claim: efficiency(a.average) > 0.001 * efficiency(b.average), cost: samples}";
 
 TEST_F(PictureClaims, NumbersDoNotDependOnTheOtherClaims) {
-  write(place, "a");
-  write(place, "b");
+  write_both();
   const reports::Test expected = tested();
   const reports::Test test = tested(three_claims);
   EXPECT_EQ(test.channels[0].statistic, expected.channels[0].statistic);
@@ -162,8 +161,7 @@ TEST_F(PictureClaims, NumbersDoNotDependOnTheOtherClaims) {
 }
 
 TEST_F(PictureClaims, AreReplayedToTheBit) {
-  write(place, "a");
-  write(place, "b");
+  write_both();
   std::string text = suite_text(stack_b, three_claims);
   text.insert(text.find("mean(b)\n") + 7, "\n    secondaries: 20");
   const reports::Record record = run_files({place.write("s.yaml", text)}, repeatable);
@@ -299,8 +297,7 @@ TEST_F(PictureClaims, TheEffectAtAPlaceOfSkewedNoiseLiesInItsInterval) {
 }
 
 TEST_F(PictureClaims, ADamagedFileIsAnErrorWithItsName) {
-  write(place, "a");
-  write(place, "b");
+  write_both();
   const std::string file = place.file("b11.exr");
   std::filesystem::resize_file(file, std::filesystem::file_size(file) - 40);
   expect_said(tested(), Verdict::error,

@@ -42,8 +42,7 @@ TEST_F(SuiteImages, OnePictureIsExactOrHasTheErrorThatItsChannelsTell) {
 }
 
 TEST_F(SuiteImages, AMarginMakesAProof) {
-  write_stack(place, "a", {}, noisy);
-  write_stack(place, "b", {}, noisy);
+  write_pair(place, {}, noisy);
   ImagesArguments given = arguments(place);
   EXPECT_EQ(suite_of_images(given).tests[0].claim.text, "mean(candidate) == mean(reference)");
   given.within = "50%";
@@ -54,16 +53,11 @@ TEST_F(SuiteImages, AMarginMakesAProof) {
 }
 
 TEST_F(SuiteImages, AMaskThatDoesNotOpenIsNamed) {
-  write_stack(place, "a", {}, noisy);
-  write_stack(place, "b", {}, noisy);
+  write_pair(place, {}, noisy);
   ImagesArguments given = arguments(place);
   given.mask = "none.png";
-  try {
-    suite_of_images(given);
-    FAIL() << "nothing was refused";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("--mask none.png: `none.png`: it does not open"));
-  }
+  EXPECT_THAT(thrown<InputError>([&] { suite_of_images(given); }),
+              HasSubstr("--mask none.png: `none.png`: it does not open"));
 }
 
 TEST_F(SuiteImages, WhatCannotBeTestedIsRefusedWithTheMend) {
@@ -166,8 +160,7 @@ TEST_F(PictureFiles, OfALayerWithoutNoiseAreComparedExactly) {
     };
   };
   const PictureKind kind{.channels = {"B", "G", "R", "Z"}};
-  write_stack(place, "a", kind, depth_with(0));
-  write_stack(place, "b", kind, depth_with(0));
+  write_pair(place, kind, depth_with(0));
   for (const char* how : {"--means", "--paired", "--law"}) {
     EXPECT_EQ(answer(place, {"--channels", "Z", how}).verdict, Verdict::pass) << how;
   }
@@ -186,8 +179,7 @@ TEST_F(PictureFiles, AnAlphaThatDiffersIsFound) {
                             : noisy(x, y, channel, noise);
     };
   };
-  write_stack(place, "a", rgba, with_alpha(0.5, 0.1));
-  write_stack(place, "b", rgba, with_alpha(0.5, 0.1));
+  write_pair(place, rgba, with_alpha(0.5, 0.1));
   EXPECT_EQ(answer(place).verdict, Verdict::pass);
   write_stack(place, "b", rgba, with_alpha(0.7, 0.1));
   const reports::Test differs = answer(place);
@@ -195,8 +187,7 @@ TEST_F(PictureFiles, AnAlphaThatDiffersIsFound) {
   EXPECT_EQ(differs.image->winner.component, "A");
   EXPECT_EQ(answer(place, {"--channels", "R,G,B"}).verdict, Verdict::pass);
   // An alpha of 1 tells nothing and is left aside.
-  write_stack(place, "a", rgba, with_alpha(1, 0));
-  write_stack(place, "b", rgba, with_alpha(1, 0));
+  write_pair(place, rgba, with_alpha(1, 0));
   const reports::Test opaque = answer(place);
   EXPECT_EQ(opaque.verdict, Verdict::pass);
   EXPECT_EQ(opaque.image->components, (std::vector<std::string>{"R", "G", "B"}));
@@ -217,8 +208,7 @@ TEST_F(PictureFiles, InfiniteDepthOnBothSidesIsEqualAndOnOneAFinding) {
       return x >= column ? infinity : static_cast<float>(5 + 0.1 * noise);
     };
   };
-  write_stack(place, "a", depth, background_from(4));
-  write_stack(place, "b", depth, background_from(4));
+  write_pair(place, depth, background_from(4));
   EXPECT_EQ(answer(place).verdict, Verdict::pass);
   write_stack(place, "b", depth, background_from(5));
   const reports::Test differs = answer(place);
