@@ -24,7 +24,7 @@ constexpr const char* two_tests = R"(  - {name: one, claim: mean(normal) == 2, s
   - {name: broken, claim: mean(broken) == analytic, detect: 20%, expect: fail}
 )";
 
-class Ledger : public testing::Test {
+class Ledger : public InFolder {
  protected:
   reports::Record night(const std::string& tests, std::uint64_t seed,
                         const std::vector<std::string>& filters = {}) {
@@ -39,8 +39,6 @@ class Ledger : public testing::Test {
   }
   std::string file() const { return place_.file("n.ledger"); }
   LedgerBook book() const { return LedgerBook::parse(read_text_file(file()), file()); }
-
-  const Workplace place_;
 };
 
 const reports::LedgerSeries& series_of(const reports::Record& record, const std::string& test) {

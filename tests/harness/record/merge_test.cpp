@@ -151,7 +151,7 @@ tests:
                                           testing::ElementsAre("a1", "b", "a2", "c")));
 }
 
-class Refusing : public testing::Test {
+class Refusing : public InFolder {
  protected:
   Refusing() : file_(place_.write("good.yaml", merged_suite)), shards_(shards_of({file_}, 2)) {}
 
@@ -164,7 +164,6 @@ class Refusing : public testing::Test {
     return refused({shards_[0], {"b.json", run_files({file_}, options)}});
   }
 
-  Workplace place_;
   std::string file_;
   std::vector<ShardFile> shards_;
 };

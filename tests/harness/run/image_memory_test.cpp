@@ -12,7 +12,7 @@ namespace {
 constexpr int pictures = 20;
 constexpr double elements = 8 * 6 * 3;
 
-class ImageMemory : public ::testing::Test {
+class ImageMemory : public InFolder {
  protected:
   ImageMemory() {
     write_stack(place_, "a", {.width = 8, .height = 6, .count = pictures}, flat(1));
@@ -25,7 +25,6 @@ class ImageMemory : public ::testing::Test {
     estimators_ = prepare_all(suite);
   }
 
-  Workplace place_;
   std::map<std::string, PreparedEstimator> estimators_;
 };
 

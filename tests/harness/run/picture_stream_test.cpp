@@ -32,7 +32,7 @@ void expect_same_findings(const reports::Test& one, reports::Test other) {
   }
 }
 
-class PictureStream : public ::testing::Test {
+class PictureStream : public InFolder {
  protected:
   PictureStream() {
     for (int i = 0; i < streamed_pictures; ++i) {
@@ -79,7 +79,6 @@ class PictureStream : public ::testing::Test {
     return stream_pictures(question, silence);
   }
 
-  Workplace place_;
   tests::Philox random_{3};
 };
 

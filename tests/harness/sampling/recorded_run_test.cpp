@@ -26,7 +26,7 @@ tests:
   - {claim: 'distribution(roulette) == uniform(0, 1)'}
 )";
 
-class RecordedRunTest : public testing::Test {
+class RecordedRunTest : public InFolder {
  protected:
   static void TearDownTestSuite() { record_.reset(); }
 
@@ -52,7 +52,6 @@ class RecordedRunTest : public testing::Test {
     return "  old: {plugin: recorded, run: run.json, estimator: " + name + "}\n";
   }
 
-  Workplace place_;
   static std::optional<reports::Record> record_;
 };
 

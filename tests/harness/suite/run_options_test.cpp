@@ -14,9 +14,9 @@ tests:
   - {name: untagged, claim: variance(normal) <= 1}
 )";
 
-class SelectionOfTests : public testing::Test {
+class SelectionOfTests : public InFolder {
  protected:
-  std::vector<Suite> suites() const { return {load_suite(place_.write("s.yaml", selected_from))}; }
+  std::vector<Suite> suites() const { return {load_suite(write("s.yaml", selected_from))}; }
 
   std::vector<std::string> names(const Selection& selection) const {
     std::vector<std::string> found;
@@ -28,8 +28,6 @@ class SelectionOfTests : public testing::Test {
   }
 
   std::string said(const Selection& selection) const { return unmatched(suites(), selection); }
-
-  Workplace place_;
 };
 
 TEST_F(SelectionOfTests, ByTagTakesWhatHasAnyOfThem) {
