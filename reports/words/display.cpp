@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/predicate.hpp>
 #include <boost/algorithm/string/replace.hpp>
 #include <cctype>
 #include <cmath>
 #include <map>
 #include <set>
+#include <tuple>
 
 #include "reports/words/describe.h"
 #include "reports/words/kill_matrix.h"
@@ -150,39 +152,43 @@ std::string with_option(std::string command, const std::string& option) {
   return command.replace(at + 1, end - at - 1, option);
 }
 
+/// The estimator on the claim's left side, which is held against the right one; "" without a
+/// sample.
+std::string subject_of(const Test& test) {
+  const auto [left, relation, right] = sides_of(test.claim);
+  const auto subject = std::ranges::find_if(test.samples, [&](const Sample& sample) {
+    return boost::contains(left, sample.estimator) || !boost::contains(right, sample.estimator);
+  });
+  return subject == test.samples.end() ? "" : subject->estimator;
+}
+
 void add_suspects(const Suite& suite, Standing how, std::vector<Suspect>& all) {
   std::map<std::string, int> claims;
-  std::vector<const Test*> broken;
+  std::map<std::pair<bool, std::string>, Suspect> found;
   for (const Test& test : suite.tests) {
     for (const std::string& name : estimators_of(test)) ++claims[name];
-    if (standing(test) == how) broken.push_back(&test);
+    if (standing(test) != how) continue;
+    const std::string subject = subject_of(test);
+    const bool alone = subject.empty();
+    Suspect& suspect = found[{alone, alone ? test.id : subject}];
+    suspect.name = alone ? test.name : subject;
+    suspect.tests.push_back(test.id);
   }
-  while (!broken.empty()) {
-    std::map<std::string, int> count;
-    for (const Test* test : broken) {
-      for (const std::string& name : estimators_of(*test)) ++count[name];
-    }
-    Suspect suspect{.suite = suite.name, .standing = to_string(how)};
-    const auto take = [&](const Test* test) { suspect.tests.push_back(test->id); };
-    if (count.empty()) {
-      suspect.name = broken.front()->name;
-      take(broken.front());
-      broken.erase(broken.begin());
-    } else {
-      // A tie goes to the estimator whose claims are broken most often.
-      const auto worst = std::ranges::max_element(
-          count, {}, [&](const auto& each) { return std::pair(each.second, -claims[each.first]); });
-      suspect.name = worst->first;
-      const auto others = std::ranges::stable_partition(
-          broken, [&](const Test* test) { return !estimators_of(*test).contains(suspect.name); });
-      std::ranges::for_each(others, take);
-      broken.erase(others.begin(), others.end());
-      suspect.sentence =
-          fmt::format("{} {}", of_claims(worst->second, claims[suspect.name], "of its"),
-                      how == Standing::broken ? "broken" : "without a verdict");
-    }
-    all.push_back(std::move(suspect));
+  std::vector<Suspect> sorted;
+  for (auto& [key, suspect] : found) {
+    suspect.suite = suite.name;
+    suspect.standing = to_string(how);
+    const auto broken = static_cast<int>(suspect.tests.size());
+    if (!key.first)
+      suspect.sentence = fmt::format("{} {}", of_claims(broken, claims[suspect.name], "of its"),
+                                     how == Standing::broken ? "broken" : "without a verdict");
+    sorted.push_back(std::move(suspect));
   }
+  // A tie goes to the estimator whose claims are broken most often.
+  std::ranges::stable_sort(sorted, {}, [&](const Suspect& suspect) {
+    return std::tuple(suspect.sentence.empty(), -std::ssize(suspect.tests), claims[suspect.name]);
+  });
+  std::ranges::move(sorted, std::back_inserter(all));
 }
 
 }  // namespace

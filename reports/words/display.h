@@ -85,8 +85,8 @@ struct SuiteDisplay {
 };
 SuiteDisplay display(const Suite&);
 
-/// The estimator that the most broken claims share, with these claims. A broken claim without a
-/// sample is a suspect by itself. Claims without a verdict have suspects of their own.
+/// The estimator on the left side of broken claims, with these claims. A broken claim whose left
+/// side has no sample is a suspect by itself. Claims without a verdict have suspects of their own.
 struct Suspect {
   std::string suite;
   std::string name;

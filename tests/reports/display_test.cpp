@@ -73,14 +73,16 @@ TEST(Display, ChancesHaveTwoDigits) {
 Test broken_claim(const std::string& name, const std::vector<std::string>& estimators) {
   reports::Test test = claim_of(name, Verdict::fail, mean_effect(0.02, 0.01));
   for (const std::string& estimator : estimators) test.samples.push_back(sample(estimator));
+  if (estimators.size() == 2) test.claim = estimators[0] + " == " + estimators[1];
   return test;
 }
 
-TEST(Suspects, AreTheEstimatorsThatMostBrokenClaimsShare) {
+TEST(Suspects, AreTheEstimatorsOnTheLeftOfBrokenClaims) {
   Suite suite;
   suite.name = "s";
-  suite.tests = {broken_claim("1", {"a", "shared"}), broken_claim("2", {"shared", "b"}),
-                 broken_claim("3", {"c"}), broken_claim("4", {})};
+  suite.tests = {broken_claim("1", {"shared", "a"}), broken_claim("2", {"shared", "b"}),
+                 broken_claim("3", {"c", "b"}), broken_claim("4", {"dead", "b"})};
+  suite.tests[3].samples.erase(suite.tests[3].samples.begin());
   suite.tests.push_back(broken_claim("5", {"shared", "c"}));
   suite.tests.back().ok = true;
   const std::vector<Suspect> found = suspects(suite);
