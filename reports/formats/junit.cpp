@@ -72,6 +72,13 @@ std::string test_properties(const Test& test) {
                  {"alpha", exact(test.alpha)},
                  {"detect", exact(test.detect)},
                  {"detectable", exact(test.detectable)}};
+  if (is_told_by_place(test)) {
+    const Effect at_place = effect_in_sentence(test);
+    all.emplace_back("place", test.image->winner.place);
+    all.emplace_back("place.estimate", exact(at_place.estimate));
+    all.emplace_back("place.low", exact(at_place.low));
+    all.emplace_back("place.high", exact(at_place.high));
+  }
   const std::vector<const Sample*> samples = worst_samples(test);
   for (std::size_t i = 0; i < samples.size() && i < 2; ++i) {
     const Sample& sample = *samples[i];

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "reports/report_formats.h"
+#include "reports/words/describe.h"
 #include "reports/words/text.h"
 
 namespace assay::reports {
@@ -73,13 +74,14 @@ std::string of_tests(const Record& record) {
     if (test.verdict == Verdict::skipped) continue;
     ok.add({{"test", test.id}, {"verdict", to_string(test.verdict)}}, test.ok ? 1 : 0);
     detectable.add({{"test", test.id}}, test.detectable);
-    for (const Channel& channel : test.channels) {
-      const Labels labels{
-          {"test", test.id}, {"channel", channel.name}, {"quantity", channel.effect.quantity}};
-      effect.add(labels, channel.effect.estimate);
-      lower.add(labels, channel.effect.low);
-      upper.add(labels, channel.effect.high);
-    }
+    const auto add = [&](const std::string& where, const Effect& found) {
+      const Labels labels{{"test", test.id}, {"channel", where}, {"quantity", found.quantity}};
+      effect.add(labels, found.estimate);
+      lower.add(labels, found.low);
+      upper.add(labels, found.high);
+    };
+    for (const Channel& channel : test.channels) add(channel.name, channel.effect);
+    if (is_told_by_place(test)) add(test.image->winner.place, effect_in_sentence(test));
   }
   return ok.text() + effect.text() + lower.text() + upper.text() + detectable.text();
 }
