@@ -21,6 +21,8 @@ constexpr std::size_t tile_side = 8;
 constexpr double chance = 1e-6;
 constexpr std::size_t most_sampled = 16384;
 constexpr std::size_t fewest_sampled = 64;
+// A filter spreads one sample over many pixels, so that a value may follow from those beside it.
+constexpr double least_frequency = 1.0 / 3;
 // Pairs whose indices differ by at most so much show how alike others are.
 constexpr std::size_t most_apart = 8;
 constexpr double errors_beyond = 8;
@@ -117,7 +119,7 @@ double log_chance(const std::vector<const ImageStack*>& sides, const WhichImage&
         equal += place_of(*stack, r) == value ? 1 : 0;
       }
     }
-    by_value[value] += std::log(equal / all);
+    by_value[value] += std::log(std::max(equal / all, least_frequency));
   }
   double sum = 0;
   double least = 0;
