@@ -39,6 +39,13 @@ std::string element_name(const ImageShape& shape, std::size_t element) {
   return name;
 }
 
+std::string element_place(const ImageShape& shape, std::size_t element) {
+  const std::size_t pixel = element / shape.components.size();
+  return "pixel x " + std::to_string(shape.left + static_cast<std::int64_t>(pixel % shape.width)) +
+         ", y " + std::to_string(shape.top + static_cast<std::int64_t>(pixel / shape.width)) +
+         " of " + shape.components[element % shape.components.size()];
+}
+
 std::vector<Channel> Setup::channels() const {
   std::vector<Channel> all(channel_count());
   for (std::size_t place = 0; place < all.size(); ++place) all[place] = channel(place);

@@ -43,9 +43,11 @@ struct ImageShape {
   std::size_t elements() const { return pixels() * components.size(); }
 };
 
-/// The channel's name of one pixel, as claims and messages call it: "x3y5", with several components
+/// The channel's name of one pixel, as claims call it: "x3y5", with several components
 /// "x3y5.red". Columns and rows are those of the whole picture.
 std::string element_name(const ImageShape& shape, std::size_t element);
+/// The same as messages call it: "pixel x 3, y 5 of red".
+std::string element_place(const ImageShape& shape, std::size_t element);
 
 /// Observations [first, last) of one stream, about to be asked for in order.
 struct Announcement {

@@ -131,22 +131,14 @@ void require_same(const PictureFile& file, const PictureView& view, const std::s
               size_text(view.whole) + ": render all files at one size");
 }
 
-std::string at_texel(const ImageShape& shape, std::size_t element) {
-  const std::size_t pixel = element / shape.components.size();
-  return "at pixel x " +
-         std::to_string(shape.left + static_cast<std::int64_t>(pixel % shape.width)) + ", y " +
-         std::to_string(shape.top + static_cast<std::int64_t>(pixel / shape.width)) + " of " +
-         shape.components[element % shape.components.size()];
-}
-
 std::vector<double> read_doubles(const PictureFile& file, const PictureView& view) {
   const ImageShape shape = view.shape();
   std::vector<float> texels(shape.elements());
   view.read(file, texels);
   const auto bad = std::ranges::find_if(texels, [](float x) { return !std::isfinite(x); });
   if (bad != texels.end()) {
-    file.refuse("the channels " + quoted(view.channels.names) + " are not finite " +
-                at_texel(shape, static_cast<std::size_t>(bad - texels.begin())));
+    file.refuse("the channels " + quoted(view.channels.names) + " are not finite at " +
+                element_place(shape, static_cast<std::size_t>(bad - texels.begin())));
   }
   return {texels.begin(), texels.end()};
 }
@@ -469,7 +461,7 @@ PictureMoments read_moments(const std::string& name, const std::string& patterns
   for (std::size_t i = 0; i < moments.mean.size(); ++i) {
     double& value = moments.standard_error[i];
     if (!by_variance) value = std::max(0.0, value - moments.mean[i] * moments.mean[i]);
-    if (value < 0) file->refuse("the variance is negative " + at_texel(shape, i));
+    if (value < 0) file->refuse("the variance is negative at " + element_place(shape, i));
     const double count = counts[i / shape.components.size()];
     // A variance is taken about the mean of the same samples, and that of second moments is not yet
     // made up for it.

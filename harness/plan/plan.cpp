@@ -460,7 +460,7 @@ TestOutcome plan_test(Question asked, const FamilyPlace& place, const Pilots& pi
     if (const std::string doubt = doubtful_margin(question, pilots); !doubt.empty()) caution(doubt);
     const std::optional<ImageShape>& image = question.subjects[0].image;
     if (image && image->left_out) {
-      caution(fmt::format("{} of {} pixels are left out",
+      caution(fmt::format("{} of {} pixels are left out: what is wrong there stays hidden",
                           std::ranges::count(*image->left_out, true), image->pixels()));
     }
   } catch (const std::domain_error& error) {

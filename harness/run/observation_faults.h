@@ -9,6 +9,11 @@
 
 namespace assay::harness {
 
+/// What to do about pixels that are not finite.
+constexpr const char* leave_out_nonfinite =
+    ": mend the renderer, or leave such pixels out by `--ignore nonfinite` (in a suite by "
+    "`finite`), which hides what is wrong there";
+
 /// True of equal numbers, and of two that are none.
 bool same_number(double one, double other);
 

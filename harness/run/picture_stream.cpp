@@ -18,6 +18,7 @@
 #include "harness/base/parallel.h"
 #include "harness/image/image_pair.h"
 #include "harness/plan/sizes.h"
+#include "harness/run/observation_faults.h"
 #include "stats/images/image_equivalence.h"
 #include "stats/images/image_moments.h"
 #include "stats/pyramids/image_pyramid.h"
@@ -120,8 +121,8 @@ class Side {
       const auto found = std::ranges::find_if_not(texels, [](float x) { return std::isfinite(x); });
       if (found == texels.end()) continue;
       const auto element = rows.there.first + static_cast<std::size_t>(found - texels.begin());
-      return fmt::format("`{}` is not finite at pixel {}", setup_.place_of({.index = i}),
-                         element_name(*setup_.image(), element));
+      return fmt::format("`{}` is not finite at {}{}", setup_.place_of({.index = i}),
+                         element_place(*setup_.image(), element), leave_out_nonfinite);
     }
     return "";
   }

@@ -51,7 +51,7 @@ TABLE
 
 test_pixels_that_one_side_leaves_out_are_refused() {
   /usr/bin/python3 -I - <<'PROGRAM'
-import random, struct
+import math, random, struct
 
 def picture(name, number, width=8):
     with open(name, "wb") as out:
@@ -65,6 +65,8 @@ for side in "ab":
 pixels = iter([0.0] * 3 + [1.0] * 93)  # one is black
 picture("mask.pfm", lambda: next(pixels))
 picture("large.pfm", lambda: 1.0, 10)
+numbers = iter([1.0] * 44 + [math.nan] * 4 + [1.0] * 48)  # pixels 6 and 7 of the second row from below
+picture("nan.pfm", lambda: next(numbers))
 PROGRAM
   local claim message
   while IFS='|' read -r claim message; do
@@ -82,6 +84,12 @@ TABLE
     images "${sides[@]}" --mask large.pfm
   expect 0 images "${sides[@]}" --mask mask.pfm
   contains out '1 of 32 pixels are left'
+  contains out 'what is wrong there stays hidden'
+  mv nan.pfm a00.pfm
+  expect 1 images "${sides[@]}"
+  contains out 'at pixel x 6, y 2 of B is not finite'
+  contains out '2 of 32 pixels are not finite in some picture'
+  contains out '--ignore nonfinite'
 }
 
 test_mistakes_at_the_head_of_a_suite_say_what_to_write() {

@@ -106,7 +106,7 @@ TEST_F(PictureStream, SaysWhichNumberOnlyTheWholeCanBeTestedOn) {
   picture.values[3 * (70 * width + 11) + 1] = std::numeric_limits<float>::quiet_NaN();
   write('b', 7, picture);
   EXPECT_TRUE(taken().pilots.empty());
-  EXPECT_THAT(taken().fault, HasSubstr("b07.exr` is not finite at pixel x11y70.G"));
+  EXPECT_THAT(taken().fault, HasSubstr("b07.exr` is not finite at pixel x 11, y 70 of G"));
   EXPECT_EQ(finding("").verdict, Verdict::error);
 }
 
