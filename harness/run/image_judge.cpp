@@ -209,10 +209,13 @@ std::string means_where_it_differs(const DrawnTest& test) {
   const std::string& seen = channels[0].image->seen;
   if (fails && !seen.empty()) return "; there " + seen;
   std::string constants;
-  if (const std::size_t count = channels[0].image->unseen.size(); count > 0) {
+  if (const std::vector<UnseenElement>& unseen = channels[0].image->unseen; !unseen.empty()) {
+    const bool one = unseen.size() == 1;
     constants = fmt::format(
-        "; {}{} values never vary and differ from the reference: rare light may be unseen there",
-        count, fails ? " other" : "");
+        "; {}{} value{} from the reference, {} {}: rare light may be unseen there", unseen.size(),
+        fails ? " other" : "", one ? " never varies and differs" : "s never vary and differ",
+        one ? "at" : "the first at",
+        element_place(*test.outcome.question.subjects[0].image, unseen[0].element));
   }
   if (!fails) return constants;
   const std::optional<PlaceEffect> effect = effect_at_place(test);

@@ -327,6 +327,7 @@ for i in range(24):
     write(f"hole{i}.pfm", [0.0 if i == 1230 else x for i, x in enumerate(drawn)])'
   expect 0 images --candidate 'good*.pfm' --reference exact.pfm
   expect 0 images --candidate 'dead*.pfm' --reference seldom.pfm
+  contains out '1 value never varies and differs from the reference, at pixel x 5, y 34 of Y: rare'
   expect 1 images --candidate 'dead*.pfm' --reference exact.pfm
   contains out 'pixel x 5, y 34 is 100 % too dark'
   expect 1 images --candidate 'hole*.pfm' --reference exact.pfm
