@@ -313,7 +313,7 @@ TestDisplay display(const Test& test) {
   if (test.detect) words.margin = margin_text(*test.detect, effect);
   words.sentence = sentence_of(test, effect, words.margin);
   if (shown.estimate) {
-    words.effect = theta_text(*shown.estimate, shown);
+    words.effect = (is_root_mean_square(shown) ? "RMS " : "") + theta_text(*shown.estimate, shown);
     words.interval = wider_range(shown);
   }
   if (is_evidence(test) && !is_proof(test)) words.chance = one_in(headline_p(test).log10_p);

@@ -153,7 +153,12 @@ std::string effect_name(const Effect& effect) {
   return name;
 }
 
+bool is_root_mean_square(const Effect& effect) {
+  return effect.quantity.find("root mean square") != std::string::npos;
+}
+
 std::string theta_text(double theta, const Effect& effect) {
+  if (is_root_mean_square(effect)) return magnitude(theta, effect.relative);
   if (!is_ratio(effect) || !std::isfinite(theta)) return with_sign(theta, effect.relative);
   return is_factor(effect) ? "×" + factor_text(theta) : with_sign(std::expm1(theta), true);
 }

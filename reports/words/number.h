@@ -60,6 +60,9 @@ bool is_ratio(const Effect&);
 /// True where it is shown as a factor.
 bool is_factor(const Effect&);
 
+/// True of a size, which has no sign.
+bool is_root_mean_square(const Effect&);
+
 /// exp(theta), also far beyond a double's range: "0.0717".
 std::string factor_text(double theta);
 
