@@ -43,9 +43,9 @@ class SeenStack {
   void refuse_a_copy(std::uint64_t index, const PictureDigest& digest) {
     const auto same = seen_.note(index, digest);
     if (!same) return;
-    throw InputError({.file = stack_.files[same->second]},
-                     "is the same picture as `" + stack_.files[same->first] +
-                         "`, bit for bit: give each render a seed of its own, or leave it out");
+    throw InputError({}, "`" + stack_.files[same->second] + "` is the same picture as `" +
+                             stack_.files[same->first] +
+                             "`, bit for bit: give each render a seed of its own, or leave it out");
   }
 
   void read(std::uint64_t index, std::span<float> texels, Cost& cost) {

@@ -221,6 +221,7 @@ std::string where_pilots_stopped(const Question& question, const Pilots& pilots)
       fault = pilots.fault(pilot_name_of(subject.estimator->name, averages_purpose));
     }
     if (fault == nullptr) continue;
+    if (is_recorded(subject)) return fault->words;  // They name the file.
     return sentence_of(*fault, subject.estimator->name, " in the pilot");
   }
   return "";

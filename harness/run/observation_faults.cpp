@@ -108,7 +108,8 @@ std::string where_it_stopped(const TestWork& work) {
   const std::vector<Sample> samples = work.samples();
   for (std::size_t subject = 0; subject < samples.size(); ++subject) {
     if (const Fault* fault = std::get_if<Fault>(&samples[subject])) {
-      return sentence_of(*fault, work.outcome.question.subjects[subject].estimator->name);
+      const Subject& side = work.outcome.question.subjects[subject];
+      return is_recorded(side) ? fault->words : sentence_of(*fault, side.estimator->name);
     }
   }
   return "";

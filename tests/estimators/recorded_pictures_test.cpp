@@ -104,7 +104,7 @@ TEST_F(Pictures, ThatAreCopiesAreRefusedByName) {
   draws::observe(pictures, 2);
   draws::observe(pictures, 2);
   EXPECT_THAT(thrown<InputError>([&] { draws::observe(pictures, 3); }),
-              StartsWith(file("c.exr") + ": is the same picture as `" + file("a.exr") + "`"));
+              StartsWith("`" + file("c.exr") + "` is the same picture as `" + file("a.exr") + "`"));
   // Pictures of one value throughout may be equal.
   for (const char* name : {"a.exr", "c.exr"}) write_texel(name, {"R", "G", "B"}, {0, 0, 0});
   EXPECT_EQ(draws::observe(prepare("{file: *.exr}"), 3)[0].values.size(), 3u);
