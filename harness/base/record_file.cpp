@@ -101,8 +101,11 @@ Recorded find_test(const reports::Record& record, const std::string& file,
   }
   if (all.empty()) refuse(where, "this run has no test");
   const std::string near = meant(name, all);
-  refuse(where, "no test `{}` in this run; {}", name,
-         near.empty() ? "there is: " + some_ids(all) : "did you mean `" + near + "`?");
+  refuse(where, "no test `{}` in this run; {}{}", name,
+         near.empty() ? "there is: " + some_ids(all) : "did you mean `" + near + "`?",
+         file != the_last_run ? ""
+                              : "; another run is kept by `--report json=FILE`: give FILE before "
+                                "the test");
 }
 
 }  // namespace assay::harness

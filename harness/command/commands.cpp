@@ -150,7 +150,7 @@ int explain(const ExplainArguments& arguments) {
   const std::string file = saved ? words.front() : last_run();
   const reports::Record record = read_record(file);
   const Recorded found =
-      find_test(record, saved ? file : "the last run", words.size() > saved ? words.back() : "");
+      find_test(record, saved ? file : the_last_run, words.size() > saved ? words.back() : "");
   if (!saved) fmt::print("The last run from this folder began at {}.\n\n", record.started);
   fmt::print("{}", reports::explain(found.suite, found.test, std::min(terminal_width(stdout), 100),
                                     record.ledger));

@@ -297,7 +297,7 @@ bool replay_test(const Loaded& run, const Recorded& recorded) {
 }  // namespace
 
 int replay(ReplayArguments arguments) {
-  const Location where{.file = arguments.record.empty() ? "the last run" : arguments.record};
+  const Location where{.file = arguments.record.empty() ? the_last_run : arguments.record};
   if (arguments.record.empty()) arguments.record = last_run();
   const reports::Record record = read_record(arguments.record);
   const Recorded recorded = find_test(record, where.file, arguments.test);

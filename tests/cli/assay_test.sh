@@ -517,6 +517,9 @@ test_explain_tells_of_the_last_run() {
   contains err '3 tests have `mixed/` in their id'
   expect 2 explain mixed/wrnog
   contains err 'mixed/wrong'
+  contains err 'another run is kept by `--report json=FILE`: give FILE before the test'
+  expect 2 explain run.json mixed/wrnog
+  lacks err 'another run'
   expect 2 replay mixed/wrnog
   contains err 'assay: the last run: no test `mixed/wrnog`'
   write_suite broken.yaml "$good" "$wrong"
