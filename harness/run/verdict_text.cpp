@@ -99,8 +99,8 @@ std::string found_in_cell(const TestOutcome& outcome, const ChannelOutcome& chan
   if (!channel.image || !channel.image->detectable_in_cell) return "";
   const bool noisy = channel.effect.relative && *channel.image->detectable_in_cell > 1;
   return fmt::format(
-      "; in one typical square of {0} x {0} pixels alone, {1}{2} would have been found, too bright "
-      "or too dark; {3}{4}",
+      "; an error in one square of {0} x {0} pixels alone would have been found from {1}{2} on; "
+      "{3}{4}",
       stats::typical_side, reports::margin_text(*channel.image->detectable_in_cell, channel.effect),
       channel.effect.relative ? " of the image's mean" : "",
       noisy ? "so much noise may come from a few bright samples" : "only means were compared",
@@ -122,7 +122,7 @@ std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& chann
     }
     if (channel.detectable) {
       const char* how = outcome.question.theta->detectable_text();
-      return fmt::format("{}; {}{} would have been found with probability {:g}{}", text,
+      return fmt::format("{}; an error of {}{} would have been found with probability {:g}{}", text,
                          reports::margin_text(*channel.detectable, channel.effect), how,
                          1 - outcome.place.share.beta, found_in_cell(outcome, channel));
     }
