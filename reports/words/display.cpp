@@ -164,31 +164,29 @@ std::string subject_of(const Test& test) {
 
 void add_suspects(const Suite& suite, Standing how, std::vector<Suspect>& all) {
   std::map<std::string, int> claims;
-  std::map<std::pair<bool, std::string>, Suspect> found;
+  std::vector<Suspect> found;
   for (const Test& test : suite.tests) {
     for (const std::string& name : estimators_of(test)) ++claims[name];
     if (standing(test) != how) continue;
     const std::string subject = subject_of(test);
-    const bool alone = subject.empty();
-    Suspect& suspect = found[{alone, alone ? test.id : subject}];
-    suspect.name = alone ? test.name : subject;
-    suspect.tests.push_back(test.id);
-  }
-  std::vector<Suspect> sorted;
-  for (auto& [key, suspect] : found) {
-    suspect.suite = suite.name;
-    suspect.standing = to_string(how);
-    const auto broken = static_cast<int>(suspect.tests.size());
-    if (!key.first)
-      suspect.sentence = fmt::format("{} {}", of_claims(broken, claims[suspect.name], "of its"),
-                                     how == Standing::broken ? "broken" : "without a verdict");
-    sorted.push_back(std::move(suspect));
+    auto suspect = std::ranges::find(found, subject, &Suspect::name);
+    if (suspect == found.end())
+      suspect = found.insert(suspect,
+                             {suite.name, subject.empty() ? test.name : subject, to_string(how)});
+    suspect->tests.push_back(test.id);
   }
   // A tie goes to the estimator whose claims are broken most often.
-  std::ranges::stable_sort(sorted, {}, [&](const Suspect& suspect) {
-    return std::tuple(suspect.sentence.empty(), -std::ssize(suspect.tests), claims[suspect.name]);
+  std::ranges::sort(found, {}, [&](const Suspect& suspect) {
+    return std::tuple(claims[suspect.name] == 0, -std::ssize(suspect.tests), claims[suspect.name],
+                      suspect.name);
   });
-  std::ranges::move(sorted, std::back_inserter(all));
+  for (Suspect& suspect : found) {
+    if (const int of = claims[suspect.name]; of > 0)
+      suspect.sentence =
+          fmt::format("{} {}", of_claims(static_cast<int>(suspect.tests.size()), of, "of its"),
+                      how == Standing::broken ? "broken" : "without a verdict");
+    all.push_back(std::move(suspect));
+  }
 }
 
 }  // namespace
