@@ -9,7 +9,7 @@
 
 namespace assay::harness {
 
-/// What to do about pixels that are not finite.
+/// Says what to do about pixels that are not finite.
 constexpr const char* leave_out_nonfinite =
     ": mend the renderer, or leave such pixels out by `--ignore nonfinite` (in a suite by "
     "`finite`), which hides what is wrong there";
