@@ -149,7 +149,7 @@ std::string page_of(const Method& row) {
   say(true, fmt::format("Force it by `test: {0}` in a suite, or by `--test {0}`.", row.name));
   say(row.is.exact, "Its level holds at every sample size.");
   say(!row.is.exact, "Its level is asymptotic. Gates refuse data on which it would err.");
-  say(row.is.in_range, "The channel must declare the range of its values.");
+  say(row.is.in_range || row.is.of_both_ends, "The channel must declare the range of its values.");
   say(row.is.of_observations, "It needs observations: moments of an earlier run do not suffice.");
   say(row.is.of_batches, "It assumes that means of consecutive observations are independent.");
   say(row.is.corrects_skewness, "It estimates the skewness from the data.");

@@ -563,8 +563,10 @@ stats::Gate residual_gate(const Seen& seen, double x) {
 std::vector<Method> methods_of_means() {
   constexpr MethodTraits corrected{.corrects_skewness = true,
                                    .over_looks = stats::LookLaw::independent_increments};
-  constexpr MethodTraits of_counts{
-      .exact = true, .of_observations = true, .plans = &stats::binomial_planning};
+  constexpr MethodTraits of_counts{.exact = true,
+                                   .of_both_ends = true,
+                                   .of_observations = true,
+                                   .plans = &stats::binomial_planning};
   constexpr MethodTraits of_bets{.exact = true,
                                  .in_range = true,
                                  .of_observations = true,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "harness/sampling/recorded_run.h"
 #include "harness/theta/theta.h"
@@ -28,17 +29,25 @@ std::string relation_text(const TestEntry& test) {
 }
 
 void require_data(const Method& method, const Question& question) {
+  const Regions regions{.relation = question.test->claim.relation};
+  // Bets on one end bound the mean on one side only.
+  const bool excludes_both = regions.two_sided() && (regions.proof() || question.test->detect);
+  const int wanted = method.is.of_both_ends ? 2 : !method.is.in_range ? 0 : excludes_both ? 2 : 1;
   for (const Subject& subject : question.subjects) {
     if (method.is.of_observations && as_recorded_run(*subject.setup) != nullptr) {
       refuse_method(question, method.name,
                     fmt::format("needs observations, and `{}` has the moments of a run",
                                 subject.estimator->name));
     }
-    if (!method.is.in_range || !subject.setup->observations()) continue;
-    refuse_method(
-        question, method.name,
-        fmt::format("needs a declared range, and the rows of `{}` declare none; leave `test` out",
-                    subject.estimator->name));
+    // The ends of rows of two values are these values.
+    if (is_recorded(subject) && method.is.of_both_ends) continue;
+    for (const Channel& channel : subject.declared()) {
+      if (std::isfinite(channel.low) + std::isfinite(channel.high) >= wanted) continue;
+      refuse_method(question, method.name,
+                    fmt::format("needs a declared range of `{}`: {}", subject.estimator->name,
+                                is_recorded(subject) ? "rows declare none, leave `test` out"
+                                                     : "give its channel `low` and `high`"));
+    }
   }
 }
 

@@ -71,6 +71,7 @@ inline constexpr std::uint64_t replicate_count = 32;
 struct MethodTraits {
   bool exact = false;               ///< The level holds at every sample size.
   bool in_range = false;            ///< Rests on a channel's declared range.
+  bool of_both_ends = false;        ///< Values are the ends of a range.
   bool of_observations = false;     ///< The moments of an earlier run are too little.
   bool of_batches = false;          ///< Tests means of consecutive observations.
   bool corrects_skewness = false;   ///< Corrects for the skewness of the mean.
