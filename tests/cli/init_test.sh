@@ -31,6 +31,17 @@ test_init_plugin_runs_at_once() {
 test_init_process_python_runs_at_once() { runs_at_once 'All 3 claims are as they should be' process python; }
 test_init_process_cpp_runs_at_once() { runs_at_once 'All 3 claims are as they should be' process c++; }
 test_init_gtest_runs_at_once() { runs_at_once '3 tests' gtest; }
+# GoogleTest asks a matcher that failed a second time, for its reason: that is no second claim.
+test_init_gtest_builds_matchers() {
+  expect 0 init gtest mine
+  printf '%s\n' '#include <assay/harness/googletest/matchers.h>' 'using namespace assay::googletest;' \
+    'const DeclaredClaims budget{{.claims = 1}};' \
+    'double draw(assay::Stream& random) { return random.uniform(); }' \
+    'TEST(Draw, IsBiased) { EXPECT_THAT(draw, HasMean("1")); }' >mine/claims_test.cpp
+  { cmake -S mine -B build && cmake --build build; } >out 2>err || fail 'the matchers are not built'
+  build/claims_test >out 2>err && fail 'a wrong claim holds'
+  contains out 'fail: relative difference from the reference'
+}
 test_init_gtest_says_how_to_build_its_library() {
   expect 0 init gtest mine
   cp -rL "$(dirname "$assay")/../prefix/lib" lib
