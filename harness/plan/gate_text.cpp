@@ -136,29 +136,32 @@ Reason what_would_help(const TestOutcome& outcome) {
   bool says_it_all = true;
   bool heavy = false;
   double factor = 1;
+  // A sample that one observation makes up tells no more.
+  constexpr double most = 100;
   for (const Gate& gate : outcome.gates) {
     if (!gate.is_red()) continue;
     const GateKind& row = gate.row();
     says_it_all = says_it_all && row.says_what_helps;
-    heavy = heavy || row.heavy_tail;
-    factor = std::max(factor, wanted(gate));
+    const double own = wanted(gate);
+    const bool hardly_grows = row.falls == Falls::inversely && own > most &&
+                              *gate.value * most < static_cast<double>(outcome.secondaries());
+    heavy = heavy || row.heavy_tail || hardly_grows;
+    factor = std::max(factor, own);
   }
   if (says_it_all) return {};
-  // A sample that one observation makes up tells no more.
-  constexpr double most = 100;
   const bool rows = has_rows(outcome.question);
   // An average has another variance than what it averages.
   const bool averages = rows && !outcome.question.is().of_spread;
   // If the tail's moment does not exist, more observations only make the gate redder.
   if (heavy || (rows && factor > most)) {
-    return fmt::format(
-        "; the values are heavy-tailed, and more observations may only show more of the tail: "
-        "{}claim a quantile, as `quantile({}, 0.5) == …`",
-        averages
-            ? "give " + std::string(rows_noun(outcome.question)) + " that each average many, or "
-        : rows ? ""
-               : "clamp the estimator or take another, declare its range, or ",
-        to_string(outcome.question.test->claim.left.source));
+    return Reason::advising(
+        "; the values are heavy-tailed, and more observations may only show more of the tail: ",
+        fmt::format("{}claim a quantile, as `quantile({}, 0.5) == …`",
+                    averages ? "give " + std::string(rows_noun(outcome.question)) +
+                                   " that each average many, or "
+                    : rows ? ""
+                           : "clamp the estimator or take another, declare its range, or ",
+                    to_string(outcome.question.test->claim.left.source)));
   }
   const bool known = factor > 1;
   factor = std::min(factor, most);

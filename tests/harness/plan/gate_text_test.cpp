@@ -44,6 +44,7 @@ TEST(GateText, OfOneObservationSaysHowManyOthersWouldDo) {
               HasSubstr("`secondaries: 9000` may do"));
   EXPECT_THAT(help_for(red("effective observations", 16, 32)),
               HasSubstr("`secondaries: 16000` may do"));
+  EXPECT_THAT(help_for(red("effective observations", 3, 32)), HasSubstr("heavy-tailed"));
 }
 
 TEST(GateText, NamesFewOfManyRedGates) {
