@@ -52,8 +52,8 @@ Subject sampled_by(const Source& source, const Estimators& estimators, std::uint
 
 int sample(const SampleArguments& arguments) {
   const Source source = parse_source(arguments.source, {arguments.source, 0, 0});
-  const std::vector<EstimatorEntry> entries =
-      estimators_of({source}, arguments.estimators, arguments.primaries);
+  const std::vector<EstimatorEntry> entries = estimators_of(
+      {source}, arguments.estimators, arguments.primaries, "assay sample " + arguments.source);
   const Estimators estimators{{source.estimator, prepare(entries.front(), ".")}};
   const Subject sampled = sampled_by(source, estimators, arguments.seed);
   const PreparedEstimator& estimator = *sampled.estimator;

@@ -129,10 +129,12 @@ void set_parameter(std::vector<Suite>& suites, const std::string& assignment);
 EstimatorEntry parse_estimator_option(const std::string& text);
 
 /// One entry for each estimator that a claim names, in order. The entry comes from `options`
-/// ("NAME=PLUGIN…"), else it is the plugin of that name. `primaries` goes to all.
+/// ("NAME=PLUGIN…"), else it is the plugin of that name. `primaries` goes to all. Messages repeat
+/// the command.
 std::vector<EstimatorEntry> estimators_of(const std::vector<Source>& sources,
                                           const std::vector<std::string>& options,
-                                          std::optional<std::uint64_t> primaries);
+                                          std::optional<std::uint64_t> primaries,
+                                          const std::string& command);
 
 /// The sources that the claim names, left to right.
 std::vector<Source> sources_of(const Claim& claim);

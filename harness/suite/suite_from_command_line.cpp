@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/replace.hpp>
 #include <filesystem>
 
 #include "estimators/catalogue.h"
@@ -61,23 +62,28 @@ std::vector<EstimatorEntry> parse_options(const std::vector<std::string>& option
   return entries;
 }
 
-/// Says how an estimator is made of a file.
+/// Says how an estimator is made of a file. `command` stands before its option.
 [[noreturn]] void refuse_file(const Location& where, const std::string& name,
-                              const std::string& file) {
+                              const std::string& file, const std::string& command = "") {
   refuse(where, "`{}` is a file: {}", file,
          file.ends_with(".so")
-             ? fmt::format("`--estimator {}=library,file={}` loads it", name, file)
+             ? fmt::format("`{}--estimator {}=library,file={}` loads it", command, name, file)
          : file.ends_with(".py")
-             ? fmt::format("`--estimator '{}=process,command=[python3, {}]'` runs it", name, file)
-             : fmt::format("`--estimator {0}=recorded,file={1}` reads numbers, and `--estimator "
+             ? fmt::format("`{}--estimator '{}=process,command=[python3, {}]'` runs it", command,
+                           name, file)
+             : fmt::format("`{3}--estimator {0}=recorded,file={1}` reads numbers, and `--estimator "
                            "'{0}=process,command=[{2}{1}]'` runs a program",
-                           name, file, file.find('/') == file.npos ? "./" : ""));
+                           name, file, file.find('/') == file.npos ? "./" : "", command));
 }
 
-EstimatorEntry entry_for(const Source& source, const std::vector<EstimatorEntry>& given) {
+EstimatorEntry entry_for(const Source& source, const std::vector<EstimatorEntry>& given,
+                         const std::string& command) {
   if (const auto* entry = entry_named(given, source.estimator)) return *entry;
   const std::string file = source.estimator + "." + source.part;
-  if (std::filesystem::is_regular_file(file)) refuse_file(source.where, source.estimator, file);
+  if (std::filesystem::is_regular_file(file)) {
+    const std::string name = std::filesystem::path(source.estimator).filename().string();
+    refuse_file(source.where, name, file, boost::replace_all_copy(command, file, name) + " ");
+  }
   const std::string near = nearest(source.estimator, mapped(given, &EstimatorEntry::name));
   if (!near.empty()) {
     refuse(source.where, "no --estimator is named `{}`; did you mean `{}`?", source.estimator,
@@ -143,12 +149,13 @@ EstimatorEntry parse_estimator_option(const std::string& text) {
 
 std::vector<EstimatorEntry> estimators_of(const std::vector<Source>& sources,
                                           const std::vector<std::string>& options,
-                                          std::optional<std::uint64_t> primaries) {
+                                          std::optional<std::uint64_t> primaries,
+                                          const std::string& command) {
   const std::vector<EstimatorEntry> given = parse_options(options);
   std::vector<EstimatorEntry> used;
   for (const Source& source : sources) {
     if (entry_named(used, source.estimator)) continue;
-    used.push_back(entry_for(source, given));
+    used.push_back(entry_for(source, given, command));
     if (primaries) used.back().primaries = primaries;
   }
   refuse_unused(given, used);
@@ -172,7 +179,8 @@ TestEntry test_of(const std::string& command, const std::string& claim, const Te
 Suite suite_of_claim(const CheckArguments& arguments) {
   TestEntry test = test_of("check", arguments.claim, arguments.keys);
   Suite suite{.name = "check", .stem = "check", .folder = "."};
-  suite.estimators = estimators_of(sources_of(test), arguments.estimators, arguments.primaries);
+  suite.estimators = estimators_of(sources_of(test), arguments.estimators, arguments.primaries,
+                                   "assay check " + shell_quoted(arguments.claim));
   suite.tests.push_back(std::move(test));
   return suite;
 }
