@@ -43,13 +43,25 @@ void require_no_sampler(const Source& source, const PreparedEstimator& estimator
          name, source.estimator, source.estimator, estimator.setup->channel(0).name);
 }
 
+/// The advice for a column whose name begins as the part does and is no word of a claim; else "".
+std::string how_to_name(const Source& source, const PreparedEstimator& estimator) {
+  if (!estimator.setup->observations()) return "";
+  for (const Channel& column : estimator.setup->channels()) {
+    if (!column.name.starts_with(source.part) || is_estimator_name(column.name)) continue;
+    return fmt::format("; write `column={1}{2}{1}` at the estimator and claim `mean({0})`",
+                       source.estimator, column.name.find(',') == std::string::npos ? "" : "\"",
+                       column.name);
+  }
+  return "";
+}
+
 [[noreturn]] void no_such_part(const Source& source, const PreparedEstimator& estimator) {
   if (source.part.empty()) {
     refuse(source.where, "`{}` has several parts; name one, as in `{}.PART`: {}", source.estimator,
            source.estimator, parts_of(estimator));
   }
-  refuse(source.where, "`{}` has no part `{}`; it has {}", source.estimator, source.part,
-         parts_of(estimator));
+  refuse(source.where, "`{}` has no part `{}`; it has {}{}", source.estimator, source.part,
+         parts_of(estimator), how_to_name(source, estimator));
 }
 
 /// The channel of that name, or all tested ones without a name.

@@ -143,6 +143,11 @@ test_mistakes_on_the_command_line_say_what_to_write() {
 test_mistakes_in_a_check_say_what_to_write() {
   local claim='mean(luminaire/area) == analytic'
   echo 3 >one.txt
+  printf '%s\n' 'my value,"other, one"' 1,2 3,4 >columns.csv
+  answers 2 'write `column=my value` at the estimator and claim `mean(a)`' \
+    check 'mean(a.my) == 3' --estimator a=recorded,file=columns.csv
+  answers 2 'write `column="other, one"` at the estimator' \
+    check 'mean(a.other) == 3' --estimator a=recorded,file=columns.csv
   answers 2 '`==` is one argument too many; quote the claim and other words with blanks: `assay check' check 'mean(a)' == 3
   answers 2 'claim:1:6: there is no plugin `luminare/area`; did you mean `luminaire/area`?' \
     check 'mean(luminare/area) == analytic'
