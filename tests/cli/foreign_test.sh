@@ -219,7 +219,7 @@ plugin: library, file: other.so, estimator: mien|did you mean `mine`
 plugin: library, file: other.so, parameters: {rate: 2}|has no parameter `rate`
 plugin: library, file: loud.so|the library printed `welcome`
 plugin: process, command: [no_such_program]|cannot be started: No such file or directory
-plugin: process, command: python3|must be a list of texts
+plugin: process, command: python3 a.py|must be a list of texts: `[python3, a.py]`
 plugin: process, command: [sh, none.sh], timeout: 0|must be above 0
 plugin: command, command: [cp, one.txt, "{out}", "{seed}"], output: text, depends: [no.txt]|parameter `depends` cannot be used: there is no file `no.txt`
 plugin: command, command: [cp, one.txt, "{out}", "{seed}"], output: text, cache: one.txt|parameter `cache` cannot be used: the folder
