@@ -167,13 +167,16 @@ test_seeds_of_libraries_that_do_nothing_are_errors() {
 
 test_a_program_that_says_no_hello_is_an_error_of_its_tests() {
   suite silent.yaml 'ended: {plugin: process, command: [sh, none.sh]}' \
-    'greets: {plugin: process, command: [echo, hello]}'
+    'greets: {plugin: process, command: [echo, hello]}' 'quiet: {plugin: process, command: ["true"]}'
   expect 1 run silent.yaml --report json=run.json
   verdict_is run.json sound pass
-  for name in ended greets; do verdict_is run.json "$name" error; done
+  for name in ended greets quiet; do verdict_is run.json "$name" error; done
   message run.json ended
   tells err '`ended` cannot be prepared: `sh none.sh` ended with exit status'
   tells err 'before it printed the line `ready`'
+  lacks err 'assay.serve'
+  message run.json quiet
+  tells err 'a Python program ends with `assay.serve(FUNCTION)`'
   message run.json greets
   tells err 'the first line is `assay 1 text`'
   printf '%s\n' 'suite: dead' 'estimators: {ended: {plugin: process, command: [sh, none.sh]}}' \
