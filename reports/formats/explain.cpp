@@ -80,9 +80,12 @@ std::string explain(const Suite& suite, const Test& test, int width, const Ledge
       next.push_back({.label = "what changed before that night", .paste = log});
   }
   if (next.empty()) return out;
+  const Standing how = standing(test);
+  const bool nothing = how > Standing::undecided && how < Standing::not_run && next.size() == 1 &&
+                       next[0].label == "again";
   out += "\nWhat to do next\n";
   for (const Step& step : next) {
-    out += "  " + step.label + ":\n";
+    out += "  " + (nothing ? "Nothing. To run it again" : step.label) + ":\n";
     const std::vector<std::string> lines = step.paste.empty()
                                                ? wrap(one_line(step.words), width - 4)
                                                : wrap_command(one_line(step.paste), width - 6);
