@@ -64,7 +64,7 @@ void read_kind(InitArguments& arguments) {
          did_you_mean(kind, kinds));
 }
 
-int write_example(const InitArguments& arguments) {
+int write_example(const InitArguments& arguments) try {
   const std::filesystem::path folder = arguments.folder;
   const std::vector<CarriedFile> files = files_of(arguments.kind);
   for (const CarriedFile& file : files) {
@@ -89,6 +89,9 @@ int write_example(const InitArguments& arguments) {
   }
   fmt::print("{}", steps);
   return 0;
+} catch (const std::filesystem::filesystem_error& error) {
+  refuse({}, "cannot write into `{}`: {}; name another folder", arguments.folder,
+         error.code().message());
 }
 
 }  // namespace assay::harness

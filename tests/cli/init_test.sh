@@ -115,6 +115,8 @@ test_init_names_its_kinds() {
   contains err 'did you mean `suite`?'
   expect 2 init process
   contains err 'process python'
+  expect 2 init suite /dev/null/x
+  contains err 'cannot write into `/dev/null/x`: Not a directory; name another folder'
   expect 2 init suite here there
   contains err '`there` is one argument too many'
   [ "$(ls)" = $'err\nout' ] || fail 'a file is written'
