@@ -73,14 +73,6 @@ void inherit(Information& mutant, const Information& original) {
   mutant.averages = original.averages;
 }
 
-// `area` for `luminaire/area`, else the nearest spelling.
-std::string suggested(std::string_view name, const std::vector<std::string>& names) {
-  const std::string ending = "/" + std::string(name);
-  const auto same = std::ranges::find_if(
-      names, [&](const std::string& candidate) { return candidate.ends_with(ending); });
-  return same == names.end() ? nearest(name, names) : *same;
-}
-
 }  // namespace
 
 std::vector<Entry> checked(std::vector<Entry> entries) {
@@ -103,10 +95,9 @@ const std::vector<Entry>& catalogue() {
 
 const Entry& find_plugin(std::string_view name, const Location& where) {
   if (const Entry* entry = lookup(catalogue(), name)) return *entry;
-  const std::string near = suggested(name, mapped(catalogue(), name_of));
   throw InputError(where, "there is no plugin `" + std::string(name) + "`" +
-                              (near.empty() ? "; `assay list plugins` shows them all"
-                                            : "; did you mean `" + near + "`?"));
+                              did_you_mean(name, mapped(catalogue(), name_of),
+                                           "`assay list plugins` shows them all"));
 }
 
 }  // namespace assay

@@ -178,18 +178,16 @@ std::string shortest_text(double value) {
 }
 
 std::string nearest(std::string_view name, const std::vector<std::string>& candidates) {
-  // A word that was cut short: the shortest candidate that begins so. An option's dashes tell
-  // nothing.
+  // A word that was cut short, or lacks its family: the shortest candidate that begins or ends so.
+  // An option's dashes tell nothing.
   constexpr std::size_t least_beginning = 3;
   const std::size_t letters = name.size() - std::min(name.find_first_not_of('-'), name.size());
-  const auto by_size = [](const std::string& a, const std::string& b) {
-    return a.size() < b.size();
-  };
   std::vector<std::string> begun;
   for (const std::string& candidate : candidates) {
-    if (letters >= least_beginning && candidate.starts_with(name)) begun.push_back(candidate);
+    const bool cut = candidate.starts_with(name) || candidate.ends_with("/" + std::string(name));
+    if (letters >= least_beginning && cut) begun.push_back(candidate);
   }
-  if (!begun.empty()) return *std::ranges::min_element(begun, by_size);
+  if (!begun.empty()) return *std::ranges::min_element(begun, {}, &std::string::size);
   // One slip for every three letters, at least one: `sceen` suggests `scene`, `x` suggests nothing.
   std::size_t best = std::min(std::max<std::size_t>(1, name.size() / 3) + 1, name.size());
   std::string found;

@@ -255,15 +255,21 @@ std::string text_of(const Table& table) {
 
 int describe(const std::string& name) {
   Table family;
+  std::string pages;
+  std::vector<std::string> names;
   for (const Entry& plugin : catalogue()) {
     const Information& its = plugin.information;
+    names.insert(names.end(), {its.name.substr(0, its.name.find('/')), its.name});
+    if (its.name == name) pages = manual(plugin, catalogue());
     if (its.name.starts_with(name + "/")) family.rows.push_back({its.name, its.summary, ""});
   }
-  std::string pages = text_of(family);
+  pages += text_of(family);
   for (const Table& table : tables()) {
+    names.push_back(table.plural);
     if (name == table.plural) pages += text_of(table);
     std::set<std::string> said;  // Rows of one name have most sentences in common.
     for (const TableRow& row : table.rows) {
+      names.push_back(row.name);
       if (row.name != name) continue;
       if (said.empty()) {
         pages += fmt::format("{}{}, {}\n", pages.empty() ? "" : "\n", row.name, table.singular);
@@ -274,7 +280,11 @@ int describe(const std::string& name) {
       }
     }
   }
-  fmt::print("{}", pages.empty() ? manual(find_plugin(name, {}), catalogue()) : pages);
+  if (pages.empty()) {
+    refuse({}, "there is no plugin, family, method, quantity, law, gate or report `{}`{}", name,
+           did_you_mean(name, names, "`assay list --help` shows how to list them"));
+  }
+  fmt::print("{}", pages);
   return 0;
 }
 
