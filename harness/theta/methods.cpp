@@ -95,8 +95,8 @@ Method find_method(const Question& question, const std::string& name) {
   const std::vector<Method> known = methods_for(question);
   const auto found = std::ranges::find(known, name, &Method::name);
   if (found == known.end()) {
-    refuse_method(question, name,
-                  "does not answer this claim; there is " + quoted(mapped(known, &Method::name)));
+    refuse(question.test->place_of("test"), "`{}` cannot test `{}`; there is {}", name,
+           question.test->claim.text, quoted(mapped(known, &Method::name)));
   }
   require_data(*found, question);
   return *found;

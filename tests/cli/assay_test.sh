@@ -707,7 +707,7 @@ test_metrics_end_as_openmetrics_do() {
 
 test_check_points_at_the_option_that_is_wrong() {
   expect 2 check 'mean(analytic/dart_throwing) == analytic' --test F
-  contains err 'assay: --test F: does not answer this claim; there is `t`'
+  contains err 'assay: --test F: `F` cannot test `mean(analytic/dart_throwing) == analytic`; there is `t`'
   lacks err '^'
   expect 2 check 'mean(analytic/dart_throwing) == analytic' --detect 0
   contains err 'assay: --detect 0: `detect` must be above 0'

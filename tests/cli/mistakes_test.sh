@@ -44,7 +44,7 @@ claim: mean(area) within 5 of analytic|30: the margin 5 is larger than the refer
 {claim: distribution(area.point) == density, detect: 5}|58: a difference of probabilities is below 1, so it cannot be 5; write 5 per cent as `0.05`
 {claim: mean(area) == analytic, expect: failed}|45: `expect` cannot be `failed`; did you mean `fail`?
 {claim: mean(area) == analytic, tags: slow}|43: `tags` must be a list: `tags: [slow, images]`
-{claim: mean(area) == analytic, test: F}|37: `test: F` does not answer this claim; there is `t`
+{claim: mean(area) == analytic, test: F}|37: `F` cannot test `mean(area) == analytic`; there is `t`
 {claim: mean(area) == analytic, tolerance: 1%}|37: unknown key `tolerance` of a test
 TABLE
 }
@@ -154,7 +154,7 @@ test_mistakes_in_a_check_say_what_to_write() {
   answers 2 '--detect 5: the margin 5 is larger than the reference' \
     check "$claim" --detect 5
   answers 2 '--detect 0: `detect` must be above 0' check "$claim" --detect 0
-  answers 2 '--test welch: does not answer this claim; there is `t`' check "$claim" --test welch
+  answers 2 '--test welch: `welch` cannot test `mean(luminaire/area) == analytic`; there is `t`' check "$claim" --test welch
   answers 2 '`area` is used nowhere, only `luminaire/area`: write `area` in its place' \
     check "$claim" --estimator area=luminaire/area
   answers 2 'the plugin needs a name, which the claim uses: `--estimator x=recorded,file=one.txt`' \
