@@ -99,28 +99,35 @@ class Screen {
     const std::vector<Step> all = steps(test);
     std::string told = trouble(test);
     if (told.starts_with(verdict)) told.erase(0, verdict.size());
-    const std::vector<std::string> text = wrapped(told, options_.width - block_indent);
-    std::vector<std::string> next;
+    const int width = options_.width - block_indent;
+    std::vector<std::string> text = wrapped(told, width);
+    std::vector<std::string> next, last;
+    // What a user is asked for is a step of its own.
+    const bool asked = !all.empty() && all[0].label != "again";
     if (!all.empty()) next = step_lines(all[0]);
     const int most = place(test).empty()              ? unlimited
                      : test.verdict == Verdict::error ? error_lines
                                                       : block_lines;
-    const auto room = [&] { return std::max(1, most - used - static_cast<int>(next.size())); };
-    const auto fits = [&](std::size_t lines) { return room() >= static_cast<int>(lines); };
-    // What a user is asked for is a step of its own.
-    const bool asked = !all.empty() && all[0].label != "again";
-    const auto repeat = std::ranges::find(all, "again", &Step::label);
-    if (test.verdict != Verdict::fail && !fits(text.size())) {
-      const std::vector<std::string> more = step_lines(explanation(test));
-      if (!asked) next.clear();
-      if (fits(1 + more.size())) next.insert(next.end(), more.begin(), more.end());
-    } else if (test.verdict == Verdict::fail && asked && !test.replay.empty()) {
-      const std::vector<std::string> more = step_lines(*repeat);
-      next = cut(next, std::max(0, most - used - static_cast<int>(text.size() + more.size())));
-      next.insert(next.end(), more.begin(), more.end());
+    const auto room = [&](const std::vector<std::string>& others, int least) {
+      return std::max(least, most - used - static_cast<int>(others.size() + last.size()));
+    };
+    if (test.verdict == Verdict::fail && asked && !test.replay.empty()) {
+      last = step_lines(*std::ranges::find(all, "again", &Step::label));
+      if (const int note = room(text, 1); std::ssize(next) > note) {
+        const std::string rest = " (assay explain TEST)";
+        next.resize(static_cast<std::size_t>(note));
+        next.back() = shorten(next.back() + "…", options_.width - columns(rest)) + rest;
+      }
     }
-    indented(text, room());
+    if (std::ssize(text) > room(next, 2)) {
+      if (!asked && test.verdict != Verdict::fail) next.clear();
+      const std::vector<std::string> more = step_lines(explanation(test));
+      last.insert(last.end(), more.begin(), more.end());
+      text = cut(wrapped(told, width - 1), room(next, 2));
+    }
+    indented(text, unlimited);
     put(next);
+    put(last);
     blank();
   }
 
@@ -221,11 +228,18 @@ class Screen {
     indented(wrapped(text, options_.width - block_indent), most);
   }
 
-  /// The first so many lines. If that leaves some out, "…" ends the last.
-  std::vector<std::string> cut(std::vector<std::string> lines, int most) const {
-    if (lines.size() <= static_cast<std::size_t>(most)) return lines;
-    lines.resize(static_cast<std::size_t>(most));
-    if (most > 0) lines.back() = shorten(lines.back() + "…", options_.width - block_indent);
+  /// The first so many lines, and two more if brackets hold an interval there. If that leaves some
+  /// out, "…" ends the last.
+  static std::vector<std::string> cut(std::vector<std::string> lines, int most) {
+    bool inside = false;
+    std::size_t end = 0;
+    for (; end < lines.size() && static_cast<int>(end) - (inside ? 2 : 0) < most; ++end) {
+      const std::size_t bracket = lines[end].find_last_of("()");
+      if (bracket != std::string::npos) inside = lines[end][bracket] == '(';
+    }
+    if (end == lines.size()) return lines;
+    lines.resize(end);
+    if (end > 0) lines.back() += "…";
     return lines;
   }
 

@@ -25,11 +25,12 @@ test_good_suite_is_0() {
   contains out '✓ The claim is as it should be in'
 }
 
-# Five lines have no room for the caveat and for how to repeat it.
+# Five lines have no room for all of the caveat and for how to repeat it.
 test_a_fail_says_how_to_repeat_it() {
   write_suite told.yaml "$good" '  - {name: a name that takes a second line of the command, claim: mean(normal) == 3}'
   expect 1 run told.yaml
   contains out 'again: assay run told.yaml'
+  contains out '… (assay explain TEST)'
 }
 
 test_failing_suite_is_1() {
