@@ -74,21 +74,17 @@ std::string about_the_contrary(const Test& test) {
   return test.beta ? fmt::format("; a pass needs at most beta, {}", human(test.beta, 3)) : "";
 }
 
-/// "24 images", or "24 and 32 images" where the sides have not as many.
-std::string counted_images(const Test& test) {
-  const std::vector<Sample>& sides = test.samples;
-  if (sides.size() == 2 && sides[0].secondaries != sides[1].secondaries) {
-    return fmt::format("{} and {} images", sides[0].secondaries, sides[1].secondaries);
-  }
-  return counted(test.image->replicates, "image", "images");
-}
-
 std::string image_fact(const Test& test) {
   if (!test.image) return {};
   const Image& image = *test.image;
-  std::vector<std::string> parts{
-      fmt::format("{} of {} x {} pixels{}{}", counted_images(test), image.width, image.height,
-                  image.components.empty() ? "" : " of ", boost::join(image.components, ", "))};
+  const std::vector<Sample>& sides = test.samples;
+  const bool differ = sides.size() == 2 && sides[0].secondaries != sides[1].secondaries;
+  const std::string count =
+      differ ? fmt::format("{} and {} images", sides[0].secondaries, sides[1].secondaries)
+             : counted(image.replicates, "image", "images");
+  std::vector<std::string> parts{fmt::format("{} of {} x {} pixels{}{}", count, image.width,
+                                             image.height, image.components.empty() ? "" : " of ",
+                                             boost::join(image.components, ", "))};
   if (!image.winner.place.empty()) {
     const NamedP p{"p", {}, image.winner.log10_p_adjusted};
     parts.push_back(fmt::format("differs most at {}{}", image.winner.place,
@@ -100,20 +96,6 @@ std::string image_fact(const Test& test) {
         "constant elements that are not at their reference: {}, rarer values may be unseen",
         image.unseen));
   return boost::join(parts, "; ");
-}
-
-std::string estimate_fact(const Effect& effect) {
-  std::string text =
-      fmt::format("{} {}", effect_name(effect), theta_text(*effect.estimate, effect));
-  if (is_ratio(effect)) text += fmt::format(" (ln {})", with_sign(*effect.estimate, false));
-  return text + named_range_text(effect);
-}
-
-// The meaning of `detect` depends on the claim.
-const char* detect_words(const Test& test) {
-  const std::string relation = sides_of(test.claim).relation;
-  if (relation == "within") return "must be less than";
-  return is_proof(test) ? "planned for an advantage of" : "must be noticed from";
 }
 
 // A margin of a ratio is a factor up or down: 20 % up is 17 % down.
@@ -135,7 +117,11 @@ std::string margins_fact(const Test& test) {
                                   both_ends(test, effect, *margin)));
   };
   if (test.allow.value_or(0) != 0) add("allowed up to", test.allow);
-  add(detect_words(test), test.detect);
+  const bool is_within = sides_of(test.claim).relation == "within";
+  add(is_within        ? "must be less than"
+      : is_proof(test) ? "planned for an advantage of"
+                       : "must be noticed from",
+      test.detect);
   add("would be noticed from", test.detectable);
   constexpr double all = 0.9999;  // digits of what is missing to 1 say nothing of more
   const double power = test.power.value_or(0);
@@ -347,7 +333,7 @@ std::vector<Fact> facts(const Test& test) {
   const auto add = [&result](const char* label, std::string sentence) {
     if (!sentence.empty()) result.push_back({label, std::move(sentence)});
   };
-  const Channel channel = deciding_channel(test);
+  const Effect effect = deciding_channel(test).effect;
   if (test.expected != Verdict::pass && test.verdict != test.expected &&
       test.verdict != Verdict::skipped)
     add("verdict", verdict_text(test));
@@ -359,7 +345,13 @@ std::vector<Fact> facts(const Test& test) {
   else
     add("null hypothesis", test.null_hypothesis);
   if (is_evidence(test)) {
-    if (channel.effect.estimate) add("estimate", estimate_fact(channel.effect));
+    if (effect.estimate) {
+      const double theta = *effect.estimate;
+      const std::string ln =
+          is_ratio(effect) ? fmt::format(" (ln {})", with_sign(theta, false)) : "";
+      add("estimate", fmt::format("{} {}{}{}", effect_name(effect), theta_text(theta, effect), ln,
+                                  named_range_text(effect)));
+    }
     add("evidence", evidence_text(test));
     add(is_proof(test) ? "against it" : "for a pass", exclusion_text(test));
     add("margins", margins_fact(test));

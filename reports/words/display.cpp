@@ -128,12 +128,6 @@ std::string one_in(const Number& log10_p) {
   return "1 in " + in_commas(std::round(count / step) * step);
 }
 
-std::set<std::string> estimators_of(const Test& test) {
-  std::set<std::string> names;
-  for (const Sample& sample : test.samples) names.insert(sample.estimator);
-  return names;
-}
-
 /// "4 runs in 100": a rate in two digits, of the fewest runs that a whole number is meant of.
 std::string in_many(double rate, const char* noun) {
   double runs = 100;
@@ -166,7 +160,9 @@ void add_suspects(const Suite& suite, Standing how, std::vector<Suspect>& all) {
   std::map<std::string, int> claims;
   std::vector<Suspect> found;
   for (const Test& test : suite.tests) {
-    for (const std::string& name : estimators_of(test)) ++claims[name];
+    std::set<std::string> estimators;
+    for (const Sample& sample : test.samples) estimators.insert(sample.estimator);
+    for (const std::string& name : estimators) ++claims[name];
     if (standing(test) != how) continue;
     const std::string subject = subject_of(test);
     auto suspect = std::ranges::find(found, subject, &Suspect::name);
@@ -374,26 +370,20 @@ std::vector<Step> steps(const Test& test) {
   const auto add = [&](const char* label, std::string paste) {
     all.push_back({.label = label, .paste = std::move(paste)});
   };
-  const auto set = [&](const std::string& key, const std::string& value) {
-    // A claim of the command line has no file.
-    if (test.file.empty())
-      add("to decide", with_option(test.replay, "--" + key + " " + value));
-    else
-      add("write into the test", key + ": " + value);
-  };
   if (const auto& advice = test.advice; advice && advice->key.empty())
     all.push_back(
         {.label = test.verdict == Verdict::fail ? "note" : "to decide", .words = advice->words});
+  else if (advice && test.file.empty())  // a claim of the command line
+    add("to decide", with_option(test.replay, "--" + advice->key + " " + advice->value));
   else if (advice)
-    set(advice->key, advice->value);
-  const Effect effect = deciding_channel(test).effect;
+    add("write into the test", advice->key + ": " + advice->value);
   if (is_missed(test)) {
     std::string words = "leave `expect` out, if there is no bug";
     if (test.detect) {
-      const double half = effect.relative ? 50 * *test.detect : *test.detect / 2;
+      const bool relative = deciding_channel(test).effect.relative;
       words = fmt::format(
           "write `detect: {:.2g}{}`; if it passes again, any bug is smaller: leave `expect` out",
-          half, effect.relative ? "%" : "");
+          relative ? 50 * *test.detect : *test.detect / 2, relative ? "%" : "");
     }
     all.push_back({.label = "to decide", .words = words});
   }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/classification.hpp>
 #include <boost/algorithm/string/replace.hpp>
 #include <boost/locale/utf.hpp>
 #include <cctype>
@@ -161,8 +162,7 @@ std::string clean(std::string_view text) {
 
 std::string one_line(std::string_view text) {
   std::string result = clean(text);
-  std::replace_if(
-      result.begin(), result.end(), [](char c) { return c == '\n' || c == '\t'; }, ' ');
+  std::ranges::replace_if(result, boost::is_any_of("\n\t"), ' ');
   return result;
 }
 
