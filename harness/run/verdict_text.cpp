@@ -137,7 +137,8 @@ std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& chann
   if (channel.evidence.distance && !has_ends) return passed_by_empty_interval(channel);
   const double excluded = excluded_beyond(outcome, channel);
   const std::string interval =
-      fmt::format("the {}{}", reports::interval_name(channel.effect), in_channel(outcome, channel));
+      fmt::format("the {} interval{}", reports::confidence_text(channel.effect.confidence),
+                  in_channel(outcome, channel));
   const bool one_sided = !channel.regions.two_sided();
   const double towards = channel.regions.relation == Relation::at_least ? -excluded : excluded;
   if (one_sided && towards <= 0) {

@@ -63,7 +63,7 @@ std::string test_properties(const Test& test) {
                  {"estimate", exact(effect.estimate)},
                  {"low", exact(effect.low)},
                  {"high", exact(effect.high)},
-                 {"confidence", interval_name(effect).empty() ? "" : exact(effect.confidence)},
+                 {"confidence", range_text(effect).empty() ? "" : exact(effect.confidence)},
                  {"statistic", exact(channel.statistic)},
                  {"p_value", exact(channel.p_value, channel.log10_p)},
                  {"log10_p", exact(channel.log10_p)},
@@ -110,14 +110,12 @@ std::string outcome_element(const Test& test) {
 // GitLab and Jenkins know a case by its class name and name, and drop a second one silently.
 class UniqueNames {
  public:
-  using Name = std::pair<std::string, std::string>;
-
-  Name of(const std::string& group, const std::string& name) {
-    Name unique{tidy(group, "suite"), tidy(name, "test")};
+  std::string attributes(const std::string& group, const std::string& name) {
+    std::pair unique{tidy(group, "suite"), tidy(name, "test")};
     const std::string first = unique.second;
     for (int copy = 2; !taken_.insert(unique).second; ++copy)
       unique.second = fmt::format("{} ({})", first, copy);
-    return unique;
+    return attribute("classname", unique.first) + attribute("name", unique.second);
   }
 
  private:
@@ -126,25 +124,20 @@ class UniqueNames {
     return line.empty() ? otherwise : cap(line, attribute_limit / 2);
   }
 
-  std::set<Name> taken_;
+  std::set<std::pair<std::string, std::string>> taken_;
 };
-
-std::string case_opening(const UniqueNames::Name& name) {
-  return "  <testcase" + attribute("classname", name.first) + attribute("name", name.second);
-}
 
 std::string test_case(const Suite& suite, const Test& test, UniqueNames& names) {
   const std::size_t slash = test.id.find('/');
-  std::string out = case_opening(
-      slash == std::string::npos ? names.of(suite.name, test.name)
-                                 : names.of(test.id.substr(0, slash), test.id.substr(slash + 1)));
+  std::string out = "  <testcase";
+  out += slash == std::string::npos
+             ? names.attributes(suite.name, test.name)
+             : names.attributes(test.id.substr(0, slash), test.id.substr(slash + 1));
   if (!test.file.empty()) out += attribute("file", test.file);
   if (test.line > 0) out += fmt::format(" line=\"{}\"", test.line);
   out += time_attribute(total_cost(test).seconds) + ">\n";
-  out += test_properties(test);
-  out += outcome_element(test);
-  out += element("system-out", "", plain_text(test));
-  return out + "  </testcase>\n";
+  return out + test_properties(test) + outcome_element(test) +
+         element("system-out", "", plain_text(test)) + "  </testcase>\n";
 }
 
 struct Counts {
@@ -200,8 +193,8 @@ std::string test_suite(const Record& record, const Suite& suite, UniqueNames& na
 }
 
 std::string series_case(const Ledger& ledger, const LedgerSeries& series, UniqueNames& names) {
-  std::string out =
-      case_opening(names.of("ledger", series_name(ledger, series))) + time_attribute(0) + ">\n";
+  std::string out = "  <testcase" + names.attributes("ledger", series_name(ledger, series)) +
+                    time_attribute(0) + ">\n";
   out += properties("   ", {{"series", series.series},
                             {"nights", std::to_string(series.nights.size())},
                             {"estimate", exact(series.estimate)},

@@ -85,15 +85,7 @@ Result result_of(const Test& test, std::uint64_t count) {
       fmt::format("survives {}: an effect of {} or more would have been found", samples, least));
 }
 
-/// The best results on a mutant by method.
-using Best = std::map<std::string, Result>;
-
-/// The mutants that were tested, and those that some method killed, plugins counted once.
-struct Plugins {
-  std::set<std::string> tested, killed;
-};
-
-std::string totals_of(const KillMatrix& matrix, const Plugins& plugins) {
+std::string rows_killed(const KillMatrix& matrix) {
   std::vector<std::string> rows;
   for (std::size_t m = 0; m < matrix.methods.size(); ++m) {
     const auto tested = [m](const KillRow& row) { return row.cells[m].has_value(); };
@@ -102,15 +94,14 @@ std::string totals_of(const KillMatrix& matrix, const Plugins& plugins) {
                                std::ranges::count_if(matrix.rows, killed),
                                std::ranges::count_if(matrix.rows, tested)));
   }
-  return fmt::format("{} of {} mutants are killed. Rows that each method kills:{}.",
-                     plugins.killed.size(), plugins.tested.size(), boost::join(rows, ","));
+  return boost::join(rows, ",");
 }
 
 }  // namespace
 
 KillMatrix kill_matrix(const Suite& suite) {
   KillMatrix matrix{.legend = legend};
-  std::map<std::size_t, Best> mutants;
+  std::map<std::size_t, std::map<std::string, Result>> mutants;  // the best results by method
   for (const Test& test : suite.tests) {
     const std::optional<Mutant> mutant = mutant_of(suite, test);
     if (!mutant || test.verdict == Verdict::skipped) continue;
@@ -125,19 +116,20 @@ KillMatrix kill_matrix(const Suite& suite) {
   std::ranges::stable_sort(matrix.methods, {}, [](const std::string& method) {
     return std::ranges::find(textbook, method) - textbook.begin();
   });
-  Plugins plugins;
+  std::set<std::string> tested, killed;  // plugins counted once
   for (const auto& [mutant, best] : mutants) {
     const EstimatorSummary& estimator = suite.estimators[mutant];
     KillRow row{estimator.name, estimator.defect, {}};
-    plugins.tested.insert(estimator.plugin);
+    tested.insert(estimator.plugin);
     for (const std::string& method : matrix.methods) {
       const auto one = best.find(method);
       row.cells.push_back(one == best.end() ? std::optional<KillCell>() : one->second.cell);
-      if (one != best.end() && one->second.cell.killed) plugins.killed.insert(estimator.plugin);
+      if (one != best.end() && one->second.cell.killed) killed.insert(estimator.plugin);
     }
     matrix.rows.push_back(std::move(row));
   }
-  matrix.totals = totals_of(matrix, plugins);
+  matrix.totals = fmt::format("{} of {} mutants are killed. Rows that each method kills:{}.",
+                              killed.size(), tested.size(), rows_killed(matrix));
   return matrix;
 }
 

@@ -184,11 +184,6 @@ std::string range_text(const Effect& effect) {
   return is_finite(effect.high) ? "at most " + end(effect.high) : "";
 }
 
-std::string interval_name(const Effect& effect) {
-  return range_text(effect).empty() ? std::string()
-                                    : confidence_text(effect.confidence) + " interval";
-}
-
 std::string effect_text(const Effect& effect) {
   if (!effect.estimate) return {};
   const std::string text = theta_text(*effect.estimate, effect);
@@ -198,7 +193,8 @@ std::string effect_text(const Effect& effect) {
 
 std::string named_range_text(const Effect& effect) {
   const std::string range = range_text(effect);
-  return range.empty() ? range : fmt::format(" ({}: {})", interval_name(effect), range);
+  if (range.empty()) return {};
+  return fmt::format(" ({} interval: {})", confidence_text(effect.confidence), range);
 }
 
 std::string named_effect_text(const Effect& effect) {

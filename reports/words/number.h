@@ -80,9 +80,6 @@ bool lies_below(const Effect&, double theta);
 /// "-0.094 % to +0.156 %", "at least +0.12 %"; empty where there is none.
 std::string range_text(const Effect&);
 
-/// "99.98 % interval"; empty where there is no interval.
-std::string interval_name(const Effect&);
-
 /// Estimate and interval: "+0.31 % (+0.12 % to +0.5 %)"; empty where there is no estimate.
 std::string effect_text(const Effect&);
 
