@@ -46,16 +46,15 @@ std::string annotation(const char* kind, const Test& test) {
                      message(text.empty() ? headline(test) : text));
 }
 
-std::string all_of(const char* kind, const std::vector<std::string>& lines) {
-  const bool all = lines.size() <= most_annotations;
-  const std::size_t shown = all ? lines.size() : most_annotations - 1;
-  const std::string out = fmt::format(
-      "{}", fmt::join(lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(shown), ""));
-  if (all) return out;
-  return out + fmt::format(
-                   "::{} title={}::{} more are not shown here; the summary of the job and "
-                   "the reports have all\n",
-                   kind, property("assay"), lines.size() - shown);
+std::string all_of(const char* kind, std::vector<std::string> lines) {
+  if (const std::size_t count = lines.size(); count > most_annotations) {
+    lines.resize(most_annotations - 1);
+    lines.push_back(fmt::format(
+        "::{} title=assay::{} more are not shown here; the summary of the job and the reports "
+        "have all\n",
+        kind, count - lines.size()));
+  }
+  return fmt::format("{}", fmt::join(lines, ""));
 }
 
 }  // namespace

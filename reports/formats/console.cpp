@@ -30,8 +30,6 @@ bool is_single(const Record& record) {
   return record.suites.size() == 1 && record.suites[0].tests.size() == 1;
 }
 
-bool is_trouble(Standing how) { return how <= Standing::undecided; }
-
 std::string spaces(int count) {
   return std::string(static_cast<std::size_t>(std::max(0, count)), ' ');
 }
@@ -295,16 +293,14 @@ class Screen {
       const std::string right = cost > 0 ? spent(suite) : std::string();
       line(pad_right(left, name + gap + text + cost - columns(right)) + right,
            marked ? colour_of(how) : "");
-      if (in_full()) about(suite);
+      if (in_full()) {
+        indented(suite.about);
+        indented(levels_text(suite) + (suite.file.empty() ? "" : ", file " + suite.file));
+        if (suite.tests.size() == 1) estimators(suite);
+      }
       if (options_.detail > 0) rows(suite);
       if (in_full()) kills(suite);
     }
-  }
-
-  void about(const Suite& suite) {
-    indented(suite.about);
-    indented(levels_text(suite) + (suite.file.empty() ? "" : ", file " + suite.file));
-    if (suite.tests.size() == 1) estimators(suite);
   }
 
   /// A line a test. In full the names are whole, and claims that need a look have all their facts.

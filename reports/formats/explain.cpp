@@ -81,8 +81,8 @@ std::string explain(const Suite& suite, const Test& test, int width, const Ledge
   }
   if (next.empty()) return out;
   const Standing how = standing(test);
-  const bool nothing = how > Standing::undecided && how < Standing::not_run && next.size() == 1 &&
-                       next[0].label == "again";
+  const bool nothing =
+      !is_trouble(how) && how != Standing::not_run && next.size() == 1 && next[0].label == "again";
   out += "\nWhat to do next\n";
   for (const Step& step : next) {
     out += "  " + (nothing ? "Nothing. To run it again" : step.label) + ":\n";

@@ -32,7 +32,6 @@ Json leaf(double value) {
   if (std::isfinite(value)) return value;
   return round_trip(value);
 }
-Json leaf(const Number& value) { return value ? leaf(*value) : Json(nullptr); }
 Json leaf(const std::string& value) { return clean(value); }
 Json leaf(const Texels& value) { return base64(bytes_of(value.values)); }
 Json leaf(Verdict value) { return to_string(value); }

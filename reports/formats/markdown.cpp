@@ -154,12 +154,10 @@ std::string markdown(const Record& record, std::size_t limit) {
   page.add(title(record), rows, 0);
   page.add(statements_section(record), rows, statement_count(record));
   if (!record.ledger.file.empty()) page.add(ledger_section(record.ledger), rows, 0);
-  const std::vector<const Test*> tests = tests_of(record);
+  std::vector<const Test*> tests = tests_of(record);
+  std::ranges::stable_partition(tests, is_failed, [](const Test* test) { return standing(*test); });
   for (const Test* test : tests) {
-    if (is_failed(standing(*test))) page.add(problem(*test), problems);
-  }
-  for (const Test* test : tests) {
-    if (standing(*test) == Standing::undecided) page.add(problem(*test), problems);
+    if (is_trouble(standing(*test))) page.add(problem(*test), problems);
   }
   for (const Suite& suite : record.suites) add_table(suite, page, rows);
   std::string out = page.take();

@@ -479,6 +479,7 @@ bool is_evidence(const Test&);
 enum class Standing { broken, no_verdict, undecided, holds, caught, not_run };
 Standing standing(const Test&);
 inline bool is_failed(Standing how) { return how <= Standing::no_verdict; }
+inline bool is_trouble(Standing how) { return how <= Standing::undecided; }
 
 /// The tests of all suites.
 std::vector<const Test*> tests_of(const Record&);

@@ -48,11 +48,6 @@ int logarithmic(double value, double step) {
 constexpr std::array codings = {Coding{"linear", 0.125, false, linear},
                                 Coding{"logarithm", 1.0 / 24, true, logarithmic}};
 
-/// Small numbers of either sign as small numbers.
-std::uint16_t folded(int code) {
-  return static_cast<std::uint16_t>(code < 0 ? -2 * code - 1 : 2 * code);
-}
-
 /// The low bytes of all codes, then the high ones, component by component: both compress well.
 std::string plane(const Map& map, const Coding& coding) {
   const std::size_t components = map.components.size();
@@ -63,7 +58,9 @@ std::string plane(const Map& map, const Coding& coding) {
     for (std::size_t i = 0; i < pixels; ++i, ++at) {
       const double value = static_cast<double>(map.texels.values[i * components + c]);
       const int code = coding.code(value, coding.step);
-      const std::uint16_t stored = folded(coding.differences ? code - before : code);
+      const int change = coding.differences ? code - before : code;
+      // Small numbers of either sign become small numbers.
+      const auto stored = static_cast<std::uint16_t>(change < 0 ? -2 * change - 1 : 2 * change);
       before = code;
       bytes[at] = static_cast<char>(stored & 255);
       bytes[map.texels.values.size() + at] = static_cast<char>(stored >> 8);
