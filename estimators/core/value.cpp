@@ -21,14 +21,11 @@ std::string quoted(const std::string& text) {
   return boost::replace_all_copy(out.str(), "\n", "\\n");
 }
 
-const char* kind_name(Value::Kind kind) {
-  constexpr const char* names[] = {"nothing", "text", "a list", "a map"};
-  return names[static_cast<int>(kind)];
-}
-
 [[noreturn]] void wrong_type(const Value& value, std::string_view what, const char* wanted) {
-  const std::string found =
-      value.kind() == Value::Kind::scalar ? "`" + value.text() + "`" : kind_name(value.kind());
+  constexpr const char* kinds[] = {"nothing", "text", "a list", "a map"};
+  const std::string found = value.kind() == Value::Kind::scalar
+                                ? "`" + value.text() + "`"
+                                : kinds[static_cast<int>(value.kind())];
   throw InputError(value.where(),
                    std::string(what) + " must be " + wanted + ", but it is " + found);
 }

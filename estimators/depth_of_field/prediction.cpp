@@ -41,14 +41,6 @@ double by_covariance(const Plane& plane, const Lens& lens) {
       .lens_variance(lens);
 }
 
-/// The waves of a step: a few an octave from `highest` down. It has waves of every length; how much
-/// of each is not asked for.
-std::vector<MaskWave> step_waves(double highest) {
-  std::vector<MaskWave> out;
-  for (double k = highest; k > highest / 4096; k *= 0.84) out.push_back({k, 1});
-  return out;
-}
-
 /// The light that an edge sends to the camera, as frequencies there. The constant and the wave of
 /// the surface behind are carried to the occluder. They and the occluder's own are multiplied by
 /// the waves of a step up to `highest`.
@@ -60,10 +52,10 @@ std::vector<CameraFrequency> edge_waves(const Edge& edge, const Lens& lens, doub
   }
   waves.push_back(texture_wave(*edge.front));
   waves.push_back({0, 0, 1});
-  return Spectrum(std::move(waves))
-      .occlude(step_waves(highest))
-      .travel(edge.front->depth)
-      .at_camera(lens);
+  // A step has waves of every length, here a few an octave. How much of each is not asked for.
+  std::vector<MaskWave> step;
+  for (double k = highest; k > highest / 4096; k *= 0.84) step.push_back({k, 1});
+  return Spectrum(std::move(waves)).occlude(step).travel(edge.front->depth).at_camera(lens);
 }
 
 /// Traces the pass and looks at its lines.

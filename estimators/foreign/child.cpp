@@ -189,11 +189,6 @@ ssize_t write_quietly(int descriptor, std::string_view bytes) {
 
 bool would_block(int error) { return error == EAGAIN || error == EINTR; }
 
-int milliseconds_until(Deadline deadline) {
-  const auto left = std::chrono::ceil<milliseconds>(deadline - steady_clock::now());
-  return static_cast<int>(std::clamp(left, milliseconds{0}, glance).count());
-}
-
 }  // namespace
 
 Child::Child(const Launch& launch) {
@@ -221,7 +216,9 @@ bool Child::wait_for(int descriptor, short event, Deadline deadline) {
   while (true) {
     stop_if_asked();
     std::array<pollfd, 2> watched = {{{descriptor, event, 0}, {errors_, POLLIN, 0}}};
-    poll(watched.data(), errors_ >= 0 ? 2 : 1, milliseconds_until(deadline));
+    const auto left = std::chrono::ceil<milliseconds>(deadline - steady_clock::now());
+    const auto wait = std::clamp(left, milliseconds{0}, glance).count();
+    poll(watched.data(), errors_ >= 0 ? 2 : 1, static_cast<int>(wait));
     if (errors_ >= 0 && watched[1].revents != 0) keep_errors(some_errors);
     if (watched[0].revents != 0) return true;
     // A program that it started may hold the pipe open after it has gone.

@@ -37,11 +37,6 @@ ssize_t read_some(int descriptor, char* to, std::size_t most) {
   }
 }
 
-/// Zero bytes fill up a block behind a member of gzip data.
-void skip_zeros(z_stream& stream) {
-  for (; stream.avail_in > 0 && *stream.next_in == 0; ++stream.next_in) --stream.avail_in;
-}
-
 }  // namespace
 
 bool is_standard_input(const std::string& file) {
@@ -150,7 +145,8 @@ bool ByteSource::unpack() {
       refuse("its gzip data end too early: the file is cut short;\n  copy or write it again");
     }
     if (inflater_->between) {
-      skip_zeros(stream);
+      // Zero bytes fill up a block behind a member of gzip data.
+      for (; stream.avail_in > 0 && *stream.next_in == 0; ++stream.next_in) --stream.avail_in;
       if (stream.avail_in == 0) continue;
       inflateReset(&stream);
     }
