@@ -221,7 +221,10 @@ std::string where_pilots_stopped(const Question& question, const Pilots& pilots)
       fault = pilots.fault(pilot_name_of(subject.estimator->name, averages_purpose));
     }
     if (fault == nullptr) continue;
-    if (is_recorded(subject)) return fault->words;  // They name the file.
+    // The words of a file name it.
+    if (is_recorded(subject)) {
+      return fmt::format("`{}`: {}", subject.estimator->name, fault->words);
+    }
     return sentence_of(*fault, subject.estimator->name, " in the pilot");
   }
   return "";

@@ -109,7 +109,8 @@ std::string where_it_stopped(const TestWork& work) {
   for (std::size_t subject = 0; subject < samples.size(); ++subject) {
     if (const Fault* fault = std::get_if<Fault>(&samples[subject])) {
       const Subject& side = work.outcome.question.subjects[subject];
-      return is_recorded(side) ? fault->words : sentence_of(*fault, side.estimator->name);
+      return is_recorded(side) ? fmt::format("`{}`: {}", side.estimator->name, fault->words)
+                               : sentence_of(*fault, side.estimator->name);
     }
   }
   return "";

@@ -22,7 +22,7 @@ constexpr double chance = 1e-6;
 constexpr std::size_t most_sampled = 16384;
 constexpr std::size_t fewest_sampled = 64;
 // A filter spreads one sample over many pixels, so that a value may follow from those beside it.
-constexpr double least_frequency = 1.0 / 3;
+constexpr double least_frequency = 1.0 / 8;
 // Pairs whose indices differ by at most so much show how alike others are.
 constexpr std::size_t most_apart = 8;
 constexpr double errors_beyond = 8;

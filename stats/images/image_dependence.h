@@ -49,7 +49,7 @@ struct ImageDependence {
 // images agree in such values with probability q at most. A tile is repeated if q times the number
 // of comparisons is below 1e-6. The value that weighs most in q is left out: pixels may be black
 // together. Other pixels of a tile may depend on each other, as a filter spreads samples over many.
-// No frequency is taken below 1/3 for that.
+// No frequency is taken below 1/8 for that.
 //
 // At most 16384 elements are ranked among the side's images. The mean correlation of neighbours,
 // and of equal indices across, is held against that of other pairs with indices near each other. It

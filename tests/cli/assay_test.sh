@@ -337,7 +337,7 @@ for i in range(24):
   contains out 'pixel x 30, y 9 is 100 % too dark'
   cp good1.pfm good99.pfm
   expect 1 images --candidate 'good*.pfm' --reference exact.pfm
-  contains out '    `good99.pfm` is the same picture as `good1.pfm`'
+  contains out '    `candidate`: `good99.pfm` is the same picture as `good1.pfm`'
   expect 1 images --candidate 'off*.pfm' --reference exact.pfm
   contains out 'x 20-39, y 0-19 is 100 % too dark'
 }

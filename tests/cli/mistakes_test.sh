@@ -114,9 +114,9 @@ test_mistakes_on_the_command_line_say_what_to_write() {
   answers 2 'cannot read `t.yaml`: there is no such file; did you mean `s.yaml`?' run t.yaml
   answers 2 "quote the pattern, as in 'new/*.pfm'" images --candidate new/1.pfm new/2.pfm
   answers 2 '`--estimator x=recorded,file=s.yaml` reads' check 'mean(x) == 1' --estimator x=s.yaml
-  mkdir data && seq 200 >data/norm.txt
-  answers 2 "\`assay check 'mean(norm) == 1' --estimator norm=recorded,file=data/norm.txt\` reads" \
-    check 'mean(data/norm.txt) == 1'
+  mkdir d && seq 200 >d/n.txt
+  answers 2 "\`assay check 'mean(n) == 1' --estimator n=recorded,file=d/n.txt\` reads" \
+    check 'mean(d/n.txt) == 1'
   answers 2 'unknown command `s.yaml`; did you mean `assay run s.yaml`?' s.yaml
   answers 2 'unknown command `mean(x) == 1`; did you mean `assay check' 'mean(x) == 1'
   answers 2 'has no option `--detect`; write it into the suite, as the key `detect`' \
