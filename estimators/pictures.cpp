@@ -88,15 +88,6 @@ std::vector<std::string> matching_channels(const PictureFile& file, const std::s
   return {chosen.begin(), chosen.end()};
 }
 
-/// Layers as in the alphabet, the last names by rank.
-void sort_channels(std::vector<std::string>& names) {
-  const auto key = [](const std::string& name) {
-    return std::tuple(layer_of(name), rank_of(name), last_of(name));
-  };
-  std::ranges::sort(names,
-                    [&](const std::string& a, const std::string& b) { return key(a) < key(b); });
-}
-
 /// The third coordinate of a normal or a position has the others beside it.
 bool is_depth(const std::string& name, const std::vector<std::string>& all) {
   const std::vector<std::string> depths{"Z", "ZBack", "Depth", "depth"};
@@ -209,10 +200,8 @@ void take_rows(const PictureView& view, std::span<const float> source, std::span
 
 void round_all(const PictureView& view, std::span<float> texels) {
   const std::size_t components = view.channels.components.size();
-  std::vector<bool> alpha;
-  for (const std::string& component : view.channels.components) {
-    alpha.push_back(last_of(component) == "A");
-  }
+  const auto is_alpha = [](const std::string& name) { return last_of(name) == "A"; };
+  const std::vector<bool> alpha = mapped(view.channels.components, is_alpha);
   for (std::size_t i = 0; i < texels.size(); ++i) {
     texels[i] = rounded(texels[i], view.rounding, alpha[i % components]);
   }
@@ -378,7 +367,10 @@ PictureChannels choose_channels(const PictureFile& file, const std::string& patt
     channels.names = usual_channels(file);
   } else {
     channels.names = matching_channels(file, patterns);
-    sort_channels(channels.names);
+    // Layers as in the alphabet, the last names by rank.
+    std::ranges::sort(channels.names, {}, [](const std::string& name) {
+      return std::tuple(layer_of(name), rank_of(name), last_of(name));
+    });
   }
   file.require(!channels.names.empty(), "no channel is chosen");
   name_components(channels, file.channel_names());

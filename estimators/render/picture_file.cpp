@@ -50,16 +50,14 @@ float to_half(float value) {
   return imath_half_to_float(imath_float_to_half(value));
 }
 
-// The inverse of from_srgb.
-double to_srgb(double linear) {
-  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
-}
-
 float to_png(float value, double levels, bool alpha) {
   if (std::isnan(value)) return value;
   const double clipped = std::clamp(double{value}, 0., 1.);
   if (alpha) return static_cast<float>(std::round(clipped * levels) / levels);
-  return static_cast<float>(render::from_srgb(std::round(to_srgb(clipped) * levels) / levels));
+  // The inverse of from_srgb.
+  const double code =
+      clipped <= 0.0031308 ? 12.92 * clipped : 1.055 * std::pow(clipped, 1 / 2.4) - 0.055;
+  return static_cast<float>(render::from_srgb(std::round(code * levels) / levels));
 }
 
 }  // namespace

@@ -12,12 +12,6 @@ namespace assay::steerable {
 
 namespace {
 
-std::size_t band_of(std::size_t index) {
-  std::size_t band = 0;
-  while ((band + 1) * (band + 1) <= index) ++band;
-  return band;
-}
-
 std::string text_of(double x) {
   std::ostringstream text;
   text << x;
@@ -29,7 +23,8 @@ std::string text_of(double x) {
 sky::Harmonics lobe_coefficients(const Lobe& lobe, const render::Vector3& n) {
   sky::Harmonics a = sky::harmonics(n);
   for (std::size_t i = 0; i < a.size(); ++i) {
-    a[i] = i < lobe.coefficients ? a[i] * sky::cosine_factor(band_of(i)) : 0;
+    const auto band = static_cast<std::size_t>(std::sqrt(static_cast<double>(i)));
+    a[i] = i < lobe.coefficients ? a[i] * sky::cosine_factor(band) : 0;
   }
   a[0] += lobe.offset;
   return a;
