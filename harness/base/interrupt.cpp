@@ -13,12 +13,6 @@ static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may writ
 
 extern "C" void note_interrupt(int) { was_asked.store(true); }
 
-bool is_ignored(int signal) {
-  struct sigaction action {};
-  sigaction(signal, nullptr, &action);
-  return action.sa_handler == SIG_IGN;
-}
-
 void watch(int signal) {
   struct sigaction action {};
   action.sa_handler = note_interrupt;
@@ -35,7 +29,9 @@ void watch_interrupts() {
   watch(SIGINT);
   // CI jobs and batch systems send SIGTERM: programs that this one started must not outlive it.
   watch(SIGTERM);
-  if (!is_ignored(SIGHUP)) watch(SIGHUP);
+  struct sigaction hang_up {};
+  sigaction(SIGHUP, nullptr, &hang_up);
+  if (hang_up.sa_handler != SIG_IGN) watch(SIGHUP);
   // A write beyond the file size limit then fails as on a full disk.
   std::signal(SIGXFSZ, SIG_IGN);
 }

@@ -18,14 +18,6 @@ namespace assay::harness {
 
 namespace {
 
-Texts option_names(const CLI::App& app) {
-  Texts names;
-  for (const CLI::Option* option : app.get_options()) {
-    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-  }
-  return names;
-}
-
 Texts subcommand_names(const CLI::App& app) {
   return mapped(app.get_subcommands({}), [](const CLI::App* sub) { return sub->get_name(); });
 }
@@ -68,7 +60,11 @@ void refuse_extras(const CLI::App& sub) {
       refuse({}, "`{}` is one argument too many; {}", extra, mend_of_extra(sub.get_name(), extra));
     }
     const std::string name = extra.substr(0, extra.find('='));
-    const std::string near = nearest(name, option_names(sub));
+    Texts names;
+    for (const CLI::Option* option : sub.get_options()) {
+      for (const std::string& known : option->get_lnames()) names.push_back("--" + known);
+    }
+    const std::string near = nearest(name, names);
     std::string mend = near.empty() ? fmt::format("see `assay {} --help`", sub.get_name())
                                     : fmt::format("did you mean `{}`?", near);
     if (const std::string key = key_of_a_suite(sub, name); !key.empty()) {

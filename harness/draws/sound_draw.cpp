@@ -46,19 +46,15 @@ bool settle(double& x, stats::Span range, double slack) {
   return true;
 }
 
-/// Adds single precision's rounding of the bounds themselves.
-double slack_of_interval(double slack, stats::Span range) {
-  return slack * range.width() +
-         single_rounding * std::max(std::abs(range.low), std::abs(range.high));
-}
-
 /// Settles all coordinates of a point. u + v may exceed 1 by rounding: cells allow for it.
 bool settle(Point& p, const Sampler& sampler) {
   const double slack = std::max(least_slack, sampler.rounding());
   const Domain domain = sampler.domain();
   if (domain == Domain::interval) {
     const auto [low, high] = sampler.bounds();
-    return settle(p[0], {low, high}, slack_of_interval(slack, {low, high}));
+    // Single precision rounds the bounds themselves.
+    const double rounding = single_rounding * std::max(std::abs(low), std::abs(high));
+    return settle(p[0], {low, high}, slack * (high - low) + rounding);
   }
   if (domain == Domain::sphere) return true;
   if (domain == Domain::hemisphere) return settle(p[2], {0, 2}, slack);

@@ -104,11 +104,6 @@ void remove_beginnings(std::vector<std::string>& names) {
   }
 }
 
-std::string without_leading_zeros(const std::string& text) {
-  static const std::regex zeros("(^|[^0-9])0+(?=[0-9])");
-  return std::regex_replace(text, zeros, "$1");
-}
-
 /// Keys tell a side's pictures apart: their names without the beginning and the end that all have
 /// in common.
 std::vector<std::string> keys_of(const Setup& side) {
@@ -116,7 +111,8 @@ std::vector<std::string> keys_of(const Setup& side) {
       *side.observations(), [&](std::size_t i) { return side.place_of({.index = i}); });
   remove_beginnings(names);
   remove_beginnings(names);  // which are the ends now
-  for (std::string& name : names) name = without_leading_zeros(name);
+  static const std::regex leading_zeros("(^|[^0-9])0+(?=[0-9])");
+  for (std::string& name : names) name = std::regex_replace(name, leading_zeros, "$1");
   return names;
 }
 

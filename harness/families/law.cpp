@@ -111,15 +111,6 @@ Evidence from_probabilities(const Points& x, const Points& y) {
 // Bound on the rounding of ln p.
 constexpr double rounding_of_log_p = 1e-6;
 
-/// True if an interval at this confidence may begin above theta, or end beyond it. This takes one
-/// test, where an exact interval of two proportions takes some hundred.
-bool may_begin_above(double theta, const Evidence& evidence, double confidence) {
-  return evidence.at(theta).log_p_upper <= std::log(1 - confidence) + rounding_of_log_p;
-}
-bool may_end_beyond(double theta, const Evidence& evidence, double confidence) {
-  return evidence.at(theta).log_p_lower >= std::log((1 - confidence) / 2) - rounding_of_log_p;
-}
-
 /// theta = the larger distance, of points or of the masses without one. Bonferroni rejects "at
 /// most" if either part does at half the level. Intersection of unions rejects "at least" if both
 /// do.
@@ -135,10 +126,11 @@ Evidence larger_of(const Evidence& points, const Evidence& missing) {
   const auto interval = [points, missing](double confidence) -> Interval {
     const double halved = 1 - (1 - confidence) / 2;
     Interval both{points.interval(halved).low, points.interval(confidence).high, confidence};
-    if (may_begin_above(both.low, missing, halved)) {
+    // One test shows where the other interval cannot matter. To compute it takes some hundred.
+    if (missing.at(both.low).log_p_upper <= std::log(1 - halved) + rounding_of_log_p) {
       both.low = std::max(both.low, missing.interval(halved).low);
     }
-    if (may_end_beyond(both.high, missing, confidence)) {
+    if (missing.at(both.high).log_p_lower >= std::log((1 - confidence) / 2) - rounding_of_log_p) {
       both.high = std::max(both.high, missing.interval(confidence).high);
     }
     return both;

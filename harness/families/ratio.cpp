@@ -372,21 +372,6 @@ double hidden_deviation(const Seen& seen) {
   return std::max(spacing, 2 * rounding_of(seen.question, 0, seen.channel));
 }
 
-/// Passes a constant sample if the claim bounds its variance from above and forbids no region, as
-/// each channel of `worst_variance`. Returns nullopt for other claims, for samples that vary, or if
-/// rounding may hide a variance beyond the bound.
-std::optional<ConstantVerdict> judge_constant_variance(const Seen& seen, const Regions& regions) {
-  if (regions.relation != Relation::at_most || regions.has_forbidden() || !is_constant(seen, 0)) {
-    return {};
-  }
-  const double hidden = hidden_deviation(seen);
-  if (hidden * hidden > seen.reference().value) return {};
-  return ConstantVerdict{reports::Verdict::pass,
-                         fmt::format("every observation is {:.10g}, so the variance seen is 0, "
-                                     "which is not too large; unseen values are not ruled out",
-                                     seen.moments(0).mean)};
-}
-
 constexpr MethodTraits for_normal_values{.of_normal_values = true,
                                          .over_looks = stats::LookLaw::independent_increments};
 
@@ -419,9 +404,20 @@ class VarianceTheta : public LogTheta {
     return question.of_two() ? rows_beside_primaries(question) : "";
   }
 
+  /// Passes a constant sample if the claim bounds its variance from above and forbids no region, as
+  /// each channel of `worst_variance`. Returns nullopt for other claims, for samples that vary, or
+  /// if rounding may hide a variance beyond the bound.
   std::optional<ConstantVerdict> settled(const Seen& seen, const Regions& regions) const override {
-    if (seen.question.of_two()) return std::nullopt;
-    return judge_constant_variance(seen, regions);
+    if (seen.question.of_two() || regions.relation != Relation::at_most ||
+        regions.has_forbidden() || !is_constant(seen, 0)) {
+      return {};
+    }
+    const double hidden = hidden_deviation(seen);
+    if (hidden * hidden > seen.reference().value) return {};
+    return ConstantVerdict{reports::Verdict::pass,
+                           fmt::format("every observation is {:.10g}, so the variance seen is 0, "
+                                       "which is not too large; unseen values are not ruled out",
+                                       seen.moments(0).mean)};
   }
 
   std::vector<Gate> gates(const TestOutcome& outcome, const Seen& seen,

@@ -40,15 +40,12 @@ stats::Influence influence_of(const Seen& seen, std::size_t i) {
   return influence;
 }
 
-/// True if one reference serves all points: its error shifts them together.
-bool reference_is_shared(const Question& question) {
-  return question.has_reference_subject || question.test->reference_number ||
-         question.test->over->parameter == "primaries";
-}
-
 SlopeData points_of(const Seen& seen) {
   const Question& question = seen.question;
   const bool logarithms = of_logarithms(question);
+  // One reference for all points shifts them together by its error.
+  const bool is_shared = question.has_reference_subject || question.test->reference_number ||
+                         question.test->over->parameter == "primaries";
   SlopeData slope{.scale = logarithms ? stats::SlopeScale::logarithms : stats::SlopeScale::values};
   for (std::size_t i = 0; i < question.compared(); ++i) {
     SlopePoint point{.size = question.sizes[i]};
@@ -63,7 +60,7 @@ SlopeData points_of(const Seen& seen) {
     if (!question.truths.empty()) {  // each point of a bias has one
       const Constant truth = truth_of(seen, i);
       point.estimate -= truth.value;
-      if (reference_is_shared(question)) {
+      if (is_shared) {
         slope.reference_error = truth.standard_error;
       } else {
         point.standard_error = std::hypot(point.standard_error, truth.standard_error);

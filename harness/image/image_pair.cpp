@@ -14,12 +14,6 @@
 namespace assay::harness {
 namespace {
 
-/// The second side's images on the first's scale.
-std::vector<std::vector<float>> on_first_scale(const Question& question, const ImageViews& second) {
-  const auto moved = [&](float value) { return static_cast<float>(question.mapped(value)); };
-  return mapped(second.images(), [&](const auto& image) { return mapped(image, moved); });
-}
-
 /// A channel's declaration of its values.
 struct Declared {
   double low;
@@ -193,7 +187,9 @@ ImagePair::ImagePair(const Seen& seen) {
   if (question.of_two()) {
     const bool maps = question.factor != 1 || question.offset != 0;
     const ImageViews& other = seen.data[1].images;
-    if (maps) scaled_ = ImageViews(on_first_scale(question, other));
+    const auto moved = [&](float texel) { return static_cast<float>(question.mapped(texel)); };
+    const auto to_first = [&](const auto& image) { return mapped(image, moved); };
+    if (maps) scaled_ = ImageViews(mapped(other.images(), to_first));
     second = {extent, (maps ? scaled_ : other).images()};
     if (!question.is().of_pairs) return;
     subtracted.swap(second);

@@ -76,13 +76,6 @@ reports::Map map_of(const char* name, const ImageShape& shape, const Value& valu
   return map;
 }
 
-/// |z| up to which an element's adjusted p is 1 - e^-40 or more, so that its tail need not be
-/// computed.
-double surely_one(double tested) {
-  const double tail = 20 / tested;  // two-sided
-  return tail < 0.25 ? stats::upper_normal_quantile(tail) : 0;
-}
-
 /// Sidak's adjustment over the elements that vary.
 double adjusted_p(double z, double tested) {
   const double log_p = std::isfinite(z)
@@ -108,7 +101,9 @@ void add_maps(const DrawnTest& drawn, const ImageOutcome& outcome, reports::Test
   const ImageShape& shape = *question.subjects[0].image;
   const double tested = std::max(1.0, static_cast<double>(outcome.family.tested));
   test.maps.push_back(map_of("z", shape, [&](std::size_t i) { return outcome.z[i]; }));
-  const double one = surely_one(tested);
+  // Up to this |z| an adjusted p is 1 - e^-40 or more: its tail need not be computed.
+  const double tail = 20 / tested;  // two-sided
+  const double one = tail < 0.25 ? stats::upper_normal_quantile(tail) : 0;
   test.maps.push_back(map_of("p_adjusted", shape, [&](std::size_t i) {
     return std::abs(outcome.z[i]) < one ? 1 : adjusted_p(outcome.z[i], tested);
   }));

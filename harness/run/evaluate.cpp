@@ -190,12 +190,6 @@ void remember(TestOutcome& outcome, bool counts) {
   });
 }
 
-Verdict verdict_of_channels(const TestOutcome& outcome) {
-  if (outcome.channels.empty()) return Verdict::pass;
-  return decide(mapped(outcome.channels, &ChannelOutcome::decision), outcome.plan.regions[0],
-                outcome.place.share.beta);
-}
-
 /// Points on no power law reject every slope, which says nothing about any, whatever the method.
 bool passes_without_fit(const TestOutcome& outcome) {
   return outcome.question.is().fit_decides && outcome.verdict == Verdict::pass &&
@@ -232,7 +226,10 @@ void conclude(TestOutcome& outcome, const std::vector<ConstantVerdict>& constant
            std::move(reason));
     return;
   }
-  settle(outcome, verdict_of_channels(outcome), {});
+  const auto decisions = mapped(outcome.channels, &ChannelOutcome::decision);
+  const double beta = outcome.place.share.beta;
+  settle(outcome,
+         decisions.empty() ? Verdict::pass : decide(decisions, outcome.plan.regions[0], beta), {});
   if (outcome.verdict == Verdict::pass && !outcome.plan.regions[0].has_forbidden()) {
     if (const std::string what = cannot_fail(outcome); !what.empty()) {
       settle(outcome, Verdict::inconclusive, excludes_no(what, outcome));

@@ -370,12 +370,6 @@ double of_system() {
   return unknown;
 }
 
-double of_control_group() {
-  const double most = number_in("/sys/fs/cgroup/memory.max");
-  const double taken = number_in("/sys/fs/cgroup/memory.current");
-  return most < unknown && taken < unknown ? most - taken : unknown;
-}
-
 }  // namespace
 
 StreamedClaims streamed(const std::vector<Question>& questions) {
@@ -405,7 +399,11 @@ double picture_bytes(const std::map<std::string, PreparedEstimator>& estimators,
   return bytes;
 }
 
-double available_bytes() { return std::min(of_system(), of_control_group()); }
+double available_bytes() {
+  const double most = number_in("/sys/fs/cgroup/memory.max");
+  const double taken = number_in("/sys/fs/cgroup/memory.current");
+  return std::min(of_system(), most < unknown && taken < unknown ? most - taken : unknown);
+}
 
 void require_memory(const std::map<std::string, PreparedEstimator>& estimators,
                     const StreamedClaims& streamed, double available, const std::string& fault) {

@@ -12,13 +12,6 @@
 namespace assay::harness {
 namespace {
 
-void count_in(std::vector<std::uint64_t>& cells, double cell) {
-  if (!(cell >= 0 && cell < static_cast<double>(cells.size()))) {
-    throw std::logic_error("an observation in none of the cells that its pool counts");
-  }
-  ++cells[static_cast<std::size_t>(cell)];
-}
-
 void merge(ChannelDetails& ours, const ChannelDetails& theirs) {
   ours.histogram.merge(theirs.histogram);
   for (std::size_t cell = 0; cell < ours.cells.size(); ++cell) {
@@ -79,7 +72,11 @@ void add_details(ChannelDetails& details, double value, const ObservationCost& c
   if (!std::isfinite(value)) return;
   if (!details.histogram.counts.empty()) details.histogram.add(value);
   for (std::size_t k = 0; k < details.joint.size(); ++k) details.joint[k].add(value, cost[k]);
-  if (!details.cells.empty()) count_in(details.cells, value);
+  if (details.cells.empty()) return;
+  if (!(value >= 0 && value < static_cast<double>(details.cells.size()))) {
+    throw std::logic_error("an observation in none of the cells that its pool counts");
+  }
+  ++details.cells[static_cast<std::size_t>(value)];
 }
 
 std::vector<stats::JointMoments> joint_moments(const ChannelDetails& details) {

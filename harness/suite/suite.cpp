@@ -105,12 +105,6 @@ void read_reference(const Value& value, TestEntry& test) {
   test.reference_number = reference;
 }
 
-/// The quantities that have a trait, as "`bias` and `efficiency`".
-std::string quantities_with(bool QuantityRow::*trait) {
-  auto rows = quantities() | std::views::filter(trait);
-  return fmt::format("`{}`", fmt::join(mapped(rows, &QuantityRow::word), "` and `"));
-}
-
 void check_margins(const TestEntry& test) {
   if (test.detect && test.detect->value == 0) {
     refuse(test.place_of("detect"),
@@ -143,7 +137,9 @@ void check_test(const TestEntry& test) {
   }
   const auto refuse_but_for = [&](const char* key, bool QuantityRow::*trait) {
     if (claim.left.row->*trait) return;
-    refuse(test.place_of(key), "`{}` is only for {}", key, quantities_with(trait));
+    auto rows = quantities() | std::views::filter(trait);
+    refuse(test.place_of(key), "`{}` is only for `{}`", key,
+           fmt::join(mapped(rows, &QuantityRow::word), "` and `"));
   };
   if (test.reference || test.reference_number) {
     refuse_but_for("reference", &QuantityRow::takes_reference);

@@ -12,11 +12,6 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// p of "theta < 0" or "theta > 0" is that of the closed region, unless theta is exactly 0.
-bool is_exactly_0(const Evidence& evidence) {
-  return evidence.exact && evidence.at(0).log_p_upper == 0 && evidence.at(0).log_p_lower == 0;
-}
-
 constexpr int most_doublings = 60;
 constexpr unsigned digits_of_reach = 40;
 
@@ -117,7 +112,10 @@ double log_p_claimed(const Evidence& evidence, const Regions& regions) {
   const double above = regions.bounds_above() ? evidence.at(claimed.high).log_p_upper : 0;
   const double below = regions.bounds_below() ? evidence.at(claimed.low).log_p_lower : 0;
   if (regions.two_sided()) return std::min(0.0, std::log(2.0) + std::min(above, below));
-  return regions.proof() && is_exactly_0(evidence) ? log_of_impossible : std::min(above, below);
+  // p of "theta < 0" or "theta > 0" is that of the closed region, unless theta is exactly 0.
+  const bool is_exactly_0 = regions.proof() && evidence.exact && evidence.at(0).log_p_upper == 0 &&
+                            evidence.at(0).log_p_lower == 0;
+  return is_exactly_0 ? log_of_impossible : std::min(above, below);
 }
 
 double log_p_forbidden(const Evidence& evidence, const Regions& regions) {
