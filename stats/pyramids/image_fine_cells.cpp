@@ -345,7 +345,7 @@ class FineTiles {
     const std::size_t element = tile.first(y) + i;
     const std::size_t here = element - own.first;
     PooledNoise::Powers powers;
-    if (own.variance[part.side][here] == 0) return powers;
+    if (own.variance_at(here) == 0) return powers;
     for (std::size_t r = part.half; r < stack.images.size(); r += halves) {
       const double deviation =
           static_cast<double>(*stack.at(r, element)) - own.mean[part.side][here];
@@ -356,6 +356,7 @@ class FineTiles {
         note_large(tile, y, part, i, deviation);
       }
     }
+    powers.squares *= powers.count / (powers.count - 1);
     return powers;
   }
 
@@ -388,7 +389,7 @@ class FineTiles {
     for_each_element(
         tile, [&](std::size_t, std::size_t element, std::size_t x, std::size_t y, std::size_t c) {
           const std::size_t vary = halves_that_vary(element);
-          const double difference = cells_.half[0].difference[element - cells_.half[0].first];
+          const double difference = difference_of(element);
           found_.weights[element] = static_cast<float>(weight_of(element));
           if (vary < halves) {
             note_constant(element, vary == 0 && cells_.constants_decide ? difference : 0);
@@ -425,6 +426,14 @@ class FineTiles {
     const double total = noise.variance[0] + noise.variance[1];
     noise.degrees = total * total / reciprocal_degrees;
     return noise;
+  }
+
+  // The larger of both halves.
+  double difference_of(std::size_t element) const {
+    const std::size_t here = element - cells_.half[0].first;
+    const double even = cells_.half[0].difference[here];
+    const double odd = cells_.half[1].difference[here];
+    return std::abs(odd) > std::abs(even) ? odd : even;
   }
 
   double mean_of(std::size_t side, std::size_t element) const {

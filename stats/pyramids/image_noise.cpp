@@ -249,9 +249,9 @@ ImageEffect NoisePyramid::kept(const CellNoise& cell, const Rectangle& window,
   const ImageEffect effect{.estimate = cell.effect,
                            .standard_error = std::sqrt(variance + std::abs(cell.effect) * growing),
                            .degrees = cell.degrees};
+  if (!of_blocks) return effect;
   const double log_p = log_p_with_unseen(effect, cell.weights);
-  const double own_log_p = log_p_two_sided(student_t_tails(effect.t(), effect.degrees));
-  if (!of_blocks || log_p <= own_log_p) return effect;
+  if (log_p <= log_p_two_sided(student_t_tails(effect.t(), effect.degrees))) return effect;
   const double errors =
       student_t_quantile({Tail::upper, log_p - std::numbers::ln2}, effect.degrees);
   return {.estimate = cell.effect,

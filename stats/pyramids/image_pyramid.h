@@ -34,9 +34,9 @@ namespace assay::stats {
 // The span `z` receives T of every element by its own noise as a normal z, if it has room. Bands of
 // the images may be looked at at the same time (`for_each`).
 //
-// An element that never varied is in sums, with a weight if its neighbours vary. If it differs, it
-// is a finding by itself, unless values that it never showed may make up the difference
-// (`constants_decide`).
+// An element that never varied has no weight unless it differs. Then it is in sums if its
+// neighbours vary, and a finding by itself, unless values that it never showed may make up the
+// difference (`constants_decide`).
 //
 // Throws std::domain_error for unequal extents, fewer than least_replicates images, values that are
 // not finite, and a negative standard error of a reference.
