@@ -1,6 +1,7 @@
 #include "estimators/parameters.h"
 
 #include <algorithm>
+#include <boost/algorithm/string/erase.hpp>
 #include <boost/algorithm/string/replace.hpp>
 #include <cmath>
 #include <filesystem>
@@ -44,9 +45,9 @@ bool within(const NumberRange& range, double value) {
 
 std::vector<std::string> texts_of(const Value& value, const std::string& what) {
   const std::string words = value.text().empty() ? "one two" : value.text();
-  value.require(
-      value.kind() == Value::Kind::list,
-      what + " must be a list of texts: `[" + boost::replace_all_copy(words, " ", ", ") + "]`");
+  value.require(value.kind() == Value::Kind::list,
+                what + " must be a list of texts: `[" +
+                    boost::replace_all_copy(boost::erase_all_copy(words, ","), " ", ", ") + "]`");
   return mapped(value.items(),
                 [&](const Value& item) { return item.string("each item of " + what); });
 }

@@ -341,11 +341,12 @@ bool names_pictures(const std::string& file) {
 std::vector<std::string> files_of(const std::string& pattern) {
   std::error_code ignored;
   if (std::filesystem::is_directory(pattern, ignored)) {
-    std::string ending = ".exr";
+    std::set<std::string> endings;
     for (const auto& entry : std::filesystem::directory_iterator(pattern, ignored)) {
-      if (names_pictures(entry.path())) ending = entry.path().extension();
+      if (names_pictures(entry.path())) endings.insert(entry.path().extension());
     }
-    refuse(pattern, "is a folder; name its pictures, as in `" + pattern + "/*" + ending + "`");
+    refuse(pattern, "is a folder; name its pictures, as in `" + pattern + "/*" +
+                        (endings.empty() ? ".exr" : *endings.begin()) + "`");
   }
   if (std::filesystem::exists(pattern, ignored)) return {pattern};
   std::vector<std::string> files;

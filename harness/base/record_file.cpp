@@ -104,8 +104,8 @@ Recorded find_test(const reports::Record& record, const std::string& file,
   refuse(where, "no test `{}` in this run; {}{}", name,
          near.empty() ? "there is: " + some_ids(all) : "did you mean `" + near + "`?",
          file != the_last_run ? ""
-                              : "; another run is kept by `--report json=FILE`: give FILE before "
-                                "the test");
+                              : " (another run is kept by `--report json=FILE`: give FILE before "
+                                "the test)");
 }
 
 }  // namespace assay::harness

@@ -27,7 +27,7 @@ MATCHER_P(SatisfiesAsked, claim, "satisfies " + claim.text) {
   if (!explains || claim.last->first != asked) {
     *claim.last = {asked, claim_holds(claim.text, {primary("it", arg)})};
   }
-  if (explains) claim.last->first = nullptr;
+  if (explains || claim.last->second) claim.last->first = nullptr;
   *result_listener << claim.last->second.message();
   return static_cast<bool>(claim.last->second);
 }

@@ -379,9 +379,11 @@ PlaceText place_text(const stats::ImageFinding& finding, const ImageShape& shape
   // A constant difference has neither weights nor a z.
   const bool varies = std::isfinite(finding.z);
   const auto has_weight = [&](std::size_t element) { return weights[element] > 0; };
-  const auto varying = weights.empty() || !varies ? pixels
-                                                  : static_cast<std::size_t>(std::ranges::count_if(
-                                                        elements_of(finding, shape), has_weight));
+  const bool has_error = finding.effect.standard_error > 0;
+  const auto varying = weights.empty() || !has_error
+                           ? pixels
+                           : static_cast<std::size_t>(
+                                 std::ranges::count_if(elements_of(finding, shape), has_weight));
   if (finding.alternation) {
     constexpr const char* patterns[] = {"columns in turn", "rows in turn", "a checkerboard"};
     text.place += fmt::format(" with alternating signs ({})",

@@ -319,7 +319,7 @@ class Parser {
     const double error = expect_number();
     if (error < 0) refuse(where, "a standard error cannot be negative");
     if (const Token token = lexer_.peek(); token.is("%")) {
-      refuse(token.where, "a standard error is a number: write `{0:g} +- {1:g}`", number,
+      refuse(token.where, "a standard error is a number: write `{0} +- {1:.6g}`", number,
              std::abs(number * error / 100));
     }
     return Constant{number, error};

@@ -99,8 +99,7 @@ std::string found_in_cell(const TestOutcome& outcome, const ChannelOutcome& chan
   if (!channel.image || !channel.image->detectable_in_cell) return "";
   const bool noisy = channel.effect.relative && *channel.image->detectable_in_cell > 1;
   return fmt::format(
-      "; an error in one square of {0} x {0} pixels alone would have been found from {1}{2} on; "
-      "{3}{4}",
+      "; {1}{2} in one square of {0} x {0} pixels would have been found, too; {3}{4}",
       stats::typical_side, reports::margin_text(*channel.image->detectable_in_cell, channel.effect),
       channel.effect.relative ? " of the image's mean" : "",
       noisy ? "so much noise may come from a few bright samples" : "only means were compared",

@@ -152,10 +152,12 @@ std::vector<EstimatorEntry> estimators_of(const std::vector<Source>& sources,
                                           std::optional<std::uint64_t> primaries,
                                           const std::string& command) {
   const std::vector<EstimatorEntry> given = parse_options(options);
+  std::string repeated = command;
+  for (const std::string& option : options) repeated += " --estimator " + shell_quoted(option);
   std::vector<EstimatorEntry> used;
   for (const Source& source : sources) {
     if (entry_named(used, source.estimator)) continue;
-    used.push_back(entry_for(source, given, command));
+    used.push_back(entry_for(source, given, repeated));
     if (primaries) used.back().primaries = primaries;
   }
   refuse_unused(given, used);

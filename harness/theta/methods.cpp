@@ -30,9 +30,11 @@ std::string relation_text(const TestEntry& test) {
 
 void require_data(const Method& method, const Question& question) {
   const Regions regions{.relation = question.test->claim.relation};
-  // Bets on one end bound the mean on one side only.
-  const bool excludes_both = regions.two_sided() && (regions.proof() || question.test->detect);
-  const int wanted = method.is.of_both_ends ? 2 : !method.is.in_range ? 0 : excludes_both ? 2 : 1;
+  // To bound a mean from above takes the high end.
+  const bool both =
+      method.is.of_both_ends || (regions.two_sided() && (regions.proof() || question.test->detect));
+  const bool above = regions.bounds_above() == regions.proof();
+  const bool rests_on_range = method.is.in_range || method.is.of_both_ends;
   for (const Subject& subject : question.subjects) {
     if (method.is.of_observations && as_recorded_run(*subject.setup) != nullptr) {
       refuse_method(question, method.name,
@@ -40,9 +42,12 @@ void require_data(const Method& method, const Question& question) {
                                 subject.estimator->name));
     }
     // The ends of rows of two values are these values.
-    if (is_recorded(subject) && method.is.of_both_ends) continue;
+    if (!rests_on_range || (is_recorded(subject) && method.is.of_both_ends)) continue;
     for (const Channel& channel : subject.declared()) {
-      if (std::isfinite(channel.low) + std::isfinite(channel.high) >= wanted) continue;
+      const bool low = std::isfinite(channel.low);
+      const bool high = std::isfinite(channel.high);
+      const bool either = regions.two_sided() && (low || high);
+      if ((low && high) || (!both && (either || (above ? high : low)))) continue;
       refuse_method(question, method.name,
                     fmt::format("needs a declared range of `{}`: {}", subject.estimator->name,
                                 is_recorded(subject) ? "rows declare none, leave `test` out"

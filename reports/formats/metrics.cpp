@@ -81,7 +81,7 @@ std::string of_tests(const Record& record) {
       upper.add(labels, found.high);
     };
     for (const Channel& channel : test.channels) add(channel.name, channel.effect);
-    if (is_told_by_place(test)) add(test.image->winner.place, effect_in_sentence(test));
+    if (is_told_by_place(test)) add("place", effect_in_sentence(test));
   }
   return ok.text() + effect.text() + lower.text() + upper.text() + detectable.text();
 }

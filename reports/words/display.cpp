@@ -3,8 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/algorithm/string/predicate.hpp>
+#include <boost/algorithm/string/classification.hpp>
 #include <boost/algorithm/string/replace.hpp>
+#include <boost/algorithm/string/split.hpp>
 #include <cctype>
 #include <cmath>
 #include <map>
@@ -149,9 +150,10 @@ std::string with_option(std::string command, const std::string& option) {
 /// The estimator on the claim's left side, which is held against the right one; "" without a
 /// sample.
 std::string subject_of(const Test& test) {
-  const auto [left, relation, right] = sides_of(test.claim);
+  std::vector<std::string> words;
+  boost::split(words, sides_of(test.claim).right, boost::is_any_of("(). *"));
   const auto subject = std::ranges::find_if(test.samples, [&](const Sample& sample) {
-    return boost::contains(left, sample.estimator) || !boost::contains(right, sample.estimator);
+    return std::ranges::count(words, sample.estimator) == 0;
   });
   return subject == test.samples.end() ? "" : subject->estimator;
 }

@@ -339,7 +339,7 @@ for i in range(24):
   expect 1 images --candidate 'good*.pfm' --reference exact.pfm
   contains out '    `candidate`: `good99.pfm` is the same picture as `good1.pfm`'
   expect 1 images --candidate 'off*.pfm' --reference exact.pfm
-  contains out 'x 20-39, y 0-19 is 100 % too dark'
+  contains out '    x 20-39, y 0-19 is 100 % too dark'
 }
 
 # A hundred times as many rows would show a hundred times as much of the tail.

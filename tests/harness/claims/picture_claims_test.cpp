@@ -60,8 +60,8 @@ TEST_F(PictureClaims, StacksOfOneLawPass) {
   // A difference of both signs of that root mean square would not.
   expect_said(test, Verdict::pass,
               {"; an error of ", "% all over the image would have been found",
-               "; an error in one square of 16 x 16 pixels alone would have been found from ",
-               "% of the image's mean on; only means were"});
+               "% of the image's mean in one square of 16 x 16 pixels would have been found, too; "
+               "only means"});
   EXPECT_EQ(test.image->replicates, 32u);
   EXPECT_EQ(test.samples.at(0).secondaries, 24u);
   EXPECT_EQ(test.samples.at(1).secondaries, 32u);
