@@ -65,7 +65,7 @@ test_checkpoint_cannot_be_a_report_or_a_suite() {
 
 # test_ranks_… skip where MPI is missing: ranks N ARGUMENT…
 ranks() {
-  timeout 100 mpirun --allow-run-as-root --oversubscribe -n "$1" "$assay" "${@:2}" >out 2>err </dev/null
+  timeout -k 9 100 mpirun --allow-run-as-root --oversubscribe -n "$1" "$assay" "${@:2}" >out 2>err </dev/null
 }
 descendants() {
   local child
