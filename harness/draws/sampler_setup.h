@@ -89,8 +89,8 @@ class SamplerSetup : public Setup {
   /// Computed on first use, then kept. Throws NoDensity.
   const DensityCells& density_cells() const;
   /// The same, or null before density_cells() is called. The cells cost a quadrature that most
-  /// claims do not need, so Pools calls density_cells() if a plan counts in cells. Workers are made
-  /// later.
+  /// claims do not need, so Pools calls density_cells() if a plan counts in cells. Estimators are
+  /// made later.
   std::shared_ptr<const DensityCells> cells_asked_for() const;
   /// The marginal's law by the declared density, on first use, then kept. 1 - total() is the mass
   /// without a point. Throws NoDensity.

@@ -221,11 +221,7 @@ std::string where_pilots_stopped(const Question& question, const Pilots& pilots)
       fault = pilots.fault(pilot_name_of(subject.estimator->name, averages_purpose));
     }
     if (fault == nullptr) continue;
-    // The words of a file name it.
-    if (is_recorded(subject)) {
-      return fmt::format("`{}`: {}", subject.estimator->name, fault->words);
-    }
-    return sentence_of(*fault, subject.estimator->name, " in the pilot");
+    return sentence_of(*fault, subject, " in the pilot");
   }
   return "";
 }

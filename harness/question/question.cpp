@@ -9,6 +9,7 @@
 
 #include "harness/draws/consistency_setup.h"
 #include "harness/draws/sampler_setup.h"
+#include "harness/sampling/pool.h"
 #include "harness/sampling/recorded_run.h"
 
 namespace assay::harness {
@@ -212,6 +213,12 @@ std::vector<Constant> references_of(const Claim& claim, const Subject& subject) 
   return mapped(subject.declared(), [&](const Channel& channel) {
     return number != nullptr ? *number : claim.left.row->analytic(channel, claim.left.source);
   });
+}
+
+std::string sentence_of(const Fault& fault, const Subject& subject, const std::string& when) {
+  const std::string& name = subject.estimator->name;
+  return is_recorded(subject) ? fmt::format("`{}`: {}", name, fault.words)
+                              : sentence_of(fault, name, when);
 }
 
 std::string image_name(const ImageShape& shape) {

@@ -20,6 +20,8 @@
 
 namespace assay::harness {
 
+struct Fault;
+
 class Theta;
 
 /// One side of a claim: an estimator's secondary estimates, or a sampler's draws.
@@ -63,6 +65,10 @@ struct Subject {
 inline bool is_recorded(const Subject& subject) {
   return subject.setup->observations().has_value();
 }
+
+/// The fault of a subject's source: "`darts` stopped in the pilot: …" with `when` " in the pilot".
+/// The words of a file name it, so that nothing stopped.
+std::string sentence_of(const Fault& fault, const Subject& subject, const std::string& when = "");
 
 /// Facts about a theta that others act on.
 struct ThetaTraits {

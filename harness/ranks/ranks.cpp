@@ -93,7 +93,7 @@ class Servant {
   /// Pools of a round by rank 0's recipes, and who draws their blocks.
   struct DrawnRound {
     SomePools pools = {};
-    Workers workers{pools};
+    DrawBlock draw = drawing_of(pools);
   };
 
   void begin(Unpacker& unpack) {
@@ -131,7 +131,7 @@ class Servant {
         std::ranges::find(prepared_.setups, named.setup, &NamedSetups::value_type::first);
     Unpacker::require(setup != prepared_.setups.end() && named.pool < most_pools,
                       "a recipe for no set-up");
-    // Workers count in cells that are there when they are made (run/pools.cpp).
+    // Estimators count in cells that are there when they are made (run/pools.cpp).
     const auto* const draws = dynamic_cast<const SamplerSetup*>(setup->second.get());
     const bool counts =
         std::ranges::any_of(named.recipe.plan, [](const auto& each) { return each.cells > 0; });
@@ -149,9 +149,8 @@ class Servant {
     }
     std::vector<std::string> blocks(orders.size());
     with_threads(prepared_.threads, [&] {
-      on_all_threads(orders.size(), [&](std::size_t i) {
-        blocks[i] = packed_block(round_->workers.draw(orders[i]));
-      });
+      on_all_threads(orders.size(),
+                     [&](std::size_t i) { blocks[i] = packed_block(round_->draw(orders[i])); });
     });
     return blocks;
   }
@@ -177,7 +176,10 @@ class Ranks::Window {
   };
 
   Window(Ranks& ranks, Round& round)
-      : ranks_(ranks), round_(round), workers_(round.pools()), usual_(round.pools().size()) {
+      : ranks_(ranks),
+        round_(round),
+        draw_(drawing_of(round.pools())),
+        usual_(round.pools().size()) {
     for (const auto& pool : round.pools()) {
       elsewhere_.push_back(pool->can_be_drawn_elsewhere() && ranks.names_.contains(pool->setup()));
     }
@@ -240,8 +242,7 @@ class Ranks::Window {
     for (const std::uint64_t number : some) give_to(0, number);
     const Clock::time_point start = Clock::now();
     std::vector<Pool::Block> blocks(some.size());
-    on_all_threads(some.size(),
-                   [&](std::size_t i) { blocks[i] = workers_.draw(at(some[i]).task); });
+    on_all_threads(some.size(), [&](std::size_t i) { blocks[i] = draw_(at(some[i]).task); });
     const double seconds = seconds_since(start);
     for (std::size_t i = 0; i < some.size(); ++i) {
       const std::size_t bytes = bytes_of(blocks[i]);
@@ -331,7 +332,7 @@ class Ranks::Window {
 
   Ranks& ranks_;
   Round& round_;
-  Workers workers_;
+  DrawBlock draw_;
   std::vector<bool> elsewhere_;
   std::vector<Usual> usual_;
   std::deque<Slot> slots_;

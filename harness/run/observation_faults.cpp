@@ -108,9 +108,7 @@ std::string where_it_stopped(const TestWork& work) {
   const std::vector<Sample> samples = work.samples();
   for (std::size_t subject = 0; subject < samples.size(); ++subject) {
     if (const Fault* fault = std::get_if<Fault>(&samples[subject])) {
-      const Subject& side = work.outcome.question.subjects[subject];
-      return is_recorded(side) ? fmt::format("`{}`: {}", side.estimator->name, fault->words)
-                               : sentence_of(*fault, side.estimator->name);
+      return sentence_of(*fault, work.outcome.question.subjects[subject]);
     }
   }
   return "";

@@ -32,14 +32,14 @@ class Threads final : public Executor {
       Task task;
       std::shared_ptr<Pool::Block> block;  // shared because a pipeline copies its items
     };
-    Workers workers(round.pools());
+    const DrawBlock draw_block = drawing_of(round.pools());
     const auto hand_out = [&](tbb::flow_control& control) {
       const std::optional<Task> task = round.next();
       if (!task) control.stop();
       return task.value_or(Task{});
     };
     const auto draw = [&](const Task& task) {
-      return DrawnBlock{task, std::make_shared<Pool::Block>(workers.draw(task))};
+      return DrawnBlock{task, std::make_shared<Pool::Block>(draw_block(task))};
     };
     const auto fold = [&](const DrawnBlock& drawn) {
       round.fold(drawn.task, std::move(*drawn.block));
@@ -120,10 +120,10 @@ void Round::fold(const Task& task, Pool::Block&& block) {
   for (const auto& act : after_fold_) act();
 }
 
-Workers::Workers(const SomePools& pools) {
+DrawBlock drawing_of(const SomePools& pools) {
   using Made = std::vector<std::unique_ptr<Estimator>>;
   const auto of_threads = std::make_shared<tbb::enumerable_thread_specific<Made>>();
-  draw = [&pools, of_threads](const Task& task) {
+  return [&pools, of_threads](const Task& task) {
     const auto estimator = [&]() -> Estimator& {
       Made& mine = of_threads->local();
       mine.resize(pools.size());

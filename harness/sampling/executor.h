@@ -58,11 +58,9 @@ class Round {
   std::vector<std::function<void()>> after_fold_ = {};
 };
 
-/// Draws blocks on threads, each of which has its own estimators, made at their first use.
-struct Workers {
-  explicit Workers(const SomePools& pools);
-  std::function<Pool::Block(const Task&)> draw;
-};
+/// Draws blocks of these pools on threads. Each has estimators of its own, made at their first use.
+using DrawBlock = std::function<Pool::Block(const Task&)>;
+DrawBlock drawing_of(const SomePools& pools);
 
 /// Set-ups by names that are the same in every process of a run.
 using NamedSetups = std::vector<std::pair<std::string, std::shared_ptr<const Setup>>>;

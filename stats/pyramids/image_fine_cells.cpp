@@ -389,10 +389,10 @@ class FineTiles {
     for_each_element(
         tile, [&](std::size_t, std::size_t element, std::size_t x, std::size_t y, std::size_t c) {
           const std::size_t vary = halves_that_vary(element);
-          const double difference = difference_of(element);
           found_.weights[element] = static_cast<float>(weight_of(element));
           if (vary < halves) {
-            note_constant(element, vary == 0 && cells_.constants_decide ? difference : 0);
+            const bool decides = vary == 0 && cells_.constants_decide;
+            note_constant(element, decides ? difference_of(element) : 0);
             return;
           }
           ++counts_.tested;

@@ -78,11 +78,11 @@ std::vector<std::string> blocks_elsewhere(const Recipe& recipe, std::shared_ptr<
   unpack(packed(recipe), there);
   const std::shared_ptr<Pool> pool = fresh(there, std::move(of));
   const SomePools pools{pool};
-  Workers workers(pools);
+  const DrawBlock draw = drawing_of(pools);
   std::vector<std::string> blocks;
   for (std::uint64_t first = 0; first < 200; first = pool->block_end(first)) {
     const Task task{.pool = 0, .first = first, .last = pool->block_end(first)};
-    blocks.push_back(framed(packed_block(workers.draw(task))));
+    blocks.push_back(framed(packed_block(draw(task))));
   }
   return blocks;
 }
