@@ -31,17 +31,35 @@ std::string theta_sentence(const LedgerSeries& series) {
                                 : "");
 }
 
-/// Theta by the nights from this one on, each with the weight of its own precision.
-Number average_since(const LedgerSeries& series, const std::string& first) {
+/// True if theta need not have moved since the first night. The likeliest night alone says little:
+/// it is the one whose estimates look largest.
+bool may_be_from_the_first(const LedgerSeries& series) {
+  if (series.nights.empty()) return false;
+  const std::string& first = series.nights.front().date;
+  return series.moved_from == first || series.moved == first;
+}
+
+/// Theta with its 95 % interval, by all nights if it need not have moved. Else by the nights since,
+/// each with the weight of its own precision.
+Effect effect_now(const LedgerSeries& series) {
   double weights = 0, sum = 0;
   for (const LedgerNight& night : series.nights) {
-    if (night.date < first || !is_finite(night.estimate) || !night.low || !night.high) continue;
-    const double width = *night.high - *night.low;
-    if (!(width > 0)) continue;
-    weights += 1 / (width * width);
-    sum += *night.estimate / (width * width);
+    const double half = (night.high.value_or(0) - night.low.value_or(0)) / 2;
+    if (night.date < series.moved || !is_finite(night.estimate) || !(half > 0)) continue;
+    weights += 1 / (half * half);
+    sum += *night.estimate / (half * half);
   }
-  return weights > 0 ? sum / weights : Number();
+  constexpr double deviations = 1.959963984540054;  // of half a 95 % interval
+  const bool all = may_be_from_the_first(series);
+  Effect effect{.quantity = series.quantity, .confidence = 0.95, .relative = series.relative};
+  effect.estimate = all ? series.estimate : weights > 0 ? sum / weights : Number();
+  if (!effect.estimate) return effect;
+  const double reach =
+      std::hypot(all ? deviations * series.standard_error.value_or(0) : 1 / std::sqrt(weights),
+                 deviations * series.reference_error.value_or(0));
+  effect.low = *effect.estimate - reach;
+  effect.high = *effect.estimate + reach;
+  return effect;
 }
 
 double distance(const LedgerSeries& series) {
@@ -83,21 +101,20 @@ std::string alarm_sentence(const LedgerSeries& series) {
                                 ? std::string()
                                 : fmt::format(" (90\u00A0%: {:.16} to {})",
                                               minute(series.moved_from), minute(series.moved_to));
-  const bool always = !series.nights.empty() && series.moved == series.nights.front().date;
-  const Effect effect{.quantity = series.quantity, .relative = series.relative};
-  const Number now = always ? series.estimate : average_since(series, series.moved);
+  const Effect now = effect_now(series);
   return fmt::format(
       "{}{}{}. The nights together refute the claim since {}.",
-      now ? fmt::format("The {} is about {}. ", effect_name(effect), theta_text(*now, effect)) : "",
-      always ? "Most likely it was so from the first night on"
-             : fmt::format("It moved most likely on the night of {}, by Assay {}",
-                           minute(series.moved), series.moved_commit),
+      now.estimate ? fmt::format("The {} is {}. ", effect_name(now), named_effect_text(now)) : "",
+      may_be_from_the_first(series)
+          ? "It may have been so from the first night on"
+          : fmt::format("It moved most likely on the night of {}, by Assay {}",
+                        minute(series.moved), series.moved_commit),
       range, minute(series.since));
 }
 
 std::string changes(const LedgerSeries& series) {
   const auto moved = std::ranges::find(series.nights, series.moved, &LedgerNight::date);
-  if (!series.alarm || moved == series.nights.end() || moved == series.nights.begin()) return {};
+  if (!series.alarm || moved == series.nights.end() || may_be_from_the_first(series)) return {};
   const std::string& before = std::prev(moved)->commit;
   if (before.empty() || before == moved->commit) return {};
   return fmt::format("git log --oneline {}..{}", before, moved->commit);

@@ -27,7 +27,7 @@ std::string series_sentence(const LedgerSeries&);
 std::string alarm_sentence(const LedgerSeries&);
 
 /// The command that lists the commits between the night before theta moved and that night. Empty
-/// where they are one commit.
+/// where they are one commit, or theta need not have moved.
 std::string changes(const LedgerSeries&);
 
 /// One sentence for all series without an alarm: their number, and which stands highest.

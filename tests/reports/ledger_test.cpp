@@ -12,6 +12,16 @@ TEST(LedgerText, AnExactReferenceHasNoErrorToName) {
   EXPECT_THAT(series_sentence(series), HasSubstr("standard error 0.0253\u00A0%, e-value E"));
 }
 
+TEST(LedgerText, AMoveThatNeedNotHaveHappenedIsNotNamed) {
+  LedgerSeries series = example_record().ledger.series[0];
+  series.moved_from = series.nights.front().date;
+  EXPECT_THAT(
+      alarm_sentence(series),
+      HasSubstr("is +0.1\u00A0% (95\u00A0% interval: +0.0467\u00A0% to +0.153\u00A0%). It may "
+                "have been so from the first night on (90\u00A0%: 2026-11-09 02:00 to"));
+  EXPECT_EQ(changes(series), "");
+}
+
 TEST(LedgerText, OneNoteStandsForAllSeriesThatShareIt) {
   Ledger ledger;
   ledger.series = {{.test = "a", .note = "same"}, {.test = "b", .note = "same"}, {.test = "c"}};

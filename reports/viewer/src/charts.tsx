@@ -167,7 +167,8 @@ export function NightsChart({ series }: { series: Series }) {
   });
   if (nights.length === 0) return null;
   const means = nights.filter((night) => night.mean !== null);
-  const moved = series.moved ? [new Date(series.moved)] : [];
+  const stayed = [series.moved, series.moved_from].includes(series.nights[0]!.date);
+  const moved = series.moved && !stayed ? [new Date(series.moved)] : [];
   return (
     <Chart
       label={`Nights of ${series.test}`}

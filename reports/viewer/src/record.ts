@@ -154,6 +154,7 @@ export interface Series {
   relative: boolean;
   moved: string;
   moved_commit: string;
+  moved_from: string;
   nights: Night[];
 }
 export interface SeriesDisplay {
