@@ -65,10 +65,20 @@ std::string to_string(const Location& where) {
   return where.file + ":" + std::to_string(where.line) + ":" + std::to_string(where.column);
 }
 
-InputError::InputError(Location where, const std::string& what)
+InputError::InputError(Location where, const std::string& what, std::optional<std::string> line)
     : std::runtime_error(to_string(where).empty() ? what : to_string(where) + ": " + what),
       where_(std::move(where)),
-      message_(what) {}
+      message_(what),
+      line_(std::move(line)) {}
+
+void InputError::add(const InputError& other) {
+  const auto same = [&](const InputError& each) {
+    return each.what() == std::string(other.what());
+  };
+  if (!same(*this) && std::ranges::none_of(others_, same))
+    others_.emplace_back(other.where_, other.message_, other.line_);
+  for (const InputError& each : other.others_) add(each);
+}
 
 Value::Value(const Value&) = default;
 Value::Value(Value&&) noexcept = default;

@@ -29,14 +29,22 @@ std::string to_string(const Location&);
 /// where. Always found before anything is sampled.
 class InputError : public std::runtime_error {
  public:
-  InputError(Location where, const std::string& what);
+  /// `line` is that of the place if it cannot be read again, as from a pipe.
+  InputError(Location where, const std::string& what, std::optional<std::string> line = {});
   const Location& where() const { return where_; }
   /// The sentence without the place.
   const std::string& message() const { return message_; }
+  const std::optional<std::string>& line() const { return line_; }
+  /// Mistakes in other parts of the same text.
+  const std::vector<InputError>& others() const { return others_; }
+  /// Adds a mistake and its others; equal ones count once.
+  void add(const InputError& other);
 
  private:
   Location where_;
   std::string message_;
+  std::optional<std::string> line_;
+  std::vector<InputError> others_ = {};
 };
 
 /// A tree of null, text, numbers, lists and maps. A scalar keeps its text: whether `1e6` is a

@@ -11,7 +11,6 @@
 #include <set>
 #include <string_view>
 
-#include "estimators/core/line_error.h"
 #include "estimators/core/mapped.h"
 #include "estimators/core/quoting.h"
 #include "estimators/ready_made.h"
@@ -329,7 +328,7 @@ class Reader {
   [[noreturn]] void refuse(int column, const std::string& why) const {
     // The beginning of a line without end will do.
     constexpr std::size_t most = std::size_t{1} << 20;
-    throw LineError({source_.name(), line_, column}, why, text_.substr(0, most));
+    throw InputError({source_.name(), line_, column}, why, std::string(text_.substr(0, most)));
   }
 
   [[noreturn]] void refuse_one_row(std::size_t columns) const {

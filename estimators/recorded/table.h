@@ -38,8 +38,8 @@ enum class Rows { several, one_is_fine };
 /// first column without a name, or of words, holds the names of rows. It is left out. The line
 /// `# stream: HEX` has the key of the stream that the rows were drawn from.
 ///
-/// LineError for a field that is no number or that no double can hold, an empty field, and a row of
-/// another length. LineError for a second, late or repeated header. InputError for a binary file,
+/// InputError with its line for a field that is empty, no number or beyond a double, and for a row
+/// of another length. The same for a second, late or repeated header. InputError for a binary file,
 /// for a file without rows, and for more numbers than a quarter of the memory holds. InputError for
 /// one row of several numbers without names, if several rows are expected.
 Table read_table(const std::string& file, Rows expected);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -22,5 +23,28 @@ requires(sizeof...(Parts) > 0)
                              Parts&&... parts) {
   throw InputError(where, fmt::format(sentence, std::forward<Parts>(parts)...));
 }
+
+/// The mistakes of parts that are read each by itself.
+class Mistakes {
+ public:
+  /// Reads a part, and keeps its mistakes.
+  template <class Part>
+  void attempt(const Part& read) {
+    try {
+      read();
+    } catch (const InputError& mistake) {
+      if (!all_) all_ = mistake;
+      all_->add(mistake);
+    }
+  }
+
+  bool any() const { return all_.has_value(); }
+  void refuse_any() const {
+    if (all_) throw InputError(*all_);
+  }
+
+ private:
+  std::optional<InputError> all_ = {};
+};
 
 }  // namespace assay::harness

@@ -4,9 +4,9 @@
 
 #include <cstdio>
 #include <new>
+#include <ranges>
 #include <stdexcept>
 
-#include "estimators/core/line_error.h"
 #include "estimators/core/waiting.h"
 #include "estimators/library_host.h"
 #include "harness/base/interrupt.h"
@@ -23,12 +23,17 @@ namespace assay::harness {
 std::string failure_text(const InputError& error, const std::string& claim) {
   const Location& where = error.where();
   const bool in_claim = where.file == "claim" && where.line == 1 && !claim.empty();
-  const auto* const with_line = dynamic_cast<const LineError*>(&error);
   const bool is_own_claim = where.file == "claim" && claim.empty();
-  return in_lines(reports::clean(is_own_claim ? error.message() : error.what())) +
-         (with_line != nullptr ? caret_below(with_line->line(), where.column)
-          : in_claim           ? caret_below(claim, where.column)
-                               : excerpt(where));
+  std::string out = in_lines(reports::clean(is_own_claim ? error.message() : error.what())) +
+                    (error.line() ? caret_below(*error.line(), where.column)
+                     : in_claim   ? caret_below(claim, where.column)
+                                  : excerpt(where));
+  constexpr std::size_t most = 9;
+  for (const InputError& other : error.others() | std::views::take(most)) {
+    out += failure_text(other, claim);
+  }
+  const std::size_t all = error.others().size();
+  return all > most ? out + fmt::format("assay: and {} more\n", all - most) : out;
 }
 
 namespace {

@@ -133,13 +133,12 @@ void plan_pools(SuiteRun& run, Pools& pools) {
 
 /// Prepares the estimators and returns faults. A refusal by an estimator is the user's mistake; any
 /// other exception is the estimator's fault.
-std::map<std::string, Fault> prepare_estimators(SuiteRun& run) {
+std::map<std::string, Fault> prepare_estimators(SuiteRun& run, Mistakes& mistakes) {
   std::map<std::string, Fault> faults;
   for (const EstimatorEntry& entry : run.suite.estimators) {
     try {
-      run.estimators.emplace(entry.name, prepare(entry, run.suite.folder));
-    } catch (const InputError&) {
-      throw;
+      mistakes.attempt(
+          [&] { run.estimators.emplace(entry.name, prepare(entry, run.suite.folder)); });
     } catch (...) {
       faults.emplace(entry.name, Fault{.words = words_of(std::current_exception())});
     }
@@ -168,20 +167,21 @@ std::string unprepared(const TestEntry& test, const std::map<std::string, Fault>
   return "";
 }
 
-void ask_test(SuiteRun& run, TestEntry& test, const std::map<std::string, Fault>& faults) {
+void ask_test(SuiteRun& run, TestEntry& test, const std::map<std::string, Fault>& faults,
+              Mistakes& mistakes) {
   std::string why = unprepared(test, faults);
+  const auto is_there = [&](const Source& x) { return run.estimators.contains(x.estimator); };
   try {
-    if (why.empty()) run.questions.push_back(ask_as_written(test, run.estimators, run.seed));
-  } catch (const InputError&) {
-    throw;
+    if (std::ranges::all_of(sources_of(test), is_there))
+      mistakes.attempt([&] {
+        run.questions.push_back(ask_as_written(test, run.estimators, run.seed));
+        if (test.method) find_method(run.questions.back(), *test.method);
+      });
   } catch (...) {  // at another value of a sweep
     why = "an estimator cannot be prepared: " + words_of(std::current_exception());
   }
-  if (!why.empty()) {
-    run.untested.push_back({&test, reports::Verdict::error, std::move(why)});
-  } else if (test.method) {
-    find_method(run.questions.back(), *test.method);
-  }
+  if (why.empty()) return;
+  run.untested.push_back({&test, reports::Verdict::error, std::move(why)});
 }
 
 /// Finds all mistakes of the user before anything is sampled. Prepares nothing of a skipped suite.
@@ -199,8 +199,10 @@ std::unique_ptr<SuiteRun> prepare_suite(const Suite& suite, const RunOptions& op
     }
     return run;
   }
-  const std::map<std::string, Fault> faults = prepare_estimators(*run);
-  for (TestEntry& test : run->suite.tests) ask_test(*run, test, faults);
+  Mistakes mistakes;
+  const std::map<std::string, Fault> faults = prepare_estimators(*run, mistakes);
+  for (TestEntry& test : run->suite.tests) ask_test(*run, test, faults, mistakes);
+  mistakes.refuse_any();
   for (Question& each : run->questions) each.chosen = selects(options.selection, *each.test);
   note_unused(run->suite);
   coarsen(run->suite, options);

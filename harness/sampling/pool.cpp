@@ -68,9 +68,6 @@ std::string sentence_of(const Fault& fault, const std::string& estimator, const 
 std::string words_of(const std::exception_ptr& thrown) {
   try {
     std::rethrow_exception(thrown);
-  } catch (const InputError& error) {
-    const std::string place = assay::to_string(error.where());
-    return place.empty() ? error.message() : place + ": " + error.message();
   } catch (const std::bad_alloc&) {
     return "there is not enough memory (std::bad_alloc)";
   } catch (const std::exception& error) {

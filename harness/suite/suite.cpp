@@ -360,22 +360,25 @@ Value read_scenes(const Keys& keys) {
   return *scenes;
 }
 
-void read_estimators(const Document& document, const Value& map, Suite& suite) {
+void read_estimators(const Document& document, const Value& map, Suite& suite, Mistakes& mistakes) {
   if (map.members().empty()) {
     refuse(map.where(),
            "`estimators` must be a map of at least one name to its plugin, without `- `, as in "
            "`area: {plugin: luminaire/area}`");
   }
   for (const auto& [name, value] : map.members()) {
-    suite.estimators.push_back(read_estimator(document, name, value, suite.scenes));
+    mistakes.attempt(
+        [&] { suite.estimators.push_back(read_estimator(document, name, value, suite.scenes)); });
   }
 }
 
-void require_estimator(const Suite& suite, const Source& source) {
-  const auto names = mapped(suite.estimators, &EstimatorEntry::name);
-  if (std::ranges::find(names, source.estimator) != names.end()) return;
-  refuse(source.where, "the suite has no estimator `{}`{}", source.estimator,
-         suggestion(source.estimator, names));
+/// False if the estimator has a mistake. `entries` is the suite's map `estimators:`.
+bool is_sound(const Suite& suite, const Value& entries, const Source& source) {
+  if (entries.find(source.estimator) == nullptr) {
+    refuse(source.where, "the suite has no estimator `{}`{}", source.estimator,
+           suggestion(source.estimator, mapped(entries.members(), &Value::Member::first)));
+  }
+  return std::ranges::count(suite.estimators, source.estimator, &EstimatorEntry::name) > 0;
 }
 
 void check_sweep(const Suite& suite, const TestEntry& test) {
@@ -386,23 +389,32 @@ void check_sweep(const Suite& suite, const TestEntry& test) {
                     test.over->parameter, test.over->values[0].where());
 }
 
-void read_tests(const Document& document, const Value& list, Suite& suite) {
+/// Leaves out tests with a mistake, and tests of estimators with a mistake.
+void read_tests(const Document& document, const Value& list, const Value& estimators, Suite& suite,
+                Mistakes& mistakes) {
   std::map<std::string, Location> names;
-  for (const Value& item :
-       items_of(list,
-                "`tests` must be a list of at least one test, as in `- claim: mean(area) == "
-                "analytic`")) {
+  const auto read = [&](const Value& item) {
     TestEntry test = read_test(document, item);
     test.id = suite.stem + "/" + test.name;
-    for (const Source& source : sources_of(test)) require_estimator(suite, source);
-    check_sweep(suite, test);
+    bool sound = true;
+    for (const Source& source : sources_of(test)) {
+      sound = is_sound(suite, estimators, source) && sound;
+    }
     const auto [first, is_new] = names.emplace(test.name, test.where);
     if (!is_new) {
       refuse(test.where,
              "a second test named `{}`; the first is at {}:{}; give one of them a `name`",
              test.name, first->second.line, first->second.column);
     }
+    if (!sound) return;
+    check_sweep(suite, test);
     suite.tests.push_back(std::move(test));
+  };
+  for (const Value& item :
+       items_of(list,
+                "`tests` must be a list of at least one test, as in `- claim: mean(area) == "
+                "analytic`")) {
+    mistakes.attempt([&] { read(item); });
   }
 }
 
@@ -507,6 +519,13 @@ std::vector<Source> sources_of(const TestEntry& test) {
 }
 
 Suite load_suite(const std::string& file) {
+  Mistakes mistakes;
+  Suite suite = read_suite(file, mistakes);
+  mistakes.refuse_any();
+  return suite;
+}
+
+Suite read_suite(const std::string& file, Mistakes& mistakes) {
   const std::string text = read_text_file(file);
   const Document document(file, text);
   const Keys keys(document, document.root(), "a suite", "suite: my first suite",
@@ -518,14 +537,17 @@ Suite load_suite(const std::string& file) {
   const fs::path path(file);
   suite.stem = path.stem().string();
   suite.folder = path.has_parent_path() ? path.parent_path().string() : ".";
-  read_head(document, keys, suite);
-  suite.scenes = read_scenes(keys);
-  read_estimators(
-      document, keys.require("estimators", "estimators: {area: {plugin: luminaire/area}}"), suite);
-  read_tests(document, keys.require("tests", "tests: [claim: mean(area) == analytic]"), suite);
-  if (const Value* v = keys.find("statements")) {
-    suite.statements = read_statements(document, *v, suite.tests);
-  }
+  mistakes.attempt([&] { read_head(document, keys, suite); });
+  mistakes.attempt([&] {
+    suite.scenes = read_scenes(keys);
+    const Value& estimators =
+        keys.require("estimators", "estimators: {area: {plugin: luminaire/area}}");
+    read_estimators(document, estimators, suite, mistakes);
+    read_tests(document, keys.require("tests", "tests: [claim: mean(area) == analytic]"),
+               estimators, suite, mistakes);
+    const Value* const statements = mistakes.any() ? nullptr : keys.find("statements");
+    if (statements) suite.statements = read_statements(document, *statements, suite.tests);
+  });
   return suite;
 }
 

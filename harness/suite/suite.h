@@ -104,6 +104,9 @@ inline std::uint64_t position_of(const TestEntry& test, const Suite& suite) {
 /// Reads a suite. InputError (file:line:column, the mend) for anything that is not exactly a suite.
 /// Named scenes replace their names. Parameters of plugins are checked when they are prepared.
 Suite load_suite(const std::string& file);
+/// The same, but keeps the mistakes. The suite is without the parts that have one, and without what
+/// needs these. InputError for a text that is no map of a suite's keys.
+Suite read_suite(const std::string& file, Mistakes& mistakes);
 
 /// The keys of a test as text, each from the option of its name.
 using TestKeys = std::map<std::string, std::string>;

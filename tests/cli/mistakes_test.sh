@@ -109,6 +109,33 @@ suite: s\nestimators: {a: {plugin: luminaire/area}}|1:1: a suite needs the key `
 TABLE
 }
 
+test_all_mistakes_of_a_suite_are_told_at_once() {
+  cat >s.yaml <<'SUITE'
+suite: s
+alpha: 2
+estimators:
+  area: {plugin: luminaire/area, scene: triangle}
+  near: {plugin: luminaire/nearby}
+tests:
+  - claim: mean(area) = analytic
+  - claim: mean(aera) == analytic
+  - claim: mean(near) == analytic
+  - claim: mean(area.red) == analytic
+  - {claim: mean(area) == analytic, detect: 0}
+  - claim: mean(area) == analytic
+  - {claim: mean(area) <= 1, tset: t}
+  - {claim: mean(area) >= 0, test: F}
+statements: [{text: it is so, source: a talk, holds: ["mean(area) = analytic"]}]
+SUITE
+  answers 2 's.yaml:2:8: `alpha` must be' run s.yaml
+  [ "$(grep -o '^assay: s.yaml:[0-9:]*' err | cut -d: -f3 | tr '\n' ' ')" = '2 5 7 8 11 13 10 14 ' ] ||
+    fail 'not every mistake is told once'
+  { printf '%s\n' 'suite: s' 'estimators: {area: {plugin: luminaire/area}}' 'tests:'
+    for i in {1..13}; do echo "  - claim: mean(x$i) == 1"; done; } >u.yaml
+  answers 2 'assay: and 3 more' run u.yaml
+  [ "$(grep -c '^assay: u.yaml' err)" = 10 ] || fail 'not ten mistakes'
+}
+
 test_mistakes_on_the_command_line_say_what_to_write() {
   suite_of '{name: first, claim: mean(area) == analytic, tags: [mean]}'
   answers 2 'cannot read `t.yaml`: there is no such file; did you mean `s.yaml`?' run t.yaml

@@ -2,7 +2,6 @@
 #include <sys/stat.h>
 #include <zlib.h>
 
-#include "estimators/core/line_error.h"
 #include "estimators/core/waiting.h"
 #include "estimators/ready_made.h"
 #include "recorded/byte_source.h"
@@ -217,10 +216,8 @@ std::string refusal_of_standard_input(const std::string& file) {
   std::string said;
   try {
     recorded::read_table("-", recorded::Rows::several);
-  } catch (const LineError& error) {
-    said = error.what() + std::string(" in ") + error.line();
   } catch (const InputError& error) {
-    said = error.message();
+    said = error.line() ? error.what() + (" in " + *error.line()) : error.message();
   }
   dup2(standard, STDIN_FILENO);
   close(other);
@@ -321,7 +318,7 @@ TEST_F(Recorded, ShowsALineWithoutItsEndAndOfALongOneItsBeginning) {
     try {
       read(text);
       ADD_FAILURE() << "`x` was taken";
-    } catch (const LineError& error) {
+    } catch (const InputError& error) {
       EXPECT_EQ(error.line(), "x");
     }
   }

@@ -1,4 +1,3 @@
-#include "estimators/core/line_error.h"
 #include "harness/base/terminal.h"
 #include "harness/command/program.h"
 #include "harness/suite/suite.h"
@@ -43,13 +42,13 @@ TEST(Failure, IsInLinesOfEightyColumnsThatBreakNothingToPaste) {
 }
 
 TEST(Failure, ShowsTheLineThatItWasGiven) {
-  EXPECT_EQ(failure_text(LineError({"standard input", 7, 3}, "odd", "1 x"), ""),
+  EXPECT_EQ(failure_text(InputError({"standard input", 7, 3}, "odd", "1 x"), ""),
             "assay: standard input:7:3: odd\n  1 x\n    ^\n");
 }
 
 TEST(Failure, HidesWhatATerminalMustNotMeet) {
   const std::string hidden = "\xef\xbf\xbd";
-  EXPECT_EQ(failure_text(LineError({"a\x1b.txt", 1, 5}, "`\x07\x9b`", "\x1b[\x80 x\x7f"), ""),
+  EXPECT_EQ(failure_text(InputError({"a\x1b.txt", 1, 5}, "`\x07\x9b`", "\x1b[\x80 x\x7f"), ""),
             "assay: a" + hidden + ".txt:1:5: `" + hidden + hidden + "`\n  " + hidden + "[" +
                 hidden + " x" + hidden + "\n      ^\n");
 }
