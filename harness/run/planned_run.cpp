@@ -1,6 +1,7 @@
 #include "harness/run/planned_run.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <limits>
@@ -148,13 +149,13 @@ std::map<std::string, Fault> prepare_estimators(SuiteRun& run, Mistakes& mistake
 }
 
 void note_unused(const Suite& suite) {
-  for (const EstimatorEntry& entry : suite.estimators) {
-    const auto names_it = [&](const TestEntry& test) {
-      return std::ranges::count(sources_of(test), entry.name, &Source::estimator) > 0;
-    };
-    if (std::ranges::none_of(suite.tests, names_it))
-      notice(fmt::format("no test of `{}` names its estimator `{}`", suite.name, entry.name));
+  std::vector<std::string> unused = mapped(suite.estimators, &EstimatorEntry::name);
+  for (const TestEntry& test : suite.tests) {
+    for (const Source& source : sources_of(test)) std::erase(unused, source.estimator);
   }
+  if (unused.empty()) return;
+  notice(fmt::format("no test of `{}` names its estimator{} `{}`", suite.name,
+                     unused.size() == 1 ? "" : "s", fmt::join(unused, "`, `")));
 }
 
 /// Names the source that leaves a test without a question; "" if there is none.

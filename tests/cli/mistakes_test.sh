@@ -208,6 +208,9 @@ test_mistakes_in_a_check_say_what_to_write() {
     'tests: [{claim: mean(a) == analytic, secondaries: 100}]' >idle.yaml
   expect 0 run idle.yaml
   contains err 'no test of `idle` names its estimator `idle`'
+  sed -i 's|idle: {|more: {plugin: luminaire/area}, &|' idle.yaml
+  expect 0 run idle.yaml
+  contains err 'no test of `idle` names its estimators `more`, `idle`'
 }
 
 "$3"
