@@ -30,22 +30,24 @@ std::string not_finite(const TestOutcome& outcome, const Subject& side, const Dr
   const ChannelSummary& summary = drawn.summary().channels[channel];
   const Pool& pool = drawn.pool();
   const auto at = side.image ? " at " + element_place(*side.setup->image(), channel) : "";
-  const std::string text =
-      fmt::format("{} of {} observations of `{}`{} {} not finite, the first is observation {}",
-                  summary.nonfinite, drawn.summary().count, side.estimator->name, at,
-                  summary.nonfinite == 1 ? "is" : "are", summary.first_nonfinite);
   const auto place = side.setup->place_of(
       {.index = summary.first_nonfinite, .key = pool.key(), .primaries = pool.primaries()});
-  if (place.empty()) return text + replay_line(outcome, summary.first_nonfinite);
-  if (!side.image) return text + ", `" + place + "`; mend it; leaving it out would bias a mean";
+  // Whoever has a file finds a line of it, not a number of an observation.
+  const std::string text = fmt::format(
+      "{} of {} observations of `{}`{} {} not finite, the first is {}", summary.nonfinite,
+      drawn.summary().count, side.estimator->name, at, summary.nonfinite == 1 ? "is" : "are",
+      place.empty() ? fmt::format("observation {}{}", summary.first_nonfinite,
+                                  replay_line(outcome, summary.first_nonfinite))
+                    : "`" + place + "`");
+  if (place.empty()) return text;
+  if (!side.image) return text + "; mend it; leaving it out would bias a mean";
   std::set<std::size_t> pixels;
   for (const std::size_t element : side.channels.all()) {
     if (drawn.summary().channels[element].nonfinite > 0)
       pixels.insert(element / side.image->components.size());
   }
-  return fmt::format("{}, `{}`; {} of {} pixels {} not finite in some picture{}", text, place,
-                     pixels.size(), side.image->pixels(), pixels.size() == 1 ? "is" : "are",
-                     leave_out_nonfinite);
+  return fmt::format("{}; {} of {} pixels {} not finite in some picture{}", text, pixels.size(),
+                     side.image->pixels(), pixels.size() == 1 ? "is" : "are", leave_out_nonfinite);
 }
 
 /// The sampler of that name, or the only one.
