@@ -70,14 +70,15 @@ void add_output(Options& options, Output& output) {
                "tests that need attention; default a line for each suite",
                [&output] { ++output.detail; });
   options.add({"--durations", "N", Replay::nowhere}, output.slowest, at_least(1),
-              "name the N slowest tests at the end; default none");
+              "name the N slowest tests; default none");
 }
 
 void add_inconclusive(Options& options, Output& output) {
   options.add({"--inconclusive", "fail|pass", Replay::nowhere}, output.inconclusive,
               OneOf<InconclusivePolicy>{
                   {{"fail", InconclusivePolicy::fail}, {"pass", InconclusivePolicy::pass}}},
-              "count undecided tests as failed or as passed; default neither: exit code 3");
+              "count undecided tests as failed or passed; default neither: exit code 3, and "
+              "skipped in junit");
   options.add({"--github", "auto|never", Replay::nowhere}, output.github,
               OneOf<bool>{{{"auto", true}, {"never", false}}},
               "annotations and job summary of GitHub Actions; default auto: if GITHUB_ACTIONS is "
@@ -86,7 +87,7 @@ void add_inconclusive(Options& options, Output& output) {
 
 void add_threads(Options& options, unsigned& threads) {
   options.add({"--threads", "N", Replay::nowhere}, threads, read_threads,
-              "worker threads; default one for each core");
+              "threads; default one for each core");
 }
 
 void add_quiet(Options& options, Output& output) {
