@@ -19,6 +19,7 @@
 #include "harness/run/planned_run.h"
 #include "harness/sampling/checkpoint.h"
 #include "reports/report_formats.h"
+#include "reports/words/display.h"
 
 namespace assay::harness {
 namespace {
@@ -59,8 +60,8 @@ int run_suites(const std::vector<Suite>& suites, const RunOptions& options, cons
   if (selects_nothing(suites, options.selection)) return nothing_ran;
   const std::unique_ptr<Progress> progress = make_progress(output.quiet);
   std::string ledger_fault;
-  std::set<std::string> told;                 // ids
-  std::map<std::string, std::string> errors;  // messages, with the first test's id
+  std::set<std::string> told;  // ids
+  std::map<std::string, std::string> errors;
   RunOptions drawn = options;
   std::shared_ptr<Ranks> ranks;
   if (options.ranks != nullptr) {
@@ -76,16 +77,8 @@ int run_suites(const std::vector<Suite>& suites, const RunOptions& options, cons
         identity_of(suites, options), executor_of(drawn));
     drawn.executor = checkpoint;
   }
-  const auto tell = [&](const reports::Test& test) {
-    if (tell_broken(test, output)) told.insert(test.id);
-  };
   const auto broken = [&](const reports::Test& test) {
-    if (test.verdict != reports::Verdict::error) return tell(test);
-    const auto [first, is_new] = errors.emplace(test.message, test.id);
-    if (is_new) return tell(test);
-    reports::Test again = test;
-    again.message = fmt::format("the same error as `{}`", first->second);
-    tell(again);
+    if (tell_broken(reports::told_once(test, errors), output)) told.insert(test.id);
   };
   reports::Record record = run(suites, drawn, *progress, broken, &ledger_fault);
   Output last = output;

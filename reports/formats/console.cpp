@@ -74,8 +74,11 @@ class Screen {
       suites(record);
     }
     blank();
+    std::map<std::string, std::string> errors;
     for (const Test* test : tests_of(record)) {
-      if (is_trouble(standing(*test)) && !told.contains(test->id) && !in_full()) block(*test);
+      if (!is_trouble(standing(*test)) || in_full()) continue;
+      const Test each = told_once(*test, errors);
+      if (!told.contains(test->id)) block(each);
     }
     left_out(record);
     std::uint64_t retries = 0;

@@ -367,6 +367,13 @@ std::string trouble(const Test& test) {
   return test.verdict == Verdict::skipped ? test.message : without_advice(headline(test), test);
 }
 
+Test told_once(Test test, std::map<std::string, std::string>& first) {
+  if (test.verdict != Verdict::error) return test;
+  const std::string& id = first.emplace(test.message, test.id).first->second;
+  if (id != test.id) test.message = fmt::format("the same error as `{}`", id);
+  return test;
+}
+
 std::vector<Step> steps(const Test& test) {
   std::vector<Step> all;
   const auto add = [&](const char* label, std::string paste) {

@@ -122,6 +122,9 @@ RecordDisplay display(const Record&);
 /// The trouble with a claim, without a p-value where it can be said so, and without its advice.
 std::string trouble(const Test&);
 
+/// An error that an earlier test had gives that test's name. `first` has ids by message.
+Test told_once(Test test, std::map<std::string, std::string>& first);
+
 /// The command that tells more of a test.
 Step explanation(const Test&);
 

@@ -184,6 +184,9 @@ test_a_program_that_says_no_hello_is_an_error_of_its_tests() {
   expect 1 run dead.yaml --report json=run.json
   tells out 'the same error as `dead/mean(ended) == 1`'
   [ "$(grep -c 'cannot be prepared' out)" -eq 1 ] || fail 'an error is told twice'
+  expect 0 report run.json
+  tells out 'the same error as `dead/mean(ended) == 1`'
+  [ "$(grep -c 'cannot be prepared' out)" -eq 1 ] || fail 'a saved error is told twice'
   message run.json 'variance(ended) <= 1'
   tells err '`ended` cannot be prepared'
   none_left
