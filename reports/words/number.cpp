@@ -20,6 +20,17 @@ std::string non_finite(double value) {
   return value > 0 ? "Infinity" : "-Infinity";
 }
 
+// Factors from 1 / 1.1 to 1.1 are read as per cent.
+constexpr double near_one = 0.0953;
+
+/// True of a ratio if one of its numbers is beyond this logarithm. They all take the same form.
+bool reaches(const Effect& effect, double limit) {
+  const auto far = [&](const Number& theta) {
+    return is_finite(theta) && std::abs(*theta) > limit;
+  };
+  return is_ratio(effect) && (far(effect.estimate) || far(effect.low) || far(effect.high));
+}
+
 }  // namespace
 
 bool is_finite(const Number& value) { return value && std::isfinite(*value); }
@@ -131,13 +142,7 @@ bool is_ratio(const Effect& effect) {
   return effect.quantity.starts_with("ln ") || effect.quantity.starts_with("ln(");
 }
 
-bool is_factor(const Effect& effect) {
-  // Factors near one are read as per cent; all numbers of one effect take the same form.
-  const auto far = [](const Number& theta) {
-    return is_finite(theta) && std::abs(*theta) > std::numbers::ln2;
-  };
-  return is_ratio(effect) && (far(effect.estimate) || far(effect.low) || far(effect.high));
-}
+bool is_factor(const Effect& effect) { return reaches(effect, near_one); }
 
 std::string factor_text(double theta) {
   // Three digits of a double; beyond its range the power of ten is written from the logarithm.
@@ -208,7 +213,7 @@ std::string margin_text(double margin, const Effect& effect) {
 std::string size_text(double theta, const Effect& effect) {
   if (!is_ratio(effect) || !std::isfinite(theta))
     return magnitude(std::abs(theta), effect.relative);
-  if (!is_factor(effect) && std::abs(theta) <= std::numbers::ln2)
+  if (!reaches(effect, std::numbers::ln2) && std::abs(theta) <= std::numbers::ln2)
     return percent(std::abs(std::expm1(theta)));
   return "a factor of " + factor_text(std::abs(theta));
 }

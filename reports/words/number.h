@@ -69,8 +69,8 @@ std::string factor_text(double theta);
 /// The name of the effect without the logarithm: "ratio of variances".
 std::string effect_name(const Effect&);
 
-/// One value of theta. A ratio is "+12.3 %" where the whole effect stays within a factor of two of
-/// one, else "×0.0717".
+/// One value of theta. A ratio is "+2.3 %" where the whole effect stays within a factor of 1.1 of
+/// one, else "×0.7".
 std::string theta_text(double theta, const Effect&);
 
 /// True if the whole interval lies above this theta.
@@ -90,7 +90,7 @@ std::string named_range_text(const Effect&);
 std::string named_effect_text(const Effect&);
 
 /// The distance of theta from no effect, as theta_text() without a sign: "0.31 %". A ratio gives
-/// "10.9 %", or "a factor of 2.4" if the effect is shown as a factor or theta is one.
+/// "10.9 %", or "a factor of 2.4" if the effect or theta is beyond a factor of two.
 std::string size_text(double theta, const Effect&);
 
 /// A margin on the effect, upwards: "0.5 %", "a factor of 2.4".
