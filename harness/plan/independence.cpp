@@ -63,16 +63,15 @@ std::vector<Rows> rows_of(const Question& question, const Pilots& pilots, std::u
 /// many.
 std::string enough_of_a_chain(const Question& question, std::size_t rows, double time) {
   const auto apart = static_cast<std::size_t>(std::ceil(10 * time));
-  if (!question.is().batches_serve) {
-    return fmt::format("keep one row in {}, {} of them at least", apart, fewest_in_order_to_tell);
-  }
+  const std::size_t needed = apart * fewest_in_order_to_tell;
+  const std::string more = rows < needed ? fmt::format("draw {} rows and ", needed) : "";
+  if (!question.is().batches_serve) return fmt::format("{}keep one row in {}", more, apart);
   const std::optional<std::string>& forced = question.test->method;
   if (forced && !find_method(question, *forced).is.of_batches) {
     return "leave `test` out: Assay then averages batches of enough rows";
   }
   if (question.test->claim.relation == Relation::within) {
-    return fmt::format("means of {} successive rows each, {} of them at least", apart,
-                       fewest_in_order_to_tell);
+    return fmt::format("{}give means of {} successive rows each", more, apart);
   }
   // A half more: another sample's estimate may be larger.
   const std::size_t enough = fewest_batches * std::max(apart, fewest_batches) * 3 / 2;
