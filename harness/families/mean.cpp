@@ -283,12 +283,7 @@ bool hides(std::span<const double> values, double mean, double end) {
 /// one, or none that vary. Two means are bet on only if both are constant.
 bool bets_on_range(const Question& question, const Pilots& pilots) {
   if (question.test->method) return find_method(question, *question.test->method).is.in_range;
-  // To reject "too much" takes the low end.
-  const Regions regions{.relation = question.test->claim.relation};
-  const bool both =
-      question.of_two() || regions.two_sided() || (!regions.proof() && question.test->detect);
-  const bool needs_high = both || regions.bounds_above() == regions.proof();
-  const bool needs_low = both || !needs_high;
+  const Ends needed = ends_that_decide(question);
   bool hidden = false;
   for (std::size_t subject = 0; subject < question.subjects.size(); ++subject) {
     const Subject& side = question.subjects[subject];
@@ -297,16 +292,14 @@ bool bets_on_range(const Question& question, const Pilots& pilots) {
     for (std::size_t channel = 0; channel < side.channels.size(); ++channel) {
       const PilotChannel seen = pilot_channel(question, subject, channel, pilots);
       const stats::Range range = range_of(question, subject, channel, seen.moments);
-      const bool low = needs_low && !std::isfinite(range.low);
-      const bool high = needs_high && !std::isfinite(range.high);
       const bool constant = is_constant(question, subject, channel, seen.moments);
-      if (low || high || !(range.low < range.high)) return false;
+      if (!needed.are_finite(range) || !(range.low < range.high)) return false;
       // A pilot without finite values shows no mean.
       if (seen.moments.count == 0 || (seen.values.empty() && !constant)) return false;
       if (question.of_two() && !constant) return false;
       const double mean = seen.moments.mean;
-      hidden = hidden || constant || (needs_low && hides(seen.values, mean, range.low)) ||
-               (needs_high && hides(seen.values, mean, range.high));
+      hidden = hidden || constant || (needed.low && hides(seen.values, mean, range.low)) ||
+               (needed.high && hides(seen.values, mean, range.high));
     }
   }
   return hidden;
@@ -507,6 +500,13 @@ std::string seeds(const Question& question) {
     }
   }
   return "";
+}
+
+/// Says how to declare the range that bounds what was never seen.
+std::string range_advice(const Question& question) {
+  return std::string(has_rows(question) ? "let a program draw the values instead of a file, and "
+                                        : "") +
+         "declare the range of its channel, `low` to `high`";
 }
 
 /// Verdict on a mean claim whose samples are all constant, where no declared range bounds what was

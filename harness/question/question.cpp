@@ -352,12 +352,6 @@ bool is_constant(const Question& question, std::size_t subject, std::size_t chan
   return moments.maximum - moments.minimum <= 2 * rounding_of(question, subject, channel);
 }
 
-std::string range_advice(const Question& question) {
-  return std::string(has_rows(question) ? "let a program draw the values instead of a file, and "
-                                        : "") +
-         "declare the range of its channel, `low` to `high`";
-}
-
 std::optional<double> no_point_of(const Subject& side, std::size_t channel) {
   const auto* draws = dynamic_cast<const SamplerSetup*>(side.setup.get());
   if (draws == nullptr) return std::nullopt;

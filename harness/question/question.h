@@ -201,9 +201,6 @@ double rounding_of(const Question& question, std::size_t subject, std::size_t ch
 bool is_constant(const Question& question, std::size_t subject, std::size_t channel,
                  const stats::Moments& moments);
 
-/// Says how to declare the range that bounds what was never seen.
-std::string range_advice(const Question& question);
-
 /// The value of a subject's channel that stands for "no point"; only samplers have one.
 std::optional<double> no_point_of(const Subject& side, std::size_t channel = 0);
 

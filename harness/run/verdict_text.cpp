@@ -240,10 +240,6 @@ Reason what_would_decide(const TestOutcome& outcome, const ChannelOutcome& chann
   const stats::Interval interval = channel.evidence.interval(1 - 2 * beta);
   const double half = (interval.high - interval.low) / 2;
   const Room room = room_of(outcome, channel);
-  if (outcome.plan.method.is.in_range && !std::isfinite(half)) {
-    return "no number of observations would decide: nothing bounds what rare values could add; " +
-           range_advice(outcome.question);
-  }
   if (!(half > 0) || !std::isfinite(half) || !(room.size > 0)) {
     return Reason("these observations do not show how many would decide");
   }

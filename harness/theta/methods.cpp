@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "harness/sampling/recorded_run.h"
 #include "harness/theta/theta.h"
@@ -29,12 +28,8 @@ std::string relation_text(const TestEntry& test) {
 }
 
 void require_data(const Method& method, const Question& question) {
-  const Regions regions{.relation = question.test->claim.relation};
-  // To bound a mean from above takes the high end.
-  const bool both =
-      method.is.of_both_ends || (regions.two_sided() && (regions.proof() || question.test->detect));
-  const bool above = regions.bounds_above() == regions.proof();
-  const bool rests_on_range = method.is.in_range || method.is.of_both_ends;
+  const Ends wanted = method.is.in_range ? ends_that_decide(question)
+                                         : Ends{method.is.of_both_ends, method.is.of_both_ends};
   for (const Subject& subject : question.subjects) {
     if (method.is.of_observations && as_recorded_run(*subject.setup) != nullptr) {
       refuse_method(question, method.name,
@@ -42,12 +37,10 @@ void require_data(const Method& method, const Question& question) {
                                 subject.estimator->name));
     }
     // The ends of rows of two values are these values.
-    if (!rests_on_range || (is_recorded(subject) && method.is.of_both_ends)) continue;
+    const bool has_ends = is_recorded(subject) && method.is.of_both_ends;
+    if (has_ends || !(wanted.low || wanted.high)) continue;
     for (const Channel& channel : subject.declared()) {
-      const bool low = std::isfinite(channel.low);
-      const bool high = std::isfinite(channel.high);
-      const bool either = regions.two_sided() && (low || high);
-      if ((low && high) || (!both && (either || (above ? high : low)))) continue;
+      if (wanted.are_finite({channel.low, channel.high})) continue;
       refuse_method(question, method.name,
                     fmt::format("needs a declared range of `{}`: {}", subject.estimator->name,
                                 is_recorded(subject) ? "rows declare none, leave `test` out"
@@ -74,6 +67,15 @@ std::vector<Method> rows_of_families() {
 }
 
 }  // namespace
+
+Ends ends_that_decide(const Question& question) {
+  const Regions regions{.relation = question.test->claim.relation};
+  const std::vector<int> sides = regions.sides();
+  if (question.of_two() || sides.size() > 1 || (!regions.proof() && question.test->detect)) {
+    return {};
+  }
+  return {.low = sides.front() > 0, .high = sides.front() < 0};
+}
 
 const std::vector<Method>& method_table() {
   static const std::vector<Method> table = rows_of_families();

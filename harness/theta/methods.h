@@ -2,6 +2,7 @@
 
 // The method table: the rows of all families.
 
+#include <cmath>
 #include <memory>
 #include <span>
 #include <string>
@@ -105,6 +106,20 @@ std::vector<Method> methods_for(const Question& question);
 /// The method of that name. Throws InputError at the test's place if it does not answer the
 /// question.
 Method find_method(const Question& question, const std::string& name);
+
+/// The ends of declared ranges that a claim on means rests on: all by default.
+struct Ends {
+  bool low = true;
+  bool high = true;
+
+  /// True if the range has them.
+  bool are_finite(const stats::Range& range) const {
+    return (!low || std::isfinite(range.low)) && (!high || std::isfinite(range.high));
+  }
+};
+
+/// To reject "too much" takes the low end. An alarm with `detect` rejects both.
+Ends ends_that_decide(const Question& question);
 
 /// The null hypothesis in words and symbols.
 std::string null_hypothesis(const Question& question, std::size_t channel);
