@@ -33,27 +33,6 @@ std::string sentence(const Gate& gate) {
          (gate.name.size() > row.name.size() ? " (" + gate.name + ")" : "");
 }
 
-/// Factor on the observations that would turn the gate green, with room for what more of them show.
-double wanted(const Gate& gate) {
-  if (!gate.is_red() || !gate.value) return 1;
-  switch (gate.row().falls) {
-    case Falls::by_its_logarithm:
-      // The level factor's logarithm falls like 1 / sqrt(n); it is green at a quarter.
-      return std::pow(std::log(*gate.value) / std::log(1.25), 2);
-    case Falls::as_one_observation: {
-      // The others' share of the sum of squares grows like n.
-      constexpr double wanted_share = 0.1;
-      return (1 / wanted_share - 1) / (1 / *gate.value - 1);
-    }
-    case Falls::inversely:
-      // In a heavy tail the effective number grows like the root of all; it is green at twice.
-      return std::pow(2 * *gate.limit / *gate.value, 2);
-    case Falls::not_known:
-      break;
-  }
-  return 1;
-}
-
 /// The budget that more observations need; none if the test's own number of them is the limit.
 std::optional<Budget> budget_of(const TestOutcome& outcome) {
   const TestEntry& test = *outcome.question.test;
@@ -136,24 +115,18 @@ Reason what_would_help(const TestOutcome& outcome) {
   bool says_it_all = true;
   bool heavy = false;
   double factor = 1;
-  // A sample that one observation makes up tells no more.
-  constexpr double most = 100;
   for (const Gate& gate : outcome.gates) {
     if (!gate.is_red()) continue;
-    const GateKind& row = gate.row();
-    says_it_all = says_it_all && row.says_what_helps;
-    const double own = wanted(gate);
-    const bool hardly_grows = row.falls == Falls::inversely && own > most &&
-                              *gate.value * most < static_cast<double>(outcome.secondaries());
-    heavy = heavy || row.heavy_tail || hardly_grows;
-    factor = std::max(factor, own);
+    says_it_all = says_it_all && gate.row().says_what_helps;
+    heavy = heavy || gate.shows_heavy_tail(static_cast<double>(outcome.secondaries()));
+    factor = std::max(factor, gate.wanted_factor());
   }
   if (says_it_all) return {};
   const bool rows = has_rows(outcome.question);
   // An average has another variance than what it averages.
   const bool averages = rows && !outcome.question.is().of_spread;
   // If the tail's moment does not exist, more observations only make the gate redder.
-  if (heavy || (rows && factor > most)) {
+  if (heavy || (rows && factor > most_wanted)) {
     return Reason::advising(
         "; the values are heavy-tailed, and more observations may only show more of the tail: ",
         fmt::format("{}claim a quantile, as `quantile({}, 0.5) == …`",
@@ -164,7 +137,7 @@ Reason what_would_help(const TestOutcome& outcome) {
                     to_string(outcome.question.test->claim.left.source)));
   }
   const bool known = factor > 1;
-  factor = std::min(factor, most);
+  factor = std::min(factor, most_wanted);
   if (rows) {
     const auto methods = methods_for(outcome.question);
     const auto exact = std::ranges::find_if(

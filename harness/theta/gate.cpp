@@ -1,6 +1,7 @@
 #include "harness/theta/gate.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace assay::harness {
 
@@ -54,6 +55,31 @@ const GateKind& Gate::row() const {
   static const GateKind none{};
   const auto found = std::ranges::find(gate_kinds(), kind, &GateKind::name);
   return found == gate_kinds().end() ? none : *found;
+}
+
+double Gate::wanted_factor() const {
+  if (!is_red() || !value) return 1;
+  switch (row().falls) {
+    case Falls::by_its_logarithm:
+      // The level factor's logarithm falls like 1 / sqrt(n); it is green at a quarter.
+      return std::pow(std::log(*value) / std::log(1.25), 2);
+    case Falls::as_one_observation: {
+      // The others' share of the sum of squares grows like n.
+      constexpr double wanted_share = 0.1;
+      return (1 / wanted_share - 1) / (1 / *value - 1);
+    }
+    case Falls::inversely:
+      // In a heavy tail the effective number grows like the root of all; it is green at twice.
+      return std::pow(2 * *limit / *value, 2);
+    case Falls::not_known:
+      break;
+  }
+  return 1;
+}
+
+bool Gate::shows_heavy_tail(double observations) const {
+  return row().heavy_tail || (row().falls == Falls::inversely && wanted_factor() > most_wanted &&
+                              *value * most_wanted < observations);
 }
 
 bool need_more(const std::vector<Gate>& gates) {

@@ -28,6 +28,9 @@ struct GateKind {
 
 const std::vector<GateKind>& gate_kinds();
 
+/// A sample that one observation makes up tells no larger factor.
+inline constexpr double most_wanted = 100;
+
 /// A gate as reports show it, with its kind. Its name may go on with a channel or an estimator.
 struct Gate : reports::Gate {
   std::string kind;
@@ -35,6 +38,11 @@ struct Gate : reports::Gate {
   bool is_red() const { return state == "red"; }
   /// The row of the table, or an empty one.
   const GateKind& row() const;
+  /// Factor on the observations that would turn the gate green, with room for what more of them
+  /// show; 1 if it is not known.
+  double wanted_factor() const;
+  /// True if more than these observations may only show more of the tail.
+  bool shows_heavy_tail(double observations) const;
 };
 
 /// True if more observations mend all red gates.
