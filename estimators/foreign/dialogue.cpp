@@ -73,11 +73,9 @@ void Dialogue::hear_hello() {
     if (count == 0) {
       const std::string said = text.empty() ? "" : "; it said `" + shown(text) + "`";
       const std::string how = child_.ending();
-      // Its own words say more, except of a package that it does not find.
-      const std::string errors = child_.last_errors();
-      const bool wants_words = errors.empty() || errors.find("'assay'") != errors.npos;
+      // Its own words say more.
       give_up(how + " before it printed the line `ready`" + said,
-              wants_words ? terms_.who_is_ready : "");
+              child_.last_errors().empty() ? terms_.who_is_ready : "");
     }
     text.append(buffer.data(), count);
     if (text.size() > longest_hello) throw ProtocolError("its hello has no end");
