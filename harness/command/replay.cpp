@@ -138,7 +138,7 @@ bool print_observation(const Question& question, const Recorded& recorded, std::
       pool.draw_again(*side.setup->make(), index, values);
     } catch (...) {
       const Fault fault{.observation = index, .words = words_of(std::current_exception())};
-      throw std::runtime_error(sentence_of(fault, side.estimator->name));
+      throw std::runtime_error(sentence_of(fault, side));
     }
     for (std::size_t c = 0; c < values.size(); ++c) {
       if (values[c] == no_cell && side.setup->channel(c).name == cell_channel) continue;
