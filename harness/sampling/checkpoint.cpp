@@ -87,11 +87,11 @@ void Checkpoint::write() {
 }
 
 void Checkpoint::update(const std::string& recipe, WrittenPool& written, const Pool& pool) {
+  const std::uint64_t hash = text_hash(recipe);
   WrittenPool next{packed_sums(pool.drawn_sums()), written.kept, pool.drawn(), written.pool};
   for (std::uint64_t first = written.count; first < pool.kept_end(); first += pool.block_size()) {
     const std::uint64_t last = std::min(first + pool.block_size(), pool.kept_end());
-    const std::string part =
-        packed(text_hash(recipe), first, packed_kept(pool.kept_block(first, last)));
+    const std::string part = packed(hash, first, packed_kept(pool.kept_block(first, last)));
     next.kept.push_back({first, kept_->size(), part.size()});
     kept_->append(part);
   }
@@ -135,6 +135,7 @@ void Checkpoint::recall(const SomePools& pools) {
 }
 
 void Checkpoint::resume(const std::string& recipe, WrittenPool& written, Pool& pool) const {
+  const std::uint64_t expected = text_hash(recipe);
   Pool::Block block;
   try {
     for (const KeptPart& part : written.kept) {
@@ -143,7 +144,7 @@ void Checkpoint::resume(const std::string& recipe, WrittenPool& written, Pool& p
       std::string_view kept;
       const std::string frame = kept_->read(part.place, part.size);
       unpack(frame, hash, observation, kept);
-      Unpacker::require(hash == text_hash(recipe) && observation == part.observation,
+      Unpacker::require(hash == expected && observation == part.observation,
                         "it holds other observations");
       add_kept(kept, block);
     }
