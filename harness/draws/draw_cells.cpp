@@ -77,7 +77,7 @@ stats::PlaneGrid grid_of(const Sampler& sampler, const auto& shares) {
   return grid;
 }
 
-/// Shares of the measure below the borders between equal cells.
+/// Shares of the measure below the borders between equal cells. There is one cell at least.
 std::vector<double> equal_shares(std::size_t cells) {
   return mapped_indices(cells - 1, [&](std::size_t k) {
     return static_cast<double>(k + 1) / static_cast<double>(cells);
