@@ -32,9 +32,9 @@ constexpr double least =
 
 std::string refusal(const std::string& name, double spread, const char* power) {
   return fmt::format(
-      "the observations of `{}` spread over {:.3g}, whose {} power is too large for a double; give "
+      "the observations of `{}` spread over {:.3g}, whose {} power is too {} for a double; give "
       "them in another unit",
-      name, spread, power);
+      name, spread, power, spread < 1 ? "small" : "large");
 }
 
 constexpr std::size_t channels_at_a_time = 4096;
