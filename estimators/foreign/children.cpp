@@ -76,24 +76,6 @@ void Children::refuse_unless_empty(const std::string& why) {
   throw NoAnswer(why);
 }
 
-/// Draws the observations, as many at a time as are answered soon. Whether it answered for all.
-bool Children::draw_ahead(Respondent& dialogue, FirstObservations& mine) {
-  Question question = mine.question;
-  while (mine.count() < mine.question.count) {
-    question.first = mine.count();
-    question.count = mine.question.count - mine.count();
-    question.count = dialogue.well_sized(question);
-    try {
-      const std::vector<double> more = dialogue.ask(question);
-      mine.numbers.insert(mine.numbers.end(), more.begin(), more.end());
-    } catch (const NoAnswer& failure) {
-      if (question.count == 1) note_failure(question, failure.what());
-      return false;
-    }
-  }
-  return true;
-}
-
 bool Children::examine(Respondent& dialogue, const Question& wanted) {
   if (is_to_draw(wanted)) return examine_first(dialogue, wanted);
   FirstObservations few = known_of(wanted.primaries).first;
@@ -110,11 +92,28 @@ bool Children::examine_first(Respondent& dialogue, const Question& wanted) {
                                       .count = asked_twice(width, wanted.primaries),
                                       .primaries = wanted.primaries},
                          .width = width};
+  const bool one_by_one = known_of(wanted.primaries).one_by_one;
+  Question last = mine.question;
+  const auto ask = [&](const Question& question) { return dialogue.ask(last = question); };
   const auto spent = [&] { return thread_seconds() + dialogue.cpu_seconds(); };
   const double begin = spent();
-  bool runs = false;
+  bool runs = true;
   try {
-    runs = draw_ahead(dialogue, mine);
+    while (mine.count() < mine.question.count) {
+      Question next = mine.question;
+      next.first = mine.count();
+      next.count -= mine.count();
+      next.count = one_by_one ? 1 : dialogue.well_sized(next);
+      const std::vector<double> more = ask(next);
+      mine.numbers.insert(mine.numbers.end(), more.begin(), more.end());
+    }
+  } catch (const NoAnswer& failure) {
+    if (last.count > 1) {
+      settle(wanted.primaries, {.one_by_one = true});
+      return false;
+    }
+    note_failure(last, failure.what());
+    runs = false;
   } catch (...) {
     settle(wanted.primaries, {});
     throw;
@@ -125,13 +124,13 @@ bool Children::examine_first(Respondent& dialogue, const Question& wanted) {
                             .seconds = (spent() - begin) / count,
                             .usual = mine.usual()});
   if (!runs) return false;
-  const auto ask = [&](const Question& one) { return dialogue.ask(one); };
   refuse_unless_empty(why_not_repeated(ask, mine, name_));
   std::string why;
   try {
     why = why_unfit(ask, mine, name_, hello_.means());
-  } catch (const NoAnswer&) {
-    return false;
+  } catch (const NoAnswer& failure) {
+    if (last.key == wanted.key) return false;
+    why = failure.what();
   }
   refuse_unless_empty(why);
   return true;

@@ -46,8 +46,9 @@ class Children {
   /// Asks a program that is new to observations of so many primaries for the first ones
   /// (examination.h). The set-up's first program is asked for all of them twice. Every other waits
   /// until they are drawn and is compared with two of them. Throws NoAnswer where numbers are no
-  /// function of key and index, and where a program ends at what another has answered. False where
-  /// the first one ended: the observation that ends it tells.
+  /// function of key and index, and where a program ends at what another has answered, or at
+  /// another key. False where the first one ended: the observation that ends it tells. If it ended
+  /// at many, the next one is asked for one at a time.
   bool examine(Respondent& dialogue, const Question& wanted);
   /// Returns those observations at the head of the question that an examination has drawn.
   Recalled recalled(const Question& question) const;
@@ -69,13 +70,13 @@ class Children {
     FirstObservations first = {};
     bool being_drawn = false;
     bool complete = false;
-    double seconds = 0;  ///< of CPU, for each
+    bool one_by_one = false;  ///< A program did not answer for many.
+    double seconds = 0;       ///< of CPU, for each
     /// The only value so far; none once another was asked for again.
     std::optional<std::vector<double>> usual = {};
   };
 
   bool is_to_draw(const Question& wanted);
-  bool draw_ahead(Respondent& dialogue, FirstObservations& mine);
   void settle(std::uint64_t primaries, Known known);
   Known known_of(std::uint64_t primaries) const;
   void refuse_unless_empty(const std::string& why);

@@ -403,6 +403,26 @@ SUITE
   [ "$(wc -l <waits)" = 2 ] || fail "$(wc -l <waits) waits"
 }
 
+test_a_program_that_hangs_once_is_examined_all_the_same() {
+  cat >once.py <<'PROGRAM'
+import os, random, sys, time
+
+print("assay 1 text\nchannel v\nready", flush=True)
+for line in sys.stdin:
+    first, count = map(int, line.split()[2:4])
+    if count > 1 and not os.path.exists("waited"):
+        open("waited", "w").close()
+        time.sleep(60)
+    for index in range(first, first + count):
+        print(random.Random(index).random())
+    print(line, end="", flush=True)
+PROGRAM
+  expect 1 check 'mean(mine) == 0.5' \
+    --estimator 'mine=process,command=[/usr/bin/python3, -I, once.py],timeout=2'
+  [ -e waited ] || fail 'it never hung'
+  tells out 'gave the same numbers for two keys'
+}
+
 # Either budget let the pilots and the first look make 16,384 calls each.
 test_budgets_bound_what_a_program_draws() {
   cat >count.py <<'END'
