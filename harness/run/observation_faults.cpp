@@ -32,13 +32,15 @@ std::string not_finite(const TestOutcome& outcome, const Subject& side, const Dr
   const auto at = side.image ? " at " + element_place(*side.setup->image(), channel) : "";
   const auto place = side.setup->place_of(
       {.index = summary.first_nonfinite, .key = pool.key(), .primaries = pool.primaries()});
-  // Whoever has a file finds a line of it, not a number of an observation.
-  const std::string text = fmt::format(
-      "{} of {} observations of `{}`{} {} not finite, the first is {}", summary.nonfinite,
-      drawn.summary().count, side.estimator->name, at, summary.nonfinite == 1 ? "is" : "are",
-      place.empty() ? fmt::format("observation {}{}", summary.first_nonfinite,
-                                  replay_line(outcome, summary.first_nonfinite))
-                    : "`" + place + "`");
+  // Whoever wrote a file finds its line, not a number of an observation.
+  const std::string number = fmt::format("observation {}", summary.first_nonfinite);
+  const std::string first = place.empty()
+                                ? number + replay_line(outcome, summary.first_nonfinite)
+                                : (is_recorded(side) ? "" : number + ", ") + "`" + place + "`";
+  const std::string text =
+      fmt::format("{} of {} observations of `{}`{} {} not finite, the first is {}",
+                  summary.nonfinite, drawn.summary().count, side.estimator->name, at,
+                  summary.nonfinite == 1 ? "is" : "are", first);
   if (place.empty()) return text;
   if (!side.image) return text + "; mend it; leaving it out would bias a mean";
   std::set<std::size_t> pixels;

@@ -143,9 +143,9 @@ test_ledger_alarm_is_1() {
   [ "$code" -eq 1 ] || fail "ended with $code, not 1"
   contains out '✗ ledger alarm: nights/off'
   contains out '✗ 1 ledger alarm over all nights. In this run: the claim is as it should be in'
-  contains out 'The relative difference from the reference is about -1'
+  contains out 'The relative difference from the reference is -1'
   expect 0 explain
-  contains out 'The ledger n.ledger raises an alarm for nights/off. The relative difference from the reference is about -1'
+  contains out 'The ledger n.ledger raises an alarm for nights/off. The relative difference from the reference is -1'
 }
 
 test_ledger_keeps_nights_and_refuses_changed_lines() {

@@ -21,7 +21,7 @@ TEST_F(Runs, ANumberThatIsNotFiniteIsNamedWithItsFile) {
   const auto& done = record.suites[0].tests;
   EXPECT_THAT(done[0].message, HasSubstr("the first is `"));
   EXPECT_THAT(done[0].message, HasSubstr("rows.txt:4`"));
-  EXPECT_THAT(done[1].message, HasSubstr("the first is `"));
+  EXPECT_THAT(done[1].message, HasSubstr("the first is observation 0, `"));
   EXPECT_THAT(done[1].message, HasSubstr(".txt`"));
 }
 
