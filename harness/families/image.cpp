@@ -152,7 +152,8 @@ PlannedImage pilot_image(const stats::ImageStack& pilot) {
   const auto images = static_cast<double>(pilot.images.size());
   const auto pixels = static_cast<double>(pilot.extent.width * pilot.extent.height);
   double error = 0;
-  for (const Constant& mean : channel_means(pilot)) error = std::max(error, mean.standard_error);
+  for (const Constant& mean : stats::channel_means(pilot, on_all_threads))
+    error = std::max(error, mean.standard_error);
   return {
       .trace = found.trace,
       .root = std::min(found.trace, std::sqrt(square)),
@@ -307,7 +308,8 @@ class ImageTheta : public Theta {
     const ImageViews views = pilot_views(second, pilots);
     const PictureLook* const look = pilot_of(second, pilots)->sums->look();
     const stats::ImageStack stack{extent_of(*second.image), views.images()};
-    const ChannelMeans means = look != nullptr ? look->means[1] : channel_means(stack);
+    const stats::ChannelMeans means =
+        look != nullptr ? look->means[1] : stats::channel_means(stack, on_all_threads);
     const bool is_known = std::ranges::any_of(means, [](const Constant& mean) {
       return size_beyond_error(mean.value, mean.standard_error) > 0;
     });

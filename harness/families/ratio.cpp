@@ -598,7 +598,7 @@ class EfficiencyTheta final : public RatioTheta {
     if (!truth) return without_truth(stats::influence_of_variance_and_cost(sample));
     return {
         .influence = [sample](double t) { return stats::influence_of_error_and_cost(sample, t); },
-        .truth = {.known = {truth->value, truth->standard_error}, .turn = sample.x().mean}};
+        .truth = {.known = *truth, .turn = sample.x().mean}};
   }
   bool is_inverse() const override { return true; }
   /// It moves ln(mean squared error), to first and second order. More observations do not reduce

@@ -25,11 +25,12 @@ constexpr double unseen_share = 0.02;
 // ---- theta = 0
 
 /// The clearest of the elements that never varied, with those that are as clear.
-stats::ImageFinding finding_of(std::span<const UnseenElement> unseen,
+stats::ImageFinding finding_of(std::span<const stats::UnseenElement> unseen,
                                const stats::ImageExtent& extent) {
-  const UnseenElement& least = *std::ranges::min_element(unseen, {}, &UnseenElement::log_p);
+  const stats::UnseenElement& least =
+      *std::ranges::min_element(unseen, {}, &stats::UnseenElement::log_p);
   std::vector<std::size_t> alike;
-  for (const UnseenElement& each : unseen) {
+  for (const stats::UnseenElement& each : unseen) {
     if (each.log_p == least.log_p && each.sign == least.sign) alike.push_back(each.element);
   }
   stats::ImageFinding finding = stats::certain_finding(extent, alike, least.sign);
@@ -85,8 +86,8 @@ stats::ImageDistance distance_of(const Question& question, const ImagePair& pair
 }
 
 /// Standard errors of what this look finds.
-void note_errors(const std::vector<ChannelMeans>& means, bool relative, const ErrorShare& share,
-                 ImageOutcome& outcome) {
+void note_errors(const std::vector<stats::ChannelMeans>& means, bool relative,
+                 const ErrorShare& share, ImageOutcome& outcome) {
   const stats::TypicalCell& typical = outcome.family.typical;
   const double part = typical.group.share / typical.group.count;
   const double errors = stats::upper_normal_quantile(share.alpha * part / 2) +
@@ -97,10 +98,11 @@ void note_errors(const std::vector<ChannelMeans>& means, bool relative, const Er
   outcome.cell_error = least_error(of_cells, means[1], relative);
 }
 
-ChannelMeans means_held_against(const ImagePair& pair) {
+stats::ChannelMeans means_held_against(const ImagePair& pair) {
   if (!pair.subtracted)
-    return pair.second ? channel_means(*pair.second) : channel_means(pair.reference());
-  ChannelMeans means = channel_means(*pair.subtracted);
+    return pair.second ? stats::channel_means(*pair.second, on_all_threads)
+                       : stats::channel_means(pair.reference());
+  stats::ChannelMeans means = stats::channel_means(*pair.subtracted, on_all_threads);
   drop_errors(means);
   return means;
 }
@@ -230,16 +232,16 @@ void require_independent(const ImageTest& test, const ImagePair& pair) {
 }
 
 PictureLook look_at(const Question& question, const ImageTest& test, ImagePair pair,
-                    std::vector<UnseenElement>& unseen) {
+                    std::vector<stats::UnseenElement>& unseen) {
   const auto [fewest, most] = pair.replicates();
   stats::check::replicates("image", fewest);
   require_independent(test, pair);
   PictureLook look{.pictures = most};
   look.distance = distance_of(question, pair);
-  look.means = {channel_means(pair.first), means_held_against(pair)};
+  look.means = {stats::channel_means(pair.first, on_all_threads), means_held_against(pair)};
   look.z.resize(pair.first.extent.elements());
   const bool of_two = pair.second.has_value();
-  ImageConstants constants = pair.settle(question);
+  stats::ImageConstants constants = pair.settle(question);
   const bool has_noise = constants.count < pair.first.extent.elements() ||
                          (pair.subtracted && varies(*pair.subtracted));
   require_spread(question, has_noise);
@@ -250,13 +252,14 @@ PictureLook look_at(const Question& question, const ImageTest& test, ImagePair p
       .constants_decide = of_two || question.is().of_pairs || !has_noise};
   look.family = stats::image_pyramid(pair.pair(), options);
   unseen = std::move(constants.unseen);
-  for (const UnseenElement& element : unseen) look.z[element.element] = z_of(element);
+  for (const stats::UnseenElement& element : unseen) look.z[element.element] = z_of(element);
   return look;
 }
 
 /// Pictures that were looked at while reading declare neither rounding nor range. So an element of
 /// them that never varied stays as it is.
-PictureLook look_of(const Seen& seen, const ImageTest& test, std::vector<UnseenElement>& unseen) {
+PictureLook look_of(const Seen& seen, const ImageTest& test,
+                    std::vector<stats::UnseenElement>& unseen) {
   if (test.look == nullptr) return look_at(seen.question, test, ImagePair(seen), unseen);
   if (test.require_independent) test.require_independent(test.look->dependence);
   return *test.look;

@@ -17,6 +17,7 @@
 
 #include "estimators/core/value.h"
 #include "harness/base/refuse.h"
+#include "stats/means/student_t.h"
 
 namespace assay {
 struct Channel;
@@ -24,8 +25,9 @@ struct Channel;
 
 namespace assay::harness {
 
-struct Constant;
 class Theta;
+
+using Constant = stats::Reference;  ///< A number, known up to its standard error.
 
 /// An estimator of the suite (in `check` also a plugin's name), and a part of it. A part is a
 /// channel, a sampler, a marginal of the only sampler, or "sampler.marginal"; "" is the whole.
@@ -99,10 +101,6 @@ struct Margin {
 struct ScaledQuantity {
   double factor = 1;
   Quantity quantity;
-};
-struct Constant {
-  double value = 0;
-  double standard_error = 0;
 };
 struct Analytic {};
 /// A law by name: "density" (the sampler's own), or one of Boost.Math's with its parameters.

@@ -209,7 +209,8 @@ std::string means_where_it_differs(const DrawnTest& test) {
   const std::string& seen = channels[0].image->seen;
   if (fails && !seen.empty()) return "; there " + seen;
   std::string constants;
-  if (const std::vector<UnseenElement>& unseen = channels[0].image->unseen; !unseen.empty()) {
+  if (const std::vector<stats::UnseenElement>& unseen = channels[0].image->unseen;
+      !unseen.empty()) {
     const bool one = unseen.size() == 1;
     constants = fmt::format(
         "; {}{} value{} from the reference, {} {}: rare light may be unseen there", unseen.size(),

@@ -243,7 +243,8 @@ class Looking {
     const Stack stacks[] = {sides_[0].stack(), sides_[1].stack()};
     if (question_.is().of_pairs) {
       for (std::size_t s = 0; s < sides_.size(); ++s) sums_[s].take(stacks[s], rows);
-      const Stack differences = difference(stacks[0], stacks[1], differences_);
+      const Stack differences =
+          stats::difference(stacks[0], stacks[1], differences_, on_all_threads);
       const stats::ImageReference zero{extent_, zeros_};
       const stats::ElementRange range = rows.elements(extent_);
       on_all_threads(pictures_, [&](std::size_t i) {
@@ -277,8 +278,8 @@ class Looking {
     look_->family = pyramid_->family();
     const std::vector<double> of_first =
         question_.is().of_pairs ? sums_of(of_differences_) : sides_[0].channel_sums();
-    look_->means = {channel_means(of_first, extent_),
-                    channel_means(sides_[1].channel_sums(), extent_)};
+    look_->means = {stats::channel_means(of_first, extent_),
+                    stats::channel_means(sides_[1].channel_sums(), extent_)};
     if (question_.is().of_pairs) drop_errors(look_->means[1]);
   }
 

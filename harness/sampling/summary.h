@@ -26,6 +26,7 @@
 #include "stats/images/image_dependence.h"
 #include "stats/images/image_equivalence.h"
 #include "stats/images/image_family.h"
+#include "stats/images/image_means.h"
 
 namespace assay::harness {
 
@@ -90,9 +91,6 @@ struct Extremes {
   void add(std::span<const float> values);
 };
 
-/// The mean of each image channel over the pixels, with its standard error.
-using ChannelMeans = std::vector<Constant>;
-
 /// Results of reading two stacks of pictures for one claim.
 struct PictureLook {
   std::uint64_t pictures = 0;          ///< of each side
@@ -101,7 +99,7 @@ struct PictureLook {
   stats::ImageDependence dependence = {};
   std::vector<double> z = {};  ///< For every element.
   /// One for each side; of a paired claim those of the differences, and the second's without error.
-  std::vector<ChannelMeans> means = {};
+  std::vector<stats::ChannelMeans> means = {};
 };
 
 /// The moments of every element that maps show. All values are finite.

@@ -1,11 +1,13 @@
 #include "stats/images/image.h"
 
 #include <algorithm>
+#include <functional>
 #include <string>
 
 #include "stats/basics/check.h"
 
-namespace assay::stats::check {
+namespace assay::stats {
+namespace check {
 namespace {
 
 void extent_of(const char* function, const ImageExtent& extent) {
@@ -79,4 +81,22 @@ void image_pair(const char* function, const ImagePair& pair) {
   }
 }
 
-}  // namespace assay::stats::check
+}  // namespace check
+
+ImageStack difference(const ImageStack& one, const ImageStack& other, std::vector<float>& numbers,
+                      const ForEach& for_each) {
+  ImageStack differences{one.extent, {}, one.there};
+  const std::size_t count = std::min(one.images.size(), other.images.size());
+  const std::size_t size = count == 0 ? 0 : one.images[0].size();
+  numbers.resize(count * size);
+  for (std::size_t i = 0; i < count; ++i) {
+    differences.images.push_back(std::span(numbers).subspan(i * size, size));
+  }
+  for_each(count, [&](std::size_t i) {
+    std::ranges::transform(one.images[i], other.images[i],
+                           numbers.begin() + static_cast<std::ptrdiff_t>(i * size), std::minus<>());
+  });
+  return differences;
+}
+
+}  // namespace assay::stats

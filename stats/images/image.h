@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "stats/basics/for_each.h"
+
 namespace assay::stats {
 
 // Images as numbers. The element of column x, row y and channel c stands at (y * width + x) *
@@ -64,6 +66,10 @@ struct ImagePair {
   const ImageStack* b = nullptr;  // Null if it is held against the reference.
   ImageReference reference = {};
 };
+
+// The images of one stack less those of another, in `numbers`.
+ImageStack difference(const ImageStack& one, const ImageStack& other, std::vector<float>& numbers,
+                      const ForEach& for_each = one_by_one);
 
 // The sum of products of two images' elements.
 inline double dot(std::span<const float> a, std::span<const float> b) {

@@ -44,7 +44,7 @@ class Constants : public testing::Test {
   /// The sides of a test, whose constants are settled.
   struct Settled {
     const ImagePair& pair;
-    ImageConstants constants;
+    stats::ImageConstants constants;
     bool any_varies() const { return constants.count < pair.first.extent.elements(); }
   };
   Settled settled(std::size_t test, std::vector<Stack> sides) {

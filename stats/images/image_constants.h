@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "stats/images/image.h"
+
+namespace assay::stats {
+
+// Elements of images that never varied. They have no standard error, and rare values may be unseen
+// (stats/means/constant_sample.h). Their values differ by rounding only.
+
+// What is known of an element's values: their range, and a bound on their rounding.
+struct DeclaredValues {
+  double low;
+  double high;
+  double rounding;
+  double precision = 0;  // Relative rounding of the numbers as they were drawn.
+  double offset = 0;     // Added after that.
+
+  double error(double value) const;
+};
+
+// Of each element, or one that all share.
+using Declarations = std::vector<DeclaredValues>;
+
+// Those of differences of images from others near `image`, but for their range.
+Declarations of_differences(Declarations one, const Declarations& other,
+                            std::span<const float> image);
+
+// An element that was the same in every replicate and differs from its reference, or the other
+// image's mean, by more than rounding. Unseen values may make up the difference. Without a declared
+// range they are taken to be as large as the values around it, if all of these elements vary. Else
+// they are as large as all values of the image.
+struct UnseenElement {
+  std::size_t element = 0;
+  double sign = 0;  // Sign of constant - reference.
+  double log_p = 0;
+};
+
+// The normal z of its p-value, with the difference's sign.
+double z_of(const UnseenElement& unseen);
+
+struct ImageConstants {
+  std::vector<UnseenElement> unseen = {};  // They are tested by their ranges.
+  std::size_t count = 0;                   // Elements in which nothing varied on either side.
+};
+
+// One side's images, and what is declared of them. Images with a changed element are kept.
+struct SettledSide {
+  ImageStack& stack;
+  Declarations declared;
+};
+using ChangedImages = std::vector<std::vector<float>>;
+
+// Gives elements that did not vary one value: such an element is tested in sums with its
+// neighbours, and by itself against its range, in `unseen`. Constants that differ by rounding only
+// are equal. A reference whose errors are all 0 afterwards has none. Differences of pairs
+// that differ from the reference without any spread are left as they are.
+ImageConstants settle_constants(SettledSide side, std::vector<double>& reference,
+                                std::vector<double>& error, bool of_pairs, ChangedImages& changed);
+
+// The same of two images. If one of them alone varied, its standard error tests the other's
+// constant, provided that the other declares a range. Without a range Welch's test takes the values
+// seen.
+ImageConstants settle_constants(SettledSide first, SettledSide second, ChangedImages& changed);
+
+}  // namespace assay::stats
