@@ -169,11 +169,11 @@ Evidence mean_against_mean(const MeanTest& mean, const Seen& seen) {
   const double step = std::hypot(step_of(first, 1), step_of(second, factor)) / unit;
   const auto interval = [=](double confidence) {
     if (!mean.closed_interval || (relative && offset != 0)) {
-      return interval_by_inversion(at, {.estimate = estimate, .step = step}, confidence);
+      return stats::interval_by_inversion(at, {.estimate = estimate, .step = step}, confidence);
     }
     if (relative) {
-      return map_ends(stats::welch_ratio_interval(first.moments, second.moments, confidence),
-                      [=](double ratio) { return sign * ((1 + ratio) / factor - 1); });
+      return stats::map_ends(stats::welch_ratio_interval(first.moments, second.moments, confidence),
+                             [=](double ratio) { return sign * ((1 + ratio) / factor - 1); });
     }
     // Only count, mean and m2 enter. The difference stands for x, with y's mean at 0.
     Moments moved = first.moments;
@@ -209,10 +209,11 @@ Evidence mean_against_number(const MeanTest& mean, const Seen& seen) {
   const auto interval = [=](double confidence) {
     // Theta also scales the reference's error, so `at` is inverted.
     if ((relative && reference.standard_error > 0) || !mean.closed_interval) {
-      return interval_by_inversion(at, {.estimate = estimate, .step = step}, confidence);
+      return stats::interval_by_inversion(at, {.estimate = estimate, .step = step}, confidence);
     }
-    return map_ends(stats::student_t_interval(x, {null, reference.standard_error}, confidence),
-                    [=](double d) { return d / unit; });
+    return stats::map_ends(
+        stats::student_t_interval(x, {null, reference.standard_error}, confidence),
+        [=](double d) { return d / unit; });
   };
   return {.estimate = estimate,
           .at = at,

@@ -39,8 +39,8 @@ Evidence against_number(const Seen& seen, std::vector<double> values) {
     return stats::quantile_test(stats::count_around(values, null + theta * unit), probability);
   };
   const auto interval = [=](double confidence) {
-    return map_ends(stats::quantile_interval(values, probability, confidence),
-                    [=](double value) { return (value - null) / unit; });
+    return stats::map_ends(stats::quantile_interval(values, probability, confidence),
+                           [=](double value) { return (value - null) / unit; });
   };
   return {.estimate = (middle(values, probability) - null) / unit,
           .at = at,

@@ -280,7 +280,7 @@ Evidence by_influence(const Seen& seen) {
   const double error = std::sqrt(variance);
   const auto interval = [=](double confidence) {
     if (error == 0) return Interval{estimate, estimate, confidence};
-    return interval_by_inversion(at, {.estimate = estimate, .step = error}, confidence);
+    return stats::interval_by_inversion(at, {.estimate = estimate, .step = error}, confidence);
   };
   return {.estimate = estimate,
           .at = at,
@@ -319,9 +319,9 @@ Evidence of_normal_values(const Seen& seen) {
     return two ? stats::f_ratio(x, y, value) : stats::chi_square_variance(x, value);
   };
   const auto interval = [=](double confidence) {
-    return map_ends(two ? stats::f_ratio_interval(x, y, confidence)
-                        : stats::chi_square_variance_interval(x, confidence),
-                    [=](double value) { return std::log(value / null); });
+    return stats::map_ends(two ? stats::f_ratio_interval(x, y, confidence)
+                               : stats::chi_square_variance_interval(x, confidence),
+                           [=](double value) { return std::log(value / null); });
   };
   return {.estimate = std::log(x.variance() / (two ? y.variance() : 1) / null),
           .at = at,

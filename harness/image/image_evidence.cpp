@@ -203,7 +203,7 @@ stats::Interval interval_of(const Distances& distances, double confidence) {
   const auto at_square = [&](double square) {
     return at_margin(distances, std::copysign(std::sqrt(std::abs(square)), square));
   };
-  const stats::Interval squared = interval_by_inversion(
+  const stats::Interval squared = stats::interval_by_inversion(
       at_square, {.estimate = distance.squared_bias / distance.squared_norm, .step = step},
       confidence);
   return {std::sqrt(std::max(0.0, squared.low)), std::sqrt(std::max(0.0, squared.high)),

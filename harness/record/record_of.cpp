@@ -28,6 +28,7 @@
 #include "stats/gates/independence_gates.h"
 #include "stats/means/student_t.h"
 #include "stats/planning/holm.h"
+#include "stats/tails/inversion.h"
 #include "stats/tails/tails.h"
 #include "stats/variances/influence.h"
 
@@ -288,7 +289,7 @@ Estimate variance_of(const stats::Moments& moments, double primaries, double con
   const stats::Influence influence = stats::influence_of_variance(stats::joint_of_four(moments));
   // One observation makes up most of what the variance's own spread is known from.
   if (stats::dominance_gate(influence.relative).state == stats::GateState::red) return alone;
-  const stats::Interval log = interval_by_inversion(
+  const stats::Interval log = stats::interval_by_inversion(
       [&](double theta) { return stats::influence_t(influence, theta); },
       {.estimate = influence.log_value, .step = influence.relative.standard_error()}, confidence);
   return {number(primaries * moments.variance()), number(primaries * std::exp(log.low)),

@@ -5,29 +5,10 @@
 #include <limits>
 #include <numbers>
 
-#include "stats/basics/search.h"
-
 namespace assay::harness {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-constexpr int most_doublings = 60;
-constexpr unsigned digits_of_reach = 40;
-
-/// The end in one direction of the values at which a curve is positive.
-double end_of(const stats::Curve& curve, const Whereabouts& around, double direction) {
-  const auto at = [&](double reach) { return curve(around.estimate + direction * reach); };
-  double inside = 0;
-  double outside = around.step;
-  for (int doublings = 0; at(outside) > 0; outside *= 2) {
-    inside = outside;
-    if (++doublings == most_doublings) return direction * infinity;
-  }
-  if (!(inside > 0 || at(inside) > 0)) return around.estimate;
-  return around.estimate +
-         direction * stats::root_bracket(at, inside, outside, digits_of_reach).first;
-}
 
 constexpr double log_of_impossible = std::numeric_limits<double>::lowest();
 
@@ -76,21 +57,6 @@ Evidence absolute(const Evidence& of_theta) {
             confidence};
   };
   return {.estimate = std::abs(of_theta.estimate), .at = at, .interval = interval};
-}
-
-stats::Interval interval_by_inversion(const std::function<stats::TestResult(double)>& at,
-                                      const Whereabouts& around, double confidence) {
-  const double level = std::log((1 - confidence) / 2);
-  const auto above = [&](double theta) { return at(theta).log_p_lower - level; };
-  const auto below = [&](double theta) { return at(theta).log_p_upper - level; };
-  return {end_of(below, around, -1), end_of(above, around, 1), confidence};
-}
-
-stats::Interval map_ends(const stats::Interval& interval,
-                         const std::function<double(double)>& map) {
-  const double one = map(interval.low);
-  const double other = map(interval.high);
-  return {std::min(one, other), std::max(one, other), interval.confidence};
 }
 
 double Regions::claimed_edge() const {

@@ -19,7 +19,7 @@
 #include "harness/question/question.h"
 #include "reports/record/record.h"
 #include "stats/means/binomial.h"
-#include "stats/tails/test_result.h"
+#include "stats/tails/inversion.h"
 
 namespace assay::harness {
 
@@ -51,21 +51,6 @@ Evidence absolute(const Evidence& of_theta);
 inline std::function<std::string(double)> always(std::string part) {
   return [part = std::move(part)](double) { return part; };
 }
-
-/// A rough location of an interval.
-struct Whereabouts {
-  double estimate = 0;
-  double step = 1;  ///< About a standard error.
-};
-
-/// The values of theta that `at` rejects in neither tail at (1 - confidence) / 2. The ends are
-/// exact to 1e-12 of their distance from the estimate. An end beyond 60 doublings of the step is
-/// infinite. `at` must be monotone: its upper tail rejects larger values less.
-stats::Interval interval_by_inversion(const std::function<stats::TestResult(double)>& at,
-                                      const Whereabouts& around, double confidence);
-
-/// The interval of a monotone function of the number, rising or falling.
-stats::Interval map_ends(const stats::Interval& interval, const std::function<double(double)>& map);
 
 /// Margins on theta's scale. `detect` of `within` is its margin. In `<` and `>` it is only the
 /// advantage to plan for.

@@ -207,7 +207,7 @@ TEST(Inversion, OfStudentTIsItsInterval) {
   const stats::Moments x = tests::moments_of(tests::golden_x);
   for (const double confidence : {.5, .9, .99, 1 - 1e-8}) {
     const stats::Interval closed = stats::student_t_interval(x, {.value = .5}, confidence);
-    const stats::Interval inverted = interval_by_inversion(
+    const stats::Interval inverted = stats::interval_by_inversion(
         [&](double theta) { return stats::student_t(x, {.value = .5 + theta}); },
         {.estimate = x.mean - .5, .step = x.standard_error()}, confidence);
     EXPECT_NEAR(inverted.low, closed.low, 1e-9) << confidence;
@@ -219,7 +219,7 @@ TEST(Inversion, OfStudentTIsItsInterval) {
 TEST(Inversion, OfStudentTAgainstAnUncertainReferenceIsItsInterval) {
   const stats::Moments x = tests::moments_of(tests::golden_x);
   const stats::Interval closed = stats::student_t_interval(x, {.5, .3}, .95);
-  const stats::Interval inverted = interval_by_inversion(
+  const stats::Interval inverted = stats::interval_by_inversion(
       [&](double theta) {
         return stats::student_t(x, {.value = .5 + theta, .standard_error = .3});
       },
@@ -230,7 +230,7 @@ TEST(Inversion, OfStudentTAgainstAnUncertainReferenceIsItsInterval) {
 
 TEST(Inversion, OfWhatIsNeverRejectedIsTheWholeLine) {
   const stats::Interval interval =
-      interval_by_inversion([](double) { return stats::TestResult{}; }, {}, .9);
+      stats::interval_by_inversion([](double) { return stats::TestResult{}; }, {}, .9);
   EXPECT_EQ(interval.low, -std::numeric_limits<double>::infinity());
   EXPECT_EQ(interval.high, std::numeric_limits<double>::infinity());
 }
