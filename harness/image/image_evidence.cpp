@@ -107,109 +107,6 @@ stats::ChannelMeans means_held_against(const ImagePair& pair) {
   return means;
 }
 
-/// Estimates of theta, which decide beside the test of theta = 0.
-struct Distances {
-  stats::ImageDistance of_elements = {};
-  double hidden = 0;           ///< The norm of a bias that values can hide which no element showed.
-  double hidden_of_twice = 0;  ///< With twice the replicates.
-  /// The size of each channel's difference between the whole images' means, with its error. Theta
-  /// is at least as large.
-  std::vector<Constant> of_means = {};
-};
-
-std::vector<Constant> distances_of_means(const PictureLook& look, const stats::ImageExtent& extent,
-                                         double squared_norm, bool of_pairs) {
-  const double scale = std::sqrt(static_cast<double>(extent.width * extent.height) / squared_norm);
-  const std::vector<double> errors = uniform_errors(look.means[0], look.means[1]);
-  return mapped_indices(errors.size(), [&](std::size_t c) {
-    const double other = of_pairs ? 0 : look.means[1][c].value;
-    return Constant{scale * std::abs(look.means[0][c].value - other), scale * errors[c]};
-  });
-}
-
-/// The natural logarithm of the p-value of "one of the means is `margin` off or more".
-double log_p_of_means(const Distances& distances, double margin) {
-  double log_p = std::numeric_limits<double>::lowest();
-  for (const Constant& mean : distances.of_means) {
-    const double beyond = (mean.value - margin) / mean.standard_error;
-    const double degrees = distances.of_elements.degrees;
-    if (mean.standard_error > 0) {
-      log_p = std::max(log_p, stats::student_t_tails(beyond, degrees).lower);
-    } else if (mean.value >= margin) {
-      log_p = 0;
-    }
-  }
-  return log_p;
-}
-
-/// Tests of theta = margin. A hidden bias may be part of theta, or make up theta. An estimate below
-/// 0 counts as 0, since no bias is smaller. Noise that all elements share enters the squared
-/// distance squared, so the jackknife misses it where it cancels a bias: the means decide as well.
-stats::TestResult at_margin(const Distances& distances, double margin) {
-  stats::ImageDistance at_least_zero = distances.of_elements;
-  at_least_zero.squared_bias = std::max(0.0, at_least_zero.squared_bias);
-  const auto at = [](const stats::ImageDistance& of, double root) {
-    return stats::squared_margin_test(of, std::copysign(root * root, root));
-  };
-  const double least = margin - distances.hidden;
-  stats::TestResult result = at(distances.of_elements, margin + distances.hidden);
-  result.log_p_lower =
-      std::max(at(at_least_zero, least).log_p_lower, log_p_of_means(distances, least));
-  return result;
-}
-
-/// Replicates at which theta would be excluded from `margin` on, a million times as many at most.
-/// It is 0 if the estimate is not below the margin. In pure noise f times the replicates divide
-/// the standard error of the squared bias by f. They divide it by sqrt f if there is a bias. A
-/// hidden bias falls like exp(-f).
-double wanted_replicates(const Distances& distances, double margin, const ImageTest& test,
-                         double replicates) {
-  constexpr double least_factor = 1.1;
-  constexpr double most_factor = 1e6;
-  const stats::ImageDistance& distance = distances.of_elements;
-  const double estimate = std::max(0.0, distance.squared_bias / distance.squared_norm);
-  const double errors = 1 - stats::student_t_quantile(
-                                {stats::Tail::lower, std::log(test.share.beta)}, distance.degrees);
-  const double of_square = errors * std::sqrt(distance.bias_variance) / distance.squared_norm;
-  const double decay = distances.hidden > 0 ? distances.hidden_of_twice / distances.hidden : 0;
-  const auto decides = [&](double factor) {
-    const double least = margin - distances.hidden * std::pow(decay, factor - 1);
-    const double error = of_square / (estimate > 0 ? std::sqrt(factor) : factor);
-    return least > 0 && error < least * least - estimate &&
-           std::ranges::all_of(distances.of_means, [&](const Constant& mean) {
-             return errors * mean.standard_error / std::sqrt(factor) < least - mean.value;
-           });
-  };
-  const bool below = margin * margin > estimate &&
-                     std::ranges::all_of(distances.of_means,
-                                         [&](const Constant& mean) { return margin > mean.value; });
-  double factor = least_factor;
-  while (factor < most_factor && !decides(factor)) factor *= least_factor;
-  return below ? replicates * factor : 0;
-}
-
-stats::TestResult at_exactly(double known, double theta) {
-  const double never = std::numeric_limits<double>::lowest();
-  return {.statistic = known - theta,
-          .distribution = {"exact", {}},
-          .log_p_lower = known < theta ? never : 0,
-          .log_p_upper = known > theta ? never : 0};
-}
-
-/// Values of theta that at_margin does not reject, found by the square root's signed square.
-stats::Interval interval_of(const Distances& distances, double confidence) {
-  const stats::ImageDistance& distance = distances.of_elements;
-  const double step = std::sqrt(distance.bias_variance) / distance.squared_norm;
-  const auto at_square = [&](double square) {
-    return at_margin(distances, std::copysign(std::sqrt(std::abs(square)), square));
-  };
-  const stats::Interval squared = stats::interval_by_inversion(
-      at_square, {.estimate = distance.squared_bias / distance.squared_norm, .step = step},
-      confidence);
-  return {std::sqrt(std::max(0.0, squared.low)), std::sqrt(std::max(0.0, squared.high)),
-          confidence};
-}
-
 /// Pictures of files that are alike and were not refused have no noise, such as a layer of depth.
 /// What is drawn should vary.
 void require_spread(const Question& question, bool varies) {
@@ -427,43 +324,35 @@ ChannelEvidence evidence_of_images(const Seen& seen, const ImageTest& test) {
   add_unseen(extent, outcome);
   note_errors(look.means, relative, test.share, outcome);
   const stats::ImageFamily& family = outcome.family;
-  const Distances distances{
+  // Differences of pairs are held against 0.
+  const stats::ChannelMeans other =
+      question.is().of_pairs ? stats::ChannelMeans(look.means[1].size()) : look.means[1];
+  const stats::ThetaOfImages images{
       .of_elements = distance,
       .hidden = std::sqrt(family.hidden_squares / distance.squared_norm),
       .hidden_of_twice = std::sqrt(family.hidden_squares_of_twice / distance.squared_norm),
-      .of_means = distances_of_means(look, extent, distance.squared_norm, question.is().of_pairs)};
+      .of_means = stats::distances_of_means(look.means[0], other, extent, distance.squared_norm)};
   const TestEntry& entry = *question.test;
   const bool within = entry.claim.relation == Relation::within;
   if (within || entry.detect) {
     const double margin = within ? entry.claim.margin.value : entry.detect->value;
-    outcome.wanted =
-        wanted_replicates(distances, margin, test, static_cast<double>(outcome.replicates));
+    outcome.wanted = stats::deciding_replicates(images, margin, test.share.beta,
+                                                static_cast<double>(outcome.replicates));
   }
   const stats::TestResult equal{
       .statistic = family.winner.z,
       .distribution = {"image-family", {static_cast<double>(family.tested)}},
       .log_p_lower = 0,
       .log_p_upper = family.log_p};
-  const double ratio = distance.squared_bias / distance.squared_norm;
-  const double estimate = std::sqrt(std::max(0.0, ratio));
-  // So it is without noise, and beside an image of zeros.
-  const bool exact = !(stats::variance_at(distance, ratio) > 0);
-  Evidence evidence{.estimate = estimate,
-                    .at =
-                        [=](double theta) {
-                          if (theta > 0 && exact) return at_exactly(estimate, theta);
-                          return theta > 0 ? at_margin(distances, theta) : equal;
-                        },
-                    .interval =
-                        [=](double confidence) {
-                          return exact ? stats::Interval{estimate, estimate, confidence}
-                                       : interval_of(distances, confidence);
-                        },
-                    .quantity = relative ? "relative root mean square difference of the images"
-                                         : "root mean square difference of the images",
-                    .relative = relative,
-                    .distance = true,
-                    .exact = exact};
+  Evidence evidence{
+      .estimate = images.estimate(),
+      .at = [=](double theta) { return theta > 0 ? stats::theta_test(images, theta) : equal; },
+      .interval = [=](double confidence) { return stats::theta_interval(images, confidence); },
+      .quantity = relative ? "relative root mean square difference of the images"
+                           : "root mean square difference of the images",
+      .relative = relative,
+      .distance = true,
+      .exact = images.exact()};
   return {std::move(evidence), std::move(outcome)};
 }
 

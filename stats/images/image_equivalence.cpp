@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numeric>
 #include <span>
@@ -10,7 +11,7 @@
 #include "stats/basics/check.h"
 #include "stats/basics/moments.h"
 #include "stats/basics/vector_copies.h"
-#include "stats/images/image_moments.h"
+#include "stats/tails/inversion.h"
 #include "stats/tails/tails.h"
 
 namespace assay::stats {
@@ -285,6 +286,106 @@ TestResult squared_margin_test(const ImageDistance& distance, double squared_mar
   const double t =
       (distance.squared_bias - squared_margin * distance.squared_norm) / std::sqrt(variance);
   return by_tails(t, {"student-t", {distance.degrees}}, student_t_tails(t, distance.degrees));
+}
+
+namespace {
+
+constexpr double never = std::numeric_limits<double>::lowest();
+
+// The natural logarithm of the p-value of "one of the means is `margin` off or more".
+double log_p_of_means(const ThetaOfImages& theta, double margin) {
+  double log_p = never;
+  for (const Reference& mean : theta.of_means) {
+    const double beyond = (mean.value - margin) / mean.standard_error;
+    if (mean.standard_error > 0) {
+      log_p = std::max(log_p, student_t_tails(beyond, theta.of_elements.degrees).lower);
+    } else if (mean.value >= margin) {
+      log_p = 0;
+    }
+  }
+  return log_p;
+}
+
+TestResult test_of_squares(const ThetaOfImages& theta, double margin) {
+  ImageDistance at_least_zero = theta.of_elements;
+  at_least_zero.squared_bias = std::max(0.0, at_least_zero.squared_bias);
+  const auto at = [](const ImageDistance& of, double root) {
+    return squared_margin_test(of, std::copysign(root * root, root));
+  };
+  const double least = margin - theta.hidden;
+  TestResult result = at(theta.of_elements, margin + theta.hidden);
+  result.log_p_lower = std::max(at(at_least_zero, least).log_p_lower, log_p_of_means(theta, least));
+  return result;
+}
+
+}  // namespace
+
+double ThetaOfImages::estimate() const {
+  return std::sqrt(std::max(0.0, of_elements.squared_bias / of_elements.squared_norm));
+}
+
+bool ThetaOfImages::exact() const {
+  return !(variance_at(of_elements, of_elements.squared_bias / of_elements.squared_norm) > 0);
+}
+
+std::vector<Reference> distances_of_means(const ChannelMeans& a, const ChannelMeans& b,
+                                          const ImageExtent& extent, double squared_norm) {
+  const double scale = std::sqrt(static_cast<double>(extent.width * extent.height) / squared_norm);
+  const std::vector<double> errors = uniform_errors(a, b);
+  std::vector<Reference> distances;
+  for (std::size_t c = 0; c < errors.size(); ++c) {
+    distances.push_back({scale * std::abs(a[c].value - b[c].value), scale * errors[c]});
+  }
+  return distances;
+}
+
+TestResult theta_test(const ThetaOfImages& theta, double margin) {
+  if (!theta.exact()) return test_of_squares(theta, margin);
+  const double known = theta.estimate();
+  return {.statistic = known - margin,
+          .distribution = {"exact", {}},
+          .log_p_lower = known < margin ? never : 0,
+          .log_p_upper = known > margin ? never : 0};
+}
+
+Interval theta_interval(const ThetaOfImages& theta, double confidence) {
+  if (theta.exact()) return {theta.estimate(), theta.estimate(), confidence};
+  const ImageDistance& distance = theta.of_elements;
+  const double step = std::sqrt(distance.bias_variance) / distance.squared_norm;
+  const auto at_square = [&](double square) {
+    return test_of_squares(theta, std::copysign(std::sqrt(std::abs(square)), square));
+  };
+  const Interval squared = interval_by_inversion(
+      at_square, {.estimate = distance.squared_bias / distance.squared_norm, .step = step},
+      confidence);
+  return {std::sqrt(std::max(0.0, squared.low)), std::sqrt(std::max(0.0, squared.high)),
+          confidence};
+}
+
+double deciding_replicates(const ThetaOfImages& theta, double margin, double beta,
+                           double replicates) {
+  constexpr double least_factor = 1.1;
+  constexpr double most_factor = 1e6;
+  const ImageDistance& distance = theta.of_elements;
+  const double estimate = std::max(0.0, distance.squared_bias / distance.squared_norm);
+  const double errors = 1 - student_t_quantile({Tail::lower, std::log(beta)}, distance.degrees);
+  const double of_square = errors * std::sqrt(distance.bias_variance) / distance.squared_norm;
+  const double decay = theta.hidden > 0 ? theta.hidden_of_twice / theta.hidden : 0;
+  const auto decides = [&](double factor) {
+    const double least = margin - theta.hidden * std::pow(decay, factor - 1);
+    const double error = of_square / (estimate > 0 ? std::sqrt(factor) : factor);
+    return least > 0 && error < least * least - estimate &&
+           std::ranges::all_of(theta.of_means, [&](const Reference& mean) {
+             return errors * mean.standard_error / std::sqrt(factor) < least - mean.value;
+           });
+  };
+  const bool below =
+      margin * margin > estimate && std::ranges::all_of(theta.of_means, [&](const Reference& mean) {
+        return margin > mean.value;
+      });
+  double factor = least_factor;
+  while (factor < most_factor && !decides(factor)) factor *= least_factor;
+  return below ? replicates * factor : 0;
 }
 
 }  // namespace assay::stats

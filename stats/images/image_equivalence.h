@@ -5,7 +5,7 @@
 
 #include "stats/basics/for_each.h"
 #include "stats/images/image.h"
-#include "stats/images/image_moments.h"
+#include "stats/images/image_means.h"
 #include "stats/tails/test_result.h"
 
 namespace assay::stats {
@@ -85,5 +85,41 @@ double variance_at(const ImageDistance& distance, double squared_margin);
 // A negative squared margin only serves to invert for an interval of U / N. ZeroVariance for a zero
 // standard error.
 TestResult squared_margin_test(const ImageDistance& distance, double squared_margin);
+
+// ---- theta = ||E a - E b|| / sqrt N, with what the squared distance does not show
+
+struct ThetaOfImages {
+  ImageDistance of_elements = {};
+  double hidden = 0;           // The norm of a bias that values can hide which no element showed.
+  double hidden_of_twice = 0;  // With twice the replicates.
+  // The size of each channel's difference between the whole images' means, with its error. Theta is
+  // at least as large.
+  std::vector<Reference> of_means = {};
+
+  // sqrt(U / N), or 0 where U is negative.
+  double estimate() const;
+  // True without noise, and beside an image of zeros: the estimate is theta.
+  bool exact() const;
+};
+
+// `of_means`, in units of sqrt(squared_norm).
+std::vector<Reference> distances_of_means(const ChannelMeans& a, const ChannelMeans& b,
+                                          const ImageExtent& extent, double squared_norm);
+
+// Null hypothesis: theta = margin > 0. A hidden bias may be part of theta, or make up theta. An
+// estimate below 0 counts as 0, since no bias is smaller. Noise that all elements share enters the
+// squared distance squared, so the jackknife misses it where it cancels a bias: the means decide as
+// well. Asymptotic. Throws as squared_margin_test.
+TestResult theta_test(const ThetaOfImages& theta, double margin);
+
+// Values of theta that theta_test does not reject, found by the square root's signed square.
+Interval theta_interval(const ThetaOfImages& theta, double confidence);
+
+// Replicates at which theta would be excluded from `margin` on at beta, a million times as many at
+// most. It is 0 if the estimate is not below the margin. In pure noise f times the replicates
+// divide the standard error of the squared bias by f. They divide it by sqrt f if there is a bias.
+// A hidden bias falls like exp(-f).
+double deciding_replicates(const ThetaOfImages& theta, double margin, double beta,
+                           double replicates);
 
 }  // namespace assay::stats
