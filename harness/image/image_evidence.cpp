@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "estimators/stream.h"
 #include "harness/base/interrupt.h"
@@ -19,39 +18,6 @@
 
 namespace assay::harness {
 namespace {
-
-constexpr double unseen_share = 0.02;
-
-// ---- theta = 0
-
-/// The clearest of the elements that never varied, with those that are as clear.
-stats::ImageFinding finding_of(std::span<const stats::UnseenElement> unseen,
-                               const stats::ImageExtent& extent) {
-  const stats::UnseenElement& least =
-      *std::ranges::min_element(unseen, {}, &stats::UnseenElement::log_p);
-  std::vector<std::size_t> alike;
-  for (const stats::UnseenElement& each : unseen) {
-    if (each.log_p == least.log_p && each.sign == least.sign) alike.push_back(each.element);
-  }
-  stats::ImageFinding finding = stats::certain_finding(extent, alike, least.sign);
-  finding.log_p = least.log_p;
-  finding.z = z_of(least);
-  const double elements = static_cast<double>(extent.elements());
-  finding.adjusted_log_p = std::min(0.0, least.log_p + std::log(elements / unseen_share));
-  return finding;
-}
-
-/// Adds the elements that never varied to the family, at their share.
-void add_unseen(const stats::ImageExtent& extent, ImageOutcome& outcome) {
-  stats::ImageFamily& family = outcome.family;
-  for (stats::ImageFinding& group : family.groups) {
-    group.adjusted_log_p = std::min(0.0, group.adjusted_log_p - std::log1p(-unseen_share));
-  }
-  if (!outcome.unseen.empty()) family.groups.push_back(finding_of(outcome.unseen, extent));
-  stats::decide(family);
-}
-
-// ---- theta beyond 0
 
 /// The distance with the margin's norm.
 stats::ImageDistance in_units_of_margin(const stats::ImageDistance& distance,
@@ -170,25 +136,6 @@ std::string range_text(char axis, std::int64_t first, std::uint32_t count) {
 
 // ---- Laws
 
-// A small p-value is known to a third: ten labels are as extreme. Beyond so many labels, one is.
-constexpr double least_permutations = 999;
-constexpr double permutations_over_fewest = 10;
-constexpr double usual_permutations = 9999;
-
-/// All subsets of one size are alike: the first steps of Fisher and Yates's shuffle.
-std::vector<std::uint32_t> drawn_subset(StreamKey key, std::uint64_t index, std::size_t count,
-                                        std::size_t size) {
-  std::vector<std::uint32_t> all(count);
-  std::iota(all.begin(), all.end(), 0);
-  Stream stream(key, index);
-  for (std::size_t i = 0; i < size; ++i) {
-    const double rest = static_cast<double>(count - i);
-    std::swap(all[i], all[i + static_cast<std::size_t>(stream.uniform() * rest)]);
-  }
-  all.resize(size);
-  return all;
-}
-
 std::string seen_text(const stats::ImageLawFinding& most, const std::string& side) {
   const auto text = [&](const char* what) {
     return fmt::format("the {} {} in {}", what, most.z > 0 ? "larger" : "smaller", side);
@@ -206,11 +153,6 @@ std::string seen_text(const stats::ImageLawFinding& most, const std::string& sid
   return text("brightest values are mostly");
 }
 
-std::size_t permutations_at(double alpha) {
-  const double many = std::min(permutations_over_fewest / alpha - 1, usual_permutations);
-  return static_cast<std::size_t>(std::max({least_permutations, many, std::ceil(1 / alpha) - 1}));
-}
-
 void until_interrupted(std::size_t count, const std::function<void(std::size_t)>& work) {
   on_all_threads(count, [&](std::size_t i) {
     if (!interrupted()) work(i);
@@ -224,10 +166,12 @@ stats::ImageLawTest law_test_of(const Question& question, const ImageTest& test,
   require_spread(question, varies(pair.first) || varies(*pair.second));
   return stats::image_law_test(
       pair.first, *pair.second,
-      {.permutations = permutations_at(test.share.alpha),
-       .draw = [key = test.labels](
-                   std::uint64_t index, std::size_t count,
-                   std::size_t size) { return drawn_subset(key, index, count, size); },
+      {.permutations = stats::permutations_at(test.share.alpha),
+       .draw =
+           [key = test.labels](std::uint64_t index, std::size_t count, std::size_t size) {
+             Stream stream(key, index);
+             return stats::drawn_subset([&] { return stream.uniform(); }, count, size);
+           },
        .for_each = until_interrupted});
 }
 
@@ -321,7 +265,7 @@ ChannelEvidence evidence_of_images(const Seen& seen, const ImageTest& test) {
   outcome.replicates = look.pictures;
   outcome.family = std::move(look.family);
   outcome.z = std::move(look.z);
-  add_unseen(extent, outcome);
+  stats::add_unseen(outcome.unseen, extent, outcome.family);
   note_errors(look.means, relative, test.share, outcome);
   const stats::ImageFamily& family = outcome.family;
   // Differences of pairs are held against 0.

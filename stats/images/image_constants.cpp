@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "stats/basics/moments.h"
-#include "stats/images/image_family.h"
 #include "stats/means/constant_sample.h"
 #include "stats/tails/tails.h"
 
@@ -28,6 +27,23 @@ struct Missing : ConstantSample {
     return std::isfinite(mean.value < value ? low : high);
   }
 };
+
+constexpr double unseen_share = 0.02;
+
+// The clearest of the elements that never varied, with those that are as clear.
+ImageFinding finding_of(std::span<const UnseenElement> unseen, const ImageExtent& extent) {
+  const UnseenElement& least = *std::ranges::min_element(unseen, {}, &UnseenElement::log_p);
+  std::vector<std::size_t> alike;
+  for (const UnseenElement& each : unseen) {
+    if (each.log_p == least.log_p && each.sign == least.sign) alike.push_back(each.element);
+  }
+  ImageFinding finding = certain_finding(extent, alike, least.sign);
+  finding.log_p = least.log_p;
+  finding.z = z_of(least);
+  const double elements = static_cast<double>(extent.elements());
+  finding.adjusted_log_p = std::min(0.0, least.log_p + std::log(elements / unseen_share));
+  return finding;
+}
 
 class ScannedSide {
  public:
@@ -135,6 +151,15 @@ Declarations of_differences(Declarations one, const Declarations& other,
 double z_of(const UnseenElement& unseen) {
   if (unseen.log_p == std::numeric_limits<double>::lowest()) return unseen.sign * certain_z;
   return unseen.sign * normal_quantile({Tail::upper, unseen.log_p - std::log(2.0)});
+}
+
+void add_unseen(std::span<const UnseenElement> unseen, const ImageExtent& extent,
+                ImageFamily& family) {
+  for (ImageFinding& group : family.groups) {
+    group.adjusted_log_p = std::min(0.0, group.adjusted_log_p - std::log1p(-unseen_share));
+  }
+  if (!unseen.empty()) family.groups.push_back(finding_of(unseen, extent));
+  decide(family);
 }
 
 ImageConstants settle_constants(SettledSide declared, std::vector<double>& reference,

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "stats/images/image.h"
+#include "stats/images/image_family.h"
 
 namespace assay::stats {
 
@@ -41,6 +41,10 @@ struct UnseenElement {
 
 // The normal z of its p-value, with the difference's sign.
 double z_of(const UnseenElement& unseen);
+
+// Adds the elements that never varied to a family of groups, at 2 % of its level.
+void add_unseen(std::span<const UnseenElement> unseen, const ImageExtent& extent,
+                ImageFamily& family);
 
 struct ImageConstants {
   std::vector<UnseenElement> unseen = {};  // They are tested by their ranges.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 #include "stats/basics/scores.h"
 #include "stats/basics/vector_copies.h"
@@ -365,6 +366,25 @@ ImageLawFinding most_of(const Groups& groups, const ImageExtent& extent) {
 }
 
 }  // namespace
+
+std::vector<std::uint32_t> drawn_subset(const std::function<double()>& uniform, std::size_t count,
+                                        std::size_t size) {
+  std::vector<std::uint32_t> all(count);
+  std::iota(all.begin(), all.end(), 0);
+  for (std::size_t i = 0; i < size; ++i) {
+    const double rest = static_cast<double>(count - i);
+    std::swap(all[i], all[i + static_cast<std::size_t>(uniform() * rest)]);
+  }
+  all.resize(size);
+  return all;
+}
+
+std::size_t permutations_at(double alpha) {
+  constexpr double least = 999;
+  constexpr double usual = 9999;
+  const double many = std::min(static_cast<double>(enough) / alpha - 1, usual);
+  return static_cast<std::size_t>(std::max({least, many, std::ceil(1 / alpha) - 1}));
+}
 
 ImageLawTest image_law_test(const ImageStack& a, const ImageStack& b,
                             const ImageLawOptions& options) {

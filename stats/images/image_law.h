@@ -39,6 +39,14 @@ struct ImageLawTest {
 using DrawSubset = std::function<std::vector<std::uint32_t>(std::uint64_t index, std::size_t count,
                                                             std::size_t size)>;
 
+// The first steps of Fisher and Yates's shuffle, by numbers uniform in [0, 1).
+std::vector<std::uint32_t> drawn_subset(const std::function<double()>& uniform, std::size_t count,
+                                        std::size_t size);
+
+// Enough for a test at this level. A small p-value is then known to a third: ten labels are as
+// extreme. Beyond 9999 labels, one is.
+std::size_t permutations_at(double alpha);
+
 struct ImageLawOptions {
   std::size_t permutations = 999;  // At most.
   DrawSubset draw = {};
