@@ -13,7 +13,6 @@
 #include "harness/sampling/image_views.h"
 #include "harness/theta/ask.h"
 #include "stats/images/image_covariance.h"
-#include "stats/tails/tails.h"
 
 namespace assay::harness {
 namespace {
@@ -139,87 +138,42 @@ bool all_pictured(const Question& question, const Pilots& pilots) {
   });
 }
 
-// Standard errors above estimates of the noise: pilots of heavy noise differ.
-constexpr double errors_above = 2;
-
 ImageViews pilot_views(const Subject& side, const Pilots& pilots) {
   return {pilot_of(side, pilots)->images, side.channels};
 }
 
-PlannedImage pilot_image(const stats::ImageStack& pilot) {
-  const stats::ImageCovariance found = stats::image_covariance(pilot, on_all_threads);
-  const double square = found.squared_trace + errors_above * found.squared_trace_error;
-  const auto images = static_cast<double>(pilot.images.size());
-  const auto pixels = static_cast<double>(pilot.extent.width * pilot.extent.height);
-  double error = 0;
-  for (const Constant& mean : stats::channel_means(pilot, on_all_threads))
-    error = std::max(error, mean.standard_error);
-  return {
-      .trace = found.trace,
-      .root = std::min(found.trace, std::sqrt(square)),
-      .of_mean = error * error * images * pixels * (1 + errors_above * std::sqrt(2 / (images - 1))),
-      .squared_norm = found.squared_mean};
-}
-
 /// The noise of differences, and the brightness of what is subtracted.
-PlannedImage pilot_of_differences(const Question& question, const Pilots& pilots) {
+stats::ImageNoise noise_of_differences(const Question& question, const Pilots& pilots) {
   const std::vector<ChannelData> data = mapped(question.subjects, [&](const Subject& side) {
     return ChannelData{.images = pilot_views(side, pilots)};
   });
   const ImagePair pair({question, 0, data});
-  PlannedImage image = pilot_image(pair.first);
-  image.squared_norm = stats::image_squared_mean(*pair.subtracted);
-  return image;
+  stats::ImageNoise noise = stats::noise_of_pilot(pair.first, on_all_threads);
+  noise.squared_norm = stats::image_squared_mean(*pair.subtracted);
+  return noise;
 }
 
-/// Adds the noise of one more side, whose pilot this is, times the square of its factor.
-void add_noise(PlannedImage& all, const PlannedImage& pilot, double square, double averaged) {
-  all.trace += square * pilot.trace / averaged;
-  all.root += square * pilot.root / averaged;
-  all.of_mean += square * pilot.of_mean / averaged;
-  all.squared_norm = square * pilot.squared_norm;
-}
-
-/// The noise of an observation, and the brightness that margins are relative to. The root of two
-/// sides is at most the sum of theirs.
-PlannedImage planned_image(const TestOutcome& test, const Pilots& pilots) {
+/// The noise of an observation, and the brightness that margins are relative to.
+stats::ImageNoise planned_noise(const TestOutcome& test, const Pilots& pilots) {
   const Question& question = test.question;
   const std::vector<std::uint64_t>& primaries = test.plan.primaries;
-  PlannedImage all;
+  stats::ImageNoise all;
   if (question.is().of_pairs) {
-    add_noise(all, pilot_of_differences(question, pilots), 1,
-              question.subjects[0].averaged(primaries[0]));
+    all.add(noise_of_differences(question, pilots), 1, question.subjects[0].averaged(primaries[0]));
     return all;
   }
   for (std::size_t s = 0; s < question.subjects.size(); ++s) {
     const Subject& side = question.subjects[s];
     const ImageViews views = pilot_views(side, pilots);
-    const PlannedImage image = pilot_image({extent_of(*side.image), views.images()});
-    const double square = s == 0 ? 1 : question.factor * question.factor;
-    add_noise(all, image, square, side.averaged(primaries[s]));
+    const stats::ImageNoise noise =
+        stats::noise_of_pilot({extent_of(*side.image), views.images()}, on_all_threads);
+    all.add(noise, s == 0 ? 1 : question.factor * question.factor, side.averaged(primaries[s]));
   }
   return all;
 }
 
-/// The squared distance that `n` images exclude with probability 1 - beta if there is none. Let
-/// noise have rank d, and s = root / sqrt(d) / n. The squared distance is then s (chi^2 - d), and
-/// its jackknife error 2 s chi.
-double excluded_square(const PlannedImage& image, double beta, double n) {
-  if (!(image.root > 0)) return 0;
-  const double degrees = std::pow(image.trace / image.root, 2);
-  const double t = -stats::student_t_quantile({stats::Tail::lower, std::log(beta)}, n - 1);
-  const double square = stats::chi_square_quantile({stats::Tail::upper, std::log(beta)}, degrees);
-  return image.root / std::sqrt(degrees) / n * (square - degrees + 2 * t * std::sqrt(square));
-}
-
-/// The same of a distance between the whole images' means, which both one-sided tests exclude.
-double excluded_distance(const PlannedImage& image, double beta, double n) {
-  const double t = -stats::student_t_quantile({stats::Tail::lower, std::log(beta)}, n - 1);
-  return (t + stats::upper_normal_quantile(beta / 2)) * std::sqrt(image.of_mean / n);
-}
-
 /// The square of the margins' unit.
-double squared_unit(const Question& question, const PlannedImage& last) {
+double squared_unit(const Question& question, const stats::ImageNoise& last) {
   if (!question.theta->is_relative(question, 0)) {
     return static_cast<double>(question.subjects[0].channels.size());
   }
@@ -275,31 +229,21 @@ class ImageTheta : public Theta {
     const bool in_looks = has_planned_size(question) && !question.test->secondaries;
     // Rows have one look, whose size nothing plans.
     if (in_looks && all_pictured(question, pilots) && !has_rows(question)) {
-      test.plan.image = planned_image(test, pilots);
+      test.plan.image = planned_noise(test, pilots);
     }
     return stats::least_replicates;
   }
   /// Replicates that exclude `detect` or prove `within` if the images are equal.
   std::optional<std::uint64_t> secondaries(const TestOutcome& test, const ErrorShare& share,
                                            const Pilots&) const override {
-    const std::optional<PlannedImage>& image = test.plan.image;
-    if (!image) return std::nullopt;
+    const std::optional<stats::ImageNoise>& noise = test.plan.image;
+    if (!noise) return std::nullopt;
     const Regions& regions = test.plan.regions[0];
-    const double margin = *regions.detect;
-    const double unit = squared_unit(test.question, *image);
-    const double room = (margin * margin - regions.allow * regions.allow) * unit;
-    const double room_of_mean = (margin - regions.allow) * std::sqrt(unit);
-    if (!(room > 0)) return impossible_secondaries;
-    std::uint64_t count = stats::least_replicates;
-    while (count < impossible_secondaries) {
-      const auto n = static_cast<double>(count);
-      if (excluded_square(*image, share.beta, n) <= room &&
-          excluded_distance(*image, share.beta, n) <= room_of_mean) {
-        break;
-      }
-      count += count / 8 + 1;
-    }
-    return std::min(count, impossible_secondaries);
+    return stats::image_sample_size(*noise,
+                                    {.allow = regions.allow,
+                                     .detect = *regions.detect,
+                                     .squared_unit = squared_unit(test.question, *noise)},
+                                    share.beta, impossible_secondaries);
   }
   /// The root mean square of an element.
   double piloted_size(const Question& question, const Pilots& pilots) const override {

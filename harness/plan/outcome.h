@@ -12,6 +12,7 @@
 #include "harness/theta/gate.h"
 #include "harness/theta/methods.h"
 #include "reports/record/record.h"
+#include "stats/images/image_planning.h"
 #include "stats/planning/looks.h"
 #include "stats/tails/test_result.h"
 
@@ -23,14 +24,6 @@ struct FamilyPlace {
   double weight = 0;        ///< Weight of one channel; a family's weights sum to 1.
   ErrorShare share = {};    ///< Share of one channel.
   bool in_seconds = false;  ///< A budget in seconds, the test's or the suite's, bounds it.
-};
-
-/// Noise and brightness of an observation of an image, by the pilots.
-struct PlannedImage {
-  double trace = 0;         ///< tr C, of the elements' covariance C
-  double root = 0;          ///< sqrt tr C^2, an upper limit
-  double of_mean = 0;       ///< Upper limit of a channel's mean's variance, times the pixels.
-  double squared_norm = 0;  ///< Squared norm of the mean.
 };
 
 /// Why a verdict is what it is, and what a reader can do about it.
@@ -73,7 +66,8 @@ struct Plan {
   std::string error = "";    ///< Reason why nothing can be planned, or "".
   /// Reason why the pilot makes an error of a test with sound numbers, or "".
   std::string pilot_error = "";
-  std::optional<PlannedImage> image = {};  ///< Set where the sizes of looks at images are planned.
+  std::optional<stats::ImageNoise> image =
+      {};  ///< Set where the sizes of looks at images are planned.
 
   std::uint64_t most_secondaries() const { return looks.sizes.back(); }
 };
