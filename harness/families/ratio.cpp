@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <span>
 #include <stdexcept>
@@ -21,9 +20,7 @@
 #include "harness/theta/decision.h"
 #include "harness/theta/methods.h"
 #include "stats/gates/assumption_gates.h"
-#include "stats/means/skewness_corrected_t.h"
 #include "stats/means/student_t.h"
-#include "stats/means/uncertain_reference.h"
 #include "stats/variances/influence.h"
 #include "stats/variances/normal_variances.h"
 
@@ -31,16 +28,9 @@ namespace assay::harness {
 namespace {
 
 using stats::Influence;
-using stats::Interval;
 using stats::JointMoments;
 using stats::Moments;
-using stats::TestResult;
-
-struct RatioSide {
-  std::function<Influence(double truth)> influence;
-  /// The truth of a mean squared error; other quantities have none.
-  stats::UncertainReference truth = {};
-};
+using stats::RatioSide;
 
 RatioSide without_truth(const Influence& influence) {
   return {.influence = [influence](double) { return influence; }};
@@ -51,41 +41,6 @@ struct RatioWords {
   const char* one;
   const char* many;
 };
-
-// ---- Evidence
-
-/// Theta is ln(first / second / null), or ln(first / null), or minus that.
-struct LogRatio {
-  std::vector<RatioSide> sides;
-  double log_null = 0;
-  double sign = 1;  ///< -1 if the sides are inverses of the quantities.
-
-  /// The truth of each side, or the one that serves both with one error.
-  std::vector<stats::UncertainReference> truths() const {
-    std::vector<stats::UncertainReference> truths;
-    for (const RatioSide& side : sides) {
-      const auto [value, error] = side.truth.known;
-      const bool shared = !truths.empty() && truths[0].known.value == value &&
-                          truths[0].known.standard_error == error;
-      if (!shared) truths.push_back(side.truth);
-    }
-    return truths;
-  }
-};
-
-TestResult test(const LogRatio& ratio, std::span<const double> truths, double theta) {
-  const auto influence = [&](std::size_t i) {
-    return ratio.sides[i].influence(truths.size() > i ? truths[i] : truths[0]);
-  };
-  const double log_ratio = ratio.sign * (theta + ratio.log_null);
-  const Influence first = influence(0);
-  TestResult result = ratio.sides.size() == 1 ? stats::influence_t(first, log_ratio)
-                                              : stats::influence_t(first, influence(1), log_ratio);
-  if (ratio.sign > 0) return result;
-  result.statistic = -result.statistic;
-  std::swap(result.log_p_lower, result.log_p_upper);
-  return result;
-}
 
 // ---- Plans
 
@@ -263,30 +218,18 @@ std::string quantity_of(const Question& question) {
 
 Evidence by_influence(const Seen& seen) {
   const auto& family = dynamic_cast<const LogTheta&>(*seen.question.theta);
-  LogRatio ratio{.log_null = family.log_null(seen), .sign = family.is_inverse() ? -1.0 : 1.0};
-  std::vector<Influence> known;
-  double variance = 0;
+  stats::LogRatio ratio{.log_null = family.log_null(seen),
+                        .sign = family.is_inverse() ? -1.0 : 1.0};
   for (std::size_t i = 0; i < seen.question.compared(); ++i) {
     ratio.sides.push_back(family.side(seen, i));
-    known.push_back(ratio.sides[i].influence(ratio.sides[i].truth.known.value));
-    variance += std::pow(known.back().relative.standard_error(), 2);
   }
-  const double second = known.size() == 1 ? 0 : known[1].log_value;
-  const double estimate = ratio.sign * (known[0].log_value - second) - ratio.log_null;
-  const auto at = [ratio, truths = ratio.truths()](double theta) {
-    return stats::test_over_references(
-        [&](std::span<const double> each) { return test(ratio, each, theta); }, truths);
-  };
-  const double error = std::sqrt(variance);
-  const auto interval = [=](double confidence) {
-    if (error == 0) return Interval{estimate, estimate, confidence};
-    return stats::interval_by_inversion(at, {.estimate = estimate, .step = error}, confidence);
-  };
-  return {.estimate = estimate,
-          .at = at,
-          .interval = interval,
-          .quantity = quantity_of(seen.question),
-          .exact = error == 0};
+  const auto [estimate, error] = stats::log_ratio_estimate(ratio);
+  return {
+      .estimate = estimate,
+      .at = [=](double theta) { return stats::log_ratio_test(ratio, theta); },
+      .interval = [=](double confidence) { return stats::log_ratio_interval(ratio, confidence); },
+      .quantity = quantity_of(seen.question),
+      .exact = error == 0};
 }
 
 /// The row of the one method of influence values, for a family that keeps them so.

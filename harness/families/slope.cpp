@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "harness/families/families.h"
 #include "harness/plan/sizes.h"
@@ -71,61 +70,23 @@ SlopeData points_of(const Seen& seen) {
   return slope;
 }
 
-bool is_exact(const SlopeData& data) {
-  return std::ranges::all_of(data.points,
-                             [](const SlopePoint& point) { return point.standard_error == 0; });
-}
-
-/// The range of slopes between neighbours, without error.
-stats::Range exact_slopes(const SlopeData& data) {
-  stats::Range slopes{.low = std::numeric_limits<double>::infinity(),
-                      .high = -std::numeric_limits<double>::infinity()};
-  for (std::size_t i = 1; i < data.points.size(); ++i) {
-    const SlopePoint& a = data.points[i - 1];
-    const SlopePoint& b = data.points[i];
-    const double slope = (b.estimate - a.estimate) / std::log(b.size / a.size);
-    slopes.low = std::min(slopes.low, slope);
-    slopes.high = std::max(slopes.high, slope);
-  }
-  return slopes;
-}
-
-// Bound on the rounding of quotients of logarithms of whole numbers.
-constexpr double exact_tolerance = 1e-12;
-
-/// Distance of a slope from the claimed one; 0 within rounding.
-double beyond(double slope, double null) {
-  const double difference = slope - null;
-  return std::abs(difference) <= exact_tolerance ? 0 : difference;
-}
-
-/// Costs that never vary have exact slopes.
-Evidence exact_evidence(const SlopeData& data, double null) {
-  const stats::Range slopes = exact_slopes(data);
-  constexpr double impossible = std::numeric_limits<double>::lowest();
-  const auto at = [=](double theta) {
-    const double slope = null + theta;
-    stats::TestResult result{.statistic = (slopes.low + slopes.high) / 2 - slope,
-                             .distribution = {"bound", {}}};
-    if (slopes.high > slope + exact_tolerance) result.log_p_upper = impossible;
-    if (slopes.low < slope - exact_tolerance) result.log_p_lower = impossible;
-    return result;
-  };
-  const auto interval = [=](double confidence) {
-    return stats::Interval{beyond(slopes.low, null), beyond(slopes.high, null), confidence};
-  };
-  return {.estimate = beyond((slopes.low + slopes.high) / 2, null),
-          .at = at,
-          .interval = interval,
-          .quantity = "difference from the claimed slope"};
-}
-
 /// Theta is the exponent minus the claimed one. Biases and means are fitted as they are, variances
 /// and costs by their logarithms (stats/variances/slope.h). Costs that never vary are exact.
 Evidence slope(const Seen& seen) {
   const SlopeData points = points_of(seen);
   const double null = seen.reference().value;
-  if (is_exact(points)) return exact_evidence(points, null);
+  constexpr const char* quantity = "difference from the claimed slope";
+  if (stats::is_exact(points)) {
+    const stats::ExactSlopes slopes = stats::exact_slopes(points);
+    const auto less = [=](double slope) { return stats::exact_difference(slope, null); };
+    return {.estimate = less(slopes.middle()),
+            .at = [=](double theta) { return stats::slope_test(slopes, null + theta); },
+            .interval =
+                [=](double confidence) {
+                  return stats::Interval{less(slopes.low), less(slopes.high), confidence};
+                },
+            .quantity = quantity};
+  }
   const auto at = [=](double theta) { return stats::slope_test(points, null + theta); };
   const auto interval = [=](double confidence) {
     // The set takes each end at the whole level (stats/variances/slope.h).
@@ -135,7 +96,7 @@ Evidence slope(const Seen& seen) {
   return {.estimate = stats::slope_estimate(points).slope - null,
           .at = at,
           .interval = interval,
-          .quantity = "difference from the claimed slope"};
+          .quantity = quantity};
 }
 
 /// Gates of the points whose logarithms are fitted, on the skewness of their influence values.
@@ -162,9 +123,8 @@ std::vector<Gate> skewness_gates(const Seen& seen, double critical) {
 Gate power_law_gate(const Seen& seen, double level) {
   const SlopeData points = points_of(seen);
   double log_p = 0;
-  if (is_exact(points)) {
-    const stats::Range slopes = exact_slopes(points);
-    if (slopes.high - slopes.low > 2 * exact_tolerance) log_p = std::log(0.0);
+  if (stats::is_exact(points)) {
+    if (!stats::exact_slopes(points).is_power_law()) log_p = std::log(0.0);
   } else {
     log_p = stats::slope_estimate(points).log_p_best;
   }

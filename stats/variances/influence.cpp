@@ -4,9 +4,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
+#include <utility>
 
 #include "stats/basics/check.h"
 #include "stats/means/skewness_corrected_t.h"
+#include "stats/tails/inversion.h"
 
 namespace assay::stats {
 namespace {
@@ -181,6 +184,49 @@ TestResult influence_t(const Influence& x, const Influence& y, double log_ratio)
   const double null = ratio_of("influence_t", distance);
   if (x.relative.m2 == 0 && y.relative.m2 == 0) return deterministic(-distance);
   return skewness_corrected_welch(x.relative, y.relative, {.scale = null}, "influence_t");
+}
+
+Reference log_ratio_estimate(const LogRatio& ratio) {
+  double variance = 0;
+  std::vector<double> logs;
+  for (const RatioSide& side : ratio.sides) {
+    const Influence influence = side.influence(side.truth.known.value);
+    logs.push_back(influence.log_value);
+    variance += std::pow(influence.relative.standard_error(), 2);
+  }
+  const double second = logs.size() == 1 ? 0 : logs[1];
+  return {ratio.sign * (logs[0] - second) - ratio.log_null, std::sqrt(variance)};
+}
+
+TestResult log_ratio_test(const LogRatio& ratio, double theta) {
+  std::vector<UncertainReference> truths;
+  for (const RatioSide& side : ratio.sides) {
+    const auto [value, error] = side.truth.known;
+    const bool shared = !truths.empty() && truths[0].known.value == value &&
+                        truths[0].known.standard_error == error;
+    if (!shared) truths.push_back(side.truth);
+  }
+  const double log_ratio = ratio.sign * (theta + ratio.log_null);
+  const auto at = [&](std::span<const double> each) {
+    const auto influence = [&](std::size_t i) {
+      return ratio.sides[i].influence(each.size() > i ? each[i] : each[0]);
+    };
+    const Influence first = influence(0);
+    TestResult result = ratio.sides.size() == 1 ? influence_t(first, log_ratio)
+                                                : influence_t(first, influence(1), log_ratio);
+    if (ratio.sign > 0) return result;
+    result.statistic = -result.statistic;
+    std::swap(result.log_p_lower, result.log_p_upper);
+    return result;
+  };
+  return test_over_references(at, truths);
+}
+
+Interval log_ratio_interval(const LogRatio& ratio, double confidence) {
+  const auto [estimate, error] = log_ratio_estimate(ratio);
+  if (error == 0) return {estimate, estimate, confidence};
+  return interval_by_inversion([&](double theta) { return log_ratio_test(ratio, theta); },
+                               {.estimate = estimate, .step = error}, confidence);
 }
 
 }  // namespace assay::stats

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <functional>
+#include <vector>
+
 #include "stats/basics/joint_moments.h"
+#include "stats/means/uncertain_reference.h"
 #include "stats/tails/test_result.h"
 
 namespace assay::stats {
@@ -37,6 +41,28 @@ TestResult influence_t(const Influence& x, double log_value);
 // Null hypothesis: ln of the ratio x / y = log_ratio. Tests E psi_x - ratio E psi_y = 0 (Fieller
 // 1954, J. R. Statist. Soc. B 16), by Welch's t with Hall's correction.
 TestResult influence_t(const Influence& x, const Influence& y, double log_ratio);
+
+// One quantity of a ratio. A mean squared error depends on a truth, which may be uncertain; other
+// quantities ignore it.
+struct RatioSide {
+  std::function<Influence(double truth)> influence;
+  UncertainReference truth = {};
+};
+
+// theta = ln(first / second / null), or ln(first / null), or minus that.
+struct LogRatio {
+  std::vector<RatioSide> sides;
+  double log_null = 0;
+  double sign = 1;  // -1 if the sides are inverses of the quantities.
+};
+
+// The estimate with its standard error, at the truths as they are known.
+Reference log_ratio_estimate(const LogRatio& ratio);
+// Null hypothesis: theta = this value, by influence_t over the truths (uncertain_reference.h). Two
+// equal truths are one, with one error.
+TestResult log_ratio_test(const LogRatio& ratio, double theta);
+// The values that log_ratio_test does not reject; the estimate if it has no error.
+Interval log_ratio_interval(const LogRatio& ratio, double confidence);
 
 // Relative tolerance for equal quantities without spread. It is larger than the rounding of a
 // claim's factor, its logarithm and a product, and smaller than the difference of whole costs below

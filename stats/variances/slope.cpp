@@ -15,6 +15,7 @@ namespace assay::stats {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double exact_tolerance = 1e-12;
 
 void check_points(const char* function, const SlopeData& data) {
   check::at_least({function, "points"}, data.points.size(), 2);
@@ -215,6 +216,38 @@ SlopeEstimate slope_estimate(const SlopeData& unordered) {
   if (best == nodes.begin()) estimate.slope = -infinity;
   if (best + 1 == nodes.end()) estimate.slope = infinity;
   return estimate;
+}
+
+bool ExactSlopes::is_power_law() const { return !(high - low > 2 * exact_tolerance); }
+
+double exact_difference(double slope, double null_slope) {
+  const double difference = slope - null_slope;
+  return std::abs(difference) <= exact_tolerance ? 0 : difference;
+}
+
+bool is_exact(const SlopeData& data) {
+  return std::ranges::all_of(data.points,
+                             [](const SlopePoint& point) { return point.standard_error == 0; });
+}
+
+ExactSlopes exact_slopes(const SlopeData& data) {
+  ExactSlopes slopes{.low = infinity, .high = -infinity};
+  for (std::size_t i = 1; i < data.points.size(); ++i) {
+    const SlopePoint& a = data.points[i - 1];
+    const SlopePoint& b = data.points[i];
+    const double slope = (b.estimate - a.estimate) / std::log(b.size / a.size);
+    slopes.low = std::min(slopes.low, slope);
+    slopes.high = std::max(slopes.high, slope);
+  }
+  return slopes;
+}
+
+TestResult slope_test(const ExactSlopes& slopes, double null_slope) {
+  constexpr double impossible = std::numeric_limits<double>::lowest();
+  TestResult result{.statistic = slopes.middle() - null_slope, .distribution = {"bound", {}}};
+  if (slopes.high > null_slope + exact_tolerance) result.log_p_upper = impossible;
+  if (slopes.low < null_slope - exact_tolerance) result.log_p_lower = impossible;
+  return result;
 }
 
 double slope_power(const SlopeData& expected, double null_slope, double alpha) {

@@ -61,6 +61,23 @@ struct SlopeEstimate {
 };
 SlopeEstimate slope_estimate(const SlopeData& data);
 
+// Points without error, such as costs that never vary: the range of slopes between neighbours, in
+// the order given. Slopes that differ by 1e-12, the rounding of quotients of logarithms of whole
+// numbers, are equal.
+struct ExactSlopes {
+  double low = 0;
+  double high = 0;
+
+  double middle() const { return (low + high) / 2; }
+  bool is_power_law() const;
+};
+bool is_exact(const SlopeData& data);
+ExactSlopes exact_slopes(const SlopeData& data);
+// The slope less the null value; 0 within rounding.
+double exact_difference(double slope, double null_slope);
+// Null hypothesis: slope = null. The law is "bound", and p is 0 or 1.
+TestResult slope_test(const ExactSlopes& slopes, double null_slope);
+
 // Power of the equality test of null_slope at alpha when the expectations of the points are
 // data.points. Noncentral chi-square with ncp = Q(null_slope).
 double slope_power(const SlopeData& expected, double null_slope, double alpha);
