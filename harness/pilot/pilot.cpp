@@ -97,27 +97,14 @@ std::uint64_t averaged_primaries_of(const PreparedEstimator& estimator) {
   return std::min(averaged_primaries, estimator.primaries.value_or(averaged_primaries));
 }
 
-/// Moments of single primaries from moments of means of `primaries`. The kurtosis is at least 1 and
-/// the square of the skewness, as for every law (Pearson 1916).
-stats::Moments of_primaries(stats::Moments means, std::uint64_t primaries) {
-  if (!(means.m2 > 0)) return means;
-  const double n = static_cast<double>(primaries);
-  const double values = static_cast<double>(means.count);
-  const double least = 1 + n * means.skewness() * means.skewness();
-  const double kurtosis = std::max(least, 3 + n * (means.kurtosis() - 3));
-  means.m3 *= n * n;
-  means.m2 *= n;
-  means.m4 = kurtosis * means.m2 * means.m2 / values;
-  return means;
-}
-
 /// A pilot's sums, converted to single primaries if a recorded run has means of several.
 std::shared_ptr<const Summary> sums_of(const Drawn& drawn) {
   const RecordedRun* run = as_recorded_run(*drawn.pool().setup());
   if (run == nullptr || !run->averages()) return drawn.shared_summary();
   auto sums = std::make_shared<Summary>(drawn.summary());
   for (ChannelSummary& channel : sums->channels) {
-    channel.moments = of_primaries(channel.moments, run->primaries());
+    channel.moments =
+        stats::moments_of_values(channel.moments, static_cast<double>(run->primaries()));
   }
   return sums;
 }

@@ -12,20 +12,6 @@
 namespace assay::harness {
 namespace {
 
-/// Moments as if `count` means of `averaged` primaries each had been drawn.
-stats::Moments scaled(const stats::Moments& pilot, double averaged, std::uint64_t count) {
-  const double n = static_cast<double>(count);
-  stats::Moments moments = pilot;
-  const double spread = pilot.variance() / averaged;
-  const double kurtosis = 3 + (pilot.kurtosis() - 3) / averaged;
-  const double skewness = pilot.skewness() / std::sqrt(averaged);
-  moments.count = count;
-  moments.m2 = spread * (n - 1);
-  moments.m3 = skewness * n * std::pow(moments.m2 / n, 1.5);
-  moments.m4 = kurtosis * moments.m2 * moments.m2 / n;
-  return moments;
-}
-
 /// Data that the pilots predict for a channel at this many secondaries: moments scaled to the
 /// plan's primaries, with what rows are allowed. Returns nullopt if an estimator has no pilot, or
 /// no spread in it.
@@ -43,7 +29,8 @@ std::optional<std::vector<ChannelData>> expected_data(const TestOutcome& test, s
     const PilotChannel seen = pilot_channel(side, *pilot, channel);
     if (is_constant(question, i, channel, seen.moments)) return std::nullopt;
     const double averaged = side.averaged(test.plan.primaries[i]);
-    const stats::Moments moments = scaled(seen.moments, averaged, side.secondaries(secondaries));
+    const stats::Moments moments =
+        stats::moments_of_means(seen.moments, averaged, side.secondaries(secondaries));
     data[i] = {.primaries = test.plan.primaries[i],
                .moments = as_tested(test.plan, i, channel, seen.values, moments)};
     if (!std::isfinite(data[i].moments.m2)) return std::nullopt;

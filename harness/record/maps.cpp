@@ -294,7 +294,7 @@ reports::EmpiricalLaw empirical_law(const Points& points, double confidence,
 }  // namespace
 
 void add_elements(const Subject& side, const Summary& summary, reports::Sample& sample) {
-  Extremes extremes = summary.elements ? summary.elements->extremes : Extremes();
+  stats::Extremes extremes = summary.elements ? summary.elements->extremes : stats::Extremes();
   stats::Moments means;
   double variance = 0;
   for (const std::size_t channel : side.channels.all()) {

@@ -296,17 +296,6 @@ Estimate variance_of(const stats::Moments& moments, double primaries, double con
           number(primaries * std::exp(log.high))};
 }
 
-/// Moments of fewer independent values with the same mean and variance.
-stats::Moments of_fewer(stats::Moments x, double factor) {
-  const double before = static_cast<double>(x.count);
-  const double after = std::max(4.0, std::round(before / factor));
-  x.count = static_cast<std::uint64_t>(after);
-  x.m2 *= (after - 1) / (before - 1);
-  x.m3 *= after / before;
-  x.m4 *= after / before;
-  return x;
-}
-
 /// Moments, which for dependent rows count only as many as independent ones would be worth.
 stats::Moments moments_of(const PreparedEstimator& estimator, const SuiteRun& run,
                           const Drawn& drawn, std::size_t channel) {
@@ -318,7 +307,7 @@ stats::Moments moments_of(const PreparedEstimator& estimator, const SuiteRun& ru
   const bool all = moments.count == count && count <= rows.size();  // finite, and kept
   if (!all || count < fewest_in_order) return moments;
   const double factor = stats::allowance_for_dependence(rows.first(count));
-  return factor > 1 ? of_fewer(moments, factor) : moments;
+  return factor > 1 ? stats::moments_of_fewer(moments, factor) : moments;
 }
 
 /// An estimator's mean and variance with intervals, by the test that drew most. Dependent rows

@@ -106,9 +106,9 @@ class Side {
              static_cast<double>(extent_.elements());
     });
   }
-  Extremes extremes() const {
-    Extremes all;
-    for (const Extremes& each : extremes_) all.merge(each);
+  stats::Extremes extremes() const {
+    stats::Extremes all;
+    for (const stats::Extremes& each : extremes_) all.merge(each);
     return all;
   }
   double seconds() const { return std::accumulate(seconds_.begin(), seconds_.end(), 0.0); }
@@ -146,7 +146,7 @@ class Side {
   std::size_t size_;  // capacity in texels of a picture
   LargeVector<float> texels_;
   std::vector<stats::ChannelSums> of_channels_;  // of each picture
-  std::vector<Extremes> extremes_;               // of each picture
+  std::vector<stats::Extremes> extremes_;        // of each picture
   std::vector<double> seconds_;
   stats::RowRange there_;
 };

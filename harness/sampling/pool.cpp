@@ -16,6 +16,7 @@
 #include "harness/sampling/recorded_run.h"
 #include "stats/gates/independence_gates.h"
 #include "stats/images/image_moments.h"
+#include "stats/variances/group_variance.h"
 
 namespace assay::harness {
 namespace {
@@ -24,6 +25,7 @@ namespace {
 // a run.
 constexpr std::uint64_t primaries_per_block = 16384;
 constexpr std::uint64_t least_block = 8;
+static_assert(least_block % stats::variance_group == 0);  // No group spans two blocks.
 constexpr std::uint64_t most_block = 4096;
 constexpr std::uint64_t most_observations = std::numeric_limits<std::uint64_t>::max();
 
@@ -222,7 +224,7 @@ Pool::Block Pool::draw(const std::function<Estimator&()>& estimator, std::uint64
   };
   double start = seconds();
   std::uint64_t index = first;
-  GroupVariance groups(later ? std::vector<std::size_t>() : recipe_.grouped_channels);
+  stats::GroupVariance groups(later ? std::vector<std::size_t>() : recipe_.grouped_channels);
   const bool with_costs =
       !later && std::ranges::count(recipe_.plan, Powers::with_costs, &ChannelPlan::powers) > 0;
   ObservationCost cost{};
@@ -269,7 +271,7 @@ std::shared_ptr<const Summary> Pool::sums_of_first(std::uint64_t count, const Su
 /// Takes what is kept beside moments of kept observations, as draw() does of others.
 void Pool::take_details(Summary& summary) const {
   summary.detailed = Summary(channels_, recipe_.plan).detailed;
-  GroupVariance groups(recipe_.grouped_channels);
+  stats::GroupVariance groups(recipe_.grouped_channels);
   std::vector<double> out(channels_);
   for (std::uint64_t index = 0; index < summary.count; ++index) {
     all_kept().whole(index, out);
@@ -407,7 +409,7 @@ std::vector<ChannelSummary> KeptObservations::sums_of(std::uint64_t begin,
   all.resize(elements + values[begin].size());
   for (std::uint64_t index = begin; index < end; ++index) {
     for (std::size_t i = 0; i < values[index].size(); ++i) {
-      add_observation(all[elements + i], values[index][i], index - begin);
+      all[elements + i].add(values[index][i], index - begin);
     }
   }
   return all;

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 #include <stdexcept>
 
 #include "harness/base/parallel.h"
@@ -20,44 +19,11 @@ void merge(ChannelDetails& ours, const ChannelDetails& theirs) {
   for (std::size_t k = 0; k < ours.joint.size(); ++k) ours.joint[k].merge(theirs.joint[k]);
 }
 
-/// A quick test that settles nearly all of an image's millions of elements.
-bool are_ordinary(const stats::Moments& moments) {
-  return moments.m2 > 1e-60 && moments.m2 < 1e60 && std::abs(moments.m3) < 1e90 &&
-         moments.m4 > 1e-120 && moments.m4 < 1e120;
-}
-
-// Denormal numbers have lost their digits.
-constexpr double least =
-    std::numeric_limits<double>::min() / std::numeric_limits<double>::epsilon();
-
 std::string refusal(const std::string& name, double spread, const char* power) {
   return fmt::format(
       "the observations of `{}` spread over {:.3g}, whose {} power is too {} for a double; give "
       "them in another unit",
       name, spread, power, spread < 1 ? "small" : "large");
-}
-
-constexpr std::size_t channels_at_a_time = 4096;
-
-/// Adds values one by one, as elsewhere; non-finite ones are counted apart.
-ChannelSummary one_by_one(const stats::ImageStack& stack, std::size_t channel) {
-  ChannelSummary summary;
-  for (std::size_t i = 0; i < stack.images.size(); ++i) {
-    add_observation(summary, *stack.at(i, channel), i);
-  }
-  return summary;
-}
-
-void take(const stats::ImageStack& stack, std::size_t first, std::span<ChannelSummary> out) {
-  std::vector<stats::Moments> moments(out.size());
-  stats::element_moments(stack, first, moments);
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    if (std::isfinite(moments[i].m2)) {
-      out[i].moments = moments[i];
-    } else {
-      out[i] = one_by_one(stack, first + i);
-    }
-  }
 }
 
 }  // namespace
@@ -103,7 +69,7 @@ Summary::Summary(std::size_t count_of_channels, std::span<const ChannelPlan> pla
 void Summary::add_observation(std::span<const double> values, std::uint64_t index,
                               const ObservationCost& counted) {
   for (std::size_t c = 0; c < channels.size(); ++c) {
-    harness::add_observation(channels[c], values[c], index);
+    channels[c].add(values[c], index);
   }
   for (auto& [channel, details] : detailed) add_details(details, values[channel], counted);
 }
@@ -113,13 +79,7 @@ void Summary::append(const Summary& next) {
   group_variances.merge(next.group_variances);
   cost += next.cost;
   seconds += next.seconds;
-  for (std::size_t i = 0; i < channels.size(); ++i) {
-    ChannelSummary& ours = channels[i];
-    const ChannelSummary& theirs = next.channels[i];
-    ours.moments.merge(theirs.moments);
-    ours.nonfinite += theirs.nonfinite;
-    ours.first_nonfinite = std::min(ours.first_nonfinite, theirs.first_nonfinite);
-  }
+  for (std::size_t i = 0; i < channels.size(); ++i) channels[i].append(next.channels[i]);
   for (auto& [channel, details] : detailed) merge(details, next.detailed.at(channel));
 }
 
@@ -127,35 +87,6 @@ const ChannelDetails& Summary::details(std::size_t channel) const {
   static const ChannelDetails none;
   const auto found = detailed.find(channel);
   return found == detailed.end() ? none : found->second;
-}
-
-void Extremes::add(std::span<const float> values) {
-  // So many numbers have extremes of their own, so that none waits for the last.
-  constexpr std::size_t apart = 32;
-  std::array<float, apart> low;
-  std::array<float, apart> high;
-  std::array<std::uint32_t, apart> not_zero{};
-  low.fill(std::numeric_limits<float>::infinity());
-  high.fill(-std::numeric_limits<float>::infinity());
-  const auto take = [&](float value, std::size_t k) {
-    low[k] = value < low[k] ? value : low[k];
-    high[k] = value > high[k] ? value : high[k];
-    not_zero[k] += value != 0 ? 1 : 0;
-  };
-  const std::size_t whole = values.size() / apart * apart;
-  for (std::size_t i = 0; i < whole; i += apart) {
-    for (std::size_t k = 0; k < apart; ++k) take(values[i + k], k);
-  }
-  for (std::size_t i = whole; i < values.size(); ++i) take(values[i], i - whole);
-  minimum = std::min(minimum, double{*std::ranges::min_element(low)});
-  maximum = std::max(maximum, double{*std::ranges::max_element(high)});
-  nonzero += std::accumulate(not_zero.begin(), not_zero.end(), std::uint64_t{0});
-}
-
-void Extremes::merge(const Extremes& other) {
-  minimum = std::min(minimum, other.minimum);
-  maximum = std::max(maximum, other.maximum);
-  nonzero += other.nonzero;
 }
 
 stats::Moments ElementSums::moments(std::size_t channel) const {
@@ -181,34 +112,19 @@ void ElementSums::take(const stats::ImageStack& stack, stats::RowRange rows) {
 }
 
 std::string beyond_doubles(const stats::JointMoments& powers, const std::string& name) {
-  const double highest = powers.sum(powers.known, 0);
-  const bool sound = highest > least && std::ranges::all_of(powers.sums, [](double sum) {
-                       return std::isfinite(sum);
-                     });
-  if (sound) return "";
+  if (stats::has_sound_powers(powers)) return "";
   return refusal(name, powers.of_x.maximum - powers.of_x.minimum, "eighth");
 }
 
 std::string beyond_doubles(const stats::Moments& moments, const std::string& name) {
-  if (moments.count < 2 || are_ordinary(moments)) return "";
-  const double spread = moments.maximum - moments.minimum;
-  const bool sound = moments.m2 * moments.m2 > least && std::isfinite(moments.m2) &&
-                     std::isfinite(moments.m4) && moments.m4 > least &&
-                     std::isfinite(moments.skewness()) && std::isfinite(moments.kurtosis());
-  if (sound) return "";
-  return refusal(name, spread, "fourth");
+  if (stats::has_sound_powers(moments)) return "";
+  return refusal(name, moments.maximum - moments.minimum, "fourth");
 }
 
 std::vector<ChannelSummary> sums_of_images(Images images) {
   const std::size_t elements = images.front().size();
-  const stats::ImageStack stack{{.width = elements, .height = 1}, {images.begin(), images.end()}};
-  std::vector<ChannelSummary> sums(elements);
-  on_all_threads((elements + channels_at_a_time - 1) / channels_at_a_time, [&](std::size_t i) {
-    const std::size_t first = i * channels_at_a_time;
-    const std::size_t size = std::min(channels_at_a_time, elements - first);
-    take(stack, first, std::span(sums).subspan(first, size));
-  });
-  return sums;
+  return stats::finite_moments({{.width = elements, .height = 1}, {images.begin(), images.end()}},
+                               on_all_threads);
 }
 
 }  // namespace assay::harness

@@ -72,24 +72,9 @@ struct ChannelDetails {
 };
 
 /// One channel of consecutive observations.
-struct ChannelSummary {
-  stats::Moments moments = {};  ///< of the finite values
-  std::uint64_t nonfinite = 0;
-  std::uint64_t first_nonfinite = std::numeric_limits<std::uint64_t>::max();
-};
+using ChannelSummary = stats::FiniteMoments;
 
 // ---- Sums over pictures of millions of elements, whose rows are read once.
-
-/// Extremes over some elements.
-struct Extremes {
-  double minimum = std::numeric_limits<double>::infinity();
-  double maximum = -std::numeric_limits<double>::infinity();
-  std::uint64_t nonzero = 0;  ///< values that are not zero
-
-  void merge(const Extremes& other);
-  /// Takes values, all of them finite.
-  void add(std::span<const float> values);
-};
 
 /// Results of reading two stacks of pictures for one claim.
 struct PictureLook {
@@ -110,7 +95,7 @@ struct ElementSums {
   LargeVector<double> m2 = {};
   stats::Moments first = {};    ///< all moments of the first element
   stats::Moments average = {};  ///< moments of the pictures' averages
-  Extremes extremes = {};
+  stats::Extremes extremes = {};
 
   /// The moments of an element, or of the average, which follows the elements.
   stats::Moments moments(std::size_t channel) const;
@@ -137,7 +122,7 @@ struct Summary {
   std::map<std::size_t, ChannelDetails> detailed = {};
   /// In place of `channels` for pictures that are read once, row by row.
   std::shared_ptr<const ElementSums> elements = {};
-  stats::Moments group_variances = {};  ///< of whole groups, if kept (GroupVariance)
+  stats::Moments group_variances = {};  ///< of whole groups, if kept (stats::GroupVariance)
   Cost cost = {};
   double seconds = 0;
 
@@ -164,15 +149,6 @@ std::vector<stats::JointMoments> joint_moments(const ChannelDetails& details);
 /// Takes a value, if it is finite, and its observation's cost.
 void add_details(ChannelDetails& details, double value, const ObservationCost& cost);
 
-/// Adds one channel's value of observation `index`.
-inline void add_observation(ChannelSummary& summary, double value, std::uint64_t index) {
-  if (!(value - value == 0)) {
-    if (summary.nonfinite++ == 0) summary.first_nonfinite = index;
-  } else {
-    summary.moments.add(value);
-  }
-}
-
 /// An error message if the powers of what `name` drew cannot be computed with, else "".
 std::string beyond_doubles(const stats::JointMoments& powers, const std::string& name);
 
@@ -183,45 +159,5 @@ std::string beyond_doubles(const stats::Moments& moments, const std::string& nam
 /// The summary of every element over the images, at least one. It has moments of the finite values.
 /// It works on all threads of the caller's arena and gives the same bits for any number of threads.
 std::vector<ChannelSummary> sums_of_images(Images images);
-
-/// Observations of a group (GroupVariance). Block sizes are multiples of it, so that no group spans
-/// two blocks.
-inline constexpr std::uint64_t variance_group = 8;
-
-/// Turns the variances of several channels, added, into observations. The value of a group is the
-/// sum over the channels of its sample variance. Groups are independent, and their expectation is
-/// exactly the total variance, whatever the covariance. Their mean and standard error need no
-/// covariance matrix, second pass or pilot mean. The price is one degree of freedom in 8.
-class GroupVariance {
- public:
-  /// No channels: computes nothing.
-  explicit GroupVariance(std::vector<std::size_t> channels)
-      : channels_(std::move(channels)), means_(channels_.size()) {}
-
-  /// Takes the next observation. Returns the group's value if it is complete and all its values are
-  /// finite.
-  std::optional<double> add(std::span<const double> values) {
-    if (channels_.empty()) return {};
-    ++count_;
-    for (std::size_t i = 0; i < channels_.size(); ++i) {
-      const double delta = values[channels_[i]] - means_[i];
-      means_[i] += delta / static_cast<double>(count_);
-      squares_ += delta * (values[channels_[i]] - means_[i]);
-    }
-    if (count_ < variance_group) return {};
-    const double total = squares_ / static_cast<double>(variance_group - 1);
-    count_ = 0;
-    squares_ = 0;
-    means_.assign(means_.size(), 0);
-    if (!std::isfinite(total)) return {};
-    return total;
-  }
-
- private:
-  std::vector<std::size_t> channels_;
-  std::vector<double> means_;
-  double squares_ = 0;  // sum over the channels
-  std::uint64_t count_ = 0;
-};
 
 }  // namespace assay::harness

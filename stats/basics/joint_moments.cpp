@@ -1,6 +1,7 @@
 #include "stats/basics/joint_moments.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "stats/basics/vector_copies.h"
 
@@ -23,6 +24,16 @@ constexpr auto choose = [] {
   }
   return c;
 }();
+
+// Denormal numbers have lost their digits.
+constexpr double least_with_digits =
+    std::numeric_limits<double>::min() / std::numeric_limits<double>::epsilon();
+
+// A quick test that settles nearly all of an image's millions of elements.
+bool are_ordinary(const Moments& moments) {
+  return moments.m2 > 1e-60 && moments.m2 < 1e60 && std::abs(moments.m3) < 1e90 &&
+         moments.m4 > 1e-120 && moments.m4 < 1e120;
+}
 
 enum class Along { x, cost };
 
@@ -139,6 +150,18 @@ void JointMoments::merge(const JointMoments& other) {
   merge_coordinate(of_cost, other.of_cost, dc * share);
   count += other.count;
   known = std::min(known, other.known);
+}
+
+bool has_sound_powers(const JointMoments& powers) {
+  return powers.sum(powers.known, 0) > least_with_digits &&
+         std::ranges::all_of(powers.sums, [](double sum) { return std::isfinite(sum); });
+}
+
+bool has_sound_powers(const Moments& moments) {
+  if (moments.count < 2 || are_ordinary(moments)) return true;
+  return moments.m2 * moments.m2 > least_with_digits && std::isfinite(moments.m2) &&
+         std::isfinite(moments.m4) && moments.m4 > least_with_digits &&
+         std::isfinite(moments.skewness()) && std::isfinite(moments.kurtosis());
 }
 
 JointMoments joint_of_four(const Moments& x, double cost) {

@@ -51,6 +51,11 @@ struct JointMoments {
   friend bool operator==(const JointMoments&, const JointMoments&) = default;
 };
 
+// True if a double holds the eighth powers of the spread, or of Moments the fourth: none overflows,
+// and none has lost digits to underflow. Of fewer than two values it is true.
+bool has_sound_powers(const JointMoments& powers);
+bool has_sound_powers(const Moments& moments);
+
 // The sums up to weight 4 that the moments of x tell, at a constant cost.
 JointMoments joint_of_four(const Moments& x, double cost = 0);
 

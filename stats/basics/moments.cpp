@@ -49,6 +49,44 @@ double Moments::kurtosis() const {
   return static_cast<double>(count) * (m4 / m2) / m2;
 }
 
+void FiniteMoments::append(const FiniteMoments& next) {
+  moments.merge(next.moments);
+  nonfinite += next.nonfinite;
+  first_nonfinite = std::min(first_nonfinite, next.first_nonfinite);
+}
+
+Moments moments_of_values(Moments means, double n) {
+  if (!(means.m2 > 0)) return means;
+  const double least = 1 + n * means.skewness() * means.skewness();
+  const double kurtosis = std::max(least, 3 + n * (means.kurtosis() - 3));
+  means.m3 *= n * n;
+  means.m2 *= n;
+  means.m4 = kurtosis * means.m2 * means.m2 / static_cast<double>(means.count);
+  return means;
+}
+
+Moments moments_of_means(const Moments& values, double n, std::uint64_t count) {
+  const double means = static_cast<double>(count);
+  Moments moments = values;
+  const double kurtosis = 3 + (values.kurtosis() - 3) / n;
+  const double skewness = values.skewness() / std::sqrt(n);
+  moments.count = count;
+  moments.m2 = values.variance() / n * (means - 1);
+  moments.m3 = skewness * means * std::pow(moments.m2 / means, 1.5);
+  moments.m4 = kurtosis * moments.m2 * moments.m2 / means;
+  return moments;
+}
+
+Moments moments_of_fewer(Moments x, double factor) {
+  const double before = static_cast<double>(x.count);
+  const double after = std::max(4.0, std::round(before / factor));
+  x.count = static_cast<std::uint64_t>(after);
+  x.m2 *= (after - 1) / (before - 1);
+  x.m3 *= after / before;
+  x.m4 *= after / before;
+  return x;
+}
+
 double rounding_of_mean(const Moments& x) {
   if (!(x.m2 > 0)) return 0;
   const double size = std::abs(x.mean);

@@ -90,6 +90,33 @@ inline void Moments::add(double value) {
   nonzero += value != 0;
 }
 
+// Moments of the finite values of consecutive observations, and which were not finite.
+struct FiniteMoments {
+  Moments moments = {};
+  std::uint64_t nonfinite = 0;
+  std::uint64_t first_nonfinite = std::numeric_limits<std::uint64_t>::max();
+
+  void add(double value, std::uint64_t index) {
+    if (!(value - value == 0)) {
+      if (nonfinite++ == 0) first_nonfinite = index;
+    } else {
+      moments.add(value);
+    }
+  }
+  // Appends the observations that follow.
+  void append(const FiniteMoments& next);
+};
+
+// Moments of single values from those of means of n of them. The kurtosis is at least 1 and the
+// square of the skewness, as for every law (Pearson 1916).
+Moments moments_of_values(Moments means, double n);
+
+// Moments as if `count` means of n values each had been drawn.
+Moments moments_of_means(const Moments& values, double n, std::uint64_t count);
+
+// Moments of fewer independent values with the same mean and variance: one in `factor`, at least 4.
+Moments moments_of_fewer(Moments x, double factor);
+
 // Standard deviation of what rounding adds to x.mean: ulp / sqrt(12), ulp the spacing of doubles at
 // the mean. The values may be added and merged in any order. Moments keeps what each step loses, so
 // only the last rounding counts. 0 if the values do not vary.

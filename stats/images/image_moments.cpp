@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numeric>
 
 #include "stats/basics/check.h"
 #include "stats/basics/vector_copies.h"
@@ -144,6 +146,55 @@ void element_moments(const ImageStack& stack, std::size_t first, std::span<Momen
     const std::size_t size = std::min(block_size, out.size() - done);
     moments_of_block(stack, first + done, out.subspan(done, size));
   }
+}
+
+std::vector<FiniteMoments> finite_moments(const ImageStack& stack, const ForEach& for_each) {
+  constexpr std::size_t at_a_time = 4096;
+  const std::size_t elements = stack.extent.elements();
+  std::vector<FiniteMoments> all(elements);
+  for_each((elements + at_a_time - 1) / at_a_time, [&](std::size_t part) {
+    const std::size_t first = part * at_a_time;
+    std::vector<Moments> moments(std::min(at_a_time, elements - first));
+    element_moments(stack, first, moments);
+    for (std::size_t i = 0; i < moments.size(); ++i) {
+      FiniteMoments& out = all[first + i];
+      if (std::isfinite(moments[i].m2)) {
+        out.moments = moments[i];
+        continue;
+      }
+      for (std::size_t k = 0; k < stack.images.size(); ++k) out.add(*stack.at(k, first + i), k);
+    }
+  });
+  return all;
+}
+
+void Extremes::add(std::span<const float> values) {
+  // So many numbers have extremes of their own, so that none waits for the last.
+  constexpr std::size_t apart = 32;
+  std::array<float, apart> low;
+  std::array<float, apart> high;
+  std::array<std::uint32_t, apart> not_zero{};
+  low.fill(std::numeric_limits<float>::infinity());
+  high.fill(-std::numeric_limits<float>::infinity());
+  const auto take = [&](float value, std::size_t k) {
+    low[k] = value < low[k] ? value : low[k];
+    high[k] = value > high[k] ? value : high[k];
+    not_zero[k] += value != 0 ? 1 : 0;
+  };
+  const std::size_t whole = values.size() / apart * apart;
+  for (std::size_t i = 0; i < whole; i += apart) {
+    for (std::size_t k = 0; k < apart; ++k) take(values[i + k], k);
+  }
+  for (std::size_t i = whole; i < values.size(); ++i) take(values[i], i - whole);
+  minimum = std::min(minimum, double{*std::ranges::min_element(low)});
+  maximum = std::max(maximum, double{*std::ranges::max_element(high)});
+  nonzero += std::accumulate(not_zero.begin(), not_zero.end(), std::uint64_t{0});
+}
+
+void Extremes::merge(const Extremes& other) {
+  minimum = std::min(minimum, other.minimum);
+  maximum = std::max(maximum, other.maximum);
+  nonzero += other.nonzero;
 }
 
 ChannelSums::ChannelSums(std::size_t channels)

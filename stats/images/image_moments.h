@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -41,6 +43,22 @@ void moments_of_range(const ImageStack& stack, std::size_t first, MomentArrays o
 // moments depend on its own values alone, so a caller may split the elements in any way. A
 // non-finite value makes its element's m2 non-finite.
 void element_moments(const ImageStack& stack, std::size_t first, std::span<Moments> out);
+
+// The finite values of every element over the images, at least one, and which were not finite. The
+// same bits as for any split of the elements.
+std::vector<FiniteMoments> finite_moments(const ImageStack& stack,
+                                          const ForEach& for_each = one_by_one);
+
+// Extremes over some elements.
+struct Extremes {
+  double minimum = std::numeric_limits<double>::infinity();
+  double maximum = -std::numeric_limits<double>::infinity();
+  std::uint64_t nonzero = 0;  // Values that are not zero.
+
+  void merge(const Extremes& other);
+  // Takes values, all of them finite.
+  void add(std::span<const float> values);
+};
 
 // ---- Sums of images over their elements
 

@@ -3,7 +3,7 @@
 
 #include "harness/draws/consistency_setup.h"
 #include "harness/sampling/summary.h"
-#include "stats/basics/moments.h"
+#include "stats/variances/group_variance.h"
 #include "tests/harness/prelude.h"
 #include "tests/harness/table.h"
 
@@ -79,7 +79,7 @@ TEST(QuantileClaim, MarksItsNumberInTheHistogram) {
 }
 
 TEST(GroupVariance, OfTwoEqualChannelsIsTwiceTheSampleVarianceOfTheGroup) {
-  GroupVariance groups({0, 2});
+  stats::GroupVariance groups({0, 2});
   stats::Moments one;
   std::optional<double> total;
   for (int i = 0; i < 8; ++i) {

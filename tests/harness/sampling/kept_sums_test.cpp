@@ -24,7 +24,7 @@ TEST(KeptSums, OfImagesAreThoseOfEveryElement) {
     ASSERT_EQ(sums.size(), elements);
     for (std::size_t e = 0; e < elements; ++e) {
       ChannelSummary expected;
-      for (std::size_t i = 0; i < 3; ++i) add_observation(expected, double{drawn[i][e]}, i);
+      for (std::size_t i = 0; i < 3; ++i) expected.add(drawn[i][e], i);
       EXPECT_EQ(sums[e].moments.count, expected.moments.count) << e;
       EXPECT_NEAR(sums[e].moments.mean, expected.moments.mean, 1e-15) << e;
       EXPECT_NEAR(sums[e].moments.m2, expected.moments.m2, 1e-15) << e;
