@@ -473,25 +473,6 @@ std::string unseen_could_decide(const TestOutcome& outcome, const Seen& seen) {
   return "";
 }
 
-/// Skewness of a secondary. Student's t takes values for near normal where it is green.
-stats::Gate near_normal_gate(const Known& known) {
-  // At the floor of evidence it moves a tail of one per cent by a fifth.
-  constexpr double near_normal = 0.3;
-  // Normal data exceed the allowance with this probability.
-  constexpr double unlikely = 0.01;
-  const stats::Moments& moments = known.pilot.moments;
-  const double root = std::sqrt(known.averaged);
-  const double value = std::abs(moments.skewness()) / root;
-  const double allowance =
-      stats::normal_skewness_quantile(static_cast<double>(moments.count), unlikely) / root;
-  const double limit = std::max(near_normal, allowance);
-  return {.name = "skewness of an observation",
-          .value = value,
-          .low = value,
-          .limit = limit,
-          .state = value <= limit ? stats::GateState::green : stats::GateState::amber};
-}
-
 /// Hint at the commonest cause of constant observations.
 std::string seeds(const Question& question) {
   for (const Subject& subject : question.subjects) {
@@ -661,7 +642,7 @@ class MeanTheta : public Theta {
     const std::vector<Known> channels = known_channels(test, pilots);
     bool near_normal = true;
     for (const Known& known : channels) {
-      const stats::Gate gate = near_normal_gate(known);
+      const stats::Gate gate = stats::near_normal_gate(known.pilot.moments, known.averaged);
       near_normal = near_normal && gate.state == GateState::green;
       note(plan, known, gate);
     }

@@ -278,17 +278,8 @@ bool are_near_normal(const Question& question, const std::vector<Known>& channel
                      std::vector<stats::Gate>& gates) {
   bool normal = channels.size() == question.subjects.size() * question.channel_count();
   for (const Known& known : channels) {
-    constexpr std::uint64_t fewest_with_kurtosis = 4;
-    const bool shows = known.pilot.moments.count >= fewest_with_kurtosis;
-    const double upper = shows ? stats::kurtosis_upper_limit(known.pilot.moments) / known.averaged
-                               : std::numeric_limits<double>::infinity();
-    const bool green = upper <= limit;
-    normal = normal && !known.rows && green;
-    gates.push_back({.name = "upper limit of the excess kurtosis",
-                     .value = upper,
-                     .low = upper,
-                     .limit = limit,
-                     .state = green ? stats::GateState::green : stats::GateState::amber});
+    gates.push_back(stats::small_kurtosis_gate(known.pilot.moments, known.averaged, limit));
+    normal = normal && !known.rows && gates.back().state == stats::GateState::green;
   }
   return normal;
 }

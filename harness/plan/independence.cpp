@@ -23,8 +23,6 @@ using stats::GateState;
 constexpr std::size_t fewest_in_order_to_tell = 100;
 // No method of means keeps its level with fewer rows: nobody is told to force one.
 constexpr std::size_t fewest_to_force = 20;
-// Rows of two files are no pairs if their rank correlation has fewer standard errors.
-constexpr double most_errors_of_pairs = 6;
 // Student's t on fewer batch means is off (Glynn and Iglehart 1990).
 constexpr std::size_t fewest_batches = 20;
 
@@ -162,27 +160,13 @@ void refuse_shared_rows(const Question& question, const Rows& one, const Rows& t
                             from_to(run->first, run->length), first.setup->data_file(),
                             from_to(run->second, run->length), second.setup->data_file()));
   }
-  if (one.values.size() != two.values.size()) return;
-  const double r = stats::rank_correlation(one.values, two.values);
-  const double errors = std::abs(r) * std::sqrt(static_cast<double>(one.values.size()));
-  if (errors < most_errors_of_pairs) return;
-  // The variance of two independent chains' correlation grows by the sum of their autocorrelations'
-  // products (Bartlett 1935), which is at most this root. What still correlates at the last lag has
-  // no such sum.
-  const auto squares = [](const Rows& rows) {
-    double sum = 1, last = 0;
-    for (const stats::LaggedCorrelation& each : stats::lagged_correlations(rows.values, 1)) {
-      last = each.correlation;
-      sum += 2 * last * last;
-    }
-    return std::abs(last) > 0.2 ? HUGE_VAL : sum;
-  };
-  if (errors < most_errors_of_pairs * std::pow(squares(one) * squares(two), 0.25)) return;
+  const std::optional<double> r = stats::correlation_of_pairs(one.values, two.values);
+  if (!r) return;
   refuse_pair(
       question, first, second,
       fmt::format("row by row they have a rank correlation of {:.2g}; if their seeds are the "
                   "same, write the differences to one file and claim that their mean is 0",
-                  r));
+                  *r));
 }
 
 /// Why rows are too few to show their independence; "" if they are enough.

@@ -6,7 +6,6 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <stdexcept>
 
 #include "harness/plan/forecast.h"
@@ -186,8 +185,6 @@ double part_of_size(const Question& question, const Pilots& pilots) {
 
 // Half a day at 40 ns a primary.
 constexpr double most_planned_primaries = 1e12;
-// Looks cost at most twice one look's observations, unless a reference has an error.
-constexpr std::uint64_t dearest_looks = 4;
 // A test may draw so many times its first look, although it needs less, while a gate is red.
 constexpr std::uint64_t waiting_looks = 4;
 // The last look may be put off to so many times its size.
@@ -241,14 +238,6 @@ stats::LookSchedule timed_look(const TestOutcome& test, std::uint64_t secondarie
   const std::uint64_t unit = block * replicate_count;
   return one_look(std::max<std::uint64_t>(1, (secondaries + unit - 1) / unit) * unit,
                   test.place.share);
-}
-
-/// Sizes up to `last` in at most `count` looks.
-std::vector<std::uint64_t> sizes_up_to(std::uint64_t last, std::uint64_t first, double growth,
-                                       std::size_t count) {
-  const double shrunk = static_cast<double>(last) / std::pow(growth, count - 1);
-  const auto earliest = static_cast<std::uint64_t>(std::ceil(shrunk));
-  return stats::geometric_sizes({.first = std::max(first, earliest), .last = last}, growth);
 }
 
 /// The largest look. It has the rows of the longest file, also for a side drawn beside it. A budget
@@ -317,25 +306,22 @@ stats::LookSchedule plan_looks(const TestOutcome& test, const Pilots& pilots,
   const std::uint64_t least = may_wait ? waiting_looks * first : first;
   const std::uint64_t needed = std::max(*alone, least);
   if (needed <= first) return one_look(std::min(first, most), whole);
-  // Each look pays for itself in a union bound, and costs next to nothing otherwise.
-  const bool unknown = law == stats::LookLaw::unknown;
-  const double growth = unknown ? 2 : std::numbers::sqrt2;
-  const std::size_t most_of_them = unknown ? 10 : most_looks(test.place);
-  const stats::ErrorRates errors{
-      .alpha = whole.alpha, .beta = whole.beta, .two_sided = is_two_sided(entry.claim.relation)};
-  const std::size_t sizes = stats::geometric_sizes({.first = first, .last = needed}, growth).size();
-  for (std::size_t count = std::min(most_of_them, sizes); count > 1; --count) {
-    const stats::LookSchedule trial =
-        stats::schedule_looks(sizes_up_to(needed, first, growth, count), law, errors);
-    const ErrorShare share{.alpha = trial.alpha.back(), .beta = trial.beta.back()};
-    const std::uint64_t last =
-        std::min(most, std::max(least, question.theta->secondaries(test, share, pilots)
-                                           .value_or(impossible_secondaries)));
-    // A reference's error may put smaller levels beyond any number: try fewer looks.
-    if (last > dearest_looks * needed) continue;
-    if (last <= first) return one_look(last, whole);
-    return stats::schedule_looks(sizes_up_to(last, first, growth, count), law, errors);
-  }
+  const auto size = [&](double alpha, double beta) {
+    return question.theta->secondaries(test, {.alpha = alpha, .beta = beta}, pilots)
+        .value_or(impossible_secondaries);
+  };
+  const auto looks =
+      stats::growing_looks({.law = law,
+                            .errors = {.alpha = whole.alpha,
+                                       .beta = whole.beta,
+                                       .two_sided = is_two_sided(entry.claim.relation)},
+                            .first = first,
+                            .least = least,
+                            .needed = needed,
+                            .most = most,
+                            .count = most_looks(test.place)},
+                           size);
+  if (looks) return *looks;
   return one_look(std::min(std::max(first, *alone), most), whole);
 }
 

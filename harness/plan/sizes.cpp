@@ -4,13 +4,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "stats/gates/assumption_gates.h"
 #include "stats/tails/tails.h"
 
 namespace assay::harness {
 namespace {
-
-// A method is taken to keep its level up to this factor.
-constexpr double level_factor = 1.25;
 
 /// Chi-square and F take flatter data for normal ones and find as little as in those.
 double deviation_for(const Method& method, double deviation) {
@@ -48,11 +46,7 @@ double kurtosis_limit(const Question& question, const FamilyPlace& place) {
   const double looks = planned ? static_cast<double>(most_looks(place)) : 1;
   const double critical =
       critical_value(place.share.alpha / looks, is_two_sided(question.test->claim.relation));
-  const double log_tail = stats::normal_tails(critical).upper;
-  const double nearer =
-      stats::normal_quantile({stats::Tail::upper, log_tail + std::log(level_factor)});
-  const double inflation = critical / nearer;
-  return std::min(0.2, 2 * (inflation * inflation - 1));
+  return stats::kurtosis_limit_at(critical);
 }
 
 stats::ErrorRates planned_rates(const ErrorShare& share, const Regions& regions) {
@@ -88,7 +82,7 @@ std::uint64_t secondaries_of_floor(const TestOutcome& test) {
 }
 
 stats::LookSchedule one_look(std::uint64_t secondaries, const ErrorShare& share) {
-  return {.sizes = {secondaries}, .alpha = {share.alpha}, .beta = {share.beta}};
+  return stats::one_look(secondaries, share.alpha, share.beta);
 }
 
 std::uint64_t primaries_of_look(const TestOutcome& test, std::uint64_t look) {

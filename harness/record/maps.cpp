@@ -18,6 +18,7 @@
 #include "harness/question/question.h"
 #include "harness/run/image_judge.h"
 #include "stats/cells/chi_square_fit.h"
+#include "stats/images/image_means.h"
 #include "stats/tails/kolmogorov.h"
 #include "stats/tails/tails.h"
 
@@ -131,37 +132,15 @@ std::string file_name(const std::string& id) {
   return fmt::format("{}-{:08x}.exr", name, text_hash(id) & 0xffffffff);
 }
 
-/// The mean over an image whose pixels are independent. A pixel's components may depend on each
-/// other: the standard deviation of their sum is at most the sum of theirs. The interval can thus
-/// be too wide, not too narrow. Degrees of freedom by Satterthwaite (1946).
+/// The mean over an image, with an interval if its pixels are independent.
 reports::Estimate image_mean(const ImageShape& shape, const Summary& summary, double mean,
                              double confidence) {
-  reports::Estimate estimate{number(mean), {}, {}};
-  const std::uint64_t count = summary.moments(0).count;
-  if (!shape.independent || count < 2) return estimate;
-  double sum = 0;
-  double squares = 0;
-  for (std::size_t pixel = 0; pixel < shape.pixels(); ++pixel) {
-    double deviation = 0;
-    for (std::size_t c = 0; c < shape.components.size(); ++c) {
-      const std::size_t element = pixel * shape.components.size() + c;
-      const stats::Moments moments = summary.moments(element);
-      if (moments.count < 2) return estimate;
-      deviation += std::sqrt(moments.variance());
-    }
-    const double square = deviation * deviation;
-    sum += square;
-    squares += square * square;
-  }
-  if (!(sum > 0) || !std::isfinite(squares) || !(squares > 0)) return estimate;
-  const double degrees = sum * sum / squares * static_cast<double>(count - 1);
-  const double error =
-      std::sqrt(sum / static_cast<double>(count)) / static_cast<double>(shape.elements());
-  const double half = error * stats::student_t_quantile(
-                                  {stats::Tail::upper, std::log((1 - confidence) / 2)}, degrees);
-  estimate.low = number(mean - half);
-  estimate.high = number(mean + half);
-  return estimate;
+  if (!shape.independent) return {number(mean), {}, {}};
+  const auto interval = stats::interval_of_mean(
+      extent_of(shape), [&](std::size_t element) { return summary.moments(element); }, mean,
+      confidence);
+  if (!interval) return {number(mean), {}, {}};
+  return {number(mean), number(interval->low), number(interval->high)};
 }
 
 struct Cells {

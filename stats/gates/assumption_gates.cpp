@@ -234,6 +234,41 @@ std::uint64_t primaries_for_variance(double excess_kurtosis, double limit) {
   return static_cast<std::uint64_t>(std::max(1.0, std::ceil(needed)));
 }
 
+Gate near_normal_gate(const Moments& pilot, double averaged) {
+  constexpr double near_normal = 0.3;
+  constexpr double unlikely = 0.01;
+  const double root = std::sqrt(averaged);
+  const double value = std::abs(pilot.skewness()) / root;
+  const double allowance =
+      normal_skewness_quantile(static_cast<double>(pilot.count), unlikely) / root;
+  const double limit = std::max(near_normal, allowance);
+  return {.name = "skewness of an observation",
+          .value = value,
+          .low = value,
+          .limit = limit,
+          .state = value <= limit ? GateState::green : GateState::amber};
+}
+
+Gate small_kurtosis_gate(const Moments& pilot, double averaged, double limit) {
+  constexpr std::uint64_t fewest_with_kurtosis = 4;
+  const double upper = pilot.count >= fewest_with_kurtosis
+                           ? kurtosis_upper_limit(pilot) / averaged
+                           : std::numeric_limits<double>::infinity();
+  return {.name = "upper limit of the excess kurtosis",
+          .value = upper,
+          .low = upper,
+          .limit = limit,
+          .state = upper <= limit ? GateState::green : GateState::amber};
+}
+
+double kurtosis_limit_at(double critical_value) {
+  constexpr double level_factor = 1.25;
+  const double log_tail = normal_tails(critical_value).upper;
+  const double nearer = normal_quantile({Tail::upper, log_tail + std::log(level_factor)});
+  const double inflation = critical_value / nearer;
+  return std::min(kurtosis_limit, 2 * (inflation * inflation - 1));
+}
+
 Gate skewness_gate(const Moments& x, double critical_value) {
   check::at_least({"skewness_gate", "count"}, x.count, 2);
   if (x.m2 == 0) throw ZeroVariance("skewness_gate: zero variance");

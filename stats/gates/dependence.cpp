@@ -138,6 +138,25 @@ double rank_correlation(std::span<const double> x, std::span<const double> y) {
   return sum_of_products(ranks[0], ranks[1]) / static_cast<double>(x.size());
 }
 
+std::optional<double> correlation_of_pairs(std::span<const double> x, std::span<const double> y) {
+  constexpr double most_errors = 6;
+  constexpr double clear = 0.2;
+  if (x.size() != y.size()) return std::nullopt;
+  const double r = rank_correlation(x, y);
+  const double errors = std::abs(r) * std::sqrt(static_cast<double>(x.size()));
+  if (errors < most_errors) return std::nullopt;
+  const auto squares = [](std::span<const double> values) {
+    double sum = 1, last = 0;
+    for (const LaggedCorrelation& each : lagged_correlations(values, 1)) {
+      last = each.correlation;
+      sum += 2 * last * last;
+    }
+    return std::abs(last) > clear ? HUGE_VAL : sum;
+  };
+  if (errors < most_errors * std::pow(squares(x) * squares(y), 0.25)) return std::nullopt;
+  return r;
+}
+
 LaggedCorrelation worst_of(std::span<const LaggedCorrelation> all) {
   LaggedCorrelation worst;
   for (const LaggedCorrelation& each : all) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "stats/tails/tails.h"
+
 namespace assay::stats {
 
 ChannelMeans channel_means(const ImageStack& stack, const ForEach& for_each) {
@@ -32,6 +34,31 @@ ChannelMeans channel_means(const ImageReference& reference) {
     mean.standard_error = std::hypot(mean.standard_error, reference.standard_error[i] / places);
   }
   return means;
+}
+
+std::optional<Interval> interval_of_mean(const ImageExtent& extent,
+                                         const std::function<Moments(std::size_t element)>& moments,
+                                         double mean, double confidence) {
+  double sum = 0;
+  double squares = 0;
+  for (std::size_t first = 0; first < extent.elements(); first += extent.channels) {
+    double deviation = 0;
+    for (std::size_t c = 0; c < extent.channels; ++c) {
+      const Moments x = moments(first + c);
+      if (x.count < 2) return std::nullopt;
+      deviation += std::sqrt(x.variance());
+    }
+    const double square = deviation * deviation;
+    sum += square;
+    squares += square * square;
+  }
+  if (!(sum > 0) || !std::isfinite(squares) || !(squares > 0)) return std::nullopt;
+  const auto count = static_cast<double>(moments(0).count);
+  const double degrees = sum * sum / squares * (count - 1);
+  const double error = std::sqrt(sum / count) / static_cast<double>(extent.elements());
+  const double half =
+      error * student_t_quantile({Tail::upper, std::log((1 - confidence) / 2)}, degrees);
+  return Interval{mean - half, mean + half, confidence};
 }
 
 void drop_errors(ChannelMeans& means) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,6 +21,14 @@ ChannelMeans channel_means(std::span<const double> sums, const ImageExtent& exte
 
 // Means of numbers whose errors are independent between elements.
 ChannelMeans channel_means(const ImageReference& reference);
+
+// Central interval of the mean of all elements, of replicates with independent elements but for the
+// channels of one place. The standard deviation of their sum is at most the sum of theirs: the
+// interval can be too wide, not too narrow. Degrees of freedom by Satterthwaite (1946). Nothing if
+// an element has fewer than two values, or nothing varies.
+std::optional<Interval> interval_of_mean(const ImageExtent& extent,
+                                         const std::function<Moments(std::size_t element)>& moments,
+                                         double mean, double confidence);
 
 // Makes means the unit of something else.
 void drop_errors(ChannelMeans& means);

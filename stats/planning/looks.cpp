@@ -101,6 +101,36 @@ std::vector<std::uint64_t> geometric_sizes(LookRange range, double growth) {
   return sizes;
 }
 
+LookSchedule one_look(std::uint64_t size, double alpha, double beta) {
+  return {.sizes = {size}, .alpha = {alpha}, .beta = {beta}};
+}
+
+std::optional<LookSchedule> growing_looks(
+    const GrowingLooks& looks,
+    const std::function<std::uint64_t(double alpha, double beta)>& size) {
+  constexpr std::uint64_t dearest = 4;
+  // Each look pays for itself in a union bound, and costs next to nothing otherwise.
+  const bool unknown = looks.law == LookLaw::unknown;
+  const double growth = unknown ? 2 : std::numbers::sqrt2;
+  const auto sizes_up_to = [&](std::uint64_t last, std::size_t count) {
+    const double shrunk = static_cast<double>(last) / std::pow(growth, count - 1);
+    const auto earliest = static_cast<std::uint64_t>(std::ceil(shrunk));
+    return geometric_sizes({.first = std::max(looks.first, earliest), .last = last}, growth);
+  };
+  const std::size_t all =
+      geometric_sizes({.first = looks.first, .last = looks.needed}, growth).size();
+  for (std::size_t count = std::min(unknown ? 10 : looks.count, all); count > 1; --count) {
+    const LookSchedule trial =
+        schedule_looks(sizes_up_to(looks.needed, count), looks.law, looks.errors);
+    const std::uint64_t last =
+        std::min(looks.most, std::max(looks.least, size(trial.alpha.back(), trial.beta.back())));
+    if (last > dearest * looks.needed) continue;
+    if (last <= looks.first) return one_look(last, looks.errors.alpha, looks.errors.beta);
+    return schedule_looks(sizes_up_to(last, count), looks.law, looks.errors);
+  }
+  return std::nullopt;
+}
+
 double log_p_over_looks(const LookSchedule& schedule, std::span<const double> log_p,
                         bool two_sided) {
   check_sizes("log_p_over_looks", schedule.sizes);

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -47,6 +49,27 @@ struct LookRange {
 // that round to the same are one. Throws std::domain_error: first < 1, last < first, growth not
 // finite and above 1.
 std::vector<std::uint64_t> geometric_sizes(LookRange range, double growth);
+
+// One look at these errors.
+LookSchedule one_look(std::uint64_t size, double alpha, double beta);
+
+// Looks that grow from `first` to the size that the last one's levels need, by a factor of 2
+// without a law, else of sqrt 2.
+struct GrowingLooks {
+  LookLaw law = LookLaw::unknown;
+  ErrorRates errors = {};
+  std::uint64_t first = 1;
+  std::uint64_t least = 1;   // Size of the last look at least, above `first`.
+  std::uint64_t needed = 1;  // Size that one look at these errors needs, or `least` if it is more.
+  std::uint64_t most = 1;    // There are no more.
+  std::size_t count = 1;     // Number of looks, at most; 10 without a law.
+};
+
+// The schedule with most looks whose last needs at most 4 times one look's size: an error that more
+// observations do not reduce may put smaller levels beyond any number. `size` tells what a look at
+// its levels needs. Nothing if one look alone is left.
+std::optional<LookSchedule> growing_looks(
+    const GrowingLooks& looks, const std::function<std::uint64_t(double alpha, double beta)>& size);
 
 // Null hypothesis: that of every look. `log_p` holds ln p_k of the first looks, in order. A
 // two-sided p_k is twice the smaller tail. The p-value is the least error over all looks at which
