@@ -35,8 +35,7 @@ struct Header {
   std::vector<std::size_t> shape;
 };
 
-/// Reads Python's dictionary of three entries. But for quotes and the brackets of its tuple it is a
-/// flow map.
+/// Reads Python's dictionary of three entries. But for the brackets of its tuple it is YAML.
 Header header_of(const ByteSource& source, std::string text) {
   const std::size_t type = text.find(':', text.find("descr"));
   if (type != text.npos && text.find_first_not_of(" :", type) == text.find('[')) {
@@ -44,7 +43,6 @@ Header header_of(const ByteSource& source, std::string text) {
                   save_it("a[a.dtype.names[0]]"));
   }
   if (std::ranges::count(text, '(') != 1) refuse_header(source);
-  std::erase_if(text, [](char c) { return c == '\'' || c == '"' || c == '\n'; });
   std::ranges::replace(text, '(', '[');
   std::ranges::replace(text, ')', ']');
   try {
