@@ -9,7 +9,6 @@
 #include "harness/theta/ask.h"
 #include "harness/theta/theta.h"
 #include "stats/basics/scores.h"
-#include "stats/laws/quantile_deviation.h"
 #include "stats/laws/quantile_test.h"
 
 namespace assay::harness {

@@ -20,6 +20,7 @@
 #include "harness/theta/decision.h"
 #include "harness/theta/methods.h"
 #include "stats/gates/assumption_gates.h"
+#include "stats/means/skewness_corrected_t.h"
 #include "stats/means/student_t.h"
 #include "stats/variances/influence.h"
 #include "stats/variances/normal_variances.h"

@@ -11,7 +11,7 @@
 #include "harness/theta/methods.h"
 #include "stats/images/image.h"
 #include "stats/images/image_constants.h"
-#include "stats/images/image_means.h"
+#include "stats/images/image_moments.h"
 
 namespace assay::harness {
 

@@ -12,7 +12,7 @@
 #include "harness/theta/gate.h"
 #include "harness/theta/methods.h"
 #include "reports/record/record.h"
-#include "stats/images/image_planning.h"
+#include "stats/images/image_covariance.h"
 #include "stats/planning/looks.h"
 #include "stats/tails/test_result.h"
 

@@ -18,7 +18,7 @@
 #include "harness/question/question.h"
 #include "harness/run/image_judge.h"
 #include "stats/cells/chi_square_fit.h"
-#include "stats/images/image_means.h"
+#include "stats/images/image_moments.h"
 #include "stats/tails/kolmogorov.h"
 #include "stats/tails/tails.h"
 

@@ -28,8 +28,8 @@
 #include "stats/gates/independence_gates.h"
 #include "stats/means/student_t.h"
 #include "stats/planning/holm.h"
-#include "stats/tails/inversion.h"
 #include "stats/tails/tails.h"
+#include "stats/tails/test_result.h"
 #include "stats/variances/influence.h"
 
 namespace assay::harness {

@@ -26,7 +26,7 @@
 #include "stats/images/image_dependence.h"
 #include "stats/images/image_equivalence.h"
 #include "stats/images/image_family.h"
-#include "stats/images/image_means.h"
+#include "stats/images/image_moments.h"
 
 namespace assay::harness {
 

@@ -19,7 +19,7 @@
 #include "harness/question/question.h"
 #include "reports/record/record.h"
 #include "stats/means/binomial.h"
-#include "stats/tails/inversion.h"
+#include "stats/tails/test_result.h"
 
 namespace assay::harness {
 

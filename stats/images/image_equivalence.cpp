@@ -11,7 +11,6 @@
 #include "stats/basics/check.h"
 #include "stats/basics/moments.h"
 #include "stats/basics/vector_copies.h"
-#include "stats/tails/inversion.h"
 #include "stats/tails/tails.h"
 
 namespace assay::stats {

@@ -5,7 +5,7 @@
 
 #include "stats/basics/for_each.h"
 #include "stats/images/image.h"
-#include "stats/images/image_means.h"
+#include "stats/images/image_moments.h"
 #include "stats/tails/test_result.h"
 
 namespace assay::stats {

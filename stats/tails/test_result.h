@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -44,5 +45,20 @@ struct Interval {
   double high = 0;
   double confidence = 0;
 };
+
+// A rough location of an interval.
+struct Whereabouts {
+  double estimate = 0;
+  double step = 1;  // About a standard error.
+};
+
+// The values of theta that `at` rejects in neither tail at (1 - confidence) / 2. The ends are exact
+// to 1e-12 of their distance from the estimate. An end beyond 60 doublings of the step is infinite.
+// `at` must be monotone: its upper tail rejects larger values less.
+Interval interval_by_inversion(const std::function<TestResult(double)>& at,
+                               const Whereabouts& around, double confidence);
+
+// The interval of a monotone function of the number, rising or falling.
+Interval map_ends(const Interval& interval, const std::function<double(double)>& map);
 
 }  // namespace assay::stats

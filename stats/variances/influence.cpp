@@ -9,7 +9,6 @@
 
 #include "stats/basics/check.h"
 #include "stats/means/skewness_corrected_t.h"
-#include "stats/tails/inversion.h"
 
 namespace assay::stats {
 namespace {

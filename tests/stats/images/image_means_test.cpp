@@ -1,5 +1,4 @@
-#include "stats/images/image_means.h"
-
+#include "stats/images/image_moments.h"
 #include "tests/prelude.h"
 
 namespace assay::stats {
