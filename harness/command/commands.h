@@ -5,10 +5,14 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "harness/base/identity.h"
 #include "harness/base/progress.h"
+#include "harness/calibration/calibrate.h"
+#include "harness/command/init.h"
+#include "harness/record/merge.h"
 #include "harness/record/output.h"
 #include "harness/suite/run_options.h"
 #include "harness/suite/suite.h"
@@ -83,5 +87,63 @@ int describe(const std::string& name);
 /// All that decides the numbers of a run: version, machine code, seed, options, and the files that
 /// suites name. Of a file it takes the size and the first mebibyte.
 Identity identity_of(const std::vector<Suite>& suites, const RunOptions& options);
+
+// ---- What a command line asks for
+
+struct SamplingCommand {
+  RunOptions options;
+  Output output;
+};
+struct SuitesCommand : SamplingCommand {
+  std::vector<std::string> suites;
+  std::vector<std::string> assignments;  ///< of --set
+};
+struct RunCommand : SuitesCommand {};
+struct PlanCommand : SuitesCommand {
+  bool list_renders = false;
+};
+
+struct CheckCommand : SamplingCommand {
+  CheckArguments arguments;
+};
+
+struct ImagesCommand : SamplingCommand {
+  ImagesArguments arguments;
+};
+
+struct CalibrateCommand {
+  CalibrateArguments arguments;
+  Output output;
+};
+
+struct ListCommand {
+  std::string what;  ///< "plugins", "tests", a table of describe.h; empty: all lists
+  std::vector<std::string> suites;
+  Selection selection;
+};
+
+struct DescribeCommand {
+  std::string name;  ///< of a plugin, or of a row of a table
+};
+
+struct ReportCommand {
+  std::string file;
+  Output output;
+};
+
+struct MergeCommand {
+  std::vector<std::string> records;
+  Output output;
+};
+
+/// The text for --help and --version.
+struct TextCommand {
+  std::string text;
+};
+
+using Command =
+    std::variant<RunCommand, PlanCommand, CheckCommand, ImagesCommand, SampleArguments, ListCommand,
+                 DescribeCommand, ReplayArguments, ReportCommand, MergeCommand, CalibrateCommand,
+                 InitArguments, ExplainArguments, TextCommand>;
 
 }  // namespace assay::harness

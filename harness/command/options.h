@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "harness/command/cli.h"
+#include "harness/command/commands.h"
 #include "harness/command/help.h"
 #include "harness/record/output.h"
 #include "harness/suite/yaml.h"

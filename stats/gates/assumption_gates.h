@@ -17,17 +17,17 @@ namespace assay::stats {
 std::uint64_t primaries_for_variance(double excess_kurtosis, double limit = 0.2);
 
 // Value: |g1| / sqrt(averaged), the skewness of a mean of so many of the pilot's values. Green up
-// to .3, where it moves a tail of one per cent by a fifth at n = 2^14, or to what normal data
-// exceed with probability .01; else amber. Student's t takes values for near normal where it is
-// green.
+// to .3, which moves a tail of one per cent by a fifth at n = 2^14. It is also green up to what
+// normal data exceed with probability .01. Else amber. Student's t takes values for near normal
+// where it is green.
 Gate near_normal_gate(const Moments& pilot, double averaged);
 
 // Value: kurtosis_upper_limit over `averaged`; infinite for fewer than 4 values. Green up to the
 // limit, else amber. Where it is green F and chi-square keep their level.
 Gate small_kurtosis_gate(const Moments& pilot, double averaged, double limit);
 
-// The excess kurtosis, 0.2 at most, at which F and chi-square have 1.25 times their nominal level
-// at this critical value x: there x is divided by sqrt(1 + excess / 2).
+// F and chi-square have 1.25 times their nominal level at this excess kurtosis, 0.2 at most. There
+// the critical value x is divided by sqrt(1 + excess / 2).
 double kurtosis_limit_at(double critical_value);
 
 // ---- On the test's own data

@@ -63,9 +63,9 @@ std::vector<LaggedCorrelation> lagged_correlations(std::span<const double> value
 double rank_correlation(std::span<const double> x, std::span<const double> y);
 
 // The rank correlation of two sequences of one size if it is farther than 6 standard errors from 0,
-// as of pairs; nothing else. The variance of two independent chains' correlation grows by the sum
-// of their autocorrelations' products (Bartlett 1935), which is at most the root of the sums of
-// their squares. What still correlates at the last lag has no such sum.
+// as of pairs; nothing else. That of two independent chains varies more, by the sum of their
+// autocorrelations' products (Bartlett 1935). The sum is at most the root of the sums of their
+// squares. What still correlates at the last lag has no such sum.
 std::optional<double> correlation_of_pairs(std::span<const double> x, std::span<const double> y);
 
 // The one whose z is farthest from 0. Its lag is 0 if there is none.

@@ -127,9 +127,9 @@ class ScannedSide {
   }
 
   SettledSide side_;
-  double low_ = 0;  // Of the element last looked at, if it is constant.
+  double low_ = 0;  // The range of the element last looked at, if it is constant.
   double high_ = 0;
-  Moments all_;  // Of all values, once they are asked for.
+  Moments all_;  // Every value, once they are asked for.
   std::vector<std::pair<std::size_t, double>> settled_;
 };
 

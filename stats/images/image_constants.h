@@ -11,7 +11,7 @@ namespace assay::stats {
 // Elements of images that never varied. They have no standard error, and rare values may be unseen
 // (stats/means/constant_sample.h). Their values differ by rounding only.
 
-// What is known of an element's values: their range, and a bound on their rounding.
+// A range holds an element's values, and a number bounds their rounding.
 struct DeclaredValues {
   double low;
   double high;
@@ -22,10 +22,10 @@ struct DeclaredValues {
   double error(double value) const;
 };
 
-// Of each element, or one that all share.
+// One for each element, or one that all share.
 using Declarations = std::vector<DeclaredValues>;
 
-// Those of differences of images from others near `image`, but for their range.
+// Declares differences of images from others near `image`, but for their range.
 Declarations of_differences(Declarations one, const Declarations& other,
                             std::span<const float> image);
 
@@ -58,10 +58,10 @@ struct SettledSide {
 };
 using ChangedImages = std::vector<std::vector<float>>;
 
-// Gives elements that did not vary one value: such an element is tested in sums with its
-// neighbours, and by itself against its range, in `unseen`. Constants that differ by rounding only
-// are equal. A reference whose errors are all 0 afterwards has none. Differences of pairs
-// that differ from the reference without any spread are left as they are.
+// Gives elements that did not vary one value. Such an element is tested in sums with its
+// neighbours. By itself it is held against its range, in `unseen`. Constants that differ by
+// rounding only are equal. A reference whose errors are all 0 afterwards has none. Differences of
+// pairs that differ from the reference without any spread are left as they are.
 ImageConstants settle_constants(SettledSide side, std::vector<double>& reference,
                                 std::vector<double>& error, bool of_pairs, ChangedImages& changed);
 

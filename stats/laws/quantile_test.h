@@ -55,18 +55,17 @@ Interval quantile_difference_interval(std::span<const double> sorted_x,
 // std::domain_error for a probability outside (0, 1) and a density that is not positive.
 double quantile_standard_deviation(double probability, double density);
 
-// Planning of a quantile's test by quantile_standard_deviation (quantile_test.h), which needs the
-// density at the quantile. These estimate it. If it differs, the size is off by its ratio.
+// These estimate the density at the quantile. If it differs, the planned size is off by its ratio.
 
-// With the density that a sample shows over `distance` on the quantile's sparser side, less two of
-// its standard errors. A part below 64 values is taken for the tail: excesses of the 128 outermost
-// over the next value count as generalised Pareto, by their mean and variance (Hosking & Wallis
-// 1987). Nothing for fewer than 256 finite values, or if the density does not show.
+// The same with the density that a sample shows over `distance` on the quantile's sparser side,
+// less two of its standard errors. Near an end of the sample its 128 outermost values tell it.
+// Their excesses over the next value count as generalised Pareto, by mean and variance (Hosking &
+// Wallis 1987). Nothing for fewer than 256 finite values, or if the density does not show.
 std::optional<double> observed_quantile_deviation(std::span<const double> sample,
                                                   double probability, double distance);
 
-// Of means of `averaged` values each with these moments: a normal density, stretched by Cornish and
-// Fisher's first term to a fifth at least.
+// The same for means of `averaged` values with these moments. Their density is normal, stretched by
+// Cornish and Fisher's first term to a fifth at least.
 double quantile_deviation_of_means(const Moments& values, double averaged, double probability);
 
 }  // namespace assay::stats

@@ -53,8 +53,8 @@ std::vector<std::uint64_t> geometric_sizes(LookRange range, double growth);
 // One look at these errors.
 LookSchedule one_look(std::uint64_t size, double alpha, double beta);
 
-// Looks that grow from `first` to the size that the last one's levels need, by a factor of 2
-// without a law, else of sqrt 2.
+// Looks grow from `first` to the size that the last one's levels need. The factor is 2 without a
+// law, else sqrt 2.
 struct GrowingLooks {
   LookLaw law = LookLaw::unknown;
   ErrorRates errors = {};
@@ -65,8 +65,8 @@ struct GrowingLooks {
   std::size_t count = 1;     // Number of looks, at most; 10 without a law.
 };
 
-// The schedule with most looks whose last needs at most 4 times one look's size: an error that more
-// observations do not reduce may put smaller levels beyond any number. `size` tells what a look at
+// The schedule with most looks whose last needs at most 4 times one look's size. An error that
+// sampling does not reduce may put smaller levels beyond any number. `size` tells what a look at
 // its levels needs. Nothing if one look alone is left.
 std::optional<LookSchedule> growing_looks(
     const GrowingLooks& looks, const std::function<std::uint64_t(double alpha, double beta)>& size);
