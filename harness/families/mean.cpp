@@ -1,9 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <memory>
 
@@ -18,12 +16,10 @@
 #include "reports/words/number.h"
 #include "stats/basics/moments.h"
 #include "stats/gates/assumption_gates.h"
-#include "stats/means/betting_mean.h"
 #include "stats/means/binomial.h"
 #include "stats/means/power_exact.h"
 #include "stats/means/skewness_corrected_t.h"
-#include "stats/means/student_t.h"
-#include "stats/means/uncertain_reference.h"
+#include "stats/means/theta_of_means.h"
 #include "stats/planning/power.h"
 
 namespace assay::harness {
@@ -31,201 +27,37 @@ namespace {
 
 using stats::GateState;
 using stats::Moments;
-using stats::TestResult;
 
 // ---- Evidence
 
-/// One subject's data as tests of means take them.
-struct Side {
-  Moments moments;
-  stats::Range range;
-  double rounding = 0;
-  std::shared_ptr<const stats::ValueCells> cells = nullptr;  ///< The values, for bets.
-};
-
-/// Tests "E x = value", and "E x - scale E y = offset". Without closed intervals, they are
-/// inverted.
-struct MeanTest {
-  TestResult (*of_one)(const Side& x, const stats::Reference& null);
-  TestResult (*of_two)(const Side& x, const Side& y, const stats::Contrast& null);
-  bool closed_interval = false;
-  bool bets = false;
-};
-
-TestResult t_of_one(const Side& x, const stats::Reference& null) {
-  return stats::student_t(x.moments, null);
-}
-
-TestResult t_of_two(const Side& x, const Side& y, const stats::Contrast& null) {
-  return stats::welch_t(x.moments, y.moments, null);
-}
-
-TestResult corrected_of_one(const Side& x, const stats::Reference& null) {
-  return stats::skewness_corrected_t(x.moments, null);
-}
-
-TestResult corrected_of_two(const Side& x, const Side& y, const stats::Contrast& null) {
-  return stats::skewness_corrected_welch(x.moments, y.moments, null);
-}
-
-/// An exact test of "E x = value" where the value is known up to an error.
-TestResult over_reference(const stats::Reference& null,
-                          const std::function<TestResult(double)>& at) {
-  const std::array<stats::UncertainReference, 1> references{{{null, null.value}}};
-  return stats::test_over_references([&](auto values) { return at(values[0]); }, references);
-}
-
-TestResult binomial_of_one(const Side& x, const stats::Reference& null) {
-  const stats::TwoValued counts = stats::two_valued(x.moments, x.range);
-  return over_reference(null, [&](double value) { return stats::two_valued_mean(counts, value); });
-}
-
-TestResult binomial_of_two(const Side& x, const Side& y, const stats::Contrast& null) {
-  return stats::two_valued_contrast(stats::two_valued(x.moments, x.range),
-                                    stats::two_valued(y.moments, y.range), null);
-}
-
-/// Values are exact to `rounding`: each tail is that of the nearest null.
-TestResult within_rounding(const std::function<TestResult(double)>& at, double rounding) {
-  TestResult result = at(rounding);
-  result.statistic += rounding;
-  if (rounding > 0) result.log_p_lower = at(-rounding).log_p_lower;
-  return result;
-}
-
-TestResult bets_of_one(const Side& x, const stats::Reference& null) {
-  return over_reference(null, [&](double value) {
-    const auto at = [&](double shift) {
-      return stats::betting_mean(*x.cells, x.range, value + shift);
-    };
-    return within_rounding(at, x.rounding);
-  });
-}
-
-TestResult bets_of_two(const Side& x, const Side& y, const stats::Contrast& null) {
-  const auto at = [&](double shift) {
-    return stats::betting_contrast(*x.cells, x.range, *y.cells, y.range,
-                                   {null.scale, null.offset + shift});
-  };
-  return within_rounding(at, x.rounding + std::abs(null.scale) * y.rounding);
-}
-
-constexpr MeanTest by_t{.of_one = t_of_one, .of_two = t_of_two, .closed_interval = true};
-constexpr MeanTest by_corrected_t{.of_one = corrected_of_one, .of_two = corrected_of_two};
-constexpr MeanTest by_counts{.of_one = binomial_of_one, .of_two = binomial_of_two};
-constexpr MeanTest by_bets{.of_one = bets_of_one, .of_two = bets_of_two, .bets = true};
-
-Side side_of(const MeanTest& mean, const Seen& seen, std::size_t subject) {
+stats::MeanSample sample_of(const stats::MeanTest& test, const Seen& seen, std::size_t subject) {
   const Moments& moments = seen.moments(subject);
-  Side side{moments, range_of(seen.question, subject, seen.channel, moments),
-            rounding_of(seen.question, subject, seen.channel)};
-  if (mean.bets) side.cells = std::make_shared<const stats::ValueCells>(seen.data[subject].values);
-  return side;
-}
-
-/// A first step from an estimate of theta. Without a spread it is what one more value could add.
-double step_of(const Side& side, double factor) {
-  const Moments& x = side.moments;
-  const double count = static_cast<double>(x.count);
-  double step = std::sqrt(x.variance() / count);
-  for (const double end : {side.range.low, side.range.high}) {
-    if (!(x.m2 > 0) && std::isfinite(end)) step = std::max(step, std::abs(end - x.mean) / count);
+  stats::MeanSample sample{moments, range_of(seen.question, subject, seen.channel, moments),
+                           rounding_of(seen.question, subject, seen.channel)};
+  if (test.bets) {
+    sample.cells = std::make_shared<const stats::ValueCells>(seen.data[subject].values);
   }
-  return std::abs(factor) * step;
+  return sample;
 }
 
-/// Natural logarithm of the p-value of "E y = 0"; a constant y shows its sign.
-double log_p_of_no_sign(const Side& y, const MeanTest& mean) {
-  if (y.moments.m2 == 0) {
-    return y.moments.mean == 0 ? 0 : -std::numeric_limits<double>::infinity();
-  }
-  return stats::log_p_two_sided(mean.of_one(y, {.value = 0}));
-}
-
-Evidence mean_against_mean(const MeanTest& mean, const Seen& seen) {
-  const Side first = side_of(mean, seen, 0);
-  const Side second = side_of(mean, seen, 1);
-  const Moments& y = second.moments;
-  const double factor = seen.question.factor;
-  const double offset = seen.question.offset;
-  const bool relative = seen.relative();
-  const double unit = relative ? std::abs(factor * y.mean) : 1;
-  const double sign = std::copysign(1, factor * y.mean);
-  const double estimate =
-      stats::contrast_of_means(first.moments, y, {.scale = factor, .offset = offset}) / unit;
-  const auto at = [=](double theta) {
-    if (!relative) {
-      return mean.of_two(first, second, {.scale = factor, .offset = offset + theta});
-    }
-    TestResult result =
-        mean.of_two(first, second, {.scale = factor * (1 + sign * theta), .offset = offset});
-    if (theta == 0) return result;
-    // The sign of E y decides which contrast a relative margin is, so y must show it too.
-    const double log_p_sign = log_p_of_no_sign(second, mean);
-    result.log_p_lower = std::max(result.log_p_lower, log_p_sign);
-    result.log_p_upper = std::max(result.log_p_upper, log_p_sign);
-    return result;
-  };
-  const double step = std::hypot(step_of(first, 1), step_of(second, factor)) / unit;
-  const auto interval = [=](double confidence) {
-    if (!mean.closed_interval || (relative && offset != 0)) {
-      return stats::interval_by_inversion(at, {.estimate = estimate, .step = step}, confidence);
-    }
-    if (relative) {
-      return stats::map_ends(stats::welch_ratio_interval(first.moments, second.moments, confidence),
-                             [=](double ratio) { return sign * ((1 + ratio) / factor - 1); });
-    }
-    // Only count, mean and m2 enter. The difference stands for x, with y's mean at 0.
-    Moments moved = first.moments;
-    moved.mean = estimate;
-    Moments scaled = second.moments;
-    scaled.mean = 0;
-    scaled.m2 *= factor * factor;
-    moved.rest = scaled.rest = 0;
-    return stats::welch_t_interval(moved, scaled, confidence);
-  };
-  return {.estimate = estimate,
-          .at = at,
-          .interval = interval,
-          .quantity = relative ? "relative difference of means" : "difference of means",
-          .relative = relative};
-}
-
-Evidence mean_against_number(const MeanTest& mean, const Seen& seen) {
-  const Side side = side_of(mean, seen, 0);
-  const Moments x = side.moments;
-  const Constant& reference = seen.reference();
-  const bool relative = seen.relative();
-  const double unit = relative ? std::abs(reference.value) : 1;
-  const double slope = relative ? std::copysign(1, reference.value) : 0;
-  const double null = reference.value + seen.question.offset;
-  const double estimate = x.mean_less(null) / unit;
-  const auto at = [=](double theta) {
-    return mean.of_one(side,
-                       {.value = null + theta * unit,
-                        .standard_error = reference.standard_error * std::abs(1 + slope * theta)});
-  };
-  const double step = std::hypot(step_of(side, 1), reference.standard_error) / unit;
-  const auto interval = [=](double confidence) {
-    // Theta also scales the reference's error, so `at` is inverted.
-    if ((relative && reference.standard_error > 0) || !mean.closed_interval) {
-      return stats::interval_by_inversion(at, {.estimate = estimate, .step = step}, confidence);
-    }
-    return stats::map_ends(
-        stats::student_t_interval(x, {null, reference.standard_error}, confidence),
-        [=](double d) { return d / unit; });
-  };
-  return {.estimate = estimate,
-          .at = at,
-          .interval = interval,
-          .quantity =
-              relative ? "relative difference from the reference" : "difference from the reference",
-          .relative = relative};
-}
-
-template <const MeanTest& mean>
+template <const stats::MeanTest& test>
 Evidence evidence_of_means(const Seen& seen) {
-  return seen.question.of_two() ? mean_against_mean(mean, seen) : mean_against_number(mean, seen);
+  const Question& question = seen.question;
+  stats::ThetaOfMeans theta{.test = test,
+                            .x = sample_of(test, seen, 0),
+                            .contrast = {.scale = question.factor, .offset = question.offset},
+                            .relative = seen.relative()};
+  if (question.of_two()) {
+    theta.y = sample_of(test, seen, 1);
+  } else {
+    theta.reference = seen.reference();
+  }
+  return {.estimate = theta.estimate(),
+          .at = [=](double value) { return theta.at(value); },
+          .interval = [=](double confidence) { return theta.interval(confidence); },
+          .quantity = fmt::format("{}difference {}", theta.relative ? "relative " : "",
+                                  theta.y ? "of means" : "from the reference"),
+          .relative = theta.relative};
 }
 
 // A shift of so many standard errors moves a tail of one per cent by a third at most.
@@ -558,21 +390,21 @@ std::vector<Method> methods_of_means() {
   return {
       {"t", "Student's t: a mean against a number",
        [](const Question& q) { return !q.of_two() && !is_within(q); }, Keeps::moments,
-       evidence_of_means<by_t>, of_scores},
+       evidence_of_means<stats::mean_by_t>, of_scores},
       {"welch", "Welch's t: two means, whatever their variances",
        [](const Question& q) { return q.of_two() && !is_within(q); }, Keeps::moments,
-       evidence_of_means<by_t>, of_scores},
+       evidence_of_means<stats::mean_by_t>, of_scores},
       {"tost", "two one-sided t tests: a mean lies within a margin", is_within, Keeps::moments,
-       evidence_of_means<by_t>, of_scores},
+       evidence_of_means<stats::mean_by_t>, of_scores},
       {"skewness-corrected-t", "t or Welch with Hall's correction for the skewness of the values",
-       any_question, Keeps::moments, evidence_of_means<by_corrected_t>, corrected},
+       any_question, Keeps::moments, evidence_of_means<stats::mean_by_corrected_t>, corrected},
       {"binomial", "exact: a mean of values that are the two ends of a range", any_question,
-       Keeps::moments, evidence_of_means<by_counts>, of_counts},
+       Keeps::moments, evidence_of_means<stats::mean_by_counts>, of_counts},
       {"betting", "exact at every look: means of values in declared ranges, by bets", any_question,
-       Keeps::values, evidence_of_means<by_bets>, of_bets},
+       Keeps::values, evidence_of_means<stats::mean_by_bets>, of_bets},
       {"batch-means", "t of batch means: a mean of observations that depend on their neighbours",
-       [](const Question& q) { return !is_within(q); }, Keeps::values, evidence_of_means<by_t>,
-       of_batches}};
+       [](const Question& q) { return !is_within(q); }, Keeps::values,
+       evidence_of_means<stats::mean_by_t>, of_batches}};
 }
 
 double unit_of(const Seen& seen) {
