@@ -105,7 +105,7 @@ std::string per_cent(double probability) {
   return fmt::format("{} %", reports::human(100 * std::round(1e6 * probability) / 1e6, 3));
 }
 
-std::string outlook_text(const char* when, const Outlook& outlook) {
+std::string outlook_text(const char* when, const stats::Outlook& outlook) {
   return fmt::format("{}: pass {}, fail {}, inconclusive {}, draws {:.0f} %", when,
                      per_cent(outlook.pass), per_cent(outlook.fail), per_cent(outlook.inconclusive),
                      100 * outlook.drawn);
@@ -115,7 +115,7 @@ std::string outlook_text(const char* when, const Outlook& outlook) {
 /// its `detect` where it is expected to fail. Without an outlook it errs as often as planned.
 double not_ok(const TestOutcome& test, const Forecast& foreseen) {
   const bool fails = test.question.test->expect == reports::Verdict::fail;
-  const std::optional<Outlook>& outlook = fails ? foreseen.if_off : foreseen.if_true;
+  const std::optional<stats::Outlook>& outlook = fails ? foreseen.if_off : foreseen.if_true;
   if (outlook) return 1 - (fails ? outlook->fail : outlook->pass);
   const double beta = test.plan.regions[0].has_forbidden() ? test.place.share.beta : 0;
   return static_cast<double>(test.question.channel_count()) * (test.place.share.alpha + beta);

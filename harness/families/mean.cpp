@@ -140,18 +140,6 @@ bool bets_on_range(const Question& question, const Pilots& pilots) {
 
 // ---- Sizes
 
-// Errors near .01 go like size^-6.5.
-constexpr double elasticity = 6.5;
-
-/// The variance for which a test is planned. The logarithm of a pilot's variance has the variance
-/// s^2 = (kurtosis - 1) / n. Errors that go like size^-k have the planned mean over such pilots if
-/// the pilot's variance is multiplied by exp(k s^2 / 2).
-double planned_variance(const Moments& pilot) {
-  const double n = static_cast<double>(pilot.count);
-  const double spread = std::max(0.0, pilot.kurtosis() - 1) / n;
-  return pilot.variance() * std::exp(elasticity / 2 * spread);
-}
-
 // Beyond this a constant's unseen values stay undecided: they may not exist.
 constexpr std::uint64_t most_for_the_unseen = 1024 * usual_secondaries;
 // Fewer secondaries of a pilot do not show their law.
@@ -200,21 +188,6 @@ stats::ExactMeanPlan plan_of(const PlannedChannel& channel, const stats::ErrorRa
           .rates = rates};
 }
 
-/// Secondaries that reject the claimed region where theta is `effect`, and the forbidden one where
-/// theta is at the claimed region's edge.
-std::optional<std::uint64_t> exact_size(const stats::ExactPlanning& plans,
-                                        const stats::ExactMeanPlan& claimed, double effect) {
-  const double edge = std::copysign(claimed.allow, effect);
-  stats::ExactMeanPlan forbidden = claimed;
-  forbidden.null_mean += effect;
-  forbidden.allow = 0;
-  forbidden.rates = {.alpha = claimed.rates.beta, .beta = claimed.rates.beta, .two_sided = false};
-  const auto rejects = plans.sample_size(claimed, effect);
-  if (!rejects) return std::nullopt;
-  // An end of the range that is infinite lets no number of secondaries pass.
-  return std::max(*rejects, plans.sample_size(forbidden, edge - effect).value_or(0));
-}
-
 /// A claim of `within` rejects each margin where theta is 0, with half of the misses.
 std::optional<std::uint64_t> exact_secondaries(const TestOutcome& test,
                                                const PlannedChannel& channel,
@@ -233,8 +206,8 @@ std::optional<std::uint64_t> exact_secondaries(const TestOutcome& test,
       rejected.null_mean += effect;
       effect = -effect;
     }
-    const auto count =
-        regions.proof() ? plans.sample_size(rejected, effect) : exact_size(plans, rejected, effect);
+    const auto count = regions.proof() ? plans.sample_size(rejected, effect)
+                                       : stats::exact_sample_size(plans, rejected, effect);
     if (!count) return std::nullopt;
     most = std::max(most, *count);
   }
@@ -653,7 +626,7 @@ class MeanTheta : public Theta {
       constant = false;
       const double averaged = question.subjects[i].averaged(plan.primaries[i]);
       planned.deviations[i] =
-          question.factor_of(i) * std::sqrt(planned_variance(moments) / averaged);
+          question.factor_of(i) * std::sqrt(stats::planned_variance(moments) / averaged);
     }
     const bool bets = plan.method.is.in_range && !question.of_two();
     planned.unseen = constant && bets;

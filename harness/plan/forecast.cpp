@@ -6,8 +6,6 @@
 #include "harness/plan/independence.h"
 #include "harness/plan/sizes.h"
 #include "harness/theta/theta.h"
-#include "stats/planning/boundary.h"
-#include "stats/tails/tails.h"
 
 namespace assay::harness {
 namespace {
@@ -39,25 +37,6 @@ std::optional<std::vector<ChannelData>> expected_data(const TestOutcome& test, s
   return data;
 }
 
-/// The scores at which a look stops. Scores against the claim are positive.
-stats::StoppingLook stopping_look(const Regions& regions, double error, const ErrorShare& levels) {
-  const auto z = [](double level) {
-    constexpr double least = 1e-300;
-    return stats::upper_normal_quantile(std::max(level, least));
-  };
-  const bool two = regions.two_sided();
-  stats::StoppingLook look{
-      .time = 1 / (error * error),
-      .above = regions.claimed_edge() / error + z(two ? levels.alpha / 2 : levels.alpha)};
-  const std::optional<double> forbidden = regions.forbidden_edge();
-  const double passes = forbidden ? *forbidden / error - z(levels.beta) : look.above;
-  if (two) look.below = -look.above;
-  if (two && passes <= 0) return look;
-  look.from = two ? std::max(-passes, look.below) : look.below;
-  look.to = std::min(passes, look.above);
-  return look;
-}
-
 using StoppingLooks = std::vector<stats::StoppingLook>;
 
 std::optional<StoppingLooks> stopping_looks(const TestOutcome& test, std::size_t channel,
@@ -69,46 +48,21 @@ std::optional<StoppingLooks> stopping_looks(const TestOutcome& test, std::size_t
     const auto error = test.question.theta->error({test.question, channel, *data});
     const double size = error ? std::hypot(error->drawn, error->fixed) : 0;
     if (!(size > 0)) return std::nullopt;
-    looks.push_back(stopping_look(test.plan.regions[channel], size, test.share_at(k)));
+    const Regions& regions = test.plan.regions[channel];
+    const auto [alpha, beta] = test.share_at(k);
+    looks.push_back(stats::stopping_look({.claimed = regions.claimed_edge(),
+                                          .forbidden = regions.forbidden_edge(),
+                                          .two_sided = regions.two_sided()},
+                                         size, alpha, beta));
   }
   return looks;
-}
-
-/// One channel's outlook if the distance against the claim is theta.
-Outlook outlook_at(const StoppingLooks& looks, double theta,
-                   const std::vector<std::uint64_t>& sizes) {
-  Outlook outlook{.inconclusive = 1, .drawn = 0};
-  std::uint64_t before = 0;
-  const std::vector<stats::StopProbabilities> stops = stats::stop_probabilities(looks, theta);
-  for (std::size_t k = 0; k < stops.size(); ++k) {
-    outlook.drawn += outlook.inconclusive * static_cast<double>(sizes[k] - before);
-    before = sizes[k];
-    outlook.fail += stops[k].above + stops[k].below;
-    outlook.pass += stops[k].between;
-    outlook.inconclusive = std::max(0.0, 1 - outlook.fail - outlook.pass);
-  }
-  outlook.drawn /= static_cast<double>(sizes.back());
-  return outlook;
-}
-
-Outlook together(const std::vector<Outlook>& channels) {
-  Outlook all{.drawn = 0};
-  for (const Outlook& each : channels) {
-    all.fail += each.fail;
-    all.inconclusive += each.inconclusive;
-    all.drawn = std::max(all.drawn, each.drawn);
-  }
-  all.fail = std::min(1.0, all.fail);
-  all.inconclusive = std::min(1 - all.fail, all.inconclusive);
-  all.pass = 1 - all.fail - all.inconclusive;
-  return all;
 }
 
 /// Adds the outlooks, where the pilots give every channel a standard error.
 void foresee(const TestOutcome& test, const Pilots& pilots, Forecast& found) {
   if (test.plan.looks.law == stats::LookLaw::anytime_valid) return;
-  std::vector<Outlook> if_true;
-  std::optional<Outlook> if_off;
+  std::vector<stats::Outlook> if_true;
+  std::optional<stats::Outlook> if_off;
   for (std::size_t channel = 0; channel < test.question.channel_count(); ++channel) {
     const auto looks = stopping_looks(test, channel, pilots);
     if (!looks) return;
@@ -116,14 +70,14 @@ void foresee(const TestOutcome& test, const Pilots& pilots, Forecast& found) {
     const bool one_sided_proof = regions.proof() && !regions.two_sided();
     if (!one_sided_proof || regions.detect) {
       if_true.push_back(
-          outlook_at(*looks, one_sided_proof ? -*regions.detect : 0, test.plan.looks.sizes));
+          stats::outlook_at(*looks, one_sided_proof ? -*regions.detect : 0, test.plan.looks.sizes));
     }
     if (const std::optional<double> edge = regions.forbidden_edge()) {
-      const Outlook off = outlook_at(*looks, *edge, test.plan.looks.sizes);
+      const stats::Outlook off = stats::outlook_at(*looks, *edge, test.plan.looks.sizes);
       if (!if_off || off.pass > if_off->pass) if_off = off;
     }
   }
-  if (!if_true.empty()) found.if_true = together(if_true);
+  if (!if_true.empty()) found.if_true = stats::together(if_true);
   found.if_off = if_off;
 }
 
@@ -157,7 +111,7 @@ std::optional<double> detectable_of(const TestOutcome& test, const Pilots& pilot
 
 Forecast forecast(const TestOutcome& test, const Pilots& pilots) {
   if (!test.plan.error.empty() || !test.plan.pilot_error.empty()) return {};
-  if (!test.plan.invalid.empty()) return {.if_true = Outlook{}, .if_off = Outlook{}};
+  if (!test.plan.invalid.empty()) return {.if_true = stats::Outlook{}, .if_off = stats::Outlook{}};
   Forecast found{.detectable = detectable_of(test, pilots)};
   foresee(test, pilots, found);
   return found;

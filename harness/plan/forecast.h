@@ -4,16 +4,9 @@
 
 #include "harness/pilot/pilot.h"
 #include "harness/plan/outcome.h"
+#include "stats/planning/boundary.h"
 
 namespace assay::harness {
-
-/// Probabilities of the verdicts at one theta, and the mean part of the last look that is drawn.
-struct Outlook {
-  double pass = 0;
-  double fail = 0;
-  double inconclusive = 0;
-  double drawn = 1;
-};
 
 /// Expected behaviour of a frozen plan, from the pilots.
 struct Forecast {
@@ -22,13 +15,12 @@ struct Forecast {
   /// tells.
   std::optional<double> detectable = {};
   /// Theta is 0 in every channel; for `<` and `>` the claim holds by `detect`.
-  std::optional<Outlook> if_true = {};
+  std::optional<stats::Outlook> if_true = {};
   /// Theta is at the edge of the forbidden region, in the channel that passes most often.
-  std::optional<Outlook> if_off = {};
+  std::optional<stats::Outlook> if_off = {};
 };
 
 /// The outlooks follow from the joint normal law of the looks' scores. A method that bets has none.
-/// Several channels are counted as if never two of them failed together.
 Forecast forecast(const TestOutcome& test, const Pilots& pilots);
 
 /// The cost of an observation.

@@ -12,33 +12,16 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 constexpr double log_of_impossible = std::numeric_limits<double>::lowest();
 
-/// log_p_upper of "q is at most `most`"; no probability is below 0.
-double log_p_at_most(const stats::Successes& seen, double most) {
-  return most < 0 ? log_of_impossible : stats::binomial(seen, std::min(most, 1.0)).log_p_upper;
-}
-
-double log_p_at_least(const stats::Successes& seen, double least) {
-  return least > 1 ? log_of_impossible : stats::binomial(seen, std::max(least, 0.0)).log_p_lower;
-}
-
 }  // namespace
 
 Evidence from_probability(const stats::Successes& seen, double offset, double error) {
-  const auto successes = static_cast<double>(seen.successes);
-  const auto trials = static_cast<double>(seen.trials);
-  const auto at = [=](double theta) {
-    const double q = theta - offset;
-    return stats::TestResult{
-        .statistic = successes,
-        .distribution = {.family = "binomial", .parameters = {trials, std::clamp(q, 0.0, 1.0)}},
-        .log_p_lower = log_p_at_least(seen, q - error),
-        .log_p_upper = log_p_at_most(seen, q + error)};
-  };
+  const auto at = [=](double theta) { return stats::binomial_within(seen, theta - offset, error); };
   const auto interval = [=](double confidence) -> stats::Interval {
     const stats::Interval q = stats::clopper_pearson(seen, confidence);
     return {q.low + offset - error, q.high + offset + error, confidence};
   };
-  return {.estimate = successes / trials + offset, .at = at, .interval = interval};
+  const auto share = static_cast<double>(seen.successes) / static_cast<double>(seen.trials);
+  return {.estimate = share + offset, .at = at, .interval = interval};
 }
 
 Evidence absolute(const Evidence& of_theta) {

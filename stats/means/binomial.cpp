@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "stats/basics/check.h"
 #include "stats/basics/search.h"
@@ -100,6 +101,19 @@ TestResult binomial(Successes observed, double null_probability) {
   return by_tails(static_cast<double>(observed.successes),
                   {"binomial", {static_cast<double>(observed.trials), null_probability}},
                   binomial_tails(observed.successes, {observed.trials, null_probability}));
+}
+
+TestResult binomial_within(Successes observed, double q, double error) {
+  constexpr double impossible = std::numeric_limits<double>::lowest();
+  const double least = q - error;
+  const double most = q + error;
+  return {
+      .statistic = static_cast<double>(observed.successes),
+      .distribution = {.family = "binomial",
+                       .parameters = {static_cast<double>(observed.trials),
+                                      std::clamp(q, 0.0, 1.0)}},
+      .log_p_lower = least > 1 ? impossible : binomial(observed, std::max(least, 0.0)).log_p_lower,
+      .log_p_upper = most < 0 ? impossible : binomial(observed, std::min(most, 1.0)).log_p_upper};
 }
 
 Interval clopper_pearson(Successes observed, double confidence) {

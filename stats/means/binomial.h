@@ -17,6 +17,10 @@ struct Successes {
 // <= a) <= a. Throws std::domain_error: no trials, successes > trials, probability outside [0, 1].
 TestResult binomial(Successes observed, double null_probability);
 
+// Null hypothesis: q is this probability, known up to `error` and perhaps outside [0, 1]. Each tail
+// is that of the nearer end of the error.
+TestResult binomial_within(Successes seen, double q, double error);
+
 // Clopper & Pearson (1934): central interval of P(success), coverage at least `confidence`.
 Interval clopper_pearson(Successes observed, double confidence);
 

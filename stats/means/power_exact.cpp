@@ -134,6 +134,19 @@ std::optional<std::uint64_t> betting_size(const ExactMeanPlan& plan, double effe
 const ExactPlanning binomial_planning{binomial_power, binomial_size};
 const ExactPlanning betting_planning{betting_power, betting_size};
 
+std::optional<std::uint64_t> exact_sample_size(const ExactPlanning& method,
+                                               const ExactMeanPlan& claimed, double effect) {
+  const double edge = std::copysign(claimed.allow, effect);
+  ExactMeanPlan forbidden = claimed;
+  forbidden.null_mean += effect;
+  forbidden.allow = 0;
+  forbidden.rates = {.alpha = claimed.rates.beta, .beta = claimed.rates.beta, .two_sided = false};
+  const auto rejects = method.sample_size(claimed, effect);
+  if (!rejects) return std::nullopt;
+  // An end of the range that is infinite lets no number pass.
+  return std::max(*rejects, method.sample_size(forbidden, edge - effect).value_or(0));
+}
+
 std::optional<double> exact_detectable(const ExactPlanning& method, const ExactMeanPlan& plan,
                                        std::uint64_t n, int side) {
   const double room = side > 0 ? plan.range.high - plan.null_mean : plan.null_mean - plan.range.low;

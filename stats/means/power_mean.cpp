@@ -93,6 +93,13 @@ double beyond_normal(const ErrorRates& rates) {
 
 }  // namespace
 
+double planned_variance(const Moments& pilot) {
+  constexpr double elasticity = 6.5;
+  const double n = static_cast<double>(pilot.count);
+  const double spread = std::max(0.0, pilot.kurtosis() - 1) / n;
+  return pilot.variance() * std::exp(elasticity / 2 * spread);
+}
+
 double normal_sample_size(double standard_deviation, EffectPlan effect, ErrorRates rates) {
   planning::check_rates("normal_sample_size", rates);
   planning::check_effect("normal_sample_size", effect.allow, effect.detect);

@@ -243,4 +243,49 @@ double WangTsiatis::constant(double level) const {
   return at;
 }
 
+StoppingLook stopping_look(const TestedRegions& regions, double error, double alpha, double beta) {
+  const auto z = [](double level) {
+    constexpr double least = 1e-300;
+    return upper_normal_quantile(std::max(level, least));
+  };
+  const bool two = regions.two_sided;
+  StoppingLook look{.time = 1 / (error * error),
+                    .above = regions.claimed / error + z(two ? alpha / 2 : alpha)};
+  const double passes = regions.forbidden ? *regions.forbidden / error - z(beta) : look.above;
+  if (two) look.below = -look.above;
+  if (two && passes <= 0) return look;
+  look.from = two ? std::max(-passes, look.below) : look.below;
+  look.to = std::min(passes, look.above);
+  return look;
+}
+
+Outlook outlook_at(std::span<const StoppingLook> looks, double theta,
+                   std::span<const std::uint64_t> sizes) {
+  Outlook outlook{.inconclusive = 1, .drawn = 0};
+  std::uint64_t before = 0;
+  const std::vector<StopProbabilities> stops = stop_probabilities(looks, theta);
+  for (std::size_t k = 0; k < stops.size(); ++k) {
+    outlook.drawn += outlook.inconclusive * static_cast<double>(sizes[k] - before);
+    before = sizes[k];
+    outlook.fail += stops[k].above + stops[k].below;
+    outlook.pass += stops[k].between;
+    outlook.inconclusive = std::max(0.0, 1 - outlook.fail - outlook.pass);
+  }
+  outlook.drawn /= static_cast<double>(sizes.back());
+  return outlook;
+}
+
+Outlook together(std::span<const Outlook> channels) {
+  Outlook all{.drawn = 0};
+  for (const Outlook& each : channels) {
+    all.fail += each.fail;
+    all.inconclusive += each.inconclusive;
+    all.drawn = std::max(all.drawn, each.drawn);
+  }
+  all.fail = std::min(1.0, all.fail);
+  all.inconclusive = std::min(1 - all.fail, all.inconclusive);
+  all.pass = 1 - all.fail - all.inconclusive;
+  return all;
+}
+
 }  // namespace assay::stats

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -33,6 +35,31 @@ struct StopProbabilities {
 // times not positive or not ascending, bounds out of order or NaN, drift not finite.
 std::vector<StopProbabilities> stop_probabilities(std::span<const StoppingLook> looks,
                                                   double drift = 0);
+
+// The ends of a claimed and of a forbidden region of theta, by their distance from 0. A score
+// against the claim is positive; a two-sided one is so on either side.
+struct TestedRegions {
+  double claimed = 0;
+  std::optional<double> forbidden = {};
+  bool two_sided = false;
+};
+
+// The scores at which a look fails a claim at alpha, or passes it at beta. Theta's estimate has
+// this standard error, and theta is the drift.
+StoppingLook stopping_look(const TestedRegions& regions, double error, double alpha, double beta);
+
+// Probabilities of the verdicts, and the mean part of the last look that is drawn.
+struct Outlook {
+  double pass = 0;
+  double fail = 0;
+  double inconclusive = 0;
+  double drawn = 1;
+};
+// One channel's at this theta. `sizes` are those of the looks.
+Outlook outlook_at(std::span<const StoppingLook> looks, double theta,
+                   std::span<const std::uint64_t> sizes);
+// Several channels are counted as if never two of them failed together.
+Outlook together(std::span<const Outlook> channels);
 
 // Null hypothesis: drift <= 0. The test rejects where z_k >= C t_k^(delta - 1/2), times as parts of
 // the last (Wang & Tsiatis 1987). Delta 0 is O'Brien & Fleming's boundary, 1/2 Pocock's.

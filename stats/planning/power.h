@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "stats/basics/moments.h"
+
 namespace assay::stats {
 
 // Planning. The level of the test is `alpha`, its share of the family, split over both sides when
@@ -26,6 +28,11 @@ struct EffectPlan {
 // n = ((z_alpha + z_beta) sigma / (detect - allow))^2, sigma the standard deviation of one
 // observation. z_alpha is at alpha / 2 when two-sided. Every near-normal method plans by it.
 double normal_sample_size(double standard_deviation, EffectPlan effect, ErrorRates rates);
+
+// The variance for which a test is planned. The logarithm of a pilot's variance has the variance
+// s^2 = (kurtosis - 1) / n. Errors near .01 go like size^-6.5. They have the planned mean over such
+// pilots if the pilot's variance is multiplied by exp(6.5 s^2 / 2).
+double planned_variance(const Moments& pilot);
 
 // ---- A mean against a reference, or two means: Student's t and Welch's
 // Null hypothesis: |theta| <= allow (two-sided) or theta <= allow, in the unit of the values.
