@@ -42,8 +42,8 @@ extern const ExactPlanning betting_planning;
 std::optional<double> exact_detectable(const ExactPlanning& method, const ExactMeanPlan& plan,
                                        std::uint64_t n, int side);
 
-// The least n that rejects the claimed region where theta is `effect`, and the forbidden one at
-// beta where theta is at the claimed region's edge.
+// The least n that rejects the claimed region where theta is `effect`. It also rejects the
+// forbidden region at beta where theta is at the claimed region's edge.
 std::optional<std::uint64_t> exact_sample_size(const ExactPlanning& method,
                                                const ExactMeanPlan& claimed, double effect);
 
