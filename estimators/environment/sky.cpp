@@ -1,6 +1,5 @@
 // A receiver under the picture of an environment, with occluders between (sky/setting.h).
 
-#include <algorithm>
 #include <functional>
 #include <memory>
 #include <numbers>

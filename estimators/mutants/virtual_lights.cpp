@@ -1,7 +1,6 @@
 // Mutants of virtual lights: the sound parts with one replaced.
 
 #include <algorithm>
-#include <numbers>
 #include <utility>
 
 #include "estimators/mutant.h"

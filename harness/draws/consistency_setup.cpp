@@ -7,7 +7,6 @@
 #include <limits>
 #include <span>
 #include <utility>
-#include <vector>
 
 #include "estimators/core/flush_denormals.h"
 #include "harness/draws/sound_draw.h"

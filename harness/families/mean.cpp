@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 
 #include "harness/families/families.h"
@@ -16,7 +15,6 @@
 #include "reports/words/number.h"
 #include "stats/basics/moments.h"
 #include "stats/gates/assumption_gates.h"
-#include "stats/means/binomial.h"
 #include "stats/means/power_exact.h"
 #include "stats/means/skewness_corrected_t.h"
 #include "stats/means/theta_of_means.h"
