@@ -83,7 +83,7 @@ TEST_F(Pictures, AreOneObservationEachInTheOrderOfTheirNames) {
   write_texel("b.exr", {"Y"}, {2});
   write_texel("a.exr", {"Y"}, {1});
   write_texel("c.exr", {"Y"}, {std::nanf("")});
-  const draws::Prepared pictures = prepare("{file: *.exr}");
+  const draws::Prepared pictures = prepare("{file: '*.exr'}");
   EXPECT_EQ(pictures.setup->observations(), 3u);
   EXPECT_FALSE(pictures.setup->image()->independent);
   EXPECT_EQ(pictures.channel().name, "x0y0");
@@ -100,26 +100,26 @@ TEST_F(Pictures, ThatAreCopiesAreRefusedByName) {
   write_texel("a.exr", {"R", "G", "B"}, {1, 2, 3});
   write_texel("b.exr", {"R", "G", "B"}, {1, 2, 4});
   write_texel("c.exr", {"R", "G", "B"}, {1, 2, 3});
-  const draws::Prepared pictures = prepare("{file: *.exr}");
+  const draws::Prepared pictures = prepare("{file: '*.exr'}");
   draws::observe(pictures, 2);
   draws::observe(pictures, 2);
   EXPECT_THAT(thrown<InputError>([&] { draws::observe(pictures, 3); }),
               StartsWith("`" + file("c.exr") + "` is the same picture as `" + file("a.exr") + "`"));
   // Pictures of one value throughout may be equal.
   for (const char* name : {"a.exr", "c.exr"}) write_texel(name, {"R", "G", "B"}, {0, 0, 0});
-  EXPECT_EQ(draws::observe(prepare("{file: *.exr}"), 3)[0].values.size(), 3u);
+  EXPECT_EQ(draws::observe(prepare("{file: '*.exr'}"), 3)[0].values.size(), 3u);
 }
 
 TEST_F(Pictures, OfUnequalSizesAreRefusedByName) {
   draws::write_scan_lines(file("a.exr"), {.width = 4, .channels = {"Y"}});
   draws::write_scan_lines(file("b.exr"), {.width = 5, .channels = {"Y"}});
-  EXPECT_THAT(refusal("{file: *.exr}"),
+  EXPECT_THAT(refusal("{file: '*.exr'}"),
               HasSubstr("is `" + file("b.exr") + "`: it has 5 x 3 pixels, but `" + file("a.exr") +
                         "` has 4 x 3: render all files at one size"));
   draws::write_scan_lines(file("b.exr"), {.width = 4, .channels = {"Y"}, .left = 1});
-  EXPECT_THAT(refusal("{file: *.exr}"), HasSubstr("data window lies elsewhere"));
+  EXPECT_THAT(refusal("{file: '*.exr'}"), HasSubstr("data window lies elsewhere"));
   draws::write_scan_lines(file("b.exr"), {.width = 4, .channels = {"Z"}});
-  EXPECT_THAT(refusal("{file: *.exr}"), HasSubstr("there is no channel `Y`"));
+  EXPECT_THAT(refusal("{file: '*.exr'}"), HasSubstr("there is no channel `Y`"));
 }
 
 TEST_F(Pictures, WithTheirVarianceAreReferences) {
