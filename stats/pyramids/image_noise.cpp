@@ -119,7 +119,7 @@ double PooledNoise::rare(int octave) const {
 
 double PooledNoise::hidden_squares(double replicates) const {
   const Moments all = cut_off(top_);
-  if (!(all.third > 0)) return 0;
+  if (all.third == 0) return 0;
   const double size = all.third / all.second;
   const double probability = all.second / square(size);
   return elements_ * square(size * probability * std::exp(-replicates * probability));
@@ -208,7 +208,8 @@ double NoisePyramid::growth(const std::array<PooledNoise::Moments, sides_of_pair
                             double toward) const {
   const auto& [a, b] = here;
   const double third = toward * (a.third * square(inverse(0)) - b.third * square(inverse(1)));
-  const double second = toward > 0 ? a.second * inverse(0) : b.second * inverse(1);
+  const std::size_t side = lacking(toward);
+  const double second = here[side].second * inverse(side);
   return second > 0 ? third / second : 0;
 }
 
@@ -223,7 +224,7 @@ std::optional<double> NoisePyramid::growth_of_blocks(const CellNoise& cell, doub
   for (const auto& [a, b] : near.blocks) {
     double beyond = 0;
     for (int octave = near.last; octave >= near.first; --octave) {
-      beyond += (toward > 0 ? a : b)->rare(octave);
+      beyond += (lacking(toward) == 0 ? a : b)->rare(octave);
       largest = std::max(largest, growth({a->cut_off(octave), b->cut_off(octave)}, toward));
       if (beyond < fewest) continue;
       largest =

@@ -162,6 +162,8 @@ class NoisePyramid {
   };
   Around around(const Rectangle& window, std::size_t channel) const;
   double inverse(std::size_t side) const;  // 1 / replicates_, 0 of a reference.
+  // The side that may have missed values: the darker, or the one beside a reference.
+  std::size_t lacking(double toward) const { return toward > 0 || replicates_[1] == 0 ? 0 : 1; }
   bool of_one_law(const Around& near, double toward) const;
   double growth(const std::array<PooledNoise::Moments, sides_of_pair>& here, double toward) const;
   // ln p of an effect that values could explain which the cell never showed, as large as the noise

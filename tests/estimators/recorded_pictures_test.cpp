@@ -183,7 +183,7 @@ TEST_F(Pictures, AreRefusedWhereTheyMakeNoSense) {
          "the variance is negative at pixel x 0, y 0 of Y"},
         {"a.exr, channels: Y, samples: 1, second_moment: m2_*", "`samples` must be 2 or more"},
         {"a.exr, channels: Y, samples: 4, variance: V.*", "there is no channel `V.Y`"},
-        {"*.exr, channels: Y, exact: true", "names 2 files"},
+        {"'*.exr', channels: Y, exact: true", "names 2 files"},
         {"b.exr, exact: true", "not finite at pixel x 0, y 0"},
         {"a.exr, channels: Y, exact: true, variance: Variance.*, samples: 4",
          "exact or has an error"},

@@ -120,6 +120,13 @@ TEST(NoisePyramid, HasTheVarianceOfEqualMeans) {
   // A giant tells no laws apart. A reference is of another law than the pictures.
   EXPECT_NEAR(t(pyramid_of({with_rare(1, 1e5), clean})), alone, 1e-9);
   EXPECT_NEAR(t(pyramid_of({with_rare(1, 1e5), {}}, {16, 0})), t_of(1e5), 1e-8);
+  // Differences of pairs count alike in both directions.
+  std::vector<double> opposite = rare;
+  for (double& x : opposite) x = -x;
+  CellNoise bright = dark;
+  bright.effect = 3;
+  EXPECT_NEAR(pyramid_of({opposite, {}}, {16, 0}).kept(bright, pixel, 0).t(),
+              -t(pyramid_of({rare, {}}, {16, 0})), 1e-9);
   // A cell beside noise of 10 is no clearer than unseen values of that size allow.
   CellNoise quiet = dark;
   quiet.weights = std::sqrt(8.0) / 10;
@@ -128,7 +135,6 @@ TEST(NoisePyramid, HasTheVarianceOfEqualMeans) {
               log_p_constant({0, -10, 10, 16}, {3, std::sqrt(5.0 / 16)}), 1e-9);
   // The brighter side misses the same. A brighter cell misses no bright values.
   EXPECT_NEAR(t(pyramid_of({rare, rare})), alone, 1e-9);
-  const CellNoise bright{.effect = 3, .variance = {.0625, .0625}, .concentration = 1};
   EXPECT_NEAR(pyramid_of({rare, clean}).kept(bright, pixel, 0).t(), -alone, 1e-9);
 }
 
@@ -141,18 +147,19 @@ TEST(NoisePyramid, TakesACellsOwnThirdCumulant) {
   EXPECT_NEAR(none.kept(one, whole, 0).t(), -4, 1e-12);
 }
 
-// Values of 0 and 10 at probability .05: an element lacks .5 if 16 replicates missed all.
+// Values of 0 and 10 at probability .05: an element lacks .5 if 16 replicates missed all. Values of
+// 0 and -10 hide as much.
 TEST(NoisePyramid, HidesWhatAnElementMissed) {
-  std::vector<double> values(1000, -0.5);
-  for (std::size_t i = 0; i < 50; ++i) values[i] = 9.5;
-  PooledNoise noise = pooled(values);
-  for (int i = 0; i < 10; ++i) noise.add_element(false);
   const double size = 10 * (1 - 2 * 0.05);
   const double probability = 0.05 * 0.95 * 100 / (size * size);
-  EXPECT_NEAR(noise.hidden_squares(16),
-              10 * std::pow(size * probability * std::exp(-16 * probability), 2), 1e-5);
-  for (double& x : values) x = -x;
-  EXPECT_EQ(pooled(values).hidden_squares(16), 0);
+  for (const double sign : {1, -1}) {
+    std::vector<double> values(1000, -0.5 * sign);
+    for (std::size_t i = 0; i < 50; ++i) values[i] = 9.5 * sign;
+    PooledNoise noise = pooled(values);
+    for (int i = 0; i < 10; ++i) noise.add_element(false);
+    EXPECT_NEAR(noise.hidden_squares(16),
+                10 * std::pow(size * probability * std::exp(-16 * probability), 2), 1e-5);
+  }
 }
 
 }  // namespace
