@@ -544,7 +544,7 @@ class MeanTheta : public Theta {
     constexpr std::uint64_t many = 16 * floor_of_evidence;
     const TestOutcome& outcome = test.outcome;
     const Question& question = outcome.question;
-    if (outcome.plan.method.is.exact || outcome.verdict != reports::Verdict::fail) return "";
+    if (outcome.verdict != reports::Verdict::fail) return "";
     const reports::Effect& effect = outcome.channels[0].effect;
     const bool below = effect.estimate.value_or(0) < 0;
     for (std::size_t side = 0; side < question.compared(); ++side) {

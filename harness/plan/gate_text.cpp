@@ -122,33 +122,38 @@ Reason what_would_help(const TestOutcome& outcome) {
     factor = std::max(factor, gate.wanted_factor());
   }
   if (says_it_all) return {};
-  const bool rows = has_rows(outcome.question);
+  const Question& question = outcome.question;
+  const bool rows = has_rows(question);
   // An average has another variance than what it averages.
-  const bool averages = rows && !outcome.question.is().of_spread;
+  const bool averages = rows && !question.is().of_spread;
   // If the tail's moment does not exist, more observations only make the gate redder.
-  if (heavy || (rows && factor > most_wanted)) {
+  if (heavy || factor > most_wanted) {
+    std::vector<std::string> ways;
+    if (averages)
+      ways.push_back(fmt::format("give {} that each average many", rows_noun(question)));
+    if (!rows)
+      ways.insert(ways.end(), {"clamp the estimator or take another", "declare its range"});
+    if (!question.subjects[0].image) {
+      ways.push_back(fmt::format("claim a quantile, as `quantile({}, 0.5) == …`",
+                                 to_string(question.test->claim.left.source)));
+    }
     return Reason::advising(
         "; the values are heavy-tailed, and more observations may only show more of the tail: ",
-        fmt::format("{}claim a quantile, as `quantile({}, 0.5) == …`",
-                    averages ? "give " + std::string(rows_noun(outcome.question)) +
-                                   " that each average many, or "
-                    : rows ? ""
-                           : "clamp the estimator or take another, declare its range, or ",
-                    to_string(outcome.question.test->claim.left.source)));
+        fmt::format("{}", fmt::join(ways, ", or ")));
   }
   const bool known = factor > 1;
   factor = std::min(factor, most_wanted);
   if (rows) {
-    const auto methods = methods_for(outcome.question);
+    const auto methods = methods_for(question);
     const auto exact = std::ranges::find_if(
         methods, [](const Method& method) { return method.is.of_normal_values; });
-    const std::string noun = rows_noun(outcome.question);
+    const std::string noun = rows_noun(question);
     std::string instead;
     if (averages) {
       instead = fmt::format(", or {} that each average several", noun);
     } else if (exact != methods.end()) {
       instead = fmt::format(", or, of near normal values, {}",
-                            written_key(*outcome.question.test, "test", exact->name));
+                            written_key(*question.test, "test", exact->name));
     }
     return Reason::advising(
         ": ", fmt::format("give {} {}{}", known ? "about " + sizes_text(outcome, factor) : "more",

@@ -63,7 +63,10 @@ BatchRatio batch_ratio(const char* caller, std::span<const double> values, std::
   const double within = all.m2 - b * means.m2;
   const FDegrees degrees{.numerator = static_cast<double>(means.count - 1),
                          .denominator = static_cast<double>(used - means.count)};
-  if (all.m2 == 0) throw ZeroVariance(std::string(caller) + ": zero variance");
+  const bool varies = std::ranges::any_of(values, [&](double x) { return x != values[0]; });
+  if (!varies) throw ZeroVariance(std::string(caller) + ": zero variance");
+  // Batches without any spread, beside values after the last one, tell nothing.
+  if (all.m2 == 0) return {.value = 1, .degrees = degrees};
   // Batches that are constant within themselves leave nothing to divide by. They are as dependent
   // as can be.
   const double ratio = within > 0 ? b * means.variance() / (within / degrees.denominator)

@@ -339,12 +339,8 @@ std::vector<Reference> distances_of_means(const ChannelMeans& a, const ChannelMe
 }
 
 TestResult theta_test(const ThetaOfImages& theta, double margin) {
-  if (!theta.exact()) return test_of_squares(theta, margin);
-  const double known = theta.estimate();
-  return {.statistic = known - margin,
-          .distribution = {"exact", {}},
-          .log_p_lower = known < margin ? never : 0,
-          .log_p_upper = known > margin ? never : 0};
+  return theta.exact() ? without_error(theta.estimate() - margin, "exact")
+                       : test_of_squares(theta, margin);
 }
 
 Interval theta_interval(const ThetaOfImages& theta, double confidence) {

@@ -9,9 +9,12 @@
 #include "stats/means/binomial.h"
 #include "stats/means/skewness_corrected_t.h"
 #include "stats/means/uncertain_reference.h"
+#include "stats/tails/tails.h"
 
 namespace assay::stats {
 namespace {
+
+constexpr double unbounded = std::numeric_limits<double>::infinity();
 
 // An exact test of "E x = value" where the value is known up to an error.
 TestResult over_reference(const Reference& null, const std::function<TestResult(double)>& at) {
@@ -55,7 +58,7 @@ double step_of(const MeanSample& sample, double factor) {
 // Natural logarithm of the p-value of "E y = 0"; a constant y shows its sign.
 double log_p_of_no_sign(const MeanSample& y, const MeanTest& test) {
   if (y.moments.m2 == 0) {
-    return y.moments.mean == 0 ? 0 : -std::numeric_limits<double>::infinity();
+    return y.moments.mean == 0 ? 0 : -unbounded;
   }
   return log_p_two_sided(test.of_one(y, {.value = 0}));
 }
@@ -108,7 +111,10 @@ TestResult ThetaOfMeans::at(double theta) const {
   }
   if (!relative) return test.of_two(x, *y, {.scale = factor, .offset = offset + theta});
   const double sign = std::copysign(1, factor * y->moments.mean);
-  TestResult result = test.of_two(x, *y, {.scale = factor * (1 + sign * theta), .offset = offset});
+  const double scale = factor * (1 + sign * theta);
+  // A constant x is held against the offset alone.
+  if (scale == 0 && x.moments.m2 == 0) return without_error(x.moments.mean - offset, "exact");
+  TestResult result = test.of_two(x, *y, {.scale = scale, .offset = offset});
   if (theta == 0) return result;
   const double log_p_sign = log_p_of_no_sign(*y, test);
   result.log_p_lower = std::max(result.log_p_lower, log_p_sign);
@@ -118,6 +124,7 @@ TestResult ThetaOfMeans::at(double theta) const {
 
 Interval ThetaOfMeans::interval(double confidence) const {
   const auto [factor, offset] = contrast;
+  if (unit() == 0) return {-unbounded, unbounded, confidence};
   // Theta also scales the reference's error, and the offset is no part of a ratio.
   const bool inverted = relative && (y ? offset != 0 : reference.standard_error > 0);
   if (inverted || !test.closed_interval) {

@@ -194,6 +194,11 @@ constexpr double most_central_square = 4;
 
 }  // namespace
 
+TestResult without_error(double difference, const char* law) {
+  constexpr double impossible = std::numeric_limits<double>::lowest();
+  return {difference, {law, {}}, difference < 0 ? impossible : 0, difference > 0 ? impossible : 0};
+}
+
 double log_p_two_sided(LogTails tails) {
   return std::min(0.0, std::numbers::ln2 + std::min(tails.lower, tails.upper));
 }

@@ -24,6 +24,10 @@ inline TestResult by_tails(double statistic, Distribution law, LogTails tails) {
   return {statistic, std::move(law), tails.lower, tails.upper};
 }
 
+// The result of a difference that is known without error: nothing speaks against 0, and any other is
+// certain.
+TestResult without_error(double difference, const char* law);
+
 enum class Tail { lower, upper };
 
 // A tail given by its log probability. The quantile q of {lower, ln a} has P(X <= q) = a. That of

@@ -9,6 +9,7 @@
 
 #include "stats/basics/check.h"
 #include "stats/means/skewness_corrected_t.h"
+#include "stats/tails/tails.h"
 
 namespace assay::stats {
 namespace {
@@ -103,15 +104,18 @@ double per_mean_square(const JointMoments& sample) {
   return static_cast<double>(sample.count) / sample.sum(2, 0);
 }
 
-// The second order of the variance of s2 / sigma^2 is 2 / n^2.
-constexpr double second_order = 2;
+// Adds what the error of the mean adds: to the variance of s2 / sigma^2 its second order, 2 / n^2.
+// The sum of squares Q of psi moves by -4 S d with the mean, S the sum of psi d over that of d^2.
+void add_error_of_mean(const JointMoments& sample, const Coefficients& of, Moments& psi) {
+  constexpr double second_order = 2;
+  psi.m2 += second_order;
+  if (psi.m4 == 0) return;
+  const double products = of.square * sample.sum(3, 0) + of.cost * sample.sum(1, 1);
+  psi.m4 += 16 * products * products / sample.sum(2, 0);
+}
 
-// An exact comparison: no evidence against equal numbers, certainty against others.
 TestResult deterministic(double log_ratio) {
-  constexpr double impossible = std::numeric_limits<double>::lowest();
-  const double difference = std::abs(log_ratio) <= influence_rounding ? 0 : log_ratio;
-  return {
-      difference, {"bound", {}}, difference < 0 ? impossible : 0, difference > 0 ? impossible : 0};
+  return without_error(std::abs(log_ratio) <= influence_rounding ? 0 : log_ratio, "bound");
 }
 
 // e to the distance from the estimate; beyond e^300 nothing changes.
@@ -139,19 +143,19 @@ Influence influence_of_mean(const Moments& positive) {
 
 Influence influence_of_variance(const JointMoments& sample) {
   check_sample("influence_of_variance", sample);
-  Influence influence{.log_value = log_variance_of(sample),
-                      .relative = about_one(sample, {.square = per_mean_square(sample)})};
-  influence.relative.m2 += second_order;
+  const Coefficients of{.square = per_mean_square(sample)};
+  Influence influence{.log_value = log_variance_of(sample), .relative = about_one(sample, of)};
+  add_error_of_mean(sample, of, influence.relative);
   return influence;
 }
 
 Influence influence_of_variance_and_cost(const JointMoments& sample) {
   check_sample("influence_of_variance_and_cost", sample);
   check::positive({"influence_of_variance_and_cost", "mean cost"}, sample.of_cost.mean);
+  const Coefficients of{.square = per_mean_square(sample), .cost = 1 / sample.of_cost.mean};
   Influence influence{.log_value = log_variance_of(sample) + std::log(sample.of_cost.mean),
-                      .relative = about_one(sample, {.square = per_mean_square(sample),
-                                                     .cost = 1 / sample.of_cost.mean})};
-  influence.relative.m2 += second_order;
+                      .relative = about_one(sample, of)};
+  add_error_of_mean(sample, of, influence.relative);
   return influence;
 }
 

@@ -22,9 +22,12 @@ struct Influence {
 Influence influence_of_mean(const Moments& positive);
 
 // s2: psi = n / (n - 1) d^2 with d = x - mean. The sum of squares of psi includes 2 s^4, the second
-// order of Var s2. With it Var s2 of normal values is right to order 1 / n^2. Where the sums are
-// known to weight 4 only, the skewness of psi counts as 0, and influence_t is the plain t. These
-// three throw std::domain_error (count < 4, powers that are not finite), ZeroVariance.
+// order of Var s2. With it Var s2 of normal values is right to order 1 / n^2. The sum of fourth
+// powers, which is the error of that of the squares, includes 16 (sum psi d)^2 / sum d^2. So much
+// the error of the mean moves the squares. It is large where psi hardly varies, as of two values
+// that are nearly as frequent. Where the sums are known to weight 4 only, the skewness of psi
+// counts as 0, and influence_t is the plain t. These three throw std::domain_error (count < 4,
+// powers that are not finite), ZeroVariance.
 Influence influence_of_variance(const JointMoments& sample);
 // s2 times the mean cost c. The inverse is the efficiency.
 //   psi = c (d^2 - s2) + s2 (cost - c) + s2 c.
