@@ -42,22 +42,19 @@ std::string bracket(const Effect& effect) {
   return text.empty() ? text : fmt::format(" ({})", text);
 }
 
-/// "mean(area) is 1.07 % above analytic (+0.06 % to +2.1 %)".
+/// "mean(area) is 1.07 % above analytic".
 std::string found(const Test& test, const Effect& effect) {
   const double theta = *effect.estimate;
   const auto [left, relation, right] = sides_of(test.claim);
   const bool signed_effect =
       is_ratio(effect) || effect.quantity.find("difference") != std::string::npos;
-  const std::string text = theta_text(theta, effect);
-  const auto is = [&](const std::string& what) { return what + bracket(effect); };
   if (right.empty() || !signed_effect || test.image || relation == "within" ||
       !std::isfinite(theta))
-    return is(fmt::format("{} is {}", effect_name(effect), text));
-  if (theta == 0) return is(fmt::format("{} equals {}", left, right));
-  if (is_factor(effect))
-    return is(fmt::format("{} is {} times {}", left, factor_text(theta), right));
-  return is(fmt::format("{} is {} {} {}", left, size_text(theta, effect),
-                        theta > 0 ? "above" : "below", right));
+    return fmt::format("{} is {}", effect_name(effect), theta_text(theta, effect));
+  if (theta == 0) return fmt::format("{} equals {}", left, right);
+  if (is_factor(effect)) return fmt::format("{} is {} times {}", left, factor_text(theta), right);
+  return fmt::format("{} is {} {} {}", left, size_text(theta, effect),
+                     theta > 0 ? "above" : "below", right);
 }
 
 std::string found_in_image(const Image& image) {
@@ -79,9 +76,7 @@ std::string found_in_image(const Image& image) {
                        winner.others.empty() ? "" : "; there " + winner.others);
   }
   if (winner.statistic == "alternating") return "the whole image differs with alternating signs";
-  if (winner.statistic != "window") {
-    return fmt::format("{}: {}", winner.place, winner.statistic);
-  }
+  if (winner.statistic != "window") return fmt::format("{}: {}", winner.place, winner.statistic);
   return fmt::format("{} is too {}", winner.place, winner.z.value_or(0) > 0 ? "bright" : "dark");
 }
 
@@ -109,7 +104,7 @@ std::string sentence_of(const Test& test, const Effect& effect, const std::strin
   if (test.verdict == Verdict::skipped) return "It was not run.";
   if (!is_evidence(test)) return without_advice(headline(test), test);
   std::string text = is_told_by_place(test) ? found_in_image(*test.image) : std::string();
-  if (text.empty() && effect.estimate) text = found(test, effect);
+  if (text.empty() && effect.estimate) text = found(test, effect) + bracket(effect);
   if (text.empty()) return headline(test);
   if (test.channels.size() > 1) text += " in channel " + deciding_channel(test).name;
   // A fail was noticed, whatever its size.
@@ -156,35 +151,6 @@ std::string subject_of(const Test& test) {
     return std::ranges::count(words, sample.estimator) == 0;
   });
   return subject == test.samples.end() ? "" : subject->estimator;
-}
-
-void add_suspects(const Suite& suite, Standing how, std::vector<Suspect>& all) {
-  std::map<std::string, int> claims;
-  std::vector<Suspect> found;
-  for (const Test& test : suite.tests) {
-    std::set<std::string> estimators;
-    for (const Sample& sample : test.samples) estimators.insert(sample.estimator);
-    for (const std::string& name : estimators) ++claims[name];
-    if (standing(test) != how) continue;
-    const std::string subject = subject_of(test);
-    auto suspect = std::ranges::find(found, subject, &Suspect::name);
-    if (suspect == found.end())
-      suspect = found.insert(suspect,
-                             {suite.name, subject.empty() ? test.name : subject, to_string(how)});
-    suspect->tests.push_back(test.id);
-  }
-  // A tie goes to the estimator whose claims are broken most often.
-  std::ranges::sort(found, {}, [&](const Suspect& suspect) {
-    return std::tuple(claims[suspect.name] == 0, -std::ssize(suspect.tests), claims[suspect.name],
-                      suspect.name);
-  });
-  for (Suspect& suspect : found) {
-    if (const int of = claims[suspect.name]; of > 0)
-      suspect.sentence =
-          fmt::format("{} {}", of_claims(static_cast<int>(suspect.tests.size()), of, "of its"),
-                      how == Standing::broken ? "broken" : "without a verdict");
-    all.push_back(std::move(suspect));
-  }
 }
 
 }  // namespace
@@ -329,8 +295,34 @@ SuiteDisplay display(const Suite& suite) {
 }
 
 std::vector<Suspect> suspects(const Suite& suite) {
+  std::map<std::string, int> claims;
   std::vector<Suspect> all;
-  for (const Standing how : {Standing::broken, Standing::no_verdict}) add_suspects(suite, how, all);
+  for (const Test& test : suite.tests) {
+    std::set<std::string> estimators;
+    for (const Sample& sample : test.samples) estimators.insert(sample.estimator);
+    for (const std::string& name : estimators) ++claims[name];
+    if (!is_failed(standing(test))) continue;
+    const std::string subject = subject_of(test), how = to_string(standing(test));
+    auto suspect = std::ranges::find_if(
+        all, [&](const Suspect& each) { return each.name == subject && each.standing == how; });
+    if (suspect == all.end())
+      suspect = all.insert(suspect, {suite.name, subject.empty() ? test.name : subject, how});
+    suspect->tests.push_back(test.id);
+  }
+  const auto is_broken = [](const Suspect& suspect) {
+    return suspect.standing == to_string(Standing::broken);
+  };
+  // A tie goes to the estimator whose claims are broken most often.
+  std::ranges::sort(all, {}, [&](const Suspect& suspect) {
+    return std::tuple(!is_broken(suspect), claims[suspect.name] == 0, -std::ssize(suspect.tests),
+                      claims[suspect.name], suspect.name);
+  });
+  for (Suspect& suspect : all) {
+    if (const int of = claims[suspect.name]; of > 0)
+      suspect.sentence =
+          fmt::format("{} {}", of_claims(static_cast<int>(suspect.tests.size()), of, "of its"),
+                      is_broken(suspect) ? "broken" : "without a verdict");
+  }
   return all;
 }
 
