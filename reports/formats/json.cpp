@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <concepts>
-#include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <ranges>
@@ -262,24 +261,6 @@ class Reader {
   bool is_old_ = false;
 };
 
-// Refuses a key that stands twice in an object: a parser would silently take the last.
-class RepeatedKeys {
- public:
-  bool operator()(int, Json::parse_event_t event, Json& value) {
-    if (event == Json::parse_event_t::object_start) open_.emplace_back();
-    if (event == Json::parse_event_t::object_end) open_.pop_back();
-    if (event == Json::parse_event_t::key) {
-      const auto key = value.get<std::string>();
-      if (!open_.back().insert(key).second)
-        throw ReadError(fmt::format("the key \"{}\" stands twice in one object", key));
-    }
-    return true;
-  }
-
- private:
-  std::vector<std::set<std::string>> open_;
-};
-
 std::string place_in(std::string_view text, std::size_t byte) {
   const std::string_view before = text.substr(0, byte > 0 ? byte - 1 : 0);
   const auto line = std::count(before.begin(), before.end(), '\n') + 1;
@@ -289,9 +270,18 @@ std::string place_in(std::string_view text, std::size_t byte) {
 }
 
 Json parse(std::string_view text) {
-  RepeatedKeys repeated;
+  std::vector<std::set<std::string>> open;  // keys of the objects around a place
+  // A parser would silently take the last of two equal keys.
+  const auto refuse_repeated = [&](int, Json::parse_event_t event, const Json& value) {
+    if (event == Json::parse_event_t::object_start) open.emplace_back();
+    if (event == Json::parse_event_t::object_end) open.pop_back();
+    if (event == Json::parse_event_t::key && !open.back().insert(value.get<std::string>()).second)
+      throw ReadError(
+          fmt::format("the key \"{}\" stands twice in one object", value.get<std::string>()));
+    return true;
+  };
   try {
-    return Json::parse(text.begin(), text.end(), std::ref(repeated));
+    return Json::parse(text.begin(), text.end(), refuse_repeated);
   } catch (const Json::parse_error& error) {
     if (error.byte >= text.size()) throw ReadError("not a whole JSON text: it ends too early");
     throw ReadError(fmt::format("not JSON: syntax error at {}", place_in(text, error.byte)));
