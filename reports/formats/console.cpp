@@ -42,23 +42,6 @@ const char* colour_of(Standing standing) {
   return colours[static_cast<int>(standing)];
 }
 
-/// One test as text, clean and without line feeds; no-break spaces keep numbers whole.
-struct TestRow {
-  std::string name;
-  std::string number;
-  std::string cost;
-};
-
-/// The numbers are those of the page.
-TestRow row_of(const Test& test) {
-  const TestDisplay words = display(test);
-  std::string number = words.effect.empty() ? words.verdict : words.effect;
-  if (!words.interval.empty()) number += fmt::format(" ({})", words.interval);
-  if (is_evidence(test) && test.channels.size() > 1) number += " of " + deciding_channel(test).name;
-  return {
-      .name = one_line(test.name), .number = one_line(number), .cost = one_line(cost_text(test))};
-}
-
 class Screen {
  public:
   explicit Screen(ConsoleOptions options) : options_(std::move(options)) {
@@ -308,10 +291,18 @@ class Screen {
 
   /// A line a test. In full the names are whole, and claims that need a look have all their facts.
   void rows(const Suite& suite) {
-    std::vector<TestRow> all;
+    struct Row {
+      std::string name, number, cost;  // no-break spaces keep numbers whole
+    };
+    std::vector<Row> all;
     int name = 0, number = 0, cost = 0;
     for (const Test& test : suite.tests) {
-      all.push_back(row_of(test));
+      const TestDisplay words = display(test);  // the numbers of the page
+      std::string text = words.effect.empty() ? words.verdict : words.effect;
+      if (!words.interval.empty()) text += fmt::format(" ({})", words.interval);
+      if (is_evidence(test) && test.channels.size() > 1)
+        text += " of " + deciding_channel(test).name;
+      all.push_back({one_line(test.name), one_line(text), one_line(cost_text(test))});
       name = std::max(name, columns(all.back().name));
       number = std::max(number, columns(all.back().number));
       cost = std::max(cost, columns(all.back().cost));

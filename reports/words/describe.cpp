@@ -15,15 +15,13 @@
 namespace assay::reports {
 namespace {
 
-// The logarithm orders p-values that underflowed too.
-double order(const Channel& channel) {
-  return channel.log10_p_pass ? *channel.log10_p_pass : std::log10(channel.p_pass.value_or(0));
-}
-
 const Channel* least_excluded(const Test& test) {
   const auto has_p = [](const Channel& each) { return each.p_pass || each.log10_p_pass; };
   if (test.channels.empty() || !std::ranges::all_of(test.channels, has_p)) return nullptr;
-  return &*std::ranges::max_element(test.channels, {}, order);
+  // The logarithm orders p-values that underflowed too.
+  return &*std::ranges::max_element(test.channels, {}, [](const Channel& each) {
+    return each.log10_p_pass ? *each.log10_p_pass : std::log10(each.p_pass.value_or(0));
+  });
 }
 
 NamedP p_of_claim(const Test& test) {

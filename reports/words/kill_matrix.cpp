@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/algorithm/string/join.hpp>
 #include <limits>
 #include <map>
 #include <set>
@@ -85,18 +84,6 @@ Result result_of(const Test& test, std::uint64_t count) {
       fmt::format("survives {}: an effect of {} or more would have been found", samples, least));
 }
 
-std::string rows_killed(const KillMatrix& matrix) {
-  std::vector<std::string> rows;
-  for (std::size_t m = 0; m < matrix.methods.size(); ++m) {
-    const auto tested = [m](const KillRow& row) { return row.cells[m].has_value(); };
-    const auto killed = [m](const KillRow& row) { return row.cells[m] && row.cells[m]->killed; };
-    rows.push_back(fmt::format(" {} {} of {}", matrix.methods[m],
-                               std::ranges::count_if(matrix.rows, killed),
-                               std::ranges::count_if(matrix.rows, tested)));
-  }
-  return boost::join(rows, ",");
-}
-
 }  // namespace
 
 KillMatrix kill_matrix(const Suite& suite) {
@@ -128,8 +115,16 @@ KillMatrix kill_matrix(const Suite& suite) {
     }
     matrix.rows.push_back(std::move(row));
   }
+  std::vector<std::string> by_method;
+  for (std::size_t m = 0; m < matrix.methods.size(); ++m) {
+    const auto is_tested = [m](const KillRow& row) { return row.cells[m].has_value(); };
+    const auto is_killed = [m](const KillRow& row) { return row.cells[m] && row.cells[m]->killed; };
+    by_method.push_back(fmt::format(" {} {} of {}", matrix.methods[m],
+                                    std::ranges::count_if(matrix.rows, is_killed),
+                                    std::ranges::count_if(matrix.rows, is_tested)));
+  }
   matrix.totals = fmt::format("{} of {} mutants are killed. Rows that each method kills:{}.",
-                              killed.size(), tested.size(), rows_killed(matrix));
+                              killed.size(), tested.size(), fmt::join(by_method, ","));
   return matrix;
 }
 
