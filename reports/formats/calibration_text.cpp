@@ -13,38 +13,33 @@ namespace {
 
 std::string rate_text(const Rate& rate) { return fmt::format("{:.3g}", rate.value()); }
 
-/// One of a cell's claims: a line of the table.
-struct ClaimLine {
-  const char* claim;
-  const VerdictRates* rates;
-  const Rate* mistaken;  ///< null if no verdict on this claim errs against alpha
-};
-
-std::vector<ClaimLine> lines_of(const CalibrationCell& cell) {
-  std::vector<ClaimLine> lines;
-  for (const ClaimLine& line :
-       {ClaimLine{"holds", &cell.holds, cell.proof ? nullptr : &cell.mistaken()},
-        ClaimLine{"off", &cell.off, cell.proof ? &cell.mistaken() : nullptr},
-        ClaimLine{"alone", &cell.alone, &cell.alone_mistaken()}}) {
-    if (line.rates->runs() > 0) lines.push_back(line);
-  }
-  return lines;
-}
-
 /// A line of the table, which stands below its law.
 template <class... Cells>
 std::string row(const Cells&... cells) {
   return fmt::format("{:>7} {:>6} {:>6} {:>6} {:>7} {:>7} {:>5} {:>7} {:>20}\n", cells...);
 }
 
-std::string row_of(const ClaimLine& line) {
-  const VerdictRates& rates = *line.rates;
-  return row(line.claim, rate_text(rates.pass), rate_text(rates.fail),
-             rate_text(rates.inconclusive), rate_text(rates.invalid),
-             line.mistaken == nullptr ? "" : fmt::format("{:.2g}", line.mistaken->low),
-             rates.red.count == 0 ? "" : fmt::format("{:.2g}", rates.red.value()),
-             count_text(static_cast<std::uint64_t>(rates.observations + 0.5)),
-             rates.by.empty() ? "" : rates.by.front().method);
+/// A line for each of a cell's claims.
+std::string rows_of(const CalibrationCell& cell) {
+  struct Claim {
+    const char* name;
+    const VerdictRates& rates;
+    const Rate* mistaken;  // null if no verdict on this claim errs against alpha
+  };
+  std::string text;
+  for (const auto& [name, rates, mistaken] :
+       {Claim{"holds", cell.holds, cell.proof ? nullptr : &cell.mistaken()},
+        Claim{"off", cell.off, cell.proof ? &cell.mistaken() : nullptr},
+        Claim{"alone", cell.alone, &cell.alone_mistaken()}}) {
+    if (rates.runs() == 0) continue;
+    text += row(name, rate_text(rates.pass), rate_text(rates.fail), rate_text(rates.inconclusive),
+                rate_text(rates.invalid),
+                mistaken == nullptr ? "" : fmt::format("{:.2g}", mistaken->low),
+                rates.red.count == 0 ? "" : fmt::format("{:.2g}", rates.red.value()),
+                count_text(static_cast<std::uint64_t>(rates.observations + 0.5)),
+                rates.by.empty() ? "" : rates.by.front().method);
+  }
+  return text;
 }
 
 constexpr const char* legend =
@@ -99,8 +94,7 @@ std::string console(const Calibration& calibration) {
       out += fmt::format("{}: {}\n", cell.method, cell.question);
     }
     out += above(calibration, cell) ? "!! " : unflagged(calibration, cell) ? "!  " : "   ";
-    out += cell.law + "\n";
-    for (const ClaimLine& line : lines_of(cell)) out += row_of(line);
+    out += cell.law + "\n" + rows_of(cell);
   }
   return fmt::format("{}\n{}{}\n\n{}\n", out, legend,
                      fmt::join(wrap("detect    " + calibration.detect, 80), "\n"),
