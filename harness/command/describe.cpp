@@ -22,12 +22,6 @@ namespace {
 /// A row of a section; its further lines are indented.
 std::string row_text(const std::string& text) { return "  " + wrapped(text, 6).substr(6); }
 
-const char* type_name(ParameterType type) {
-  constexpr const char* names[] = {"number", "count",         "true or false",
-                                   "text",   "list of texts", "structure"};
-  return names[static_cast<int>(type)];
-}
-
 const char* bias_text(const Information& information) {
   // A mutant's bias is its defect's; the class is its original's.
   if (!information.original.empty()) return "that of its defect";
@@ -60,19 +54,19 @@ std::string field(const char* name, const std::string& text) {
   return text.empty() ? "" : beside(name, text, 12);
 }
 
-std::string parameter_text(const ParameterInformation& p) {
-  std::string head = fmt::format("{}: {}", p.name, type_name(p.type));
-  const std::string range = range_text(p);
-  if (!range.empty()) head += ", " + range;
-  if (!p.unit.empty()) head += ", " + p.unit;
-  head += p.fallback.empty() ? ", required" : ", default " + p.fallback;
-  return row_text(head) + wrapped(p.summary, 6);
-}
-
 std::string parameters_text(const Information& information) {
   if (information.parameters.empty()) return "\nparameters: none\n";
+  constexpr const char* types[] = {"number", "count",         "true or false",
+                                   "text",   "list of texts", "structure"};
   std::string out = "\nparameters\n";
-  for (const ParameterInformation& p : information.parameters) out += parameter_text(p);
+  for (const ParameterInformation& p : information.parameters) {
+    std::string head = fmt::format("{}: {}", p.name, types[static_cast<int>(p.type)]);
+    for (const std::string& fact : {range_text(p), p.unit}) {
+      if (!fact.empty()) head += ", " + fact;
+    }
+    head += p.fallback.empty() ? ", required" : ", default " + p.fallback;
+    out += row_text(head) + wrapped(p.summary, 6);
+  }
   return out;
 }
 
@@ -140,8 +134,8 @@ std::string mutants_text(const Information& information, const std::vector<Entry
   return out.empty() ? "" : "\nmutants\n" + out;
 }
 
-/// A sentence for each property that a user may have to know.
-std::string page_of(const Method& row) {
+/// Its page has a sentence for each property that a user may have to know.
+TableRow row_of(const Method& row) {
   std::string page;
   const auto say = [&](bool holds, const std::string& sentence) {
     if (holds) page += wrapped(sentence, 2);
@@ -156,10 +150,8 @@ std::string page_of(const Method& row) {
   say(row.is.of_normal_values, "It assumes that the values are nearly normal.");
   say(row.is.of_distinct_values, "It refuses coarsely rounded values.");
   say(row.is.over_looks == stats::LookLaw::anytime_valid, "Its p-value is valid at every look.");
-  return page;
+  return {row.name, row.summary, page};
 }
-
-TableRow row_of(const Method& method) { return {method.name, method.summary, page_of(method)}; }
 
 TableRow row_of(const QuantityRow& quantity) {
   std::string page = wrapped(fmt::format("Claim: {}", quantity.example), 2);

@@ -39,12 +39,6 @@ std::string entry(const CommandText& command) {
   return beside("  " + command.name, command.summary, list_column);
 }
 
-/// "--filter GLOB ..."
-std::string called(const OptionText& option) {
-  const std::string value = option.takes_value() ? " " + option.value : "";
-  return option.name + value + (option.repeats ? " ..." : "");
-}
-
 std::string usage(const CommandText& command) {
   std::string text = fmt::format("assay {} [OPTIONS]", command.name);
   for (const OptionText& option : command.options) {
@@ -230,8 +224,9 @@ std::string help_of(const CommandText& command) {
   std::string arguments;
   std::string options;
   for (const OptionText& option : command.options) {
-    (option.is_argument() ? arguments : options) +=
-        beside("  " + called(option), option.about, column);
+    const std::string value = option.takes_value() ? " " + option.value : "";
+    const std::string called = "  " + option.name + value + (option.repeats ? " ..." : "");
+    (option.is_argument() ? arguments : options) += beside(called, option.about, column);
   }
   options += beside("  -h, --help", "this text", column);
   if (!arguments.empty()) arguments = "Arguments:\n" + arguments + "\n";

@@ -156,8 +156,6 @@ std::string meant_report(std::string text) {
 
 }  // namespace
 
-void Options::about(const std::string& text) { about_ = text; }
-
 Texts Options::Row::given() const {
   Texts texts = option->results();
   if (!text.repeats) std::erase(texts, "");

@@ -29,7 +29,7 @@ class Options {
   explicit Options(CLI::App& app) : app_(app) {}
 
   /// The text before the options in `--help`: a sentence and examples.
-  void about(const std::string& text);
+  void about(const std::string& text) { about_ = text; }
 
   /// An option or an argument, which repeats if the target is a list. `read` takes the text and the
   /// option's name. An empty text counts as none if the option does not repeat.

@@ -84,21 +84,16 @@ std::string effect_text(const TestOutcome& test, const Forecast& forecast) {
   return text.starts_with(factor) ? "×" + text.substr(factor.size()) : text;
 }
 
-/// The gates that are not green.
-std::vector<std::string> gate_notes(const std::vector<Gate>& gates) {
-  std::vector<std::string> notes;
-  std::size_t more = 0;
+/// Notes the gates that are not green.
+void note_gates(const std::vector<Gate>& gates, std::vector<std::string>& notes) {
+  std::size_t count = 0;
   for (const Gate& gate : gates) {
-    if (gate.state == "green") continue;
-    if (notes.size() == most_gates) {
-      ++more;
-      continue;
-    }
+    if (gate.state == "green" || ++count > most_gates) continue;
     notes.push_back(fmt::format("{}: {} {}, limit {}", gate.state, gate.name,
                                 reports::human(gate.value), reports::human(gate.limit)));
   }
-  if (more > 0) notes.push_back(fmt::format("{} more gates that are not green", more));
-  return notes;
+  if (count > most_gates)
+    notes.push_back(fmt::format("{} more gates that are not green", count - most_gates));
 }
 
 std::string per_cent(double probability) {
@@ -150,7 +145,7 @@ Row row_of(const TestOutcome& test, const Pilots& pilots) {
     const char* off = plan.regions[0].proof() ? "if it is just wrong" : "if off by `detect`";
     row.notes.push_back(outlook_text(off, *expected.if_off));
   }
-  std::ranges::copy(gate_notes(plan.gates), std::back_inserter(row.notes));
+  note_gates(plan.gates, row.notes);
   if (!plan.caution.empty()) row.notes.push_back(plan.caution);
   if (!plan.invalid.empty()) row.notes.push_back("invalid: " + plan.invalid.text);
   if (const std::string trouble = trouble_of(test); !trouble.empty()) {
@@ -161,15 +156,6 @@ Row row_of(const TestOutcome& test, const Pilots& pilots) {
 
 std::string on_page(const std::string& text, std::size_t indent = 0) {
   return reports::plain_spaces(wrapped(reports::one_line(text), indent));
-}
-
-std::array<int, column_count> widths_of(const std::vector<Row>& rows) {
-  std::array<int, column_count> widths{};
-  for (std::size_t c = 0; c < column_count; ++c) {
-    widths[c] = reports::columns(headings[c]);
-    for (const Row& row : rows) widths[c] = std::max(widths[c], reports::columns(row.cells[c]));
-  }
-  return widths;
 }
 
 /// True if lines with such gaps between the columns fit the page.
@@ -214,7 +200,11 @@ void write(std::string& page, const SuiteRun& run) {
   }
   std::vector<Row> rows;
   for (const TestWork& work : run.tests) rows.push_back(row_of(work.outcome, run.pilots));
-  auto widths = widths_of(rows);
+  std::array<int, column_count> widths{};
+  for (std::size_t c = 0; c < column_count; ++c) {
+    widths[c] = reports::columns(headings[c]);
+    for (const Row& row : rows) widths[c] = std::max(widths[c], reports::columns(row.cells[c]));
+  }
   Cells heads = headings;
   if (!fit(widths, 1)) {
     for (Row& row : rows) row.name += ", by " + std::exchange(row.cells[0], "");
@@ -222,13 +212,13 @@ void write(std::string& page, const SuiteRun& run) {
     widths[0] = 0;
   }
   page += line_of(heads, widths);
+  double not_ok = 0;
   for (const Row& row : rows) {
     page += on_page(row.name, 2);
     page += line_of(row.cells, widths);
     for (const std::string& note : row.notes) page += on_page(note, 6);
+    not_ok += row.not_ok;
   }
-  double not_ok = 0;
-  for (const Row& row : rows) not_ok += row.not_ok;
   page += "\n";
   page +=
       on_page(fmt::format("If every claim holds exactly and every planted bug is as large as its "

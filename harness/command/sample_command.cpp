@@ -24,27 +24,23 @@ std::string in_header(const std::string& name) {
   return fmt::format("\"{}\"", boost::replace_all_copy(name, "\"", "\"\""));
 }
 
-/// The draws of a sampler by the numbers of their cells, which are computed here.
-Subject cells_of(const Source& sampler, const Estimators& estimators, std::uint64_t seed) {
-  Subject sampled = draws(sampler, estimators, Draws::cells);
-  seed_cells(sampled, sampler.where, seed);
+/// A source's channels: all of an estimator, or a part of it. The cells of a sampler's draws are
+/// computed here.
+Subject sampled_by(Source source, const Estimators& estimators, std::uint64_t seed) {
+  const std::string cell = "." + cell_channel;
+  if (!source.part.ends_with(cell)) {
+    Subject sampled = values(source, estimators);
+    if (source.part.empty()) sampled.channels = {0, 1, sampled.setup->channel_count()};
+    return sampled;
+  }
+  source.part.resize(source.part.size() - cell.size());
+  Subject sampled = draws(source, estimators, Draws::cells);
+  seed_cells(sampled, source.where, seed);
   try {
     dynamic_cast<const SamplerSetup&>(*sampled.setup).density_cells();
   } catch (const std::domain_error& error) {
-    refuse(sampler.where, error.what());
+    refuse(source.where, error.what());
   }
-  return sampled;
-}
-
-/// A source's channels: all of an estimator, or a part of it.
-Subject sampled_by(const Source& source, const Estimators& estimators, std::uint64_t seed) {
-  const std::string cell = "." + cell_channel;
-  if (source.part.ends_with(cell)) {
-    const std::string sampler = source.part.substr(0, source.part.size() - cell.size());
-    return cells_of({source.estimator, sampler, source.where}, estimators, seed);
-  }
-  Subject sampled = values(source, estimators);
-  if (source.part.empty()) sampled.channels = {0, 1, sampled.setup->channel_count()};
   return sampled;
 }
 
