@@ -84,25 +84,23 @@ EstimatorEntry picture_of(const std::string& law, const std::string& name) {
   return entry_of(name, "analytic/ramp", law, {{"width", 8}, {"height", 8}}, 4);
 }
 
-/// sup over x of P(x - shift < X <= x).
-double distance_at(const std::function<double(double)>& cdf, const Facts& facts, double shift) {
-  constexpr int steps = 2000;
-  double largest = 0;
-  for (int i = 0; i <= steps; ++i) {
-    const double x = facts.mean + facts.deviation * (16.0 * i / steps - 8);
-    largest = std::max(largest, cdf(x) - cdf(x - shift));
-  }
-  return largest;
-}
-
 double shift_at_law_effect(const Facts& facts) {
   const Claim claim = parse_claim("distribution(x) == " + facts.law, {});
   const std::function<double(double)> cdf = law_cdf(std::get<Law>(claim.right));
+  const auto distance_at = [&](double shift) {  // sup over x of P(x - shift < X <= x)
+    constexpr int steps = 2000;
+    double largest = 0;
+    for (int i = 0; i <= steps; ++i) {
+      const double x = facts.mean + facts.deviation * (16.0 * i / steps - 8);
+      largest = std::max(largest, cdf(x) - cdf(x - shift));
+    }
+    return largest;
+  };
   double low = 0;
   double high = facts.deviation;
   for (int i = 0; i < 30; ++i) {
     const double middle = (low + high) / 2;
-    (distance_at(cdf, facts, middle) < law_effect ? low : high) = middle;
+    (distance_at(middle) < law_effect ? low : high) = middle;
   }
   return high;
 }
@@ -300,16 +298,6 @@ struct CalibrationBench {
   CalibrationBench& operator=(const CalibrationBench&) = delete;
 };
 
-/// The `detect` of each kind of question, in words.
-std::string calibration_effects() {
-  return fmt::format(
-      "{:g} standard deviations of means and medians; {:g} % of variances, efficiencies and costs; "
-      "a distance {:g} of laws; w {:g} of cells; {:g} of slopes; of images a bias of {:g}, or {:g} "
-      "% of one another",
-      mean_effect, 100 * variance_effect, law_effect, cell_effect, slope_effect, image_bias,
-      100 * image_part);
-}
-
 /// The law that a user names: a family's default, or any with its numbers. InputError with the
 /// known laws if there is none.
 std::string calibration_law(const std::string& named) {
@@ -445,16 +433,6 @@ VerdictRates with_limits(VerdictRates rates, double error) {
   return rates;
 }
 
-CalibrationCell cell_of(const CalibrationCase& measured, double error) {
-  const CalibratedClaim& alone = measured.alone;
-  CalibrationCell cell = measured.cell;
-  cell.holds = with_limits(measured.holds.rates, error);
-  cell.off = with_limits(measured.off.rates, error);
-  cell.alone = with_limits(alone.rates, error);
-  cell.alone_not_red = with_limits(alone.mistaken_not_red, alone.rates.runs(), error);
-  return cell;
-}
-
 /// Groups cells by alpha, then method and question. Alphas, questions and laws keep their order.
 void group(std::vector<CalibrationCase>& all, const std::vector<double>& alphas) {
   const auto question = [](const CalibrationCase& each) {
@@ -487,12 +465,18 @@ const std::vector<std::string>& calibration_laws() {
 
 reports::Calibration calibration(const CalibrateArguments& arguments, Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
-  reports::Calibration result{.tool = this_tool(),
-                              .environment = this_environment(arguments.threads),
-                              .seed = arguments.seed,
-                              .runs = arguments.runs,
-                              .started = utc_now(),
-                              .detect = calibration_effects()};
+  reports::Calibration result{
+      .tool = this_tool(),
+      .environment = this_environment(arguments.threads),
+      .seed = arguments.seed,
+      .runs = arguments.runs,
+      .started = utc_now(),
+      .detect = fmt::format("{:g} standard deviations of means and medians; {:g} % of "
+                            "variances, efficiencies and costs; a distance {:g} of laws; w "
+                            "{:g} of cells; {:g} of slopes; of images a bias of {:g}, or "
+                            "{:g} % of one another",
+                            mean_effect, 100 * variance_effect, law_effect, cell_effect,
+                            slope_effect, image_bias, 100 * image_part)};
   std::vector<std::string> laws = mapped(arguments.laws, calibration_law);
   std::vector<std::string> without_blanks = laws;
   for (std::string& law : without_blanks) std::erase(law, ' ');
@@ -523,7 +507,14 @@ reports::Calibration calibration(const CalibrateArguments& arguments, Progress& 
   }
   group(all, options.alphas);
   const double error = result.error / static_cast<double>(all.size());
-  result.cells = mapped(all, [&](const CalibrationCase& each) { return cell_of(each, error); });
+  result.cells = mapped(all, [&](const CalibrationCase& each) {
+    CalibrationCell cell = each.cell;
+    cell.holds = with_limits(each.holds.rates, error);
+    cell.off = with_limits(each.off.rates, error);
+    cell.alone = with_limits(each.alone.rates, error);
+    cell.alone_not_red = with_limits(each.alone.mistaken_not_red, each.alone.rates.runs(), error);
+    return cell;
+  });
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
 }
