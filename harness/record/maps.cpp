@@ -132,17 +132,6 @@ std::string file_name(const std::string& id) {
   return fmt::format("{}-{:08x}.exr", name, text_hash(id) & 0xffffffff);
 }
 
-/// The mean over an image, with an interval if its pixels are independent.
-reports::Estimate image_mean(const ImageShape& shape, const Summary& summary, double mean,
-                             double confidence) {
-  if (!shape.independent) return {number(mean), {}, {}};
-  const auto interval = stats::interval_of_mean(
-      extent_of(shape), [&](std::size_t element) { return summary.moments(element); }, mean,
-      confidence);
-  if (!interval) return {number(mean), {}, {}};
-  return {number(mean), number(interval->low), number(interval->high)};
-}
-
 struct Cells {
   std::string axes;
   std::size_t width = 0, height = 0;
@@ -337,8 +326,13 @@ reports::EstimatorChannel image_channel(const Setup& setup, const Summary& summa
     reference += exact.value_or(0) / elements;
   }
   reports::EstimatorChannel row{.name = image_name(shape),
-                                .mean = image_mean(shape, summary, mean, confidence),
+                                .mean = {number(mean), {}, {}},
                                 .variance = {number(variance), {}, {}}};
+  const auto moments_of = [&](std::size_t element) { return summary.moments(element); };
+  const auto interval =
+      shape.independent ? stats::interval_of_mean(extent_of(shape), moments_of, mean, confidence)
+                        : std::nullopt;
+  if (interval) row.mean = {number(mean), number(interval->low), number(interval->high)};
   if (known) row.reference = number(reference);
   return row;
 }

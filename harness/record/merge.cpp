@@ -185,22 +185,18 @@ Identity identity_of(const reports::Record& record) {
           {"instruction set for rays", record.environment.isa}};
 }
 
-void check_same(const ShardFile& first, const ShardFile& other) {
-  const auto found = difference(identity_of(other.record), identity_of(first.record));
-  if (!found) return;
-  refuse(
-      {.file = other.file},
-      "belongs to another run than `{0}`: {1} `{2}` here, `{3}` there; run one of them again with "
-      "the same {1}",
-      first.file, found->name, found->ours, found->theirs);
-}
-
 /// InputError unless the records are shards of one run, each at most once.
 void check_shards(const std::vector<ShardFile>& shards) {
   std::map<std::uint64_t, std::string> seen;
   for (const ShardFile& shard : shards) {
     check_whole(shard);
-    check_same(shards.front(), shard);
+    const Identity expected = identity_of(shards.front().record);
+    if (const auto found = difference(identity_of(shard.record), expected)) {
+      refuse({.file = shard.file},
+             "belongs to another run than `{0}`: {1} `{2}` here, `{3}` there; run one of them "
+             "again with the same {1}",
+             shards.front().file, found->name, found->ours, found->theirs);
+    }
     const std::uint64_t index = shard.record.shard->index;
     const auto [first, is_new] = seen.emplace(index, shard.file);
     if (is_new) continue;

@@ -196,21 +196,6 @@ std::vector<reports::Look> looks_of(const TestOutcome& outcome, const Regions& r
   });
 }
 
-std::string over_text(const TestEntry& test) {
-  if (!test.over) return "";
-  return fmt::format("{{{}: [{}]}}", test.over->parameter,
-                     listed(mapped(test.over->values, &Value::text)));
-}
-
-std::string reference_text(const TestEntry& test) {
-  if (test.reference) return to_string(*test.reference);
-  return test.reference_number ? to_string(*test.reference_number) : "";
-}
-
-std::string cost_text(const TestEntry& test) {
-  return test.claim.left.row->counts_cost ? cost_words[static_cast<std::size_t>(test.cost)] : "";
-}
-
 std::vector<reports::Statement> statements_of(const Suite& suite,
                                               const std::vector<reports::Test>& ran) {
   const auto has_run = [&](const std::string& name) {
@@ -224,17 +209,23 @@ std::vector<reports::Statement> statements_of(const Suite& suite,
 }
 
 reports::Test head_of(const TestEntry& entry, const std::string& file) {
-  return {.name = entry.name,
-          .id = entry.id,
-          .claim = entry.claim.text,
-          .file = file,
-          .line = entry.where.line,
-          .tags = entry.tags,
-          .over = over_text(entry),
-          .reference = reference_text(entry),
-          .cost = cost_text(entry),
-          .paired = entry.paired,
-          .expected = entry.expect};
+  reports::Test test{.name = entry.name,
+                     .id = entry.id,
+                     .claim = entry.claim.text,
+                     .file = file,
+                     .line = entry.where.line,
+                     .tags = entry.tags,
+                     .paired = entry.paired,
+                     .expected = entry.expect};
+  if (const auto& over = entry.over) {
+    const std::string values = listed(mapped(over->values, &Value::text));
+    test.over = fmt::format("{{{}: [{}]}}", over->parameter, values);
+  }
+  if (entry.reference_number) test.reference = to_string(*entry.reference_number);
+  if (entry.reference) test.reference = to_string(*entry.reference);
+  if (entry.claim.left.row->counts_cost)
+    test.cost = cost_words[static_cast<std::size_t>(entry.cost)];
+  return test;
 }
 
 // ---- The estimators of the selected tests
