@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdlib>
 #include <map>
 #include <sstream>
 #include <stdexcept>
@@ -65,11 +64,6 @@ std::uint64_t ordinal() {
     before += std::string(result->GetTestProperty(i).key()).starts_with("claim_") ? 1U : 0U;
   }
   return before + 1;
-}
-
-std::uint64_t seed_of(const ClaimBudget& budget) {
-  const char* given = std::getenv("ASSAY_SEED");
-  return given == nullptr || *given == '\0' ? budget.seed : harness::read_seed(given, "ASSAY_SEED");
 }
 
 Entry entry_of(bool averages) {
@@ -148,7 +142,8 @@ std::string unrepeated(const TestWork& work) {
 
 /// Tests the claim alone at its share of the budget.
 reports::Test tested(const std::string& claim, const Asked& asked, const ClaimBudget& budget) {
-  const std::uint64_t seed = seed_of(budget);
+  const std::string given = harness::system_environment("ASSAY_SEED");
+  const std::uint64_t seed = given.empty() ? budget.seed : harness::read_seed(given, "ASSAY_SEED");
   Suite suite{.name = "googletest",
               .stem = "googletest",
               .alpha = budget.alpha / static_cast<double>(budget.claims),
