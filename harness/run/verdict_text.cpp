@@ -24,20 +24,15 @@ std::string p_text(double log_p) {
 }
 
 /// "difference from the reference is +0.31 % (99 % interval: +0.12 % to +0.5 %)".
-std::string finding(const reports::Effect& effect) {
-  // An exponent of which only one point differs from zero.
-  if (!effect.estimate) {
-    return fmt::format(
-        "{} is {}{}", reports::effect_name(effect),
-        effect.relative ? "infinite, because it is relative to 0" : "no finite number",
-        reports::named_range_text(effect));
-  }
-  return fmt::format("{} is {}", reports::effect_name(effect), reports::named_effect_text(effect));
-}
-
 std::string finding(const ChannelOutcome& channel) {
-  const bool sizeless = channel.image && !channel.effect.estimate;  // a law of images
-  return sizeless ? reports::effect_name(channel.effect) : finding(channel.effect);
+  const reports::Effect& effect = channel.effect;
+  const std::string name = reports::effect_name(effect);
+  if (effect.estimate) return fmt::format("{} is {}", name, reports::named_effect_text(effect));
+  if (channel.image) return name;  // a law of images
+  // An exponent of which only one point differs from zero.
+  return fmt::format("{} is {}{}", name,
+                     effect.relative ? "infinite, because it is relative to 0" : "no finite number",
+                     reports::named_range_text(effect));
 }
 
 std::string in_channel(const TestOutcome& outcome, const ChannelOutcome& channel) {
@@ -86,15 +81,6 @@ std::string evidence_against(const TestOutcome& outcome, const ChannelOutcome& c
                      p_text(channel.decision.log_p_claimed), outcome.place.share.alpha);
 }
 
-std::string passed_by_empty_interval(const ChannelOutcome& channel) {
-  return fmt::format(
-      "no evidence against the claim; {} or more is excluded, {}; the data lie closer to the claim "
-      "than chance leads to expect, so that there is no {} interval",
-      reports::margin_text(*channel.regions.detect, channel.effect),
-      p_text(channel.decision.log_p_forbidden),
-      reports::confidence_text(channel.effect.confidence));
-}
-
 std::string found_in_cell(const TestOutcome& outcome, const ChannelOutcome& channel) {
   if (!channel.image || !channel.image->detectable_in_cell) return "";
   const bool noisy = channel.effect.relative && *channel.image->detectable_in_cell > 1;
@@ -133,7 +119,14 @@ std::string passed_alarm(const TestOutcome& outcome, const ChannelOutcome& chann
   }
   // A distance's interval has ends, unless even 0 is too large for these data.
   const bool has_ends = channel.effect.low || channel.effect.high;
-  if (channel.evidence.distance && !has_ends) return passed_by_empty_interval(channel);
+  if (channel.evidence.distance && !has_ends) {
+    return fmt::format(
+        "no evidence against the claim; {} or more is excluded, {}; the data lie closer to the "
+        "claim than chance leads to expect, so that there is no {} interval",
+        reports::margin_text(*channel.regions.detect, channel.effect),
+        p_text(channel.decision.log_p_forbidden),
+        reports::confidence_text(channel.effect.confidence));
+  }
   const double excluded = excluded_beyond(outcome, channel);
   const std::string interval =
       fmt::format("the {} interval{}", reports::confidence_text(channel.effect.confidence),
@@ -276,21 +269,6 @@ Reason undecided(const TestOutcome& outcome, const ChannelOutcome& channel) {
   return reason;
 }
 
-Reason told(const TestOutcome& outcome) {
-  const ChannelOutcome& worst = outcome.channels.front();
-  const ChannelOutcome& least = least_excluded(outcome);
-  switch (outcome.verdict) {
-    case Verdict::fail:
-      return failed(outcome, worst);
-    case Verdict::inconclusive:
-      return undecided(outcome, least);
-    case Verdict::pass:
-      return least.regions.proof() ? passed_proof(outcome, least) : passed_alarm(outcome, least);
-    default:
-      return {};
-  }
-}
-
 }  // namespace
 
 Reason excludes_no(const std::string& what, const TestOutcome& outcome) {
@@ -300,7 +278,12 @@ Reason excludes_no(const std::string& what, const TestOutcome& outcome) {
 
 Reason narrate(const TestOutcome& outcome) {
   if (outcome.channels.empty()) return {};
-  Reason reason = told(outcome);
+  const ChannelOutcome& least = least_excluded(outcome);
+  Reason reason;
+  if (outcome.verdict == Verdict::fail) reason = failed(outcome, outcome.channels.front());
+  if (outcome.verdict == Verdict::inconclusive) reason = undecided(outcome, least);
+  if (outcome.verdict == Verdict::pass)
+    reason = least.regions.proof() ? passed_proof(outcome, least) : passed_alarm(outcome, least);
   const std::string& doubt = outcome.plan.caution;
   if (outcome.verdict != Verdict::fail && !doubt.empty()) reason.text += "; " + doubt;
   reason.text = reports::plain_spaces(reason.text);
