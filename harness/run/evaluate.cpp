@@ -40,16 +40,6 @@ double deciding_error(const TestOutcome& outcome, const ChannelOutcome& channel,
   return outcome.verdict == Verdict::pass ? excluding : std::min(refuting, excluding);
 }
 
-/// With a factor the effect is relative to factor * second.
-std::string quantity_of(const Evidence& evidence, const Question& question) {
-  const bool ratio = question.is().logarithm;
-  std::string quantity = evidence.quantity;
-  if (question.factor != 1) {
-    quantity += fmt::format(" (the second times {:g})", question.factor);
-  }
-  return ratio ? "ln(" + quantity + ")" : quantity;
-}
-
 /// The effect with the interval behind the verdict. Its ends are at this look's levels, so it holds
 /// theta with the confidence shown wherever sampling stops (repeated confidence interval). A fail
 /// shows the interval at alpha, which misses the claimed region. A pass that excludes the forbidden
@@ -61,7 +51,11 @@ reports::Effect effect_of(const TestOutcome& outcome, const ChannelOutcome& chan
   constexpr double least_error = 1e-12;
   const double error = std::max(deciding_error(outcome, channel, outcome.share()), least_error);
   const stats::Interval interval = evidence.interval(1 - error);
-  return {.quantity = quantity_of(evidence, outcome.question),
+  std::string quantity = evidence.quantity;
+  // With a factor the effect is relative to factor * second.
+  if (const double factor = outcome.question.factor; factor != 1)
+    quantity += fmt::format(" (the second times {:g})", factor);
+  return {.quantity = outcome.question.is().logarithm ? "ln(" + quantity + ")" : quantity,
           .estimate = number(evidence.estimate),
           .low = number(interval.low),
           .high = number(interval.high),

@@ -8,7 +8,6 @@
 #include <span>
 #include <utility>
 
-#include "harness/base/parallel.h"
 #include "harness/sampling/pool.h"
 #include "harness/theta/ask.h"
 #include "reports/words/number.h"

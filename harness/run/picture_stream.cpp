@@ -306,11 +306,6 @@ bool is_streamed(const Subject& side, const Subject& other) {
          pictures_of(side) >= stats::least_replicates;
 }
 
-bool is_about(const Question& question, const Subject& side) {
-  return std::ranges::any_of(
-      question.subjects, [&](const Subject& other) { return other.estimator == side.estimator; });
-}
-
 // For each number of a picture: itself, and its share of a sum over a block of 4 x 4.
 constexpr double bytes_of_number = 4;
 constexpr double bytes_of_block = .25;
@@ -377,9 +372,12 @@ StreamedClaims streamed(const std::vector<Question>& questions) {
   StreamedClaims found;
   for (const Question& question : questions) {
     if (!is_streamed(question)) continue;
+    const auto is_drawn_by = [](const Question& other, const Subject& side) {
+      return std::ranges::count(other.subjects, side.estimator, &Subject::estimator) > 0;
+    };
     const bool alone = std::ranges::all_of(questions, [&](const Question& other) {
-      return &other == &question ||
-             (!is_about(other, question.subjects[0]) && !is_about(other, question.subjects[1]));
+      return &other == &question || (!is_drawn_by(other, question.subjects[0]) &&
+                                     !is_drawn_by(other, question.subjects[1]));
     });
     if (alone) found.push_back(&question);
   }

@@ -158,19 +158,14 @@ void note_unused(const Suite& suite) {
                      unused.size() == 1 ? "" : "s", fmt::join(unused, "`, `")));
 }
 
-/// Names the source that leaves a test without a question; "" if there is none.
-std::string unprepared(const TestEntry& test, const std::map<std::string, Fault>& faults) {
-  for (const Source& source : sources_of(test)) {
-    const auto fault = faults.find(source.estimator);
-    if (fault == faults.end()) continue;
-    return fmt::format("`{}` cannot be prepared: {}", source.estimator, fault->second.words);
-  }
-  return "";
-}
-
 void ask_test(SuiteRun& run, TestEntry& test, const std::map<std::string, Fault>& faults,
               Mistakes& mistakes) {
-  std::string why = unprepared(test, faults);
+  std::string why;
+  for (const Source& source : sources_of(test)) {
+    const auto fault = faults.find(source.estimator);
+    if (fault == faults.end() || !why.empty()) continue;
+    why = fmt::format("`{}` cannot be prepared: {}", source.estimator, fault->second.words);
+  }
   const auto is_there = [&](const Source& x) { return run.estimators.contains(x.estimator); };
   try {
     if (std::ranges::all_of(sources_of(test), is_there))
@@ -222,15 +217,6 @@ void add_missing(const Pool& pool, std::uint64_t count, Missing& missing) {
   }
 }
 
-Missing missing_in_pilots(const SuiteRun& run) {
-  const Used used = with_sweeps(used_by(run), run);
-  Missing missing;
-  for (const auto& [name, pool] : pilot_pools(used, run.questions, run.seed)) {
-    add_missing(*pool, pool->requested(), missing);
-  }
-  return missing;
-}
-
 }  // namespace
 
 std::vector<foreign::MissingFile> missing_files(const std::vector<Suite>& suites,
@@ -238,7 +224,11 @@ std::vector<foreign::MissingFile> missing_files(const std::vector<Suite>& suites
   Missing all;
   for (const Suite& suite : suites) {
     const std::unique_ptr<SuiteRun> run = prepare_suite(suite, options);
-    Missing missing = missing_in_pilots(*run);
+    const Used used = with_sweeps(used_by(*run), *run);
+    Missing missing;
+    for (const auto& [name, pool] : pilot_pools(used, run->questions, run->seed)) {
+      add_missing(*pool, pool->requested(), missing);
+    }
     if (missing.empty()) {
       Pools pools;
       plan_tests(*run, options, progress);
