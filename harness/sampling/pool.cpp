@@ -12,7 +12,6 @@
 #include "estimators/core/thread_seconds.h"
 #include "estimators/core/value.h"
 #include "estimators/ready_made.h"
-#include "harness/base/parallel.h"
 #include "harness/sampling/recorded_run.h"
 #include "stats/gates/independence_gates.h"
 #include "stats/images/image_moments.h"
@@ -98,7 +97,7 @@ const std::vector<stats::Gate>& Drawn::order_gates(std::size_t channel) const {
 }
 
 Images Drawn::images(std::uint64_t most) const {
-  return pool_->all_kept().range(0, std::min(count_, most));
+  return part_of(pool_->all_kept().images, 0, std::min(count_, most));
 }
 
 std::uint64_t most_kept(std::span<const ChannelPlan> plan) {
@@ -353,13 +352,6 @@ void Pool::Block::append_kept(Block&& next) {
   observations->append(std::move(*next.observations));
 }
 
-void Pool::keep_block(Summary block, std::uint64_t first) {
-  if (block.count == 0) return;  // its first observation failed
-  block.detailed.clear();
-  if (sums_later()) block.channels = all_kept().sums_of(first, first + block.count);
-  blocks_.push_back(std::move(block));
-}
-
 void Pool::fold(Block&& block) {
   if (drawn() == 0) {
     running_ = no_sums();
@@ -375,7 +367,11 @@ void Pool::fold(Block&& block) {
   running_.append(block.whole);
   append(values_, block.values);
   kept_->append(std::move(*block.observations));
-  if (keeps_blocks_) keep_block(std::move(block.whole), before);
+  if (keeps_blocks_ && block.whole.count > 0) {  // its first observation may have failed
+    block.whole.detailed.clear();
+    if (sums_later()) block.whole.channels = all_kept().sums_of(before, drawn());
+    blocks_.push_back(std::move(block.whole));
+  }
   fault_ = std::move(block.fault);
 }
 
@@ -383,10 +379,6 @@ void Pool::draw_again(Estimator& estimator, std::uint64_t index, std::span<doubl
   const FlushDenormals flush;
   Cost unused;
   draw_one(estimator, index, out, unused);
-}
-
-Images KeptObservations::range(std::uint64_t begin, std::uint64_t end) const {
-  return part_of(images, begin, end);
 }
 
 KeptObservations KeptObservations::part(std::uint64_t first, std::uint64_t last) const {
@@ -404,7 +396,7 @@ void KeptObservations::whole(std::size_t index, std::span<double> out) const {
 
 std::vector<ChannelSummary> KeptObservations::sums_of(std::uint64_t begin,
                                                       std::uint64_t end) const {
-  std::vector<ChannelSummary> all = sums_of_images(range(begin, end));
+  std::vector<ChannelSummary> all = sums_of_images(part_of(images, begin, end));
   const std::size_t elements = all.size();
   all.resize(elements + values[begin].size());
   for (std::uint64_t index = begin; index < end; ++index) {

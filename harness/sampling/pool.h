@@ -50,8 +50,6 @@ struct KeptObservations {
   std::map<std::uint64_t, std::shared_ptr<const Summary>> sums = {};
 
   std::size_t size() const { return costs.size(); }
-  /// The images of [begin, end) that exist.
-  Images range(std::uint64_t begin, std::uint64_t end) const;
   /// Copies all channels of one observation.
   void whole(std::size_t index, std::span<double> out) const;
   /// The summary of every channel over observations [begin, end) of images.
@@ -211,7 +209,6 @@ class Pool {
                Block& block) const;
   void read_picture(std::uint64_t index, Block& block) const;
   void draw_one(Estimator& estimator, std::uint64_t index, std::span<double> out, Cost& cost) const;
-  void keep_block(Summary block, std::uint64_t first);
 
   std::map<std::uint64_t, std::shared_ptr<const Summary>> prefixes_;
   std::uint64_t requested_ = 0;

@@ -103,17 +103,12 @@ RecordedRun::Contents contents_of(const Kept& kept, const reports::Suite& suite)
   return contents;
 }
 
-std::vector<std::string> names_in(const reports::Record& record) {
-  std::set<std::string> names;
-  for (const reports::Suite& suite : record.suites) {
-    for (const reports::Test& test : suite.tests) {
-      for (const reports::Sample& sample : test.samples) names.insert(sample.estimator);
-    }
+std::string wanted_estimator(Parameters& parameters, const reports::Record& record) {
+  std::set<std::string> all;
+  for (const reports::Test* test : reports::tests_of(record)) {
+    for (const reports::Sample& sample : test->samples) all.insert(sample.estimator);
   }
-  return {names.begin(), names.end()};
-}
-
-std::string wanted_estimator(Parameters& parameters, const std::vector<std::string>& names) {
+  const std::vector<std::string> names(all.begin(), all.end());
   const std::string name = parameters.string("estimator");
   if (names.empty()) parameters.refuse("run", "is a record without observations");
   if (!parameters.given("estimator")) {
@@ -161,7 +156,7 @@ std::shared_ptr<const RecordedRun> read_recorded_run(Parameters& parameters) {
                        "is for rows of a file: give it or `run`, not both");
   }
   const reports::Record record = read(parameters);
-  const std::string name = wanted_estimator(parameters, names_in(record));
+  const std::string name = wanted_estimator(parameters, record);
   Kept best;
   const reports::Suite* of = nullptr;
   for (const reports::Suite& suite : record.suites) {
