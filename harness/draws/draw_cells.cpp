@@ -24,18 +24,9 @@ double share_of_rest(double v, double u) {
 
 // The first coordinate below which this share of the domain's measure lies.
 double quantile(Domain domain, double share) {
-  switch (domain) {
-    case Domain::hemisphere:
-      return std::acos(1 - share);
-    case Domain::sphere:
-      return std::acos(1 - 2 * share);
-    case Domain::triangle:
-      return 1 - std::sqrt(1 - share);
-    case Domain::square:
-    case Domain::interval:
-      break;
-  }
-  return share;
+  if (domain == Domain::hemisphere) return std::acos(1 - share);
+  if (domain == Domain::sphere) return std::acos(1 - 2 * share);
+  return domain == Domain::triangle ? 1 - std::sqrt(1 - share) : share;
 }
 
 std::vector<double> borders(stats::Span span, std::span<const double> shares, auto quantile) {

@@ -19,23 +19,17 @@ constexpr std::uint64_t most_fetched = 4096;
 
 bool on_interval(const Sampler& sampler) { return sampler.domain() == Domain::interval; }
 
-stats::TabulatedLaw law_on_interval(const NamedSampler& named, std::span<const Point> drawn) {
-  const Sampler& sampler = *named.sampler;
-  stats::AdaptiveQuadrature rule(table_limits);
-  const stats::Span range{sampler.bounds()[0], sampler.bounds()[1]};
-  const stats::LineDensity density = line_density(sampler, drawn, densities_of(named));
-  stats::Panelling panels = density.panels;
-  panels.equal = std::max(panels.equal, least_parts);
-  const auto parts = stats::cut(range, range, panels);
-  return stats::tabulate(rule.of(density.values), parts, rule);
-}
-
 stats::TabulatedLaw law_of(const NamedSampler& named, std::size_t marginal,
                            std::span<const Point> drawn) {
-  if (on_interval(*named.sampler)) return law_on_interval(named, drawn);
-  const stats::PlaneDensity density =
-      plane_density(*named.sampler, marginal, drawn, densities_of(named));
+  const Sampler& sampler = *named.sampler;
   stats::AdaptiveQuadrature rule(table_limits);
+  if (on_interval(sampler)) {
+    stats::LineDensity density = line_density(sampler, drawn, densities_of(named));
+    density.panels.equal = std::max(density.panels.equal, least_parts);
+    const stats::Span range{sampler.bounds()[0], sampler.bounds()[1]};
+    return stats::tabulate(rule.of(density.values), stats::cut(range, range, density.panels), rule);
+  }
+  const stats::PlaneDensity density = plane_density(sampler, marginal, drawn, densities_of(named));
   // A multiple of the panels keeps their borders.
   stats::Panelling panels = density.x_panels;
   panels.equal *= (least_parts + panels.equal - 1) / panels.equal;

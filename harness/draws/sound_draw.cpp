@@ -36,8 +36,6 @@ std::string domain_in_words(const Sampler& sampler) {
   return others[static_cast<int>(sampler.domain()) - 1];
 }
 
-double length_of(const Point& p) { return std::sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]); }
-
 /// Moves a coordinate that is at most `slack` outside the range to its border. False if it is
 /// farther out.
 bool settle(double& x, stats::Span range, double slack) {
@@ -90,7 +88,8 @@ SamplerDraw sound(const NamedSampler& named, SamplerDraw draw) {
   }
   if (!draw.valid) return draw;
   const Point drawn = draw.point;
-  const double length = has_directions(sampler.domain()) ? length_of(drawn) : 1;
+  const auto& [x, y, z] = drawn;
+  const double length = has_directions(sampler.domain()) ? std::sqrt(x * x + y * y + z * z) : 1;
   if (!(std::abs(length - 1) <= std::max(least_length_slack, sampler.rounding()))) {
     refuse_draw(named, fmt::format("{}, whose length is {:.6g}: a direction must have length 1",
                                    in_words(sampler, drawn), length));
