@@ -15,17 +15,6 @@ namespace {
 
 bool excludes(const std::string& filter) { return filter.starts_with("-"); }
 
-bool passes(const std::vector<std::string>& filters, const std::string& id) {
-  const auto includes_it = [&](const std::string& filter) {
-    return !excludes(filter) && matches(filter, id);
-  };
-  const auto excludes_it = [&](const std::string& filter) {
-    return excludes(filter) && matches(std::string_view(filter).substr(1), id);
-  };
-  return std::ranges::none_of(filters, excludes_it) &&
-         (std::ranges::all_of(filters, excludes) || std::ranges::any_of(filters, includes_it));
-}
-
 std::vector<const TestEntry*> selected(const std::vector<Suite>& suites,
                                        const Selection& selection) {
   std::vector<const TestEntry*> found;
@@ -75,9 +64,17 @@ std::string unmatched_filter(const std::vector<Suite>& suites, const std::string
 }  // namespace
 
 bool selects(const Selection& selection, const TestEntry& test) {
+  const auto includes_it = [&](const std::string& filter) {
+    return !excludes(filter) && matches(filter, test.id);
+  };
+  const auto excludes_it = [&](const std::string& filter) {
+    return excludes(filter) && matches(std::string_view(filter).substr(1), test.id);
+  };
+  const std::vector<std::string>& filters = selection.filters;
   const bool tagged = selection.tags.empty() ||
                       std::ranges::find_first_of(test.tags, selection.tags) != test.tags.end();
-  return tagged && passes(selection.filters, test.id);
+  return tagged && std::ranges::none_of(filters, excludes_it) &&
+         (std::ranges::all_of(filters, excludes) || std::ranges::any_of(filters, includes_it));
 }
 
 std::string option_words(const std::string& option, const std::vector<std::string>& values) {

@@ -18,13 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// True if the file has the text unbroken at the value's place.
-bool stands_in_one_piece(const Document& document, const Value& value, const std::string& text) {
-  const std::string_view line = document.line(value.where().line);
-  const auto at = static_cast<std::size_t>(std::max(value.where().column, 1)) - 1;
-  return at < line.size() && line.substr(at).starts_with(text);
-}
-
 /// Columns of errors count in the file if the claim stands there unbroken, else in the claim.
 Claim read_claim(const Document& document, const Value& value) {
   std::string text = value.string("`claim`");
@@ -33,7 +26,9 @@ Claim read_claim(const Document& document, const Value& value) {
   try {
     return parse_claim(text, value.where());
   } catch (const InputError& e) {
-    if (stands_in_one_piece(document, value, text)) throw;
+    const std::string_view line = document.line(value.where().line);
+    const auto at = static_cast<std::size_t>(std::max(value.where().column, 1)) - 1;
+    if (at < line.size() && line.substr(at).starts_with(text)) throw;
     const int column = e.where().column - value.where().column + 1;
     refuse(value.where(), "{} (character {} of `{}`)", e.message(), column, text);
   }
@@ -147,16 +142,6 @@ void check_test(const TestEntry& test) {
   if (test.cost != CostKind::rays) refuse_but_for("cost", &QuantityRow::counts_cost);
 }
 
-/// Error rates and seeds belong to the run.
-void refuse_levels(const Document& document, const Value& test) {
-  for (const char* key : {"alpha", "beta", "seed"}) {
-    const Value* found = test.find(key);
-    if (!found) continue;
-    refuse(document.key(*found),
-           "`{}` belongs to the suite, not to a test; put it at the top of the file", key);
-  }
-}
-
 using Tests = std::vector<TestEntry>;
 
 bool is_in(const std::vector<std::string>& names, const std::string& name) {
@@ -173,14 +158,6 @@ std::vector<const TestEntry*> tests_named(const std::string& name, const Tests& 
   return found;
 }
 
-void require_tests(const std::vector<const TestEntry*>& found, const Value& name,
-                   const Tests& tests) {
-  if (!found.empty()) return;
-  refuse(name.where(), "the suite has no test `{}`{}", name.text(),
-         did_you_mean(name.text(), mapped(tests, &TestEntry::name),
-                      "tests are named by `name`, or else by their claim"));
-}
-
 std::vector<std::string> read_names(const Keys& keys, const char* key, const Tests& tests) {
   const Value* list = keys.find(key);
   if (list == nullptr) return {};
@@ -190,11 +167,13 @@ std::vector<std::string> read_names(const Keys& keys, const char* key, const Tes
            fmt::format("`{}` must be a list of at least one test, by its name or a glob", key))) {
     one_line(item, "the name of a test");
     const std::vector<const TestEntry*> found = tests_named(item.text(), tests);
-    require_tests(found, item, tests);
+    if (found.empty()) {
+      refuse(item.where(), "the suite has no test `{}`{}", item.text(),
+             did_you_mean(item.text(), mapped(tests, &TestEntry::name),
+                          "tests are named by `name`, or else by their claim"));
+    }
     for (const TestEntry* test : found) {
-      const bool answers =
-          test->expect == reports::Verdict::pass || test->expect == reports::Verdict::fail;
-      if (!answers) {
+      if (test->expect != reports::Verdict::pass && test->expect != reports::Verdict::fail) {
         refuse(item.where(), "`{}` expects no decision, so it answers nothing", test->name);
       }
       if (!is_in(names, test->name)) names.push_back(test->name);
@@ -295,7 +274,12 @@ EstimatorEntry read_estimator(const Document& document, const std::string& name,
 
 /// Reads an entry of `tests:`, without its id and without looking up estimators.
 TestEntry read_test(const Document& document, const Value& value) {
-  refuse_levels(document, value);
+  for (const char* level : {"alpha", "beta", "seed"}) {
+    const Value* found = value.find(level);
+    if (!found) continue;
+    refuse(document.key(*found),
+           "`{}` belongs to the suite, not to a test; put it at the top of the file", level);
+  }
   const Keys keys(document, value, "a test", "- claim: mean(area) == analytic",
                   {"claim", "name", "detect", "allow", "weight", "test", "secondaries", "budget",
                    "over", "reference", "cost", "paired", "expect", "tags"});
@@ -317,16 +301,6 @@ std::vector<reports::Statement> read_statements(const Document& document, const 
   return mapped(items, [&](const Value& item) { return read_statement(document, item, tests); });
 }
 
-/// A suite's seed is fixed; only the command line can ask for a fresh one.
-std::uint64_t seed_of(const Value& value) {
-  if (value.kind() == Value::Kind::scalar && value.text() == "random") {
-    refuse(value.where(),
-           "a suite's seed is a number, so that its runs repeat; `assay run --seed random` takes a "
-           "fresh one");
-  }
-  return value.count("`seed`");
-}
-
 void read_head(const Document& document, const Keys& keys, Suite& suite) {
   suite.name = one_line(keys.require("suite", "suite: my first suite"), "`suite`");
   if (const Value* v = keys.find("about")) suite.about = v->string("`about`");
@@ -338,7 +312,14 @@ void read_head(const Document& document, const Keys& keys, Suite& suite) {
              "`beta` must be below 0.5: a pass uses the interval of confidence 1 - 2 beta");
     }
   }
-  if (const Value* v = keys.find("seed")) suite.seed = seed_of(*v);
+  if (const Value* v = keys.find("seed")) {
+    if (v->kind() == Value::Kind::scalar && v->text() == "random") {
+      refuse(v->where(),
+             "a suite's seed is a number, so that its runs repeat; `assay run --seed random` takes "
+             "a fresh one");
+    }
+    suite.seed = v->count("`seed`");
+  }
   if (const Value* v = keys.find("needs")) {
     items_of(*v, "`needs` must be a list of programs: `needs: [blender]`");
     suite.needs = read_lines(*v, "a program");

@@ -50,18 +50,6 @@ const EstimatorEntry* entry_named(const std::vector<EstimatorEntry>& entries,
   return found == entries.end() ? nullptr : &*found;
 }
 
-std::vector<EstimatorEntry> parse_options(const std::vector<std::string>& options) {
-  std::vector<EstimatorEntry> entries;
-  for (const std::string& option : options) {
-    EstimatorEntry entry = parse_estimator_option(option);
-    if (entry_named(entries, entry.name)) {
-      refuse(entry.where, "a second estimator named `{}`", entry.name);
-    }
-    entries.push_back(std::move(entry));
-  }
-  return entries;
-}
-
 /// Says how an estimator is made of a file. `command` stands before its option.
 [[noreturn]] void refuse_file(const Location& where, const std::string& name,
                               const std::string& file, const std::string& command = "") {
@@ -98,16 +86,6 @@ EstimatorEntry entry_for(const Source& source, const std::vector<EstimatorEntry>
     if (given.empty() || source.estimator.find('/') != std::string::npos) throw;
     refuse(error.where(), "{}; --estimator names {}", error.message(),
            quoted(mapped(given, &EstimatorEntry::name)));
-  }
-}
-
-void refuse_unused(const std::vector<EstimatorEntry>& given,
-                   const std::vector<EstimatorEntry>& used) {
-  for (const EstimatorEntry& entry : given) {
-    if (entry_named(used, entry.name)) continue;
-    refuse(entry.where,
-           "`{0}` is used nowhere, only {1}: write `{0}` in its place, or leave the option out",
-           entry.name, quoted(mapped(used, &EstimatorEntry::name)));
   }
 }
 
@@ -151,16 +129,28 @@ std::vector<EstimatorEntry> estimators_of(const std::vector<Source>& sources,
                                           const std::vector<std::string>& options,
                                           std::optional<std::uint64_t> primaries,
                                           const std::string& command) {
-  const std::vector<EstimatorEntry> given = parse_options(options);
+  std::vector<EstimatorEntry> given;
   std::string repeated = command;
-  for (const std::string& option : options) repeated += " --estimator " + shell_quoted(option);
+  for (const std::string& option : options) {
+    EstimatorEntry entry = parse_estimator_option(option);
+    if (entry_named(given, entry.name)) {
+      refuse(entry.where, "a second estimator named `{}`", entry.name);
+    }
+    given.push_back(std::move(entry));
+    repeated += " --estimator " + shell_quoted(option);
+  }
   std::vector<EstimatorEntry> used;
   for (const Source& source : sources) {
     if (entry_named(used, source.estimator)) continue;
     used.push_back(entry_for(source, given, repeated));
     if (primaries) used.back().primaries = primaries;
   }
-  refuse_unused(given, used);
+  for (const EstimatorEntry& entry : given) {
+    if (entry_named(used, entry.name)) continue;
+    refuse(entry.where,
+           "`{0}` is used nowhere, only {1}: write `{0}` in its place, or leave the option out",
+           entry.name, quoted(mapped(used, &EstimatorEntry::name)));
+  }
   return used;
 }
 

@@ -57,13 +57,6 @@ struct Layer {
   recorded::PictureChannels of_reference;
 };
 
-bool is_one(const PictureFile& file, const std::string& name) {
-  const PictureWindow window = file.window(std::span(&name, 1));
-  std::vector<float> texels(window.width * window.height);
-  file.read(std::span(&name, 1), texels);
-  return std::ranges::all_of(texels, [](float x) { return x == 1; });
-}
-
 /// The patterns of the usual channels, with alpha if it tells anything: if it is not 1 throughout.
 std::string usual_with_alpha(const Pictures& candidate, const Pictures& reference) {
   const recorded::PictureChannels usual = recorded::choose_channels(*candidate.first, "usual");
@@ -71,7 +64,11 @@ std::string usual_with_alpha(const Pictures& candidate, const Pictures& referenc
   const std::string layer = recorded::layer_of(usual.names[0]);
   const std::string alpha = layer.empty() ? "A" : layer + ".A";
   const auto tells = [&](const PictureFile& file) {
-    return file.has({alpha}) && !is_one(file, alpha);
+    if (!file.has({alpha})) return false;
+    const PictureWindow window = file.window(std::span(&alpha, 1));
+    std::vector<float> texels(window.width * window.height);
+    file.read(std::span(&alpha, 1), texels);
+    return std::ranges::any_of(texels, [](float x) { return x != 1; });
   };
   if (!tells(*candidate.first) && !tells(*reference.first)) return "usual";
   if (recorded::usual_moments(*reference.first, usual).any()) return "usual";
