@@ -170,14 +170,6 @@ using Kind = Token::Kind;
 
 std::vector<std::string> quantity_words() { return mapped(quantities(), &QuantityRow::word); }
 
-/// Words that may begin the right side.
-std::vector<std::string> side_words() {
-  std::vector<std::string> words = quantity_words();
-  words.insert(words.end(), {"analytic", "density"});
-  for (const LawInformation& law : laws()) words.push_back(law.name);
-  return words;
-}
-
 Source source_of(const Token& word) {
   const std::size_t dot = std::min(word.text.find('.'), word.text.size());
   return {.estimator = word.text.substr(0, dot),
@@ -368,7 +360,10 @@ class Parser {
     if (token.text.starts_with("pi/")) return "; a claim has no arithmetic: write the number";
     if (token.text == "pdf") return "; did you mean `density`?";
     if (token.text == "gaussian") return "; did you mean `normal(0, 1)`?";
-    const std::string near = did_you_mean(token.text, side_words());
+    std::vector<std::string> words = quantity_words();
+    words.insert(words.end(), {"analytic", "density"});
+    for (const LawInformation& law : laws()) words.push_back(law.name);
+    const std::string near = did_you_mean(token.text, words);
     if (!near.empty()) return near;
     // `mean(a) == b`: an estimator without a quantity.
     if (!lexer_.peek().is("(")) {
@@ -412,18 +407,15 @@ class Parser {
   Lexer lexer_;
 };
 
-void check_arguments(const Quantity& q) {
-  if (!q.row->of_a_probability) {
-    if (q.arguments.empty()) return;
+void check_quantity(const Quantity& q) {
+  if (!q.row->of_a_probability && !q.arguments.empty()) {
     refuse(q.where, "`{}` takes an estimator alone; only `quantile` has a number", q.row->word);
   }
-  if (q.arguments.size() == 1 && q.arguments[0] > 0 && q.arguments[0] < 1) return;
-  refuse(q.where,
-         "`quantile` takes an estimator and one probability between 0 and 1: `quantile(x, 0.5)`");
-}
-
-void check_quantity(const Quantity& q) {
-  check_arguments(q);
+  const bool has_probability = q.arguments.size() == 1 && q.arguments[0] > 0 && q.arguments[0] < 1;
+  if (q.row->of_a_probability && !has_probability) {
+    refuse(q.where,
+           "`quantile` takes an estimator and one probability between 0 and 1: `quantile(x, 0.5)`");
+  }
   if (q.row->over_all_channels && !q.source.part.empty()) {
     refuse(q.source.where, "`{}` is over all channels; name the estimator alone, or use `variance`",
            q.row->word);
