@@ -20,17 +20,6 @@ const ChannelOutcome* outcome_of(const TestOutcome& test, std::size_t channel) {
   return found == test.channels.end() ? nullptr : &*found;
 }
 
-/// Why a test gives nothing that nights could pool; "" if it does.
-std::string obstacle(const TestOutcome& test) {
-  if (test.verdict == reports::Verdict::error) return "its verdict is error";
-  if (!test.plan.invalid.empty()) return "its pilots leave it invalid";
-  const std::vector<Subject>& sides = test.question.subjects;
-  if (std::ranges::all_of(sides, is_recorded)) {
-    return "its data are recorded: the same in every run";
-  }
-  return "";
-}
-
 // The kurtosis of squared normal values, for families that do not tell.
 constexpr double usual_kurtosis = 15;
 
@@ -149,15 +138,6 @@ void add_night(LedgerBook& book, const LedgerRun& ledger, const Entry& entry,
   result.note = "the claim, its margins or parameters are new, or it was begun anew: a new series";
 }
 
-void read_moved(reports::LedgerSeries& result, const LedgerSeries& series,
-                const std::vector<LedgerNight>& nights, const stats::Range& claimed) {
-  const Moved change = moved(series, nights, claimed);
-  result.moved = nights[change.night].date;
-  result.moved_commit = nights[change.night].commit;
-  result.moved_from = nights[change.from].date;
-  result.moved_to = nights[change.to].date;
-}
-
 /// An estimate as the report shows it, added to those before it.
 void read_estimate(reports::LedgerNight& result, const stats::NightEstimate& night,
                    stats::PooledNights& pooled) {
@@ -198,16 +178,14 @@ void read_nights(reports::LedgerSeries& result, const LedgerBook& book, std::siz
     result.reference_error = *series.reference_error;
   }
   if (const auto alarm = stats::first_alarm(path, alpha)) {
+    const Moved change = moved(series, nights, claimed);
     result.alarm = true;
     result.since = nights[*alarm].date;
-    read_moved(result, series, nights, claimed);
+    result.moved = nights[change.night].date;
+    result.moved_commit = nights[change.night].commit;
+    result.moved_from = nights[change.from].date;
+    result.moved_to = nights[change.to].date;
   }
-}
-
-/// The name of theta, if the test has one.
-std::string quantity_of(const TestOutcome& test) {
-  if (test.channels.empty() || test.channels[0].evidence.distance) return "";
-  return test.channels[0].effect.quantity;
 }
 
 reports::LedgerSeries keep(LedgerBook& book, const LedgerRun& ledger, const Entry& entry) {
@@ -220,8 +198,9 @@ reports::LedgerSeries keep(LedgerBook& book, const LedgerRun& ledger, const Entr
       .test = series.test,
       .channel = series.channel,
       .series = series.hash,
-      .quantity = quantity_of(test),
       .relative = test.question.theta->is_relative(test.question, entry.channel)};
+  if (!test.channels.empty() && !test.channels[0].evidence.distance)
+    result.quantity = test.channels[0].effect.quantity;
   const NightEvidence night = night_evidence(entry.work, entry.channel);
   series.reference_error = night.reference_error;
   if (night.value) {
@@ -237,12 +216,16 @@ reports::LedgerSeries keep(LedgerBook& book, const LedgerRun& ledger, const Entr
 
 NightEvidence night_evidence(const TestWork& work, std::size_t channel) {
   const TestOutcome& test = work.outcome;
-  if (std::string why = obstacle(test); !why.empty()) return {.obstacle = std::move(why)};
+  const std::vector<Subject>& sides = test.question.subjects;
+  if (test.verdict == reports::Verdict::error) return {.obstacle = "its verdict is error"};
+  if (!test.plan.invalid.empty()) return {.obstacle = "its pilots leave it invalid"};
+  if (std::ranges::all_of(sides, is_recorded)) {
+    return {.obstacle = "its data are recorded: the same in every run"};
+  }
   const std::optional<DrawnTest> numbers = drawn(work);
   if (!numbers) return {.obstacle = "it was not drawn"};
   const ChannelOutcome* outcome = outcome_of(test, channel);
   if (outcome == nullptr || !outcome->evidence.distance) return of_estimate(*numbers, channel);
-  const std::vector<Subject>& sides = test.question.subjects;
   if (std::ranges::any_of(sides, is_recorded)) {
     return {.obstacle =
                 "one side is recorded, the same in every run, and distances from it do not add up"};

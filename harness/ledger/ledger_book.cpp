@@ -84,12 +84,6 @@ std::string with_check(std::string_view line, std::uint64_t hash) {
   return fmt::format("{} | {:08x}", line, hash & 0xffffffffU);
 }
 
-bool is_possible(const NightValue& value) {
-  const auto* const night = std::get_if<stats::NightEstimate>(&value);
-  if (night == nullptr) return std::get<NightLogP>(value) <= 0;
-  return night->standard_error >= 0 && night->observations > 0 && night->effective >= 1;
-}
-
 bool same_place(const LedgerSeries& a, const LedgerSeries& b) {
   return a.test == b.test && a.channel == b.channel;
 }
@@ -257,16 +251,20 @@ class LedgerReader {
     std::string word;
     fields >> word >> night.date >> word >> night.seed >> word >> night.commit >> word >> of.hash;
     fields >> word;
+    bool is_possible = false;
     if (word == "estimate") {
       auto& value = night.value.emplace<stats::NightEstimate>();
       fields >> value.difference >> word >> value.standard_error >> word >> value.observations;
       fields >> word >> value.effective;
+      is_possible = value.standard_error >= 0 && value.observations > 0 && value.effective >= 1;
     } else {
-      fields >> night.value.emplace<NightLogP>();
+      auto& log_p = night.value.emplace<NightLogP>();
+      fields >> log_p;
+      is_possible = log_p <= 0;
     }
     of.test = unquoted(fields);
     of.channel = unquoted(fields);
-    if (!is_possible(night.value)) changed();
+    if (!is_possible) changed();
     const auto series = book_.open_series(of);
     if (!series) refuse("no open series above has this night's hash and test" + mend());
     night.series = *series;
