@@ -356,12 +356,6 @@ std::string Ranks::name_of(int rank) const {
   return fmt::format("rank {}{}", rank, host.empty() ? "" : " on " + host);
 }
 
-unsigned Ranks::workers() const {
-  unsigned workers = threads_;
-  for (const Rank& rank : ranks_) workers += rank.threads;
-  return workers;
-}
-
 void Ranks::greet(const Messages::Message& message, const std::set<std::string>& names) {
   Rank& rank = ranks_[static_cast<std::size_t>(message.from)];
   Unpacker unpack(unframed(message.bytes));
@@ -457,30 +451,27 @@ bool Ranks::take_replies(Window& window) {
   }
 }
 
-void Ranks::send_batch(int rank, std::vector<std::uint64_t> slots, const Window& window) {
-  Rank& to = ranks_[static_cast<std::size_t>(rank)];
-  std::vector<NamedRecipe> recipes;
-  std::vector<Task> orders;
-  for (const std::uint64_t number : slots) {
-    const Window::Slot& slot = window.at(number);
-    const Pool& pool = window.pool(slot);
-    orders.push_back(slot.task);
-    if (!to.recipes.insert(slot.task.pool).second) continue;
-    recipes.push_back({slot.task.pool, names_.at(pool.setup()), pool.recipe()});
-  }
-  messages_.send(rank, packed(Kind::batch, next_batch_, recipes, orders));
-  batches_[next_batch_++] = {rank, round_, std::move(slots), Clock::now()};
-  ++to.batches;
-}
-
 void Ranks::give(Window& window) {
+  unsigned workers = threads_;
+  for (const Rank& rank : ranks_) workers += rank.threads;
   for (std::size_t room = 1; room <= most_batches; ++room) {  // first those that have nothing
     for (int rank = 1; rank < messages_.size(); ++rank) {
-      const Rank& to = ranks_[static_cast<std::size_t>(rank)];
+      Rank& to = ranks_[static_cast<std::size_t>(rank)];
       if (to.threads == 0 || to.batches >= room) continue;
-      std::vector<std::uint64_t> slots = window.some_for(rank, to.threads, workers());
+      std::vector<std::uint64_t> slots = window.some_for(rank, to.threads, workers);
       if (slots.empty()) return;
-      send_batch(rank, std::move(slots), window);
+      std::vector<NamedRecipe> recipes;
+      std::vector<Task> orders;
+      for (const std::uint64_t number : slots) {
+        const Window::Slot& slot = window.at(number);
+        const Pool& pool = window.pool(slot);
+        orders.push_back(slot.task);
+        if (!to.recipes.insert(slot.task.pool).second) continue;
+        recipes.push_back({slot.task.pool, names_.at(pool.setup()), pool.recipe()});
+      }
+      messages_.send(rank, packed(Kind::batch, next_batch_, recipes, orders));
+      batches_[next_batch_++] = {rank, round_, std::move(slots), Clock::now()};
+      ++to.batches;
     }
   }
 }

@@ -90,12 +90,10 @@ class Ranks final : public Executor {
   };
 
   std::string name_of(int rank) const;
-  unsigned workers() const;
   void greet(const Messages::Message& message, const std::set<std::string>& names);
   bool take_replies(Window& window);
   void take_reply(const Messages::Message& message, Window& window);
   void give(Window& window);
-  void send_batch(int rank, std::vector<std::uint64_t> slots, const Window& window);
 
   Messages& messages_;
   Identity identity_;
