@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <boost/algorithm/string/classification.hpp>
 #include <boost/algorithm/string/replace.hpp>
+#include <boost/algorithm/string/split.hpp>
 #include <boost/locale/utf.hpp>
 #include <cctype>
 #include <iterator>
@@ -227,15 +228,13 @@ std::string pad_right(std::string text, int width) {
 
 std::vector<std::string> wrap(std::string_view text, int width) {
   width = std::max(width, 2);
-  std::vector<std::string> lines;
-  for (std::size_t start = 0; start <= text.size();) {
-    const std::size_t end = std::min(text.find('\n', start), text.size());
-    std::string paragraph(text.substr(start, end - start));
-    std::replace(paragraph.begin(), paragraph.end(), '\t', ' ');
+  std::vector<std::string> paragraphs, lines;
+  boost::split(paragraphs, text, boost::is_any_of("\n"));
+  for (std::string& paragraph : paragraphs) {
+    std::ranges::replace(paragraph, '\t', ' ');
     std::string_view rest = paragraph;
     do lines.push_back(take_line(paragraph, rest, width));
     while (!rest.empty());
-    start = end + 1;
   }
   return lines;
 }
