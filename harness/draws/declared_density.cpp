@@ -14,14 +14,6 @@ namespace {
 // More panels of both coordinates together would exceed the limits of the quadrature.
 constexpr std::size_t most_panels = std::size_t{1} << 15;
 
-Panels affordable(Panels panels) {
-  while (panels.first * panels.second > most_panels) {
-    std::size_t& larger = panels.first > panels.second ? panels.first : panels.second;
-    larger = (larger + 1) / 2;
-  }
-  return panels;
-}
-
 Densities checked(const NamedSampler& named, Densities densities) {
   return [&named, densities](std::span<const Point> points, std::span<double> out) {
     const std::size_t written = densities(points, out);
@@ -144,7 +136,11 @@ bool is_impossible(const Sampler& sampler, const Point& point, double density) {
 stats::PlaneDensity plane_density(const Sampler& sampler, std::size_t marginal,
                                   std::span<const Point> drawn, Densities densities) {
   const DomainChart chart = chart_by(sampler.domain(), marginal);
-  const Panels panels = affordable(sampler.panels());
+  Panels panels = sampler.panels();
+  while (panels.first * panels.second > most_panels) {
+    std::size_t& larger = panels.first > panels.second ? panels.first : panels.second;
+    larger = (larger + 1) / 2;
+  }
   std::vector<std::array<double, 2>> at;
   std::array<std::vector<double>, 2> places;
   for (const Point& point : drawn) {
