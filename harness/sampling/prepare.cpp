@@ -29,10 +29,9 @@ std::shared_ptr<const Setup> set_up(const Entry& entry, Parameters& parameters) 
 
 /// The members of a mutant's parameters that its original knows.
 Value only(const Value& given, const std::vector<std::string>& names) {
-  std::vector<Value::Member> kept;
-  std::ranges::copy_if(given.members(), std::back_inserter(kept), [&](const auto& member) {
-    return std::ranges::count(names, member.first) > 0;
-  });
+  std::vector<Value::Member> kept = given.members();
+  std::erase_if(kept,
+                [&](const auto& member) { return std::ranges::count(names, member.first) == 0; });
   return Value::map(std::move(kept), given.where());
 }
 
