@@ -258,23 +258,20 @@ bool print_comparison(const reports::Test& now, const reports::Test& then, bool 
   return same;
 }
 
-/// The recorded test in the run planned again. std::runtime_error if it has no work now.
-TestWork& work_of(const PlannedRun& planned, const Recorded& recorded) {
-  for (const auto& suite : planned.suites) {
-    for (TestWork& work : suite->tests) {
-      if (is_of(work.outcome.question.test, recorded)) return work;
-    }
-  }
-  refuse_missing(planned, recorded);
-}
-
 /// Prints new beside recorded numbers; true if they are equal. std::runtime_error if a source can
 /// no longer be drawn.
 bool replay_test(const Loaded& run, const Recorded& recorded) {
   const std::unique_ptr<Progress> progress = make_progress(false);
   const PlannedRun planned = plan_run(run.suites, run.options, *progress);
   stop_if_interrupted();
-  TestWork& work = work_of(planned, recorded);
+  TestWork* found = nullptr;
+  for (const auto& suite : planned.suites) {
+    for (TestWork& each : suite->tests) {
+      if (is_of(each.outcome.question.test, recorded)) found = &each;
+    }
+  }
+  if (found == nullptr) refuse_missing(planned, recorded);
+  TestWork& work = *found;
   const reports::Test& then = recorded.test;
   if (!then.looks.empty() && then.planned_looks == work.outcome.plan.looks.sizes) {
     work.last_look = then.looks.size() - 1;
