@@ -52,12 +52,12 @@ stats::ImageDistance distance_of(const Question& question, const ImagePair& pair
 }
 
 /// Standard errors of what this look finds.
-void note_errors(const std::vector<stats::ChannelMeans>& means, bool relative,
-                 const ErrorShare& share, ImageOutcome& outcome) {
+void note_errors(const std::vector<stats::ChannelMeans>& means, bool relative, double alpha,
+                 double beta, ImageOutcome& outcome) {
   const stats::TypicalCell& typical = outcome.family.typical;
   const double part = typical.group.share / typical.group.count;
-  const double errors = stats::upper_normal_quantile(share.alpha * part / 2) +
-                        stats::upper_normal_quantile(share.beta);
+  const double errors =
+      stats::upper_normal_quantile(alpha * part / 2) + stats::upper_normal_quantile(beta);
   const std::vector<double> of_cells = mapped(
       typical.noise, [&](const auto& noise) { return stats::standard_error_at(noise, errors); });
   outcome.uniform_error = least_error(uniform_errors(means[0], means[1]), means[1], relative);
@@ -211,6 +211,10 @@ ChannelEvidence evidence_of_image_laws(const Seen& seen, const ImageTest& test) 
   return {std::move(evidence), std::move(outcome)};
 }
 
+double share_of_distance(const Question& question) {
+  return question.of_two() ? stats::share_of_distance : 0;
+}
+
 PlaceText place_text(const stats::ImageFinding& finding, const ImageShape& shape,
                      std::span<const float> weights) {
   const stats::Rectangle& window = finding.window;
@@ -266,7 +270,8 @@ ChannelEvidence evidence_of_images(const Seen& seen, const ImageTest& test) {
   outcome.family = std::move(look.family);
   outcome.z = std::move(look.z);
   stats::add_unseen(outcome.unseen, extent, outcome.family);
-  note_errors(look.means, relative, test.share, outcome);
+  note_errors(look.means, relative, (1 - share_of_distance(question)) * test.share.alpha,
+              test.share.beta, outcome);
   const stats::ImageFamily& family = outcome.family;
   // Differences of pairs are held against 0.
   const stats::ChannelMeans other =
@@ -275,7 +280,9 @@ ChannelEvidence evidence_of_images(const Seen& seen, const ImageTest& test) {
       .of_elements = distance,
       .hidden = std::sqrt(family.hidden_squares / distance.squared_norm),
       .hidden_of_twice = std::sqrt(family.hidden_squares_of_twice / distance.squared_norm),
-      .of_means = stats::distances_of_means(look.means[0], other, extent, distance.squared_norm)};
+      .of_means = stats::distances_of_means(look.means[0], other, extent, distance.squared_norm),
+      .log_p_of_places = family.log_p,
+      .share = share_of_distance(question)};
   const TestEntry& entry = *question.test;
   const bool within = entry.claim.relation == Relation::within;
   if (within || entry.detect) {
@@ -287,7 +294,7 @@ ChannelEvidence evidence_of_images(const Seen& seen, const ImageTest& test) {
       .statistic = family.winner.z,
       .distribution = {"image-family", {static_cast<double>(family.tested)}},
       .log_p_lower = 0,
-      .log_p_upper = family.log_p};
+      .log_p_upper = stats::theta_test(images, 0).log_p_upper};
   Evidence evidence{
       .estimate = images.estimate(),
       .at = [=](double theta) { return theta > 0 ? stats::theta_test(images, theta) : equal; },

@@ -2,8 +2,8 @@
 
 // Evidence about images. theta is the size of their difference over all elements:
 // `||E a - E b|| / ||E b||`, or the root mean square for absolute margins.
-// The family of cells of every size and alternating sums tests theta = 0 (image_pyramid.h).
-// The unbiased squared bias tests other values (image_equivalence.h).
+// The family of cells of every size and alternating sums tests theta = 0 (image_pyramid.h). The
+// unbiased squared bias tests every value (image_equivalence.h).
 
 #include <functional>
 #include <optional>
@@ -49,6 +49,9 @@ ChannelEvidence evidence_of_images(const Seen& seen, const ImageTest& test);
 
 /// Evidence that two images have different laws (stats/images/image_law.h). Theta is 0 or not.
 ChannelEvidence evidence_of_image_laws(const Seen& seen, const ImageTest& test);
+
+/// The squared bias's share of alpha where theta = 0.
+double share_of_distance(const Question& question);
 
 /// Indices of a window's elements in a question.
 std::vector<std::size_t> elements_of(const stats::ImageFinding& finding, const ImageShape& shape);

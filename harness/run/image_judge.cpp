@@ -140,6 +140,10 @@ ImageViews images_of(const DrawnTest& test, std::size_t subject) {
   return {test.samples[subject].images(), test.outcome.question.subjects[subject].channels};
 }
 
+bool is_told_by_place(const TestOutcome& outcome, const ChannelOutcome& channel) {
+  return channel.image && channel.image->family.log_p <= std::log(outcome.place.share.alpha);
+}
+
 std::optional<PlaceEffect> effect_at_place(const DrawnTest& test) {
   const TestOutcome& outcome = test.outcome;
   const Question& question = outcome.question;
@@ -217,7 +221,7 @@ std::string means_where_it_differs(const DrawnTest& test) {
         one ? "at" : "the first at",
         element_place(*test.outcome.question.subjects[0].image, unseen[0].element));
   }
-  if (!fails) return constants;
+  if (!fails || !is_told_by_place(test.outcome, channels[0])) return constants;
   const std::optional<PlaceEffect> effect = effect_at_place(test);
   if (!effect) return constants;
   const bool relative = effect->other != 0;
@@ -242,9 +246,9 @@ void note_detectable(const TestOutcome& outcome, const TestSize& size, ChannelOu
   if (channel.regions.relation == Relation::within || channel.regions.allow > 0) return;
   const double shrunk =
       std::sqrt(static_cast<double>(outcome.secondaries()) / static_cast<double>(size.secondaries));
+  const double alpha = (1 - share_of_distance(outcome.question)) * size.share.alpha;
   const auto found = [&](double part, double error) -> std::optional<double> {
-    const double z =
-        critical_value(size.share.alpha * part, true) + critical_value(size.share.beta, false);
+    const double z = critical_value(alpha * part, true) + critical_value(size.share.beta, false);
     const double least = z * error * shrunk;
     if (!std::isfinite(least) || !(least > 0)) return {};
     return least;

@@ -16,6 +16,9 @@ ImageTest image_test(const DrawnTest& test);
 /// The observations of this look: the subject's elements of each.
 ImageViews images_of(const DrawnTest& test, std::size_t subject);
 
+/// True if a place of the images rejects the claim, and not their distance over all pixels alone.
+bool is_told_by_place(const TestOutcome& outcome, const ChannelOutcome& channel);
+
 /// The mean difference over the cell that speaks most against equality, in units of the images and
 /// weighted as the test weighs it. The cell was searched for: the interval is one of those that
 /// hold the differences of all cells at once.

@@ -6,6 +6,7 @@
 
 #include "harness/plan/gate_text.h"
 #include "harness/run/evaluate.h"
+#include "harness/run/image_judge.h"
 #include "harness/theta/ask.h"
 #include "harness/theta/theta.h"
 #include "reports/words/describe.h"
@@ -149,7 +150,7 @@ std::string passed_proof(const TestOutcome& outcome, const ChannelOutcome& chann
 }
 
 Reason failed(const TestOutcome& outcome, const ChannelOutcome& channel) {
-  if (channel.image) {
+  if (is_told_by_place(outcome, channel)) {
     const stats::ImageFamily& family = channel.image->family;
     const auto [place, size] =
         place_text(family.winner, *outcome.question.subjects[0].image, family.weights);

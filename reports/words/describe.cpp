@@ -193,8 +193,10 @@ Channel deciding_channel(const Test& test) {
 }
 
 bool is_told_by_place(const Test& test) {
-  return test.image && test.verdict == Verdict::fail && !test.image->winner.place.empty() &&
-         !is_proof(test);
+  if (!test.image || test.verdict != Verdict::fail || is_proof(test)) return false;
+  const ImageFinding& winner = test.image->winner;
+  return !winner.place.empty() &&
+         winner.log10_p_adjusted.value_or(-HUGE_VAL) <= std::log10(test.alpha.value_or(1));
 }
 
 Effect effect_in_sentence(const Test& test) {

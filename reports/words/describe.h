@@ -40,8 +40,8 @@ Channel worst_channel(const Test&);
 /// channel most against the claim. Else it is the channel whose forbidden region is excluded least.
 Channel deciding_channel(const Test&);
 
-/// A failed claim that pictures are equal is told by the place that differs most. A proof is about
-/// all pixels together.
+/// A failed claim that pictures are equal is told by the place that differs most, if this place
+/// rejects it. A proof is about all pixels together.
 bool is_told_by_place(const Test&);
 
 /// The effect that the sentence on a test shows: of the finding in an image that fails, else of the

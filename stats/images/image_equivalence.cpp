@@ -313,6 +313,8 @@ TestResult test_of_squares(const ThetaOfImages& theta, double margin) {
   };
   const double least = margin - theta.hidden;
   TestResult result = at(theta.of_elements, margin + theta.hidden);
+  if (theta.share > 0)
+    result.log_p_upper = std::min(0.0, result.log_p_upper - std::log(theta.share));
   result.log_p_lower = std::max(at(at_least_zero, least).log_p_lower, log_p_of_means(theta, least));
   return result;
 }
@@ -339,8 +341,12 @@ std::vector<Reference> distances_of_means(const ChannelMeans& a, const ChannelMe
 }
 
 TestResult theta_test(const ThetaOfImages& theta, double margin) {
-  return theta.exact() ? without_error(theta.estimate() - margin, "exact")
-                       : test_of_squares(theta, margin);
+  TestResult result = theta.exact() ? without_error(theta.estimate() - margin, "exact")
+                                    : test_of_squares(theta, margin);
+  if (margin > 0) return result;
+  const double of_places = std::min(0.0, theta.log_p_of_places - std::log1p(-theta.share));
+  result.log_p_upper = theta.share > 0 ? std::min(result.log_p_upper, of_places) : of_places;
+  return result;
 }
 
 Interval theta_interval(const ThetaOfImages& theta, double confidence) {
