@@ -46,19 +46,15 @@ std::shared_ptr<const Setup> antithetic(Parameters&) {
 double control(double x) { return 1 + x * (3 + 4.5 * x); }
 constexpr double control_integral = 4;
 
-double controlled_variance(double c) {
+std::shared_ptr<const Setup> control_variate(Parameters& parameters) {
+  const double c = parameters.number("coefficient");
   const double mean = integral();
   const double of_f = integral_of_square() - mean * mean;
   const double of_g = 104.0 / 5 - control_integral * control_integral;
   const double covariance = (11 * std::exp(3) - 2) / 6 - mean * control_integral;
-  return of_f - 2 * c * covariance + c * c * of_g;
-}
-
-std::shared_ptr<const Setup> control_variate(Parameters& parameters) {
-  const double c = parameters.number("coefficient");
   // f runs from 1 to e^3, g - 4 from -3 to 4.5.
-  return averaging(Channel{.mean = integral(),
-                           .variance = controlled_variance(c),
+  return averaging(Channel{.mean = mean,
+                           .variance = of_f - 2 * c * covariance + c * c * of_g,
                            .low = 1 - std::max(4.5 * c, -3 * c),
                            .high = std::exp(3) + std::max(3 * c, -4.5 * c)},
                    [c](Stream& random) {
@@ -75,13 +71,6 @@ double near_point(Stream& random) {
   return std::min(std::pow(1 + 31 * random.uniform(), 0.2) - 1, 1.0);
 }
 
-std::shared_ptr<const Sampler> near_density_sampler() {
-  return sampler_of({.domain = Domain::interval,
-                     .point = [](Stream& random) { return Point{near_point(random)}; },
-                     .density = [](const Point& p) { return near_density(p[0]); },
-                     .evaluate = [](const Point& p) { return integrand(p[0]); }});
-}
-
 double antiderivative(double t) {
   return -std::exp(6 * t) * (1 / (3 * t * t * t) + 1 / (t * t) + 6 / t) + 36 * std::expint(6 * t);
 }
@@ -90,53 +79,50 @@ std::shared_ptr<const Setup> importance(Parameters&) {
   const double mean = integral();
   const double square = 31 * std::exp(-6) / 5 * (antiderivative(2) - antiderivative(1));
   // X is smallest at x = 1/3, where (ln f)' = (ln q)' = 3, and largest at x = 1.
-  return averaging(Channel{.mean = mean,
-                           .variance = square - mean * mean,
-                           .low = integrand(1.0 / 3) / near_density(1.0 / 3),
-                           .high = integrand(1) / near_density(1)},
-                   [](Stream& random) {
-                     const double x = near_point(random);
-                     return integrand(x) / near_density(x);
-                   },
-                   {{"x", near_density_sampler()}});
+  return averaging(
+      Channel{.mean = mean,
+              .variance = square - mean * mean,
+              .low = integrand(1.0 / 3) / near_density(1.0 / 3),
+              .high = integrand(1) / near_density(1)},
+      [](Stream& random) {
+        const double x = near_point(random);
+        return integrand(x) / near_density(x);
+      },
+      {{"x", sampler_of({.domain = Domain::interval,
+                         .point = [](Stream& random) { return Point{near_point(random)}; },
+                         .density = [](const Point& p) { return near_density(p[0]); },
+                         .evaluate = [](const Point& p) { return integrand(p[0]); }})}});
 }
 
 // Var X = (1/k^2) sum_j Var_j, Var_j that of f at a uniform point of stratum j.
-
-// Var f(x), x uniform in [a, b].
-double variance_between(double a, double b) {
-  const double mean = std::exp(3 * a) * std::expm1(3 * (b - a)) / (3 * (b - a));
-  const double square = std::exp(6 * a) * std::expm1(6 * (b - a)) / (6 * (b - a));
-  return square - mean * mean;
-}
-
 double stratified_variance(std::uint64_t strata) {
   const double k = static_cast<double>(strata);
   double sum = 0;
   for (std::uint64_t j = 0; j < strata; ++j) {
-    sum += variance_between(static_cast<double>(j) / k, static_cast<double>(j + 1) / k);
+    const double a = static_cast<double>(j) / k;
+    const double width = static_cast<double>(j + 1) / k - a;
+    const double mean = std::exp(3 * a) * std::expm1(3 * width) / (3 * width);
+    const double square = std::exp(6 * a) * std::expm1(6 * width) / (6 * width);
+    sum += square - mean * mean;
   }
   return sum / (k * k);
 }
 
-double stratified_mean(std::uint64_t strata, Stream& random, Cost& cost) {
-  const double k = static_cast<double>(strata);
-  double sum = 0;
-  for (std::uint64_t j = 0; j < strata; ++j) {
-    sum += integrand((static_cast<double>(j) + random.uniform()) / k);
-  }
-  cost.samples += strata - 1;  // the first is counted as the primary itself
-  return sum / k;
-}
-
 std::shared_ptr<const Setup> stratified(Parameters& parameters) {
   const std::uint64_t strata = parameters.count("strata");
-  return averaging(
-      Channel{.mean = integral(),
-              .variance = stratified_variance(strata),
-              .low = 1,
-              .high = std::exp(3)},
-      [strata](Stream& random, Cost& cost) { return stratified_mean(strata, random, cost); });
+  return averaging(Channel{.mean = integral(),
+                           .variance = stratified_variance(strata),
+                           .low = 1,
+                           .high = std::exp(3)},
+                   [strata](Stream& random, Cost& cost) {
+                     const double k = static_cast<double>(strata);
+                     double sum = 0;
+                     for (std::uint64_t j = 0; j < strata; ++j) {
+                       sum += integrand((static_cast<double>(j) + random.uniform()) / k);
+                     }
+                     cost.samples += strata - 1;  // the first is counted as the primary itself
+                     return sum / k;
+                   });
 }
 
 std::shared_ptr<const Setup> zero_variance(Parameters&) {

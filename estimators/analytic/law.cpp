@@ -20,34 +20,10 @@ namespace {
 bool is_probability(double p, double) { return p > 0 && p < 1; }
 bool is_positive(double a, double) { return a > 0; }
 bool has_scale(double, double s) { return s > 0; }
-bool is_interval(double a, double b) { return a < b; }
 
 double draw_exponential(Stream& random) { return -std::log(random.uniform_open()); }
 
 constexpr double root_two_pi = 2.5066282746310002;
-
-double normal_density(double x, double mean, double sd) {
-  const double z = (x - mean) / sd;
-  return std::exp(-z * z / 2) / (sd * root_two_pi);
-}
-
-double lognormal_density(double x, double location, double scale) {
-  const double z = (std::log(x) - location) / scale;
-  return x > 0 ? std::exp(-z * z / 2) / (scale * root_two_pi * x) : 0;
-}
-
-// Bailey (1994): sqrt(nu (u^(-2 / nu) - 1)) cos(2 pi v) has the law, for every nu.
-double draw_student_t(Stream& random, double nu, double) {
-  const double radius = std::sqrt(nu * std::expm1(-2 / nu * std::log(random.uniform_open())));
-  return radius * std::cos(2 * std::numbers::pi * random.uniform());
-}
-
-double student_t_density(double x, double nu, double) {
-  const double half = (nu + 1) / 2;
-  const double log_constant =
-      std::lgamma(half) - std::lgamma(nu / 2) - std::log(std::numbers::pi * nu) / 2;
-  return std::exp(log_constant - half * std::log1p(x * x / nu));
-}
 
 }  // namespace
 
@@ -82,7 +58,10 @@ constexpr std::array<Law::Family, 8> families{{
      [](Stream& random, double m, double s) {
        return std::exp(NormalLaw{m, s}(random));
      },
-     lognormal_density,
+     [](double x, double m, double s) {
+       const double z = (std::log(x) - m) / s;
+       return x > 0 ? std::exp(-z * z / 2) / (s * root_two_pi * x) : 0;
+     },
      [](double m, double s) -> Law::Facts {
        return {std::exp(m + s * s / 2), std::expm1(s * s) * std::exp(2 * m + s * s), 0};
      }},
@@ -90,7 +69,10 @@ constexpr std::array<Law::Family, 8> families{{
      [](Stream& random, double mean, double sd) {
        return NormalLaw{mean, sd}(random);
      },
-     normal_density,
+     [](double x, double mean, double sd) {
+       const double z = (x - mean) / sd;
+       return std::exp(-z * z / 2) / (sd * root_two_pi);
+     },
      [](double mean, double sd) -> Law::Facts {
        return {mean, sd * sd};
      }},
@@ -103,13 +85,24 @@ constexpr std::array<Law::Family, 8> families{{
        return {a > 1 ? std::optional(mean) : std::nullopt,
                a > 2 ? std::optional(mean * mean / a / (a - 2)) : std::nullopt, s};
      }},
-    {"student_t", "student_t(freedom)", 1, "freedom must be above 0", is_positive, draw_student_t,
-     student_t_density,
+    {"student_t", "student_t(freedom)", 1, "freedom must be above 0", is_positive,
+     // Bailey (1994): sqrt(nu (u^(-2 / nu) - 1)) cos(2 pi v) has the law, for every nu.
+     [](Stream& random, double nu, double) {
+       const double radius = std::sqrt(nu * std::expm1(-2 / nu * std::log(random.uniform_open())));
+       return radius * std::cos(2 * std::numbers::pi * random.uniform());
+     },
+     [](double x, double nu, double) {
+       const double half = (nu + 1) / 2;
+       const double log_constant =
+           std::lgamma(half) - std::lgamma(nu / 2) - std::log(std::numbers::pi * nu) / 2;
+       return std::exp(log_constant - half * std::log1p(x * x / nu));
+     },
      [](double nu, double) -> Law::Facts {
        return {nu > 1 ? std::optional(0.0) : std::nullopt,
                nu > 2 ? std::optional(nu / (nu - 2)) : std::nullopt};
      }},
-    {"uniform", "uniform(low, high)", 2, "low must be below high", is_interval,
+    {"uniform", "uniform(low, high)", 2, "low must be below high",
+     [](double a, double b) { return a < b; },
      [](Stream& random, double a, double b) { return a + (b - a) * random.uniform(); },
      [](double x, double a, double b) { return x < a || x > b ? 0 : 1 / (b - a); },
      [](double a, double b) -> Law::Facts {

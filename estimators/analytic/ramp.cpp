@@ -16,12 +16,6 @@ namespace {
 using analytic::Law;
 using analytic::Variable;
 
-/// The variable of this law with another mean and deviation.
-Variable rescaled(const Law& law, double mean, double deviation) {
-  const double scale = deviation / std::sqrt(*law.facts().variance);
-  return {law, mean - scale * *law.facts().mean, scale};
-}
-
 std::shared_ptr<const Setup> prepare(Parameters& parameters) {
   constexpr std::array<double, 3> colour = {1, 0.8, 0.6};
   const std::size_t width = parameters.count("width");
@@ -36,8 +30,8 @@ std::shared_ptr<const Setup> prepare(Parameters& parameters) {
     const std::size_t component = i % parts.shape.components.size();
     const double column = static_cast<double>(i / parts.shape.components.size());
     const double mean = (1 + 9 * column / static_cast<double>(width - 1)) * colour[component];
-    const double deviation = mean * spread;
-    const Variable pixel = rescaled(law, mean, deviation);
+    const double scale = mean * spread / std::sqrt(*law.facts().variance);
+    const Variable pixel{law, mean - scale * *law.facts().mean, scale};
     parts.elements.push_back(channel_of(pixel));
     parts.primaries.push_back(pixel);
   }

@@ -15,14 +15,11 @@ namespace {
 constexpr double least_index = 1.34;
 constexpr double least_index_of_variance = 2.67;
 
-std::optional<double> variance(double a) {
-  if (a < least_index_of_variance) return {};
-  return a / ((a - 1) * (a - 1) * (a - 2));
-}
-
 std::shared_ptr<const Setup> heavy_tail(Parameters& parameters) {
   const double a = parameters.number("index");
-  return averaging(Channel{.mean = a / (a - 1), .variance = variance(a), .low = 1},
+  Channel channel{.mean = a / (a - 1), .low = 1};
+  if (a >= least_index_of_variance) channel.variance = a / ((a - 1) * (a - 1) * (a - 2));
+  return averaging(std::move(channel),
                    [a](Stream& random) { return std::pow(random.uniform_open(), -1 / a); });
 }
 

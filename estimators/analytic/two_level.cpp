@@ -12,15 +12,6 @@ namespace assay::plugins {
 
 namespace {
 
-double primary(double splitting, Stream& random, double& children) {
-  const double u = random.uniform();
-  const double count = std::floor(splitting + random.uniform());
-  double sum = 0;
-  for (double i = 0; i < count; ++i) sum -= std::log(random.uniform_open());
-  children += count;
-  return 1 + u + 4 * u * u / splitting * sum;
-}
-
 std::shared_ptr<const Setup> prepare(Parameters& given) {
   const double s = given.number("splitting");
   const double whole = std::floor(s);
@@ -40,7 +31,12 @@ std::shared_ptr<const Setup> prepare(Parameters& given) {
                      double value = 0;
                      double children = 0;
                      for (std::uint64_t i = 0; i < primaries; ++i) {
-                       value += primary(s, random, children);
+                       const double u = random.uniform();
+                       const double count = std::floor(s + random.uniform());
+                       double sum = 0;
+                       for (double k = 0; k < count; ++k) sum -= std::log(random.uniform_open());
+                       children += count;
+                       value += 1 + u + 4 * u * u / s * sum;
                      }
                      out[0] = value / static_cast<double>(primaries);
                      out[1] = children / static_cast<double>(primaries);
