@@ -59,35 +59,30 @@ Channel channel(const render::BrdfIntegrals& integrals, double second_moment, do
           .high = bound};
 }
 
-// f cos_o / (p / mass) <= mass times the bound of f cos_o / p.
-std::shared_ptr<const Setup> by_density(SharedBrdf brdf, const render::BrdfIntegrals& i) {
-  return albedo(channel(i, i.mass * i.second_moment, i.mass * brdf->weight_bound()),
-                rejection_sampler(brdf, Target::density, i.mass));
-}
-
-// f cos_o / (f / B) = B cos_o <= B, of second moment B^2 E[cos_o^2] = B times that of f.
-std::shared_ptr<const Setup> by_brdf(SharedBrdf brdf, const render::BrdfIntegrals& i) {
-  return albedo(channel(i, i.brdf * i.cosine_moment, i.brdf),
-                rejection_sampler(brdf, Target::brdf, i.brdf));
-}
-
-// f cos_o / (f cos_o / albedo): the albedo whatever is drawn, to rounding.
-std::shared_ptr<const Setup> by_brdf_cosine(SharedBrdf brdf, const render::BrdfIntegrals& i) {
-  // A weight is off by a few units in the last place, a sum of many primaries by more.
+/// Reads `sampler` and prepares that one. Mean and variance come from quadrature.
+template <class Brdf>
+std::shared_ptr<const Setup> prepare_albedo(Parameters& parameters) {
+  const SharedBrdf brdf = read<Brdf>(parameters);
+  const std::string kind = parameters.string("sampler");
+  if (kind == "published") return albedo(published_channel(*brdf), published_sampler(brdf));
+  const render::BrdfIntegrals i = integrate(*brdf);
+  if (kind == "density_rejection") {
+    // f cos_o / (p / mass) <= mass times the bound of f cos_o / p.
+    return albedo(channel(i, i.mass * i.second_moment, i.mass * brdf->weight_bound()),
+                  rejection_sampler(brdf, Target::density, i.mass));
+  }
+  if (kind == "brdf_rejection") {
+    // f cos_o / (f / B) = B cos_o <= B, of second moment B^2 E[cos_o^2] = B times that of f.
+    return albedo(channel(i, i.brdf * i.cosine_moment, i.brdf),
+                  rejection_sampler(brdf, Target::brdf, i.brdf));
+  }
+  // f cos_o / (f cos_o / albedo): the albedo whatever is drawn, to rounding. A weight is off by a
+  // few units in the last place, a sum of many primaries by more.
   const double rounding = i.albedo * 0x1p-40;
   Channel constant = channel(i, i.albedo * i.albedo, i.albedo + rounding);
   constant.low = i.albedo - rounding;
   constant.rounding = 2 * rounding;
   return albedo(constant, rejection_sampler(brdf, Target::brdf_cosine, i.albedo));
-}
-
-/// Reads `sampler` and prepares that one. Mean and variance come from quadrature.
-std::shared_ptr<const Setup> prepare_albedo(SharedBrdf brdf, Parameters& parameters) {
-  const std::string kind = parameters.string("sampler");
-  if (kind == "published") return albedo(published_channel(*brdf), published_sampler(brdf));
-  const render::BrdfIntegrals integrals = integrate(*brdf);
-  if (kind == "density_rejection") return by_density(brdf, integrals);
-  return kind == "brdf_rejection" ? by_brdf(brdf, integrals) : by_brdf_cosine(brdf, integrals);
 }
 
 std::vector<ParameterInformation> incident_parameters() {
@@ -160,9 +155,7 @@ std::vector<Entry> brdf_albedo() {
             "the albedo is 0.373217. The rejection samplers propose cos_o = xi^2 and are "
             "normalised by quadrature.",
         .parameters = joined(brdf::ashikhmin_shirley_parameters(), {brdf::sampler_parameter()})},
-       [](Parameters& given) {
-         return brdf::prepare_albedo(brdf::ashikhmin_shirley(given), given);
-       }},
+       brdf::prepare_albedo<render::AshikhminShirley>},
       {{.name = "brdf/ward",
         .summary = "Directional albedo of Ward's anisotropic reflectance.",
         .description =
@@ -175,7 +168,7 @@ std::vector<Entry> brdf_albedo() {
             "the albedo is 0.564185. The rejection samplers propose cos_o = xi^2, because f is "
             "unbounded where w_o grazes the surface, and are normalised by quadrature.",
         .parameters = joined(brdf::ward_parameters(), {brdf::sampler_parameter()})},
-       [](Parameters& given) { return brdf::prepare_albedo(brdf::ward(given), given); }}};
+       brdf::prepare_albedo<render::Ward>}};
 }
 
 }  // namespace assay::plugins

@@ -4,6 +4,7 @@
 // directional albedo as the estimator.
 
 #include <memory>
+#include <type_traits>
 #include <vector>
 
 #include "estimators/estimator.h"
@@ -40,24 +41,22 @@ inline render::Angles read_incident(Parameters& given) {
 
 /// nu, nv, reflectance, theta_i, phi_i.
 std::vector<ParameterInformation> ashikhmin_shirley_parameters();
-
-/// Reads them; `Brdf` is constructible as AshikhminShirley is.
-template <class Brdf = render::AshikhminShirley>
-std::shared_ptr<const Brdf> ashikhmin_shirley(Parameters& given) {
-  return std::make_shared<Brdf>(
-      typename Brdf::Material{.exponents = {.u = given.number("nu"), .v = given.number("nv")},
-                              .reflectance = given.number("reflectance")},
-      read_incident(given));
-}
-
 /// alpha_x, alpha_y, theta_i, phi_i.
 std::vector<ParameterInformation> ward_parameters();
-/// Reads them; `Brdf` is constructible as Ward is.
-template <class Brdf = render::Ward>
-std::shared_ptr<const Brdf> ward(Parameters& given) {
-  return std::make_shared<Brdf>(
-      render::Roughness{.x = given.number("alpha_x"), .y = given.number("alpha_y")},
-      read_incident(given));
+
+/// Reads those of the one that `Brdf` is or derives from; it is constructible as that one is.
+template <class Brdf>
+std::shared_ptr<const Brdf> read(Parameters& given) {
+  if constexpr (std::is_base_of_v<render::Ward, Brdf>) {
+    return std::make_shared<Brdf>(
+        render::Roughness{.x = given.number("alpha_x"), .y = given.number("alpha_y")},
+        read_incident(given));
+  } else {
+    return std::make_shared<Brdf>(
+        typename Brdf::Material{.exponents = {.u = given.number("nu"), .v = given.number("nv")},
+                                .reflectance = given.number("reflectance")},
+        read_incident(given));
+  }
 }
 
 }  // namespace assay::brdf

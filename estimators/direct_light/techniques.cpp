@@ -97,11 +97,11 @@ SharedReflectance read_reflectance(Parameters& given) {
   };
   if (kind == "ward") {
     Parameters ward = parameters(brdf::ward_parameters());
-    return std::make_shared<Glossy>(brdf::ward(ward));
+    return std::make_shared<Glossy>(brdf::read<render::Ward>(ward));
   }
   if (kind == "ashikhmin_shirley") {
     Parameters ashikhmin_shirley = parameters(brdf::ashikhmin_shirley_parameters());
-    return std::make_shared<Glossy>(brdf::ashikhmin_shirley(ashikhmin_shirley));
+    return std::make_shared<Glossy>(brdf::read<render::AshikhminShirley>(ashikhmin_shirley));
   }
   Parameters lambert =
       parameters({number_parameter("albedo", "reflected part of the light", "", {0, 1})});

@@ -116,12 +116,6 @@ SamplerDraw mirrored(const Sampler& original, Stream& random) {
   return draw;
 }
 
-std::shared_ptr<const Setup> mutated(Parameters& given, const render::HalfVectorBrdf& original,
-                                     std::shared_ptr<const Sampler> broken) {
-  given.string("sampler");
-  return brdf::albedo(only_mean(brdf::published_channel(original)), std::move(broken));
-}
-
 struct Defect {
   const char* name;
   const char* what;
@@ -129,47 +123,36 @@ struct Defect {
   Density density = &Sampler::density;
 };
 
-// The defects are in the published sampler, the only choice.
-Entry entry(const char* original, const Defect& defect,
-            std::function<std::shared_ptr<const Setup>(Parameters&)> prepare) {
+// The defects are in the published sampler, the only choice. `broken` makes the sampler that has
+// it from the sound reflectance.
+template <class Sound>
+Entry entry(const Defect& defect, const auto& broken) {
   ParameterInformation sampler = brdf::sampler_parameter();
   sampler.summary = "the one that has the defect";
   sampler.choices = {"published"};
-  return mutant({defect.name, original, defect.what, {sampler}}, std::move(prepare));
-}
-
-// A mutant of one is one.
-template <class Brdf>
-constexpr bool is_ward = std::is_base_of_v<Ward, Brdf>;
-
-template <class Brdf>
-constexpr const char* original_of = is_ward<Brdf> ? "brdf/ward" : "brdf/ashikhmin_shirley";
-
-template <class Brdf>
-auto read_brdf(Parameters& given) {
-  if constexpr (is_ward<Brdf>) {
-    return brdf::ward<Brdf>(given);
-  } else {
-    return brdf::ashikhmin_shirley<Brdf>(given);
-  }
+  const bool is_ward = std::is_same_v<Sound, Ward>;
+  return mutant(
+      {defect.name, is_ward ? "brdf/ward" : "brdf/ashikhmin_shirley", defect.what, {sampler}},
+      [broken](Parameters& given) {
+        given.string("sampler");
+        const auto sound = brdf::read<Sound>(given);
+        return brdf::albedo(only_mean(brdf::published_channel(*sound)), broken(sound, given));
+      });
 }
 
 template <class Mutant>
 Entry exchanged(const Defect& defect) {
-  using Sound = std::conditional_t<is_ward<Mutant>, Ward, AshikhminShirley>;
-  return entry(original_of<Sound>, defect, [](Parameters& given) {
-    const auto mutant = read_brdf<Mutant>(given);
-    return mutated(given, *read_brdf<Sound>(given), brdf::published_sampler(mutant));
+  using Sound = std::conditional_t<std::is_base_of_v<Ward, Mutant>, Ward, AshikhminShirley>;
+  return entry<Sound>(defect, [](const auto&, Parameters& given) {
+    return brdf::published_sampler(brdf::read<Mutant>(given));
   });
 }
 
 template <class Sound>
 Entry misreported(const Defect& defect) {
-  return entry(original_of<Sound>, defect, [defect](Parameters& given) {
-    const auto original = read_brdf<Sound>(given);
-    return mutated(given, *original,
-                   std::make_shared<Misreported>(brdf::published_sampler(original), defect.draw,
-                                                 defect.density));
+  return entry<Sound>(defect, [defect](const auto& sound, Parameters&) {
+    return std::make_shared<Misreported>(brdf::published_sampler(sound), defect.draw,
+                                         defect.density);
   });
 }
 
