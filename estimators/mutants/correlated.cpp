@@ -2,7 +2,7 @@
 // one thing wrong. Biases are for the built-in rectangle, of J = 1.320523614, unless said
 // otherwise.
 
-#include <functional>
+#include <algorithm>
 #include <numbers>
 #include <utility>
 
@@ -16,15 +16,12 @@ namespace {
 
 using namespace correlated;
 
-/// Changes pairs that have just been drawn of a source.
-using ChangePairs = std::function<void(const PairSource&, Stream&, std::span<Pair>)>;
-
-SharedPairs with_other_pairs(const SharedPairs& source, ChangePairs change) {
+/// `change` changes pairs that have just been drawn.
+SharedPairs with_other_pairs(const SharedPairs& source, const auto& change) {
   PairSource altered = *source;
-  altered.draw = [source, change = std::move(change)](Stream& random, std::span<Pair> out,
-                                                      Cost& cost) {
+  altered.draw = [source, change](Stream& random, std::span<Pair> out, Cost& cost) {
     source->draw(random, out, cost);
-    change(*source, random, out);
+    change(random, out);
   };
   return std::make_shared<const PairSource>(std::move(altered));
 }
@@ -36,8 +33,10 @@ SharedPairs without_variance(const SharedPairs& source) {
   return std::make_shared<const PairSource>(std::move(altered));
 }
 
-SharedPairs changed(const SharedPairs& source, ChangePairs change) {
-  return with_other_pairs(without_variance(source), std::move(change));
+SharedPairs changed(const SharedPairs& source, void (*change)(Pair&)) {
+  return with_other_pairs(without_variance(source), [change](Stream&, std::span<Pair> out) {
+    std::ranges::for_each(out, change);
+  });
 }
 
 SharedPairs with_integral(const SharedPairs& source, double integral) {
@@ -50,9 +49,9 @@ double integral_of(const SharedPairs& pairs) { return pairs->colours[0].control_
 
 SharedPairs other_points(Parameters& given) {
   const SharedPairs sound = read_area_pairs(given);
-  const auto exchange = [](const PairSource& source, Stream& random, std::span<Pair> out) {
+  const auto exchange = [sound](Stream& random, std::span<Pair> out) {
     std::vector<Pair> others(out.size());
-    source.draw(random, others, Uncounted());
+    sound->draw(random, others, Uncounted());
     for (std::size_t i = 0; i < out.size(); ++i) out[i].control = others[i].control;
   };
   return with_other_pairs(sound, exchange);
@@ -120,9 +119,7 @@ std::vector<Entry> mutants_correlated() {
             "adds the control where it should be taken away, J + g: 2 lambda J too much.",
             [](Parameters& given) {
               return changed(read_area_pairs(given),
-                             [](const PairSource&, Stream&, std::span<Pair> out) {
-                               for (Pair& pair : out) pair.control = -1 * pair.control;
-                             });
+                             [](Pair& pair) { pair.control = -1 * pair.control; });
             }),
       entry("control_unclipped", "correlated/area",
             "integrates the control over the whole polygon, that below the receiver's "
@@ -152,10 +149,7 @@ std::vector<Entry> mutants_correlated() {
             "lets occluders shade the control's samples but not its integral: lambda (J - "
             "I).",
             [](Parameters& given) {
-              return changed(read_area_pairs(given),
-                             [](const PairSource&, Stream&, std::span<Pair> out) {
-                               for (Pair& pair : out) pair.control = pair.full;
-                             });
+              return changed(read_area_pairs(given), [](Pair& pair) { pair.control = pair.full; });
             }),
       entry("control_elsewhere", "correlated/area",
             "evaluates the control at other points than the integrand: no bias, but the "

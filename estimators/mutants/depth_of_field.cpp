@@ -20,17 +20,6 @@ struct CrowdedDisc {
 
 // Moves lens points in by focus / depth of the surface that the middle of the lens sees. Discs of
 // confusion then have the radius A |depth - focus| / depth.
-struct BlurByDepth {
-  SharedSetting setting;
-  PlanePoint pixel;
-  double factor;
-
-  double operator()(Stream& random, Cost& cost) const {
-    const PlanePoint u = lens_point(random);
-    return setting->radiance(pixel, {factor * u.x, factor * u.y}, cost);
-  }
-};
-
 std::shared_ptr<const Setup> blur_by_depth(Parameters& given) {
   const SharedSetting setting = read_setting(given);
   const PlanePoint pixel = read_pixel(given);
@@ -41,7 +30,10 @@ std::shared_ptr<const Setup> blur_by_depth(Parameters& given) {
                 "what the middle of the lens sees must not be in front of the focal plane");
   Channel channel = radiance_channel(setting->scene(), exact_moments(setting->scene(), pixel));
   channel.variance.reset();
-  return averaging(std::move(channel), BlurByDepth{setting, pixel, factor});
+  return averaging(std::move(channel), [setting, pixel, factor](Stream& random, Cost& cost) {
+    const PlanePoint u = lens_point(random);
+    return setting->radiance(pixel, {factor * u.x, factor * u.y}, cost);
+  });
 }
 
 struct PilotReused {

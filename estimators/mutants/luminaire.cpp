@@ -19,15 +19,6 @@ using namespace luminaire;
 using render::SphericalTriangle;
 using render::Vector3;
 
-// Replacements for the geometry term cos+ light_cosine+ / r^2.
-
-struct SolidAngleDensity {
-  double omega_over_area;
-  double operator()(const Connection& c) const {
-    return c.light_height > 0 ? omega_over_area * std::max(0.0, c.receiver_cosine()) : 0;
-  }
-};
-
 // Replacements for the map of the unit square to the triangle.
 
 struct UnwarpedTriangle {
@@ -40,22 +31,22 @@ struct UnitSquare {
 
 // Replacements for Arvo's two steps.
 
+/// The point of the arc between two unit vectors that is at this share of its angle.
+Vector3 along_arc(const Vector3& from, const Vector3& to, double share) {
+  const double angle = share * render::angle_between(from, to);
+  const Vector3 axis = normalised(cross(from, to));
+  return std::cos(angle) * from + std::sin(angle) * cross(axis, from);
+}
+
 struct UniformArc {
   Vector3 operator()(const SphericalTriangle& triangle, double u, double v) const {
-    const double angle = u * render::angle_between(triangle.a(), triangle.c());
-    const Vector3 axis = normalised(cross(triangle.a(), triangle.c()));
-    const Vector3 edge_point =
-        std::cos(angle) * triangle.a() + std::sin(angle) * cross(axis, triangle.a());
-    return triangle.arc_point(edge_point, v);
+    return triangle.arc_point(along_arc(triangle.a(), triangle.c(), u), v);
   }
 };
 
 struct UniformAngle {
   Vector3 operator()(const SphericalTriangle& triangle, double u, double v) const {
-    const Vector3 edge_point = triangle.edge_point(u);
-    const double angle = v * render::angle_between(triangle.b(), edge_point);
-    const Vector3 axis = normalised(cross(triangle.b(), edge_point));
-    return std::cos(angle) * triangle.b() + std::sin(angle) * cross(axis, triangle.b());
+    return along_arc(triangle.b(), triangle.edge_point(u), v);
   }
 };
 
@@ -185,10 +176,12 @@ std::vector<Entry> mutants_luminaire() {
              "divides points uniform in area by the density 1 / Omega of "
              "directions uniform in solid angle; -4.0 %."},
             [](SharedSetting setting) {
-              const double omega = SolidAnglePrimary<>(setting).solid_angle();
+              const double density = SolidAnglePrimary<>(setting).solid_angle() / setting->area();
+              const auto term = [density](const Connection& c) {
+                return c.light_height > 0 ? density * std::max(0.0, c.receiver_cosine()) : 0;
+              };
               return averaging(only_mean(area_channel(*setting)),
-                               AreaPrimary<UniformTriangle, SolidAngleDensity>(
-                                   setting, {.omega_over_area = omega / setting->area()}),
+                               AreaPrimary<UniformTriangle, decltype(term)>(setting, term),
                                point_samplers<>(setting));
             }),
       entry({"unclipped_reference", "luminaire/area",

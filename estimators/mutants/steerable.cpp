@@ -49,12 +49,15 @@ class ClampedDirections final : public Directions {
       : tree_(std::move(tree)),
         frame_(frame),
         a_(lobe_coefficients(lobe, frame.normal)),
-        leaves_(areas(*tree_, a_)) {}
+        leaves_(mapped_indices(tree_->count(), [this](std::size_t t) {
+          const auto [a, b, c] = tree_->sphere().corners(t);
+          return length(cross(b - a, c - a)) / 6 * weights(t).sum();
+        })) {}
 
   Domain domain() const override { return Domain::sphere; }
   Direction draw(double u, double v) const override {
     const std::uint32_t triangle = leaves_.pick(u);
-    const TrianglePoint point = LinearTriangle{}(weights(*tree_, a_, triangle), u, v);
+    const TrianglePoint point = LinearTriangle{}(weights(triangle), u, v);
     const auto [a, b, c] = tree_->sphere().corners(triangle);
     const Vector3 q = (1 - point.u - point.v) * a + point.u * b + point.v * c;
     const Vector3 w = frame_.to_local(normalised(q));
@@ -70,15 +73,9 @@ class ClampedDirections final : public Directions {
   Panels panels() const override { return {.first = 32, .second = 64}; }
 
  private:
-  static VertexWeights weights(const SkyTree& tree, const sky::Harmonics& a, std::size_t triangle) {
-    const VertexWeights w = tree.weights(triangle, a);
+  VertexWeights weights(std::size_t triangle) const {
+    const VertexWeights w = tree_->weights(triangle, a_);
     return {positive(w.a), positive(w.b), positive(w.c)};
-  }
-  static std::vector<double> areas(const SkyTree& tree, const sky::Harmonics& steering) {
-    return mapped_indices(tree.count(), [&](std::size_t t) {
-      const auto [a, b, c] = tree.sphere().corners(t);
-      return length(cross(b - a, c - a)) / 6 * weights(tree, steering, t).sum();
-    });
   }
   double density_at(std::size_t triangle, const Vector3& q) const {
     const auto [a, b, c] = tree_->sphere().corners(triangle);
@@ -86,7 +83,7 @@ class ClampedDirections final : public Directions {
     const double square = squared_length(normal);
     const TrianglePoint point = {dot(cross(q - a, c - a), normal) / square,
                                  dot(cross(b - a, q - a), normal) / square};
-    return point.weight(weights(*tree_, a_, triangle)) / tree_->node(1, a_) *
+    return point.weight(weights(triangle)) / tree_->node(1, a_) *
            PlaneToSphere{}(q, dot(normal, a) / std::sqrt(square));
   }
 
