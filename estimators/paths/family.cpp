@@ -23,35 +23,27 @@ Scene scene_of(const MeshScene& form, const Camera& camera) {
     const ZonedScene& law = world->furnace();
     return {world, true, law, global_incoming(law.mean_emission(), law.mean_albedo())};
   }
-  return {world, true, {}, global_incoming(mean_emission(*world), mean_albedo(*world))};
+  return {world, true, {}, global_incoming(*world)};
 }
 
-// Adds the score of a vertex of a zone, for one colour. The emission that arrives along the
-// camera's ray is added to the mean elsewhere and has no variance.
-void add_score(ZoneSteps& zone, const Scene& scene, const Surface& surface, std::size_t colour,
-               Direct direct) {
+std::vector<ZoneSteps> zone_steps(const Scene& scene, const Steps& steps, std::size_t colour) {
   const ZonedScene& law = *scene.law;
-  if (direct == Direct::hit) {
-    zone.score = surface.emission[colour];
-    return;
-  }
   const double light = law.mean_emission()[colour];
-  zone.score = zone.albedo * light;
-  if (direct == Direct::exact) return;
   double square = 0;
   for (const ZonedScene::Zone& z : law.zones) {
     square += z.fraction * z.surface.emission[colour] * z.surface.emission[colour];
   }
-  zone.score_variance = zone.albedo * zone.albedo * (square - light * light);
-}
-
-std::vector<ZoneSteps> zone_steps(const Scene& scene, const Steps& steps, std::size_t colour) {
-  return mapped(scene.law->zones, [&](const ZonedScene::Zone& z) {
+  return mapped(law.zones, [&](const ZonedScene::Zone& z) {
     ZoneSteps zone{.fraction = z.fraction,
                    .albedo = z.surface.albedo()[colour],
                    .survival = steps.survival(z.surface),
                    .terminal = steps.terminal(z.surface)[colour]};
-    add_score(zone, scene, z.surface, colour, steps.direct);
+    // The emission that arrives along the camera's ray is added to the mean elsewhere and has no
+    // variance.
+    zone.score = steps.direct == Direct::hit ? z.surface.emission[colour] : zone.albedo * light;
+    if (steps.direct == Direct::sampled) {
+      zone.score_variance = zone.albedo * zone.albedo * (square - light * light);
+    }
     return zone;
   });
 }

@@ -44,7 +44,7 @@ struct Knowledge {
 /// The steps of a path in the zones of a sphere or of a furnace.
 struct Steps {
   std::function<double(const Surface&)> survival;
-  std::function<Rgb(const Surface&)> terminal;
+  std::function<Rgb(const Surface&)> terminal = [](const Surface&) { return Rgb{}; };
   Direct direct = Direct::hit;
   double splitting = 1;
 };

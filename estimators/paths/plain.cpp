@@ -18,8 +18,7 @@ ParameterInformation survival_parameter() {
 }
 
 Knowledge known(const Scene& scene, double survival) {
-  std::optional<Steps> steps = Steps{.survival = [survival](const Surface&) { return survival; },
-                                     .terminal = [](const Surface&) { return Rgb{}; }};
+  std::optional<Steps> steps = Steps{.survival = [survival](const Surface&) { return survival; }};
   if (scene.law && scene.law->has_mirrors()) steps.reset();
   Knowledge all = knowledge(scene, steps);
   all.low = 0;

@@ -116,31 +116,25 @@ std::optional<Steps> exact_steps(const Scene& scene, const RoulettePlan& plan) {
   return Steps{.survival = survival, .terminal = terminal, .direct = plan.direct};
 }
 
-std::vector<NamedSampler> samplers_of(const Scene& scene, const RoulettePlan& plan,
-                                      const Knowledge& known) {
-  std::vector<NamedSampler> all = {direction_sampler()};
-  if (const auto* const sphere = std::get_if<SharedSphere>(&scene.world)) {
-    // The point where a reflected ray arrives: uniform in area.
-    const auto hit = [world = *sphere](Stream& random) {
-      return point_of(world->reflected(world->camera(Uncounted()), random, Uncounted()).position);
-    };
-    all.push_back(
-        {"hit", sampler_of({Domain::sphere, hit, uniform_density(1 / (4 * std::numbers::pi))})});
-  } else if (known.vertices) {
-    all.push_back(
-        {"length", std::make_shared<Lengths>(std::get<SharedMesh>(scene.world),
-                                             plan.roulette(scene), (*known.vertices)[1])});
-  }
-  return all;
-}
-
 template <class Plan>
 std::shared_ptr<const Setup> prepared(Parameters& parameters, const Plan& plan_of) {
   const Scene scene = paths::read_scene(parameters);
   const RoulettePlan plan = plan_of(parameters, scene);
   Knowledge known = knowledge(scene, exact_steps(scene, plan));
   if (plan.terminal.empty()) known.low = 0;
-  std::vector<NamedSampler> samplers = samplers_of(scene, plan, known);
+  std::vector<NamedSampler> samplers = {direction_sampler()};
+  if (const auto* const sphere = std::get_if<SharedSphere>(&scene.world)) {
+    // The point where a reflected ray arrives: uniform in area.
+    const auto hit = [world = *sphere](Stream& random) {
+      return point_of(world->reflected(world->camera(Uncounted()), random, Uncounted()).position);
+    };
+    samplers.push_back(
+        {"hit", sampler_of({Domain::sphere, hit, uniform_density(1 / (4 * std::numbers::pi))})});
+  } else if (known.vertices) {
+    samplers.push_back(
+        {"length", std::make_shared<Lengths>(std::get<SharedMesh>(scene.world),
+                                             plan.roulette(scene), (*known.vertices)[1])});
+  }
   return setup_in_world(
       scene, known,
       [roulette = plan.roulette(scene), direct = plan.direct](const auto& world, auto&... run) {

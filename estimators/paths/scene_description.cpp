@@ -31,21 +31,17 @@ class Reader {
     }
     value.require(form, "a scene needs one of `zones`, `furnace` and `surfaces`");
     const Value& camera_value = required_key(value, "the scene", "camera");
-    camera_ = camera(camera_value);
+    require_keys(camera_value, "the camera", {"position", "direction"});
+    camera_ = {luminaire::read_vector(required_key(camera_value, "the camera", "position"),
+                                      "the camera's position"),
+               luminaire::read_unit_vector(required_key(camera_value, "the camera", "direction"),
+                                           "the camera's direction")};
     if (value.find("zones")) return {sphere(*form, camera_value), camera_, grey_};
     if (value.find("furnace")) return {furnace(*form, camera_value), camera_, grey_};
     return {surfaces(*form), camera_, grey_};
   }
 
  private:
-  static Camera camera(const Value& value) {
-    require_keys(value, "the camera", {"position", "direction"});
-    return {luminaire::read_vector(required_key(value, "the camera", "position"),
-                                   "the camera's position"),
-            luminaire::read_unit_vector(required_key(value, "the camera", "direction"),
-                                        "the camera's direction")};
-  }
-
   // A number for all colours, or a list of three.
   Rgb colour(const Value& value, const std::string& what) {
     if (value.kind() != Value::Kind::list) return Rgb::grey(at_least_zero(value, what));
@@ -110,7 +106,13 @@ class Reader {
     MeshScene out;
     for (const Value& item : value.items()) {
       require_keys(item, "a surface", {"polygon", "obj", "emission", "albedo", "mirror"});
-      append(out, shape(item));
+      const TriangleMesh mesh = shape(item);
+      const auto before = static_cast<std::uint32_t>(out.mesh.vertices.size());
+      out.mesh.vertices.insert(out.mesh.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
+      for (const auto& [a, b, c] : mesh.triangles) {
+        out.mesh.triangles.push_back({before + a, before + b, before + c});
+        out.surface_of.push_back(static_cast<std::uint32_t>(out.surfaces.size()));
+      }
       out.surfaces.push_back(surface(item, "a surface", true));
     }
     return out;
@@ -124,36 +126,21 @@ class Reader {
                    : luminaire::read_mesh(*file, "a surface's file", folder_);
   }
 
-  static void append(MeshScene& scene, const TriangleMesh& mesh) {
-    const auto before = static_cast<std::uint32_t>(scene.mesh.vertices.size());
-    const auto surface = static_cast<std::uint32_t>(scene.surfaces.size());
-    scene.mesh.vertices.insert(scene.mesh.vertices.end(), mesh.vertices.begin(),
-                               mesh.vertices.end());
-    for (const auto& [a, b, c] : mesh.triangles) {
-      scene.mesh.triangles.push_back({before + a, before + b, before + c});
-      scene.surface_of.push_back(surface);
-    }
-  }
-
   std::string folder_;
   Camera camera_;
   bool grey_ = true;
 };
 
 // The cube [0, 1]^3 with every face seen counter-clockwise from inside.
-TriangleMesh cube() {
+SceneDescription furnace() {
   TriangleMesh mesh;
   for (unsigned i = 0; i < 8; ++i) {
     mesh.vertices.push_back({double(i & 1), double(i >> 1 & 1), double(i >> 2)});
   }
   mesh.triangles = {{0, 1, 3}, {0, 3, 2}, {4, 6, 7}, {4, 7, 5}, {0, 4, 5}, {0, 5, 1},
                     {2, 3, 7}, {2, 7, 6}, {0, 2, 6}, {0, 6, 4}, {1, 5, 7}, {1, 7, 3}};
-  return mesh;
-}
-
-SceneDescription furnace() {
-  MeshScene scene{
-      cube(), std::vector<std::uint32_t>(12, 0), {{Rgb::grey(1), Rgb::grey(0.5), {}}}, true};
+  const MeshScene scene{
+      mesh, std::vector<std::uint32_t>(12, 0), {{Rgb::grey(1), Rgb::grey(0.5), {}}}, true};
   return {scene, {{0.5, 0.5, 0.5}, render::normalised({0.3, 0.2, -1})}, true};
 }
 

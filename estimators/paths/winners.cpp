@@ -9,19 +9,17 @@ namespace {
 
 using namespace paths;
 
-std::optional<Steps> exact_steps(const Scene& scene, Direct direct, double splitting) {
-  if (!scene.law || !scene.grey) return {};
-  return Steps{.survival = [](const Surface& surface) { return mean(surface.albedo()); },
-               .terminal = [](const Surface&) { return Rgb{}; },
-               .direct = direct,
-               .splitting = splitting};
-}
-
 std::shared_ptr<const Setup> prepare(Parameters& parameters) {
   const Scene scene = paths::read_scene(parameters);
   const Direct direct = read_direct(parameters, scene);
   const double splitting = parameters.number("splitting");
-  Knowledge known = knowledge(scene, exact_steps(scene, direct, splitting));
+  std::optional<Steps> steps;
+  if (scene.law && scene.grey) {
+    steps = {.survival = [](const Surface& surface) { return mean(surface.albedo()); },
+             .direct = direct,
+             .splitting = splitting};
+  }
+  Knowledge known = knowledge(scene, steps);
   known.low = 0;
   return setup_in_world(scene, known,
                         [rule = Winners(splitting), direct](const auto& world, auto&... run) {

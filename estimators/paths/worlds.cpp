@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 #include "estimators/core/mapped.h"
@@ -38,7 +39,7 @@ Rgb area_mean(const MeshWorld& world, const Property& property) {
   double area = 0;
   for (std::size_t i = 0; i < world.patches(); ++i) {
     area += world.patch_area(i);
-    total += world.patch_area(i) * property(world.surface(i));
+    total += world.patch_area(i) * std::invoke(property, world.surface(i));
   }
   return 1 / area * total;
 }
@@ -86,20 +87,16 @@ MeshWorld::Triangle MeshWorld::triangle(const std::array<Vector3, 3>& corners) {
   return {a, b - a, c - a, normalised(across), shift, shift * centre, shift / 4 * radius, area};
 }
 
-render::ShareTable MeshWorld::light_shares(const std::vector<Triangle>& triangles,
-                                           const MeshScene& scene) {
-  return render::ShareTable(mapped_indices(triangles.size(), [&](std::size_t i) {
-    return triangles[i].area * mean(scene.surfaces[scene.surface_of[i]].emission);
-  }));
-}
-
 MeshWorld::MeshWorld(const MeshScene& scene, const Camera& camera)
     : surfaces_(scene.surfaces),
       surface_of_(scene.surface_of),
       mesh_(fitted(scene.mesh)),
       triangles_(mapped_indices(mesh_.triangles.size(),
                                 [&](std::size_t i) { return triangle(mesh_.corners(i)); })),
-      light_(light_shares(triangles_, scene)),
+      light_(mapped_indices(triangles_.size(),
+                            [&](std::size_t i) {
+                              return triangles_[i].area * mean(surfaces_[surface_of_[i]].emission);
+                            })),
       camera_{fitted(render::Box(scene.mesh), camera.position), camera.direction},
       scene_({mesh_}) {
   if (scene.furnace) furnace_ = {{{1, surfaces_[0]}}, 0};
@@ -133,12 +130,8 @@ Incoming global_incoming(const Rgb& mean_emission, const Rgb& mean_albedo) {
   return {all, mean_albedo * all};
 }
 
-Rgb mean_emission(const MeshWorld& world) {
-  return area_mean(world, [](const Surface& s) { return s.emission; });
-}
-
-Rgb mean_albedo(const MeshWorld& world) {
-  return area_mean(world, [](const Surface& s) { return s.albedo(); });
+Incoming global_incoming(const MeshWorld& world) {
+  return global_incoming(area_mean(world, &Surface::emission), area_mean(world, &Surface::albedo));
 }
 
 std::vector<Incoming> local_incoming(const MeshWorld& world, std::size_t rays, Cost& cost) {

@@ -192,8 +192,6 @@ class MeshWorld {
   Rgb sampled_light(const Vertex& v, Stream& random, Cost& cost) const;
 
   static Triangle triangle(const std::array<render::Vector3, 3>& corners);
-  static render::ShareTable light_shares(const std::vector<Triangle>& triangles,
-                                         const MeshScene& scene);
 
   // The point of a triangle that a path goes on from, on the side that `arriving` comes from.
   Vertex vertex(std::uint32_t triangle, const render::Vector3& point,
@@ -231,10 +229,8 @@ struct Incoming {
 /// One estimate for the whole scene: what is emitted, times the geometric series of the mean
 /// albedo.
 Incoming global_incoming(const Rgb& mean_emission, const Rgb& mean_albedo);
-
-/// Means over the area of a mesh, both sides alike.
-Rgb mean_emission(const MeshWorld& world);
-Rgb mean_albedo(const MeshWorld& world);
+/// The same with means over the area of a mesh, both sides alike.
+Incoming global_incoming(const MeshWorld& world);
 
 /// One estimate for each patch. `rays` rays from each, at fixed points along fixed directions, say
 /// which patches it sees. Light is then passed around until it no longer changes. Adds the rays to
