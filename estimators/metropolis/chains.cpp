@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "estimators/core/mapped.h"
 #include "metropolis/chain.h"
 
 namespace assay::metropolis {
@@ -115,10 +116,7 @@ class ChainEstimator final : public Estimator {
 };
 
 std::vector<Channel> elements_of(const std::vector<double>& means) {
-  std::vector<Channel> elements;
-  for (const double mean : means) elements.push_back({.mean = mean, .low = 0});
-  if (elements.empty()) elements.push_back({.low = 0});
-  return elements;
+  return mapped(means, [](double mean) { return Channel{.mean = mean, .low = 0}; });
 }
 
 Channel image_mean(const ImageShape& shape, const std::vector<double>& means) {
@@ -127,15 +125,10 @@ Channel image_mean(const ImageShape& shape, const std::vector<double>& means) {
   for (std::size_t i = 0; i < means.size(); i += components) {
     sum += components == 1 ? means[i] : render::luminance({means[i], means[i + 1], means[i + 2]});
   }
-  Channel whole{.name = "image_mean", .low = 0, .diagnostic = true};
-  if (!means.empty()) whole.mean = sum / static_cast<double>(shape.pixels());
-  return whole;
-}
-
-/// Points fall into one pixel or another, and a chain stays near where it was.
-ImageShape dependent(ImageShape shape) {
-  shape.independent = false;
-  return shape;
+  return {.name = "image_mean",
+          .mean = sum / static_cast<double>(shape.pixels()),
+          .low = 0,
+          .diagnostic = true};
 }
 
 /// A secondary estimate is the image of `primaries` independent points: what chains are held
@@ -157,7 +150,7 @@ std::shared_ptr<const Setup> independent(SharedTarget target) {
   const std::vector<double> means = target->means();
   return setup_of({.channels = {image_mean(target->shape(), means)},
                    .make = estimating(estimate),
-                   .image = dependent(target->shape()),
+                   .image = target->shape(),
                    .elements = elements_of(means)});
 }
 
@@ -253,7 +246,7 @@ std::shared_ptr<const Setup> chain(Recipe recipe) {
   return setup_of({.channels = {whole, normaliser, acceptance},
                    .make = [shared] { return std::make_unique<ChainEstimator>(shared); },
                    .samplers = step_samplers(shared->step),
-                   .image = dependent(shared->target->shape()),
+                   .image = shared->target->shape(),
                    .elements = elements_of(means)});
 }
 

@@ -4,21 +4,6 @@
 
 namespace assay::metropolis {
 
-namespace {
-
-/// 1 itself, where rounding may have led, is 0 of the next round.
-double wrapped(double u) {
-  const double fraction = u - std::floor(u);
-  return fraction < 1 ? fraction : 0;
-}
-
-double reflected(double u) {
-  const double inside = u < 0 ? -u : u >= 1 ? 2 - u : u;
-  return inside < 1 ? inside : std::nextafter(1.0, 0.0);
-}
-
-}  // namespace
-
 double SmallStep::step(Stream& random) const {
   const double xi = 2 * random.uniform() - 1;
   const double length = largest * std::exp(-std::log(largest / smallest) * std::abs(xi));
@@ -27,9 +12,11 @@ double SmallStep::step(Stream& random) const {
 
 std::optional<double> SmallStep::settled(double u) const {
   if (u >= 0 && u < 1) return u;
-  if (boundary_ == Boundary::wrap) return wrapped(u);
-  if (boundary_ == Boundary::reflect) return reflected(u);
-  return {};
+  if (boundary_ == Boundary::reject) return {};
+  const bool wraps = boundary_ == Boundary::wrap;
+  const double inside = wraps ? u - std::floor(u) : u < 0 ? -u : 2 - u;
+  // Rounding may have led to 1 itself, which is 0 of the next round.
+  return inside < 1 ? inside : wraps ? 0 : std::nextafter(1.0, 0.0);
 }
 
 void LazyCoordinates::restart() {
@@ -75,16 +62,15 @@ void LazyCoordinates::reject() {
 
 void LazyCoordinates::catch_up(Coordinate& coordinate) {
   freshen(coordinate);
-  while (coordinate.time < time_) advance(coordinate);
+  // No path looks at a small step that was missed, so that the coordinate may stay where the step
+  // would leave: that, too, is symmetric.
+  for (; coordinate.time < time_; ++coordinate.time) {
+    coordinate.value = step_->moved(coordinate.value, *random_).value_or(coordinate.value);
+  }
 }
 
 void LazyCoordinates::freshen(Coordinate& coordinate) {
   if (coordinate.time < large_time_) coordinate = {random_->uniform(), large_time_};
-}
-
-void LazyCoordinates::advance(Coordinate& coordinate) {
-  coordinate.value = step_->moved(coordinate.value, *random_).value_or(coordinate.value);
-  ++coordinate.time;
 }
 
 }  // namespace assay::metropolis

@@ -98,9 +98,6 @@ class LazyCoordinates : public Coordinates {
 
   /// Draws a coordinate afresh that has not been looked at since the last large step.
   void freshen(Coordinate& coordinate);
-  /// A small step that a coordinate has missed. No path looks at it, so that it may stay where the
-  /// step would leave: that, too, is symmetric.
-  void advance(Coordinate& coordinate);
   /// From the proposal on, coordinates that are older are drawn afresh.
   void date_large_step() { large_time_ = time_ + 1; }
 

@@ -42,8 +42,9 @@ std::size_t pixel_of(double u, std::size_t width) {
   return static_cast<std::size_t>(u * static_cast<double>(width));
 }
 
+/// Points fall into one pixel or another, and a chain stays near where it was.
 ImageShape row_of(std::size_t width, bool coloured) {
-  ImageShape shape{.width = width, .height = 1};
+  ImageShape shape{.width = width, .height = 1, .independent = false};
   if (coloured) shape.components = {"red", "green", "blue"};
   return shape;
 }
@@ -208,20 +209,15 @@ SharedTarget read_sphere(const Value& value, std::size_t pixels, const std::stri
 }
 
 SharedTarget named(Parameters& given, const std::string& name, std::size_t pixels) {
-  if (name == "constant") {
-    return std::make_shared<ProductTarget>(std::vector<Product>{{1, {Linear{}, Linear{}}}}, pixels,
-                                           false);
-  }
+  const auto sum_of = [&](std::vector<Product> products) {
+    return std::make_shared<ProductTarget>(std::move(products), pixels, name == "coloured_peak");
+  };
+  if (name == "constant") return sum_of({{1, {Linear{}, Linear{}}}});
   if (name == "peak" || name == "coloured_peak") {
-    return std::make_shared<ProductTarget>(
-        std::vector<Product>{{1, {Linear{0.05, 0.5}, Linear{}}},
-                             {40, {Gaussian{0.3, 0.02}, Gaussian{0.7, 0.02}}}},
-        pixels, name != "peak");
+    return sum_of(
+        {{1, {Linear{0.05, 0.5}, Linear{}}}, {40, {Gaussian{0.3, 0.02}, Gaussian{0.7, 0.02}}}});
   }
-  if (name == "boundary") {
-    return std::make_shared<ProductTarget>(
-        std::vector<Product>{{0.02, {Linear{}}}, {1, {Decay{20}}}}, pixels, false);
-  }
+  if (name == "boundary") return sum_of({{0.02, {Linear{}}}, {1, {Decay{20}}}});
   if (name == "mixture") {
     return mixture_of(parse_flow("{dimensions: 4, base: 0.02, lobes: [{height: 30, centre: 0.3, "
                                  "width: 0.1}, {height: 60, centre: 0.7, width: 0.08}]}"),

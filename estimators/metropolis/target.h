@@ -32,8 +32,8 @@ class Target {
   virtual ImageShape shape() const = 0;
   /// F at a point whose coordinates are looked at as they are needed. A function of them alone.
   virtual Contribution at(Coordinates& point, Cost& cost) const = 0;
-  /// The exact elements of the image, in its order, as far as they are known.
-  virtual std::vector<double> means() const { return {}; }
+  /// The exact elements of the image, in its order.
+  virtual std::vector<double> means() const = 0;
 };
 
 using SharedTarget = std::shared_ptr<const Target>;
