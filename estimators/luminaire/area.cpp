@@ -2,29 +2,20 @@
 
 namespace assay::luminaire {
 
-namespace {
-
-// Rays see nothing nearer than a shortest distance. At distance h from a triangle's plane
-// light_cosine / r^2 = h / r^3, and r is at least h and at least that distance.
-double highest_term(const Setting& setting) {
-  const double least = setting.near() / resolution;
-  double highest = 0;
-  for (const LightTriangle& triangle : setting.triangles()) {
-    highest = std::max(highest, triangle.plane_distance / (least * least * least));
-  }
-  return highest;
-}
-
-}  // namespace
-
 Channel area_channel(const Setting& setting) {
   const auto second_moment = [](const ExactIntegrals& exact) {
     std::optional<double> moment = exact.squared_geometry;
     if (moment) *moment *= exact.area;
     return moment;
   };
-  return irradiance_channel(setting, second_moment,
-                            setting.area() * setting.radiance() * highest_term(setting));
+  // Rays see nothing nearer than a shortest distance. At distance h from a triangle's plane
+  // light_cosine / r^2 = h / r^3, and r is at least h and at least that distance.
+  const double least = setting.near() / resolution;
+  double highest = 0;
+  for (const LightTriangle& triangle : setting.triangles()) {
+    highest = std::max(highest, triangle.plane_distance / (least * least * least));
+  }
+  return irradiance_channel(setting, second_moment, setting.area() * setting.radiance() * highest);
 }
 
 }  // namespace assay::luminaire

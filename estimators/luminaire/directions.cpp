@@ -26,20 +26,6 @@ struct UniformDirections : render::UniformHemisphere {
 };
 
 template <class Directions>
-std::shared_ptr<const Sampler> direction_sampler(const SharedSetting& setting) {
-  const auto point = [](Stream& random) -> std::optional<Point> {
-    const double u = random.uniform();
-    return point_of(Directions{}(u, random.uniform()));
-  };
-  const auto density = [](const Point& p) { return Directions{}.density(render::vector_of(p)); };
-  const auto evaluate = [setting](const Point& p) {
-    const bool lit = setting->sees_light(setting->ray(render::vector_of(p)), Uncounted());
-    return lit ? setting->radiance() * p[2] : 0;
-  };
-  return sampler_of({Domain::hemisphere, point, density, evaluate});
-}
-
-template <class Directions>
 struct Primary {
   SharedSetting setting;
 
@@ -57,10 +43,19 @@ struct Primary {
 template <class Directions>
 std::shared_ptr<const Setup> prepare(Parameters& parameters) {
   const SharedSetting setting = read_setting(parameters);
+  const auto point = [](Stream& random) -> std::optional<Point> {
+    const double u = random.uniform();
+    return point_of(Directions{}(u, random.uniform()));
+  };
+  const auto density = [](const Point& p) { return Directions{}.density(render::vector_of(p)); };
+  const auto evaluate = [setting](const Point& p) {
+    const bool lit = setting->sees_light(setting->ray(render::vector_of(p)), Uncounted());
+    return lit ? setting->radiance() * p[2] : 0;
+  };
   return averaging(irradiance_channel(*setting, Directions::second_moment,
                                       Directions::most * setting->radiance()),
                    Primary<Directions>{setting},
-                   {{"direction", direction_sampler<Directions>(setting)}});
+                   {{"direction", sampler_of({Domain::hemisphere, point, density, evaluate})}});
 }
 
 }  // namespace

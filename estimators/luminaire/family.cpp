@@ -4,18 +4,6 @@
 
 namespace assay::luminaire {
 
-namespace {
-
-std::optional<double> variance(double mean, const std::optional<double>& second_moment) {
-  if (!second_moment) return {};
-  const double difference = *second_moment - mean * mean;
-  // Both terms are good to about 1e-15; the difference must be so to 1e-10. Nothing seen is exact.
-  if (*second_moment != 0 && difference < 1e-5 * *second_moment) return {};
-  return difference;
-}
-
-}  // namespace
-
 ParameterInformation scene_parameter() {
   return structure_parameter(
       "scene",
@@ -42,10 +30,14 @@ Channel irradiance_channel(const Setting& setting, const SecondMoment& second_mo
   const std::optional<ExactIntegrals> exact = exact_integrals(setting);
   if (!exact) return channel;
   const double l = setting.radiance();
-  channel.mean = l * exact->irradiance;
-  std::optional<double> square = second_moment(*exact);
-  if (square) *square *= l * l;
-  channel.variance = variance(*channel.mean, square);
+  const double mean = l * exact->irradiance;
+  channel.mean = mean;
+  const std::optional<double> of_unit_radiance = second_moment(*exact);
+  if (!of_unit_radiance) return channel;
+  const double square = *of_unit_radiance * (l * l);
+  const double variance = square - mean * mean;
+  // Both terms are good to about 1e-15; the difference must be so to 1e-10. Nothing seen is exact.
+  if (square == 0 || variance >= 1e-5 * square) channel.variance = variance;
   return channel;
 }
 

@@ -16,15 +16,6 @@ double offset(std::size_t index, std::size_t count, double part) {
   return (static_cast<double>(index) + 0.5 - static_cast<double>(count) / 2) * part;
 }
 
-/// cos+ light_cosine+ / r^2 <= 1 / r^2, and r is at least the distance to the luminaire's plane.
-double highest(const Setting& setting) {
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const LightTriangle& triangle : setting.triangles()) {
-    if (triangle.emits) nearest = std::min(nearest, triangle.plane_distance);
-  }
-  return setting.area() * setting.radiance() / (nearest * nearest);
-}
-
 }  // namespace
 
 Floor read_floor(Parameters& parameters) {
@@ -49,7 +40,13 @@ Floor read_floor(Parameters& parameters) {
 std::vector<Channel> floor_channels(const Floor& floor) {
   const auto unknown = [](const ExactIntegrals&) { return std::optional<double>(); };
   return mapped(floor.settings, [&](const SharedSetting& setting) {
-    return irradiance_channel(*setting, unknown, highest(*setting));
+    // cos+ light_cosine+ / r^2 <= 1 / r^2, and r is at least the distance to the luminaire's plane.
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const LightTriangle& triangle : setting->triangles()) {
+      if (triangle.emits) nearest = std::min(nearest, triangle.plane_distance);
+    }
+    return irradiance_channel(*setting, unknown,
+                              setting->area() * setting->radiance() / (nearest * nearest));
   });
 }
 
@@ -61,35 +58,34 @@ namespace {
 
 using namespace luminaire;
 
-std::vector<ParameterInformation> floor_parameters() {
-  return {
-      scene_parameter(), count_parameter("width", "columns of receivers", "32", {2, 1024}),
-      count_parameter("height", "rows of receivers", "32", {2, 1024}),
-      number_parameter("size", "length of the plane's rectangle along the width", "4", above(0)),
-      boolean_parameter("shared", "whether all receivers use the same points of the luminaire",
-                        false)};
-}
-
 std::shared_ptr<const Setup> prepare(Parameters& parameters) {
   const Floor floor = read_floor(parameters);
-  std::vector<AreaPrimary<>> primaries;
-  for (const SharedSetting& setting : floor.settings) primaries.emplace_back(setting);
-  return imaging<AreaPrimary<>>({floor.shape, floor_channels(floor), std::move(primaries)});
+  const auto primary = [](const SharedSetting& setting) { return AreaPrimary<>(setting); };
+  return imaging<AreaPrimary<>>(
+      {floor.shape, floor_channels(floor), mapped(floor.settings, primary)});
 }
 
 }  // namespace
 
 std::vector<Entry> luminaire_floor() {
-  return {{{.name = "luminaire/floor",
-            .summary = "An image: the irradiance of a plane under a luminaire, receiver by "
-                       "receiver.",
-            .description =
-                "The estimator luminaire/area at each of width x height receivers on the plane of "
-                "the scene's receiver, which is its middle. With `shared`, one set of points on "
-                "the luminaire serves all receivers of an image, whose pixels are then correlated. "
-                "Samples are counted per pixel; Lambert's formula knows every pixel's mean.",
-            .parameters = floor_parameters()},
-           prepare}};
+  return {
+      {{.name = "luminaire/floor",
+        .summary = "An image: the irradiance of a plane under a luminaire, receiver by "
+                   "receiver.",
+        .description =
+            "The estimator luminaire/area at each of width x height receivers on the plane of "
+            "the scene's receiver, which is its middle. With `shared`, one set of points on "
+            "the luminaire serves all receivers of an image, whose pixels are then correlated. "
+            "Samples are counted per pixel; Lambert's formula knows every pixel's mean.",
+        .parameters = {scene_parameter(),
+                       count_parameter("width", "columns of receivers", "32", {2, 1024}),
+                       count_parameter("height", "rows of receivers", "32", {2, 1024}),
+                       number_parameter("size", "length of the plane's rectangle along the width",
+                                        "4", above(0)),
+                       boolean_parameter(
+                           "shared", "whether all receivers use the same points of the luminaire",
+                           false)}},
+       prepare}};
 }
 
 }  // namespace assay::plugins
