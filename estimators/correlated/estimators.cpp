@@ -14,13 +14,6 @@ namespace {
 
 using ColourSums = std::array<Sums, 3>;
 
-double variance(const Colour& colour, double lambda) {
-  const Moments& m = *colour.moments;
-  const double j = colour.control_integral;
-  const double i = *colour.integral;
-  return m.full - i * i + lambda * lambda * (m.control - j * j) - 2 * lambda * (m.product - i * j);
-}
-
 std::optional<double> best_lambda(const Colour& colour) {
   if (!colour.moments || !colour.integral) return {};
   const double j = colour.control_integral;
@@ -43,7 +36,10 @@ Channel channel_of(const Colour& colour, double lambda) {
   channel.rounding = rounding(colour, lambda);
   if (!colour.moments || !colour.integral) return channel;
   const Moments& m = *colour.moments;
-  const double v = variance(colour, lambda);
+  const double j = colour.control_integral;
+  const double i = *colour.integral;
+  const double v =
+      m.full - i * i + lambda * lambda * (m.control - j * j) - 2 * lambda * (m.product - i * j);
   // Fewer than some eight digits left by the differences count as unknown, nothing left as zero.
   if (v > 1e-6 * (m.full + lambda * lambda * m.control)) channel.variance = v;
   return channel;
@@ -101,8 +97,8 @@ std::vector<Channel> channels_with_lambda(const PairSource& source) {
 }
 
 std::shared_ptr<const Setup> fixed(SharedPairs source, double lambda) {
-  std::vector<Channel> channels;
-  for (const Colour& colour : source->colours) channels.push_back(channel_of(colour, lambda));
+  std::vector<Channel> channels =
+      mapped(source->colours, [&](const Colour& colour) { return channel_of(colour, lambda); });
   const auto estimate = [source, lambda](Stream& random, std::uint64_t primaries,
                                          std::span<double> out, Cost& cost) {
     const auto& colours = source->colours;

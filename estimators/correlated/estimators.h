@@ -69,11 +69,9 @@ SharedPairs read_area_pairs(Parameters&);
 /// M has g: `f/p = L cos+ V / p`, `g/p = M cos+ / p`, `J = pi M`. Directions have a density
 /// that is positive wherever cos+ is.
 ///
-/// The parameters are those of a sky and `sampling`. It is uniform, cosine, emittance (in
+/// Reads the parameters of a sky and `sampling`. It is uniform, cosine, emittance (in
 /// proportion to the sky, interpolated on 2048 triangles) or steered (the sky times the lobe of
-/// nine harmonics).
-std::vector<ParameterInformation> sky_pair_parameters();
-/// Reads them. InputError at `sky` where emittance or steered sampling would never draw some
+/// nine harmonics). InputError at `sky` where emittance or steered sampling would never draw some
 /// directions: the sky is black at a vertex.
 SharedPairs read_sky_pairs(Parameters&);
 

@@ -29,12 +29,6 @@ sky::SharedDirections directions_of(Parameters& given, const sky::Setting& setti
 
 }  // namespace
 
-std::vector<ParameterInformation> sky_pair_parameters() {
-  return joined(sky::parameters(),
-                {text_parameter("sampling", "the density of directions", "emittance",
-                                {"uniform", "cosine", "emittance", "steered"})});
-}
-
 SharedPairs read_sky_pairs(Parameters& given) {
   const sky::SharedSetting setting = sky::read_setting(given);
   const sky::SharedDirections directions = directions_of(given, *setting);
@@ -75,7 +69,9 @@ std::vector<Entry> correlated_sky() {
            "arrive from a uniform sky of the same mean radiance M if nothing stood in the way, M "
            "cos+; J = pi M. Directions are drawn as `sampling` says; by the cosine g/p = J is "
            "constant and corrects nothing. One shadow ray a primary, none below the horizon.",
-       .parameters = correlated::sky_pair_parameters(),
+       .parameters = joined(sky::parameters(),
+                            {text_parameter("sampling", "the density of directions", "emittance",
+                                            {"uniform", "cosine", "emittance", "steered"})}),
        .read = correlated::read_sky_pairs});
 }
 

@@ -238,7 +238,10 @@ std::vector<Entry> direct_light_estimators() {
             "closest hits a primary, none below the horizon. Means are known as for "
             "direct_light/light, variances for balance and power. Samplers: light (of a polygon), "
             "brdf.",
-        .parameters = parameters_with(joined(count_parameters(), {heuristic_parameter()}))},
+        .parameters = parameters_with(
+            {count_parameter("light_samples", "samples of the light in a primary", "1", {1, 1000}),
+             count_parameter("brdf_samples", "samples of the BRDF in a primary", "1", {1, 1000}),
+             heuristic_parameter()})},
        prepare_multi_sample},
 
       {{.name = "direct_light/one_sample",
@@ -252,7 +255,13 @@ std::vector<Entry> direct_light_estimators() {
             "variance than one of the multi-sample model with a sample each. One ray a primary at "
             "most. Mean and variance as of direct_light/multi_sample. Sampler: mixture (of a "
             "polygon), a lobe for each technique.",
-        .parameters = parameters_with({probability_parameter(), heuristic_parameter()})},
+        .parameters = parameters_with(
+            {{.name = "light_probability",
+              .summary = "probability that the light is sampled, not the BRDF",
+              .fallback = "0.5",
+              .range = {.low = 0, .high = 1, .low_excluded = true, .high_excluded = true},
+              .reason = "a technique that is never chosen leaves nothing to combine"},
+             heuristic_parameter()})},
        prepare_one_sample}};
 }
 

@@ -24,11 +24,9 @@ std::shared_ptr<const Kind> read_techniques(Parameters& given) {
   return std::make_shared<const Kind>(setting, reflectance, read_light_sampling(given, setting));
 }
 
-/// light_samples and brdf_samples, one or more of each.
-std::vector<ParameterInformation> count_parameters();
+/// Reads light_samples and brdf_samples, one or more of each.
 Counts read_counts(Parameters&);
-/// light_probability, in (0, 1).
-ParameterInformation probability_parameter();
+/// Reads light_probability, in (0, 1).
 Pair read_probabilities(Parameters&);
 
 /// The channel `radiance` with its mean, where that is known, and nothing else.
