@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -73,12 +74,10 @@ class SkyTree {
     for (std::size_t i = 0; i < coefficients_; ++i) sum += a[i] * values[i];
     return sum;
   }
-  void fill_vertices(const sky::Radiance& radiance, double floor);
-  void fill_nodes();
 
   sky::Octahedron sphere_;
   std::size_t coefficients_;
-  double least_ = 0;
+  double least_ = std::numeric_limits<double>::infinity();
   std::vector<double> vertices_;  // rows of luminance times harmonics
   std::vector<double> nodes_;
 };
@@ -121,9 +120,11 @@ class SteeredDirections : public sky::Directions {
       u = std::min(u, 1 - 0x1p-53);
       node = 2 * node + (left ? 0 : 1);
     }
-    sky::Direction result = in_triangle(node - tree_->count(), u, v);
-    result.nodes = visited;
-    return result;
+    const std::size_t triangle = node - tree_->count();
+    const TrianglePoint point = Warp{}(tree_->weights(triangle, a_), u, v);
+    const auto [a, b, c] = tree_->sphere().corners(triangle);
+    const Vector3 q = (1 - point.u - point.v) * a + point.u * b + point.v * c;
+    return {frame_.to_local(normalised(q)), density_at(triangle, q, point), visited};
   }
 
   double density(const Vector3& local) const override {
@@ -165,13 +166,6 @@ class SteeredDirections : public sky::Directions {
   const render::Frame& frame() const { return frame_; }
 
  private:
-  sky::Direction in_triangle(std::size_t triangle, double u, double v) const {
-    const TrianglePoint point = Warp{}(tree_->weights(triangle, a_), u, v);
-    const auto [a, b, c] = tree_->sphere().corners(triangle);
-    const Vector3 q = (1 - point.u - point.v) * a + point.u * b + point.v * c;
-    return {frame_.to_local(normalised(q)), density_at(triangle, q, point)};
-  }
-
   double density_at(std::size_t triangle, const Vector3& q, const TrianglePoint& point) const {
     const auto [a, b, c] = tree_->sphere().corners(triangle);
     const double distance = dot(normalised(cross(b - a, c - a)), a);

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <sstream>
 #include <string>
@@ -57,21 +56,13 @@ double lobe_minimum(const Lobe& lobe) {
 
 SkyTree::SkyTree(const sky::Radiance& radiance, const Preparation& preparation)
     : sphere_(preparation.level), coefficients_(preparation.coefficients) {
-  fill_vertices(radiance, preparation.floor * radiance.grey(radiance.mean()));
-  fill_nodes();
-}
-
-void SkyTree::fill_vertices(const sky::Radiance& radiance, double floor) {
-  least_ = std::numeric_limits<double>::infinity();
+  const double floor = preparation.floor * radiance.grey(radiance.mean());
   for (const sky::Vector3& w : sphere_.vertices()) {
     const double value = radiance.grey(radiance(w)) + floor;
     least_ = std::min(least_, value);
     const sky::Harmonics y = sky::harmonics(w);
     for (std::size_t i = 0; i < coefficients_; ++i) vertices_.push_back(value * y[i]);
   }
-}
-
-void SkyTree::fill_nodes() {
   nodes_.resize(2 * count() * coefficients_);
   for (std::size_t t = 0; t < count(); ++t) {
     const auto [a, b, c] = sphere_.corners(t);
@@ -130,20 +121,6 @@ std::shared_ptr<const Setup> prepare(Parameters& given) {
                         std::make_shared<sky::DirectionSampler>(setting, directions), true);
 }
 
-std::vector<ParameterInformation> parameters() {
-  return joined(
-      sky::parameters(),
-      {count_parameter("level", "how often the octahedron's triangles are cut into four", "4",
-                       {0, 7}),
-       text_parameter("coefficients", "spherical harmonics of the lobe", "9",
-                      {"1", "4", "9", "25"}),
-       number_parameter("offset", "added to the lobe's first coefficient, to make it positive",
-                        "0.15", {0, 100}),
-       number_parameter("floor", "added to the luminance at vertices, as a part of the sky's mean",
-                        "0", {0, 1}),
-       sky::strata_parameter()});
-}
-
 }  // namespace
 
 std::vector<Entry> steerable_sky() {
@@ -160,7 +137,19 @@ std::vector<Entry> steerable_sky() {
                 "triangle's plane. Directions below the horizon count as zero. Channels `below` "
                 "(the part of them) and `nodes` (of the tree, passed through for a sample) are "
                 "diagnostic. The sampler `direction` is in the receiver's frame (z along n).",
-            .parameters = parameters()},
+            .parameters = joined(
+                sky::parameters(),
+                {count_parameter("level", "how often the octahedron's triangles are cut into four",
+                                 "4", {0, 7}),
+                 text_parameter("coefficients", "spherical harmonics of the lobe", "9",
+                                {"1", "4", "9", "25"}),
+                 number_parameter("offset",
+                                  "added to the lobe's first coefficient, to make it positive",
+                                  "0.15", {0, 100}),
+                 number_parameter("floor",
+                                  "added to the luminance at vertices, as a part of the sky's mean",
+                                  "0", {0, 1}),
+                 sky::strata_parameter()})},
            prepare}};
 }
 
