@@ -42,13 +42,20 @@ class View {
     std::ranges::sort(across_);
   }
 
-  bool of_one_surface() const { return across_.empty() && along_.empty(); }
-
-  /// The moments at the middle of the lens, for a picture that is constant over the lens.
-  Moments of_its_surface() const {
+  Moments moments() const {
+    if (!across_.empty() || !along_.empty()) return quadrature();
+    // One surface fills the whole lens.
     const Seen* const seen = first({});
     if (!seen) return {background_, background_ * background_, 0};
     return sinusoid_moments(seen->plane->texture, seen->map);
+  }
+
+ private:
+  const Seen* first(const PlanePoint& u) const {
+    for (const Seen& seen : seen_) {
+      if (seen.plane->contains(seen.map.at(u))) return &seen;
+    }
+    return nullptr;
   }
 
   /// Integrals of the radiance and its square along the chord of the lens at height v.
@@ -66,24 +73,22 @@ class View {
     return sum;
   }
 
-  /// Angles t, v = sin t, between which chord() is smooth.
-  std::vector<double> breaks() const {
-    std::vector<double> out{-pi / 2, pi / 2};
-    for (const double v : along_) out.push_back(std::asin(v));
+  Moments quadrature() const {
+    // Angles t, v = sin t, between which chord() is smooth.
+    std::vector<double> breaks{-pi / 2, pi / 2};
+    for (const double v : along_) breaks.push_back(std::asin(v));
     for (const double u : across_) {
       // The circle meets the edge here.
-      out.push_back(std::acos(std::abs(u)));
-      out.push_back(-out.back());
+      breaks.push_back(std::acos(std::abs(u)));
+      breaks.push_back(-breaks.back());
     }
-    return out;
-  }
-
- private:
-  const Seen* first(const PlanePoint& u) const {
-    for (const Seen& seen : seen_) {
-      if (seen.plane->contains(seen.map.at(u))) return &seen;
-    }
-    return nullptr;
+    const auto integrand = [&](double t) {
+      auto sums = chord(std::sin(t));
+      for (double& x : sums) x *= std::cos(t) / pi;
+      return sums;
+    };
+    const auto all = render::tanh_sinh_pieces<2>(integrand, breaks, 1e-12);
+    return {all.value[0], all.value[1], std::max(all.error[0], all.error[1])};
   }
 
   void add(std::array<double, 2>& sum, const Interval& part, double v) const {
@@ -113,17 +118,6 @@ class View {
   std::vector<double> along_;   // edges in v
 };
 
-Moments quadrature(const View& view) {
-  std::vector<double> breaks = view.breaks();
-  const auto integrand = [&](double t) {
-    auto chord = view.chord(std::sin(t));
-    for (double& x : chord) x *= std::cos(t) / pi;
-    return chord;
-  };
-  const auto all = render::tanh_sinh_pieces<2>(integrand, breaks, 1e-12);
-  return {all.value[0], all.value[1], std::max(all.error[0], all.error[1])};
-}
-
 }  // namespace
 
 double half_plane_coverage(double d) {
@@ -152,8 +146,7 @@ Moments sinusoid_moments(const Texture& texture, const Footprint& seen) {
 }
 
 Moments exact_moments(const SceneDescription& scene, const PlanePoint& pixel) {
-  const View view(scene, pixel);
-  return view.of_one_surface() ? view.of_its_surface() : quadrature(view);
+  return View(scene, pixel).moments();
 }
 
 }  // namespace assay::depth_of_field

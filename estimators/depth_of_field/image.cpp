@@ -19,10 +19,6 @@ std::vector<std::uint64_t> counts(std::span<const double> shares, double scale) 
   });
 }
 
-double total(const std::vector<std::uint64_t>& counts) {
-  return static_cast<double>(std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}));
-}
-
 std::vector<double> exact_variances(const std::vector<Moments>& moments) {
   // Below, the difference is rounding.
   return mapped(
@@ -43,7 +39,9 @@ std::vector<std::uint64_t> lens_counts(std::span<const double> variances, const 
   double high = 2 * budget / sum;  // more than the budget, whatever is rounded down to one
   for (int i = 0; i < 60; ++i) {
     const double middle = (low + high) / 2;
-    (total(counts(shares, middle)) <= budget ? low : high) = middle;
+    const auto all = counts(shares, middle);
+    const auto total = std::accumulate(all.begin(), all.end(), std::uint64_t{0});
+    (static_cast<double>(total) <= budget ? low : high) = middle;
   }
   return counts(shares, low);
 }

@@ -30,17 +30,6 @@ std::vector<CameraFrequency> texture_waves(const Plane& plane, const Lens& lens)
   return Spectrum({texture_wave(plane)}).travel(plane.depth).at_camera(lens);
 }
 
-double by_waves(const Plane& plane, const Lens& lens) {
-  return lens_variance(texture_waves(plane, lens), lens);
-}
-
-double by_covariance(const Plane& plane, const Lens& lens) {
-  const Texture& t = plane.texture;
-  return Covariance(t.amplitude * t.amplitude / 2, {.position = t.frequency * t.frequency})
-      .travel(plane.depth)
-      .lens_variance(lens);
-}
-
 /// The light that an edge sends to the camera, as frequencies there. The constant and the wave of
 /// the surface behind are carried to the occluder. They and the occluder's own are multiplied by
 /// the waves of a step up to `highest`.
@@ -152,8 +141,6 @@ class Pass {
   Prediction out_;
 };
 
-bool always(const Plane&, const Lens&) { return true; }
-
 }  // namespace
 
 PlanePoint Grid::pixel(std::size_t index) const {
@@ -163,9 +150,20 @@ PlanePoint Grid::pixel(std::size_t index) const {
   return {middle(index % width, width), middle(index / width, height)};
 }
 
-PredictionRules wave_rules() { return {by_waves, always, image_bandwidth}; }
+PredictionRules wave_rules() {
+  return {[](const Plane& plane, const Lens& lens) {
+    return lens_variance(texture_waves(plane, lens), lens);
+  }};
+}
 
-PredictionRules covariance_rules() { return {by_covariance, always, image_bandwidth}; }
+PredictionRules covariance_rules() {
+  return {[](const Plane& plane, const Lens& lens) {
+    const Texture& t = plane.texture;
+    return Covariance(t.amplitude * t.amplitude / 2, {.position = t.frequency * t.frequency})
+        .travel(plane.depth)
+        .lens_variance(lens);
+  }};
+}
 
 Prediction predict(const Setting& setting, const Grid& grid, const PredictionRules& rules) {
   return Pass(setting, grid, rules).lines();

@@ -48,8 +48,10 @@ struct PredictionRules {
   /// The variance that a texture at a depth has over the lens, averaged over its phase.
   std::function<double(const Plane&, const Lens&)> texture_variance;
   /// True if the edges of such an occluder count.
-  std::function<bool(const Plane&, const Lens&)> occludes;
-  std::function<double(std::span<const CameraFrequency>, const Lens&)> bandwidth;
+  std::function<bool(const Plane&, const Lens&)> occludes = [](const Plane&, const Lens&) {
+    return true;
+  };
+  std::function<double(std::span<const CameraFrequency>, const Lens&)> bandwidth = image_bandwidth;
 };
 
 /// By sets of waves, or by covariances (bandwidths are those of waves all the same).

@@ -12,33 +12,26 @@ namespace assay::depth_of_field {
 
 namespace {
 
-/// The samples of one tile whose first pixel is (x0, y0).
-void add_tile(std::vector<ImageSample>& out, const Grid& grid, const ImageSample& first) {
-  const std::size_t x_end = std::min(first.x + tile_side, grid.width);
-  const std::size_t y_end = std::min(first.y + tile_side, grid.height);
-  for (std::size_t y = first.y; y < y_end; y += first.spacing) {
-    for (std::size_t x = first.x; x < x_end; x += first.spacing) {
-      out.push_back({x, y, first.spacing});
+/// Calls `visit(x, y)` for pixels of the tile that begins at `first`, so far apart.
+void visit_tile(const Grid& grid, const ImageSample& first, const auto& visit) {
+  for (std::size_t y = first.y; y < std::min(first.y + tile_side, grid.height);
+       y += first.spacing) {
+    for (std::size_t x = first.x; x < std::min(first.x + tile_side, grid.width);
+         x += first.spacing) {
+      visit(x, y);
     }
   }
 }
 
-double highest(const Grid& grid, std::span<const double> bandwidth, const ImageSample& first) {
-  double most = 0;
-  for (std::size_t y = first.y; y < std::min(first.y + tile_side, grid.height); ++y) {
-    for (std::size_t x = first.x; x < std::min(first.x + tile_side, grid.width); ++x) {
-      most = std::max(most, bandwidth[y * grid.width + x]);
-    }
-  }
-  return most;
-}
-
-template <class Spacing>
-std::vector<ImageSample> tiles(const Grid& grid, const Spacing& spacing) {
+/// `spacing` gives that of a tile by its first pixel.
+std::vector<ImageSample> tiles(const Grid& grid, const auto& spacing) {
   std::vector<ImageSample> out;
   for (std::size_t y = 0; y < grid.height; y += tile_side) {
     for (std::size_t x = 0; x < grid.width; x += tile_side) {
-      add_tile(out, grid, {x, y, spacing(ImageSample{x, y})});
+      const ImageSample first{x, y, spacing(ImageSample{x, y})};
+      visit_tile(grid, first, [&](std::size_t u, std::size_t v) {
+        out.push_back({u, v, first.spacing});
+      });
     }
   }
   return out;
@@ -49,24 +42,6 @@ double tent(std::size_t a, std::size_t b, std::size_t reach) {
   return std::max(0.0, 1 - distance / static_cast<double>(reach));
 }
 
-double lens_average(const ReconstructionPlan& plan, std::size_t sample, std::uint64_t count,
-                    Stream& random, Cost& cost) {
-  const PlanePoint pixel = plan.grid.pixel(plan.pixel_of(plan.samples[sample]));
-  double sum = 0;
-  for (std::uint64_t k = 0; k < count; ++k) {
-    sum += plan.setting->radiance(pixel, lens_point(random), cost);
-  }
-  return sum / static_cast<double>(count);
-}
-
-std::vector<Channel> pixel_channels(const ReconstructionPlan& plan) {
-  return mapped(plan.exact, [&](const Moments& exact) {
-    Channel channel = radiance_channel(plan.setting->scene(), exact);
-    channel.variance.reset();
-    return channel;
-  });
-}
-
 }  // namespace
 
 std::vector<ImageSample> regular_samples(const Grid& grid, std::size_t spacing) {
@@ -75,7 +50,10 @@ std::vector<ImageSample> regular_samples(const Grid& grid, std::size_t spacing) 
 
 std::vector<ImageSample> samples_by_bandwidth(const Grid& grid, std::span<const double> bandwidth) {
   return tiles(grid, [&](const ImageSample& first) {
-    const double most = highest(grid, bandwidth, first);
+    double most = 0;
+    visit_tile(grid, first, [&](std::size_t x, std::size_t y) {
+      most = std::max(most, bandwidth[y * grid.width + x]);
+    });
     std::size_t spacing = tile_side;
     while (spacing > 1 && static_cast<double>(spacing) * grid.pitch() * most > std::numbers::pi) {
       spacing /= 2;
@@ -151,7 +129,13 @@ std::shared_ptr<const Setup> prepare_reconstruction(Parameters& given,
                             Cost& cost) mutable {
     for (std::size_t i = 0; i < values.size(); ++i) {
       Stream mine = random.substream(static_cast<std::uint32_t>(i));
-      values[i] = lens_average(*plan, i, primaries * plan->counts[i], mine, cost);
+      const PlanePoint pixel = plan->grid.pixel(plan->pixel_of(plan->samples[i]));
+      const std::uint64_t count = primaries * plan->counts[i];
+      double sum = 0;
+      for (std::uint64_t k = 0; k < count; ++k) {
+        sum += plan->setting->radiance(pixel, lens_point(mine), cost);
+      }
+      values[i] = sum / static_cast<double>(count);
     }
     for (std::size_t p = 0; p < plan->splats.size(); ++p) {
       double sum = 0;
@@ -162,7 +146,11 @@ std::shared_ptr<const Setup> prepare_reconstruction(Parameters& given,
     cost.camera_rays += primaries * plan->overhead.camera_rays;
     cost.samples += primaries;
   };
-  const std::vector<Channel> pixels = pixel_channels(*plan);
+  const std::vector<Channel> pixels = mapped(plan->exact, [&](const Moments& exact) {
+    Channel channel = radiance_channel(plan->setting->scene(), exact);
+    channel.variance.reset();
+    return channel;
+  });
   return setup_of({.channels = {repeated(pixels[worst], "worst")},
                    .make = estimating(estimate),
                    .samplers = lens_samplers<>(),

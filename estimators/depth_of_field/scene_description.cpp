@@ -99,15 +99,6 @@ constexpr NamedScene built_in[] = {
      "{depth: 6, x: [-9, 9], y: [-9, 1.6], radiance: .3, amplitude: .2, wavelength: 1.2}]}"},
 };
 
-std::vector<render::Shape> shapes(const SceneDescription& scene) {
-  return mapped(scene.planes, [](const Plane& p) -> render::Shape {
-    return render::fan({{p.x.low, p.y.low, p.depth},
-                        {p.x.high, p.y.low, p.depth},
-                        {p.x.high, p.y.high, p.depth},
-                        {p.x.low, p.y.high, p.depth}});
-  });
-}
-
 }  // namespace
 
 Interval SceneDescription::range() const {
@@ -134,7 +125,13 @@ SceneDescription read_scene(const Value& given) {
   return out;
 }
 
-Setting::Setting(SceneDescription scene) : scene_(std::move(scene)), rays_(shapes(scene_)) {}
+Setting::Setting(SceneDescription scene)
+    : scene_(std::move(scene)), rays_(mapped(scene_.planes, [](const Plane& p) -> render::Shape {
+        return render::fan({{p.x.low, p.y.low, p.depth},
+                            {p.x.high, p.y.low, p.depth},
+                            {p.x.high, p.y.high, p.depth},
+                            {p.x.low, p.y.high, p.depth}});
+      })) {}
 
 const Plane* Setting::first_hit(const PlanePoint& pixel, const PlanePoint& u, Cost& cost) const {
   ++cost.camera_rays;
