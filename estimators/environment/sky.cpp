@@ -92,12 +92,6 @@ std::shared_ptr<const Setup> prepare_cosine(Parameters& given) {
 //   X_c = (L_c / s) S cos+ V. E[X_c] = E_c, since s > 0 wherever any L_c > 0.
 //   E[X_c^2] = S sum over texels of (L_c^2 / s) times the integral of cos+^2.
 
-std::vector<double> powers(const render::EnvironmentMap& map) {
-  return mapped_indices(map.size(), [&](std::size_t texel) {
-    return sum(map.radiance(texel)) * solid_angle(map.patch(texel));
-  });
-}
-
 /// A direction and the texel that it was drawn in; near a border, rounding may disagree with the
 /// map's own look-up.
 struct Choice {
@@ -108,7 +102,10 @@ struct Choice {
 /// Directions of the world's frame, drawn by brightness.
 class EmittanceSampler final : public Sampler {
  public:
-  explicit EmittanceSampler(Sky sky) : sky_(std::move(sky)), texels_(powers(map())) {}
+  explicit EmittanceSampler(Sky sky)
+      : sky_(std::move(sky)), texels_(mapped_indices(map().size(), [this](std::size_t texel) {
+          return sum(map().radiance(texel)) * solid_angle(map().patch(texel));
+        })) {}
 
   Domain domain() const override { return Domain::sphere; }
   SamplerDraw sample(Stream& random) const override {
@@ -151,21 +148,6 @@ class EmittanceSampler final : public Sampler {
   render::ShareTable texels_;
 };
 
-Primaries primaries(const Sky& sky, double total) {
-  Primaries result;
-  const render::EnvironmentMap& map = sky.picture->map();
-  for (std::size_t texel = 0; texel < map.size(); ++texel) {
-    const Rgb& radiance = map.radiance(texel);
-    if (sum(radiance) == 0) continue;
-    result.largest = brighter(result.largest, total * radiance / sum(radiance));
-  }
-  result.second_moment = [&map, total](std::size_t texel, const render::CosineMoments& moments) {
-    const double brightness = sum(map.radiance(texel));
-    return brightness > 0 ? total * moments.second / brightness : 0;
-  };
-  return result;
-}
-
 std::shared_ptr<const Setup> prepare_emittance(Parameters& given) {
   const Sky sky = read_sky(given);
   const render::EnvironmentMap& map = sky.picture->map();
@@ -174,12 +156,22 @@ std::shared_ptr<const Setup> prepare_emittance(Parameters& given) {
   given.require(!black, "map", "is black everywhere: no direction can be drawn");
 
   const auto sampler = std::make_shared<const EmittanceSampler>(sky);
+  const double total = sampler->total();
+  Primaries primaries;
+  for (std::size_t texel = 0; texel < map.size(); ++texel) {
+    const Rgb& radiance = map.radiance(texel);
+    if (sum(radiance) == 0) continue;
+    primaries.largest = brighter(primaries.largest, total * radiance / sum(radiance));
+  }
+  primaries.second_moment = [&map, total](std::size_t texel, const render::CosineMoments& moments) {
+    const double brightness = sum(map.radiance(texel));
+    return brightness > 0 ? total * moments.second / brightness : 0;
+  };
   const auto primary = [sampler](Stream& random, Cost& cost) {
     ++cost.samples;
     return sky::Outcome{.value = sampler->contribution(sampler->choose(random), cost)};
   };
-  return sky::sky_setup(irradiance_channels(sky, primaries(sky, sampler->total())), primary,
-                        sampler, false);
+  return sky::sky_setup(irradiance_channels(sky, primaries), primary, sampler, false);
 }
 
 }  // namespace

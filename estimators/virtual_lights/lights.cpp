@@ -141,14 +141,6 @@ std::shared_ptr<const Setup> gather(Parameters& parameters) {
   return setup(scene, {sums, [](const Sums& all, double n) { return 1 / n * all.full; }});
 }
 
-// The target g has the spikes of f, so that the ratio has none. If g/p has a variance, the bias to
-// first order is (I Var(g/p) / G^2 - Cov(f/p, g/p) / G) / M.
-
-std::shared_ptr<const Setup> weighted(Parameters& parameters) {
-  const Scene scene = read_room(parameters);
-  return setup(scene, weighted_recipe(read_weighted(parameters, scene.room)));
-}
-
 }  // namespace
 
 std::vector<Entry> virtual_lights_lights() {
@@ -212,7 +204,12 @@ std::vector<Entry> virtual_lights_lights() {
                  "exact")}),
         .bias = BiasClass::inverse_primaries,
         .averages = false},
-       weighted}};
+       // The target g has the spikes of f, so that the ratio has none. If g/p has a variance, the
+       // bias to first order is (I Var(g/p) / G^2 - Cov(f/p, g/p) / G) / M.
+       [](Parameters& parameters) {
+         const Scene scene = read_room(parameters);
+         return setup(scene, weighted_recipe(read_weighted(parameters, scene.room)));
+       }}};
 }
 
 }  // namespace assay::plugins

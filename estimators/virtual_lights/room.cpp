@@ -95,12 +95,6 @@ std::vector<std::uint32_t> emitting_sides(const MeshWorld& world, const Enclosur
   return sides;
 }
 
-std::vector<double> powers(const MeshWorld& world, const std::vector<std::uint32_t>& sides) {
-  return mapped(sides, [&](std::uint32_t i) {
-    return world.patch_area(i) * render::mean(world.surface(i).emission);
-  });
-}
-
 // The share of the light on wall j that comes from elsewhere.
 double reached(const std::vector<double>& shares, std::uint32_t wall, Weighting weighting) {
   const double elsewhere = 1 - shares[wall];
@@ -142,19 +136,18 @@ Room::Room(paths::SharedMesh world, double shininess)
       enclosure_(enclosure(world_->mesh(), receiver_.position)),
       sides_(emitting_sides(*world_, enclosure_)),
       lamps_(mapped(sides_, [](std::uint32_t side) { return side / 2; })),
-      shares_(powers(*world_, sides_)),
-      even_emission_(find_even_emission()) {
+      shares_(mapped(sides_, [&](std::uint32_t i) {
+        return world_->patch_area(i) * render::mean(world_->surface(i).emission);
+      })) {
+  if (enclosure_.why_open.empty() && is_even(*world_, &paths::Surface::emission)) {
+    even_emission_ = world_->surface(0).emission;
+  }
   if (!even_emission_ && !enclosure_.why_not_convex.empty()) {
     why_no_marginal_ =
         "known only in a closed room that is convex or emits evenly; this one does not emit "
         "evenly, and " +
         enclosure_.why_not_convex;
   }
-}
-
-std::optional<Rgb> Room::find_even_emission() const {
-  if (!enclosure_.why_open.empty() || !is_even(*world_, &paths::Surface::emission)) return {};
-  return world_->surface(0).emission;
 }
 
 LightPath Room::shoot(Stream& random, Cost& cost) const {

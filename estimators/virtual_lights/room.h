@@ -91,7 +91,6 @@ class Room {
 
  private:
   double form_factor(const Vertex& from, std::size_t triangle) const;
-  std::optional<Rgb> find_even_emission() const;
   double brightness(std::size_t triangle) const {
     return render::mean(world_->surface(2 * triangle).emission);
   }
