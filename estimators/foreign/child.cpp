@@ -89,34 +89,6 @@ struct Spawning {
   posix_spawnattr_t process{};
 };
 
-void describe_files(posix_spawn_file_actions_t* actions, const Launch& launch,
-                    const std::array<int, 3>& standard) {
-  for (int i = 0; i < 3; ++i) {
-    check(posix_spawn_file_actions_adddup2(actions, standard[static_cast<std::size_t>(i)], i));
-  }
-  check(posix_spawn_file_actions_addclosefrom_np(actions, 3));
-  if (!launch.folder.empty()) {
-    check(posix_spawn_file_actions_addchdir_np(actions, launch.folder.c_str()));
-  }
-}
-
-/// A group of its own, signals as a shell leaves them.
-void describe_process(posix_spawnattr_t* attributes) {
-  sigset_t defaults;
-  sigemptyset(&defaults);
-  for (const int signal : {SIGINT, SIGQUIT, SIGTERM, SIGPIPE, SIGCHLD, SIGHUP, SIGXFSZ}) {
-    sigaddset(&defaults, signal);
-  }
-  sigset_t none;
-  sigemptyset(&none);
-  check(posix_spawnattr_setsigdefault(attributes, &defaults));
-  check(posix_spawnattr_setsigmask(attributes, &none));
-  check(posix_spawnattr_setpgroup(attributes, 0));
-  check(posix_spawnattr_setflags(
-      attributes,
-      static_cast<short>(POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK)));
-}
-
 /// Null-terminated pointers to texts, as a program is given its arguments.
 std::vector<char*> pointers_to(std::vector<std::string>& texts) {
   std::vector<char*> pointers;
@@ -142,8 +114,28 @@ std::vector<std::string> environment_of(const Launch& launch) {
 
 pid_t spawn(const Launch& launch, const std::array<int, 3>& standard) {
   Spawning spawning;
-  describe_files(&spawning.files, launch, standard);
-  describe_process(&spawning.process);
+  for (int i = 0; i < 3; ++i) {
+    check(posix_spawn_file_actions_adddup2(&spawning.files, standard[static_cast<std::size_t>(i)],
+                                           i));
+  }
+  check(posix_spawn_file_actions_addclosefrom_np(&spawning.files, 3));
+  if (!launch.folder.empty()) {
+    check(posix_spawn_file_actions_addchdir_np(&spawning.files, launch.folder.c_str()));
+  }
+  // A group of its own, signals as a shell leaves them.
+  sigset_t defaults;
+  sigemptyset(&defaults);
+  for (const int signal : {SIGINT, SIGQUIT, SIGTERM, SIGPIPE, SIGCHLD, SIGHUP, SIGXFSZ}) {
+    sigaddset(&defaults, signal);
+  }
+  sigset_t none;
+  sigemptyset(&none);
+  check(posix_spawnattr_setsigdefault(&spawning.process, &defaults));
+  check(posix_spawnattr_setsigmask(&spawning.process, &none));
+  check(posix_spawnattr_setpgroup(&spawning.process, 0));
+  check(posix_spawnattr_setflags(
+      &spawning.process,
+      static_cast<short>(POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK)));
   std::vector<std::string> words = launch.command;
   const std::vector<char*> arguments = pointers_to(words);
   std::vector<std::string> variables = environment_of(launch);
@@ -296,10 +288,6 @@ void Child::kill() {
   killed_ = !has_ended();
   // Before it is reaped: until then nobody else can have the number of its group.
   ::kill(-process_, SIGKILL);
-  reap();
-}
-
-void Child::reap() {
   rusage used{};
   while (wait4(process_, &status_, 0, &used) < 0 && errno == EINTR) {
   }

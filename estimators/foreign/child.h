@@ -66,7 +66,6 @@ class Child {
   bool wait_for(int descriptor, short event, Deadline deadline);
   void keep_errors(std::size_t most);
   bool has_ended();
-  void reap();
 
   pid_t process_ = -1;
   int input_ = -1;

@@ -115,11 +115,6 @@ class CommandSetup final : public Setup, public foreign::Rendered {
   std::shared_ptr<const Contents> contents_;
 };
 
-struct Look {
-  std::string channels;
-  bool independent;
-};
-
 /// Why no channels of a picture can be chosen; "" where they can.
 std::string why_no_channels(const std::string& file, const std::string& channels) {
   if (!is_picture(file)) return "";
@@ -132,11 +127,11 @@ std::string why_no_channels(const std::string& file, const std::string& channels
   return "";
 }
 
-Contents look_at(const std::string& file, const Look& look) {
+Contents look_at(const std::string& file, const std::string& channels, bool independent) {
   Contents contents;
   if (is_picture(file)) {
-    contents.pictures = recorded::open_stack({file}, look.channels, {});
-    contents.shape = contents.pictures.view.shape(look.independent);
+    contents.pictures = recorded::open_stack({file}, channels, {});
+    contents.shape = contents.pictures.view.shape(independent);
     contents.pictures.files.clear();
   } else {
     contents.columns = recorded::read_table(file, recorded::Rows::one_is_fine).columns;
@@ -188,7 +183,8 @@ std::shared_ptr<const Setup> prepare(Parameters& parameters) {
   if (rendering.jobs == 0) {
     rendering.jobs = std::max(1U, std::thread::hardware_concurrency());
   }
-  const Look look{parameters.string("channels"), parameters.string("pixels") == "independent"};
+  const std::string channels = parameters.string("channels");
+  const bool independent = parameters.string("pixels") == "independent";
   rendering.cache = std::filesystem::absolute(rendering.cache).string();
   std::string why;
   std::string file;
@@ -198,9 +194,10 @@ std::shared_ptr<const Setup> prepare(Parameters& parameters) {
     const StreamKey key = stream_key(0, "command", "size", 0);
     renderings->make({.key = key, .first = 0, .last = 1, .samples = 1});
     file = renderings->file(key, 0, 1);
-    why = why_no_channels(file, look.channels);
+    why = why_no_channels(file, channels);
     if (why.empty()) {
-      return std::make_shared<CommandSetup>(std::move(renderings), look_at(file, look));
+      return std::make_shared<CommandSetup>(std::move(renderings),
+                                            look_at(file, channels, independent));
     }
   } catch (const foreign::RenderingError& error) {
     parameters.refuse(error.member(), std::string("cannot be used: ") + error.what());

@@ -77,7 +77,10 @@ class Reader {
       throw ProtocolError("its hello names neither a `channel` nor an `image`");
     }
     refuse_doubles();
-    require_sound_samplers();
+    unequal(mapped(hello_.samplers, &SamplerNote::name), "sampler");
+    if (!hello_.samplers.empty() && hello_.numbers == Numbers::text) {
+      throw ProtocolError("its hello has a `sampler`, whose numbers are binary only");
+    }
     return hello_;
   }
 
@@ -105,32 +108,10 @@ class Reader {
     return *value;
   }
 
-  double finite(std::string_view word) const {
-    const double value = number(word);
-    if (!std::isfinite(value)) wrong_here("`" + shown(word) + "` is not finite");
-    return value;
-  }
-
   void take_range(double low, double high, Channel& channel) const {
     if (!(low <= high)) wrong_here("the range is empty");
     channel.low = low;
     channel.high = high;
-  }
-
-  void take_fact(std::string_view what, double value, Channel& channel) const {
-    const bool spread = what == "error" || what == "variance" || what == "rounding";
-    if (spread && value < 0) wrong_here("`" + std::string(what) + "` cannot be negative");
-    if (what == "mean")
-      channel.mean = value;
-    else if (what == "error")
-      channel.mean_error = value;
-    else if (what == "variance")
-      channel.variance = value;
-    else if (what == "rounding")
-      channel.rounding = value;
-    else
-      wrong_here(
-          "of a channel mean, error, variance, low, high, rounding and diagnostic are known");
   }
 
   void channel(const Words& words) {
@@ -147,12 +128,24 @@ class Reader {
       }
       if (i + 1 == words.size()) wrong_here("`" + shown(words[i]) + "` needs a number");
       const std::string_view what = words[i++];
-      if (what == "low")
-        low = number(words[i]);
-      else if (what == "high")
-        high = number(words[i]);
+      const double value = number(words[i]);
+      const bool bound = what == "low" || what == "high";
+      if (!bound && !std::isfinite(value)) wrong_here("`" + shown(words[i]) + "` is not finite");
+      const bool spread = what == "error" || what == "variance" || what == "rounding";
+      if (spread && value < 0) wrong_here("`" + std::string(what) + "` cannot be negative");
+      if (bound)
+        (what == "low" ? low : high) = value;
+      else if (what == "mean")
+        channel.mean = value;
+      else if (what == "error")
+        channel.mean_error = value;
+      else if (what == "variance")
+        channel.variance = value;
+      else if (what == "rounding")
+        channel.rounding = value;
       else
-        take_fact(what, finite(words[i]), channel);
+        wrong_here(
+            "of a channel mean, error, variance, low, high, rounding and diagnostic are known");
     }
     take_range(low, high, channel);
     hello_.channels.push_back(std::move(channel));
@@ -191,21 +184,18 @@ class Reader {
     hello_.nature.bias = known->bias;
   }
 
-  Domain domain(std::string_view word) const {
-    const auto found = std::ranges::find(domain_words, word);
-    if (found == domain_words.end()) {
-      wrong_here("a domain is interval, square, triangle, hemisphere or sphere");
-    }
-    return static_cast<Domain>(found - domain_words.begin());
-  }
-
   void sampler(const Words& words) {
     if (words.size() < 3 || words.size() % 2 == 0 || !is_name(words[1])) {
       wrong_here(
           "a sampler has a name of letters, digits and `_`, a domain, and pairs of a word and a "
           "number");
     }
-    SamplerNote note{.name = std::string(words[1]), .domain = domain(words[2])};
+    const auto domain = std::ranges::find(domain_words, words[2]);
+    if (domain == domain_words.end()) {
+      wrong_here("a domain is interval, square, triangle, hemisphere or sphere");
+    }
+    SamplerNote note{.name = std::string(words[1]),
+                     .domain = static_cast<Domain>(domain - domain_words.begin())};
     const bool bounded = note.domain == Domain::interval;
     for (std::size_t i = 3; i < words.size(); i += 2) {
       const double value = number(words[i + 1]);
@@ -222,11 +212,6 @@ class Reader {
     }
     if (!(note.bounds[0] < note.bounds[1])) wrong_here("the interval is empty");
     hello_.samplers.push_back(std::move(note));
-  }
-
-  [[noreturn]] void error() const {
-    const std::size_t words = std::min(line_.find("error") + 6, line_.size());
-    throw Refusal(std::string(line_.substr(words)));
   }
 
   void alone(const Words& words) const {
@@ -267,20 +252,16 @@ class Reader {
     }
   }
 
-  void require_sound_samplers() const {
-    unequal(mapped(hello_.samplers, &SamplerNote::name), "sampler");
-    if (!hello_.samplers.empty() && hello_.numbers == Numbers::text) {
-      throw ProtocolError("its hello has a `sampler`, whose numbers are binary only");
-    }
-  }
-
   std::map<std::string_view, std::function<void(const Words&)>> meanings_{
       {"channel", [this](const Words& words) { channel(words); }},
       {"image", [this](const Words& words) { image(words); }},
       {"range", [this](const Words& words) { range(words); }},
       {"bias", [this](const Words& words) { bias(words); }},
       {"sampler", [this](const Words& words) { sampler(words); }},
-      {"error", [this](const Words&) { error(); }},
+      {"error",
+       [this](const Words&) {
+         throw Refusal(std::string(line_.substr(std::min(line_.find("error") + 6, line_.size()))));
+       }},
       {"averages", sets(hello_.nature.averages)},
       {"rays", sets(hello_.rays)},
       {"ready", sets(ready_)},

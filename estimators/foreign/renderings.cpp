@@ -181,8 +181,6 @@ bool has_place(const std::vector<std::string>& command, std::string_view place) 
       command, [&](const std::string& word) { return word.find(place) != word.npos; });
 }
 
-bool Rendering::takes_several() const { return has_place(command, "{seeds}"); }
-
 Renderings::Renderings(Rendering rendering)
     : rendering_(std::move(rendering)),
       stamp_(stamp_of(rendering_)),

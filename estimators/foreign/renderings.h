@@ -61,7 +61,7 @@ struct Rendering {
   double memory = 0;                      ///< MiB; 0: no limit.
   std::uint64_t jobs = 1;                 ///< Programs at a time.
 
-  bool takes_several() const;
+  bool takes_several() const { return has_place(command, "{seeds}"); }
 };
 
 /// A rendering that cannot be made, and which member of it is to blame: `depends` or `cache`.

@@ -124,10 +124,11 @@ class ForeignEstimator final : public Estimator {
     try {
       take(wanted);
       question.count = announced_.end_from({wanted.key}, wanted.first) - wanted.first;
-      if (!recall(question)) {
-        question.count = dialogue_->well_sized(question);
-        numbers_ = ask(question);
-      }
+      // Those that are known cost what they cost when they were drawn.
+      Recalled known = children_->recalled(question);
+      seconds_ += known.seconds;
+      question.count = known.count > 0 ? known.count : dialogue_->well_sized(question);
+      numbers_ = known.count > 0 ? std::move(known.numbers) : ask(question);
     } catch (const NoAnswer& failure) {
       drop();
       const auto ask_one = [&](std::uint64_t i) { return ask_alone(question.alone(i)); };
@@ -135,17 +136,6 @@ class ForeignEstimator final : public Estimator {
       question.count = numbers_.size() / width_;
     }
     held_ = question;
-  }
-
-  /// True if the first of the observations are known; the question is then for these alone. They
-  /// cost what they cost when they were drawn.
-  bool recall(Question& question) {
-    Recalled known = children_->recalled(question);
-    if (known.count == 0) return false;
-    numbers_ = std::move(known.numbers);
-    question.count = known.count;
-    seconds_ += known.seconds;
-    return true;
   }
 
   std::vector<double> ask(const Question& question) {

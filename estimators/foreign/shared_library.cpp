@@ -191,14 +191,6 @@ ImageShape shape_of(const AssayImage& theirs) {
   return shape;
 }
 
-/// The facts that all elements share.
-Channel element_of(const AssayImage& theirs) {
-  Channel element;
-  if (has(theirs.flags, ASSAY_LOW)) element.low = theirs.low;
-  if (has(theirs.flags, ASSAY_HIGH)) element.high = theirs.high;
-  return element;
-}
-
 std::optional<BiasClass> bias_of(std::uint32_t theirs) {
   // In the order of plugin_abi.h.
   static_assert(static_cast<int>(BiasClass::reconstruction) ==
@@ -206,12 +198,6 @@ std::optional<BiasClass> bias_of(std::uint32_t theirs) {
   if (theirs == ASSAY_BIAS_UNKNOWN) return {};
   if (theirs <= ASSAY_BIAS_RECONSTRUCTION) return static_cast<BiasClass>(theirs - ASSAY_UNBIASED);
   throw LibraryError("declares the bias " + std::to_string(theirs) + ", which is none");
-}
-
-std::vector<AssaySampler> samplers_of(const AssayPreparation& prepared) {
-  std::vector<AssaySampler> all = all_known(prepared.samplers, prepared.sampler_count);
-  for (const AssaySampler& sampler : all) require_whole(sampler);
-  return all;
 }
 
 /// The library's facts as a program says them, so that the same rules read both.
@@ -226,7 +212,8 @@ Hello hello_of(const AssayEstimator& estimator, const AssayPreparation& prepared
   if (prepared.image != nullptr) {
     const AssayImage image = as_known(prepared.image);
     hello.image = shape_of(image);
-    hello.element = element_of(image);
+    if (has(image.flags, ASSAY_LOW)) hello.element.low = image.low;
+    if (has(image.flags, ASSAY_HIGH)) hello.element.high = image.high;
   }
   return parse_hello(to_text(hello));
 }
@@ -292,7 +279,8 @@ PreparedLibrary::PreparedLibrary(const LibraryChoice& choice)
                                .sampler_count = estimator_.sampler_count};
   prepare(choice, preparation);
   try {
-    samplers_ = samplers_of(preparation);
+    samplers_ = all_known(preparation.samplers, preparation.sampler_count);
+    std::ranges::for_each(samplers_, require_whole);
     hello_ = hello_of(estimator_, preparation, samplers_);
   } catch (...) {
     if (estimator_.release != nullptr) estimator_.release(state_);
