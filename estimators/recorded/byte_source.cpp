@@ -24,19 +24,6 @@ constexpr std::size_t portion = std::size_t{1} << 16;
 // How long a wait goes on before it asks whether to stop.
 constexpr int glance_in_milliseconds = 100;
 
-/// Waits until there is something to read; files are always ready. Returns how many bytes came at
-/// once: 0 at the end, -1 where reading fails.
-ssize_t read_some(int descriptor, char* to, std::size_t most) {
-  while (true) {
-    stop_if_asked();
-    pollfd wanted{.fd = descriptor, .events = POLLIN, .revents = 0};
-    const int ready = poll(&wanted, 1, glance_in_milliseconds);
-    if (ready == 0 || (ready < 0 && errno == EINTR)) continue;
-    const ssize_t count = ::read(descriptor, to, most);
-    if (count >= 0 || (errno != EINTR && errno != EAGAIN)) return count;
-  }
-}
-
 }  // namespace
 
 bool is_standard_input(const std::string& file) {
@@ -106,6 +93,22 @@ std::string_view ByteSource::look(std::size_t least) {
   return {bytes_.data() + begin_, end_ - begin_};
 }
 
+/// Waits until there is something to read; files are always ready. Returns how many bytes came at
+/// once: 0 at the end.
+std::size_t ByteSource::read_some(char* to, std::size_t most) const {
+  while (true) {
+    stop_if_asked();
+    pollfd wanted{.fd = descriptor_.number, .events = POLLIN, .revents = 0};
+    const int ready = poll(&wanted, 1, glance_in_milliseconds);
+    if (ready == 0 || (ready < 0 && errno == EINTR)) continue;
+    const ssize_t count = ::read(descriptor_.number, to, most);
+    if (count == 0) require_unchanged();
+    if (count >= 0) return static_cast<std::size_t>(count);
+    if (errno == EINTR || errno == EAGAIN) continue;
+    refuse(std::string("it cannot be read: ") + std::strerror(errno));
+  }
+}
+
 /// Adds bytes to those that are next; false at the end.
 bool ByteSource::fetch() {
   std::copy(bytes_.begin() + static_cast<std::ptrdiff_t>(begin_),
@@ -114,10 +117,8 @@ bool ByteSource::fetch() {
   begin_ = 0;
   bytes_.resize(std::max(bytes_.size(), end_ + portion));
   if (inflater_) return unpack();
-  const ssize_t count = read_some(descriptor_.number, bytes_.data() + end_, bytes_.size() - end_);
-  if (count < 0) refuse(std::string("it cannot be read: ") + std::strerror(errno));
-  if (count == 0) require_unchanged();
-  end_ += static_cast<std::size_t>(count);
+  const std::size_t count = read_some(bytes_.data() + end_, bytes_.size() - end_);
+  end_ += count;
   return count > 0;
 }
 
@@ -126,11 +127,8 @@ std::size_t ByteSource::fetch_packed() {
   z_stream& stream = inflater_->stream;
   if (stream.avail_in > 0) return stream.avail_in;
   inflater_->packed.resize(portion);
-  const ssize_t count = read_some(descriptor_.number, inflater_->packed.data(), portion);
-  if (count < 0) refuse(std::string("it cannot be read: ") + std::strerror(errno));
-  if (count == 0) require_unchanged();
+  stream.avail_in = static_cast<uInt>(read_some(inflater_->packed.data(), portion));
   stream.next_in = reinterpret_cast<Bytef*>(inflater_->packed.data());
-  stream.avail_in = static_cast<uInt>(count);
   return stream.avail_in;
 }
 

@@ -48,6 +48,7 @@ class ByteSource {
     ~Descriptor();
   };
 
+  std::size_t read_some(char* to, std::size_t most) const;
   bool fetch();
   std::size_t fetch_packed();
   bool unpack();

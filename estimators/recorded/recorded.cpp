@@ -218,15 +218,6 @@ std::shared_ptr<const Setup> prepare_pictures(const Parameters& parameters,
                                  std::filesystem::weakly_canonical(request.pattern).string());
 }
 
-std::shared_ptr<const Setup> prepare_text(Parameters& parameters) {
-  for (const char* const name : {"channels", "pixels", "exact", "variance", "second_moment",
-                                 "samples", "rounded", "crop", "mask", "finite"}) {
-    parameters.require(!parameters.given(name), name, "is for pictures, and `file` names none");
-  }
-  const Reading reading = read(parameters);
-  return std::make_shared<RecordedSetup>(reading, select(*reading.table, parameters));
-}
-
 std::shared_ptr<const Setup> prepare(Parameters& parameters) {
   for (const char* of_run : {"run", "estimator"}) {
     parameters.string(of_run);
@@ -237,8 +228,13 @@ std::shared_ptr<const Setup> prepare(Parameters& parameters) {
                      "is missing; give it, or `run` and `estimator`");
   const PictureRequest request = picture_request(parameters);
   parameters.string("column");
-  return recorded::names_pictures(request.pattern) ? prepare_pictures(parameters, request)
-                                                   : prepare_text(parameters);
+  if (recorded::names_pictures(request.pattern)) return prepare_pictures(parameters, request);
+  for (const char* const name : {"channels", "pixels", "exact", "variance", "second_moment",
+                                 "samples", "rounded", "crop", "mask", "finite"}) {
+    parameters.require(!parameters.given(name), name, "is for pictures, and `file` names none");
+  }
+  const Reading reading = read(parameters);
+  return std::make_shared<RecordedSetup>(reading, select(*reading.table, parameters));
 }
 
 }  // namespace

@@ -502,15 +502,6 @@ std::size_t most_numbers() {
   return static_cast<std::size_t>(pages) * static_cast<std::size_t>(page) / 4 / sizeof(double);
 }
 
-Table table_of(Matrix matrix, const ByteSource& source, Rows expected) {
-  if (expected == Rows::several && matrix.values.size() == matrix.columns && matrix.columns > 1) {
-    source.refuse("it is one row of " + std::to_string(matrix.columns) +
-                  " numbers, and an observation is a row;\n  if each is an observation, "
-                  "save it with `numpy.save(\"mine.npy\", a.ravel())`");
-  }
-  return {.columns = default_names(matrix.columns), .values = std::move(matrix.values)};
-}
-
 }  // namespace
 
 std::uint64_t Table::digest() const {
@@ -534,7 +525,13 @@ Table read_table(const std::string& file, Rows expected) {
   ByteSource source(file);
   const std::size_t most = most_numbers();
   if (source.look(npy_magic.size()).starts_with(npy_magic)) {
-    return table_of(read_npy(source, most), source, expected);
+    Matrix matrix = read_npy(source, most);
+    if (expected == Rows::several && matrix.values.size() == matrix.columns && matrix.columns > 1) {
+      source.refuse("it is one row of " + std::to_string(matrix.columns) +
+                    " numbers, and an observation is a row;\n  if each is an observation, "
+                    "save it with `numpy.save(\"mine.npy\", a.ravel())`");
+    }
+    return {.columns = default_names(matrix.columns), .values = std::move(matrix.values)};
   }
   constexpr std::size_t beginning = 512;
   const std::string problem = no_text(source.look(beginning), source.name());
