@@ -46,15 +46,13 @@ void split(const Polygon& polygon, double width, std::vector<Corners>& parts) {
   }
 }
 
-template <std::size_t N>
-using Groups = std::array<std::size_t, N>;
-
-// The integral over a polygon of f(w) with respect to solid angle; none where the lobe is too
-// narrow to be looked for everywhere.
+// The integral over luminaire::visible_parts() of f(w) with respect to solid angle. There is none
+// where the lobe is too narrow to be looked for everywhere.
 template <std::size_t N, class F>
-std::optional<render::Integrals<N>> over_polygon(const Techniques& techniques,
-                                                 const Polygon& polygon, const F& f,
-                                                 const Groups<N>& groups) {
+std::optional<render::Integrals<N>> over_visible(const Techniques& techniques, const F& f,
+                                                 const std::array<std::size_t, N>& groups) {
+  const auto visible = luminaire::visible_parts(techniques.setting());
+  if (!visible) return {};
   const double height = techniques.setting().triangles()[0].plane_distance;
   const auto by_area = [&](const Vector3& p) {
     const double distance = length(p);
@@ -62,26 +60,17 @@ std::optional<render::Integrals<N>> over_polygon(const Techniques& techniques,
     for (double& component : y) component *= height / (distance * distance * distance);
     return y;
   };
-  std::vector<Corners> parts;
-  split(polygon, techniques.reflectance().width(), parts);
-  if (parts.size() > most_parts) return {};
-  render::TriangleQuadrature<N, decltype(by_area)> quadrature(
-      by_area, {.most = 10000 + 4 * parts.size(), .group = groups});
-  for (const Corners& part : parts) quadrature.add(part);
-  return quadrature.refined();
-}
-
-template <std::size_t N, class F>
-std::optional<render::Integrals<N>> over_visible(const Techniques& techniques, const F& f,
-                                                 const Groups<N>& groups) {
-  const auto parts = luminaire::visible_parts(techniques.setting());
-  if (!parts) return {};
   render::Integrals<N> total;
-  for (const luminaire::SignedPolygon& part : *parts) {
-    auto integrals = over_polygon<N>(techniques, part.polygon, f, groups);
-    if (!integrals) return {};
-    for (double& value : integrals->value) value *= part.sign;
-    total += *integrals;
+  for (const auto& [polygon, sign] : *visible) {
+    std::vector<Corners> parts;
+    split(polygon, techniques.reflectance().width(), parts);
+    if (parts.size() > most_parts) return {};
+    render::TriangleQuadrature<N, decltype(by_area)> quadrature(
+        by_area, {.most = 10000 + 4 * parts.size(), .group = groups});
+    for (const Corners& part : parts) quadrature.add(part);
+    render::Integrals<N> integrals = quadrature.refined();
+    for (double& value : integrals.value) value *= sign;
+    total += integrals;
   }
   return total;
 }
@@ -121,7 +110,7 @@ std::optional<Moments> moments(const Techniques& techniques,
     const double of_brdf = p.brdf > 0 ? part.brdf * part.brdf / p.brdf : 0;
     return {f, part.light * part.light / p.light, of_brdf, part.light, part.brdf};
   };
-  const auto total = over_visible<5>(techniques, integrands, Groups<5>{0, 1, 1, 0, 0});
+  const auto total = over_visible<5>(techniques, integrands, {0, 1, 1, 0, 0});
   if (!total) return {};
   return Moments(*total);
 }
@@ -136,7 +125,7 @@ std::optional<Known> radiance(const Techniques& techniques) {
   const auto integrand = [&](const Vector3& w) {
     return std::array<double, 1>{techniques.integrand(w)};
   };
-  const auto total = over_visible<1>(techniques, integrand, Groups<1>{});
+  const auto total = over_visible<1>(techniques, integrand, {});
   if (!total) return {};
   return Known{total->value[0], total->error[0]};
 }

@@ -124,7 +124,7 @@ class ForeignEstimator final : public Estimator {
     try {
       take(wanted);
       question.count = announced_.end_from({wanted.key}, wanted.first) - wanted.first;
-      // Those that are known cost what they cost when they were drawn.
+      // Known observations cost what they cost when they were drawn.
       Recalled known = children_->recalled(question);
       seconds_ += known.seconds;
       question.count = known.count > 0 ? known.count : dialogue_->well_sized(question);
