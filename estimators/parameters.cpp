@@ -19,10 +19,6 @@ std::vector<std::string> names_of(const std::vector<ParameterInformation>& decla
   return mapped(declared, &ParameterInformation::name);
 }
 
-std::string suggestion(std::string_view name, const std::vector<std::string>& known) {
-  return did_you_mean(name, known, known.empty() ? "it has none" : "it has: " + listed(known));
-}
-
 std::string range_text(const ParameterInformation& p) {
   const auto& [low, high, low_excluded, high_excluded] = p.range;
   std::string out;
@@ -35,12 +31,6 @@ std::string range_text(const ParameterInformation& p) {
   }
   if (!out.empty() && !p.unit.empty()) out += " " + p.unit;
   return out.empty() ? "finite" : out;
-}
-
-bool within(const NumberRange& range, double value) {
-  const bool above = range.low_excluded ? value > range.low : value >= range.low;
-  const bool below = range.high_excluded ? value < range.high : value <= range.high;
-  return std::isfinite(value) && above && below;
 }
 
 std::vector<std::string> texts_of(const Value& value, const std::string& what) {
@@ -127,28 +117,27 @@ Parameters::Parameters(std::string plugin, std::vector<ParameterInformation> dec
     throw InputError(where_, plugin_ + ": parameters must be a map of names to values");
   }
   const std::vector<std::string> known = names_of(declared_);
+  const std::string all = known.empty() ? "it has none" : "it has: " + listed(known);
   for (const auto& [name, value] : given.members()) {
     if (std::ranges::find(known, name) == known.end()) {
-      throw InputError(value.where(),
-                       plugin_ + " has no parameter `" + name + "`" + suggestion(name, known));
+      throw InputError(value.where(), plugin_ + " has no parameter `" + name + "`" +
+                                          did_you_mean(name, known, all));
     }
     values_.emplace(name, value);
     given_.insert(name);
   }
-  for (const ParameterInformation& parameter : declared_) complete(parameter);
-}
-
-void Parameters::complete(const ParameterInformation& parameter) {
-  if (!given(parameter.name)) {
-    if (parameter.fallback.empty()) {
-      throw InputError(where_, plugin_ + " needs the parameter `" + parameter.name + "` (" +
-                                   parameter.summary + ")");
+  for (const ParameterInformation& parameter : declared_) {
+    if (!this->given(parameter.name)) {
+      if (parameter.fallback.empty()) {
+        throw InputError(where_, plugin_ + " needs the parameter `" + parameter.name + "` (" +
+                                     parameter.summary + ")");
+      }
+      const bool text = parameter.type == ParameterType::string;
+      values_.emplace(parameter.name,
+                      text ? Value::scalar(parameter.fallback) : parse_flow(parameter.fallback));
     }
-    const bool text = parameter.type == ParameterType::string;
-    values_.emplace(parameter.name,
-                    text ? Value::scalar(parameter.fallback) : parse_flow(parameter.fallback));
+    check(parameter, values_.find(parameter.name)->second);
   }
-  check(parameter, values_.find(parameter.name)->second);
 }
 
 void Parameters::check(const ParameterInformation& parameter, const Value& value) const {
@@ -175,7 +164,10 @@ void Parameters::check(const ParameterInformation& parameter, const Value& value
 }
 
 void Parameters::in_range(const ParameterInformation& parameter, double number) const {
-  if (within(parameter.range, number)) return;
+  const NumberRange& range = parameter.range;
+  const bool above = range.low_excluded ? number > range.low : number >= range.low;
+  const bool below = range.high_excluded ? number < range.high : number <= range.high;
+  if (std::isfinite(number) && above && below) return;
   refuse(parameter.name, "must be " + range_text(parameter) + ", but it is " +
                              shortest_text(number) +
                              (parameter.reason.empty() ? "" : ": " + parameter.reason));

@@ -109,7 +109,6 @@ class Parameters {
   const ParameterInformation& declared(std::string_view name) const;
   const Value& value(std::string_view name);
   std::size_t place_among_choices(std::string_view name);
-  void complete(const ParameterInformation&);
   void check(const ParameterInformation&, const Value&) const;
   void in_range(const ParameterInformation&, double) const;
   void one_of(const ParameterInformation&, const std::string&) const;

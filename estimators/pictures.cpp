@@ -112,16 +112,6 @@ std::string size_text(const PictureWindow& window) {
   return std::to_string(window.width) + " x " + std::to_string(window.height);
 }
 
-void require_same(const PictureFile& file, const PictureView& view, const std::string& first) {
-  const PictureWindow window = file.window(view.channels.names);
-  if (window == view.whole) return;
-  file.require(window.width != view.whole.width || window.height != view.whole.height,
-               "its data window lies elsewhere than that of `" + first +
-                   "`: render all files with one crop window");
-  file.refuse("it has " + size_text(window) + " pixels, but `" + first + "` has " +
-              size_text(view.whole) + ": render all files at one size");
-}
-
 std::vector<double> read_doubles(const PictureFile& file, const PictureView& view) {
   const ImageShape shape = view.shape();
   std::vector<float> texels(shape.elements());
@@ -195,15 +185,6 @@ void take_rows(const PictureView& view, std::span<const float> source, std::span
         if (view.channels.depth[c]) *out++ = infinite ? 1 : 0;
       }
     }
-  }
-}
-
-void round_all(const PictureView& view, std::span<float> texels) {
-  const std::size_t components = view.channels.components.size();
-  const auto is_alpha = [](const std::string& name) { return last_of(name) == "A"; };
-  const std::vector<bool> alpha = mapped(view.channels.components, is_alpha);
-  for (std::size_t i = 0; i < texels.size(); ++i) {
-    texels[i] = rounded(texels[i], view.rounding, alpha[i % components]);
   }
 }
 
@@ -306,25 +287,19 @@ double around(const std::vector<double>& values, const ImageShape& shape, std::s
   return sum / count;
 }
 
-std::vector<double> means_of_components(const std::vector<double>& values,
-                                        const ImageShape& shape) {
-  const std::size_t components = shape.components.size();
-  std::vector<double> means(components);
-  for (std::size_t i = 0; i < values.size(); ++i) means[i % components] += values[i];
-  for (double& mean : means) mean /= static_cast<double>(values.size() / components);
-  return means;
-}
-
 /// Raises variances of few samples, which are too small, and zero if the samples missed a light.
 /// The pixels around give the variance; if they missed the light too, the image gives it.
 void raise_where_few(const std::vector<double>& counts, const ImageShape& shape,
                      std::vector<double>& squared_errors) {
   const std::vector<double> own = squared_errors;
-  const std::vector<double> anywhere = means_of_components(own, shape);
+  const std::size_t components = shape.components.size();
+  std::vector<double> anywhere(components);
+  for (std::size_t i = 0; i < own.size(); ++i) anywhere[i % components] += own[i];
+  for (double& mean : anywhere) mean /= static_cast<double>(own.size() / components);
   for (std::size_t i = 0; i < own.size(); ++i) {
-    if (counts[i / shape.components.size()] >= many_samples) continue;
+    if (counts[i / components] >= many_samples) continue;
     squared_errors[i] = std::max(own[i], around(own, shape, i));
-    if (squared_errors[i] == 0) squared_errors[i] = anywhere[i % anywhere.size()];
+    if (squared_errors[i] == 0) squared_errors[i] = anywhere[i % components];
   }
 }
 
@@ -405,9 +380,15 @@ void PictureView::read(const PictureFile& file, std::span<float> texels, std::si
     file.read(channels.names, source, above + first);
     take_rows(*this, source, texels);
   }
-  if (rounding != Rounding::none) round_all(*this, texels);
-  if (!left_out) return;
   const std::size_t components = channels.components.size();
+  if (rounding != Rounding::none) {
+    const auto is_alpha = [](const std::string& name) { return last_of(name) == "A"; };
+    const std::vector<bool> alpha = mapped(channels.components, is_alpha);
+    for (std::size_t i = 0; i < texels.size(); ++i) {
+      texels[i] = rounded(texels[i], rounding, alpha[i % components]);
+    }
+  }
+  if (!left_out) return;
   for (std::size_t i = 0; i < texels.size(); ++i) {
     if ((*left_out)[first * window.width + i / components]) texels[i] = 0;
   }
@@ -415,8 +396,13 @@ void PictureView::read(const PictureFile& file, std::span<float> texels, std::si
 
 std::unique_ptr<const PictureFile> PictureStack::open(std::size_t index) const {
   auto file = open_picture(files[index]);
-  require_same(*file, view, files[0]);
-  return file;
+  const PictureWindow here = file->window(view.channels.names);
+  if (here == view.whole) return file;
+  file->require(here.width != view.whole.width || here.height != view.whole.height,
+                "its data window lies elsewhere than that of `" + files[0] +
+                    "`: render all files with one crop window");
+  file->refuse("it has " + size_text(here) + " pixels, but `" + files[0] + "` has " +
+               size_text(view.whole) + ": render all files at one size");
 }
 
 void PictureStack::read(std::size_t index, std::span<float> texels) const {
