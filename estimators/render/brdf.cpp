@@ -172,13 +172,6 @@ Vector3 propose(Stream& random) {
   return {sine * x, sine * y, cosine};
 }
 
-[[noreturn]] void exceeded(const Vector3& out, double acceptance) {
-  std::ostringstream message;
-  message << "sample_by_rejection: the target is " << acceptance << " times its bound at (" << out.x
-          << ", " << out.y << ", " << out.z << ")";
-  throw std::logic_error(message.str());
-}
-
 using Five = std::array<double, 5>;
 
 constexpr double tolerance = 1e-12;
@@ -237,7 +230,12 @@ Vector3 sample_by_rejection(const HalfVectorBrdf& brdf, Target target, Stream& r
     const Vector3 out = propose(random);
     const double quotient = 4 * pi * std::sqrt(out.z) * brdf.target(target, out);
     const double acceptance = quotient / bound;
-    if (!(acceptance <= rounding)) exceeded(out, acceptance);
+    if (!(acceptance <= rounding)) {
+      std::ostringstream message;
+      message << "sample_by_rejection: the target is " << acceptance << " times its bound at ("
+              << out.x << ", " << out.y << ", " << out.z << ")";
+      throw std::logic_error(message.str());
+    }
     if (random.uniform() < acceptance) return out;
   }
 }

@@ -52,21 +52,6 @@ class Device {
   RTCDevice handle() const { return handle_; }
   const std::string& isa() const { return isa_; }
 
-  /// Throws what Embree has to complain of; it keeps the first error of each thread until asked.
-  void check() const {
-    // By Embree's numbers.
-    constexpr std::array words{"",
-                               "unknown error",
-                               "invalid argument",
-                               "invalid operation",
-                               "out of memory",
-                               "this processor is not supported",
-                               "cancelled"};
-    static_assert(RTC_ERROR_CANCELLED + 1 == words.size());
-    const RTCError error = rtcGetDeviceError(handle_);
-    if (error != RTC_ERROR_NONE) embree_failed(words.at(error));
-  }
-
   /// An empty scene that keeps the device alive. The scene is then built on the calling thread, so
   /// that the tree does not depend on the number of processors.
   static std::shared_ptr<RTCSceneTy> new_scene() {
@@ -78,12 +63,23 @@ class Device {
     rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
     return scene;
   }
+  /// Throws what Embree has to complain of; it keeps the first error of each thread until asked.
   static void commit(RTCScene scene) {
     {
       const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
       rtcCommitScene(scene);
     }
-    shared()->check();
+    // By Embree's numbers.
+    constexpr std::array words{"",
+                               "unknown error",
+                               "invalid argument",
+                               "invalid operation",
+                               "out of memory",
+                               "this processor is not supported",
+                               "cancelled"};
+    static_assert(RTC_ERROR_CANCELLED + 1 == words.size());
+    const RTCError error = rtcGetDeviceError(shared()->handle());
+    if (error != RTC_ERROR_NONE) embree_failed(words.at(error));
   }
 
  private:
