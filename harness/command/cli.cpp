@@ -259,6 +259,9 @@ sides are rounded to the coarser format, half or PNG; PNG also clips to [0, 1].
 Crops are compared where both sides have pixels. A depth Z may be infinite. With
 --channels, each layer has a claim of its own.
 
+A side that finds some light too rarely for its number of pictures is too dark,
+and fails. So does light sampling of a narrow highlight: give more pictures.
+
 Examples:
   assay images --candidate 'new/*.exr' --reference 'old/*.exr' \
       --report html=difference.html

@@ -45,19 +45,15 @@ double other_mean(const DrawnTest& test, const std::vector<std::size_t>& element
   return question.of_two() ? question.factor * mean + question.offset : mean;
 }
 
-/// The standard error of the plain mean difference over elements that are independent, as are the
-/// sides.
+/// The standard error of the plain mean difference over elements that are independent, by the z of
+/// each.
 double error_over(const DrawnTest& test, const std::vector<std::size_t>& elements) {
-  const Question& question = test.outcome.question;
+  const std::vector<double>& z = test.outcome.channels[0].image->z;
   double squares = 0;
   for (const std::size_t i : elements) {
-    for (std::size_t side = 0; side < question.compared(); ++side) {
-      const stats::Moments x =
-          test.samples[side].summary().moments(question.subjects[side].channels[i]);
-      const double factor = side == 0 ? 1 : question.factor;
-      squares += factor * factor * x.variance() / static_cast<double>(x.count);
-    }
-    if (!question.of_two()) squares += std::pow(question.references[i].standard_error, 2);
+    const std::vector<std::size_t> one{i};
+    const double difference = mean_over(test, 0, one, {}) - other_mean(test, one, {});
+    if (z[i] != 0) squares += std::pow(difference / z[i], 2);
   }
   return std::sqrt(squares) / static_cast<double>(elements.size());
 }
@@ -184,7 +180,6 @@ std::string others_at(const DrawnTest& test, const PlaceEffect& place) {
   const std::size_t mine = place.elements[0] % names.size();
   std::vector<std::string> texts;
   for (std::size_t c = 0; c < names.size() && texts.size() < most; ++c) {
-    if (c == mine) continue;
     std::vector<std::size_t> elements = place.elements;
     double sum = 0;
     for (std::size_t& i : elements) {
@@ -193,14 +188,19 @@ std::string others_at(const DrawnTest& test, const PlaceEffect& place) {
     }
     const double base = other_mean(test, elements, {});
     const double difference = mean_over(test, 0, elements, {}) - base;
+    const double error = clear * error_over(test, elements);
     // Pixels count as independent, each as clear as the others or as noisy as it is.
     const double root = std::sqrt(static_cast<double>(elements.size()));
     const bool by_each = std::abs(sum) > clear * root && difference * sum > 0;
-    if (!by_each && !(std::abs(difference) > clear * error_over(test, elements))) continue;
+    const bool is_clear = c == mine ? difference < place.interval.low - error ||
+                                          difference > place.interval.high + error
+                                    : by_each || std::abs(difference) > error;
+    if (!is_clear) continue;
     const reports::Effect effect{.relative = base != 0};
     const double unit = effect.relative ? std::abs(base) : 1;
     texts.push_back(names[c] + (texts.empty() ? " differs by " : " by ") +
-                    reports::theta_text(difference / unit, effect));
+                    reports::theta_text(difference / unit, effect) +
+                    (c == mine ? " unweighted" : ""));
   }
   return fmt::format("{}", fmt::join(texts, ", "));
 }
