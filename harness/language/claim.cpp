@@ -117,7 +117,7 @@ class Lexer {
 
   Token symbol() {
     for (const std::string_view known :
-         {"==", "<=", ">=", "+-", "<", ">", "(", ")", ",", "*", "%"}) {
+         {"===", "+/-", "==", "=<", "=>", "<=", ">=", "+-", "<", ">", "(", ")", ",", "*", "%"}) {
       if (rest().starts_with(known)) return taken(Token::Kind::symbol, known.size());
     }
     struct Habit {
@@ -210,16 +210,10 @@ class Parser {
 
   void end(const char* what) {
     const Token token = lexer_.next();
-    if (token.is("*")) refuse(token.where, "a factor stands before its quantity: `0.5 * mean(b)`");
-    if (token.is(",")) {
-      refuse(token.where, "{} ends before `,`; write decimals after a point", what);
-    }
-    if (token.is_word("within")) {
-      refuse(token.where,
-             "{} ends before `within`, which replaces the relation: `mean(a) within 1% of 0.5`",
-             what);
-    }
-    if (token.kind != Kind::end) refuse(token.where, "{} ends before {}", what, shown(token));
+    if (token.kind == Kind::end) return;
+    const bool factor = token.is_word("x") || find_quantity(token.text) != nullptr;
+    const std::string meaning = meaning_of(factor ? "*" : token.text);
+    refuse(token.where, "{} ends before {}{}", what, shown(token), meaning);
   }
 
  private:
@@ -269,8 +263,9 @@ class Parser {
       refuse(token.where, "the claim is not complete: add `== analytic`, `<= 0.5`, …");
     }
     if (!token.is_word("within")) {
-      const std::string hint = token.kind == Kind::word ? did_you_mean(token.text, {"within"}) : "";
-      unexpected(token, "`==`, `<=`, `>=`, `<`, `>` or `within … of`", hint);
+      const std::string hint = meaning_of(token.text);
+      unexpected(token, "`==`, `<=`, `>=`, `<`, `>` or `within … of`",
+                 hint.empty() ? did_you_mean(token.text, {"within"}) : hint);
     }
     claim.relation = Relation::within;
     claim.margin = margin();
@@ -328,17 +323,34 @@ class Parser {
     return law;
   }
 
+  /// Says what to write for a word or symbol of another notation, or in a wrong place; may be "".
+  static std::string meaning_of(std::string_view word) {
+    const std::string alone = fmt::format(" {} ", word.substr(0, word.find("/", 2)));
+    for (const auto& [words, advice] :
+         std::initializer_list<std::pair<std::string_view, const char*>>{
+             {" E average avg expectation expected ", "; did you mean `mean(…)`?"},
+             {" stddev stdev std deviation standard_deviation sd ", "; square it: `variance(…)`"},
+             {" median ", "; it is a quantile: `quantile(…, 0.5)`"},
+             {" pi PI Pi ", "; write it as a number, 3.141592653589793"},
+             {" pdf ", "; did you mean `density`?"},
+             {" gaussian ", "; did you mean `normal(0, 1)`?"},
+             {" === ", "; did you mean `==`?"},
+             {" =< ", "; did you mean `<=`?"},
+             {" => ", "; did you mean `>=`?"},
+             {" +/- ", "; did you mean `+-`?"},
+             {" * ", "; a factor stands before its quantity: `0.5 * mean(b)`"},
+             {" , ", "; write decimals after a point"},
+             {" +- ", ", which follows a number: `0.5 +- 0.01`"},
+             {" within ", ", which replaces the relation: `mean(a) within 1% of 0.5`"}}) {
+      if (words.find(alone) != words.npos) return advice;
+    }
+    return "";
+  }
+
   /// The commonest mistakes: an estimator without a quantity, and exchanged sides.
   [[noreturn]] void no_quantity(const Token& name) {
-    for (const char* of_spread :
-         {"stddev", "stdev", "std", "deviation", "standard_deviation", "sd"}) {
-      if (name.text != of_spread) continue;
-      refuse(name.where, "there is no quantity `{}`; square it: `variance(…)`", name.text);
-    }
-    if (name.text == "median") {
-      refuse(name.where, "there is no quantity `median`; it is a quantile: `quantile(…, 0.5)`");
-    }
-    const std::string near = did_you_mean(name.text, quantity_words());
+    std::string near = meaning_of(name.text);
+    if (near.empty()) near = did_you_mean(name.text, quantity_words());
     const bool stands_on_the_right =
         name.text == "analytic" || name.text == "density" || find_law(name.text);
     if (near.empty() && stands_on_the_right) {
@@ -350,20 +362,16 @@ class Parser {
     if (near.empty() && !lexer_.peek().is("(")) {
       refuse(name.where, "expected a quantity, as in `mean({0})`, found `{0}`", name.text);
     }
-    refuse(
-        name.where, "there is no quantity `{}`{}", name.text,
-        did_you_mean(name.text, quantity_words(), "expected one of " + listed(quantity_words())));
+    if (near.empty()) near = "; expected one of " + listed(quantity_words());
+    refuse(name.where, "there is no quantity `{}`{}", name.text, near);
   }
 
   std::string side_advice(const Token& token) {
-    if (token.text == "pi") return "; write it as a number, 3.141592653589793";
-    if (token.text.starts_with("pi/")) return "; a claim has no arithmetic: write the number";
-    if (token.text == "pdf") return "; did you mean `density`?";
-    if (token.text == "gaussian") return "; did you mean `normal(0, 1)`?";
     std::vector<std::string> words = quantity_words();
     words.insert(words.end(), {"analytic", "density"});
     for (const LawInformation& law : laws()) words.push_back(law.name);
-    const std::string near = did_you_mean(token.text, words);
+    std::string near = meaning_of(token.text);
+    if (near.empty()) near = did_you_mean(token.text, words);
     if (!near.empty()) return near;
     // `mean(a) == b`: an estimator without a quantity.
     if (!lexer_.peek().is("(")) {
