@@ -274,11 +274,13 @@ EstimatorEntry read_estimator(const Document& document, const std::string& name,
 
 /// Reads an entry of `tests:`, without its id and without looking up estimators.
 TestEntry read_test(const Document& document, const Value& value) {
-  for (const char* level : {"alpha", "beta", "seed"}) {
-    const Value* found = value.find(level);
-    if (!found) continue;
-    refuse(document.key(*found),
-           "`{}` belongs to the suite, not to a test; put it at the top of the file", level);
+  for (const auto& [key, advice] : std::initializer_list<std::pair<const char*, const char*>>{
+           {"alpha", "`alpha` belongs to the suite, not to a test; put it at the top of the file"},
+           {"beta", "`beta` belongs to the suite, not to a test; put it at the top of the file"},
+           {"seed", "`seed` belongs to the suite, not to a test; put it at the top of the file"},
+           {"primaries", "`primaries` belongs to an estimator, or to the `budget` of a test"},
+           {"tolerance", "unknown key `tolerance` of a test; did you mean `allow`?"}}) {
+    if (const Value* found = value.find(key)) refuse(document.key(*found), std::string(advice));
   }
   const Keys keys(document, value, "a test", "- claim: mean(area) == analytic",
                   {"claim", "name", "detect", "allow", "weight", "test", "secondaries", "budget",
