@@ -4,6 +4,7 @@
 #include <array>
 #include <boost/algorithm/string.hpp>
 #include <cmath>
+#include <filesystem>
 #include <iomanip>
 #include <map>
 #include <sstream>
@@ -213,6 +214,18 @@ std::string did_you_mean(std::string_view name, const std::vector<std::string>& 
   const std::string near = nearest(name, candidates);
   if (!near.empty()) return "; did you mean `" + near + "`?";
   return otherwise.empty() ? "" : "; " + std::string(otherwise);
+}
+
+std::string near_file(const std::string& file, std::string_view otherwise) {
+  const std::filesystem::path path(file);
+  std::vector<std::string> names;
+  std::error_code ignored;
+  for (const auto& each : std::filesystem::directory_iterator(path.parent_path() / ".", ignored)) {
+    if (each.is_regular_file(ignored)) names.push_back(each.path().filename());
+  }
+  const std::string near = nearest(path.filename().string(), names);
+  if (near.empty()) return did_you_mean(file, {}, otherwise);
+  return "; did you mean `" + (path.parent_path() / near).string() + "`?";
 }
 
 std::string listed(const std::vector<std::string>& names, std::string_view separator) {

@@ -122,6 +122,8 @@ std::string nearest(std::string_view name, const std::vector<std::string>& candi
 /// it is "; " and `otherwise`, or nothing if that is empty.
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates,
                          std::string_view otherwise = "");
+/// The same of a file that is missing, if one beside it has nearly its name.
+std::string near_file(const std::string& file, std::string_view otherwise = "");
 
 /// "a, b".
 std::string listed(const std::vector<std::string>& names, std::string_view separator = ", ");

@@ -67,7 +67,7 @@ ByteSource::ByteSource(const std::string& file) : name_(called(file)) {
                            : ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (descriptor_.number < 0 || ::fstat(descriptor_.number, &opened_) != 0) {
     refuse(std::string("it cannot be read: ") + std::strerror(errno) +
-           (errno == ENOENT ? ";\n  a suite's files are sought from its folder" : ""));
+           (errno == ENOENT ? near_file(file, "a suite's files are sought from its folder") : ""));
   }
   if (S_ISDIR(opened_.st_mode)) refuse("it cannot be read: it is a folder; name a file in it");
   constexpr std::string_view gzip = "\x1f\x8b";
@@ -140,7 +140,7 @@ bool ByteSource::unpack() {
   while (stream.next_out == before) {
     if (fetch_packed() == 0) {
       if (inflater_->between) return false;
-      refuse("its gzip data end too early: the file is cut short;\n  copy or write it again");
+      refuse("its gzip data end too early: the file is cut short; copy or write it again");
     }
     if (inflater_->between) {
       // Zero bytes fill up a block behind a member of gzip data.
@@ -153,7 +153,7 @@ bool ByteSource::unpack() {
     if (code != Z_OK && code != Z_STREAM_END) {
       refuse(std::string("its gzip data are damaged") +
              (stream.msg != nullptr ? " (" + std::string(stream.msg) + ")" : "") +
-             ";\n  copy or write it again");
+             "; copy or write it again");
     }
   }
   end_ += static_cast<std::size_t>(stream.next_out - before);
@@ -167,7 +167,7 @@ void ByteSource::require_unchanged() const {
                     now.st_mtim.tv_sec == opened_.st_mtim.tv_sec &&
                     now.st_mtim.tv_nsec == opened_.st_mtim.tv_nsec;
   if (!same) {
-    refuse("it was changed while it was read;\n  wait until the program that writes it is done");
+    refuse("it was changed while it was read; wait until the program that writes it is done");
   }
 }
 

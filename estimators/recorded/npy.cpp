@@ -20,13 +20,13 @@ constexpr std::size_t longest_header = 10000;
 
 [[noreturn]] void refuse_header(const ByteSource& source) {
   source.refuse(
-      "its header is none of numpy's format .npy: the file is damaged;\n"
-      "  save the array again with `numpy.save`");
+      "its header is none of numpy's format .npy: the file is damaged; "
+      "save the array again with `numpy.save`");
 }
 
 /// Says how to save the array, `a`, in another form.
 std::string save_it(const std::string& as) {
-  return "\n  save it with `numpy.save(\"mine.npy\", " + as + ")`";
+  return " save it with `numpy.save(\"mine.npy\", " + as + ")`";
 }
 
 struct Header {
@@ -170,9 +170,8 @@ std::vector<double> read_numbers(ByteSource& source, const Type& type, std::size
     const std::string_view bytes = source.look(type.size);
     const std::size_t whole = std::min(bytes.size() / type.size, count - values.size());
     if (whole == 0) {
-      source.refuse("it is cut short: the array has " + std::to_string(count) +
-                    " numbers,\n  and " + std::to_string(values.size()) +
-                    " of them are there; copy or save it again");
+      source.refuse("it is cut short: the array has " + std::to_string(count) + " numbers, and " +
+                    std::to_string(values.size()) + " of them are there; copy or save it again");
     }
     for (std::size_t i = 0; i < whole; ++i) {
       values.push_back(number_of(type, bytes.data() + i * type.size));

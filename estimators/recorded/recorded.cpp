@@ -128,7 +128,7 @@ Reading read(Parameters& parameters) {
     // A file that cannot be used at all is a mistake of the suite; what stands in it, of the file.
     if (error.where().line != 0) throw;
     throw InputError(parameters.where("file"),
-                     "`" + recorded::called(file) + "`:\n  " + error.message());
+                     "`" + recorded::called(file) + "`: " + error.message());
   }
 }
 

@@ -176,8 +176,8 @@ constexpr std::array formats{
     Format{"MM\0*"sv, "a TIFF picture", as_exr},
     Format{"#?RADIANCE"sv, "a Radiance picture", as_exr},
     Format{"PK\x03\x04"sv, "a zip archive, as .npz and .xlsx are",
-           "`unzip $` gives the arrays of an .npz as .npy files, which can be read;\n"
-           "  save a spreadsheet as CSV"},
+           "`unzip $` gives the arrays of an .npz as .npy files, which can be read; "
+           "save a spreadsheet as CSV"},
     Format{"\x89HDF\r\n\x1a\n"sv, "HDF5",
            "in Python `numpy.save(\"mine.npy\", h5py.File(@)[\"NAME\"][:])`"},
     Format{"MATLAB 5.0 MAT-file"sv, "MATLAB's .mat",
@@ -238,17 +238,19 @@ std::string no_text(std::string_view beginning, const std::string& file) {
     const bool printable = first_binary_byte(format.magic) == format.magic.npos &&
                            static_cast<unsigned char>(format.magic[0]) < 0x80;
     if (printable && text) continue;
-    return "it is a binary file, not text: " + std::string(format.what) + ";\n  " +
+    return "it is a binary file, not text: " + std::string(format.what) + "; " +
            mend_of(format, file);
   }
   if (text) return "";
-  return "it is a binary file, not text; write the numbers as text, an observation a\n"
-         "  line, or as .npy, from raw doubles in Python:\n"
-         "  `numpy.save(\"mine.npy\", numpy.fromfile(" +
+  return "it is a binary file, not text; write the numbers as text, an observation a line, "
+         "or as .npy, from raw doubles in Python: `numpy.save(\"mine.npy\", numpy.fromfile(" +
          python_quoted(to_paste(file)) + "))`";
 }
 
-constexpr const char* name_columns = "  if these are columns, name them in a first line";
+constexpr const char* mend_of_comma =
+    ": write `.` for it, and no comma between thousands; if these are columns, name them in a "
+    "first "
+    "line";
 constexpr std::string_view stream_keyword = "stream:";
 constexpr std::size_t longest_line = std::size_t{64} << 20;
 
@@ -292,7 +294,7 @@ class Reader {
     if (words_first_ && !is_word(fields[0])) {
       refuse(fields[0].column, in_message(fields[0].text) +
                                    " stands where an earlier row has a word, which would name "
-                                   "it;\n  write numbers in all rows, or words");
+                                   "it; write numbers in all rows, or words");
     }
     if (rows_named_) fields.erase(fields.begin());
     if (table_.columns.empty()) table_.columns = default_names(fields.size());
@@ -315,11 +317,8 @@ class Reader {
     const bool alone = table_.rows() == 1 && columns > 1 && !names_line_;
     if (alone && expected_ == Rows::several) refuse_one_row(columns);
     if (may_be_decimals_ && !names_line_ && expected_ == Rows::several) {
-      throw InputError(
-          {.file = source_.name(), .line = table_.lines.front(), .column = 1},
-          std::string("a comma may be a decimal point: write `.` for it,\n  and no comma between "
-                      "thousands;\n") +
-              name_columns);
+      throw InputError({.file = source_.name(), .line = table_.lines.front(), .column = 1},
+                       std::string("a comma may be a decimal point") + mend_of_comma);
     }
     return std::move(table_);
   }
@@ -341,9 +340,8 @@ class Reader {
     if (first_separator_ == ';') command += " | tr , .";
     if (file) command += (source_.packed() ? "" : " <" + name) + std::string(" > lines.txt");
     source_.refuse("it is one row of " + std::to_string(columns) +
-                   " numbers, and an observation is a row;\n  if each is an observation, "
-                   "`" +
-                   command + "`\n  writes one a line");
+                   " numbers, and an observation is a row; if each is an observation, `" + command +
+                   "` writes one a line");
   }
 
   void comment(const Field& field) {
@@ -389,7 +387,7 @@ class Reader {
     table_.stream = read_as<std::uint64_t>(key.text, 16);
     if (!table_.stream) {
       refuse(field.column,
-             "`# stream:` needs a key of up to 16 hexadecimal digits,\n  as `assay sample` writes "
+             "`# stream:` needs a key of up to 16 hexadecimal digits, as `assay sample` writes "
              "it; leave the line out if there is none");
     }
   }
@@ -415,8 +413,8 @@ class Reader {
                       ", but columns: " + std::to_string(expected);
     if (names_line_) why += " (named in line " + std::to_string(*names_line_) + ")";
     why += fields.size() == 2 * expected && separator_ == ','
-               ? ";\n  write decimal points for commas, or `;` between the numbers"
-               : ";\n  every row needs the same number";
+               ? "; write decimal points for commas, or `;` between the numbers"
+               : "; every row needs the same number";
     const int column = fields.empty() ? 1 : fields[std::min(fields.size() - 1, expected)].column;
     refuse(column, why);
   }
@@ -428,25 +426,21 @@ class Reader {
     const bool is_fraction = separator_ == ',' && field.text.size() > 1 && field.text[0] == '0' &&
                              '0' <= field.text[1] && field.text[1] <= '9';
     if (is_fraction && !names_line_) {
-      refuse(field.column, in_message(field.text) +
-                               " follows a comma: write a decimal point for it,\n  and no comma "
-                               "between thousands;\n" +
-                               name_columns);
+      refuse(field.column, in_message(field.text) + " follows a comma" + mend_of_comma);
     }
     const Parsed parsed = parse(field.text, separator_ == ';');
     if (parsed.is_number) return parsed.value;
     const std::string text = in_message(field.text);
     if (parsed.out_of_range) {
-      refuse(field.column,
-             text + " is beyond what a double can hold;\n  write `inf` or 0 if meant");
+      refuse(field.column, text + " is beyond what a double can hold; write `inf` or 0 if meant");
     }
     if (is_missing(field.text)) {
       refuse(field.column, text + " is not a number; write `nan` if there is none");
     }
     refuse(field.column,
            text +
-               " is not a number;\n  a comment begins with `#`; names of columns stand in a first "
-               "line\n  without numbers, or in `# columns: a b`");
+               " is not a number; a comment begins with `#`; names of columns stand in a first "
+               "line without numbers, or in `# columns: a b`");
   }
 
   const ByteSource& source_;
@@ -528,7 +522,7 @@ Table read_table(const std::string& file, Rows expected) {
     Matrix matrix = read_npy(source, most);
     if (expected == Rows::several && matrix.values.size() == matrix.columns && matrix.columns > 1) {
       source.refuse("it is one row of " + std::to_string(matrix.columns) +
-                    " numbers, and an observation is a row;\n  if each is an observation, "
+                    " numbers, and an observation is a row; if each is an observation, "
                     "save it with `numpy.save(\"mine.npy\", a.ravel())`");
     }
     return {.columns = default_names(matrix.columns), .values = std::move(matrix.values)};

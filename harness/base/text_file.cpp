@@ -22,21 +22,6 @@ constexpr std::size_t shown_bytes = 72;
 
 bool continues(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80; }
 
-/// "; did you mean …?" of a file beside it, or "".
-std::string near_file(const std::string& file) {
-  namespace fs = std::filesystem;
-  const fs::path path(file);
-  std::vector<std::string> names;
-  std::error_code ignored;
-  for (const fs::directory_entry& each :
-       fs::directory_iterator(path.has_parent_path() ? path.parent_path() : ".", ignored)) {
-    if (each.is_regular_file(ignored)) names.push_back(each.path().filename().string());
-  }
-  const std::string near = nearest(path.filename().string(), names);
-  if (near.empty()) return "";
-  return fmt::format("; did you mean `{}`?", (path.parent_path() / near).string());
-}
-
 }  // namespace
 
 std::string read_text_file(const std::string& file) {

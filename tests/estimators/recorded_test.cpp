@@ -413,7 +413,7 @@ TEST_F(Recorded, RefusesOtherArraysOfNumpy) {
         {"<f8", "(0,)", "empty", ""},
         {"<f8", "(3, 0)", "empty", ""},
         {"<f8", "(1, 8)", "one row of 8 numbers"},
-        {"<f8", "(9,)", "the array has 9 numbers,\n  and 8 of them are there"},
+        {"<f8", "(9,)", "the array has 9 numbers, and 8 of them are there"},
         {"<f8", "(7,)", "bytes follow the array"},
         {"<f8", "(1000000000000, 1000000000000)", "does not fit into memory"},
         {"<f8", "(99999999999999999999,)", "damaged"},
