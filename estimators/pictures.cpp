@@ -313,15 +313,22 @@ bool names_pictures(const std::string& file) {
   return file.ends_with(".exr") || (std::filesystem::is_regular_file(status) && is_picture(file));
 }
 
+/// "folder/*.pfm", by a picture of the folder; `otherwise` if it has none.
+std::string pictures_of(const std::filesystem::path& folder, const std::string& otherwise) {
+  std::set<std::string> patterns;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder / ".", ignored)) {
+    const std::filesystem::path& path = entry.path();
+    if (names_pictures(path)) patterns.insert(folder / ("*" + path.extension().string()));
+  }
+  return patterns.empty() ? otherwise : *patterns.begin();
+}
+
 std::vector<std::string> files_of(const std::string& pattern) {
   std::error_code ignored;
   if (std::filesystem::is_directory(pattern, ignored)) {
-    std::set<std::string> endings;
-    for (const auto& entry : std::filesystem::directory_iterator(pattern, ignored)) {
-      if (names_pictures(entry.path())) endings.insert(entry.path().extension());
-    }
-    refuse(pattern, "is a folder; name its pictures, as in `" + pattern + "/*" +
-                        (endings.empty() ? ".exr" : *endings.begin()) + "`");
+    refuse(pattern, "is a folder; name its pictures, as in `" +
+                        pictures_of(pattern, pattern + "/*.exr") + "`");
   }
   if (std::filesystem::exists(pattern, ignored)) return {pattern};
   std::vector<std::string> files;
@@ -331,7 +338,9 @@ std::vector<std::string> files_of(const std::string& pattern) {
   }
   globfree(&found);
   if (files.empty()) {
-    refuse(pattern, is_pattern(pattern) ? "no file matches" : "there is no such file");
+    if (!is_pattern(pattern)) refuse(pattern, "there is no such file" + near_file(pattern));
+    const std::string near = pictures_of(std::filesystem::path(pattern).parent_path(), "");
+    refuse(pattern, "no file matches" + (near.empty() ? "" : "; did you mean `" + near + "`?"));
   }
   std::ranges::sort(files);
   return files;
