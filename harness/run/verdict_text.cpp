@@ -175,6 +175,7 @@ ErrorShare last_levels(const TestOutcome& outcome) {
 struct Room {
   double size = 0;
   double standard_errors = 1;  ///< the room must hold so many
+  bool outside = false;        ///< of what must be proved
 };
 
 Room room_of(const TestOutcome& outcome, const ChannelOutcome& channel) {
@@ -183,7 +184,7 @@ Room room_of(const TestOutcome& outcome, const ChannelOutcome& channel) {
   const ErrorShare share = last_levels(outcome);
   const double estimate = channel.evidence.estimate;
   const auto proof = [&](double spare) {
-    return Room{std::abs(spare), z(spare < 0 ? share.alpha : share.beta) + 1};
+    return Room{std::abs(spare), z(spare < 0 ? share.alpha : share.beta) + 1, spare < 0};
   };
   if (regions.within()) return proof(*regions.detect - std::abs(estimate));
   if (regions.proof()) return proof(regions.bounds_above() ? -estimate : estimate);
@@ -245,7 +246,9 @@ Reason what_would_decide(const TestOutcome& outcome, const ChannelOutcome& chann
                              : outcome.question.test->budget ? "`budget`"
                                                              : "observations";
     return Reason::advising(
-        "the estimate is less than a standard error from what must be proved; ",
+        fmt::format("the estimate lies {} {} by less than a standard error; ",
+                    room.outside ? "beyond" : "within",
+                    channel.regions.within() ? "the margin" : "what must be proved"),
         channel.regions.within()
             ? "give a larger margin, or more " + more
             : "if both sides may be equal, claim `within` a margin; otherwise give more " + more);
