@@ -45,7 +45,8 @@ claim: mean(area) within 5 of analytic|30: the margin 5 is larger than the refer
 {claim: mean(area) == analytic, expect: failed}|45: `expect` cannot be `failed`; did you mean `fail`?
 {claim: mean(area) == analytic, tags: slow}|43: `tags` must be a list: `tags: [slow, images]`
 {claim: mean(area) == analytic, test: F}|37: `F` cannot test `mean(area) == analytic`; there is `t`
-{claim: mean(area) == analytic, tolerance: 1%}|37: unknown key `tolerance` of a test
+{claim: mean(area) == analytic, tolerance: 1%}|37: unknown key `tolerance` of a test; did you mean `allow`?
+{claim: mean(area) == analytic, primaries: 4}|37: `primaries` belongs to an estimator, or to the `budget` of a test
 TABLE
 }
 
@@ -80,6 +81,8 @@ mean(a) == 1|`a` leaves out pixels, but a number is claimed of all pixels
 mean(a.average) == 1|`a.average` counts pixels that `mask` or `finite` leaves out as 0
 TABLE
   local sides=(--candidate 'a*.pfm' --reference 'b*.pfm')
+  answers 2 '--candidate a*.exr: no file matches; did you mean `*.pfm`?' \
+    images --candidate 'a*.exr' --reference 'b*.pfm'
   answers 2 'parameter `mask` is `large.pfm`: it has 10 x 4 pixels, and the pictures have 8 x 4' \
     images "${sides[@]}" --mask large.pfm
   expect 0 images "${sides[@]}" --mask mask.pfm
@@ -144,6 +147,8 @@ test_mistakes_on_the_command_line_say_what_to_write() {
   mkdir d && seq 200 >d/n.txt
   answers 2 "\`assay check 'mean(n) == 1' --estimator n=recorded,file=d/n.txt\` reads" \
     check 'mean(d/n.txt) == 1'
+  answers 2 '`d/m.txt`: it cannot be read: No such file or directory; did you mean `d/n.txt`?' \
+    check 'mean(m) == 1' --estimator m=recorded,file=d/m.txt
   answers 2 'unknown command `s.yaml`; did you mean `assay run s.yaml`?' s.yaml
   answers 2 'unknown command `mean(x) == 1`; did you mean `assay check' 'mean(x) == 1'
   answers 2 'has no option `--detect`; write it into the suite, as the key `detect`' \
@@ -193,6 +198,10 @@ test_mistakes_in_a_check_say_what_to_write() {
   seq 500 >many.txt
   expect 1 check 'mean(x) == 1' --estimator x=recorded,file=many.txt --budget 10
   contains out 'to decide: give a larger `budget`'
+  awk 'BEGIN { for (s = 1; n < 200; ++n) {
+    s = s * 16807 % 2147483647; print 0.8136 + 0.4 * s / 2147483647 } }' >near.txt
+  expect 3 check 'mean(x) within 1% of 1' --estimator x=recorded,file=near.txt
+  contains out 'the estimate lies beyond the margin by less than a standard error'
   expect 0 check --help
   contains out 'the most it may cost: 1e7 primaries with those of the'
   printf '%s\n' 'suite: parts' 'estimators: {a: {plugin: analytic/normal, mean: 0.02, primaries: 1},' \
