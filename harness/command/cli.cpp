@@ -518,12 +518,10 @@ Examples:
   assay init process python sky      into the folder sky
 )");
   const Texts kinds = kinds_of_example();
-  Texts words = kinds;
-  for (std::string& word : words) std::ranges::replace(word, ' ', '-');
   options.add({.name = "KIND",
                .value = "KIND [FOLDER]",
                .needed = "one of " + listed(kinds),
-               .words = words},
+               .words = kinds},
               given.words, listed(kinds) + "; then a folder, default this one");
   options.afterwards([&given] { read_kind(given); });
 }

@@ -99,14 +99,14 @@ Offers offers_of(const CommandText& command, const std::vector<std::string>& wor
     for (const std::string& word : option.words) offers.emplace_back(word, "");
   };
   std::size_t place = 0;  // of the last word among the arguments
+  std::string before;     // these, a blank behind each
   const OptionText* open = nullptr;
   for (std::size_t i = 1; i + 1 < words.size(); ++i) {
-    const OptionText* before = std::exchange(open, nullptr);
-    if (before != nullptr) continue;
+    if (std::exchange(open, nullptr) != nullptr) continue;
     for (const OptionText& option : command.options) {
       if (option.takes_value() && option.name == words[i]) open = &option;
     }
-    if (!words[i].starts_with('-')) ++place;
+    if (!words[i].starts_with('-')) ++place, before += words[i] + " ";
   }
   if (open != nullptr) {
     offer_words(*open);
@@ -122,6 +122,13 @@ Offers offers_of(const CommandText& command, const std::vector<std::string>& wor
       if (place == 0 || option.repeats) offer_words(option);
       if (place-- == 0 || option.repeats) break;
     }
+    // A name of several words is offered word by word.
+    const auto is_other = [&](auto& offer) { return !offer.first.starts_with(before); };
+    if (std::ranges::all_of(offers, is_other)) before.clear();
+    std::erase_if(offers, is_other);
+    for (auto& [name, about] : offers)
+      name = name.substr(before.size(), name.find(' ', before.size()) - before.size());
+    offers.erase(std::ranges::unique(offers).begin(), offers.end());
   }
   return offers;
 }

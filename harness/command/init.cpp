@@ -52,7 +52,6 @@ void read_kind(InitArguments& arguments) {
   std::string kind;
   for (std::size_t count = 1; count <= words.size(); ++count) {
     kind += (count == 1 ? "" : " ") + words[count - 1];
-    std::ranges::replace(kind, '-', ' ');
     if (std::ranges::find(kinds, kind) == kinds.end()) continue;
     if (words.size() > count + 1) refuse({}, "`{}` is one argument too many", words[count + 1]);
     arguments.kind = kind;

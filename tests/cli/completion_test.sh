@@ -28,6 +28,7 @@ assay replay |folder/ run.json
 assay describe luminaire/a|luminaire/area
 assay list tests oth|other.yaml
 assay completion z|zsh
+assay init process p|python
 TABLE
 }
 
