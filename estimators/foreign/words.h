@@ -47,7 +47,7 @@ inline std::string ending_with(std::string_view errors) {
   const std::size_t line = errors.rfind('\n') + 1;
   const std::string before = last_words(errors.substr(0, line));
   return "; its standard error ends with:" + last_words(errors.substr(line)) +
-         (before.empty() ? "" : ", after:" + before);
+         (before.empty() ? "" : "; before that:" + before);
 }
 
 }  // namespace assay::foreign

@@ -8,6 +8,7 @@
 #include "harness/command/commands.h"
 #include "harness/command/describe.h"
 #include "harness/plan/forecast.h"
+#include "harness/plan/gate_text.h"
 #include "harness/run/planned_run.h"
 #include "harness/theta/theta.h"
 #include "reports/words/number.h"
@@ -89,8 +90,7 @@ void note_gates(const std::vector<Gate>& gates, std::vector<std::string>& notes)
   std::size_t count = 0;
   for (const Gate& gate : gates) {
     if (gate.state == "green" || ++count > most_gates) continue;
-    notes.push_back(fmt::format("{}: {} {}, limit {}", gate.state, gate.name,
-                                reports::human(gate.value), reports::human(gate.limit)));
+    notes.push_back(gate.state + ": " + gate_sentence(gate));
   }
   if (count > most_gates)
     notes.push_back(fmt::format("{} more gates that are not green", count - most_gates));

@@ -20,19 +20,6 @@ std::string short_number(reports::Number value) {
   return std::abs(*value) >= 1000 ? reports::human(*value, 3) : fmt::format("{:.3g}", *value);
 }
 
-std::string sentence(const Gate& gate) {
-  constexpr double most_useful_factor = 100;
-  const GateKind& row = gate.row();
-  const bool is_useless = row.falls == Falls::by_its_logarithm && gate.value > most_useful_factor;
-  const std::string value =
-      is_useless ? fmt::format("over {:g}", most_useful_factor) : short_number(gate.value);
-  const std::string limit = short_number(gate.limit);
-  if (row.sentence.empty()) return fmt::format("{} is {}, limit {}", gate.name, value, limit);
-  // The rest of the name is a channel or an estimator.
-  return fmt::format(fmt::runtime(row.sentence), value, limit) +
-         (gate.name.size() > row.name.size() ? " (" + gate.name + ")" : "");
-}
-
 /// The budget that more observations need; none if the test's own number of them is the limit.
 std::optional<Budget> budget_of(const TestOutcome& outcome) {
   const TestEntry& test = *outcome.question.test;
@@ -61,13 +48,26 @@ reports::Advice setting(const TestOutcome& outcome, double factor) {
 
 }  // namespace
 
+std::string gate_sentence(const Gate& gate) {
+  constexpr double most_useful_factor = 100;
+  const GateKind& row = gate.row();
+  const bool is_useless = row.falls == Falls::by_its_logarithm && gate.value > most_useful_factor;
+  const std::string value =
+      is_useless ? fmt::format("over {:g}", most_useful_factor) : short_number(gate.value);
+  const std::string limit = short_number(gate.limit);
+  if (row.sentence.empty()) return fmt::format("{} is {}, limit {}", gate.name, value, limit);
+  // The rest of the name is a channel or an estimator.
+  return fmt::format(fmt::runtime(row.sentence), value, limit) +
+         (gate.name.size() > row.name.size() ? " (" + gate.name + ")" : "");
+}
+
 std::string red_gates(const std::vector<Gate>& gates) {
   std::string text;
   constexpr int most = 4;
   int red = 0;
   for (const Gate& gate : gates) {
     if (!gate.is_red() || ++red > most) continue;
-    text += (text.empty() ? "" : "; ") + sentence(gate);
+    text += (text.empty() ? "" : "; ") + gate_sentence(gate);
   }
   if (red > most) text += fmt::format("; {} gates are red in all", red);
   return text;

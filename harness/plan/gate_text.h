@@ -1,6 +1,6 @@
 #pragma once
 
-// Red gates in words.
+// Gates in words.
 
 #include <exception>
 #include <string>
@@ -10,7 +10,9 @@
 
 namespace assay::harness {
 
-/// One sentence for each red gate; "" if none is red.
+/// Says what a gate found, with its limit.
+std::string gate_sentence(const Gate& gate);
+/// One such sentence for each red gate; "" if none is red.
 std::string red_gates(const std::vector<Gate>& gates);
 
 /// The message of an error from stats as a sentence, without the leading "function: ".

@@ -106,7 +106,7 @@ Reason dependent(const Question& question, const Rows& rows, bool at_a_lag) {
     const bool several = question.subjects[0].channels.size() > 1;
     return Reason::advising(
         why, std::string(several ? "if this column counts the rows, name another; " : "") +
-                 "give sorted rows in the order drawn; a slow chain needs more rows");
+                 "give rows unsorted, as they were drawn; a slow chain needs more rows");
   }
   const std::string or_enough = enough_of_a_chain(question, rows.values.size(), time);
   return Reason::advising(
@@ -212,8 +212,8 @@ void allow_for_dependence(const std::vector<Rows>& all, Plan& plan) {
     if (!(factor > 1)) continue;
     plan.row_allowances.push_back(
         {.subject = rows.subject, .channel = rows.channel, .factor = factor});
-    plan.gates.push_back(
-        gate_of("variance of the mean, allowed for dependence, " + rows.label, factor, 1, "amber"));
+    plan.gates.push_back(gate_of("variance of the mean, allowed for dependence", factor, 1, "amber",
+                                 ", " + rows.label));
   }
 }
 

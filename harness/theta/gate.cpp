@@ -46,6 +46,8 @@ const std::vector<GateKind>& gate_kinds() {
       {.name = "variance of batch ranks of drawn observations",
        .sentence = "means of neighbours vary {0} times as much as means of independent "
                    "observations, limit {1}"},
+      {.name = "variance of the mean, allowed for dependence",
+       .sentence = "values look correlated, so the variance of their mean counts {0} times"},
       {.name = "longest repetition", .sentence = "a run of {0} values occurs twice"},
   };
   return table;

@@ -144,7 +144,7 @@ std::string channels_fact(const Test& test) {
   return text;
 }
 
-/// "violated: tail index 0.41 (limit 0.25)"; then what is allowed for.
+/// "violated: tail index is 0.41 (limit 0.25)"; then what is allowed for.
 std::string gates_fact(const Test& test) {
   constexpr int most = 6;
   std::string text;
@@ -153,7 +153,7 @@ std::string gates_fact(const Test& test) {
     const char* lead = *state == 'r' ? "violated: " : "allowed for: ";
     for (const Gate& gate : test.gates) {
       if (gate.state != state || ++named > most) continue;
-      text += fmt::format("{}{}{} {} (limit {})", text.empty() ? "" : "; ", lead, gate.name,
+      text += fmt::format("{}{}{} is {} (limit {})", text.empty() ? "" : "; ", lead, gate.name,
                           human(gate.value, 3), human(gate.limit, 3));
       lead = "";
     }

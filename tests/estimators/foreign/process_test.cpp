@@ -129,9 +129,9 @@ TEST_F(Process, FindsTheObservationAtWhichAReplyGoesWrong) {
            {"echo 5; echo 5", {"its reply should end with the question, but it goes on"}},
            {"echo 50% done", {"observation 5 should be a line of 1 number, but it is `50% done`"}},
            {"yes 'so much' | head -c 3000000 >&2; exit 1",
-            {"standard error ends with: so much, after: … so much so much"}},
+            {"standard error ends with: so much; before that: … so much so much"}},
            {"printf 'Traceback:\\n at work\\nout of luck\\n\\n' >&2; exit 1",
-            {"standard error ends with: out of luck, after: Traceback: at work"}}}) {
+            {"standard error ends with: out of luck; before that: Traceback: at work"}}}) {
     const std::string said = failure(*run_shell(at_five(instead)), 64, 64);
     for (const std::string& part : words) EXPECT_THAT(said, HasSubstr(part)) << instead;
     setups_.clear();
