@@ -74,8 +74,12 @@ void Dialogue::hear_hello() {
       const std::string said = text.empty() ? "" : "; it said `" + shown(text) + "`";
       const std::string how = child_.ending();
       // Its own words say more.
+      const std::string errors = child_.last_errors();
+      const bool lost = errors.find("No module named 'assay'") != std::string::npos;
       give_up(how + " before it printed the line `ready`" + said,
-              child_.last_errors().empty() ? terms_.who_is_ready : "");
+              lost             ? "PYTHONPATH needs share/assay/python or estimators/foreign/python"
+              : errors.empty() ? terms_.who_is_ready
+                               : "");
     }
     text.append(buffer.data(), count);
     if (text.size() > longest_hello) throw ProtocolError("its hello has no end");

@@ -87,9 +87,11 @@ class Reader {
  private:
   void greet(std::string_view text, const Words& words) {
     if (words[0] != "assay" || words.size() != 3) {
-      wrong(text,
-            "the first line is `assay 1 text` or `assay 1 binary`; print everything else to "
-            "standard error");
+      wrong(text, parse_number(words[0])
+                      ? "test rows of numbers by `PROGRAM | assay check 'mean(x) == 1' "
+                        "--estimator x=recorded,file=-`"
+                      : "the first line is `assay 1 text` or `assay 1 binary`; print everything "
+                        "else to standard error");
     }
     if (read_as<unsigned>(words[1]) != protocol_version) {
       wrong(text, "it speaks version " + std::string(words[1]) +

@@ -158,9 +158,12 @@ Subject draws(const Source& source, const Estimators& estimators, Draws what) {
   const PreparedEstimator& estimator = estimator_of(source, estimators);
   std::string rest;
   const std::vector<NamedSampler> samplers = estimator.setup->samplers();
-  if (samplers.empty() && source.part.empty()) {
-    refuse(source.where, "`{}` has no sampler whose draws could be tested; it has {}",
-           source.estimator, parts_of(estimator));
+  if (samplers.empty()) {
+    refuse(source.where, "`{}` has no sampler whose draws could be tested; it has {}{}",
+           source.estimator, parts_of(estimator),
+           estimator.entry->information.name == "process"
+               ? "; its hello declares one by `samplers=[…]` of `assay.serve`, or a line `sampler`"
+               : "");
   }
   const NamedSampler* named = sampler_named(samplers, source.part, rest);
   if (named == nullptr && !source.part.empty()) {
