@@ -15,8 +15,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr int message_width = 80;
-
 /// The end of the piece that begins at `begin`: the next blank outside backticks.
 std::size_t end_of_piece(const std::string& text, std::size_t begin) {
   std::size_t end = begin;
@@ -55,11 +53,12 @@ void wipe_bar() {
 std::string wrapped_message(const std::string& text, const std::string& lead) {
   std::string out;
   std::string line = lead;
+  const int width = std::min(80, terminal_width(stderr));
   bool is_new = true;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = end_of_piece(text, begin);
     const std::string piece = text.substr(begin, end - begin);
-    if (!is_new && reports::columns(line + " " + piece) > message_width) {
+    if (!is_new && reports::columns(line + " " + piece) > width) {
       out += line + "\n";
       line = std::string(lead.size(), ' ');
       is_new = true;

@@ -25,8 +25,8 @@ inline std::string system_environment(const std::string& variable) {
 /// Columns of the terminal that the stream writes to. Else what COLUMNS says, else 80.
 int terminal_width(std::FILE* stream);
 
-/// The text after `lead`, in lines of 80 columns; further ones are indented as deep. Text in
-/// backticks stays unbroken, to be pasted.
+/// The text after `lead`, in lines of 80 columns, or of the terminal's if it has fewer. Further
+/// lines are indented as deep. Text in backticks stays unbroken, to be pasted.
 std::string wrapped_message(const std::string& text, const std::string& lead);
 
 /// A sentence so wrapped after `assay: `.

@@ -1,15 +1,16 @@
 #pragma once
 
-#include <cstddef>
+#include <algorithm>
 #include <string>
 #include <vector>
 
 #include "estimators/estimator.h"
+#include "harness/base/terminal.h"
 
 namespace assay::harness {
 
-/// Columns of help, manuals and tables, as terminals have.
-inline constexpr std::size_t page_width = 80;
+/// Columns of help, manuals and tables: 80, or those of a narrower terminal.
+inline const auto page_width = static_cast<std::size_t>(std::clamp(terminal_width(stdout), 40, 80));
 
 /// The manual of a plugin: what it estimates, its parameters, samplers, and mutants among
 /// `entries`. Known values of its channels are those for default parameters. A line has at most

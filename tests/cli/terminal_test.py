@@ -137,6 +137,11 @@ def check_width(assay, width):
                                check=False)
         if ended.returncode not in (1, 3):
             fail(f"the command does not repeat it: {command}", ended.stdout + ended.stderr)
+    written, code = in_terminal(width, assay, "run", "bad.yml")
+    screen = Screen(width)
+    screen.feed(written)
+    if screen.wraps or code != 2 or "did you mean `bad.yaml`?" not in screen.shown():
+        fail(f"a mistake is wider than {width}", screen.shown())
     # A line a test.
     written, _ = in_terminal(width, assay, "run", "bad.yaml", "-v")
     screen = Screen(width)
