@@ -114,6 +114,7 @@ void ProgressBar::advance(std::uint64_t done) {
 }
 
 void ProgressBar::draw(std::uint64_t done) {
+  if (phase_.total == 0) return;
   constexpr int widest = 30;
   const std::scoped_lock lock(terminal);
   bar_on = &out_;
