@@ -14,7 +14,6 @@
 #include "harness/command/environment.h"
 #include "harness/command/options.h"
 #include "harness/language/claim.h"
-#include "harness/run/planned_run.h"
 #include "reports/report_formats.h"
 
 namespace assay::harness {
@@ -613,7 +612,8 @@ std::vector<Suite> load_suites(const std::vector<std::string>& files,
   std::map<std::string, std::string> files_of;  // by stem
   Mistakes mistakes;
   for (const std::string& file : files) {
-    suites.push_back(read_suite(file, mistakes));
+    mistakes.attempt([&] { suites.push_back(read_suite(file, mistakes)); });
+    if (mistakes.any()) continue;
     const auto [first, is_new] = files_of.emplace(suites.back().stem, file);
     if (is_new) continue;
     const std::string both = fmt::format("`{}` and `{}`", first->second, file);
@@ -625,8 +625,6 @@ std::vector<Suite> load_suites(const std::vector<std::string>& files,
            "each by itself",
            both, first->first);
   }
-  // Preparation finds others; an assignment may mend them.
-  if (mistakes.any() && assignments.empty()) mistakes.attempt([&] { prepare_run(suites, {}); });
   mistakes.refuse_any();
   for (const std::string& assignment : assignments) set_parameter(suites, assignment);
   return suites;

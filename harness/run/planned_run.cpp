@@ -181,7 +181,8 @@ void ask_test(SuiteRun& run, TestEntry& test, const std::map<std::string, Fault>
 }
 
 /// Finds all mistakes of the user before anything is sampled. Prepares nothing of a skipped suite.
-std::unique_ptr<SuiteRun> prepare_suite(const Suite& suite, const RunOptions& options) {
+std::unique_ptr<SuiteRun> prepare_suite(const Suite& suite, const RunOptions& options,
+                                        Mistakes& mistakes) {
   auto run = std::make_unique<SuiteRun>();
   run->suite = suite;
   if (options.alpha) run->suite.alpha = *options.alpha;
@@ -195,10 +196,9 @@ std::unique_ptr<SuiteRun> prepare_suite(const Suite& suite, const RunOptions& op
     }
     return run;
   }
-  Mistakes mistakes;
   const std::map<std::string, Fault> faults = prepare_estimators(*run, mistakes);
   for (TestEntry& test : run->suite.tests) ask_test(*run, test, faults, mistakes);
-  mistakes.refuse_any();
+  if (mistakes.any()) return run;
   for (Question& each : run->questions) each.chosen = selects(options.selection, *each.test);
   note_unused(run->suite);
   coarsen(run->suite, options);
@@ -223,7 +223,9 @@ std::vector<foreign::MissingFile> missing_files(const std::vector<Suite>& suites
                                                 const RunOptions& options, Progress& progress) {
   Missing all;
   for (const Suite& suite : suites) {
-    const std::unique_ptr<SuiteRun> run = prepare_suite(suite, options);
+    Mistakes mistakes;
+    const std::unique_ptr<SuiteRun> run = prepare_suite(suite, options, mistakes);
+    mistakes.refuse_any();
     const Used used = with_sweeps(used_by(*run), *run);
     Missing missing;
     for (const auto& [name, pool] : pilot_pools(used, run->questions, run->seed)) {
@@ -263,8 +265,12 @@ NamedSetups setups_of(const PlannedRun& run) {
 }
 
 PlannedRun prepare_run(const std::vector<Suite>& suites, const RunOptions& options) {
-  const auto prepared = [&](const Suite& suite) { return prepare_suite(suite, options); };
-  return {.suites = mapped(suites, prepared)};
+  Mistakes mistakes;
+  PlannedRun run{.suites = mapped(suites, [&](const Suite& suite) {
+                   return prepare_suite(suite, options, mistakes);
+                 })};
+  mistakes.refuse_any();
+  return run;
 }
 
 PlannedRun plan_run(const std::vector<Suite>& suites, const RunOptions& options,
