@@ -296,6 +296,7 @@ SuiteDisplay display(const Suite& suite) {
 
 std::vector<Suspect> suspects(const Suite& suite) {
   std::map<std::string, int> claims;
+  std::map<std::string, double> least;  // log10 of p
   std::vector<Suspect> all;
   for (const Test& test : suite.tests) {
     std::set<std::string> estimators;
@@ -308,14 +309,16 @@ std::vector<Suspect> suspects(const Suite& suite) {
     if (suspect == all.end())
       suspect = all.insert(suspect, {suite.name, subject.empty() ? test.name : subject, how});
     suspect->tests.push_back(test.id);
+    double& log10_p = least[suspect->name];
+    log10_p = std::min(log10_p, deciding_channel(test).log10_p.value_or(0));
   }
   const auto is_broken = [](const Suspect& suspect) {
     return suspect.standing == to_string(Standing::broken);
   };
-  // A tie goes to the estimator whose claims are broken most often.
+  // A tie goes to the estimator whose claims are broken most often, then most clearly.
   std::ranges::sort(all, {}, [&](const Suspect& suspect) {
     return std::tuple(!is_broken(suspect), claims[suspect.name] == 0, -std::ssize(suspect.tests),
-                      claims[suspect.name], suspect.name);
+                      claims[suspect.name], least[suspect.name], suspect.name);
   });
   for (Suspect& suspect : all) {
     if (const int of = claims[suspect.name]; of > 0)

@@ -54,15 +54,17 @@ export function WhatBroke() {
   const { suspects } = record.display;
   const alarms = record.ledger.series.flatMap((series, i) => (series.alarm ? [{ series, words: record.display.series[i] }] : []));
   if (suspects.length === 0 && alarms.length === 0) return null;
+  const of = (broken: boolean) => suspects.filter(({ standing }) => (standing === "broken") === broken).slice(0, most);
+  const shown = [...of(true), ...of(false)];
   return (
     <section aria-label="What broke">
       <h2>{alarms.length > 0 || suspects.some(({ standing }) => standing === "broken") ? "What broke" : "What has no verdict"}</h2>
-      {suspects.slice(0, most).map((suspect) => (
-        <Card key={`${suspect.suite} ${suspect.name}`} suspect={suspect} />
+      {shown.map((suspect) => (
+        <Card key={`${suspect.suite} ${suspect.name} ${suspect.standing}`} suspect={suspect} />
       ))}
-      {suspects.length > most && (
+      {suspects.length > shown.length && (
         <p>
-          <a href={link({ show: "broken" })}>{suspects.length - most} more suspects are in the list of broken claims.</a>
+          <a href={link({})}>{suspects.length - shown.length} more suspects are in the list of claims.</a>
         </p>
       )}
       {alarms.map(({ series, words }) => (
