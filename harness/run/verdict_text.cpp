@@ -170,8 +170,8 @@ ErrorShare last_levels(const TestOutcome& outcome) {
 }
 
 /// The room between margins in standard errors. An alarm needs z_alpha and z_beta of them, then any
-/// estimate decides. A proof needs the estimate's distance from the border of the claim, and one to
-/// spare.
+/// estimate decides. A proof needs the estimate's distance from the border of the claim, and two to
+/// spare: fresh data give another estimate.
 struct Room {
   double size = 0;
   double standard_errors = 1;  ///< the room must hold so many
@@ -184,7 +184,7 @@ Room room_of(const TestOutcome& outcome, const ChannelOutcome& channel) {
   const ErrorShare share = last_levels(outcome);
   const double estimate = channel.evidence.estimate;
   const auto proof = [&](double spare) {
-    return Room{std::abs(spare), z(spare < 0 ? share.alpha : share.beta) + 1, spare < 0};
+    return Room{std::abs(spare), z(spare < 0 ? share.alpha : share.beta) + 2, spare < 0};
   };
   if (regions.within()) return proof(*regions.detect - std::abs(estimate));
   if (regions.proof()) return proof(regions.bounds_above() ? -estimate : estimate);
@@ -210,7 +210,7 @@ double interval_errors(const ChannelOutcome& channel, double tail) {
 }
 
 /// So many times the observations would decide.
-Reason with_more(const TestOutcome& outcome, const ChannelOutcome& channel, double factor) {
+Reason with_more(const TestOutcome& outcome, double factor, const std::string& condition = "") {
   if (has_rows(outcome.question)) {
     const std::string sizes = sizes_text(outcome, factor);
     const bool differ = sizes.find(' ') != std::string::npos;  // N and M
@@ -218,17 +218,16 @@ Reason with_more(const TestOutcome& outcome, const ChannelOutcome& channel, doub
                             fmt::format("give about {} {}{}", sizes, rows_noun(outcome.question),
                                         differ                      ? ""
                                         : outcome.question.of_two() ? " a side"
-                                                                    : " in all"));
+                                                                    : " in all") +
+                                condition);
   }
-  return more_drawn(
-      outcome, factor,
-      channel.regions.proof() ? "would decide if the estimate stays as it is" : "would decide");
+  return more_drawn(outcome, factor, "would decide" + condition);
 }
 
 /// n grows with the square of the factor by which the interval must shrink.
 Reason what_would_decide(const TestOutcome& outcome, const ChannelOutcome& channel) {
   if (channel.image && channel.image->wanted > 0) {
-    return with_more(outcome, channel,
+    return with_more(outcome,
                      channel.image->wanted / static_cast<double>(channel.image->replicates));
   }
   const double beta = last_levels(outcome).beta;
@@ -241,24 +240,34 @@ Reason what_would_decide(const TestOutcome& outcome, const ChannelOutcome& chann
   // The samples' standard errors must shrink to the room that the reference's leaves.
   const double fixed = reference_error(outcome, channel);
   const double error = half / interval_errors(channel, beta);
+  const double sampled = std::max(0.0, error * error - fixed * fixed);
+  // It is infinite where the reference's own error is too large.
+  const auto factor = [&](double size) {
+    const double wanted = std::pow(size / room.standard_errors, 2) - fixed * fixed;
+    return wanted > 0 ? std::max(1.1, sampled / wanted) : HUGE_VAL;
+  };
   if (channel.regions.proof() && room.size < error) {
-    const std::string more = has_rows(outcome.question)      ? rows_noun(outcome.question)
-                             : outcome.question.test->budget ? "`budget`"
-                                                             : "observations";
-    return Reason::advising(
+    const std::string where =
         fmt::format("the estimate lies {} {} by less than a standard error; ",
                     room.outside ? "beyond" : "within",
-                    channel.regions.within() ? "the margin" : "what must be proved"),
-        channel.regions.within()
-            ? "give a larger margin, or more " + more
-            : "if both sides may be equal, claim `within` a margin; otherwise give more " + more);
+                    channel.regions.within() ? "the margin" : "what must be proved");
+    if (!channel.regions.within()) {
+      const std::string more = has_rows(outcome.question)      ? rows_noun(outcome.question)
+                               : outcome.question.test->budget ? "`budget`"
+                                                               : "observations";
+      return Reason::advising(
+          where,
+          "if both sides may be equal, claim `within` a margin; otherwise give more " + more);
+    }
+    if (const double exact = factor(*channel.regions.detect); std::isfinite(exact)) {
+      Reason more = with_more(outcome, exact, " if the claim holds exactly");
+      more.text = where + more.text;
+      return more;
+    }
   }
-  const double sampled = error * error - fixed * fixed;
-  const double wanted = std::pow(room.size / room.standard_errors, 2) - fixed * fixed;
-  if (!(wanted > 0)) {
-    return Reason("no number of observations would decide: the reference's own error is too large");
-  }
-  return with_more(outcome, channel, std::max(1.1, std::max(0.0, sampled) / wanted));
+  const double more = factor(room.size);
+  if (std::isfinite(more)) return with_more(outcome, more);
+  return Reason("no number of observations would decide: the reference's own error is too large");
 }
 
 Reason undecided(const TestOutcome& outcome, const ChannelOutcome& channel) {
