@@ -28,7 +28,8 @@ struct Terms {
   std::shared_ptr<std::atomic_flag> asked_whether_it_flushes = {};
   /// Who prints the line `ready`, and when.
   std::string who_is_ready =
-      "a Python program ends with `assay.serve(FUNCTION)`, which prints it; others flush it";
+      "a Python program ends with `assay.serve(FUNCTION)`, which prints it; another program "
+      "flushes what it prints";
 };
 
 /// Why a program did not answer: a sentence with the program's name, how it ended and the end of

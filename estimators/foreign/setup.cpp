@@ -433,9 +433,7 @@ std::shared_ptr<const Setup> start(Terms terms, const Parameters& parameters,
     return setup_of(std::make_shared<Children>(
         shared->name, [shared] { return std::make_unique<Dialogue>(*shared); }));
   } catch (const Refused& refusal) {
-    const std::string why = refusal.what();
-    const bool lacks = parameters.given("estimator") && why.find("has no estimator `") != why.npos;
-    parameters.refuse(lacks ? "estimator" : name, "starts no estimator: " + why);
+    parameters.refuse(name, std::string("starts no estimator: ") + refusal.what());
   } catch (const std::system_error& failure) {
     parameters.refuse(name, "names the program `" + program + "`, which cannot be started: " +
                                 failure.code().message() + mend_of_program(program));

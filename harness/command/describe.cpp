@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "estimators/catalogue.h"
+#include "harness/base/terminal.h"
 #include "harness/command/commands.h"
 #include "harness/language/laws.h"
 #include "harness/theta/gate.h"
@@ -197,6 +198,10 @@ Table table_of(const char* plural, const char* singular, const Rows& rows) {
 }
 
 }  // namespace
+
+std::size_t page_width() {
+  return static_cast<std::size_t>(std::clamp(terminal_width(stdout), 40, 80));
+}
 
 std::string wrapped(const std::string& text, std::size_t indent, std::size_t width) {
   std::string out;

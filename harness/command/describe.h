@@ -1,16 +1,14 @@
 #pragma once
 
-#include <algorithm>
 #include <string>
 #include <vector>
 
 #include "estimators/estimator.h"
-#include "harness/base/terminal.h"
 
 namespace assay::harness {
 
 /// Columns of help, manuals and tables: 80, or those of a narrower terminal.
-inline const auto page_width = static_cast<std::size_t>(std::clamp(terminal_width(stdout), 40, 80));
+std::size_t page_width();
 
 /// The manual of a plugin: what it estimates, its parameters, samplers, and mutants among
 /// `entries`. Known values of its channels are those for default parameters. A line has at most
@@ -19,7 +17,7 @@ std::string manual(const Entry& plugin, const std::vector<Entry>& entries);
 
 /// The text in lines of at most `width` columns, each after `indent` blanks. Its line ends stay.
 std::string wrapped(const std::string& text, std::size_t indent = 0,
-                    std::size_t width = page_width);
+                    std::size_t width = page_width());
 
 /// Two columns of a page, the right one from `column` on. A left side that is too long has its own
 /// line.

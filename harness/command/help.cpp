@@ -194,7 +194,7 @@ std::string help_of_claims(std::string_view markdown) {
     if (stands_alone || line.starts_with('|') || line.starts_with("- ")) end_paragraph();
     if (is_fence) in_code = !in_code;
     const std::size_t sign = line.find(" = ");
-    if (in_code && line.size() > page_width && sign != line.npos) {
+    if (in_code && line.size() > page_width() && sign != line.npos) {
       text += beside(std::string(line.substr(0, sign + 2)), std::string(line.substr(sign + 3)),
                      sign + 3);
     } else if (stands_alone) {

@@ -162,7 +162,7 @@ std::string on_page(const std::string& text, std::size_t indent = 0) {
 bool fit(const std::array<int, column_count>& widths, int gap) {
   int wide = 4 - gap;
   for (const int width : widths) wide += width + gap;
-  return wide <= static_cast<int>(page_width);
+  return wide <= static_cast<int>(page_width());
 }
 
 std::string line_of(const Cells& cells, const std::array<int, column_count>& widths) {

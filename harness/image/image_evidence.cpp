@@ -212,7 +212,9 @@ ChannelEvidence evidence_of_image_laws(const Seen& seen, const ImageTest& test) 
 }
 
 double share_of_distance(const Question& question) {
-  return question.of_two() ? stats::share_of_distance : 0;
+  const bool is_picture =
+      !question.of_two() && std::holds_alternative<ScaledQuantity>(question.test->claim.right);
+  return is_picture ? 0 : stats::share_of_distance;
 }
 
 PlaceText place_text(const stats::ImageFinding& finding, const ImageShape& shape,
@@ -270,6 +272,7 @@ ChannelEvidence evidence_of_images(const Seen& seen, const ImageTest& test) {
   outcome.family = std::move(look.family);
   outcome.z = std::move(look.z);
   stats::add_unseen(outcome.unseen, extent, outcome.family);
+  stats::leave_share(outcome.family, share_of_distance(question));
   note_errors(look.means, relative, (1 - share_of_distance(question)) * test.share.alpha,
               test.share.beta, outcome);
   const stats::ImageFamily& family = outcome.family;
@@ -281,7 +284,6 @@ ChannelEvidence evidence_of_images(const Seen& seen, const ImageTest& test) {
       .hidden = std::sqrt(family.hidden_squares / distance.squared_norm),
       .hidden_of_twice = std::sqrt(family.hidden_squares_of_twice / distance.squared_norm),
       .of_means = stats::distances_of_means(look.means[0], other, extent, distance.squared_norm),
-      .log_p_of_places = family.log_p,
       .share = share_of_distance(question)};
   const TestEntry& entry = *question.test;
   const bool within = entry.claim.relation == Relation::within;
@@ -290,11 +292,16 @@ ChannelEvidence evidence_of_images(const Seen& seen, const ImageTest& test) {
     outcome.wanted = stats::deciding_replicates(images, margin, test.share.beta,
                                                 static_cast<double>(outcome.replicates));
   }
-  const stats::TestResult equal{
-      .statistic = family.winner.z,
-      .distribution = {"image-family", {static_cast<double>(family.tested)}},
-      .log_p_lower = 0,
-      .log_p_upper = stats::theta_test(images, 0).log_p_upper};
+  stats::TestResult equal{.statistic = family.winner.z,
+                          .distribution = {"image-family", {static_cast<double>(family.tested)}},
+                          .log_p_lower = 0,
+                          .log_p_upper = family.log_p};
+  // The distance decides where no place does.
+  if (images.share > 0 && family.log_p > std::log(test.share.alpha)) {
+    stats::TestResult by_distance = stats::theta_test(images, 0);
+    by_distance.log_p_lower = 0;
+    if (by_distance.log_p_upper < family.log_p) equal = by_distance;
+  }
   Evidence evidence{
       .estimate = images.estimate(),
       .at = [=](double theta) { return theta > 0 ? stats::theta_test(images, theta) : equal; },

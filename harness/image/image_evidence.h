@@ -50,7 +50,7 @@ ChannelEvidence evidence_of_images(const Seen& seen, const ImageTest& test);
 /// Evidence that two images have different laws (stats/images/image_law.h). Theta is 0 or not.
 ChannelEvidence evidence_of_image_laws(const Seen& seen, const ImageTest& test);
 
-/// The squared bias's share of alpha where theta = 0.
+/// The squared bias's share of alpha beside the family. It is 0 against one picture.
 double share_of_distance(const Question& question);
 
 /// Indices of a window's elements in a question.

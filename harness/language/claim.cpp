@@ -325,7 +325,7 @@ class Parser {
 
   /// Says what to write for a word or symbol of another notation, or in a wrong place; may be "".
   static std::string meaning_of(std::string_view word) {
-    const std::string alone = fmt::format(" {} ", word.substr(0, word.find("/", 2)));
+    const std::string alone = fmt::format(" {} ", word);
     for (const auto& [words, advice] :
          std::initializer_list<std::pair<std::string_view, const char*>>{
              {" E average avg expectation expected ", "; did you mean `mean(…)`?"},
@@ -370,6 +370,7 @@ class Parser {
     std::vector<std::string> words = quantity_words();
     words.insert(words.end(), {"analytic", "density"});
     for (const LawInformation& law : laws()) words.push_back(law.name);
+    if (token.text.starts_with("pi/")) return "; a claim has no arithmetic: write the number";
     std::string near = meaning_of(token.text);
     if (near.empty()) near = did_you_mean(token.text, words);
     if (!near.empty()) return near;

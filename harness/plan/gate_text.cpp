@@ -127,19 +127,20 @@ Reason what_would_help(const TestOutcome& outcome) {
   // An average has another variance than what it averages.
   const bool averages = rows && !question.is().of_spread;
   // If the tail's moment does not exist, more observations only make the gate redder.
-  if (heavy || factor > most_wanted) {
-    std::vector<std::string> ways;
-    if (averages)
-      ways.push_back(fmt::format("give {} that each average many", rows_noun(question)));
-    if (!rows)
-      ways.insert(ways.end(), {"clamp the estimator or take another", "declare its range"});
-    if (!question.subjects[0].image) {
-      ways.push_back(fmt::format("claim a quantile, as `quantile({}, 0.5) == …`",
-                                 to_string(question.test->claim.left.source)));
-    }
+  const std::uint64_t primaries = primaries_of_look(outcome, outcome.secondaries());
+  if (heavy || (factor > most_wanted && (rows || primaries > floor_of_evidence))) {
+    const std::string quantile = question.subjects[0].image
+                                     ? "claim the mean"
+                                     : fmt::format("claim a quantile, as `quantile({}, 0.5) == …`",
+                                                   to_string(question.test->claim.left.source));
     return Reason::advising(
         "; the values are heavy-tailed, and more observations may only show more of the tail: ",
-        fmt::format("{}", fmt::join(ways, ", or ")));
+        fmt::format("{}{}",
+                    averages
+                        ? fmt::format("give {} that each average many, or ", rows_noun(question))
+                    : rows ? ""
+                           : "clamp the estimator or take another, declare its range, or ",
+                    quantile));
   }
   const bool known = factor > 1;
   factor = std::min(factor, most_wanted);

@@ -161,8 +161,9 @@ Subject draws(const Source& source, const Estimators& estimators, Draws what) {
   if (samplers.empty()) {
     refuse(source.where, "`{}` has no sampler whose draws could be tested; it has {}{}",
            source.estimator, parts_of(estimator),
-           estimator.entry->information.name == "process"
-               ? "; its hello declares one by `samplers=[…]` of `assay.serve`, or a line `sampler`"
+           estimator.entry->information.says_nature
+               ? "; the program declares one: by `samplers=[…]` of `assay.serve`, or a line "
+                 "`sampler` of its hello"
                : "");
   }
   const NamedSampler* named = sampler_named(samplers, source.part, rest);

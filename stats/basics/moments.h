@@ -107,11 +107,13 @@ struct FiniteMoments {
   void append(const FiniteMoments& next);
 };
 
-// Moments of single values from those of means of n of them. The kurtosis is at least 1 and the
-// square of the skewness, as for every law (Pearson 1916).
+// Moments of single values from those of means of n of them: variance times n, skewness times
+// sqrt n, excess kurtosis times n. The kurtosis is at least 1 and the square of the skewness, as
+// for every law (Pearson 1916).
 Moments moments_of_values(Moments means, double n);
 
-// Moments as if `count` means of n values each had been drawn.
+// Moments as if `count` means of n values each had been drawn, by the inverse of that. Throws
+// ZeroVariance.
 Moments moments_of_means(const Moments& values, double n, std::uint64_t count);
 
 // Moments of fewer independent values with the same mean and variance: one in `factor`, at least 4.

@@ -155,9 +155,7 @@ double z_of(const UnseenElement& unseen) {
 
 void add_unseen(std::span<const UnseenElement> unseen, const ImageExtent& extent,
                 ImageFamily& family) {
-  for (ImageFinding& group : family.groups) {
-    group.adjusted_log_p = std::min(0.0, group.adjusted_log_p - std::log1p(-unseen_share));
-  }
+  leave_share(family, unseen_share);
   if (!unseen.empty()) family.groups.push_back(finding_of(unseen, extent));
   decide(family);
 }

@@ -341,12 +341,8 @@ std::vector<Reference> distances_of_means(const ChannelMeans& a, const ChannelMe
 }
 
 TestResult theta_test(const ThetaOfImages& theta, double margin) {
-  TestResult result = theta.exact() ? without_error(theta.estimate() - margin, "exact")
-                                    : test_of_squares(theta, margin);
-  if (margin > 0) return result;
-  const double of_places = std::min(0.0, theta.log_p_of_places - std::log1p(-theta.share));
-  result.log_p_upper = theta.share > 0 ? std::min(result.log_p_upper, of_places) : of_places;
-  return result;
+  return theta.exact() ? without_error(theta.estimate() - margin, "exact")
+                       : test_of_squares(theta, margin);
 }
 
 Interval theta_interval(const ThetaOfImages& theta, double confidence) {

@@ -95,10 +95,9 @@ struct ThetaOfImages {
   // The size of each channel's difference between the whole images' means, with its error. Theta is
   // at least as large.
   std::vector<Reference> of_means = {};
-  // ln p of the family of places (image_family.h), which tests theta = 0.
-  double log_p_of_places = 0;
-  // The share of alpha that U has beside it. A single image has noise of its own, which is part of
-  // U: there it is 0, and U tests a theta beyond 0 alone.
+  // The share of alpha that U has beside a family of places (image_family.h), which tests theta = 0
+  // too. It is 0 against a single image, whose own noise is part of U. There U tests a theta beyond
+  // 0, with all of alpha.
   double share = 0;
 
   // sqrt(U / N), or 0 where U is negative.
@@ -116,11 +115,11 @@ inline constexpr double share_of_distance = 0.25;
 // Null hypothesis: theta = margin. A hidden bias may be part of theta, or make up theta. An
 // estimate below 0 counts as 0, since no bias is smaller. Noise that all elements share enters the
 // squared distance squared, so the jackknife misses it where it cancels a bias: the means decide as
-// well. What rejects a margin at its share rejects every smaller one, and 0. Asymptotic. Throws as
-// squared_margin_test.
+// well. The upper p-value is over the share. Asymptotic. Throws as squared_margin_test.
 TestResult theta_test(const ThetaOfImages& theta, double margin);
 
-// Values of theta that theta_test does not reject, found by the square root's signed square.
+// Values of theta that theta_test does not reject, but for places at 0. They are found by the
+// square root's signed square.
 Interval theta_interval(const ThetaOfImages& theta, double confidence);
 
 // Replicates at which theta would be excluded from `margin` on at beta, a million times as many at

@@ -158,6 +158,13 @@ double standard_error_at(const CellNoiseOfMean& noise, double errors) {
   return half + std::sqrt(half * half + noise.variance);
 }
 
+void leave_share(ImageFamily& family, double share) {
+  for (ImageFinding& group : family.groups) {
+    group.adjusted_log_p = std::min(0.0, group.adjusted_log_p - std::log1p(-share));
+  }
+  decide(family);
+}
+
 void decide(ImageFamily& family) {
   if (family.groups.empty()) return;
   family.winner = *std::ranges::min_element(family.groups, {}, &ImageFinding::adjusted_log_p);

@@ -112,9 +112,10 @@ TestResult ThetaOfMeans::at(double theta) const {
   if (!relative) return test.of_two(x, *y, {.scale = factor, .offset = offset + theta});
   const double sign = std::copysign(1, factor * y->moments.mean);
   const double scale = factor * (1 + sign * theta);
-  // A constant x is held against the offset alone.
-  if (scale == 0 && x.moments.m2 == 0) return without_error(x.moments.mean - offset, "exact");
-  TestResult result = test.of_two(x, *y, {.scale = scale, .offset = offset});
+  // Without y a constant x is held against the offset alone.
+  TestResult result = scale == 0 && x.moments.m2 == 0
+                          ? without_error(x.moments.mean - offset, "exact")
+                          : test.of_two(x, *y, {.scale = scale, .offset = offset});
   if (theta == 0) return result;
   const double log_p_sign = log_p_of_no_sign(*y, test);
   result.log_p_lower = std::max(result.log_p_lower, log_p_sign);

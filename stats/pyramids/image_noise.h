@@ -123,13 +123,13 @@ class NoisePyramid {
   // effect smaller. The largest k3 / k2 counts, of the cell itself and of every block of four times
   // its side up to the whole image. A block's deviations are cut off at every octave, so that the
   // rarest do not drown the others. Its rare ones count by themselves too, so that the edge of a
-  // lamp does not drown them. That is in octaves that two of the darker side reach.
+  // lamp does not drown them. That is in octaves that two of the side reach that lacks light.
   //
   // Two sides of one law have one variance, which is pooled (Student 1908), unless Welch's is
   // larger. What few replicates of one missed the other shows. So the blocks count only where the
   // sides have different laws in one of them. That is where one is noisier for its mean in too many
   // elements (sign test). It is also where the darker has too many rare values beyond an octave. A
-  // reference has a law of its own.
+  // reference has a law of its own, and what is held against it may lack values of either sign.
   //
   // Between different laws a cell is no clearer than values allow that it never showed. They may be
   // as large as the noise of its neighbours.

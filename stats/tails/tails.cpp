@@ -314,7 +314,8 @@ double end_of(const Curve& curve, const Whereabouts& around, double direction) {
     inside = outside;
     if (++doublings == most_doublings) return direction * std::numeric_limits<double>::infinity();
   }
-  if (!(inside > 0 || at(inside) > 0)) return around.estimate;
+  // Rounding may move the end of a tiny step to its other side.
+  if (!(at(inside) > 0) || at(outside) > 0) return around.estimate;
   return around.estimate + direction * root_bracket(at, inside, outside, digits_of_reach).first;
 }
 

@@ -109,7 +109,7 @@ double per_mean_square(const JointMoments& sample) {
 void add_error_of_mean(const JointMoments& sample, const Coefficients& of, Moments& psi) {
   constexpr double second_order = 2;
   psi.m2 += second_order;
-  if (psi.m4 == 0) return;
+  if (sample.known < weight) return;
   const double products = of.square * sample.sum(3, 0) + of.cost * sample.sum(1, 1);
   psi.m4 += 16 * products * products / sample.sum(2, 0);
 }

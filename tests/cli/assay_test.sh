@@ -281,6 +281,9 @@ def picture(name, noise):
     open(f"{name}.pfm", "wb").write(b"PF\n32 32\n-1\n" + struct.pack("<3072f", *numbers))
 for i in range(32):
     picture(f"a{i}", 0.3)
+    light = [random.Random(k).gauss(1, 0.05) + random.Random(f"{i} {k}").gauss(0, 0.3)
+             for k in range(3072)]
+    open(f"c{i}.pfm", "wb").write(b"PF\n32 32\n-1\n" + struct.pack("<3072f", *light))
 picture("exact", 0)
 picture("noisy", 0.025)'
   expect 0 images --candidate 'a*.pfm' --reference noisy.pfm
@@ -291,6 +294,11 @@ picture("noisy", 0.025)'
   contains out 'relative root mean square difference of the images is 2'
   expect 0 images --candidate 'a*.pfm' --reference exact.pfm
   contains out 'no evidence against the claim'
+  # Two sides have no such noise: what fails with a tolerance fails without.
+  for allow in 0 0.5%; do
+    expect 1 images --candidate 'a*.pfm' --reference 'c*.pfm' --allow $allow
+    contains out 'difference of the images is '
+  done
 }
 
 # One side has no noise.

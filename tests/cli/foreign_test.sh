@@ -186,7 +186,7 @@ test_a_program_that_says_no_hello_is_an_error_of_its_tests() {
   tells out 'PYTHONPATH needs'
   printf "printf 'assay 1 text\\nchannel x\\nready\\n'; read -r q\n" >plain.sh
   expect 2 check 'distribution(x.line) == uniform(0, 1)' --estimator 'x=process,command=[sh, plain.sh]'
-  tells err '`x` has no sampler whose draws could be tested; it has `x`; its hello declares one by `samplers=[…]`'
+  tells err '`x` has no sampler whose draws could be tested; it has `x`; the program declares one: by `samplers=[…]`'
   printf '%s\n' 'suite: dead' 'estimators: {ended: {plugin: process, command: [sh, none.sh]}}' \
     'tests: [{claim: mean(ended) == 1}, {claim: variance(ended) <= 1}]' >dead.yaml
   expect 1 run dead.yaml --report json=run.json
@@ -230,7 +230,7 @@ plugin: library, file: bad.yaml|is no shared library
 plugin: library, file: symbol.so|does not export assay_library()
 plugin: library, file: version.so|was compiled for version 7 of the interface
 plugin: library, file: other.so, estimator: mien|did you mean `mine`
-plugin: library, estimator: mien, file: other.so|bad.yaml:4:38: library: parameter `estimator` starts
+plugin: library, estimator: mien, file: other.so|bad.yaml:4:50: library: parameter `file` starts
 plugin: library, file: other.so, parameters: {rate: 2}|has no parameter `rate`
 plugin: library, file: loud.so|the library printed `welcome`
 plugin: process, command: [no_such_program]|cannot be started: No such file or directory

@@ -140,7 +140,8 @@ def check_width(assay, width):
     written, code = in_terminal(width, assay, "run", "bad.yml")
     screen = Screen(width)
     screen.feed(written)
-    if screen.wraps or code != 2 or "did you mean `bad.yaml`?" not in screen.shown():
+    said = " ".join(screen.shown().split())
+    if screen.wraps or code != 2 or "did you mean `bad.yaml`?" not in said:
         fail(f"a mistake is wider than {width}", screen.shown())
     # A line a test.
     written, _ = in_terminal(width, assay, "run", "bad.yaml", "-v")

@@ -105,7 +105,7 @@ TEST(Describe, KeepsEveryManualWithinThePage) {
     for (const std::string& line : lines(manual(entry, catalogue()))) {
       const auto columns = std::ranges::count_if(
           line, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80; });
-      EXPECT_LE(columns, page_width) << line;
+      EXPECT_LE(columns, page_width()) << line;
     }
   }
 }

@@ -79,6 +79,21 @@ TEST(ImageEquivalence, EqualImagesAreEquivalentAndADifferentOneIsNot) {
   EXPECT_NEAR(image_distance({c.view(), reference}).squared_bias, 4 * 144, 30);
 }
 
+// Beside a family of places the distance has its share of alpha, and no more.
+TEST(ImageEquivalence, TheUpperPValueIsOverTheShare) {
+  Philox random(866);
+  const ImageDistance distance =
+      image_distance({image(random, 0.03).view(), image(random, 0).view()});
+  const auto log_p = [&](double share, double theta) {
+    return theta_test({.of_elements = distance, .share = share}, theta).log_p_upper;
+  };
+  for (const double theta : {0.0, 1e-4}) {
+    ASSERT_LT(log_p(0, theta), std::log(.25));
+    EXPECT_NEAR(log_p(.25, theta), log_p(0, theta) + std::log(4), 1e-12);
+  }
+  EXPECT_EQ(log_p(1e-300, 0), 0);
+}
+
 // More elements than are taken at a time.
 TEST(ImageEquivalence, TheDistanceIsTheSameInAnyOrderAndOfAllElements) {
   Philox random(878);
