@@ -301,6 +301,22 @@ picture("noisy", 0.025)'
   done
 }
 
+# All pixels are an eighth of their noise too bright. A quarter of them have a hundred times the noise, and hardly a weight.
+test_an_effect_that_weights_hide_is_told_unweighted() {
+  /usr/bin/python3 -c '
+import random, struct
+for side, shift in (("a", 0.125), ("b", 0)):
+    for i in range(32):
+        noise = [0.01 if k % 32 < 24 else 1 for k in range(1024)]
+        values = [random.Random(f"{side} {i} {k}").gauss(3 + shift * s, s)
+                  for k, s in enumerate(noise)]
+        open(f"{side}{i}.pfm", "wb").write(b"Pf\n32 32\n-1\n" + struct.pack("<1024f", *values))'
+  expect 1 images --candidate 'a*.pfm' --reference 'b*.pfm'
+  contains out 'the whole image is 0.0'
+  contains out 'Y differs by +1'
+  contains out ' unweighted.'
+}
+
 # One side has no noise.
 test_black_pictures_fail_beside_any_other() {
   /usr/bin/python3 -c '
